@@ -7,13 +7,14 @@ duty of the load cases; without one that in the worst load case, run all the tim
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import NamedTuple
 
 import numpy as np
 import scipy
 
-from camwright.geometry.arrays import FULL_TURN, Array
+from camwright.geometry.arrays import Array, Values
 from camwright.geometry.errors import InputError
-from camwright.pipeline.base.units import in_unit
+from camwright.pipeline.base.units import factor, in_unit
 from camwright.pipeline.case.limits import (
     ROLLER_LIFE,
     ROLLER_LOAD_SHARE,
@@ -37,6 +38,7 @@ from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.cycle import Cycle
 from camwright.pipeline.cycle.solution import Solution
 from camwright.pipeline.follower import bearing_life
+from camwright.pipeline.follower.roller import Roller
 from camwright.pipeline.follower.roller_motion import (
     equivalent_load,
     rating_life,
@@ -375,7 +377,7 @@ def least_speed(viscosity: float, circle: float, ratio: float) -> float | None:
     if not excess(ends[0]) < 0.0 < excess(ends[1]):
         return None
     speed = float(np.exp(scipy.optimize.brentq(excess, *ends, xtol=1e-13)))
-    return speed * FULL_TURN / 60.0
+    return speed * factor("rpm")
 
 
 def _viscosity_ratio(cycle: Cycle, bearing: Bearing) -> float:
@@ -420,7 +422,7 @@ def grease_life(solution: Solution) -> Demand | None:
     if bearing.lubrication is None:
         return Demand(None, None, note="no lubrication of the roller bearing is given")
     for_life = bearing.lubrication == "grease_for_life"
-    target = solution.machine.limits[TARGET_LIFE] if for_life else bearing.relubrication_interval
+    target = _grease_target(solution.machine, bearing)
     missing = not_given({"target life" if for_life else "relubrication interval": target})
     if bearing.grease_life is not None:
         stated = Extreme(bearing.grease_life)
@@ -437,6 +439,50 @@ def _grease_life(cycle: Cycle, solution: Solution) -> float:
     bearing, force, roller = bearing_of(solution), cycle.loads.normal_force, solution.machine.roller
     if not bearing.C or bearing.temperature is None or roller is None or not _known(force):
         return np.nan
-    across = 2.0 * roller.radius if bearing.ring is None else bearing.ring.outer_diameter
     share = float(equivalent_load(force, spin(cycle))) / bearing.C
+    across = _greased_diameter(roller)
     return bearing_life.grease_life(_mean_speed(cycle), across, share, bearing.temperature)
+
+
+def _greased_diameter(roller: Roller) -> float:
+    """Outer diameter of the bearing, m."""
+    ring = roller.bearing.ring
+    return 2.0 * roller.radius if ring is None else ring.outer_diameter
+
+
+class Grease(NamedTuple):
+    """Grease of the roller bearing: required life, s; C, N; outer diameter, m; temperature, K."""
+
+    life: float
+    rating: float
+    diameter: float
+    temperature: float
+
+    def load(self, speed: Values) -> Values:
+        """Greatest equivalent load (...), N, at a mean speed of the roller, rad/s.
+
+        NaN where no load reaches the life, or outside the range of the estimate.
+        """
+        return self.rating * bearing_life.grease_load_share(
+            self.life, speed / factor("rpm"), self.diameter, self.temperature
+        )
+
+
+def grease_of(machine: Machine) -> Grease | None:
+    """Grease whose life is estimated; None where it is stated, without grease or its data."""
+    roller = machine.roller
+    if roller is None or not machine.scope.covers("roller_bearing"):
+        return None
+    bearing = roller.bearing
+    target, rating, temperature = _grease_target(machine, bearing), bearing.C, bearing.temperature
+    if bearing.lubrication in (None, "oil") or bearing.grease_life is not None:
+        return None
+    if target is None or rating is None or temperature is None:
+        return None
+    return Grease(target, rating, _greased_diameter(roller), temperature)
+
+
+def _grease_target(machine: Machine, bearing: Bearing) -> float | None:
+    """Required life of the grease, s."""
+    for_life = bearing.lubrication == "grease_for_life"
+    return machine.limits[TARGET_LIFE] if for_life else bearing.relubrication_interval

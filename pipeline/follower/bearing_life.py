@@ -181,10 +181,41 @@ def grease_life(
     JTEKT, Ball and Roller Bearings, sec. 12: log10 L = 6.10 - 4.40e-6 d n - 2.50 (P/C - 0.05)
     - (0.021 - 1.80e-8 d n) T; SKF for the outer ring: n D. Both recalled: verify.
     """
-    factor = max(1e3 * outer_diameter * speed, 125e3)
-    share, warm = max(load_share, 0.05), max(celsius(temperature), 50.0)
-    if not (factor <= 500e3 and share <= 0.2 and warm <= 120.0):
+    share = max(load_share, _LIGHT)
+    if not share <= _HEAVY:
         return np.nan
-    aging = (0.021 - 1.80e-8 * factor) * warm
-    hours = exp(log(10.0) * (6.10 - 4.40e-6 * factor - 2.50 * (share - 0.05) - aging))
-    return 3600.0 * hours
+    light = float(_light_grease(np.asarray(speed), outer_diameter, temperature))
+    return 3600.0 * exp(log(10.0) * (light - _LOSS * (share - _LIGHT)))
+
+
+_LIGHT, _HEAVY, _LOSS = 0.05, 0.2, 2.50  # range of P/C, and loss of log10 of the life per P/C
+
+
+def _light_grease(speed: Values, outer_diameter: float, temperature: float) -> Values:
+    """log10 of the life of the grease in h (...), at low load; NaN outside the range."""
+    size = 1e3 * outer_diameter * speed
+    factor = np.where(np.real(size) > 125e3, size, 125e3)
+    warm = max(celsius(temperature), 50.0)
+    life = 6.10 - 4.40e-6 * factor - (0.021 - 1.80e-8 * factor) * warm
+    outside = (np.real(factor) > 500e3) | (warm > 120.0)
+    known: Values = np.where(outside, np.nan, life)
+    return known
+
+
+def grease_load_share(
+    life: float, speed: Values, outer_diameter: float, temperature: float
+) -> Values:
+    """Greatest P/C (...) at which the grease lasts, up to the range of the estimate.
+
+    NaN where no load reaches the life, or speed and temperature are outside the range; see
+    `grease_life`.
+
+    Parameters
+    ----------
+    life : float   s, > 0
+    speed : array (...)   rpm, > 0
+    """
+    light = _light_grease(speed, outer_diameter, temperature)
+    share = _LIGHT + (light - log(life / 3600.0) / log(10.0)) / _LOSS
+    lasts: Values = np.where(np.real(share) < _HEAVY, share, _HEAVY)
+    return np.where(np.real(share) >= _LIGHT, lasts, np.nan)

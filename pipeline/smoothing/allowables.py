@@ -43,7 +43,7 @@ from camwright.pipeline.checks.part_strength import (
     ring_force_limit,
     seat_pressure,
 )
-from camwright.pipeline.checks.roller_bearing import allowed_spin, least_speed
+from camwright.pipeline.checks.roller_bearing import allowed_spin, grease_of, least_speed
 from camwright.pipeline.checks.spring_strength import Work, hardest_work, relaxation_allowed
 from camwright.pipeline.cycle.part_loads import edge_pressure_of
 from camwright.pipeline.cycle.solution import Solution
@@ -109,6 +109,7 @@ def ratings_of(case: Case) -> Ratings:
         life_force_cubed=cubed,
         guide_gap=limits[GUIDE_GAP],
         guide_mouth=machine.overhang_at_max_lift - 0.5 * guides.a.length,
+        held_radius=cam.held_radius if "prime_radius" in case.smoothing.free else None,
         friction=roller.friction,
         drag=roller.drag,
         waves=None if cam.profile_tolerance is None else (wave_amplitude(cam), cam.waviness_length),
@@ -118,6 +119,7 @@ def ratings_of(case: Case) -> Ratings:
         tooth_torque_by=tooth_by or "gear_bending",
         shaft_drag=0.0 if shaft is None else shaft.drag,
         keyway=keyway_root_of(machine),
+        grease=grease_of(machine),
         **by_bearing,
         **by_guide,
     )

@@ -130,6 +130,7 @@ def _of_parts(ratings: Ratings) -> dict[str, Bound | None]:
         "guide_gap": _guide_gap(ratings),
         "bearing_lubrication": _roller_spin_least(ratings),
         "roller_modified_life": _modified_life(ratings),
+        "grease_life": _grease(ratings),
         "roller_life": _roller_life(ratings),
         "concave_radius": _concave_radius(ratings),
         "jump_speed": _jump_speed(ratings),
@@ -215,16 +216,30 @@ def _roller_spin_least(ratings: Ratings) -> Bound | None:
 
 
 def _modified_life(ratings: Ratings) -> Bound | None:
-    """Utilisation by the cube root of the rate of damage."""
-    if ratings.modified_rate is None:
+    """Modified life grows with the cube of the rating, at the same fatigue load limit."""
+    modified = ratings.modified
+    if modified is None or ratings.modified_rate is None:
         return None
-    shown = in_unit(ratings.modified_rate, "rpm")
 
-    def with_rate(each: Ratings, factor: float) -> Ratings:
-        return replace(each, modified_rate=_times(each.modified_rate, factor))
+    def with_rating(each: Ratings, factor: float) -> Ratings:
+        changed = each.modified and each.modified._replace(rating=each.modified.rating * factor)
+        return replace(each, modified=changed)
 
-    words = "damage of the roller bearing at its modified life, as millions of ratings' turns"
-    return Bound(words, shown, "rpm", 1.0 / (3.0 * shown), with_rate)
+    words = "dynamic load rating of the roller at its modified life"
+    return _of_part(words, "N", modified.rating, with_rating)
+
+
+def _grease(ratings: Ratings) -> Bound | None:
+    """The life of the grease follows from the load over the rating."""
+    if ratings.grease is None:
+        return None
+
+    def with_rating(each: Ratings, factor: float) -> Ratings:
+        changed = each.grease and each.grease._replace(rating=each.grease.rating * factor)
+        return replace(each, grease=changed)
+
+    words = "dynamic load rating of the roller at the life of its grease"
+    return _of_part(words, "N", ratings.grease.rating, with_rating)
 
 
 def _roller_life(ratings: Ratings) -> Bound | None:

@@ -14,7 +14,12 @@ from numpy.typing import NDArray
 from camwright.geometry.arrays import Array
 from camwright.geometry.pitch_curve import magnitude
 from camwright.pipeline.base.units import factor
-from camwright.pipeline.case.limits import CONTACT_FORCE_MARGIN, KEYWAY_SAFETY, WAVINESS
+from camwright.pipeline.case.limits import (
+    CONTACT_FORCE_MARGIN,
+    KEYWAY_SAFETY,
+    MINIMUM_WALL,
+    WAVINESS,
+)
 from camwright.pipeline.checks import demands
 from camwright.pipeline.checks.roller_bearing import STANDSTILL
 from camwright.pipeline.contact.traction import rolling_demand
@@ -23,6 +28,7 @@ from camwright.pipeline.follower.roller_motion import (
     BALL_LIFE_EXPONENT,
     path_speed_slope,
     rolling_share,
+    wear,
 )
 from camwright.pipeline.smoothing.cam_state import Constraint, Loads, Mean, Shape
 from camwright.pipeline.smoothing.scenario import Value
@@ -216,6 +222,20 @@ def _modified_life(at: Loads, limit: float) -> Mean | None:
     return Mean(terms / limit, 1.0 / BALL_LIFE_EXPONENT)
 
 
+def _grease_life(at: Loads, limit: float) -> Mean | None:
+    """Equivalent load over that at the life of the grease, both at the mean speed."""
+    grease = at.ratings.grease
+    if grease is None:
+        return None
+    speed, turns = _mean_spin(at)
+    load = grease.load(speed) * limit / grease.rating
+    lasts = turns & np.isfinite(load)
+    allowed = np.where(lasts, load, 1.0) ** BALL_LIFE_EXPONENT * speed
+    force = np.where(np.real(at.force.normal) > 0.0, at.force.normal, 0.0 * at.force.normal)
+    terms = _running(at) * lasts * wear(force, at.spin) / allowed
+    return Mean(terms, 1.0 / BALL_LIFE_EXPONENT)
+
+
 def _lubrication(at: Loads, limit: float) -> Mean:
     """Least mean speed of the roller over its mean speed; no film is necessary at rest."""
     spin = magnitude(at.spin)
@@ -223,7 +243,19 @@ def _lubrication(at: Loads, limit: float) -> Mean:
     return Mean(np.where(turns, spin / limit, _AMPLE + 0.0 * spin), -1.0)
 
 
-PART_SHAPE: tuple[Constraint[Shape], ...] = (_guide_speed("A"), _guide_speed("B"))
+def _minimum_wall(cam: Shape, limit: float) -> Array | None:
+    held, ratings, path = cam.ratings.held_radius, cam.ratings, cam.path
+    if held is None:
+        return None
+    inset = ratings.roller_radius / path.speed
+    return limit * held / demands.contour_radius(path.along, path.across, ratings.offset, inset)
+
+
+PART_SHAPE: tuple[Constraint[Shape], ...] = (
+    Constraint("minimum_wall", MINIMUM_WALL, _minimum_wall),
+    _guide_speed("A"),
+    _guide_speed("B"),
+)
 """Limits of the parts on the shape of the cam."""
 
 PARTS: tuple[Constraint[Loads], ...] = (
@@ -249,6 +281,11 @@ PARTS: tuple[Constraint[Loads], ...] = (
         lambda at, limit: magnitude(at.torque + at.ratings.shaft_drag) / limit,
     ),
     Constraint("keyway_root", KEYWAY_SAFETY, _keyway_root),
+    Constraint(
+        "grease_life",
+        lambda ratings: None if ratings.grease is None else ratings.grease.rating,
+        _grease_life,
+    ),
     Constraint("roller_modified_life", lambda ratings: ratings.modified_rate, _modified_life),
     Constraint("bearing_lubrication", lambda ratings: ratings.roller_spin_least, _lubrication),
 )

@@ -11,6 +11,7 @@ import numpy as np
 from camwright.geometry.arrays import FULL_TURN, Array, readonly, uniform_turn
 from camwright.pipeline.case.limits import AnyLimit
 from camwright.pipeline.checks.key_strength import KeywayRoot
+from camwright.pipeline.checks.roller_bearing import Grease
 from camwright.pipeline.contact.traction import Drag
 
 Value = float | Array
@@ -71,12 +72,14 @@ class Ratings:
     guide_length : pair        m
     guide_gap : float          m; guide_mouth: end of guide A over the roller centre at maximum
                                lift, m
+    held_radius : float        of bore and keyway, m; None: the prime radius is that of the case
     friction : float           of the roller on the cam; drag: of the roller
     waves : two floats         amplitude and length of the waves of the contour, m
     cam_torque : float         least of the limits on the cam torque, N m; tooth_torque: with
                                shaft_drag, N m; *_by is the check it comes from
     keyway : KeywayRoot
     modified : ModifiedLife    modified_rate: limit of the mean of |n| / (a_ISO (C/P)^3), rad/s
+    grease : Grease            of the roller bearing
     roller_spin_least : float  mean speed of the roller at the least viscosity ratio, rad/s
     """
 
@@ -110,6 +113,7 @@ class Ratings:
     guide_length: tuple[float, float] = (1.0, 1.0)
     guide_gap: float | None = None
     guide_mouth: float = 0.0
+    held_radius: float | None = None
     friction: float | None = None
     drag: Drag | None = None
     waves: tuple[float, float] | None = None
@@ -119,6 +123,7 @@ class Ratings:
     tooth_torque_by: str = "gear_bending"
     shaft_drag: float = 0.0
     keyway: KeywayRoot | None = None
+    grease: Grease | None = None
     modified: ModifiedLife | None = None
     modified_rate: float | None = None
     roller_spin_least: float | None = None

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.optimize import brentq
 from synthesis_ratings import rated
 
 from camwright.geometry.arrays import uniform_turn
@@ -16,6 +17,7 @@ from camwright.pipeline.case.load_case_torque import engine_torques
 from camwright.pipeline.checks.camshaft_strength import tooth_torque_limits
 from camwright.pipeline.checks.key_strength import torque_limits
 from camwright.pipeline.checks.registry import CHECKS, DECLARED, checks_of
+from camwright.pipeline.checks.roller_bearing import spin
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.part_loads import edge_pressure_of
 from camwright.pipeline.cycle.solution import solution
@@ -31,6 +33,8 @@ from camwright.pipeline.smoothing.allowables import (
     surge_of,
     travel_limits,
 )
+from camwright.pipeline.smoothing.bounds import bounds_of
+from camwright.pipeline.smoothing.cam_state import Shape, loaded, motion
 from camwright.pipeline.smoothing.constraints import (
     CONSTRAINTS,
     SHAPE,
@@ -71,11 +75,21 @@ EACH = [
 
 @pytest.fixture(scope="module")
 def case():
-    """The redesign, with every limit that a synthesis knows."""
+    """The redesign, with every limit that a synthesis knows, and grease at a low load."""
     drawn = read_case(CASE)
     smoothing = drawn.smoothing.model_copy(update={"corners": False})
     limits = drawn.limits.model_copy(update={"curvature_rate": 9e3})
-    return drawn.model_copy(update={"smoothing": smoothing, "limits": limits})
+    greased = replace(
+        drawn.roller.bearing, lubrication="grease_relubricated",
+        relubrication_interval=9000.0 * 3600.0,
+        grease_life=None, temperature=KELVIN + 70.0,
+        C=3.0 * drawn.roller.bearing.C,
+    )  # fmt: skip
+    parts = {
+        "smoothing": smoothing, "limits": limits,
+        "roller_given": replace(drawn.roller, bearing=greased),
+    }  # fmt: skip
+    return drawn.model_copy(update=parts)
 
 
 @pytest.fixture(scope="module", params=range(2))
@@ -139,7 +153,7 @@ def own(case, machine, name):
     if name in HEAT:
         both = [power_limits(s, g, case, machine)[name[:-1] + s] for s, g in guides.items()]
         return f"guide_temperature_{side}", replace(ratings, guide_power=tuple(both))
-    return name, ratings
+    return name, replace(ratings, held_radius=case.cam.held_radius)
 
 
 def in_check(case, checks, solved, name, use):
@@ -162,6 +176,18 @@ def in_check(case, checks, solved, name, use):
         bearing = machine.roller.bearing
         speed = ratings_of(case).roller_spin_least * 30.0 / np.pi / use
         return bearing.viscosity / rated_viscosity(speed, bearing.ball_circle), check.demand
+    if name == "grease_life":
+        # the worst load case: log10 of the life falls by 2.5 per P/C, at no less than 0.05
+        bearing, solved_lives = machine.roller.bearing, []
+        for cycle in solved.cycles:
+            force, turning = cycle.loads.normal_force, np.abs(spin(cycle))
+            load = (np.sum(force**3 * turning) / np.sum(turning)) ** (1.0 / 3.0)
+            speed = float(turning.mean()) * 30.0 / np.pi
+            size = (speed, 1e3 * ring_of(machine).outer_diameter, bearing.temperature - KELVIN)
+            solved_lives.append((greased(*size, max(load / bearing.C, 0.05)), load, size))
+        worst, load, size = min(solved_lives)
+        assert check.demand == pytest.approx(3600.0 * worst, rel=1e-9)
+        return greased(*size, load / use / bearing.C), check.limit / 3600.0
     if name == "guide_gap":
         mouth = machine.overhang_at_max_lift - 0.5 * machine.guides.a.length
         pitch = solved.contour.pitch
@@ -192,6 +218,17 @@ def in_check(case, checks, solved, name, use):
         mean = bending.stress_mean * force / ring.tensile_strength
         return bending.stress_amplitude * force / (1.0 - mean), check.demand
     return use, check.utilisation
+
+
+def ring_of(machine):
+    return machine.roller.bearing.ring
+
+
+def greased(speed, diameter, celsius, share):
+    """Life of grease by the formula of JTEKT, h."""
+    factor, warm = max(speed * diameter, 125e3), max(celsius, 50.0)
+    light = 6.10 - 4.40e-6 * factor - (0.021 - 1.80e-8 * factor) * warm
+    return 10.0 ** (light - 2.50 * (share - 0.05))
 
 
 def guide_closure(case, guide, celsius):
@@ -246,8 +283,6 @@ def test_every_must_have_that_the_lift_can_help_is_kept_or_named():
              "shaft_deflection", "shaft_slope", "shaft_bearing_static", "shaft_bearing_life"),
             "roller_static",
         ),
-        # a life by table and two means, which the synthesis does not keep
-        "grease_life": "",
         # a flat face has no synthesis
         "face_width": "", "face_pv": "",
     }  # fmt: skip
@@ -289,3 +324,57 @@ def test_limits_scaled_from_a_solved_cam_are_those_of_its_checks(case, solved, c
     assert corrected.normal_force == min((force_limits(case) | forces).values())
     weak = rated(ratings_of(case), normal_force=1.0)
     assert corrected_ratings(weak, solved).normal_force == corrected.normal_force
+
+
+def greatest(each, states, ratings):
+    """Greatest utilisation of a constraint, with its limit in these ratings."""
+    limit, most = each.value(ratings), -np.inf
+    for state in states:
+        use = None if limit is None else each.utilisation(state._replace(ratings=ratings), limit)
+        if use is not None:
+            most = max(most, float(np.max(use.value if isinstance(use, Mean) else use)))
+    return most
+
+
+PRICED = [each for each in CONSTRAINTS if each.check not in ("contact_pressure", "concave_radius")]
+"""Two whose slope depends on the cam: `shadow_prices` and `test_prices_verification`."""
+
+
+@pytest.mark.parametrize("each", PRICED, ids=lambda each: each.check)
+def test_the_slope_of_a_bound_is_that_of_the_utilisation_where_it_binds(
+    case, solved, problem, corrections, each
+):
+    """The bound is moved to the cam, then by a millionth; the slope prices a limit."""
+    theta = uniform_turn(POSITIONS)
+    pitch = solved.contour.pitch
+    jet, top = Jet(*pitch.lift.derivatives(theta, 3)), pitch.lift.highest.value
+    variables = DesignVariables(case.spring.rate, case.spring.preload, case.cam.prime_radius)
+    ratings = replace(ratings_of(case), held_radius=case.cam.held_radius)
+    states = [Shape(jet, motion(jet, variables, ratings.offset), ratings)]
+    if each not in SHAPE:
+        states = [
+            loaded(jet, top, variables, ratings, replace(one, correction=corrections[one.name]))
+            for one in problem.scenarios
+        ]
+    bound = bounds_of(ratings)[each.check]
+
+    def with_bound(factor):
+        if bound.relaxed is not None:
+            return bound.relaxed(ratings, factor)
+        if each.row is not None:
+            return replace(ratings, limits={**ratings.limits, each.row: bound_si * factor})
+        return replace(ratings, **{each.check.replace("bearing_lubrication", "roller_spin_least"):
+                                   bound_si * factor})  # fmt: skip
+
+    bound_si = each.value(ratings)
+
+    def excess(log_factor):
+        return greatest(each, states, with_bound(np.exp(log_factor))) - 1.0
+
+    most = 0.999 / bound_si if each.check == "undercut" else 1e4  # its factor is below 1
+    at = np.exp(brentq(excess, np.log(1e-3), np.log(most), xtol=1e-14))
+    step = 1e-6
+    ends = [greatest(each, states, with_bound(at * (1.0 + side * step))) for side in (1, -1)]
+    fall = (ends[1] - ends[0]) / (2.0 * step * at * bound.value)
+    slope = bounds_of(with_bound(at))[each.check].slope
+    assert slope == pytest.approx(fall, rel=1e-4)
