@@ -36,7 +36,7 @@ from oracle_limits import (
     shape_at,
 )
 from scipy.interpolate import BSpline
-from scipy.optimize import brentq
+from scipy.optimize import brentq, minimize_scalar
 from sparse_program import SparseProgram
 
 from camwright.pipeline.smoothing.objective import TORQUE, Weighted
@@ -209,7 +209,12 @@ class Oracle:
         flat = np.linalg.lstsq(self.basis[1], torque - torque.mean(), rcond=None)[0]
         fine = np.linspace(0, 2 * np.pi, max(1440, 16 * self.count), endpoint=False)
         energy, slope = (periodic_basis(fine, self.count, k) @ flat for k in (0, 1))
-        flat, energy = flat - energy.min(), energy - energy.min()
+        place = fine[np.argmin(energy)]
+        lowest = minimize_scalar(
+            lambda angle: float((periodic_basis([angle], self.count, 0) @ flat)[0]),
+            bounds=(place - fine[1], place + fine[1]), options={"xatol": 1e-9},
+        ).fun  # fmt: skip
+        flat, energy = flat - lowest, energy - lowest
         highest, limit = np.inf, p["pressure_angle"] or np.pi / 3
         if p["travel"] is not None:
             travel = p["travel"] * (1 - RESERVE)
