@@ -53,6 +53,11 @@ def synthesise(problem: Problem, ripple_weight: float = 1.0) -> Design:
     return _design(search, descent, steps, fine)
 
 
+def approached(problem: Problem) -> State:
+    """End of a search at the points alone: a start for more splines."""
+    return descended(Search(replace(problem, seed=started(problem))), 1.0).state
+
+
 def started(problem: Problem, ripple_weight: float = 1.0) -> Array:
     """Start coefficients, J: the seed, or the better of exact energy and convex optimum."""
     if problem.seed is not None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
@@ -77,10 +77,10 @@ def second_derivatives(
     weights : mapping   of the terms (...) by name; values without a weight do not count
     """
 
-    def slopes(point: Point, first: int) -> Array:
-        """Gradient (q - first, ...) by the directions from `first` on."""
+    def slopes(point: Point, places: Sequence[int]) -> Array:
+        """Derivatives (len(places), ...) in some of the q directions."""
         sides = []
-        for place in range(first, len(steps)):
+        for place in places:
             values = _values(function, _step(point, place, 1j * _STEP))
             parts = [weight * np.imag(_terms(values[name])) for name, weight in weights.items()]
             sides.append(np.sum(np.broadcast_arrays(*parts), axis=0) / _STEP)
@@ -89,14 +89,15 @@ def second_derivatives(
     sizes = [float(np.abs(part).max()) or 1.0 for part in at.energy]
     sizes.append(at.highest or 1.0)
     sizes += [getattr(at.variables, name) for name in FREED] if freed else []
-    steps = [_SHARE * size for size in sizes]
-    second: Array = np.zeros(0)
-    for k, step in enumerate(steps):
-        up, down = (slopes(_step(at, k, side * step), k) for side in (1.0, -1.0))
-        column = (up - down) / (2.0 * step)
-        if not second.size:
-            second = np.zeros((len(steps), len(steps), *column.shape[1:]))
-        second[k, k:] = second[k:, k] = column
+    steps, jerk = [_SHARE * size for size in sizes], len(at.energy) - 1
+    by_jerk = slopes(at, [jerk])
+    second = np.zeros((len(steps), len(steps), *by_jerk.shape[1:]))
+    # Loads do not depend on the third derivative.
+    used = [k for k in range(len(steps)) if k != jerk or by_jerk.any()]
+    for place, k in enumerate(used):
+        rest, step = used[place:], steps[k]
+        up, down = (slopes(_step(at, k, side * step), rest) for side in (1.0, -1.0))
+        second[k, rest] = second[rest, k] = (up - down) / (2.0 * step)
     return second
 
 

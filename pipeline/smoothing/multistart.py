@@ -10,8 +10,9 @@ import numpy as np
 import scipy
 
 from camwright.geometry.arrays import Array, readonly, uniform_turn
-from camwright.pipeline.smoothing.constrained_synthesis import synthesise
+from camwright.pipeline.smoothing.constrained_synthesis import approached, synthesise
 from camwright.pipeline.smoothing.energy_spline import basis_matrix
+from camwright.pipeline.smoothing.linear_model import State
 from camwright.pipeline.smoothing.sampled_problem import Search
 from camwright.pipeline.smoothing.synthesis_problem import Design, Problem, coarsened
 
@@ -159,23 +160,23 @@ def explored(problem: Problem, count: int) -> Explored:
     """
     coarse = coarsened(problem)
     random = np.random.default_rng(_SEED)
-    designs, resolution = resolved(problem, synthesise(coarse))
+    designs, resolution = resolved(problem, approached(coarse))
     fine = replace(problem, coefficients=resolution.coefficients)
-    others = [continued(fine, synthesise(_random(coarse, random))) for _ in range(count - 1)]
+    others = [continued(fine, approached(_random(coarse, random))) for _ in range(count - 1)]
     alike = [designs[-1], *others]
     ripples = tuple(each.ripple if each.feasible else None for each in alike)
     best = _best([*alike, *designs]) or min(alike, key=lambda each: each.violation)
     return Explored(best, Starts(ripples), resolution)
 
 
-def resolved(problem: Problem, design: Design) -> tuple[list[Design], Resolution]:
+def resolved(problem: Problem, start: Design | State) -> tuple[list[Design], Resolution]:
     """Designs of rising numbers of splines, the last the finest, and the change of their ripple.
 
     Parameters
     ----------
-    design : Design   to start from, of fewer splines
+    start : Design or State   of fewer splines
     """
-    designs = [continued(problem, design)]
+    designs = [continued(problem, start)]
     if problem.convergence is None:
         return designs, Resolution(problem.coefficients)
     while True:
@@ -190,10 +191,10 @@ def resolved(problem: Problem, design: Design) -> tuple[list[Design], Resolution
             return designs, Resolution(finer, count, change, settled)
 
 
-def continued(problem: Problem, design: Design) -> Design:
+def continued(problem: Problem, start: Design | State) -> Design:
     """Design of a problem from one of it on other splines."""
-    seed = refined(design.coefficients, problem.coefficients)
-    return synthesise(replace(problem, seed=seed, variables=design.variables))
+    seed = refined(start.coefficients, problem.coefficients)
+    return synthesise(replace(problem, seed=seed, variables=start.variables))
 
 
 def _best(designs: Sequence[Design]) -> Design | None:

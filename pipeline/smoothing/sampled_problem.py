@@ -75,6 +75,7 @@ class Search:
         self.costs = frozenset(
             each.term.key for each in problem.objective if isinstance(each.term, Cost)
         )
+        self._last: tuple[Array, Grid] | None = None  # coefficients and their peak
         self._stacks: dict[float, Scenario] = {}
         self._engines: dict[float, Array] = {}
         self.exact = self._exact()
@@ -129,13 +130,18 @@ class Search:
 
     def highest(self, coefficients: Array, variables: DesignVariables) -> float:
         """Maximum lift, refined between the points, m."""
-        peak = Grid.at(np.array([self._summit_angle(coefficients)]), coefficients.size)
-        return float(lift_jet(peak.energy(coefficients), variables).lift[0])
+        return float(lift_jet(self._peak(coefficients).energy(coefficients), variables).lift[0])
+
+    def _peak(self, coefficients: Array) -> Grid:
+        """Splines at the cam angle of maximum lift."""
+        if self._last is None or self._last[0] is not coefficients:
+            angle = np.array([self._summit_angle(coefficients)])
+            self._last = coefficients, Grid.at(angle, coefficients.size)
+        return self._last[1]
 
     def summit(self, state: State) -> Summit:
         """Maximum lift at a state, and its derivatives."""
-        angle = np.array([self._summit_angle(state.coefficients)])
-        peak = Grid.at(angle, state.coefficients.size)
+        peak = self._peak(state.coefficients)
         at = Point(peak.energy(state.coefficients), 0.0, state.variables)
         lift = differentiated(_lift, at, self.freed)["lift"]
         return Summit(

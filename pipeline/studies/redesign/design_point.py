@@ -20,7 +20,7 @@ from camwright.pipeline.checks.check import Verdict, within_depth
 from camwright.pipeline.engine.torque import Torque
 from camwright.pipeline.follower.camshaft_loads import unbalance
 from camwright.pipeline.preview import preview_case
-from camwright.pipeline.smoothing.constrained_synthesis import synthesise
+from camwright.pipeline.smoothing.constrained_synthesis import approached
 from camwright.pipeline.smoothing.fe_correction import redrawn
 from camwright.pipeline.smoothing.multistart import continued
 from camwright.pipeline.smoothing.problem_setup import problem_of
@@ -140,7 +140,7 @@ def rough_point(case: Case, torques: Mapping[str, Torque]) -> Rough:
     """
     every = problem_of(case, torques)
     problem = replace(every, left_out=frozenset({TORQUE_REDUCTION.id}))
-    design = continued(problem, synthesise(coarsened(problem)))
+    design = continued(problem, approached(coarsened(problem)))
     contour = redrawn(case, design).contour(design.lift())
     enough = every.ceiling is None or design.ripple <= every.ceiling
     return Rough(
