@@ -195,12 +195,12 @@ def _keyway_root(at: Loads, limit: float) -> Array | None:
 
 
 def _mean_spin(at: Loads) -> tuple[Array, NDArray[np.bool_]]:
-    """Mean speed of the roller, rad/s, at least that of standstill; whether it turns.
+    """Mean speed of the roller (..., 1), rad/s, at least that of standstill; whether it turns.
 
     That of the solved cam; before, of a roller on the prime circle.
     """
-    rolling, ratings = at.scenario.correction.rolling, at.ratings
-    prime = np.sqrt((at.path.across - at.jet.lift) ** 2 + ratings.offset**2)
+    rolling, ratings = at.scenario.correction.rolling[..., :1], at.ratings  # one value
+    prime = np.sqrt((at.path.across - at.jet.lift)[..., :1] ** 2 + ratings.offset**2)
     share = np.where(rolling > 0.0, rolling, rolling_share(prime, ratings.roller_radius))
     mean, least = at.scenario.cam_speed * share, STANDSTILL * factor("rpm")
     turns = np.real(mean) >= least
