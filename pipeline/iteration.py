@@ -48,6 +48,7 @@ from camwright.pipeline.smoothing.shadow_prices import limits_in_use, machine_pr
 from camwright.pipeline.smoothing.smoothers import Smoother
 from camwright.pipeline.smoothing.smoothing_feedback import Stop, next_smoother
 from camwright.pipeline.smoothing.smoothing_forecast import Attempt
+from camwright.pipeline.smoothing.synthesis_problem import Design, Problem
 from camwright.pipeline.solver import solve
 
 FORECAST_POSITIONS = 360
@@ -245,6 +246,8 @@ def _constrained(task: _Task) -> Iteration:
     comparisons: list[Comparison] = []
     points: list[TrialPoint] = []
     best: tuple[Rank, Trial] | None = None
+    # Without corrections the synthesis sees lower bounds: limits that conflict there conflict.
+    conflicts = False
     while True:
         number = len(points) + 1
         task.progress.stage(f"trial {number}: synthesis")
@@ -253,6 +256,10 @@ def _constrained(task: _Task) -> Iteration:
         else:
             first = explored(problem, case.smoothing.starts)
             design, problem = first.design, replace(problem, coefficients=first.splines)
+            conflicts = not design.feasible
+            if task.tier is Tier.CYCLE and not conflicts:
+                problem = _with_guides(task, problem, design)
+                design = synthesise(problem)
         record = design_record(design, problem, first if number == 1 else None)
         record["machine_prices"] = machine_prices(design, problem, case, torques)
         trial = task.solved(
@@ -267,8 +274,6 @@ def _constrained(task: _Task) -> Iteration:
         )
         comparisons.append(compared(problem, design, trial.solution))
         unmeshed = task.tier is Tier.CYCLE and trial.mesh is None
-        # Without corrections the synthesis sees lower bounds: limits that conflict there conflict.
-        conflicts = number == 1 and not design.feasible
         ends = conflicts or unmeshed or comparisons[-1].settled
         last = ends or number == case.solver.max_trials
         conflict = None
@@ -292,6 +297,15 @@ def _constrained(task: _Task) -> Iteration:
         why = comparisons[-1].sentence
         task.progress.note(f"trial {number}: {why}")
         problem = corrected(problem, design, comparisons)
+
+
+def _with_guides(task: _Task, problem: Problem, design: Design) -> Problem:
+    """The problem corrected by a preview of its design: guides of finite length, Hertz contact."""
+    task.progress.stage("trial 1: preview")
+    drawn = redrawn(task.case, design)
+    contour = drawn.contour(design.lift())
+    solved = solution(drawn, contour, Tier.PREVIEW, torques=task.torques)
+    return corrected(problem, design, [compared(problem, design, solved)])
 
 
 def _ending(final: Trial, count: int, latest: Comparison, *, settled: bool) -> str:

@@ -55,7 +55,7 @@ def test_trials_of_v10_end_on_the_best_of_six(monkeypatch):
     monkeypatch.setattr(iteration, "machine_prices", lambda *_: [])
     result = iteration.trials_of(case, engine_torques(case), tier=Tier.CYCLE)
     assert len(ranks) == len(result.points) <= 6
-    assert ranks[0].violation > 0.5  # closed forms alone: far beyond its limit
+    assert solved[0] > 0.5  # closed forms alone, by the preview: far beyond its limit
     assert ranks[result.final.number - 1] == min(ranks)
     assert min(ranks).violation == 0.0
     last, before = ranks[-1].ripple, ranks[-2].ripple
