@@ -24,7 +24,7 @@ from camwright.pipeline.smoothing.synthesis_problem import Problem
 from camwright.pipeline.studies.redesign import ripple_bounds
 from camwright.pipeline.studies.redesign.design_point import Rough
 
-RUNGS, RUNG = 6, 0.93  # limits of the cam radius per roller, and their ratio to the last cam
+RUNGS, RUNG = 12, 0.93  # limits of the cam radius per roller, and their ratio to the last cam
 
 Branch = Generator[Choice, Rough, None]
 
