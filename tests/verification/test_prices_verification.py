@@ -76,13 +76,14 @@ def asked(**ratings):
     ],
 )
 def test_price_is_the_difference_of_designs_solved_again(limit, given, unit):
-    """A thousandth more and less of each limit, everything designed anew."""
+    """Two thousandths more and less of each limit, everything designed anew."""
     problem = asked(**given)
     design = synthesise(problem)
     assert design.feasible
     record = next(r for r in prices(design, problem) if r["limit"] == limit)
     name = next(iter(given))
-    share = 2e-3
+    # the price of the hollow is so small that the ripple needs a greater step to show it
+    share = 1e-2 if limit == "concave_radius" else 2e-3
 
     def ripple(factor):
         value = given[name]
@@ -97,7 +98,7 @@ def test_price_is_the_difference_of_designs_solved_again(limit, given, unit):
         whole = given[name][0] if isinstance(given[name], tuple) else given[name]
         step = 2.0 * share * whole / unit
     # second order in the step, and the designs are solved to 2e-6 of the ripple
-    assert record["ripple_per_unit_Nm"] == pytest.approx(gained / step, rel=0.03)
+    assert record["ripple_per_unit_Nm"] == pytest.approx(gained / step, rel=0.01)
     assert record["sentence"].endswith("N m off the ripple")
 
 
