@@ -130,7 +130,7 @@ def hertz_difference(solution: Solution) -> Demand:
     title="Convergence of the constrained synthesis",
     formula="d <= 1e-5; d: ripple and costs that another step of the synthesis foresees to gain,"
     " over the ripple of the engine",
-    reason="A search that ended early leaves ripple that the limits do not ask for.",
+    reason="An unconverged search gives a cam with more ripple than the limits require.",
     unit="-",
     source=VERIFICATION,
     method="gain by the convex program of another step, with second derivatives",

@@ -17,13 +17,13 @@ from camwright.geometry.arrays import Array
 from camwright.pipeline.smoothing.cone_program import ConeSolution, Linear
 from camwright.pipeline.smoothing.gradients import second_derivatives
 from camwright.pipeline.smoothing.linear_model import Model, State, Summit
+from camwright.pipeline.smoothing.objective import torque_ripple
 from camwright.pipeline.smoothing.sampled_problem import Search
 from camwright.pipeline.smoothing.scenario import DesignVariables
 from camwright.pipeline.smoothing.synthesis_problem import (
     Problem,
     ripple_of,
     ripple_slope,
-    torque_ripple,
     torque_slope,
 )
 

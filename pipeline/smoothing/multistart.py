@@ -105,7 +105,7 @@ class Resolution:
     coefficients : int   splines of the design
     coarser : int        of the design before; None: the number is that of the case
     change : float       of the ripple between both, over that of the design
-    settled : bool       whether it is within what was asked for
+    settled : bool       whether it is within the required convergence
     """
 
     coefficients: int
@@ -120,8 +120,8 @@ class Resolution:
             return f"{self.coefficients} splines, as the case states"
         change = f"{self.coarser} splines leave {100 * abs(self.change):.2g} %"
         more = "more" if self.change > 0 else "less"
-        lasting = "" if self.settled else ", more than asked for"
-        return f"{self.coefficients} splines; {change} {more} ripple{lasting}"
+        excess = "" if self.settled else ", more than the required convergence"
+        return f"{self.coefficients} splines; {change} {more} ripple{excess}"
 
     def as_record(self) -> ResolutionRecord:
         """The JSON record."""

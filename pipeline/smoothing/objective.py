@@ -265,13 +265,3 @@ def costs(
 def _times(value: Array | Mean, weight: Value) -> Array | Mean:
     """Weighted cost; the power of a mean of a cost is 1."""
     return value._replace(terms=weight * value.terms) if isinstance(value, Mean) else weight * value
-
-
-def total_cost(of_scenarios: Iterable[Mapping[str, Array | Mean]]) -> float:
-    """Sum of the greatest weighted cost of each term over scenarios and cam angles."""
-    greatest: dict[str, float] = {}
-    for each in of_scenarios:
-        for key, value in each.items():
-            most = float(np.max(value.value if isinstance(value, Mean) else value))
-            greatest[key] = max(greatest.get(key, -np.inf), most)
-    return sum(greatest.values())

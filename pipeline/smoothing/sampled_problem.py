@@ -30,13 +30,12 @@ from camwright.pipeline.smoothing.gradients import (
     differentiated,
 )
 from camwright.pipeline.smoothing.linear_model import Model, State, Summit
-from camwright.pipeline.smoothing.objective import Cost, costs
+from camwright.pipeline.smoothing.objective import Cost, costs, torque_ripple
 from camwright.pipeline.smoothing.scenario import DesignVariables, Ratings, Scenario, stacked, taken
 from camwright.pipeline.smoothing.synthesis_problem import (
     RESERVE,
     Problem,
     ripple_of,
-    torque_ripple,
     triangle,
 )
 

@@ -91,7 +91,7 @@ def _number(case: Case, key: str) -> float:
 
 
 def _own(key: str, words: str, unit: str, free: str = "") -> MachineNumber:
-    """A number that stands in the case as it is."""
+    """A number that the case states directly."""
     return MachineNumber(key, words, unit, (key,), free=free)
 
 

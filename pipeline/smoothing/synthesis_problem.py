@@ -21,8 +21,8 @@ from camwright.pipeline.smoothing.objective import (
     Weighted,
     residuals,
     scale_of,
+    torque_ripple,
 )
-from camwright.pipeline.smoothing.objective import torque_ripple as torque_ripple
 from camwright.pipeline.smoothing.scenario import DesignVariables, Ratings, Scenario
 
 RESERVE = 1e-3  # of each limit, for extremes between the points

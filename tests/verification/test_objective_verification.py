@@ -28,7 +28,6 @@ from camwright.pipeline.smoothing.objective import (
     harmonics,
     objective_of,
     residuals,
-    total_cost,
 )
 from camwright.pipeline.smoothing.problem_setup import problem_of
 from camwright.pipeline.smoothing.sampled_problem import Search
@@ -84,6 +83,13 @@ def cost_by_scenario(case, solved, objective=EVERY_COST):
 
 def greatest(value):
     return float(np.max(value.value if isinstance(value, Mean) else value))
+
+
+def total_cost(of_scenarios):
+    """Sum of the greatest cost of each term over scenarios and cam angles."""
+    every = list(of_scenarios)
+    keys = dict.fromkeys(key for each in every for key in each)
+    return sum(max(greatest(each[key]) for each in every if key in each) for key in keys)
 
 
 def energy_swing(case):

@@ -40,24 +40,30 @@ def judged(problem):
     return design, state.ripple + state.jerk, excess
 
 
-def agree_on_optimum(problem, optimum):
+def missed(problem, optimum):
+    """Product's design, and what it or the oracle misses of the same optimum."""
     design, objective, _ = judged(problem)
-    assert optimum.feasible
-    assert optimum.constraint_violation <= 1e-8
-    assert design.feasible
-    assert design.converged
-    assert design.steps <= STEPS_MAX
-    assert design.ripple == pytest.approx(optimum.ripple, rel=AGREE)
-    assert objective == pytest.approx(optimum.objective, rel=AGREE)
-    return design
+    holds = {
+        "oracle within all limits": optimum.feasible and optimum.constraint_violation <= 1e-8,
+        "within all limits": design.feasible,
+        "converged": design.converged and design.steps <= STEPS_MAX,
+        "ripple": design.ripple == pytest.approx(optimum.ripple, rel=AGREE),
+        "objective": objective == pytest.approx(optimum.objective, rel=AGREE),
+    }
+    return design, [name for name, value in holds.items() if not value]
 
 
-def agree_on_multipliers(design, optimum):
-    active = {name for name, value in design.multipliers.items() if value > ACTIVE}
-    assert active
-    for name in active:
-        own = design.multipliers[name]
-        assert own == pytest.approx(optimum.multipliers[name], rel=AGREE_PRICE), name
+def active_multipliers(design):
+    return {name: value for name, value in design.multipliers.items() if value > ACTIVE}
+
+
+def approximately(values, share):
+    return {name: pytest.approx(value, rel=share) for name, value in values.items()}
+
+
+def multipliers_of(optimum, names):
+    """Multipliers of the oracle, to 1 %."""
+    return approximately({name: optimum.multipliers[name] for name in names}, AGREE_PRICE)
 
 
 def test_each_limit_has_a_function_and_a_source():
@@ -98,7 +104,11 @@ def test_utilisations_are_those_of_the_formulas(seed, phase):
 def test_small_problem_ends_at_the_optimum_of_the_nonlinear_program():
     problem = thinned(measured("v10"), 24, 240)
     optimum = Oracle(problem).solved()
-    agree_on_multipliers(agree_on_optimum(problem, optimum), optimum)
+    design, unmet = missed(problem, optimum)
+    assert unmet == []
+    active = active_multipliers(design)
+    assert active
+    assert active == multipliers_of(optimum, active)
 
 
 @pytest.mark.slow
@@ -119,13 +129,26 @@ def test_nonlinear_program_ends_at_one_optimum_from_each_start(name):
 def test_measured_machine_converges_to_the_optimum_with_its_prices(name):
     problem = measured(name)
     optimum = Oracle(problem).solved()
-    design = agree_on_optimum(problem, optimum)
+    design, unmet = missed(problem, optimum)
+    assert unmet == []
     assert design.ripple == pytest.approx(MEASURED[name]["ripple"], rel=AGREE)
-    agree_on_multipliers(design, optimum)
-    agree_on_prices(problem, design, optimum)
+    active = active_multipliers(design)
+    assert active
+    assert active == multipliers_of(optimum, active)
+    own = active_prices(design, problem)  # without negligible ones
+    assert own
+    assert own == prices_of(problem, optimum, own)
 
 
-def agree_on_prices(problem, design, optimum):
+def active_prices(design, problem):
+    active = active_multipliers(design)
+    records = prices(design, problem)
+    return {
+        each["limit"]: each["ripple_per_unit_Nm"] for each in records if each["limit"] in active
+    }
+
+
+def prices_of(problem, optimum, names):
     """Decrease of the ripple, N m, per unit of the drawing, by the Lagrange function of IPOPT."""
     ratings = problem.ratings
     before = max(float(np.std(item.torque)) for item in problem.scenarios if item.weight > 0)
@@ -140,11 +163,7 @@ def agree_on_prices(problem, design, optimum):
         "guide_pv_A": spent["guide_pv_a"] * 1e6,  # MPa m/s
         "spring_travel": spent["travel"] * 1e-3,  # mm
     }
-    for record in prices(design, problem):
-        name = record["limit"]
-        if design.multipliers[name] > ACTIVE:
-            price = record["ripple_per_unit_Nm"]
-            assert price == pytest.approx(expected[name], rel=AGREE_PRICE), name
+    return approximately({name: expected[name] for name in names}, AGREE_PRICE)
 
 
 @pytest.mark.slow
@@ -153,9 +172,14 @@ def test_signed_machine_ends_at_the_optimum_with_its_prices():
     problem = signed()
     oracle = Oracle(problem)
     optimum = oracle.solved(*oracle.random_start(1))
-    design = agree_on_optimum(problem, optimum)
-    agree_on_multipliers(design, optimum)
-    agree_on_prices(problem, design, optimum)
+    design, unmet = missed(problem, optimum)
+    assert unmet == []
+    active = active_multipliers(design)
+    assert active
+    assert active == multipliers_of(optimum, active)
+    own = active_prices(design, problem)  # without negligible ones
+    assert own
+    assert own == prices_of(problem, optimum, own)
 
 
 @pytest.mark.slow
@@ -165,34 +189,38 @@ def test_signed_machine_with_free_variables_ends_at_the_optimum(name):
     oracle = Oracle(problem)
     # with a free base radius the exact energy and seed 2 end in local optima 0.5 and 4 % above
     optimum = oracle.solved(*oracle.random_start(1))
-    agree_on_multipliers(agree_on_optimum(problem, optimum), optimum)
+    design, unmet = missed(problem, optimum)
+    assert unmet == []
+    active = active_multipliers(design)
+    assert active
+    assert active == multipliers_of(optimum, active)
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("seed", FEASIBLE_VARIANTS)
 def test_variant_ends_at_the_optimum(seed):
     problem = small(seed)
-    agree_on_optimum(problem, Oracle(problem).best(2)[0])
+    _, unmet = missed(problem, Oracle(problem).best(2)[0])
+    assert unmet == []
 
 
-def agree_on_violation(problem):
-    """Sum of the excess of the limits over 1 less the reserve, the greatest of each."""
+def violations(problem):
+    """Excess of the limits over 1 less the reserve, the greatest of each: product's, oracle's."""
     oracle = Oracle(problem)
     near, _ = oracle.best(2)
     least = oracle.least_violation(near.coefficients, near.free)
     design, _, excess = judged(problem)
     assert not least.feasible
     assert not design.feasible
-    total = sum(least.violation.values())
-    assert total > 1e-3
-    assert sum(excess.values()) == pytest.approx(total, rel=AGREE_VIOLATION)
-    return least
+    return excess, least.violation
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("seed", INFEASIBLE_VARIANTS)
 def test_variant_without_a_cam_ends_at_the_least_violation(seed):
-    agree_on_violation(small(seed))
+    own, least = violations(small(seed))
+    assert sum(least.values()) > 1e-3
+    assert sum(own.values()) == pytest.approx(sum(least.values()), rel=AGREE_VIOLATION)
 
 
 @pytest.mark.slow
@@ -201,8 +229,9 @@ def test_two_violated_limits_are_weighed_alike():
     problem = small(1)
     cubed = 0.02 * problem.ratings.life_force_cubed
     ratings = replace(problem.ratings, life_force_cubed=cubed)
-    least = agree_on_violation(replace(problem, ratings=ratings))
-    assert min(least.violation[name] for name in ("roller_life", "torque_reduction")) > 0.1
+    own, least = violations(replace(problem, ratings=ratings))
+    assert sum(own.values()) == pytest.approx(sum(least.values()), rel=AGREE_VIOLATION)
+    assert min(least[name] for name in ("roller_life", "torque_reduction")) > 0.1
 
 
 NUMBERS = {

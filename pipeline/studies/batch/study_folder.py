@@ -121,10 +121,11 @@ class StudyFolder:
         try:
             table = read_parquet(path)
             require_columns(table, [each for each in FIXED if each is not DESIGN], path)
-            if table[ID.name].to_pylist() == list(shard.ids):
-                return table
+            whole = table[ID.name].to_pylist() == list(shard.ids)
         except ResultError:
-            pass
+            whole = False
+        if whole:
+            return table
         path.unlink()
         return None
 
