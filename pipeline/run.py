@@ -20,7 +20,7 @@ from camwright.pipeline.engine.torque import Torque
 from camwright.pipeline.iteration import trials_of
 from camwright.pipeline.results.field_output import Shown, write_fields
 from camwright.pipeline.results.run_folder import RunFolder
-from camwright.pipeline.results.run_reader import Run, read_run
+from camwright.pipeline.results.run_reader import Run, governing_id, read_run
 from camwright.pipeline.results.run_records import crank_speed_record, headline, torque_columns
 from camwright.pipeline.results.trial import Trial, TrialPoint
 from camwright.pipeline.results.trial_writer import TrialWriter
@@ -191,6 +191,7 @@ def _judged(final: Trial, statement: str) -> dict[str, Any]:
         "verdict": final.verdict,
         "screen": final.screen,
         "binding": list(final.binding),
+        "governing": governing_id(one.as_record() for one in final.checks),
         "statement": statement,
         "benchmarks": None if benchmarks is None else dict(benchmarks),
     }

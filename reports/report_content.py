@@ -40,6 +40,10 @@ MISSING = (
     "A required check without data leaves the verdict INCOMPLETE at best. Describe the part in the "
     "case, or leave it out of the sign-off in [scope]."
 )
+EVIDENCE = (
+    "Verification of the solution and of the input, which no change of the design moves. A "
+    "required one decides the verdict when it fails; none governs."
+)
 CHECKS_HEAD = ("Check", "Status", "Demand", "Limit", "Utilisation", "Where")
 
 
@@ -221,17 +225,20 @@ def _facts(material: Material) -> list[tuple[str, str]]:
 
 
 def _checks(material: Material) -> Section:
-    """Required checks without data; required checks, failed first; optional checks likewise."""
+    """Required checks without data; required ones, failed first; evidence; optional ones."""
     rows = report_tables.check_rows(material.run.final.checks)
     deeper = [row for row in rows if row.judged_at]
     missing = [row for row in rows if row.status.id == "not_evaluated" and not row.judged_at]
     known = [row for row in rows if row.status.id != "not_evaluated"]
-    required = [row for row in known if row.must_have]
-    required.sort(key=lambda row: row.status.id != "fail")
+    evidence = [row for row in known if row.evidence]
+    required = [row for row in known if row.must_have and not row.evidence]
+    for each in (required, evidence):
+        each.sort(key=lambda row: row.status.id != "fail")
     groups = (
         ("Missing data", [row for row in missing if row.must_have], MISSING),
         ("Required", required, ""),
-        ("Optional", [row for row in known if not row.must_have], ""),
+        ("Evidence", evidence, EVIDENCE),
+        ("Optional", [row for row in known if not (row.must_have or row.evidence)], ""),
         ("Missing data of optional checks", [row for row in missing if not row.must_have], ""),
         ("Judged by a deeper solution", deeper, ""),
     )

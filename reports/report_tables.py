@@ -11,6 +11,7 @@ from typing import Any, TypeAlias
 
 from camwright.pipeline.base.files import Json
 from camwright.pipeline.results.check_report import not_proven
+from camwright.pipeline.results.run_reader import utilisation_of
 
 Scalar: TypeAlias = str | float | None
 Record: TypeAlias = Mapping[str, Any]
@@ -199,6 +200,7 @@ class CheckRow:
     corner: str = ""
     unproven: str = ""
     judged_at: str = ""
+    evidence: bool = False
 
     @property
     def place(self) -> str:
@@ -218,19 +220,11 @@ class CheckRow:
         return [line for line in lines if line[0]]
 
 
-def utilisation(check: Record) -> float | None:
-    """Utilisation of a check record; null with status `fail` means infinite (JSON has none)."""
-    value = check["utilisation"]
-    if isinstance(value, (int, float)) and not isinstance(value, bool) and not isnan(value):
-        return float(value)
-    return inf if check["status"] == "fail" else None
-
-
 def sorted_checks(checks: Sequence[Record]) -> list[Record]:
     """Checks not evaluated first, then by decreasing utilisation."""
 
     def order(check: Record) -> tuple[bool, float, str]:
-        value = utilisation(check)
+        value = utilisation_of(check)
         size = -inf if value is None else value
         return check["status"] != "not_evaluated", -size, str(check["id"])
 
@@ -241,7 +235,7 @@ def check_rows(checks: Sequence[Record]) -> list[CheckRow]:
     """Checks as text, in the order of `sorted_checks`."""
     rows = []
     for check in sorted_checks(checks):
-        value = utilisation(check)
+        value = utilisation_of(check)
         status = str(check["status"])
         status_words = STATUS.get(status, words(status))
         status_words += ", not proven" if check["not_proven"] else ""
@@ -262,6 +256,7 @@ def check_rows(checks: Sequence[Record]) -> list[CheckRow]:
             must_have=bool(check["must_have"]),
             error=_error(check, unit), corner=": ".join(worst_corner(check) or ()),
             unproven=not_proven(check), judged_at=str(check["judged_at"]),
+            evidence=bool(check["evidence"]),
         ))  # fmt: skip
     return rows
 

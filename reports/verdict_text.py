@@ -10,6 +10,7 @@ from camwright.pipeline.results.run_reader import (
     CERTIFIED,
     OPEN,
     VERDICTS,
+    governing_of,
     judgement,
     to_be_confirmed,
 )
@@ -18,7 +19,6 @@ from camwright.reports.report_tables import (
     check_rows,
     isolated,
     sorted_checks,
-    utilisation,
     words,
 )
 
@@ -32,10 +32,10 @@ class Verdict:
     `outcome` is ``pass``, ``incomplete`` or ``fail``, of a screen ``open`` or ``fail``; `line` the
     verdict with its reasons, the numbers of waived checks and of values to be confirmed; `confirm`
     names these values. `sentence` counts the checks by status, `governing` describes the required
-    check of highest utilisation, `binding` are titles of required checks that fail. `unproven`,
-    `missing` and `waived` are lines on required checks whose error bar lies across the limit, that
-    lack data, and that are waived. `stopped` are the clauses of the reason for which the trials
-    ended, `scope` the parts not covered, `label` what is stated.
+    check of the design of highest utilisation, `binding` are titles of required checks that fail.
+    `unproven`, `missing` and `waived` are lines on required checks whose error bar lies across the
+    limit, that lack data, and that are waived. `stopped` are the clauses of the reason for which
+    the trials ended, `scope` the parts not covered, `label` what is stated.
     """
 
     outcome: str
@@ -171,13 +171,11 @@ def _sentence(checks: Sequence[Check], required: Sequence[Check], missing: Seque
 
 
 def governing(checks: Sequence[Check]) -> str:
-    """The required check of highest utilisation in a sentence; empty if none is evaluated."""
-    required = [c for c in sorted_checks(checks) if c["must_have"]]
-    open_ones = [c for c in required if c["status"] in ("fail", "pass")]
-    known = [c for c in open_ones if utilisation(c) is not None]
-    if not known:
+    """The governing check in a sentence, see `governing_of`; empty if none is evaluated."""
+    first = governing_of(checks)
+    if first is None:
         return ""
-    row = check_rows([max(known, key=lambda c: utilisation(c) or 0.0)])[0]
+    row = check_rows([first])[0]
     place = f", load case {isolated(row.load_case)}" if row.load_case else ""
     angle = f", cam angle {row.where}" if row.where else ""
     corner = f", at the tolerance corner {row.corner}" if row.corner else ""
@@ -188,11 +186,9 @@ def governing(checks: Sequence[Check]) -> str:
 
 
 def governing_load_case(checks: Sequence[Check], names: Sequence[str]) -> str:
-    """Load case of the governing check; the first one if it has none."""
-    for check in sorted_checks(checks):
-        if check["status"] in ("fail", "pass") and check["load_case"] in names:
-            return str(check["load_case"])
-    return names[0]
+    """Load case of the governing one of the checks made in a load case; else the first name."""
+    first = governing_of(check for check in checks if check["load_case"] in names)
+    return names[0] if first is None else str(first["load_case"])
 
 
 def _count(items: Sequence[Check], one: str) -> str:

@@ -87,6 +87,8 @@ def _check(one: Declaration) -> str:
         word = one.fails_from.word
         depth += f" At the depth {word} its utilisation is a lower bound: it can only fail."
     decides = "Decides the verdict" if one.must_have else "Does not decide the verdict"
+    if one.evidence:
+        decides += "; evidence, which never governs"
     lines = (
         f"#### `{one.id}`: {title}",
         f"{_sentence(one.formula)} Unit: {one.unit}{needs}{part}.",

@@ -46,6 +46,7 @@ def _at(extremum: Extremum) -> Extreme:
     reason="A step of the lift at the end of the turn is a step of the cam surface.",
     unit="um",
     method="difference of the lift between the ends of the turn, before closing",
+    evidence=True,
     forecast=True,
     moved_by_tolerance=False,
     load_cases=NONE,

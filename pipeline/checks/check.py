@@ -86,7 +86,9 @@ class Declaration:
     source : str               clause or book of the limit, without a row of the table
     limit : Limit              row of the table; None: not set by the user
     must_have : bool           it decides the verdict
-    evidence : bool            verification of the solution: it cannot be waived
+    evidence : bool            verification of the solution or of the input, which no change of
+                               the design moves: it decides the verdict when it fails, cannot be
+                               waived and never governs
     lift_can_help : bool       a gentler lift can pass it
     tier : Tier                least tier that can judge it; below it the check is not evaluated
     fails_from : Tier          least tier with a lower bound of its utilisation: below `tier` it
@@ -306,7 +308,7 @@ class Check:
 
     @property
     def evidence(self) -> bool:
-        """Whether it verifies the solution, not the design."""
+        """Whether it verifies solution or input, not the design; see `Declaration`."""
         return self.declaration.evidence
 
     @property

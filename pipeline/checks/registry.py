@@ -77,6 +77,7 @@ WAIVERS_WITHOUT_EFFECT = check(
     source="a waiver names a check of the design; a verification check cannot be waived",
     method="check ids of the waivers of the case against the ids of its checks",
     must_have=False,
+    evidence=True,
     tier=Tier.SCREENING,
     formula="n <= 0; n: waivers that name no check of the design",
     reason="a waiver without effect improves no check.",

@@ -395,6 +395,7 @@ def _estimate(
     method="endurance pressure of the card, Buckingham estimate and gear flank allowable, of cam"
     " and follower",
     must_have=False,
+    evidence=True,
     moved_by_tolerance=False,
     formula="max p_i / min p_i <= 1.5; p_i: endurance pressure of the card in this contact, 2.76 HB"
     " - 70 MPa, ISO 6336-5, where they apply",

@@ -193,7 +193,7 @@ def _checked_run(folder: Path) -> dict[str, Any]:
 def _checked_case(path: Path) -> dict[str, Any]:
     from camwright.pipeline.case.case_file import read_case
     from camwright.pipeline.preview import preview_case
-    from camwright.pipeline.results.run_reader import judgement, to_be_confirmed
+    from camwright.pipeline.results.run_reader import governing_id, judgement, to_be_confirmed
 
     case = read_case(path)
     trial = preview_case(case)
@@ -204,6 +204,7 @@ def _checked_case(path: Path) -> dict[str, Any]:
         **judgement(checks, trial.depth.word),
         "to_be_confirmed": to_be_confirmed(checks),
         "binding": list(trial.binding),
+        "governing": governing_id(checks),
         "scope": case.scope.as_record(),
         "checks": checks,
     }

@@ -14,7 +14,9 @@ from camwright.pipeline.results.run_reader import (
     AnyCheck,
     CheckRecord,
     Finding,
+    governing_of,
     judged,
+    utilisation_of,
     within_depth,
 )
 
@@ -28,7 +30,7 @@ any optional check that fails; none."""
 HEADINGS = (
     *("check", "demand", "limit", "unit", "used", "margin", "where", "worst corner", "status"),
 )
-OVERVIEW = ("run", "case", "depth", "result", "failed", "missing", "highest utilisation")
+OVERVIEW = ("run", "case", "depth", "result", "failed", "missing", "governing")
 """Columns of `overview`."""
 _NOT_XML = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 STYLES = {"pass": "green", "fail": "red", "waived": "yellow", "not_evaluated": "magenta"}
@@ -182,14 +184,15 @@ def overview(rows: Iterable[Sequence[str]]) -> Table:
 def overview_row(target: str, document: Mapping[str, Any]) -> tuple[str, ...]:
     """Run or case as a row of `overview`."""
     checks: Sequence[CheckRecord] = within_depth(document["checks"])
-    required = [record for record in sorted(checks, key=rank) if record["must_have"]]
-    known = [record for record in required if record["status"] != "not_evaluated"]
-    worst = f"{known[0]['id']} {share(known[0]['utilisation'])}" if known else ""
+    required = [record for record in checks if record["must_have"]]
+    missing = sum(record["status"] == "not_evaluated" for record in required)
+    first = governing_of(checks)
+    worst = "" if first is None else f"{first['id']} {share(utilisation_of(first))}"
     failed = sum(record["status"] == "fail" for record in required)
     return (
         *(target, document["case"], document["depth"]),
         str(document["verdict"] or document["screen"]).upper(),
-        *(str(failed), str(len(required) - len(known)), worst),
+        *(str(failed), str(missing), worst),
     )
 
 

@@ -158,6 +158,7 @@ class Summary(SummaryOfAnyRun, total=False):
     """Contents of ``run.json``."""
 
     valve_train: Json
+    governing: str | None
 
 
 @dataclass(frozen=True, eq=False)
@@ -263,6 +264,7 @@ def read_verdict(path: Path) -> dict[str, Any]:
         **judgement(checks, depth),
         "to_be_confirmed": to_be_confirmed(checks),
         "binding": list(binding_of(checks)),
+        "governing": governing_id(checks),
         "trials": summary["trials"],
         "scope": summary["scope"],
         "statement": summary["statement"],
@@ -334,6 +336,38 @@ def binding_of(checks: Iterable[CheckRecord]) -> tuple[str, ...]:
         for check in within_depth(checks)
         if check["must_have"] and check["status"] not in ("pass", "waived")
     )
+
+
+def governing_of(checks: Iterable[AnyCheck]) -> AnyCheck | None:
+    """Must-have check of the design of the greatest utilisation; None if none is evaluated.
+
+    Evidence, which no change of the design moves, and waived checks do not govern. Of equal ones
+    the first by its id.
+    """
+    ranked = [
+        (-used, str(check["id"]), check)
+        for check in checks
+        if governs(check) and (used := utilisation_of(check)) is not None
+    ]
+    return min(ranked, key=lambda each: each[:2])[2] if ranked else None
+
+
+def governs(check: AnyCheck) -> bool:
+    """Whether a check is ranked as governing: a must-have of the design that passes or fails."""
+    ranked = check["must_have"] and not check["evidence"]
+    return bool(ranked and check["status"] in ("pass", "fail"))
+
+
+def governing_id(checks: Iterable[AnyCheck]) -> str | None:
+    """Id of the governing check; see `governing_of`."""
+    governing = governing_of(checks)
+    return None if governing is None else str(governing["id"])
+
+
+def utilisation_of(check: AnyCheck) -> float | None:
+    """Utilisation of a record; null with status ``fail`` is infinite, as JSON has no infinity."""
+    value = _number(check["utilisation"])
+    return math.inf if value is None and check["status"] == "fail" else value
 
 
 def within_depth(checks: Iterable[CheckRecord]) -> tuple[CheckRecord, ...]:

@@ -50,6 +50,7 @@ def record(path: Path) -> dict[str, Json]:
         },
         **run_reader.judgement(checks, made["depth"]),
         "binding": list(run_reader.binding_of(checks)),
+        "governing": run_reader.governing_id(checks),
         "not_evaluated": [c["id"] for c in checks if c["status"] == "not_evaluated"],
         "not_proven": [c["id"] for c in checks if c["not_proven"]],
         "scope": {

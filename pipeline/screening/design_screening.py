@@ -264,9 +264,10 @@ def judged_columns(designs: Designs) -> dict[str, Column]:
         figures = _figures(designs, each, declared, *judged)
         columns |= {f"{each.check}.{name}": column for name, column in figures.items()}
         if declared.must_have:
-            used = np.asarray(figures["utilisation"], dtype=float)
-            greater = used > most  # NaN is not
-            governing[greater], most[greater] = each.check, used[greater]
+            if not declared.evidence:
+                used = np.asarray(figures["utilisation"], dtype=float)
+                greater = (used > most) & (figures["status"] != "waived")  # NaN is not
+                governing[greater], most[greater] = each.check, used[greater]
             fails |= figures["status"] == "fail"
     cut = designs.least_factor
     return columns | {

@@ -22,6 +22,7 @@ from camwright.pipeline.checks.check import (
 )
 from camwright.pipeline.checks.check import check as declare
 from camwright.pipeline.checks.part_data import data_key
+from camwright.pipeline.checks.registry import DECLARED
 from camwright.pipeline.results.run_reader import verdict_line
 
 
@@ -303,3 +304,18 @@ def test_a_record_of_an_earlier_release_has_no_values_to_be_confirmed():
     record = at_most(1.0, unconfirmed=("materials.a.E",)).as_record()
     del record["to_be_confirmed"]
     assert verdict_line([record]) == "PASS"
+
+
+def test_evidence_is_what_no_change_of_the_design_moves():
+    evidence = {each.id for each in DECLARED.values() if each.evidence}
+    verifies_solution = {
+        *("contact_torque", "contact_work", "friction_balance", "contact_equilibrium"),
+        *("contact_complementarity", "guide_equilibrium_force", "guide_equilibrium_moment"),
+        *("hertz_difference", "synthesis_converged", "certificate_spread", "certificate_gci"),
+        *("mesh_angle", "mesh_jacobian", "mesh_edges", "mesh_p0", "mesh_half_width"),
+        *("mesh_von_mises", "mesh_tau_max", "mesh_reaction", "benchmark_nafems"),
+        *("benchmark_hertz", "tolerance_corners", "edge_factor", "held_distance"),
+        *("excluded_zone", "subsurface_depth"),
+    }
+    verifies_input = {"closure", "endurance_rules", "waivers_without_effect"}
+    assert evidence == verifies_solution | verifies_input

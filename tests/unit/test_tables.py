@@ -6,6 +6,7 @@ import math
 
 import pytest
 
+from camwright.pipeline.results.run_reader import governing_id, utilisation_of
 from camwright.reports import report_tables, verification_tables
 from camwright.reports.verdict_text import governing, governing_load_case, verdict
 
@@ -163,13 +164,23 @@ def test_the_governing_check_is_required_and_not_waived():
     checks = [
         check("optional", "fail", 9.0, must_have=False), check("waived", "waived", 8.0),
         check("worst", "fail", 2.0, load_case="rated"), check("fine"),
+        check("mesh", "fail", 7.0, evidence=True), check("lacks", "not_evaluated", None),
     ]  # fmt: skip
+    assert governing_id(checks) == "worst"
     assert governing(checks).startswith("Worst, load case rated, cam angle 12.5")
     assert governing([]) == ""
     at_corner = check("c", "fail", 2.5, corner="mass high", corner_demand=5.0)
     assert "demand 1\xa0MPa, at the tolerance corner mass high: 5\xa0MPa, limit" in governing(
         [*checks, at_corner]
     )
+
+
+def test_an_infinite_utilisation_governs_and_of_equal_ones_the_first_id():
+    beyond = check("b", "fail", None, load_case="rated")
+    assert governing_id([check("a", "fail", 50.0), beyond]) == "b"
+    assert governing_id([beyond, check("c", "fail", None)]) == "b"
+    assert governing_id([check("a", "not_evaluated", None)]) is None
+    assert utilisation_of(beyond) == math.inf
 
 
 def test_the_sheet_draws_the_load_case_that_governs():

@@ -43,7 +43,7 @@ ID = Column("id", "", "Content hash of case and factors; equal designs have one 
 DEPTH = Column("depth", "", "Depth of the row: screening, preview, cycle or certified")
 SCREEN = Column("screen", "", "fail: an evaluated must-have fails; open: none; error: no result")
 VERDICT = Column("verdict", "", "pass, incomplete or fail; null below certified")
-GOVERNING = Column("governing", "", "Must-have check of the greatest utilisation")
+GOVERNING = Column("governing", "", "Must-have check of the greatest utilisation, without evidence")
 MESSAGE = Column("message", "", "Reason of a design without result; else null")
 FIXED: tuple[Column, ...] = (DESIGN, ID, DEPTH, SCREEN, VERDICT, GOVERNING, MESSAGE)
 """Columns of every dataset, in their order."""

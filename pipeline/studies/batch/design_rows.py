@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import shutil
 import tempfile
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field
 from fnmatch import fnmatchcase
 from pathlib import Path
@@ -21,8 +21,9 @@ from camwright.pipeline.base.worker_processes import crew
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_values import with_values
 from camwright.pipeline.case.load_case_torque import engine_torques
-from camwright.pipeline.checks.check import Check, screen
+from camwright.pipeline.checks.check import screen
 from camwright.pipeline.contact.tiers import Tier
+from camwright.pipeline.results.run_reader import governing_id
 from camwright.pipeline.results.trial import Trial
 from camwright.pipeline.studies.batch.case_template import Template, UnpackedTemplates
 from camwright.pipeline.studies.batch.dataset import (
@@ -71,7 +72,7 @@ def row_of(trial: Trial, headline: Mapping[str, float | None]) -> Row:
     row: Row = {
         SCREEN.name: screen(trial.checks),
         VERDICT.name: trial.verdict,
-        GOVERNING.name: governing(trial.checks),
+        GOVERNING.name: governing_id(one.as_record() for one in trial.checks),
     }
     row |= {HEADLINE + key: value for key, value in headline.items()}
     if trial.mesh is not None:
@@ -86,13 +87,6 @@ def row_of(trial: Trial, headline: Mapping[str, float | None]) -> Row:
             f"{one.id}.error": _number(one.error, unit),
         }
     return row
-
-
-def governing(checks: Iterable[Check]) -> str | None:
-    """Id of the must-have check of the greatest utilisation; None without one."""
-    used = [(one.utilisation, one.id) for one in checks if one.must_have]
-    known = [(use, name) for use, name in used if use is not None]
-    return min(known, key=lambda each: (-each[0], each[1]))[1] if known else None
 
 
 def _number(value: float | None, unit: str = "") -> float | None:
