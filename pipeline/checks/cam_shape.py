@@ -22,12 +22,13 @@ from camwright.pipeline.case.limits import (
 )
 from camwright.pipeline.checks.check import NONE, Demand, check
 from camwright.pipeline.checks.extremes import Extreme
+from camwright.pipeline.checks.missing_keys import lacking, unset
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.solution import Solution
 
 AT_REST = 1e-9  # range of s'' over the lift, 1/rad^2, of a round cam
-NO_TOOL = "no tool radius is given"
 TOOL_ALLOWANCE = 1.1  # minimum concave radius over tool radius
+_TOOL = "workshop.tool_radius"
 
 
 def _place(theta: float) -> Extreme:
@@ -212,7 +213,7 @@ def concave_radius(solution: Solution) -> Demand | None:
         float(least.value),
         allowed,
         _at(least),
-        note="" if allowed is not None else NO_TOOL,
+        () if allowed is not None else (_TOOL,),
     )
 
 
@@ -238,7 +239,7 @@ def tool_gouge(solution: Solution) -> Demand:
     if np.isposinf(concave):
         return Demand(0.0, allowed, note="the cam is convex: no tool cuts it twice")
     if tool is None or np.isnan(concave):
-        return Demand(None, allowed, note=NO_TOOL if tool is None else "")
+        return Demand(None, allowed, missing=(_TOOL,) if tool is None else ())
     nearest = tool_interference(contour, tool)
     depth = float(np.maximum(0.0, -nearest.clearance))  # NaN stays, infinite clearance is 0
     return Demand(depth, allowed, _place(float(nearest.theta)), note=f"tool of {shown(tool, 'mm')}")
@@ -269,7 +270,7 @@ def curvature_rate(solution: Solution) -> Demand:
         float(worst.value),
         allowed,
         _at(worst),
-        note="" if allowed is not None else "no change of the curvature is limited",
+        unset(solution.machine.limits, CURVATURE_RATE),
         must_have=allowed is not None,
     )
 
@@ -311,5 +312,6 @@ def minimum_wall(solution: Solution) -> Demand:
 def spring_travel(solution: Solution) -> Demand:
     """Maximum lift, m, against the spring travel."""
     travel, highest = solution.machine.spring.travel_max, solution.contour.pitch.lift.highest
-    note = "" if travel is not None else "no spring travel is given"
-    return Demand(float(highest.value), travel, _at(highest), note=note)
+    spring = solution.machine.spring
+    missing = lacking(spring.table, spring, "travel_max")
+    return Demand(float(highest.value), travel, _at(highest), missing)

@@ -27,6 +27,7 @@ from camwright.pipeline.case.limits import (
 from camwright.pipeline.case.machine import Machine
 from camwright.pipeline.checks.check import BY_DUTY, Demand, check
 from camwright.pipeline.checks.extremes import Extreme, greatest, over_duty, worst_case
+from camwright.pipeline.checks.missing_keys import lacking, lacking_of_card, unset
 from camwright.pipeline.contact.hertz import contact_modulus
 from camwright.pipeline.cycle.cam_balance import camshaft_loads
 from camwright.pipeline.cycle.cycle import Cycle
@@ -83,13 +84,11 @@ def _gear(shaft: Camshaft) -> CamshaftGear:
     return shaft.gear
 
 
-def _described(machine: Machine) -> _Shaft | str:
-    """Camshaft with its diameter and material, or the missing ones."""
+def _described(machine: Machine) -> _Shaft | tuple[str, ...]:
+    """Camshaft with its diameter and material, or the keys that the case lacks."""
     shaft, cam = _camshaft(machine), machine.cam
     if shaft.diameter is None or shaft.material is None:
-        data = {"diameter": shaft.diameter, "material": shaft.material}
-        names = (name for name, value in data.items() if value is None)
-        return f"no {' and no '.join(names)} of the camshaft is given"
+        return lacking(shaft.table, shaft, "diameter", "material")
     key_length = 0.0 if cam.key is None else cam.key.length or 0.0
     reach = 0.5 * max(cam.width, key_length)
     gear_reach = 0.0 if shaft.gear is None else 0.5 * shaft.gear.width
@@ -123,13 +122,13 @@ def shaft_fatigue(solution: Solution) -> Demand:
     """Least fatigue safety of the sections of the camshaft in bending and torsion."""
     machine, limit = solution.machine, solution.machine.limits[SHAFT_SAFETY]
     shaft = _described(machine)
-    if isinstance(shaft, str):
-        return Demand(None, limit, note=shaft)
+    if isinstance(shaft, tuple):
+        return Demand(None, limit, missing=shaft)
     card = shaft.material
     endurance, tensile = card.fatigue_bending, card.tensile_strength
     if endurance is None or tensile is None:
-        note = f"the card of {card.name} gives no fatigue or tensile strength"
-        return Demand(None, limit, note=note)
+        missing = lacking_of_card(card, "fatigue_bending", "tensile_strength")
+        return Demand(None, limit, missing=missing)
     finish = surface_factor(shaft.camshaft.surface, tensile)
     rest = reliability_factor(machine.limits[SHAFT_RELIABILITY])
 
@@ -181,8 +180,8 @@ def shaft_fatigue(solution: Solution) -> Demand:
 def shaft_yield(solution: Solution) -> Demand:
     """Greatest von Mises stress of the sections of the camshaft, Pa."""
     safety, shaft = solution.machine.limits[SHAFT_YIELD_SAFETY], _described(solution.machine)
-    if isinstance(shaft, str):
-        return Demand(None, None, note=shaft)
+    if isinstance(shaft, tuple):
+        return Demand(None, None, missing=shaft)
 
     loads = cache(_loads)  # common to the sections
 
@@ -219,8 +218,8 @@ def shaft_yield(solution: Solution) -> Demand:
 def shaft_deflection(solution: Solution) -> Demand:
     """Greatest deflection of the camshaft at the cam over the bearing spacing."""
     limit, shaft = solution.machine.limits[SHAFT_DEFLECTION], _described(solution.machine)
-    if isinstance(shaft, str):
-        return Demand(None, limit, note=shaft)
+    if isinstance(shaft, tuple):
+        return Demand(None, limit, missing=shaft)
     spacing = shaft.camshaft.bearing_spacing
 
     def share(cycle: Cycle) -> Array:
@@ -245,8 +244,8 @@ def shaft_deflection(solution: Solution) -> Demand:
 def shaft_slope(solution: Solution) -> Demand:
     """Greatest slope of the camshaft at its bearings, rad."""
     limit, shaft = solution.machine.limits[SHAFT_SLOPE], _described(solution.machine)
-    if isinstance(shaft, str):
-        return Demand(None, limit, note=shaft)
+    if isinstance(shaft, tuple):
+        return Demand(None, limit, missing=shaft)
 
     def slope(cycle: Cycle) -> Array:
         bent = _bending(cycle, shaft)
@@ -282,7 +281,7 @@ def shaft_bearing_static(solution: Solution) -> Demand:
         static_safety(worst.value, rating) if rated and rating is not None else None,
         solution.machine.limits[SHAFT_BEARING_STATIC_SAFETY],
         worst,
-        note="" if rating is not None else "no static rating of the camshaft bearings is given",
+        lacking(shaft.table, shaft, "bearing_static_rating"),
         figures=(shaft.source,),
     )
 
@@ -302,8 +301,10 @@ def shaft_bearing_life(solution: Solution) -> Demand:
     """Rating life of the camshaft bearing with the greater load, s."""
     shaft = _camshaft(solution.machine)
     rating, target = shaft.bearing_rating, solution.machine.limits[SHAFT_BEARING_LIFE]
+    missing = lacking(shaft.table, shaft, "bearing_rating")
+    missing += unset(solution.machine.limits, SHAFT_BEARING_LIFE)
     if rating is None:
-        return Demand(None, target, note="no dynamic rating of the camshaft bearings is given")
+        return Demand(None, target, missing=missing)
 
     def of_bearing(load_of: Callable[[ShaftLoads], Array]) -> Extreme:
         def life(cycle: Cycle) -> float:
@@ -320,13 +321,12 @@ def shaft_bearing_life(solution: Solution) -> Demand:
     if np.isfinite(worst.value):  # the other bearing may be the worse one within its error
         least = min(each.value * (1.0 - each.error_share) for each in both)
         worst = worst._replace(error_share=1.0 - least / worst.value)
-    notes = [] if target is not None else ["no life of the camshaft's bearings is required"]
-    notes += ["a load above C/2, where ISO 281 does not hold"] if np.isnan(worst.value) else []
     return Demand(
         worst.value,
         target,
         worst,
-        note="; ".join(notes),
+        missing,
+        note="a load above C/2, where ISO 281 does not hold" if np.isnan(worst.value) else "",
         figures=(shaft.source,),
     )
 
@@ -347,7 +347,7 @@ def gear_bending(solution: Solution) -> Demand:
     """Tooth root bending stress of the gear on the camshaft, Pa."""
     gear = _gear(_camshaft(solution.machine))
     figure = f"{gear.material.name}: {gear.source}".rstrip(": ")
-    return _bending_of(solution, gear.teeth, gear.bending_limit, "gear", figure)
+    return _bending_of(solution, gear.teeth, "bending_limit", figure)
 
 
 @check(
@@ -366,15 +366,14 @@ def pinion_bending(solution: Solution) -> Demand:
     """Tooth root bending stress of the pinion on the crankshaft, Pa."""
     gear = _gear(_camshaft(solution.machine))
     figure = f"{(gear.pinion_material or gear.material).name}: {gear.source}".rstrip(": ")
-    return _bending_of(solution, gear.pinion_teeth, gear.pinion_bending_limit, "pinion", figure)
+    return _bending_of(solution, gear.pinion_teeth, "pinion_bending_limit", figure)
 
 
-def _bending_of(
-    solution: Solution, teeth: int, limit: float | None, word: str, figure: str
-) -> Demand:
-    """Tooth root stress of a wheel with its own form factor."""
+def _bending_of(solution: Solution, teeth: int, key: str, figure: str) -> Demand:
+    """Tooth root stress of a wheel with its own form factor; key: of its bending limit."""
     shaft = _camshaft(solution.machine)
     gear = _gear(shaft)
+    limit: float | None = getattr(gear, key)
     module = 2.0 * shaft.gear_radius / gear.teeth
 
     def stress(cycle: Cycle) -> Array:
@@ -386,7 +385,7 @@ def _bending_of(
         worst.value,
         None if limit is None else REVERSED * limit / safety,
         worst,
-        note="" if limit is not None else f"no bending limit of the {word} is given",
+        lacking(gear.table, gear, key),
         figures=(figure,),
     )
 
@@ -413,16 +412,16 @@ def gear_contact(solution: Solution) -> Demand:
     def stress(cycle: Cycle) -> Array:
         return _flank_pressure(_tooth_force(cycle, shaft, gear), shaft, gear)
 
-    limits = {"gear": gear.contact_limit, "pinion": gear.pinion_contact_limit}
-    known = [limit for limit in limits.values() if limit is not None]
-    missing = [f"no contact limit of the {name} is given" for name in limits if not limits[name]]
+    limits = gear.contact_limit, gear.pinion_contact_limit
+    known = [limit for limit in limits if limit is not None]
+    missing = lacking(gear.table, gear, "contact_limit", "pinion_contact_limit")
     safety = solution.machine.limits[GEAR_CONTACT_SAFETY]
     worst = greatest(solution.cycles, stress)
     return Demand(
         worst.value,
         None if missing else min(known) / safety,
         worst,
-        note="; ".join(missing),
+        missing,
         figures=(f"{card.name}: {gear.source}".rstrip(": "),),
     )
 

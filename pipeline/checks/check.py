@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field, replace
 from typing import Literal
 
@@ -55,7 +55,8 @@ class Demand:
     value : float       None or NaN: missing
     allowed : float     limit; None or infinite: missing
     at : Extreme        load case and cam angle of the demand; None: it has none
-    note : str          remark, such as the missing input
+    missing : tuple     dotted keys that the case lacks and the demand or limit needs
+    note : str          remark
     figures : tuple     sources of further data, such as a material card
     method, source : str   in place of the declared ones, where they depend on the case
     must_have : bool    False: optional for this solution
@@ -65,6 +66,7 @@ class Demand:
     value: float | None
     allowed: float | None
     at: Extreme | None = None
+    missing: tuple[str, ...] = ()
     note: str = ""
     figures: tuple[str, ...] = ()
     method: str = ""
@@ -161,10 +163,11 @@ class Declaration:
 
     def judged(self, machine: Machine, demand: Demand) -> Check:
         """Check of a demand on a machine."""
+        missing = tuple(dict.fromkeys(demand.missing))
         source = demand.source or self.source
         if self.limit is not None and not demand.source:
             source = machine.limits.source(self.limit)
-        return Check(
+        made = Check(
             declaration=self,
             title=self.title.format(follower=machine.follower.word),
             demand=demand.value,
@@ -174,11 +177,14 @@ class Declaration:
             source="; ".join(dict.fromkeys(each for each in (source, *demand.figures) if each)),
             method=demand.method or self.method,
             must_have=self.must_have and demand.must_have,
-            note=demand.note,
+            missing=missing,
+            note="; ".join(filter(None, (_missing_words(missing), demand.note))),
             error_share=None if demand.at is None else demand.at.error_share,
             corner=demand.corner,
             corner_demand=demand.value if demand.corner else None,
         )
+        # a demand beyond its limit by what is known is judged without the rest
+        return replace(made, missing=()) if made.evaluated else made
 
 
 def check(
@@ -237,9 +243,8 @@ def check(
     return declared
 
 
-def not_given(values: Mapping[str, float | str | None]) -> list[str]:
-    """Notes on the data that are None, by their words."""
-    return [f"no {words} is given" for words, value in values.items() if value is None]
+def _missing_words(keys: tuple[str, ...]) -> str:
+    return f"missing: {', '.join(keys)}" if keys else ""
 
 
 def made_from_others(_: Solution) -> None:
@@ -258,7 +263,8 @@ class Check:
     cam_angle : float        of the worst demand, rad; None: none
     title, source, method : str   of this solution
     must_have : bool         it decides the verdict
-    note : str               remark, such as the missing input
+    missing : tuple          dotted keys that the case lacks and without which it is not evaluated
+    note : str               remark; names the missing keys first
     error_share : float      half of the error bar over the demand; None: not known
     waiver : Waived          None: not waived
     corner : str             tolerance corner of the worst demand; "": none was solved
@@ -276,6 +282,7 @@ class Check:
     load_case: str = ""
     cam_angle: float | None = None
     must_have: bool = True
+    missing: tuple[str, ...] = ()
     note: str = ""
     error_share: float | None = None
     waiver: Waived | None = None
@@ -424,6 +431,7 @@ class Check:
             "waiver": None if self.waiver is None else self.waiver.text,
             "waived_up_to": _shown(None if self.waiver is None else self.waiver.up_to, unit),
             "not_proven": self.not_proven,
+            "missing": list(self.missing),
             "note": self.note,
             "error": _shown(self.error, unit),
             "margin": _shown(self.margin),

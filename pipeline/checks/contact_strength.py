@@ -27,6 +27,7 @@ from camwright.pipeline.case.limits import (
 from camwright.pipeline.case.machine import Machine
 from camwright.pipeline.checks.check import NONE, Demand, check
 from camwright.pipeline.checks.extremes import Extreme, greatest
+from camwright.pipeline.checks.missing_keys import lacking, lacking_of_card, no_friction, unset
 from camwright.pipeline.contact import hertz
 from camwright.pipeline.contact.rolling_envelope import smallest_sphere
 from camwright.pipeline.contact.tiers import Tier
@@ -48,18 +49,22 @@ class LoadCycles(NamedTuple):
     cam: float
     follower: float
 
+    def of(self, body: str) -> float:
+        """Load cycles of the cam, or of the other body."""
+        return self.cam if body == "cam" else self.follower
+
 
 class LeastLimit(NamedTuple):
     """Least of the limits of cam and follower.
 
-    value, SI; None: of neither body. body and card are those of the least; lacking: missing data
-    in words, by body.
+    value, SI; None: of neither body. body and card are those of the least; missing: dotted keys
+    that the case lacks.
     """
 
     value: float | None
     body: str
     card: Material
-    lacking: tuple[str, ...] = ()
+    missing: tuple[str, ...] = ()
 
     @property
     def source(self) -> str:
@@ -68,24 +73,24 @@ class LeastLimit(NamedTuple):
 
 
 def least_of_bodies(
-    machine: Machine, limit: Callable[[str, Material], float | None], datum: str
+    machine: Machine,
+    limit: Callable[[str, Material], float | None],
+    lacks: Callable[[str, Material], tuple[str, ...]] = lambda *_: (),
 ) -> LeastLimit:
     """Least limit of cam and follower.
 
     Parameters
     ----------
-    limit : callable   body, card -> limit, SI; None: the card lacks the datum
-    datum : str        its name
+    limit : callable   body, card -> limit, SI; None: the card lacks a datum
+    lacks : callable   body, card -> keys that the card lacks
     """
     limits = {body: limit(body, card) for body, card in machine.bodies.items()}
     known = {body: value for body, value in limits.items() if value is not None}
-    lacking = tuple(
-        f"the {body}, {machine.bodies[body].name}, has no {datum}"
-        for body in limits
-        if body not in known
+    missing = tuple(
+        key for body in limits if body not in known for key in lacks(body, machine.bodies[body])
     )
     body = min(known, key=lambda each: known[each]) if known else "cam"
-    return LeastLimit(known.get(body), body, machine.bodies[body], lacking)
+    return LeastLimit(known.get(body), body, machine.bodies[body], missing)
 
 
 def endurance_of(machine: Machine, card: Material) -> Endurance:
@@ -102,7 +107,7 @@ def pressure_limits(machine: Machine, cycles: LoadCycles) -> dict[str, LeastLimi
     limits, follower = machine.limits, machine.follower
     edge = applied_edge_factor(machine)
     shear = shear_yield(machine)
-    endurance = least_of_bodies(machine, lambda _, card: _endurance(machine, card), _ENDURANCE)
+    endurance = _least_endurance(machine)
     allowed = {
         "contact_pressure": endurance,
         "edge_pressure": _times(endurance, 1.0 / edge),
@@ -114,7 +119,9 @@ def pressure_limits(machine: Machine, cycles: LoadCycles) -> dict[str, LeastLimi
         allowed["edge_shakedown"] = _times(shear, factor / edge)
     if limits[TARGET_LIFE] is not None:
         allowed["contact_pressure_at_life"] = least_of_bodies(
-            machine, lambda body, card: _at_life(machine, body, card, cycles), _LINE
+            machine,
+            lambda body, card: _at_life(machine, body, card, cycles),
+            lambda body, card: _life_lacks(machine, body, card, cycles),
         )
     return allowed
 
@@ -125,8 +132,13 @@ def pressure_allowables(machine: Machine, cycles: LoadCycles) -> dict[str, float
     return {name: each.value for name, each in limits.items() if each.value is not None}
 
 
-_ENDURANCE = "endurance pressure for this contact"
-_LINE = "endurance at the load cycles of the target life"
+def _least_endurance(machine: Machine) -> LeastLimit:
+    key = "sliding_endurance_pressure" if machine.follower.slides else "endurance_pressure"
+    return least_of_bodies(
+        machine,
+        lambda _, card: _endurance(machine, card),
+        lambda _, card: lacking_of_card(card, key),
+    )
 
 
 def _endurance(machine: Machine, card: Material) -> float | None:
@@ -136,13 +148,25 @@ def _endurance(machine: Machine, card: Material) -> float | None:
 
 def _at_life(machine: Machine, body: str, card: Material, cycles: LoadCycles) -> float | None:
     """By the line of endurance; without one by the pressure, up to its number of load cycles."""
-    count = cycles.cam if body == "cam" else cycles.follower
+    count = cycles.of(body)
     row, safety = endurance_of(machine, card), machine.limits[CONTACT_SAFETY]
     if row.slope is not None and row.intercept is not None:
         return pressure_at_life(count, row.slope, row.intercept, machine.contact_modulus) / safety
     if row.pressure is None or not count <= card.endurance_cycles:
         return None
     return row.pressure / safety
+
+
+def _life_lacks(machine: Machine, body: str, card: Material, cycles: LoadCycles) -> tuple[str, ...]:
+    """Line of endurance, or up to `endurance_cycles` the endurance pressure."""
+    row = endurance_of(machine, card)
+    stated = any(each is not None for each in row[1:])
+    slides = row.motion != "rolling" if stated else machine.follower.slides
+    of_motion = "sliding_" if slides else ""
+    if row.pressure is None and cycles.of(body) <= card.endurance_cycles:
+        return lacking_of_card(card, f"{of_motion}endurance_pressure")
+    line = (f"{of_motion}endurance_{name}" for name in ("slope", "intercept"))
+    return lacking_of_card(card, *line)
 
 
 def _times(limit: LeastLimit, factor: float) -> LeastLimit:
@@ -153,7 +177,7 @@ def _times(limit: LeastLimit, factor: float) -> LeastLimit:
 def shear_yield(machine: Machine) -> LeastLimit:
     """Shear yield strength Y/sqrt(3) over the shakedown safety, Pa, least of both bodies."""
     safety = math.sqrt(3.0) * machine.limits[SHAKEDOWN_SAFETY]
-    return least_of_bodies(machine, lambda _, card: card.yield_strength / safety, "yield strength")
+    return least_of_bodies(machine, lambda _, card: card.yield_strength / safety)
 
 
 def least_poisson(machine: Machine) -> float:
@@ -203,15 +227,22 @@ def _limit(solution: Solution, name: str) -> LeastLimit | None:
     return pressure_limits(solution.machine, cycles).get(name)
 
 
-def _judged(worst: Extreme, limit: LeastLimit, *, note: str = "", method: str = "") -> Demand:
+def _judged(
+    worst: Extreme,
+    limit: LeastLimit,
+    *,
+    missing: tuple[str, ...] = (),
+    note: str = "",
+    method: str = "",
+) -> Demand:
     """Demand against the least limit; without one where a body lacks its own, unless exceeded."""
     exceeded = limit.value is not None and worst.value > limit.value
-    missing = limit.lacking and not exceeded
     return Demand(
         worst.value,
-        None if missing else limit.value,
+        None if limit.missing and not exceeded else limit.value,
         worst,
-        note="; ".join(each for each in (*limit.lacking, note) if each),
+        (*limit.missing, *missing),
+        note=note,
         figures=(limit.source,),
         method=method,
     )
@@ -286,7 +317,7 @@ def _shakedown_uses(friction: float, poisson: float) -> tuple[Array, Array]:
 def contact_pressure(solution: Solution) -> Demand:
     """Maximum contact pressure, Pa, against the least endurance of cam and follower."""
     machine = solution.machine
-    limit = least_of_bodies(machine, lambda _, card: _endurance(machine, card), _ENDURANCE)
+    limit = _least_endurance(machine)
     return _judged(peak_pressure(solution), limit, note=_pressure_note(solution))
 
 
@@ -308,12 +339,11 @@ def first_yield(solution: Solution) -> Demand:
     """Maximum von Mises stress with traction, Pa; shakedown permits values above first yield."""
     machine = solution.machine
     safety = machine.limits[YIELD_SAFETY]
-    limit = least_of_bodies(machine, lambda _, card: card.yield_strength / safety, "yield strength")
+    limit = least_of_bodies(machine, lambda _, card: card.yield_strength / safety)
     onset = shown(FIRST_YIELD * limit.card.yield_strength, "MPa")
     note = f"first yield without traction at a contact pressure of {onset}"
-    if machine.follower.friction is None:
-        note = f"{_no_friction(machine)}; {note}"
-    return _judged(greatest(solution.cycles, _stress_with_traction), limit, note=note)
+    worst = greatest(solution.cycles, _stress_with_traction)
+    return _judged(worst, limit, missing=no_friction(machine), note=note)
 
 
 def _stress_with_traction(cycle: Cycle) -> Array:
@@ -366,9 +396,9 @@ def contact_pressure_at_life(solution: Solution) -> Demand:
     worst = greatest(operating, lambda cycle: cycle.surface.p0)
     limit = _limit(solution, "contact_pressure_at_life")
     if limit is None:
-        note, cards = "no target life is given", solution.machine.bodies.values()
-        figures = tuple(f"{card.name}: {card.source}" for card in cards)
-        return Demand(worst.value, None, worst, note=note, figures=figures)
+        missing, cards = unset(solution.machine.limits, TARGET_LIFE), solution.machine.bodies
+        figures = tuple(f"{card.name}: {card.source}" for card in cards.values())
+        return Demand(worst.value, None, worst, missing, figures=figures)
     return _judged(worst, limit, note=_pressure_note(solution))
 
 
@@ -406,7 +436,7 @@ def pressure_at_life(cycles: float, slope: float, intercept: float, modulus: flo
 def edge_pressure(solution: Solution) -> Demand:
     """Contact pressure at the ends of the line contact, Pa, by the edge factor."""
     machine = solution.machine
-    limit = least_of_bodies(machine, lambda _, card: _endurance(machine, card), _ENDURANCE)
+    limit = _least_endurance(machine)
     worst = greatest(solution.cycles, lambda cycle: edge_factors(cycle) * cycle.surface.p0)
     return _judged(worst, limit, note=_pressure_note(solution), method=_edge_method(solution))
 
@@ -427,9 +457,8 @@ def edge_shakedown(solution: Solution) -> Demand:
     """Equivalent contact pressure at the ends, Pa, against shakedown."""
     machine = solution.machine
     worst = greatest(solution.cycles, lambda each: edge_factors(each) * equivalent_pressure(each))
-    note = _no_friction(machine) if machine.follower.friction is None else ""
-    limit = _times(shear_yield(machine), SHAKEDOWN)
-    return _judged(worst, limit, note=note, method=_edge_method(solution))
+    limit, missing = _times(shear_yield(machine), SHAKEDOWN), no_friction(machine)
+    return _judged(worst, limit, missing=missing, method=_edge_method(solution))
 
 
 def _edge_method(solution: Solution) -> str:
@@ -458,8 +487,7 @@ def shakedown_traction(solution: Solution) -> Demand:
     machine = solution.machine
     worst = greatest(solution.cycles, equivalent_pressure)
     limit = _times(shear_yield(machine), SHAKEDOWN)
-    note = _no_friction(machine) if machine.follower.friction is None else ""
-    return _judged(worst, limit, note=note)
+    return _judged(worst, limit, missing=no_friction(machine))
 
 
 @check(
@@ -482,7 +510,7 @@ def roller_overlap(solution: Solution) -> Demand | None:
         return None
     spare, offset = 0.5 * abs(machine.cam.width - roller.line_width), roller.axial_offset
     if offset is None:
-        return Demand(None, spare, note="no axial offset of the roller is given")
+        return Demand(None, spare, missing=lacking(roller.table, roller, "axial_offset"))
     overlap = machine.contact_width - max(offset - spare, 0.0)
     return Demand(offset, spare, note=f"roller and cam overlap over {shown(overlap, 'mm')}")
 
@@ -512,7 +540,3 @@ def shakedown_factor(friction: float, poisson: float = 0.3) -> float:
     both = np.concatenate([path, path * np.array([[1.0], [-1.0], [1.0]])], axis=1)
     radius = float(smallest_sphere(both[:, None, :])[1][0])
     return 1.0 / max(below, radius)
-
-
-def _no_friction(machine: Machine) -> str:
-    return f"no friction of the {machine.follower.word} on the cam is given"

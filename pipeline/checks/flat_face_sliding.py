@@ -7,6 +7,7 @@ import numpy as np
 from camwright.geometry.arrays import Array
 from camwright.pipeline.checks.check import Demand, check
 from camwright.pipeline.checks.extremes import greatest
+from camwright.pipeline.checks.missing_keys import lacking
 from camwright.pipeline.cycle.cycle import Cycle
 from camwright.pipeline.cycle.solution import Solution
 
@@ -57,7 +58,7 @@ def face_pv(solution: Solution) -> Demand | None:
         worst.value,
         limit,
         worst,
-        note="" if limit is not None else "no PV limit of the face is given",
+        lacking(face.table, face, "pv_limit"),
         source=face.source,
     )
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Literal
+from typing import Literal, NamedTuple
 
 import numpy as np
 
@@ -13,8 +13,9 @@ from camwright.pipeline.base.units import celsius, shown
 from camwright.pipeline.case.limits import GUIDE_LENGTH
 from camwright.pipeline.case.machine import Machine
 from camwright.pipeline.checks import demands
-from camwright.pipeline.checks.check import NONE, Declaration, Demand, check, not_given
+from camwright.pipeline.checks.check import NONE, Declaration, Demand, check
 from camwright.pipeline.checks.extremes import Extreme, greatest, worst_case
+from camwright.pipeline.checks.missing_keys import lacking, lacking_of_card
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.cycle import Cycle
 from camwright.pipeline.cycle.part_loads import PartLoads
@@ -29,6 +30,11 @@ GUIDES: tuple[Side, ...] = ("A", "B")
 def guide_of(machine: Machine, side: Side) -> Guide:
     """Guide A or B."""
     return machine.guides.a if side == "A" else machine.guides.b
+
+
+def table_of(side: Side) -> str:
+    """Table of guide A or B in the case."""
+    return f"guides.{side.lower()}"
 
 
 def heat_max_of(parts: PartLoads, side: Side) -> GuideHeat:
@@ -56,10 +62,18 @@ def hottest(solution: Solution, side: Side) -> Extreme:
     return worst_case(solution.cycles, lambda cycle: heat_max_of(cycle.parts, side).temperature)
 
 
+class _Limit(NamedTuple):
+    """Limit at the temperature of a guide, SI; the keys that it lacks, and notes on it."""
+
+    value: float | None
+    missing: tuple[str, ...] = ()
+    notes: tuple[str, ...] = ()
+
+
 def _at_temperature(
     solution: Solution, side: Side, demand: float, limit_at: Callable[[float], float | None]
-) -> tuple[float | None, list[str]]:
-    """Limit at the temperature of a guide, and notes.
+) -> _Limit:
+    """Limit at the temperature of a guide.
 
     Without a temperature it is the limit at 20 degC: the check of the temperature is then missing.
     Where the card ends below the temperature the limit is missing, unless the demand is above that
@@ -71,18 +85,20 @@ def _at_temperature(
     """
     cold = limit_at(ROOM)
     if cold is None:
-        return None, []
+        return _Limit(None)
     if solution.tier is Tier.SCREENING:
-        return cold, ["limit at 20 degC, an upper bound"]
+        return _Limit(cold, notes=("limit at 20 degC, an upper bound",))
     temperature = hottest(solution, side).value
     if np.isnan(temperature):
-        return cold, ["the temperature of the guide is not known: limit at 20 degC"]
+        words = "the temperature of the guide is not known: limit at 20 degC"
+        return _Limit(cold, notes=(words,))
     limit = limit_at(temperature)
     at = shown(celsius(temperature), "degC", 3)
     if limit is None or np.isnan(limit):
         name = guide_of(solution.machine, side).material.name
-        return cold if demand > cold else None, [f"no strength of {name} at {at} is given"]
-    return limit, [f"limit at {at}"] if limit < cold else []
+        needed, words = f"materials.{name}.strength_at", f"the strength of {name} ends below {at}"
+        return _Limit(cold if demand > cold else None, (needed,), (words,))
+    return _Limit(limit, notes=(f"limit at {at}",) if limit < cold else ())
 
 
 def _guide_pressure(side: Side) -> Declaration:
@@ -112,17 +128,17 @@ def _guide_pressure(side: Side) -> Declaration:
             solution.cycles,
             lambda c: demands.guide_pressure(_bearing_load(c, side), guide.projected_area),
         )
-        limit, notes = _at_temperature(solution, side, worst.value, guide.pressure_limit_at)
-        if guide.pressure_limit is None:
-            notes = [_no_limit("pressure", side)]
-        notes.append(_pushes(solution, side, worst))
-        return Demand(worst.value, limit, worst, note="; ".join(notes), source=_maker(guide))
+        limit = _at_temperature(solution, side, worst.value, guide.pressure_limit_at)
+        return Demand(
+            worst.value,
+            limit.value,
+            worst,
+            (*lacking(table_of(side), guide, "pressure_limit"), *limit.missing),
+            note="; ".join((*limit.notes, _pushes(solution, side, worst))),
+            source=_maker(guide),
+        )
 
     return pressure
-
-
-def _no_limit(quantity: str, side: Side) -> str:
-    return f"no {quantity} limit is given for guide {side}"
 
 
 def _maker(guide: Guide) -> str:
@@ -179,10 +195,11 @@ def _guide_pv(side: Side) -> Declaration:
         worst = worst_case(solution.cycles, lambda cycle: mean_pv(cycle, side))
         alone = worst_case(solution.cycles, lambda cycle: _pv_of_reaction(cycle, side))
         limit = pv_limit(guide)
-        notes = [] if limit is not None else [_no_limit("PV", side)]
-        notes += _lubrication(guide, worst.value)
+        missing = lacking(table_of(side), guide, "pv_limit") if limit is None else ()
+        notes = _lubrication(guide, worst.value)
         notes.append(f"{shown(alone.value, 'MPa m/s', 3)} by the net reaction")
-        return Demand(worst.value, limit, worst, note="; ".join(notes), source=_pv_source(guide))
+        source = _pv_source(guide)
+        return Demand(worst.value, limit, worst, missing, note="; ".join(notes), source=source)
 
     return pv
 
@@ -242,9 +259,15 @@ def _guide_edge_pressure(side: Side) -> Declaration:
         """Maximum guide edge pressure, Pa."""
         card = guide_of(solution.machine, side).material
         worst = greatest(solution.cycles, lambda cycle: _edge(cycle.parts, side))
-        limit, notes = _at_temperature(solution, side, worst.value, card.yield_strength_at)
-        source = f"yield strength of {card.name}: {card.source}"
-        return Demand(worst.value, limit, worst, note="; ".join(notes), source=source)
+        limit = _at_temperature(solution, side, worst.value, card.yield_strength_at)
+        return Demand(
+            worst.value,
+            limit.value,
+            worst,
+            limit.missing,
+            note="; ".join(limit.notes),
+            source=f"yield strength of {card.name}: {card.source}",
+        )
 
     return edge
 
@@ -273,31 +296,25 @@ def _guide_temperature(side: Side) -> Declaration:
         """Steady temperature of a guide, degC."""
         machine = solution.machine
         card, worst = guide_of(machine, side).material, hottest(solution, side)
-        notes = _unknown_heat_path(machine, side)
-        if card.temperature_limit is None:
-            notes.append(f"no temperature limit of {card.name} is given")
         return Demand(
             celsius(worst.value),
             None if card.temperature_limit is None else celsius(card.temperature_limit),
             worst,
-            note="; ".join(notes),
+            (*heat_path_lacks(machine, side), *lacking_of_card(card, "temperature_limit")),
             source=f"{card.name}: {card.source}",
         )
 
     return temperature
 
 
-def _unknown_heat_path(machine: Machine, side: Side) -> list[str]:
-    """Data that the temperature of a guide lacks."""
-    guide, guides = guide_of(machine, side), machine.guides
-    values = {"guides.ambient_temperature": guides.ambient_temperature}
-    if guide.thermal_resistance is None:
-        values |= {
-            f"conductivity of {guide.material.name}": guide.material.conductivity,
-            f"guides.{side.lower()}.wall": guide.wall,
-            f"guides.{side.lower()}.housing_resistance": guide.housing_resistance,
-        }
-    return not_given(values)
+def heat_path_lacks(machine: Machine, side: Side) -> tuple[str, ...]:
+    """Keys that the temperature of a guide lacks."""
+    guide, ambient = guide_of(machine, side), "ambient_temperature"
+    missing = lacking("guides", machine.guides, ambient)
+    if guide.thermal_resistance is not None:
+        return missing
+    wall = lacking(table_of(side), guide, "wall", "housing_resistance")
+    return (*missing, *wall, *lacking_of_card(guide.material, "conductivity"))
 
 
 def _guide_speed(side: Side) -> Declaration:
@@ -319,8 +336,8 @@ def _guide_speed(side: Side) -> Declaration:
         """Maximum sliding speed, m/s."""
         guide = guide_of(solution.machine, side)
         worst = greatest(solution.cycles, lambda cycle: np.abs(cycle.loads.velocity))
-        note = "" if guide.speed_limit is not None else _no_limit("speed", side)
-        return Demand(worst.value, guide.speed_limit, worst, note=note, source=_maker(guide))
+        missing = lacking(table_of(side), guide, "speed_limit")
+        return Demand(worst.value, guide.speed_limit, worst, missing, source=_maker(guide))
 
     return speed
 
@@ -373,7 +390,7 @@ def anti_rotation(solution: Solution) -> Demand:
     """Number of free rotations of the stem about its axis."""
     means = solution.case.follower.anti_rotation
     if means is None:
-        return Demand(None, 0.0, note="no follower.anti_rotation is given")
+        return Demand(None, 0.0, missing=("follower.anti_rotation",))
     free = means == "not_needed" and solution.machine.face is None
     note = "a roller needs a means against rotation" if free else means.replace("_", " ")
     return Demand(float(free), 0.0, note=note)

@@ -7,9 +7,17 @@ import numpy as np
 from camwright.pipeline.base.material import ROOM, Material
 from camwright.pipeline.base.units import shown
 from camwright.pipeline.case.limits import TARGET_LIFE, WEAR_DEPTH, LimitValues
-from camwright.pipeline.checks.check import Declaration, Demand, check, not_given
+from camwright.pipeline.checks.check import Declaration, Demand, check
 from camwright.pipeline.checks.extremes import over_duty
-from camwright.pipeline.checks.guide_strength import Side, guide_of, hottest, mean_pv
+from camwright.pipeline.checks.guide_strength import (
+    Side,
+    guide_of,
+    heat_path_lacks,
+    hottest,
+    mean_pv,
+    table_of,
+)
+from camwright.pipeline.checks.missing_keys import lacking, lacking_of_card, unset
 from camwright.pipeline.cycle.solution import Solution
 from camwright.pipeline.follower.guide_friction import bore_closure
 from camwright.pipeline.follower.guide_reactions import Guide
@@ -38,30 +46,27 @@ def _guide_expansion(side: Side) -> Declaration:
         bush, stem = guide.material, solution.case.follower.stem_material
         growth_of_stem, moisture = stem.expansion, bush.moisture_growth
         hot = hottest(solution, side)
-        values = {
-            f"guides.{side.lower()}.wall": guide.wall,
-            f"expansion of {bush.name}": bush.expansion,
-            f"expansion of {stem.name}": growth_of_stem,
-            f"swelling of {bush.name}": moisture,
-        }
-        missing = not_given(values)
-        if np.isnan(hot.value):
-            missing.append("the temperature of the guide is not known")
+        missing = (
+            *lacking(table_of(side), guide, "wall"),
+            *lacking_of_card(bush, "expansion"),
+            *lacking_of_card(stem, "expansion"),
+            *(lacking_of_card(bush, "swelling") if moisture is None else ()),
+            *(heat_path_lacks(solution.machine, side) if np.isnan(hot.value) else ()),
+        )
         if (
             guide.wall is None
             or bush.expansion is None
             or growth_of_stem is None
             or moisture is None
         ):
-            return Demand(None, guide.clearance, note="; ".join(missing))
+            return Demand(None, guide.clearance, missing=missing)
         free, held = closures(guide, bush.expansion, growth_of_stem, moisture, hot.value)
-        if not missing:
-            missing = [f"{shown(free, 'mm', 3)} with a bush free to lengthen"]
         return Demand(
             max(free, held),
             guide.clearance,
             hot,
-            note="; ".join(missing),
+            missing,
+            note="" if missing else f"{shown(free, 'mm', 3)} with a bush free to lengthen",
             figures=(bush.source, stem.source),
         )
 
@@ -128,13 +133,11 @@ def _guide_wear(side: Side) -> Declaration:
         guide, limits = guide_of(solution.machine, side), solution.machine.limits
         rate, life = guide.wear_rate, limits[TARGET_LIFE]
         worst = over_duty(solution.cycles, lambda cycle: mean_pv(cycle, side))
-        values = {f"guides.{side.lower()}.wear_rate": rate, "limits.target_life": life}
-        missing = not_given(values)
         return Demand(
             None if life is None or rate is None else rate * worst.value * life,
             limits[WEAR_DEPTH],
             worst,
-            note="; ".join(missing),
+            (*lacking(table_of(side), guide, "wear_rate"), *unset(limits, TARGET_LIFE)),
             figures=(guide.source,),
         )
 

@@ -21,13 +21,13 @@ from camwright.pipeline.case.machine import Machine
 from camwright.pipeline.checks import demands
 from camwright.pipeline.checks.check import SPEED_RANGE, Demand, check
 from camwright.pipeline.checks.extremes import Extreme, greatest, least
+from camwright.pipeline.checks.missing_keys import unset
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.cycle import Cycle, least_spring_force
 from camwright.pipeline.cycle.elastic_response import ElasticHistory
 from camwright.pipeline.cycle.solution import Solution
 from camwright.pipeline.cycle.speed_sweep import SpeedSweep, highest_speed
 
-NO_OVERSPEED = "no limits.overspeed is given"
 _TIE = 1e-9  # relative difference up to which two forces are equal, and one is none
 
 
@@ -138,7 +138,7 @@ def jump_speed(solution: Solution) -> Demand:
     worst = least(solution.cycles, _jump_speed)._replace(load_case="")
     over = overspeed(solution.machines)
     if over is None:
-        return Demand(worst.value, None, worst, note=NO_OVERSPEED)
+        return Demand(worst.value, None, worst, unset(solution.machine.limits, OVERSPEED))
     return Demand(worst.value, solution.machine.limits[JUMP_SPEED] * over, worst)
 
 
@@ -160,7 +160,7 @@ def contact_at_overspeed(solution: Solution) -> Demand:
     """Minimum contact force at the overspeed over the least spring force."""
     limit, over = solution.machine.limits[CONTACT_FORCE_MARGIN], overspeed(solution.machines)
     if over is None:
-        return Demand(None, limit, note=NO_OVERSPEED)
+        return Demand(None, limit, missing=unset(solution.machine.limits, OVERSPEED))
 
     def force(cycle: Cycle) -> Array:
         scale, loads = (over / cycle.machine.crank_speed) ** 2, cycle.loads
@@ -285,7 +285,9 @@ def _least_over_speed(
     least_damped = min((float(measure(one)[0].min()) / held(one) for one in sweeps), default=np.inf)
     top = max(float(sweep.crank_speed[-1]) for sweep in solution.speed_sweeps)
     stated = overspeed(solution.machines) is not None
-    end = shown(top, "rpm", 4) + ("" if stated else f", the fastest load case: {NO_OVERSPEED}")
+    end = shown(top, "rpm", 4) + (
+        "" if stated else ", the fastest load case, without limits.overspeed"
+    )
     words = f"at {shown(at, 'rpm', 4)} of the crank; swept from standstill to {end}"
     return Swept(worst, least_damped, words)
 

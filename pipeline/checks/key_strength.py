@@ -20,7 +20,8 @@ from camwright.pipeline.case.limits import (
 from camwright.pipeline.case.machine import Machine
 from camwright.pipeline.checks.check import Demand, check
 from camwright.pipeline.checks.extremes import greatest, least
-from camwright.pipeline.contact.cam_body import Key
+from camwright.pipeline.checks.missing_keys import lacking, lacking_of_card
+from camwright.pipeline.contact.cam_body import CamBody, Key
 from camwright.pipeline.cycle.cycle import Cycle
 from camwright.pipeline.cycle.solution import Solution
 from camwright.pipeline.follower.camshaft_loads import KeyStress, key_stress
@@ -40,12 +41,6 @@ WALLS = 0.75, 4.0
 """Least and greatest wall over the radius of the keyway floor for which the stress is known."""
 TINY = 1e-12
 """Utilisation of an unloaded root: its safety is finite."""
-_DATA = {
-    "length": "length of the key",
-    "height": "height of the key",
-    "shaft_depth": "depth of the keyway in the shaft",
-    "chamfer": "chamfer of the key",
-}
 
 
 @check(
@@ -84,7 +79,7 @@ def key_pressure_shaft(solution: Solution) -> Demand | None:
     if not machine.scope.covers("camshaft"):
         return None
     card = None if machine.camshaft is None else machine.camshaft.material
-    missing = () if card is not None else ("no material of the camshaft is given",)
+    missing = () if card is not None else ("camshaft.material",)
     return _judged(solution, lambda stress: stress.shaft, card, missing)
 
 
@@ -125,12 +120,12 @@ def cam_slip(solution: Solution) -> Demand | None:
     slip = None if shaft is None else shaft.slip_torque
     factor = 1.0 if key is None else key.application_factor
     worst = greatest(solution.cycles, lambda cycle: factor * np.abs(cycle.loads.cam_torque))
-    note = {None: "no slip torque of the cam's seat is given", 0.0: "sliding fit"}.get(slip, "")
     return Demand(
         None if slip is None else slip / worst.value,
         solution.machine.limits[CAM_SLIP],
         worst,
-        note=note,
+        ("camshaft.slip_torque",) if slip is None else (),
+        note="sliding fit" if slip == 0.0 else "",
     )
 
 
@@ -153,16 +148,11 @@ def keyway_root(solution: Solution) -> Demand:
     """Fatigue safety factor of the keyway's root in the cam."""
     machine = solution.machine
     cam, limit, card = machine.cam, machine.limits[KEYWAY_SAFETY], machine.cam.material
-    endurance, tensile = card.fatigue_bending, card.tensile_strength
-    missing = [f"no {_DATA[name]} is given" for name, v in cam.key_data.items() if v is None]
-    missing += (
-        [] if cam.keyway_root_radius is not None else ["no root radius of the keyway is given"]
-    )
-    if endurance is None or tensile is None:
-        missing += [f"the card of {card.name} gives no fatigue or tensile strength"]
     root = keyway_root_of(machine)
     if root is None:
-        return Demand(None, limit, note="; ".join(missing))
+        missing = *_no_key_data(cam), *lacking_of_card(card, "fatigue_bending", "tensile_strength")
+        missing += () if cam.keyway_root_radius is not None else ("cam.keyway.root_radius",)
+        return Demand(None, limit, missing=missing)
     wall = float(solution.contour.radius_min().value) - cam.held_radius
     thin, thick = (share * cam.held_radius for share in WALLS)
     if not wall >= thin:
@@ -182,6 +172,11 @@ def keyway_root(solution: Solution) -> Demand:
     return Demand(worst.value, limit, worst, note=note, figures=figures)
 
 
+def _no_key_data(cam: CamBody) -> tuple[str, ...]:
+    """Keys of the key's dimensions that are not in the case and of no standard."""
+    return tuple(f"{Key.table}.{name}" for name, value in cam.key_data.items() if value is None)
+
+
 def _judged(
     solution: Solution,
     of: Callable[[KeyStress], Array],
@@ -194,8 +189,7 @@ def _judged(
     machine = solution.machine
     cam, flanks = machine.cam, machine.cam.key_flanks
     key, reverses = cam.key or Key(), _reverses(solution)
-    missing += tuple(f"no {_DATA[name]} is given" for name, v in cam.key_data.items() if v is None)
-    missing += () if key.material is not None else ("no material of the key is given",)
+    missing += *_no_key_data(cam), *lacking(key.table, key, "material")
     cards = [card for card in (key.material, mate) if card is not None]
     figures = tuple(f"{card.name}: {card.source}" for card in cards)
     if reverses:
@@ -203,7 +197,7 @@ def _judged(
     strength = _strength(machine, mate, reverses=reverses)
     allowed = None if strength is None or missing else factor * strength
     if flanks is None:
-        return Demand(None, allowed, note="; ".join(missing), figures=figures)
+        return Demand(None, allowed, missing=missing, figures=figures)
     diameter = 2.0 * cam.bore_radius
 
     def stress(cycle: Cycle) -> Array:
@@ -213,7 +207,7 @@ def _judged(
         return np.abs(of(key_stress(torque, diameter, flanks)))
 
     worst = greatest(solution.cycles, stress)
-    return Demand(worst.value, allowed, worst, note="; ".join(missing), figures=figures)
+    return Demand(worst.value, allowed, worst, missing, figures=figures)
 
 
 def _strength(machine: Machine, mate: Material | None, *, reverses: bool) -> float | None:

@@ -16,6 +16,7 @@ from camwright.pipeline.case.limits import (
 from camwright.pipeline.checks import demands
 from camwright.pipeline.checks.check import NONE, RIPPLE, Demand, check
 from camwright.pipeline.checks.extremes import NOWHERE, Extreme, greatest
+from camwright.pipeline.checks.missing_keys import lacking, unset
 from camwright.pipeline.checks.torque_balance import least_reduction
 from camwright.pipeline.contact.cam_body import CamBody
 from camwright.pipeline.contact.tiers import Tier
@@ -64,7 +65,7 @@ def cam_radius(solution: Solution) -> Demand:
         float(largest.value),
         allowed,
         Extreme(float(largest.value), "", float(np.mod(largest.theta, FULL_TURN))),
-        note="" if allowed is not None else "no maximum cam radius is given",
+        missing=unset(solution.machine.limits, CAM_RADIUS),
     )
 
 
@@ -102,11 +103,9 @@ def profile_waviness(solution: Solution) -> Demand:
         worst.value,
         solution.machine.limits[WAVINESS],
         worst,
-        note=f"waves of {shown(length, 'mm')}" if band is not None else _NO_BAND,
+        lacking(cam.table, cam, "profile_tolerance"),
+        note=f"waves of {shown(length, 'mm')}",
     )
-
-
-_NO_BAND = "no profile tolerance is given"
 
 
 @check(
@@ -134,7 +133,8 @@ def chord_error(solution: Solution) -> Demand:
         float(sag[worst]),
         None if tolerance is None else limits[CHORD_SHARE] * tolerance,
         Extreme(float(sag[worst]), "", float(theta[worst])),
-        note=f"{theta.size} points" if tolerance is not None else _NO_BAND,
+        lacking("cam", solution.machine.cam, "profile_tolerance"),
+        note=f"{theta.size} points",
     )
 
 
@@ -162,7 +162,8 @@ def phase_tolerance(solution: Solution) -> Demand | None:
         worst.value if phase > 0 else None,
         required,
         worst,
-        note=f"{shown(phase, 'deg')} of crank" if phase > 0 else "no phase tolerance is given",
+        () if phase > 0 else ("tolerances.phase",),
+        note=f"{shown(phase, 'deg')} of crank" if phase > 0 else "",
     )
 
 

@@ -20,8 +20,12 @@ def _data(
     name: PartName | Literal["cam", "follower", "roller", "face"],
     tables: Callable[[Case], Tables],
     needs: Literal["", "roller", "face"] = "",
+    described_by: tuple[str, ...] = (),
 ) -> Declaration:
-    """Check that a part is described and lacks no datum; None if the scope leaves it out."""
+    """Check that a part is described and lacks no datum; None if the scope leaves it out.
+
+    described_by: tables or keys by which the case describes the part.
+    """
     words: str = "flat face" if name == "face" else name
     coverable: PartName | None = None
     for part, text in PART_WORDS.items():
@@ -47,12 +51,10 @@ def _data(
                 return None
             if not machine.describes(coverable):
                 note = f"no {words} is described; describe it or leave it out in [scope]"
-                return Demand(None, 0.0, note=note)
+                return Demand(None, 0.0, missing=described_by, note=note)
         known = {path: part for path, part in tables(solution.case).items() if part is not None}
-        missing = [f"{path}.{key}" for path, part in known.items() for key in part.lacking]
-        if missing:
-            return Demand(None, 0.0, note=f"missing: {', '.join(missing)}")
-        return Demand(0.0, 0.0)
+        missing = tuple(f"{path}.{key}" for path, part in known.items() for key in part.lacking)
+        return Demand(None if missing else 0.0, 0.0, missing=missing)
 
     return data
 
@@ -80,11 +82,23 @@ data_follower = _data("follower", lambda case: {"follower": case.follower})
 data_roller = _data("roller", lambda case: {"roller": case.roller}, "roller")
 data_face = _data("face", lambda case: {"follower.face": case.follower.face}, "face")
 data_roller_bearing = _data("roller_bearing", _roller_bearing, "roller")
-data_pin = _data("pin", lambda case: {"roller.pin": case.roller.pin}, "roller")
-data_fork = _data("fork", lambda case: {"roller.fork": case.roller.fork}, "roller")
-data_spring = _data("spring", _spring)
+data_pin = _data(
+    "pin", lambda case: {"roller.pin": case.roller.pin}, "roller", described_by=("roller.pin",)
+)
+data_fork = _data(
+    "fork", lambda case: {"roller.fork": case.roller.fork}, "roller", described_by=("roller.fork",)
+)
+data_spring = _data("spring", _spring, described_by=("spring.design",))
 data_guides = _data("guides", _guides)
-data_camshaft = _data("camshaft", lambda case: {"camshaft": case.camshaft})
-data_camshaft_bearings = _data("camshaft_bearings", lambda _: {})
-data_key = _data("key", lambda case: {"cam.keyway": case.cam.keyway})
-data_gear = _data("gear", _gear)
+data_camshaft = _data(
+    "camshaft", lambda case: {"camshaft": case.camshaft}, described_by=("camshaft",)
+)
+data_camshaft_bearings = _data(
+    "camshaft_bearings",
+    lambda _: {},
+    described_by=("camshaft.bearing_rating", "camshaft.bearing_static_rating"),
+)
+data_key = _data(
+    "key", lambda case: {"cam.keyway": case.cam.keyway}, described_by=("cam.keyway", "cam.key")
+)
+data_gear = _data("gear", _gear, described_by=("camshaft.gear",))

@@ -22,6 +22,7 @@ from camwright.pipeline.case.limits import (
 from camwright.pipeline.case.machine import Machine
 from camwright.pipeline.checks.check import NONE, Demand, check
 from camwright.pipeline.checks.extremes import Extreme, greatest, worst_case
+from camwright.pipeline.checks.missing_keys import lacking, lacking_of_card
 from camwright.pipeline.cycle.cam_balance import Balance, balance, rotor_unbalance
 from camwright.pipeline.cycle.cycle import Cycle
 from camwright.pipeline.cycle.part_loads import PartLoads
@@ -30,7 +31,7 @@ from camwright.pipeline.follower import pin_strength
 from camwright.pipeline.follower.bearing_ring import goodman
 from camwright.pipeline.follower.camshaft_loads import Camshaft
 from camwright.pipeline.follower.roller import Roller
-from camwright.pipeline.follower.roller_parts import Fork, Pin
+from camwright.pipeline.follower.roller_parts import Fork, OuterRing, Pin
 
 
 @check(
@@ -140,7 +141,7 @@ def roller_pin_fatigue(solution: Solution) -> Demand:
     roller, pin = _roller_and_pin(solution)
     card, per_newton = pin.material, roller.pin_stress_per_newton
     tensile, endured = card.tensile_strength, card.fatigue_bending
-    missing = _without(card, fatigue_bending=endured, tensile_strength=tensile)
+    missing = lacking_of_card(card, "fatigue_bending", "tensile_strength")
     along, across = np.cos(uniform_turn(_FIBRES)), np.sin(uniform_turn(_FIBRES))
 
     def safety(cycle: Cycle) -> float:
@@ -154,13 +155,7 @@ def roller_pin_fatigue(solution: Solution) -> Demand:
 
     worst = worst_case(solution.cycles, safety, at_least=True)
     limit = solution.machine.limits[PIN_FATIGUE_SAFETY]
-    return Demand(worst.value, limit, worst, missing, _sources(card))
-
-
-def _without(card: Material, **values: float | None) -> str:
-    """Note on the values of a card that are None."""
-    names = [name.replace("_", " ") for name, value in values.items() if value is None]
-    return "; ".join(f"no {name} of {card.name} is given" for name in names)
+    return Demand(worst.value, limit, worst, missing, figures=_sources(card))
 
 
 @check(
@@ -204,8 +199,8 @@ def roller_pin_pressure(solution: Solution) -> Demand:
     roller, pin = _roller_and_pin(solution)
     stress = seat_pressure(roller, pin, solution.machine.limits)
     worst, card = _normal_force(solution, stress.per_newton), pin.material
-    missing = _without(card, tensile_strength=card.tensile_strength)
-    return Demand(worst.value, stress.allowed, worst, missing, _sources(card))
+    missing = lacking_of_card(card, "tensile_strength")
+    return Demand(worst.value, stress.allowed, worst, missing, figures=_sources(card))
 
 
 @check(
@@ -229,15 +224,14 @@ def cheek_pressure(solution: Solution) -> Demand:
     pin = None if roller is None else roller.pin
     fork = None if roller is None else roller.fork
     if fork is None or pin is None:
-        return Demand(None, None, note="no pin is given")
+        return Demand(None, None, missing=(Pin.table,))
     stress = fork_pressure(fork, pin, solution.machine.limits)
     worst = _normal_force(solution, stress.per_newton)
     if fork.pressure_limit is not None:
         return Demand(worst.value, stress.allowed, worst, source=fork.source or "roller.fork")
     cards = (fork.material, pin.material)
-    missing = [_without(card, tensile_strength=card.tensile_strength) for card in cards]
-    note = "; ".join(each for each in dict.fromkeys(missing) if each)
-    return Demand(worst.value, stress.allowed, worst, note, _sources(*cards))
+    missing = tuple(key for card in cards for key in lacking_of_card(card, "tensile_strength"))
+    return Demand(worst.value, stress.allowed, worst, missing, figures=_sources(*cards))
 
 
 @check(
@@ -259,9 +253,11 @@ def follower_mass(solution: Solution) -> Demand:
     allowed = solution.machine.limits[FOLLOWER_MASS_RATIO] * solution.case.follower.mass
     total = sum(masses.values())
     parts = ", ".join(f"{name} {shown(mass, 'g')}" for name, mass in masses.items())
-    notes = [f"no {name} is given" for name in missing]
-    notes.append(f"at least {shown(total, 'g')}: {parts}" if missing else parts)
-    return Demand(None if missing else total, allowed, note="; ".join(notes))
+    note = f"at least {shown(total, 'g')}: {parts}" if missing else parts
+    return Demand(None if missing else total, allowed, missing=missing, note=note)
+
+
+_FORK_LENGTHS = "cheek_height", "cheek_length", "bridge_length"
 
 
 def moving_masses(solution: Solution) -> tuple[dict[str, float], tuple[str, ...]]:
@@ -283,12 +279,12 @@ def moving_masses(solution: Solution) -> tuple[dict[str, float], tuple[str, ...]
         if pin is not None:
             masses["pin"] = pin.mass(0.0 if fork is None else fork.cheek_width)
         elif machine.scope.covers("pin"):
-            missing.append("roller.pin")
+            missing.append(Pin.table)
         held = None if fork is None or pin is None else fork.mass(pin)
         if held is not None:
             masses["fork"] = held
         elif machine.scope.covers("fork"):
-            missing.append("roller.fork with its lengths and height")
+            missing += [Fork.table] if fork is None else lacking(fork.table, fork, *_FORK_LENGTHS)
         if fork is not None:
             shorter = (fork.cheek_length or 0.0) + (fork.bridge_length or 0.0)
     length = follower.stem_length
@@ -326,22 +322,15 @@ def roller_ring_fatigue(solution: Solution) -> Demand:
     if roller is None or ring is None or roller.solid_reason:
         reason = "there is no roller" if roller is None else roller.solid_reason
         note = f"{reason}: the roller is modelled as solid on its hub"
-        return Demand(None, None, note=note, must_have=ring is None)
+        undescribed = (OuterRing.table,) if ring is None else ()
+        return Demand(None, None, missing=undescribed, note=note, must_have=ring is None)
     tensile = ring.tensile_strength
     worst = greatest(solution.cycles, lambda cycle: _ring_amplitude(cycle.parts, tensile))
-    missing = [
-        f"no {name} of the ring is given"
-        for name, value in (
-            ("fatigue strength", ring.fatigue_bending),
-            ("tensile strength", tensile),
-        )
-        if value is None
-    ]
     return Demand(
         None if tensile is None else worst.value,
         ring.fatigue_bending,
         worst,
-        note="; ".join(missing),
+        lacking(ring.table, ring, "fatigue_bending", "tensile_strength"),
         figures=(ring.source,),
     )
 
@@ -383,27 +372,23 @@ def bore_pressure(solution: Solution) -> Demand:
     machine = solution.machine
     worst = greatest(solution.cycles, lambda cycle: cycle.parts.bore_pressure)
     cards, missing = _bore_cards(machine)
-    missing += [
-        f"the card of {card.name} gives no tensile strength"
-        for card in cards
-        if card.tensile_strength is None
-    ]
+    missing += [key for card in cards for key in lacking_of_card(card, "tensile_strength")]
     return Demand(
         worst.value,
         bore_pressure_limit(machine),
         worst,
-        note="; ".join(missing),
+        tuple(missing),
         figures=tuple(dict.fromkeys(f"{card.name}: {card.source}" for card in cards)),
     )
 
 
 def _bore_cards(machine: Machine) -> tuple[list[Material], list[str]]:
-    """Materials of cam and camshaft, and the missing one in words."""
+    """Materials of cam and camshaft, and the key of the missing one."""
     shaft, cards = machine.camshaft, [machine.cam.material]
     if not machine.scope.covers("camshaft"):
         return cards, []
     card = None if shaft is None else shaft.material
-    missing = ["no material of the camshaft is given"] if card is None else []
+    missing = ["camshaft.material"] if card is None else []
     return [*cards, *([] if card is None else [card])], missing
 
 

@@ -25,7 +25,7 @@ from camwright.pipeline.case.limits import (
     VISCOSITY_RATIO,
 )
 from camwright.pipeline.case.machine import Machine
-from camwright.pipeline.checks.check import BY_DUTY, NONE, Declaration, Demand, check, not_given
+from camwright.pipeline.checks.check import BY_DUTY, NONE, Declaration, Demand, check
 from camwright.pipeline.checks.extremes import (
     NOWHERE,
     Extreme,
@@ -34,6 +34,7 @@ from camwright.pipeline.checks.extremes import (
     over_duty,
     worst_case,
 )
+from camwright.pipeline.checks.missing_keys import lacking, unset
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.cycle import Cycle
 from camwright.pipeline.cycle.solution import Solution
@@ -112,7 +113,7 @@ def roller_static(solution: Solution) -> Demand:
         static_safety(worst.value, rating) if rated and rating is not None else None,
         solution.machine.limits[ROLLER_STATIC_SAFETY],
         worst,
-        note="" if rating is not None else f"no static rating is given for {bearing.name}",
+        lacking(bearing.table, bearing, "C0"),
         figures=_card(bearing),
     )
 
@@ -138,7 +139,7 @@ def roller_load_share(solution: Solution) -> Demand:
         worst.value / rating if rating else None,
         solution.machine.limits[ROLLER_LOAD_SHARE],
         worst,
-        note="" if rating else f"no dynamic rating is given for {bearing.name}",
+        lacking(bearing.table, bearing, "C"),
         figures=_card(bearing),
     )
 
@@ -166,14 +167,12 @@ def roller_life(solution: Solution) -> Demand:
         return _life(cycle, bearing.C)
 
     worst = over_duty(solution.cycles, life, life=True)
-    missing = ["no dynamic rating is given"] if bearing.C is None else []
-    missing += ["no life is required"] if target is None else []
-    missing += damage_note(solution, life)
     return Demand(
         worst.value,
         target,
         worst,
-        note="; ".join(missing),
+        (*lacking(bearing.table, bearing, "C"), *unset(solution.machine.limits, ROLLER_LIFE)),
+        note="; ".join(damage_note(solution, life)),
         figures=_card(bearing),
     )
 
@@ -215,17 +214,11 @@ def roller_modified_life(solution: Solution) -> Demand:
     bearing, limits = bearing_of(solution), solution.machine.limits
     rating, endured, circle = bearing.C, bearing.fatigue_load_limit, bearing.ball_circle
     cleanliness, viscosity = bearing.contamination, bearing.viscosity
-    missing = not_given(
-        {
-            "dynamic rating": rating,
-            "fatigue load limit": endured,
-            "contamination": cleanliness,
-            "viscosity": viscosity,
-            "pitch diameter": circle,
-        }
+    missing = lacking(
+        bearing.table, bearing, "C", "fatigue_load_limit", "contamination", "viscosity"
     )
-    missing += ["no life is required"] if limits[ROLLER_LIFE] is None else []
-    worst = NOWHERE
+    missing += _no_ball_circle(bearing) + unset(limits, ROLLER_LIFE)
+    worst, notes = NOWHERE, list[str]()
     if rating and endured and cleanliness and viscosity and circle:
         share = bearing_life.contamination_factor(cleanliness, circle)
 
@@ -241,14 +234,15 @@ def roller_modified_life(solution: Solution) -> Demand:
 
         worst = over_duty(solution.cycles, life, life=True)
         if np.isnan(worst.value):
-            missing.append("not known for a viscosity ratio below 0.1: outside of ISO 281")
+            notes.append("not known for a viscosity ratio below 0.1: outside of ISO 281")
         else:
-            missing += damage_note(solution, life)
+            notes += damage_note(solution, life)
     return Demand(
         worst.value,
         limits[ROLLER_LIFE],
         worst,
-        note="; ".join(missing),
+        missing,
+        note="; ".join(notes),
         figures=(limits.source(ROLLER_RELIABILITY), bearing_life.SOURCE, *_card(bearing)),
     )
 
@@ -276,14 +270,12 @@ def roller_speed(solution: Solution) -> Demand:
         worst.value,
         allowed,
         worst,
-        note="" if allowed is not None else f"no limiting speed is given for {bearing.name}",
+        lacking(bearing.table, bearing, "speed_limit"),
         figures=(bearing.source,),
     )
 
 
-def _outer_ring(
-    name: str, words: str, symbol: str, reason: str, rated: Callable[[Bearing], float | None]
-) -> Declaration:
+def _outer_ring(name: str, words: str, symbol: str, reason: str, key: str) -> Declaration:
     @check(
         id=name,
         title=f"Normal force vs. maximum {words} load of the outer ring",
@@ -301,14 +293,11 @@ def _outer_ring(
     def against_the_ring(solution: Solution) -> Demand:
         """Maximum normal force, N, against the rating of an unsupported outer ring."""
         bearing, worst = bearing_of(solution), _force(solution)
-        allowed = rated(bearing)
         return Demand(
             worst.value,
-            allowed,
+            getattr(bearing, key),
             worst,
-            note=""
-            if allowed is not None
-            else f"{bearing.name} has no {symbol}, the rating of an outer ring without a housing",
+            lacking(bearing.table, bearing, key),
             figures=_card(bearing),
         )
 
@@ -320,14 +309,14 @@ roller_radial = _outer_ring(
     "dynamic radial",
     "F_r,max",
     "an outer ring on a cam bends, and breaks in fatigue",
-    lambda bearing: bearing.radial_limit,
+    "radial_limit",
 )
 roller_static_radial = _outer_ring(
     "roller_static_radial",
     "static radial",
     "F_0r,max",
     "an outer ring on a cam bends, and breaks under a single overload",
-    lambda bearing: bearing.static_radial_limit,
+    "static_radial_limit",
 )
 
 
@@ -348,16 +337,18 @@ def bearing_lubrication(solution: Solution) -> Demand:
     worst = worst_case(
         solution.cycles, lambda cycle: _viscosity_ratio(cycle, bearing), at_least=True
     )
-    missing = not_given(
-        {"viscosity": bearing.viscosity, "pitch diameter of the balls": bearing.ball_circle}
-    )
     return Demand(
         worst.value,
         solution.machine.limits[VISCOSITY_RATIO],
         worst,
-        note="; ".join(missing),
+        lacking(bearing.table, bearing, "viscosity") + _no_ball_circle(bearing),
         figures=(bearing_life.SOURCE, bearing.source),
     )
+
+
+def _no_ball_circle(bearing: Bearing) -> tuple[str, ...]:
+    """Key of the pitch diameter of the balls where neither the bearing nor its ring has one."""
+    return () if bearing.ball_circle else lacking(bearing.table, bearing, "pitch_diameter")
 
 
 def least_speed(viscosity: float, circle: float, ratio: float) -> float | None:
@@ -420,18 +411,23 @@ def grease_life(solution: Solution) -> Demand | None:
     if bearing.lubrication == "oil":
         return None
     if bearing.lubrication is None:
-        return Demand(None, None, note="no lubrication of the roller bearing is given")
-    for_life = bearing.lubrication == "grease_for_life"
+        return Demand(None, None, missing=lacking(bearing.table, bearing, "lubrication"))
     target = _grease_target(solution.machine, bearing)
-    missing = not_given({"target life" if for_life else "relubrication interval": target})
+    if bearing.lubrication == "grease_for_life":
+        missing = unset(solution.machine.limits, TARGET_LIFE)
+    else:
+        missing = lacking(bearing.table, bearing, "relubrication_interval")
     if bearing.grease_life is not None:
         stated = Extreme(bearing.grease_life)
-        return Demand(stated.value, target, stated, "; ".join(missing), _card(bearing))
-    missing += not_given({"dynamic rating": bearing.C, "temperature": bearing.temperature})
-    worst = over_duty(solution.cycles, lambda cycle: _grease_life(cycle, solution), life=True)
-    if np.isnan(worst.value) and not missing:
-        missing.append("outside the range of the estimate: give roller.bearing.grease_life")
-    return Demand(worst.value, target, worst, "; ".join(missing), _card(bearing))
+        return Demand(stated.value, target, stated, missing, figures=_card(bearing))
+    missing += lacking(bearing.table, bearing, "C", "temperature")
+    worst, note = NOWHERE, ""
+    if not missing:
+        worst = over_duty(solution.cycles, lambda cycle: _grease_life(cycle, solution), life=True)
+        if np.isnan(worst.value):
+            missing = lacking(bearing.table, bearing, "grease_life")
+            note = "outside the range of the estimate"
+    return Demand(worst.value, target, worst, missing, note=note, figures=_card(bearing))
 
 
 def _grease_life(cycle: Cycle, solution: Solution) -> float:

@@ -13,6 +13,7 @@ from camwright.pipeline.base.units import shown
 from camwright.pipeline.case.limits import SPRING_FATIGUE, SPRING_SOLID, SPRING_SURGE, Limit, Sense
 from camwright.pipeline.checks.check import NONE, SPEED_RANGE, Declaration, Demand, check
 from camwright.pipeline.checks.extremes import Extreme
+from camwright.pipeline.checks.missing_keys import lacking
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.solution import Solution
 from camwright.pipeline.cycle.speed_sweep import SpringSweep, highest_speed
@@ -348,11 +349,10 @@ def spring_relaxation(solution: Solution) -> Demand:
     """Loss of preload by relaxation at temperature, relative."""
     spring, design = solution.machine.spring, _design(solution)
     work = _work(solution)
-    missing = [name for name in ("temperature", "relaxation") if getattr(design, name) is None]
     return Demand(
         design.relaxed_preload(work.preload, work.greatest),
         relaxation_allowed(spring),
-        note="" if not missing else f"no spring.design.{' or '.join(missing)} is given",
+        missing=lacking("spring.design", design, "temperature", "relaxation"),
         figures=(design.source,),
         corner=_corner(spring, HARDEST),
     )

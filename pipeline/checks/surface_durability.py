@@ -22,6 +22,8 @@ from camwright.pipeline.case.machine import Machine
 from camwright.pipeline.checks.check import NONE, Demand, check
 from camwright.pipeline.checks.contact_strength import endurance_of, peak_pressure
 from camwright.pipeline.checks.extremes import greatest, least, worst_case
+from camwright.pipeline.checks.missing_keys import lacking, lacking_of_card, no_friction
+from camwright.pipeline.contact.oil_film import Lubricant
 from camwright.pipeline.contact.rolling_envelope import Envelope
 from camwright.pipeline.cycle.cycle import Cycle
 from camwright.pipeline.cycle.solution import Solution
@@ -71,7 +73,7 @@ def _traction_demand(solution: Solution, share: float) -> Demand:
         worst.value,
         None if friction is None else share * friction,
         worst,
-        note="" if friction is not None else "no friction of the roller on the cam is given",
+        no_friction(solution.machine),
     )
 
 
@@ -91,21 +93,17 @@ def film_ratio(solution: Solution) -> Demand:
     machine = solution.machine
     oil, kind = machine.lubricant, machine.follower
     running = [cycle for cycle in solution.cycles if cycle.machine.speed > 0]
-    worst, missing = least(running or solution.cycles, _lambda), []
-    if oil is None:
-        missing.append("no lubricant")
-    if machine.cam.roughness is None:
-        missing.append("no roughness of the cam")
-    if kind.roughness is None:
-        missing.append(f"no roughness of the {kind.word}")
-    notes = [f"{', '.join(missing)} is given"] if missing else []
-    if kind.crown_radius is not None:
-        notes.append("film of a line contact; that of an ellipse is thinner by its side flow")
+    worst, crowned = least(running or solution.cycles, _lambda), kind.crown_radius is not None
+    missing = lacking(machine.cam.table, machine.cam, "roughness")
+    missing += lacking(kind.table, kind, "roughness")
     return Demand(
         worst.value,
         machine.limits[FILM_RATIO],
         worst,
-        note="; ".join(notes),
+        missing if oil else (Lubricant.table, *missing),
+        note="film of a line contact; that of an ellipse is thinner by its side flow"
+        if crowned
+        else "",
         figures=() if oil is None else (oil.source,),
     )
 
@@ -122,7 +120,7 @@ def _torsion_demand(solution: Solution, measure: Callable[[Envelope], float]) ->
         worst.value,
         torsion / safety if known and torsion else None,
         worst,
-        note="" if known else f"the card of {card.name} gives no fatigue limits",
+        lacking_of_card(card, "fatigue_torsion", "fatigue_bending"),
         figures=(f"{card.name}: {card.source}",),
     )
 
@@ -189,7 +187,7 @@ def hardened_case(solution: Solution) -> Demand | None:
         )  # fmt: skip
 
     allowed = 1.0 / solution.machine.limits[CASE_SAFETY]
-    return _hardened_demand(solution, use, allowed, "case depth or no core yield strength")
+    return _hardened_demand(solution, use, allowed, ("case_depth", "core_yield_strength"))
 
 
 @check(
@@ -218,9 +216,8 @@ def case_shear(solution: Solution) -> Demand | None:
         )  # fmt: skip
 
     allowed = 1.0 / solution.machine.limits[FATIGUE_SAFETY]
-    return _hardened_demand(
-        solution, use, allowed, "case depth or no fatigue limit in torsion of case and core"
-    )
+    keys = "case_depth", "fatigue_torsion", "core_fatigue_torsion"
+    return _hardened_demand(solution, use, allowed, keys)
 
 
 def hardened_bodies(solution: Solution) -> dict[str, Material]:
@@ -229,16 +226,22 @@ def hardened_bodies(solution: Solution) -> dict[str, Material]:
     return {body: card for body, card in bodies.items() if card.surface_hardened is not False}
 
 
-def _lacks(body: str, card: Material, datum: str) -> str:
-    """Missing datum of a hardened body in words."""
-    lacking = datum if card.surface_hardened else "treatment: hardened or not"
-    return f"the {body}, {card.name}, has no {lacking}"
+def _lacks(card: Material, *keys: str) -> tuple[str, ...]:
+    """Those of some keys that a hardened body lacks, or the key that states its treatment."""
+    return lacking_of_card(card, *keys) if card.surface_hardened else _untreated(card)
+
+
+def _untreated(card: Material) -> tuple[str, ...]:
+    return lacking_of_card(card, "treatment")
 
 
 def _hardened_demand(
-    solution: Solution, use: Callable[[Envelope, Material], float], allowed: float, datum: str
+    solution: Solution,
+    use: Callable[[Envelope, Material], float],
+    allowed: float,
+    keys: tuple[str, ...],
 ) -> Demand | None:
-    """Greatest use of the strength by depth over the hardened bodies.
+    """Greatest use of the strength by depth over the hardened bodies, which needs some keys.
 
     Every point of the follower meets the greatest stress of the turn: the maximum over the contour
     is that of both bodies.
@@ -251,17 +254,15 @@ def _hardened_demand(
         return lambda cycle: use(cycle.rolling.envelope, card)
 
     worst = {body: worst_case(solution.cycles, of_turn(card)) for body, card in bodies.items()}
-    lacking = [body for body, card in bodies.items() if math.isnan(_probe(use, card))]
-    known = [body for body in bodies if body not in lacking]
+    bare = [body for body, card in bodies.items() if math.isnan(_probe(use, card))]
+    known = [body for body in bodies if body not in bare]
     governing = max(known or bodies, key=lambda body: _rank(worst[body].value))
     extreme = worst[governing]
-    missing = bool(lacking) and not extreme.value > allowed
-    notes = [_lacks(body, bodies[body], datum) for body in lacking]
     return Demand(
-        None if missing else extreme.value,
+        None if bare and not extreme.value > allowed else extreme.value,
         allowed,
         extreme,
-        note="; ".join(notes),
+        tuple(key for body in bare for key in _lacks(bodies[body], *keys)),
         figures=tuple(f"{card.name}: {card.source}" for card in bodies.values()),
     )
 
@@ -297,13 +298,12 @@ def case_depth(solution: Solution) -> Demand | None:
     limit = solution.machine.limits[CASE_DEPTH_RATIO]
     depths = [card.case_depth for card in bodies.values() if card.case_depth is not None]
     ratio = min(depths) / worst.value if depths and loaded else None
-    lacking = [body for body, card in bodies.items() if card.case_depth is None]
-    missing = bool(lacking) and not (ratio is not None and ratio < limit)
+    bare = [card for card in bodies.values() if card.case_depth is None]
     return Demand(
-        None if missing else ratio,
+        None if bare and not (ratio is not None and ratio < limit) else ratio,
         limit,
         worst,
-        note="; ".join(_lacks(body, bodies[body], "case depth") for body in lacking),
+        tuple(key for card in bare for key in _lacks(card, "case_depth")),
         figures=tuple(f"{card.name}: {card.source}" for card in bodies.values()),
     )
 
@@ -330,12 +330,13 @@ def pressure_by_hardness(solution: Solution) -> Demand | None:
     if "cam" not in soft and not any(map(buckingham, soft.values())):
         return None
 
+    def lacks(card: Material) -> tuple[str, ...]:
+        return lacking_of_card(card, "hardness_brinell")
+
     def reason(card: Material) -> str:
-        if card.hardness_brinell is None:
-            return "has no Brinell hardness"
         return f"has {card.hardness_brinell:g} HB, above the {BUCKINGHAM_MAX:g} HB of the estimate"
 
-    return _estimate(solution, soft, buckingham, reason)
+    return _estimate(solution, soft, buckingham, lacks, reason)
 
 
 @check(
@@ -354,35 +355,42 @@ def pressure_by_hardness(solution: Solution) -> Demand | None:
 def pressure_by_gear_limits(solution: Solution) -> Demand:
     """Maximum contact pressure, Pa, against the allowable stress of gear flanks."""
 
+    def lacks(card: Material) -> tuple[str, ...]:
+        if card.treatment in (None, "not_hardened"):
+            return _untreated(card)
+        return lacking_of_card(card, "hardness_vickers")
+
     def reason(card: Material) -> str:
-        if card.treatment is None:
-            return "has no treatment"
         if card.treatment == "not_hardened":
             return "is not hardened, and has no line"
         return "has no Vickers hardness within the range of its line"
 
-    return _estimate(solution, solution.machine.bodies, gear_limit, reason)
+    return _estimate(solution, solution.machine.bodies, gear_limit, lacks, reason)
 
 
 def _estimate(
     solution: Solution,
     bodies: Mapping[str, Material],
     rule: Callable[[Material], float | None],
+    lacks: Callable[[Material], tuple[str, ...]],
     reason: Callable[[Material], str],
 ) -> Demand:
-    """Contact pressure against the least estimate of the bodies that have one."""
+    """Contact pressure against the least estimate of the bodies that have one.
+
+    lacks: keys that the rule needs; reason: why it does not hold for a card that has them.
+    """
     worst = peak_pressure(solution)
     limits = {body: rule(card) for body, card in bodies.items()}
     known = {body: value for body, value in limits.items() if value is not None}
+    bare = {body: card for body, card in bodies.items() if body not in known}
     notes = [
-        f"the {body}, {card.name}, {reason(card)}"
-        for body, card in bodies.items()
-        if body not in known
+        f"the {body}, {card.name}, {reason(card)}" for body, card in bare.items() if not lacks(card)
     ]
     return Demand(
         worst.value,
         min(known.values()) if known else None,
         worst,
+        tuple(key for card in bare.values() for key in lacks(card)),
         note="; ".join(notes),
         figures=tuple(f"{bodies[body].name}: {bodies[body].source}" for body in known),
     )

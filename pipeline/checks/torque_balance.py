@@ -17,6 +17,7 @@ from camwright.pipeline.case.limits import (
 from camwright.pipeline.checks import demands
 from camwright.pipeline.checks.check import RIPPLE, Demand, check
 from camwright.pipeline.checks.extremes import Extreme, greatest, worst_case
+from camwright.pipeline.checks.missing_keys import unset
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.cycle import Cycle
 from camwright.pipeline.cycle.solution import Solution
@@ -127,7 +128,7 @@ def speed_reduction(solution: Solution) -> Demand | None:
         value,
         common,
         Extreme(value, worst, None, error),
-        note="" if common is not None else "no reduction of the speed ripple is required",
+        () if common is not None else unset(solution.machine.limits, SPEED_REDUCTION),
         must_have=common is not None,
     )
 

@@ -87,9 +87,14 @@ class CheckRecordOfAnyCheck(TypedDict):
 
 
 class CheckRecord(CheckRecordOfAnyCheck, total=False):
-    """A record of ``6_checks.json``; to_be_confirmed: names of the recalled values it rests on."""
+    """A record of ``6_checks.json``.
+
+    to_be_confirmed: names of the recalled values on which it rests; missing: dotted keys that the
+    case lacks and without which it is not evaluated. Records of earlier versions lack them.
+    """
 
     to_be_confirmed: list[str]
+    missing: list[str]
 
 
 AnyCheck = Mapping[str, object]

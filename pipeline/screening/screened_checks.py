@@ -228,7 +228,7 @@ def _least_limit(designs: Designs, least: LeastLimit, safety: Limit, demand: Arr
     if least.value is None:
         return np.full(designs.count, np.nan)
     limit = least.value * designs.machine.limits[safety] / designs.limit(safety)
-    return np.where(demand > limit, limit, np.nan) if least.lacking else limit
+    return np.where(demand > limit, limit, np.nan) if least.missing else limit
 
 
 def _greatest_force(designs: Designs) -> Array:

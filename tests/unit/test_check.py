@@ -87,7 +87,10 @@ def test_a_part_is_judged_missing_or_left_out_by_the_scope():
     missing = data_key(made_trial.solution(case=made_trial.case(cam=bare)))
     assert missing is not None
     assert (missing.status, missing.must_have) == ("not_evaluated", True)
-    assert missing.note == "no key is described; describe it or leave it out in [scope]"
+    assert missing.as_record()["missing"] == ["cam.keyway", "cam.key"]
+    assert missing.note == (
+        "missing: cam.keyway, cam.key; no key is described; describe it or leave it out in [scope]"
+    )
     assert verdict([described, missing]) == "incomplete"
     assert data_key(made_trial.solution(case=made_trial.case(cam=bare, scope=scope))) is None
 

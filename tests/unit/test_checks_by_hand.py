@@ -36,7 +36,7 @@ def test_jump_speed_by_hand():
     assert record["limit"] == pytest.approx(1.3 * RPM * 2.0 * made.CAM_SPEED)
     bare = jump_and_jamming.jump_speed(with_limits(overspeed=None))
     assert (bare.limit, bare.status) == (None, "not_evaluated")
-    assert "no limits.overspeed is given" in bare.note
+    assert (bare.missing, bare.note) == (("limits.overspeed",), "missing: limits.overspeed")
     over = jump_and_jamming.jump_speed(with_limits(overspeed=400.0))
     assert over.as_record()["limit"] == pytest.approx(1.3 * RPM * 400.0)
 

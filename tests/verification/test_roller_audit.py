@@ -456,13 +456,13 @@ def test_a_missing_datum_of_the_bearing_blocks(check, field):
     bare = BY_ID[check](with_bearing(**{field: None}))
     assert bare.status == "not_evaluated"
     assert bare.blocks
-    assert bare.note
+    assert bare.missing == (f"roller.bearing.{field}",)
 
 
 @pytest.mark.parametrize("field", ["C", "temperature"])
 def test_a_missing_datum_of_the_estimate_blocks(field):
     bare = BY_ID["grease_life"](with_bearing(grease_life=None, **{field: None}))
-    assert bare.blocks and "no " in bare.note
+    assert bare.blocks and bare.missing == (f"roller.bearing.{field}",)
 
 
 @pytest.mark.parametrize("part", ["pin", "fork"])

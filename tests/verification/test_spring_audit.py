@@ -414,8 +414,8 @@ def test_no_over_speed_is_made_of_the_fastest_load_case(solved):
         check = declared(bare)
         assert check.status == "not_evaluated"
         assert check.blocks
-        assert "no limits.overspeed" in check.note
-    assert "no limits.overspeed" in jump_and_jamming.contact_over_speed(bare).note
+        assert check.missing == ("limits.overspeed",)
+    assert "without limits.overspeed" in jump_and_jamming.contact_over_speed(bare).note
 
 
 @pytest.mark.slow
