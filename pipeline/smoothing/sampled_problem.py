@@ -228,9 +228,10 @@ class Search:
     def pointwise(
         self, coefficients: Array, variables: DesignVariables, grid: Grid
     ) -> dict[str, Array]:
-        """Greatest of the scenarios at any cam angles, (n,), without limits on means."""
+        """Greatest of the scenarios at any cam angles, (n,), of the limits that are no means."""
         values, _ = self._uses(coefficients, variables, grid, 0)
-        return {name: value.max(axis=0) for name, value in values.items()}
+        limits = values.keys() - self.costs
+        return {name: value.max(axis=0) for name, value in values.items() if name in limits}
 
     def _uses(
         self, coefficients: Array, variables: DesignVariables, grid: Grid, points: int

@@ -273,6 +273,20 @@ def test_at_equal_torque_ripple_the_loss_is_less():
     assert cost_of(charged, design) / 20.0 < 0.998 * reference
 
 
+@pytest.mark.parametrize("key", ["spring_energy", "peak_force"])
+def test_a_charged_maximum_is_less(key):
+    """A large weight of the greatest energy or force leaves less of it than a small one."""
+    figures = []
+    for weight in (0.1, 5.0):
+        charged = small(0.12, {"torque": 1.0, key: weight})
+        design = synthesise(charged)
+        assert design.feasible
+        figures.append((design.ripple, cost_of(charged, design) / weight))
+    (ripple, most), (charged_ripple, charged_most) = figures
+    assert charged_most < most
+    assert charged_ripple > ripple
+
+
 def test_objective_of_a_case_has_the_terms_of_its_weights(case):
     def terms(**weights):
         smoothing = case.smoothing.model_copy(update=weights)
