@@ -87,3 +87,11 @@ def test_fatigue_load_limit_is_near_a_22nd_of_the_static_rating(name):
     fatigue = value("bearings", name, "fatigue_load_limit", "N")
     static = value("bearings", name, "C0", "kN")
     assert fatigue == pytest.approx(static / 22.0, rel=0.08)
+
+
+def test_hardness_of_c45_agrees_with_its_strength():
+    """ISO 18265 table A.1: 190 HB are 640 MPa; both minima of one section of bar."""
+    card = CARDS["materials"]["c45"]
+    strength = value("materials", "c45", "tensile_strength", "MPa")
+    assert strength == pytest.approx(640e6 * card["hardness_brinell"] / 190, rel=0.04)
+    assert value("materials", "c45", "fatigue_bending", "MPa") == pytest.approx(0.5 * strength)
