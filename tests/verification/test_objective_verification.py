@@ -14,10 +14,14 @@ from camwright.geometry.contour import RollerContour
 from camwright.geometry.lift import Lift
 from camwright.geometry.pitch_curve import PitchCurve
 from camwright.pipeline.case.case_file import read_case
+from camwright.pipeline.case.case_values import with_values
 from camwright.pipeline.case.load_case_torque import engine_torques
+from camwright.pipeline.checks.check import screen
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.contact.traction import Drag
 from camwright.pipeline.cycle.solution import solution
+from camwright.pipeline.preview import preview_case
+from camwright.pipeline.results.run_records import headline
 from camwright.pipeline.smoothing.constrained_synthesis import synthesise
 from camwright.pipeline.smoothing.constraints import Jet, Mean, lift_jet
 from camwright.pipeline.smoothing.gradients import FREED, Point, differentiated
@@ -32,10 +36,15 @@ from camwright.pipeline.smoothing.objective import (
 from camwright.pipeline.smoothing.problem_setup import problem_of
 from camwright.pipeline.smoothing.sampled_problem import Search
 from camwright.pipeline.smoothing.scenario import Correction, DesignVariables, Scenario
-from camwright.pipeline.smoothing.synthesis_problem import Problem, coarsened
+from camwright.pipeline.smoothing.synthesis_problem import RESERVE, Problem, coarsened
+from camwright.pipeline.studies.batch.dataset import HEADLINE
+from camwright.pipeline.studies.batch.factor_axes import axis_of
+from camwright.pipeline.studies.batch.sampling import designs_of
+from camwright.pipeline.studies.batch.study_file import read_study
 
 DATA = Path(__file__).parents[1] / "data"
 CASES = Path(__file__).parents[2] / "cases"
+STUDIES = Path(__file__).parents[2] / "studies"
 POSITIONS = 240
 EVERY_COST = objective_of({each.key: 1.0 for each in COSTS})
 
@@ -285,6 +294,50 @@ def test_a_charged_maximum_is_less(key):
     (ripple, most), (charged_ripple, charged_most) = figures
     assert charged_most < most
     assert charged_ripple > ripple
+
+
+def least_loss(reduction):
+    """Problem and cam of least loss within a ceiling of the ripple."""
+    problem = small(0.12, {"loss": 1.0}, jerk_weight=1e-7)
+    running = replace(problem.scenarios[0], torque_reduction=reduction)
+    problem = replace(problem, scenarios=(running,))
+    return problem, synthesise(problem)
+
+
+def test_front_of_least_loss_uses_its_ceilings_and_has_their_prices_as_slopes():
+    """Of a convex front each chord lies between the multipliers of the ceilings at its ends."""
+    ceilings, losses, prices = np.array([0.95, 0.9, 0.85, 0.8]), [], []
+    for ceiling in ceilings:
+        problem, design = least_loss(1.0 - ceiling)
+        assert design.feasible
+        assert design.converged
+        left = Search(small(0.12, {"torque": 1.0})).state(design.coefficients, design.variables)
+        assert left.ripple == pytest.approx(ceiling * (1.0 - RESERVE), rel=1e-5)  # as FEASIBLE
+        losses.append(cost_of(problem, design))
+        prices.append(sum(of_ceiling for *_, of_ceiling in design.lagrangian.ripples))
+    slopes = -np.diff(losses) / np.diff(ceilings * (1.0 - RESERVE))
+    assert np.all(slopes > prices[:-1])
+    assert np.all(slopes < prices[1:])
+
+
+@pytest.mark.slow
+def test_front_of_the_shipped_study_has_less_loss_the_more_ripple_it_allows():
+    """Every design passes its screen, and none is dominated."""
+    study = read_study(STUDIES / "front_loss.toml")
+    case = read_case(STUDIES / study.cases[0])
+    designs = designs_of([axis_of(each, case) for each in study.factors], study.sampling)
+    columns, points = designs.si(), []
+    for row in range(designs.count):
+        values = {key: column[row].item() for key, column in columns.items()}
+        trial = preview_case(with_values(case, values), corners=False)
+        record = headline(engine_torques(trial.case), trial)
+        points.append([record[each.column.removeprefix(HEADLINE)] for each in study.objectives])
+        assert screen(trial.checks) == "open"
+    left, loss = np.array(points).T
+    assert np.all(np.diff(columns["limits.torque_reduction"]) > 0)
+    assert np.all(np.diff(left) < 0)
+    # the searches converge to 2e-6 of the ripple; the steps of the front are a thousand times that
+    assert np.all(np.diff(loss) > 0.02)
 
 
 def test_objective_of_a_case_has_the_terms_of_its_weights(case):
