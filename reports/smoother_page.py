@@ -15,11 +15,12 @@ from camwright.pipeline.base.files import write_atomic
 from camwright.reports.figure_svg import png
 from camwright.reports.page import study_page
 from camwright.reports.picture_list import Picture
-from camwright.reports.report_content import Block, Pictures, Section, Tabular
+from camwright.reports.report_content import Block, Note, Pictures, Section, Tabular
 from camwright.reports.report_tables import Cell, Record, Scalar, Status, Table, listed, words
 
 Cells = Scalar | Sequence[Scalar]
 COLUMNS = (
+    ("rank", "rank"),
     ("smoother", "smoother"),
     ("words", "definition"),
     ("pressure_angle_max_deg", "pressure angle, deg"),
@@ -29,18 +30,29 @@ COLUMNS = (
     ("residual_std_Nm", "residual ripple, std, N m"),
     ("residual_p2p_Nm", "residual ripple, peak to peak, N m"),
     ("verdict", "verdict"),
-    ("binding", "required checks not passed"),
+    ("failing", "failing must-have checks, the worst first"),
+    ("missing", "further missing data"),
     ("why", "reason without a cam"),
 )
 
 
-def write(folder: Path, title: str, rows: Sequence[Record], lifts: Mapping[str, Array]) -> Path:
+def write(
+    folder: Path,
+    title: str,
+    rows: Sequence[Record],
+    lifts: Mapping[str, Array],
+    *,
+    lead: str = "",
+    common: Sequence[str] = (),
+) -> Path:
     """Write ``smoothers.csv``, ``smoothers.png`` and ``smoothers.html``.
 
     Parameters
     ----------
-    rows : sequence of mapping   a value per column name; missing ones are left out
+    rows : sequence of mapping   a value per column name, ranked; missing ones are left out
     lifts : mapping              label to lift, m, at equal cam angles of one turn
+    lead : str                   recommendation and rule of the rank, above the table
+    common : sequence            ids of the checks without data in every row, listed once
 
     Returns
     -------
@@ -53,13 +65,20 @@ def write(folder: Path, title: str, rows: Sequence[Record], lifts: Mapping[str, 
     write_atomic(folder / "smoothers.csv", text.getvalue())
     picture = drawn(lifts)
     write_atomic(folder / "smoothers.png", picture)
-    cells = [[_cell(name, row.get(name)) for name, _ in COLUMNS] for row in rows]
-    table = Table("Smoothers", [title for _, title in COLUMNS], cells, 2, 6)
+    cells = [[_cell(name, row.get(name), common) for name, _ in COLUMNS] for row in rows]
+    table = Table("Smoothers", [title for _, title in COLUMNS], cells, 3, 6)
     content = [
+        *(
+            [Block(Note(f"Missing data, whatever the smoother: {listed(common)}."))]
+            if common
+            else []
+        ),
         Block(Tabular(table)),
         Block(Pictures([Picture("Lift", alt="Lift over one cam turn by smoother", png=picture)])),
     ]
-    return write_atomic(folder / "smoothers.html", study_page(title, [Section("", "", content)]))
+    return write_atomic(
+        folder / "smoothers.html", study_page(title, [Section("", "", content)], lead)
+    )
 
 
 def drawn(lifts: Mapping[str, Array]) -> bytes:
@@ -79,6 +98,11 @@ def _as_text(value: Cells) -> str:
     return "; ".join(map(str, value)) if isinstance(value, (list, tuple)) else str(value)
 
 
-def _cell(name: str, value: Cells) -> Cell:
+def _cell(name: str, value: Cells, common: Sequence[str]) -> Cell:
+    """A cell of the page; the first of the rank is recommended."""
+    if name == "missing" and isinstance(value, (list, tuple)):
+        value = [one for one in value if one not in common]
     text = listed(value)
+    if name == "rank" and value == 1:
+        return "1, recommended"
     return Status(text, text.upper()) if name == "verdict" else words(text)

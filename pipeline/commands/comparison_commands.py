@@ -9,14 +9,6 @@ import typer
 
 from camwright.pipeline.commands.terminal import PASSED, CaseArgument, show_json, stdout
 
-_COMPARED = (
-    ("residual_std_Nm", "N m std left"),
-    ("pressure_angle_max_deg", "deg"),
-    ("lift_max_mm", "mm lift"),
-    ("normal_force_max_N", "N"),
-    ("p0_max_MPa", "MPa"),
-)
-
 
 def compare(
     case: CaseArgument,
@@ -24,22 +16,25 @@ def compare(
         Path | None, typer.Option("--out", metavar="DIR", help="Folder for table, figure and page.")
     ] = None,
 ) -> int:
-    """Compare the smoothers on a case by closed forms.
+    """Rank the smoothers on a case by closed forms.
 
-    Prints residual torque, pressure angle, lift, normal force, contact pressure and verdict.
+    The recommended one first; then residual torque, contact pressure and failing checks of each.
     """
     from camwright.pipeline.case.case_file import read_case
     from camwright.pipeline.case.load_case_torque import engine_torques
-    from camwright.pipeline.studies.smoother_comparison import compared
+    from camwright.pipeline.studies.smoother_comparison import (
+        RANK,
+        common_missing,
+        compared,
+        lines,
+        ranked,
+        recommendation,
+    )
     from camwright.reports import smoother_page
 
     design = read_case(case)
-    results = list(compared(design, engine_torques(design)))
-    rows = [{"smoother": one.smoother, "words": one.words, **one.record} for one in results]
-    for row in rows:
-        shown = [f"{row[n]:.4g} {u}" for n, u in _COMPARED if row.get(n) is not None]
-        verdict = str(row["verdict"]).upper()
-        line = f"{row['smoother']} ({row['words']}): {', '.join(shown)}; {verdict}"
+    results = ranked(list(compared(design, engine_torques(design))))
+    for line in lines(results):
         stdout.print(line, markup=False)
     if out is not None:
         lifts = {
@@ -47,7 +42,18 @@ def compare(
             for one in results
             if one.lift is not None
         }
-        page = smoother_page.write(out, f"{design.name}: smoothers compared", rows, lifts)
+        rows = [
+            {"rank": k, "smoother": one.smoother, "words": one.words, **one.record}
+            for k, one in enumerate(results, start=1)
+        ]
+        page = smoother_page.write(
+            out,
+            f"{design.name}: smoothers compared",
+            rows,
+            lifts,
+            lead=f"{recommendation(results[0])}. {RANK}.",
+            common=common_missing(results),
+        )
         stdout.print(f"page: {page}", markup=False)
     return PASSED
 

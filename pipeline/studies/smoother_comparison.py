@@ -1,8 +1,10 @@
-"""Comparison of the smoothers on one case by previews."""
+"""Comparison of the smoothers on one case by previews: rank, recommendation, lines."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+import math
+import textwrap
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,7 +13,7 @@ from camwright.geometry.errors import CamError, InputError
 from camwright.geometry.lift import Lift
 from camwright.pipeline.base.units import in_unit
 from camwright.pipeline.case.case import Case
-from camwright.pipeline.checks.check import binding, verdict, within_depth
+from camwright.pipeline.checks.check import Check, in_order, verdict, within_depth
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.engine.torque import Torque
 from camwright.pipeline.preview import preview_case
@@ -32,16 +34,62 @@ _SMOOTHERS = (
     Smoother("smoothing_spline", cutoff=float(np.radians(120.0))),
 )
 _POSITIONS = 720
+_COLUMNS = 100
+RANK = (
+    "ranked: fewest failing must-have checks first, then least ripple left; a cam that removes "
+    "less than 1 % of the ripple comes last"
+)
+_USELESS = 0.99  # of the ripple without the cam
 
 
 @dataclass(frozen=True, eq=False)
 class Compared:
-    """A smoother with its parameter in words, lift and record; lift None: no such cam."""
+    """A smoother with its parameter in words, lift and record; lift None: no such cam.
+
+    width: of the filter, rad of crank angle; None without a filter.
+    """
 
     smoother: str
     words: str
     lift: Lift | None
     record: Record
+    width: float | None = None
+
+    @property
+    def label(self) -> str:
+        """Kind and width of the filter."""
+        if not self.width:
+            return self.smoother
+        return f"{self.smoother} {in_unit(self.width, 'deg'):.4g} deg"
+
+    @property
+    def failing(self) -> tuple[str, ...]:
+        """Ids of the must-have checks that fail, the worst first."""
+        return self._names("failing")
+
+    @property
+    def missing(self) -> tuple[str, ...]:
+        """Ids of the must-have checks without data."""
+        return self._names("missing")
+
+    def _names(self, key: str) -> tuple[str, ...]:
+        names = self.record[key]
+        return tuple(names) if isinstance(names, list) else ()
+
+    def ripple(self, when: str = "residual") -> float:
+        """Standard deviation of the crank torque, N m; when: "residual" or "initial"."""
+        value = self.record.get(f"{when}_std_Nm")
+        return value if isinstance(value, float) else math.inf
+
+    @property
+    def rank(self) -> tuple[bool, bool, int, float]:
+        """Place as `RANK` states it; the least is the best."""
+        return self.lift is None, not self.reduces, len(self.failing), self.ripple()
+
+    @property
+    def reduces(self) -> bool:
+        """Whether the cam removes any of the ripple to speak of."""
+        return self.ripple() < _USELESS * self.ripple("initial")
 
 
 def compared(case: Case, torques: Mapping[str, Torque]) -> Iterator[Compared]:
@@ -60,17 +108,110 @@ def compared(case: Case, torques: Mapping[str, Torque]) -> Iterator[Compared]:
         try:
             contour = case.contour(cam_lift(case, torques, smoother))
             trial = solve(case, contour, tier=Tier.PREVIEW, torques=torques)
-            yield Compared(smoother.kind, words, trial.lift, _record(trial))
+            record, width = _record(trial), smoother.angular_width
+            yield Compared(smoother.kind, words, trial.lift, record, width)
         except CamError as error:
-            yield _without(smoother.kind, words, error)
+            yield _without(smoother.kind, words, error, smoother.angular_width)
     try:
         yield _constrained(case)
     except CamError as error:
         yield _without("constrained", "least ripple within all limits", error)
 
 
-def _without(kind: str, words: str, error: CamError) -> Compared:
-    return Compared(kind, words, None, {"verdict": "fail", "binding": [], "why": str(error)})
+def ranked(results: Sequence[Compared]) -> list[Compared]:
+    """Results by `RANK`, the recommended smoother first."""
+    return sorted(results, key=lambda one: one.rank)
+
+
+def recommendation(best: Compared) -> str:
+    """The best of the ranked results with the reason, in one sentence."""
+    if best.lift is None:
+        return "no smoother gives a cam"
+    left, before = best.ripple(), best.ripple("initial")
+    ripple = f"{left:.3g} N m of ripple left of {before:.3g} N m"
+    if not best.reduces:
+        return f"no smoother reduces the ripple; {best.label} fails least: {ripple}"
+    if best.failing:
+        count = len(best.failing)
+        fewest = f"fewest failing must-have checks, {count}; none passes"
+    else:
+        fewest = "no must-have check fails"
+    return f"recommended: {best.label}: {fewest}; {ripple}"
+
+
+def common_missing(results: Sequence[Compared]) -> tuple[str, ...]:
+    """Must-have checks without data whatever the smoother."""
+    known = [one for one in results if one.lift is not None]
+    shared = set.intersection(*(set(one.missing) for one in known)) if known else set()
+    return tuple(sorted(shared))
+
+
+def lines(results: Sequence[Compared]) -> list[str]:
+    """Recommendation, a line a smoother in the order of the rank, and the missing data once.
+
+    No line is longer than 100 columns.
+
+    Parameters
+    ----------
+    results : sequence   as `ranked` orders them
+    """
+    wide = max(len(one.label) for one in results)
+    head = f"  {'smoother':{wide}}  {'ripple, N m':>11}  {'p0, MPa':>7}  must-have checks"
+    table = [head]
+    for k, one in enumerate(results):
+        mark = ">" if k == 0 and one.reduces else " "
+        ripple, p0 = (_number(one.record.get(key)) for key in ("residual_std_Nm", "p0_max_MPa"))
+        start = f"{mark} {one.label:{wide}}  {ripple:>11}  {p0:>7}  "
+        table.append(start + _state(one, _COLUMNS - len(start)))
+    said = [recommendation(results[0]), *_missing_line(results), RANK]
+    first, *rest = (textwrap.wrap(text, _COLUMNS, subsequent_indent="  ") for text in said)
+    return [*first, *table, *(line for text in rest for line in text)]
+
+
+def _missing_line(results: Sequence[Compared]) -> list[str]:
+    """Count of the must-have checks without data, for all smoothers at once."""
+    common = len(common_missing(results))
+    most = max(len(one.missing) for one in results)
+    if not most:
+        return []
+    further = f" ({most} with some smoothers)" if most > common else ""
+    return [
+        f"missing data: must-have checks not evaluated: {common}{further}; they count as no failure"
+    ]
+
+
+def _state(one: Compared, columns: int) -> str:
+    """Failing checks, the worst first; the reason without a cam."""
+    if one.lift is None:
+        return _cut(f"no cam: {one.record['why']}", columns)
+    if not one.failing:
+        return "none fails"
+    start = f"{len(one.failing)} fail: "
+    return start + _listed_within(one.failing, columns - len(start))
+
+
+def _listed_within(names: Sequence[str], columns: int) -> str:
+    """Names with commas, as many as fit, and the count of the others."""
+    for shown in range(len(names), 0, -1):
+        rest = len(names) - shown
+        text = ", ".join(names[:shown]) + (f", +{rest}" if rest else "")
+        if len(text) <= columns:
+            return text
+    return _cut(names[0], columns)
+
+
+def _cut(text: str, columns: int) -> str:
+    text = " ".join(text.split())
+    return text if len(text) <= columns else f"{text[: columns - 1]}…"
+
+
+def _number(value: object) -> str:
+    return f"{value:.4g}" if isinstance(value, float) else "-"
+
+
+def _without(kind: str, words: str, error: CamError, width: float | None = None) -> Compared:
+    record: Record = {"verdict": "fail", "failing": [], "missing": [], "why": str(error)}
+    return Compared(kind, words, None, record, width)
 
 
 def _constrained(case: Case) -> Compared:
@@ -82,14 +223,22 @@ def _constrained(case: Case) -> Compared:
 
 
 def _record(trial: Trial) -> Record:
-    rest, checks = trial.cycles[0].turn.torque_after, within_depth(trial.checks)
+    turn, checks = trial.cycles[0].turn, within_depth(trial.checks)
+    rest, before = turn.torque_after, turn.torque_before
     return {
         "pressure_angle_max_deg": in_unit(trial.contour.pressure_angle_max().value, "deg"),
         "lift_max_mm": in_unit(trial.lift.highest.value, "mm"),
         "normal_force_max_N": max(float(c.loads.normal_force.max()) for c in trial.cycles),
         "p0_max_MPa": in_unit(max(float(np.max(c.contact.p0)) for c in trial.cycles), "MPa"),
+        "initial_std_Nm": None if before is None else float(np.std(before)),
         "residual_std_Nm": None if rest is None else float(np.std(rest)),
         "residual_p2p_Nm": None if rest is None else float(np.ptp(rest)),
         "verdict": verdict(checks),
-        "binding": list(binding(checks)),
+        "failing": _ids(checks, "fail"),
+        "missing": _ids(checks, "not_evaluated"),
     }
+
+
+def _ids(checks: Sequence[Check], status: str) -> list[str]:
+    """Ids of the must-have checks of a status, the worst first."""
+    return [one.id for one in in_order(checks) if one.must_have and one.status == status]
