@@ -6,10 +6,11 @@ import re
 import unicodedata
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from math import inf, isclose, isfinite, isnan, log10, pi
+from math import inf, isclose, isfinite, isnan, pi
 from typing import Any, TypeAlias
 
 from camwright.pipeline.base.files import Json
+from camwright.pipeline.base.units import used
 from camwright.pipeline.results.check_report import not_proven
 from camwright.pipeline.results.run_reader import utilisation_of
 
@@ -248,7 +249,7 @@ def check_rows(checks: Sequence[Record]) -> list[CheckRow]:
             status=Status(status, status_words),
             demand=quantity(check["demand"], unit),
             limit=limit if limit == DASH else f"{sense}\N{NO-BREAK SPACE}{limit}",
-            utilisation=_ratio(value), bar=_bar(value),
+            utilisation=DASH if value is None else used(value), bar=_bar(value),
             where=quantity(angle, "deg") if isinstance(angle, (int, float)) else "",
             load_case=str(check["load_case"] or ""),
             source=str(check["source"]), method=str(check["method"]),
@@ -288,20 +289,6 @@ def worst_corner(check: Record) -> tuple[str, str] | None:
 
 def _bar(value: float | None) -> float | None:
     return None if value is None or isnan(value) else min(max(value, 0.0), 1.5)
-
-
-def _ratio(value: float | None) -> str:
-    """Utilisation to 0.01; more digits near 1, so that 1.0004 is not printed as 1.00."""
-    if value is None or isnan(value):
-        return DASH
-    if not isfinite(value):
-        return "∞"
-    if value >= 100:
-        return number(value, 3)
-    if value != 1.0 and abs(value - 1.0) < 0.005:
-        digits = min(max(2, 1 - int(log10(abs(value - 1.0)))), 12)
-        return f"{value:.{digits}f}"
-    return f"{value:.2f}" if value >= 0.005 or value == 0 else "< 0.01"
 
 
 def _waiver(check: Record, unit: str) -> str:

@@ -13,7 +13,7 @@ from __future__ import annotations
 import re
 from decimal import Decimal, InvalidOperation
 from functools import lru_cache
-from math import degrees, isfinite
+from math import ceil, degrees, isfinite, isnan, log10
 from typing import TYPE_CHECKING, NamedTuple
 
 from camwright.geometry.errors import InputError
@@ -278,3 +278,23 @@ def shown(value: float, unit: str, digits: int = 4) -> str:
     """A value in SI as text in a unit, such as ``12.5 mm``."""
     number = f"{in_unit(value, unit):.{digits}g}"
     return f"{number} {unit}" if unit not in ("", "-") else number
+
+
+def used(utilisation: float | None) -> str:
+    """Utilisation of a limit in percent; ``> 999 %`` above, ``-`` for a missing one.
+
+    More digits near 100 %, so that 100.04 % is not written as 100 %.
+    """
+    if utilisation is None or isnan(utilisation):
+        return "-"
+    if utilisation > _USED_MOST:
+        return f"> {_USED_MOST:.0%}".replace("%", " %")
+    if 0.0 < utilisation < 0.005:
+        return "< 1 %"
+    off = abs(utilisation - 1.0)
+    digits = min(ceil(-log10(off)) - 2, 10) if 0.0 < off < 0.005 else 0
+    return f"{100.0 * utilisation:.{digits}f} %"
+
+
+_USED_MOST = 9.99
+"""Utilisation above which its value says no more."""

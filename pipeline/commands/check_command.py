@@ -15,8 +15,10 @@ from camwright.pipeline.commands.terminal import (
     FAILED,
     INCOMPLETE,
     PASSED,
+    page_of,
     say,
-    show,
+    show_all,
+    show_failures,
     show_json,
     stdout,
 )
@@ -55,13 +57,17 @@ def check(
             "without data), any (also optional ones that fail), never.",
         ),
     ] = "must",
+    whole: Annotated[
+        bool, typer.Option("--all", help="Print every check, also those that pass.")
+    ] = False,
     verify_record: Annotated[
         bool,
         typer.Option("--verify-record", help="Compare the files of the run with signoff.json."),
     ] = False,
 ) -> int:
-    """Print the verdict of a run, or the screen of a preview of a case; of several, a table.
+    """Print failures, missing data and verdict of a run, or of a preview of a case.
 
+    Of several runs and cases a table. A preview has a screen, no verdict.
     Exit code 0: PASS, 1: FAIL, 2: error, 3: INCOMPLETE (data are missing) or OPEN: a preview, or a
     run below the certified depth, never passes. Of several the worst: error, FAIL, INCOMPLETE.
     """
@@ -87,12 +93,21 @@ def check(
     if as_json:
         show_json(documents[0] if alone else {"runs": documents})
     elif alone:
-        show(documents[0], None if targets[0].is_file() else targets[0])
+        from camwright.pipeline.results.verdict_summary import Places
+
+        target = targets[0]
+        places = Places(str(target), str(_case_of(target)), page_of(target))
+        (show_all if whole else show_failures)(documents[0], places)
     else:
         from camwright.pipeline.results.check_report import overview
 
         stdout.print(overview(each.row for each in judged))
     return max((each.code for each in judged), key=SEVERITY.index)
+
+
+def _case_of(target: Path) -> Path:
+    """The case file of a target of `check`."""
+    return target if target.is_file() else target / "case.toml"
 
 
 class _Judged(NamedTuple):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Sequence
 from contextlib import nullcontext
 from pathlib import Path
@@ -15,6 +16,7 @@ from camwright.pipeline.commands.terminal import (
     CaseArgument,
     DirArgument,
     NoCacheOption,
+    page_of,
     progress_shown,
     show,
     stdout,
@@ -101,8 +103,10 @@ def run(
                 also=valve_record,
             )
     from camwright.pipeline.results.run_reader import read_verdict
+    from camwright.pipeline.results.verdict_summary import Places
 
-    show(read_verdict(out), out)
+    seconds = time.perf_counter() - process_began()
+    show(read_verdict(out), Places(str(out), str(case), page_of(out), seconds))
     return PASSED
 
 

@@ -4,21 +4,53 @@ from __future__ import annotations
 
 import json
 import sys
-from collections.abc import Iterator
+import textwrap
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 from rich.console import Console
 
 from camwright.pipeline.base.progress import Bars, Lines, Progress
 
+if TYPE_CHECKING:
+    from camwright.pipeline.results.verdict_summary import Places
+
 PASSED, FAILED, ERROR, INCOMPLETE, INTERRUPTED = 0, 1, 2, 3, 130
 EXIT_CODE = {"pass": PASSED, "incomplete": INCOMPLETE, "fail": FAILED}
 """Exit code by verdict."""
 
-stdout = Console(highlight=False, soft_wrap=True, width=None if sys.stdout.isatty() else 180)
+WIDTH = 100
+"""Columns of a line in a file or pipe; a path that is longer stays whole."""
+
+
+class _Output(Console):
+    """Console that wraps a text between words in a file; a terminal wraps it itself."""
+
+    def print(self, *objects: Any, **options: Any) -> None:
+        if self.is_terminal:
+            super().print(*objects, **options)
+            return
+        super().print(*(_wrapped(o) if isinstance(o, str) else o for o in objects), **options)
+
+
+def _wrapped(text: str) -> str:
+    return "\n".join(
+        textwrap.fill(
+            line,
+            WIDTH,
+            subsequent_indent=" " * (len(line) - len(line.lstrip(" ")) + 2),
+            break_long_words=False,
+            break_on_hyphens=False,
+            replace_whitespace=False,
+        )
+        for line in text.split("\n")
+    )
+
+
+stdout = _Output(highlight=False, soft_wrap=True, width=None if sys.stdout.isatty() else WIDTH)
 stderr = Console(stderr=True, highlight=False, soft_wrap=True)
 
 CaseArgument = Annotated[Path, typer.Argument(metavar="CASE", help="Case file (TOML).")]
@@ -54,8 +86,42 @@ def progress_shown() -> Iterator[Progress]:
         yield Lines(lambda text: print(text, file=sys.stderr, flush=True))  # noqa: T201
 
 
-def show(document: dict[str, Any], folder: Path | None) -> None:
-    """Print checks by utilisation, remarks, verdict, scope and path of the report."""
+def page_of(folder: Path) -> str:
+    """Path of the page of a run folder; "" without one."""
+    page = folder / "8_report.html"
+    return str(page) if page.is_file() else ""
+
+
+def show(document: dict[str, Any], places: Places) -> None:
+    """Print the verdict of a run in at most 15 lines."""
+    from camwright.pipeline.results.verdict_summary import summary_lines
+
+    for line in summary_lines(document, places):
+        stdout.print(line, markup=False)
+
+
+def show_failures(document: dict[str, Any], places: Places) -> None:
+    """Print the failed checks, missing data, verdict, scope and path of the report."""
+    from camwright.pipeline.results import verdict_summary
+    from camwright.pipeline.results.run_reader import within_depth
+
+    checks = within_depth(document["checks"])
+    _print_all(verdict_summary.failure_lines(checks))
+    _print_all(verdict_summary.missing_lines(checks, places.case))
+    _print_all(_changes(document))
+    _print_all(
+        (
+            verdict_summary.verdict_words(document),
+            *verdict_summary.headline_line(document),
+            *verdict_summary.governing_line(checks),
+            *filter(None, (document["scope"]["statement"],)),
+            *verdict_summary.place_line(document, places),
+        )
+    )
+
+
+def show_all(document: dict[str, Any], places: Places) -> None:
+    """Print checks and evidence by utilisation, remarks, verdict, scope, path of the report."""
     from camwright.pipeline.results.check_report import (
         binding_lines,
         consistency_line,
@@ -64,33 +130,38 @@ def show(document: dict[str, Any], folder: Path | None) -> None:
         table,
     )
     from camwright.pipeline.results.run_reader import within_depth
+    from camwright.pipeline.results.verdict_summary import place_line, verdict_words
 
     checks = within_depth(document["checks"])
-    stdout.print(table(checks))
-    for line in (*remarks(checks), *deeper_lines(document["checks"])):
-        stdout.print(line, markup=False)
-    if "changes" in document:
-        from camwright.pipeline.results.baseline_comparison import lines
-
-        for line in lines(document["changes"]):
-            stdout.print(f"baseline: {line}", markup=False)
-    line = document["verdict_line"]
-    if document["verdict"] is None:
-        stdout.print(f"screen: {line}; no verdict below the certified depth", markup=False)
-    else:
-        count = document["trials"]
-        trials = f"{count} trial{'s' if count > 1 else ''}"
-        stdout.print(f"verdict: {line}; after {trials}", markup=False)
-    if folder is not None and document["statement"]:
+    stdout.print(table(check for check in checks if not check["evidence"]))
+    evidence = [check for check in checks if check["evidence"]]
+    if evidence:
+        stdout.print("evidence, which never governs:", markup=False)
+        stdout.print(table(evidence))
+    _print_all((*remarks(checks), *deeper_lines(document["checks"])))
+    _print_all(_changes(document))
+    stdout.print(verdict_words(document), markup=False)
+    if document.get("statement"):
         stdout.print(document["statement"], markup=False)
     if document["to_be_confirmed"]:
         values = "; ".join(document["to_be_confirmed"])
         stdout.print(f"values to be confirmed: {values}", markup=False)
     if document["scope"]["statement"]:
         stdout.print(document["scope"]["statement"], markup=False)
-    for line in binding_lines(document["checks"], document["binding"]):
+    _print_all(binding_lines(document["checks"], document["binding"]))
+    _print_all(consistency_line(finding) for finding in document.get("consistency", ()))
+    _print_all(place_line(document, places))
+
+
+def _changes(document: dict[str, Any]) -> list[str]:
+    """Lines on the changes against a baseline run; none without one."""
+    if "changes" not in document:
+        return []
+    from camwright.pipeline.results.baseline_comparison import lines
+
+    return [f"baseline: {line}" for line in lines(document["changes"])]
+
+
+def _print_all(lines: Iterable[str]) -> None:
+    for line in lines:
         stdout.print(line, markup=False)
-    for finding in document.get("consistency", ()):
-        stdout.print(consistency_line(finding), markup=False)
-    if folder is not None and (folder / "8_report.html").is_file():
-        stdout.print(f"report: {folder / '8_report.html'}", markup=False)

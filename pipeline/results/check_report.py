@@ -10,6 +10,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from camwright.geometry.errors import InputError
+from camwright.pipeline.base.units import used
 from camwright.pipeline.results.run_reader import (
     AnyCheck,
     CheckRecord,
@@ -27,9 +28,9 @@ FAIL_ON = ("must", "open", "any", "never")
 """Checks that decide the exit code of `check`: the must-haves; also any check without data; also
 any optional check that fails; none."""
 
-HEADINGS = (
-    *("check", "demand", "limit", "unit", "used", "margin", "where", "worst corner", "status"),
-)
+HEADINGS = ("check", "demand", "limit", "used", "where, worst corner", "status")
+_LEAST_WIDTHS = {"check": 28, "status": 13}
+"""Columns below which a column of the table does not shrink."""
 OVERVIEW = ("run", "case", "depth", "result", "failed", "missing", "governing")
 """Columns of `overview`."""
 _NOT_XML = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
@@ -127,17 +128,18 @@ def rows(records: Iterable[CheckRecord]) -> list[tuple[str, ...]]:
     return [
         (
             record["title"],
-            with_error(record["demand"], record["error"]),
+            f"{with_error(record['demand'], record['error'])}{_unit(record)}",
             number(record["limit"]),
-            record["unit"],
-            share(record["utilisation"]),
-            share(None if record["utilisation"] is None else 1.0 - record["utilisation"]),
-            place(record),
-            corner(record),
+            used(utilisation_of(record)),
+            "\n".join(filter(None, (place(record), corner(record)))),
             status(record),
         )
         for record in sorted(records, key=rank)
     ]
+
+
+def _unit(record: CheckRecord) -> str:
+    return "" if record["unit"] == "-" or record["demand"] is None else f" {record['unit']}"
 
 
 def status(record: CheckRecord) -> str:
@@ -153,11 +155,12 @@ def table(records: Iterable[CheckRecord]) -> Table:
 
     made = Table(box=None, pad_edge=False, header_style="")
     for heading in HEADINGS:
-        right = heading in ("demand", "limit", "used", "margin")
+        right = heading in ("demand", "limit", "used")
         made.add_column(
             heading,
             justify="right" if right else "left",
-            no_wrap=heading not in ("check", "where", "worst corner"),
+            no_wrap=right,
+            min_width=_LEAST_WIDTHS.get(heading),
         )
     for row in rows(records):
         style = STYLES.get(re.split("[ ,]", row[-1])[0], "")
@@ -187,7 +190,7 @@ def overview_row(target: str, document: Mapping[str, Any]) -> tuple[str, ...]:
     required = [record for record in checks if record["must_have"]]
     missing = sum(record["status"] == "not_evaluated" for record in required)
     first = governing_of(checks)
-    worst = "" if first is None else f"{first['id']} {share(utilisation_of(first))}"
+    worst = "" if first is None else f"{first['id']} {used(utilisation_of(first))}"
     failed = sum(record["status"] == "fail" for record in required)
     return (
         *(target, document["case"], document["depth"]),
@@ -258,10 +261,6 @@ def with_error(value: float | None, error: float | None) -> str:
     if value is None or error is None or error < 5e-4 * abs(value):
         return number(value)
     return f"{value:.4g} ±{error:.2g}"
-
-
-def share(value: float | None) -> str:
-    return "-" if value is None else f"{value:.0%}"
 
 
 def junit(suites: Sequence[ET.Element]) -> str:

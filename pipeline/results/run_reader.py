@@ -90,11 +90,13 @@ class CheckRecord(CheckRecordOfAnyCheck, total=False):
     """A record of ``6_checks.json``.
 
     to_be_confirmed: names of the recalled values on which it rests; missing: dotted keys that the
-    case lacks and without which it is not evaluated. Records of earlier versions lack them.
+    case lacks and without which it is not evaluated; remedy: smallest change that cures it, "" if
+    none is known. Records of earlier versions lack them.
     """
 
     to_be_confirmed: list[str]
     missing: list[str]
+    remedy: str
 
 
 AnyCheck = Mapping[str, object]

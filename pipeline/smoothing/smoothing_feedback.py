@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from camwright.geometry.errors import InputError
+from camwright.pipeline.base.units import used
 from camwright.pipeline.case.limits import TORQUE_REDUCTION
 from camwright.pipeline.checks.check import Check, binding, verdict
 from camwright.pipeline.smoothing.smoothers import CYCLE, Smoother
@@ -120,10 +121,10 @@ def _statement(attempts: Sequence[Attempt], latest: Attempt, cause: str) -> str:
             unknown.append(name)
             continue
         before = first[name].utilisation if name in first else None
-        history = f"{before:.3g} at trial 1, " if before is not None and len(attempts) > 1 else ""
+        history = f"{used(before)} at trial 1, " if before is not None and len(attempts) > 1 else ""
         remark = "" if check.lift_can_help else ", independent of the smoothing"
         remark += ", not proven" if check.not_proven else ""
-        parts.append(f"{name} at {history}{check.utilisation:.3g} of its limit now{remark}")
+        parts.append(f"{name} at {history}{used(check.utilisation)} of its limit now{remark}")
     if unknown:
         limits = "one check" if len(unknown) == 1 else f"{len(unknown)} checks"
         parts.append(f"{limits} not evaluated, as an input is missing")
@@ -150,4 +151,4 @@ def _why(latest: Attempt, candidate: Smoother) -> str:
     if not keeps_torque(latest.checks):
         return f"{TORQUE_REDUCTION.id} is lost at {change}"
     worst = lift_failures(latest.checks)[0]
-    return f"{worst.id} at {worst.utilisation or 0.0:.3g} of its limit with {change}"
+    return f"{worst.id} at {used(worst.utilisation)} of its limit with {change}"

@@ -83,7 +83,7 @@ def test_passes_after_some_trials_and_torque_is_kept():
     assert stop.binding == ()
     assert verdict(attempts[-1].checks) == "pass"
     assert 2 <= len(attempts) <= 3
-    assert "pressure_angle at 1.45" in whys[0].why
+    assert "pressure_angle at 145 %" in whys[0].why
 
 
 def test_the_gentlest_change_foreseen_to_pass_is_taken():
@@ -104,7 +104,7 @@ def test_cannot_pass_ends_on_the_strongest_smoothing_that_keeps_the_torque():
     # The torque is lost at 2.1; the stated tolerance is 2 %.
     assert 2.1 / 1.03 <= last.smoother.strength <= 2.1
     assert "no smoother that keeps torque_reduction passes" in stop.reason
-    assert "roller_static at 2.78 at trial 1, 2.65 of its limit now" in stop.reason
+    assert "roller_static at 278 % at trial 1, 265 % of its limit now" in stop.reason
 
 
 def test_torque_lost_at_trial_one_ends_at_once():
@@ -165,7 +165,7 @@ def test_a_demand_that_is_not_proven_is_smoothed_until_it_is():
     assert 1.2 * 1.05 * 0.999 < last < 1.2 * 1.05 * 1.005 * 1.03
     _, _, stop = drive(lambda _s: (torque(0.7), made_check("mesh", 0.99, 1.0, error_share=0.02)))
     assert stop.reason.endswith(
-        "mesh at 0.99 of its limit now, independent of the smoothing, not proven"
+        "mesh at 99 % of its limit now, independent of the smoothing, not proven"
     )
 
 
@@ -401,7 +401,7 @@ def test_infinite_utilisation_is_a_failure_like_any_other():
     attempts, whys, stop = drive(model)
     assert stop.binding == ()
     assert strengths(attempts) == [1.0, pytest.approx(1.51, rel=0.02)]
-    assert "inf" in whys[0].why
+    assert "at > 999 % of its limit" in whys[0].why
 
 
 @pytest.mark.parametrize("wrong", [{"attempts": []}, {"max_trials": 0}, {"max_trials": np.nan}])

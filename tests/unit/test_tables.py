@@ -73,13 +73,13 @@ def test_checks_come_unevaluated_first_then_by_utilisation():
     ]
     rows = report_tables.check_rows(checks)
     assert [row.id for row in rows] == ["missing", "endless", "waived", "high", "low"]
-    assert [row.utilisation for row in rows] == ["–", "∞", "19.00", "2.00", "0.10"]
+    assert [row.utilisation for row in rows] == ["–", "> 999 %", "> 999 %", "200 %", "10 %"]
     assert [row.bar for row in rows] == [None, 1.5, 1.5, 1.5, 0.1]
     assert rows[0].limit == "–"
 
 
 @pytest.mark.parametrize(
-    ("value", "shown"), [(1.0, "1.00"), (1.0004, "1.0004"), (0.9996, "0.9996"), (1.01, "1.01")]
+    ("value", "shown"), [(1.0, "100 %"), (1.0004, "100.04 %"), (0.9996, "99.96 %"), (1.01, "101 %")]
 )
 def test_a_utilisation_is_never_rounded_across_its_limit(value, shown):
     assert report_tables.check_rows([check("near", utilisation=value)])[0].utilisation == shown

@@ -1,0 +1,199 @@
+"""Verdict of a run or case in a few lines: worst failures with remedy, missing data, headline."""
+
+from __future__ import annotations
+
+import math
+import textwrap
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any, NamedTuple
+
+from camwright.pipeline.base.units import used
+from camwright.pipeline.results.check_report import (
+    corner,
+    not_proven,
+    number,
+    place,
+)
+from camwright.pipeline.results.run_reader import (
+    CheckRecord,
+    governing_of,
+    governs,
+    judged,
+    utilisation_of,
+    within_depth,
+)
+
+WIDTH = 100
+"""Columns of a line."""
+LINES = 15
+"""Most lines of `summary_lines`."""
+WORST = 3
+"""Failed checks that it names."""
+_CUT = "…"
+_LEAST = 24  # columns of a title
+
+
+class Places(NamedTuple):
+    """Where a verdict comes from: target of `check`, case file, page; time of the run, s.
+
+    A page of "" was not written; a time of None is not stated.
+    """
+
+    target: str
+    case: str
+    page: str = ""
+    seconds: float | None = None
+
+
+def summary_lines(document: Mapping[str, Any], places: Places) -> list[str]:
+    """Verdict of a run in at most `LINES` lines of `WIDTH` columns.
+
+    Verdict or screen; the worst `WORST` failures with demand, limit and remedy; number of missing
+    keys; headline; governing check, unless it is the first failure; scope; page, trials and time.
+    Only a path makes a line longer.
+    """
+    checks: Sequence[CheckRecord] = within_depth(document["checks"])
+    failed = failures(checks)
+    lines = folded(verdict_words(document))
+    for count, record in enumerate(failed[:WORST], 1):
+        lines.append(shortened(f"  {count}. {failure_words(record, WIDTH - 5)}"))
+        if record.get("remedy"):
+            lines.append(shortened(f"     remedy: {record['remedy']}"))
+    if len(failed) > WORST:
+        lines.append(f"  {len(failed) - WORST} more: camwright check {places.target}")
+    lines += missing_count(checks, places.case)
+    for line in headline_line(document):
+        lines += folded(line)
+    if not any(governs(record) for record in failed):
+        lines += [shortened(line) for line in governing_line(checks)]
+    if document["scope"]["statement"]:
+        lines.append(shortened(document["scope"]["statement"]))
+    return lines + place_line(document, places)
+
+
+def verdict_words(document: Mapping[str, Any]) -> str:
+    """Verdict with its reasons; screen below the certified depth."""
+    line = document["verdict_line"]
+    if document["verdict"] is None:
+        return f"screen: {line}; no verdict below the certified depth"
+    return f"verdict: {line}"
+
+
+def failures(checks: Iterable[CheckRecord]) -> list[CheckRecord]:
+    """Failed required checks: those of the design, then evidence; worst first."""
+    failed = [check for check in checks if check["must_have"] and check["status"] == "fail"]
+    return sorted(failed, key=_severity)
+
+
+def _severity(check: CheckRecord) -> tuple[bool, float, str]:
+    return bool(check["evidence"]), -(utilisation_of(check) or 0.0), check["id"]
+
+
+def failure_words(check: CheckRecord, room: int | None = None) -> str:
+    """Title, demand, limit, utilisation, place of a failed check; room: columns, None: any."""
+    worst, unit = judged(check), "" if check["unit"] == "-" else f" {check['unit']}"
+    demand = number(None if worst is None else worst.demand)
+    sense = ">=" if check["sense"] == "at_least" else "<="
+    where = place(check)
+    words = f": {demand}{unit}, limit {sense} {number(check['limit'])}{unit}"
+    words += f" ({used(utilisation_of(check))})" + (f", {where}" if where else "")
+    title = check["title"]
+    if room is not None:
+        title = shortened(title, max(room - len(words), _LEAST))
+    return f"{title}{words}"
+
+
+def missing_keys(checks: Iterable[CheckRecord]) -> dict[str, list[str]]:
+    """Keys that the case lacks, each with the ids of the required checks that need it."""
+    keys: dict[str, list[str]] = {}
+    for check in checks:
+        if check["must_have"] and check["status"] == "not_evaluated":
+            for key in check.get("missing") or ():
+                keys.setdefault(key, []).append(check["id"])
+    return keys
+
+
+def missing_count(checks: Iterable[CheckRecord], case: str) -> list[str]:
+    """Line on the number of missing keys and the command that lists them; none without any."""
+    count = len(missing_keys(checks))
+    if not count:
+        return []
+    keys = "1 key" if count == 1 else f"{count} keys"
+    return [f"missing: {keys} of the case, listed by camwright check {case} --missing"]
+
+
+def failure_lines(checks: Iterable[CheckRecord]) -> list[str]:
+    """Lines on every failed check: required ones, then optional ones, with id and remedy."""
+    checks = tuple(checks)
+    optional = [c for c in checks if not c["must_have"] and c["status"] == "fail"]
+    lines = []
+    for check in (*failures(checks), *sorted(optional, key=_severity)):
+        word = "fails" if check["must_have"] else "fails (optional)"
+        lines.append(f"{word}: {failure_words(check)}")
+        remarks = (not_proven(check), corner(check), check["note"])
+        lines.append(f"    {check['id']}: {'; '.join(filter(None, remarks))}".rstrip(": "))
+        if check.get("remedy"):
+            lines.append(f"    remedy: {check['remedy']}")
+    return lines
+
+
+def missing_lines(checks: Sequence[CheckRecord], case: str) -> list[str]:
+    """Lines on the missing keys and the required checks that need them, and on other data."""
+    keys = missing_keys(checks)
+    lines = [f"missing: {key}, for {', '.join(ids)}" for key, ids in keys.items()]
+    lines += [
+        f"not evaluated: {check['id']}: {check['note'] or 'a number is missing'}"
+        for check in checks
+        if check["must_have"] and check["status"] == "not_evaluated" and not check.get("missing")
+    ]
+    return lines + missing_count(checks, case)
+
+
+def headline_line(document: Mapping[str, Any]) -> list[str]:
+    """Ripple without and with the cam, greatest contact pressure and von Mises stress; or none."""
+    figures = document.get("headline") or {}
+    before, after = (figures.get(f"torque_std_{when}_Nm") for when in ("before", "after"))
+    parts = []
+    if before and after is not None:
+        change = f"{after / before - 1.0:+.0%}".replace("%", " %")
+        parts.append(f"torque ripple {before:.3g} to {after:.3g} N m ({change})")
+    for name, words in (("p0_max_MPa", "p0"), ("von_mises_max_MPa", "von Mises")):
+        value = figures.get(name)
+        if value is not None and math.isfinite(value):
+            parts.append(f"{words} {value:.4g} MPa")
+    return [f"headline: {', '.join(parts)}"] if parts else []
+
+
+def governing_line(checks: Iterable[CheckRecord]) -> list[str]:
+    """Title, utilisation and place of the governing check; none if none is evaluated."""
+    first = governing_of(checks)
+    if first is None:
+        return []
+    where = place(first)  # type: ignore[arg-type]
+    words = f"{first['title']}, {used(utilisation_of(first))} used"
+    return [f"governing: {words}" + (f", {where}" if where else "")]
+
+
+def place_line(document: Mapping[str, Any], places: Places) -> list[str]:
+    """Line on page, analysis sheet, number of trials and time; none of a case."""
+    parts = [f"page: {places.page}, analysis sheet: #sheet in it"] if places.page else []
+    if count := document.get("trials"):
+        parts.append("1 trial" if count == 1 else f"{count} trials")
+    if places.seconds is not None:
+        parts.append(f"{places.seconds:.1f} s")
+    return ["; ".join(parts)] if parts else []
+
+
+def folded(text: str, most: int = 2) -> list[str]:
+    """Text in lines of `WIDTH` columns, cut after `most`."""
+    return textwrap.wrap(
+        text, WIDTH, subsequent_indent="  ", max_lines=most, placeholder=_CUT,
+        break_long_words=False, break_on_hyphens=False,
+    )  # fmt: skip
+
+
+def shortened(text: str, width: int = WIDTH) -> str:
+    """Text on one line, cut to a number of columns."""
+    indent = " " * (len(text) - len(text.lstrip(" ")))
+    line = indent + " ".join(text.split())
+    return line if len(line) <= width else line[: width - 1].rstrip() + _CUT

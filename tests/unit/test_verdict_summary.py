@@ -1,0 +1,158 @@
+"""Verdict of a run in at most 15 lines of 100 columns."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import Any
+
+import pytest
+from small_run import check
+
+from camwright.pipeline.base.units import used
+from camwright.pipeline.case.case_file import read_case
+from camwright.pipeline.checks.registry import DECLARED
+from camwright.pipeline.contact.tiers import Tier
+from camwright.pipeline.preview import preview_case
+from camwright.pipeline.results.run_reader import judgement, read_verdict
+from camwright.pipeline.results.verdict_summary import (
+    LINES,
+    WIDTH,
+    Places,
+    failure_lines,
+    missing_lines,
+    summary_lines,
+)
+from camwright.pipeline.run import run_case
+
+CASES = sorted(Path(__file__).parents[2].glob("cases/**/*.toml"))
+SOLVED = [each for each in CASES if each.stem != "mechanisms"]
+PLACES = Places("runs/gx120", "cases/gx120.toml", "runs/gx120/8_report.html", 14.47)
+REMEDY = "roller.radius = 45 mm instead of 32 mm; the cam radius grows by 13 mm to 89 mm, its limit"
+
+
+def document(checks: list[dict[str, Any]], **more: Any) -> dict[str, Any]:
+    base = {
+        **judgement(checks, "certified"),
+        "checks": checks,
+        "scope": {"statement": ""},
+        "trials": 1,
+        "headline": {"torque_std_before_Nm": 6.339, "torque_std_after_Nm": 1.847},
+    }
+    return base | more
+
+
+def every_check(depth: str = "certified") -> dict[str, Any]:
+    """Each declared check beyond its limit, with the longest words that a run has."""
+    checks: list[Any] = [
+        check(
+            "fail", id=one.id, title=one.title.format(follower="roller"), unit=one.unit,
+            must_have=one.must_have, evidence=one.evidence, demand=1.234e-05, limit=-9.876e-05,
+            load_case="over-speed", cam_angle_deg=184.5, remedy=REMEDY,
+            to_be_confirmed=[f"value of {one.id}"],
+        )
+        for one in DECLARED.values()
+    ]  # fmt: skip
+    checks += [check("not_evaluated", id=f"x{k}", missing=[f"key.{k}"]) for k in range(42)]
+    scope = {"statement": f"Not covered by this sign-off: {'camshaft bearings, ' * 9}: no data"}
+    return document(checks, scope=scope) | judgement(checks, depth)
+
+
+def fits(lines: list[str]) -> bool:
+    return len(lines) <= LINES and max(map(len, lines)) <= WIDTH
+
+
+@pytest.mark.parametrize("depth", ["certified", "preview"])
+def test_the_longest_summary_fits(depth: str) -> None:
+    lines = summary_lines(every_check(depth), PLACES)
+    assert fits(lines)
+    assert sum(line.startswith("     remedy: ") for line in lines) == 3
+    assert (
+        "missing: 42 keys of the case, listed by camwright check cases/gx120.toml --missing"
+        in lines
+    )
+    assert (
+        f"  {sum(d.must_have for d in DECLARED.values()) - 3} more: camwright check runs/gx120"
+        in lines
+    )
+    assert lines[-1] == (
+        "page: runs/gx120/8_report.html, analysis sheet: #sheet in it; 1 trial; 14.5 s"
+    )
+
+
+def test_the_worst_three_of_the_design_come_before_evidence() -> None:
+    checks: list[Any] = [
+        check("fail", id="mesh", title="Mesh", demand=90.0, utilisation=45.0, evidence=True),
+        check("fail", id="a", title="A", demand=3.0),
+        check("fail", id="b", title="B", demand=None, utilisation=None),
+        check("fail", id="c", title="C", demand=4.0, utilisation=2.0, remedy="give up 5 %"),
+        check("fail", id="o", title="O", demand=99.0, utilisation=49.5, must_have=False),
+    ]
+    lines = summary_lines(document(checks), PLACES)
+    assert lines[:6] == [
+        "verdict: FAIL: 4 checks beyond their limit",
+        "  1. B: - deg, limit <= 2 deg (> 999 %), idle 12.5 deg",
+        "  2. C: 4 deg, limit <= 2 deg (200 %), idle 12.5 deg",
+        "     remedy: give up 5 %",
+        "  3. A: 3 deg, limit <= 2 deg (150 %), idle 12.5 deg",
+        "  1 more: camwright check runs/gx120",
+    ]
+    assert lines[6] == "headline: torque ripple 6.34 to 1.85 N m (-71 %)"
+    every = "\n".join(failure_lines(checks))
+    assert "fails: Mesh: 90 deg" in every and "fails (optional): O: 99 deg" in every
+
+
+def test_a_pass_names_what_governs() -> None:
+    checks: list[Any] = [
+        check(id="p", title="P", utilisation=0.9996),
+        check(id="q", evidence=True, utilisation=1.0),
+    ]
+    lines = summary_lines(document(checks), PLACES._replace(page="", seconds=None))
+    assert lines == [
+        "verdict: PASS",
+        "headline: torque ripple 6.34 to 1.85 N m (-71 %)",
+        "governing: P, 99.96 % used, idle 12.5 deg",
+        "1 trial",
+    ]
+
+
+def test_missing_keys_are_listed_once_with_the_checks_that_need_them() -> None:
+    checks: list[Any] = [
+        check("not_evaluated", id="a", missing=["guides.a.wall", "limits.target_life"]),
+        check("not_evaluated", id="b", missing=["guides.a.wall"]),
+        check("not_evaluated", id="c", note="judged elsewhere"),
+        check("not_evaluated", id="o", missing=["cam.mass"], must_have=False),
+    ]
+    assert missing_lines(checks, "x.toml") == [
+        "missing: guides.a.wall, for a, b",
+        "missing: limits.target_life, for a",
+        "not evaluated: c: judged elsewhere",
+        "missing: 2 keys of the case, listed by camwright check x.toml --missing",
+    ]
+
+
+@pytest.mark.parametrize(
+    ("value", "words"),
+    [
+        (None, "-"), (math.nan, "-"), (0.0, "0 %"), (0.004, "< 1 %"), (0.5, "50 %"),
+        (0.99996, "99.996 %"), (1.0, "100 %"), (1.004, "100.4 %"), (9.99, "999 %"),
+        (9.991, "> 999 %"), (math.inf, "> 999 %"),
+    ],
+)  # fmt: skip
+def test_used_is_capped_and_never_rounded_across_its_limit(value: float | None, words: str) -> None:
+    assert used(value) == words
+
+
+def test_the_summary_of_the_published_cam_fits() -> None:
+    trial = preview_case(read_case(SOLVED[[each.stem for each in SOLVED].index("gx120")]))
+    checks: list[Any] = [one.as_record() for one in trial.checks]
+    scope = trial.case.scope.as_record()
+    assert fits(summary_lines(document(checks, scope=scope) | judgement(checks, "preview"), PLACES))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("case", SOLVED, ids=[each.stem for each in SOLVED])
+def test_the_summary_of_a_run_of_a_shipped_case_fits(case: Path, tmp_path: Path) -> None:
+    run_case(read_case(case), tmp_path / "run", positions=72, depth=Tier.CYCLE)
+    places = Places("runs/x", str(case.name), "runs/x/8_report.html", 100.0)
+    assert fits(summary_lines(read_verdict(tmp_path / "run"), places))
