@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from camwright.geometry.errors import CamError
-from camwright.pipeline.base.progress import SILENT, Progress
+from camwright.pipeline.base.progress import SILENT, Progress, utc
 from camwright.pipeline.base.worker_processes import Crew, crew
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.load_case_torque import engine_torques, measurement_record
@@ -79,9 +79,9 @@ def run_case(
         summary = _solved(folder, case, depth, workers, fields, watch, also, ahead)
         if report is not None:
             watch.stage("report")  # the solution, which takes most of the memory, is released
-            folder.write_summary(summary | {"timings_s": watch.read()})
+            folder.write_summary(summary | watch.record())
             report(folder.path)
-        folder.finish(summary | {"timings_s": watch.read()})
+        folder.finish(summary | watch.record())
     return read_run(out)
 
 
@@ -116,7 +116,7 @@ def _solved(
             write_workshop(folder.path / WORKSHOP, final.case, final.contour, note=watch.note)
         if depth is Tier.CERTIFIED and ahead is not None:
             watch.stage("report")
-            folder.write_summary(summary | _judged(final, statement) | {"timings_s": watch.read()})
+            folder.write_summary(summary | _judged(final, statement) | watch.record())
             ahead(folder.path, workers)
 
     if depth < Tier.CERTIFIED:
@@ -210,6 +210,7 @@ class Stopwatch:
     def __init__(self, progress: Progress, began: float | None = None) -> None:
         self._progress = progress
         self._began = time.perf_counter() if began is None else began
+        self._started = utc(time.perf_counter() - self._began)
         self._running, self._since = START, self._began
         self._seconds: dict[str, float] = {}
 
@@ -229,6 +230,10 @@ class Stopwatch:
         self._close()
         times = self._seconds | {"total": self._since - self._began}
         return {name: round(seconds, 3) for name, seconds in times.items()}
+
+    def record(self) -> dict[str, str | dict[str, float]]:
+        """Start and times of ``run.json``."""
+        return {"started": self._started, "timings_s": self.read()}
 
     def _close(self) -> None:
         now = time.perf_counter()

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import time
 from collections.abc import Callable
+from datetime import UTC, datetime, timedelta
 from pathlib import Path
 from types import TracebackType
 from typing import Protocol, Self
@@ -120,6 +121,12 @@ class Bars:
 
     def note(self, text: str) -> None:
         self._console.print(text, highlight=False, markup=False)
+
+
+def utc(ago: float = 0.0) -> str:
+    """Time of day `ago` seconds before now, UTC, such as ``2026-01-31T12:00:00Z``."""
+    moment = datetime.now(UTC) - timedelta(seconds=ago)
+    return f"{moment:%Y-%m-%dT%H:%M:%SZ}"
 
 
 def process_began() -> float:

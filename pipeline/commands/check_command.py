@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
@@ -26,6 +27,7 @@ from camwright.pipeline.commands.terminal import (
 if TYPE_CHECKING:
     from xml.etree.ElementTree import Element
 
+    from camwright.pipeline.results.junit_report import Clock
     from camwright.pipeline.results.run_reader import CheckRecord
 
 SEVERITY = (PASSED, INCOMPLETE, FAILED, ERROR)
@@ -86,7 +88,7 @@ def check(
         judged = [_of_several(each, patterns, fail_on, verify_record) for each in targets]
     if junit is not None:
         from camwright.pipeline.base.files import write_atomic
-        from camwright.pipeline.results.check_report import junit as junit_text
+        from camwright.pipeline.results.junit_report import junit as junit_text
 
         write_atomic(junit, junit_text([each.suite for each in judged]))
     documents = [each.document for each in judged]
@@ -133,15 +135,11 @@ def _judged(
     CamError
         If the run cannot be read, the case solved, or no check fits a pattern.
     """
-    from camwright.pipeline.results.check_report import (
-        junit_suite,
-        outcome,
-        overview_row,
-        selected,
-    )
+    from camwright.pipeline.results.check_report import outcome, overview_row, selected
+    from camwright.pipeline.results.junit_report import junit_suite
     from camwright.pipeline.results.run_reader import VERDICTS, exit_word
 
-    document = _checked_case(target) if target.is_file() else _checked_run(target)
+    document, clock = _checked_case(target) if target.is_file() else _checked_run(target)
     document["checks"] = list(selected(document["checks"], only))
     decided = outcome(document["checks"], fail_on)
     if not only and fail_on != "never":
@@ -150,19 +148,26 @@ def _judged(
         from camwright.pipeline.results.baseline_comparison import changes
 
         document["changes"] = changes(_comparable(baseline, only), document["checks"])
-    words = {"verdict": document["verdict_line"], "scope": document["scope"]["statement"]}
+    words = {
+        "verdict": document["verdict_line"],
+        "exit_code": str(EXIT_CODE[decided]),
+        "fail_on": fail_on,
+        "depth": document["depth"],
+        "input_sha256": document["input_sha256"],
+        "scope": document["scope"]["statement"],
+    }
     name = suite or document["case"]
     return _Judged(
         document,
         overview_row(str(target), document),
-        junit_suite(document["checks"], name, fail_on, words),
+        junit_suite(document["checks"], name, fail_on, decided, words, clock),
         EXIT_CODE[decided],
     )
 
 
 def _of_several(target: Path, only: Sequence[str], fail_on: str, verify_record: bool) -> _Judged:
     """One of several runs and cases; one that cannot be judged does not hide the others."""
-    from camwright.pipeline.results.check_report import unread_suite
+    from camwright.pipeline.results.junit_report import unread_suite
 
     name = str(target)
     try:
@@ -197,23 +202,30 @@ def _as_signed(folder: Path) -> bool:
     return not changed
 
 
-def _checked_run(folder: Path) -> dict[str, Any]:
+def _checked_run(folder: Path) -> tuple[dict[str, Any], Clock]:
+    """Checks of a run folder, with its clock of ``run.json``."""
+    from camwright.pipeline.results.junit_report import Clock
     from camwright.pipeline.results.model_limits import limitations
-    from camwright.pipeline.results.run_reader import read_verdict, verify_run
+    from camwright.pipeline.results.run_reader import read_summary, read_verdict, verify_run
 
     verify_run(folder)
-    return read_verdict(folder) | limitations()
+    return read_verdict(folder) | limitations(), Clock.of(read_summary(folder))
 
 
-def _checked_case(path: Path) -> dict[str, Any]:
+def _checked_case(path: Path) -> tuple[dict[str, Any], Clock]:
+    """Checks of the preview of a case, with the clock of the preview."""
+    from camwright.pipeline.base.progress import utc
     from camwright.pipeline.case.case_file import read_case
     from camwright.pipeline.preview import preview_case
+    from camwright.pipeline.results.junit_report import Clock
     from camwright.pipeline.results.run_reader import governing_id, judgement, to_be_confirmed
 
+    began = time.perf_counter()
     case = read_case(path)
     trial = preview_case(case)
+    seconds = time.perf_counter() - began
     checks: list[Any] = [one.as_record() for one in trial.checks]
-    return {
+    document = {
         "case": case.name,
         "input_sha256": case.sha256,
         **judgement(checks, trial.depth.word),
@@ -223,3 +235,4 @@ def _checked_case(path: Path) -> dict[str, Any]:
         "scope": case.scope.as_record(),
         "checks": checks,
     }
+    return document, Clock(utc(seconds), seconds)

@@ -1,11 +1,10 @@
-"""Checks of a run for `camwright check`: selection, order, failure, table, JUnit XML."""
+"""Checks of a run for `camwright check`: selection, order, failure, table."""
 
 from __future__ import annotations
 
 import fnmatch
 import math
 import re
-import xml.etree.ElementTree as ET
 from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -33,7 +32,6 @@ _LEAST_WIDTHS = {"check": 28, "status": 13}
 """Columns below which a column of the table does not shrink."""
 OVERVIEW = ("run", "case", "depth", "result", "failed", "missing", "governing")
 """Columns of `overview`."""
-_NOT_XML = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 STYLES = {"pass": "green", "fail": "red", "waived": "yellow", "not_evaluated": "magenta"}
 
 
@@ -258,83 +256,9 @@ def number(value: float | None) -> str:
 
 def with_error(value: float | None, error: float | None) -> str:
     """A number with its error bar, unless that is below the digits shown."""
-    if value is None or error is None or error < 5e-4 * abs(value):
+    if value is None or error is None or error <= 5e-4 * abs(value):
         return number(value)
     return f"{value:.4g} ±{error:.2g}"
-
-
-def junit(suites: Sequence[ET.Element]) -> str:
-    """JUnit XML of one suite, or of several in order."""
-    if len(suites) == 1:
-        root = suites[0]
-    else:
-        root = ET.Element("testsuites")
-        for count in ("tests", "failures", "errors", "skipped"):
-            root.set(count, str(sum(int(suite.get(count, "0")) for suite in suites)))
-        root.extend(suites)
-    ET.indent(root)
-    return '<?xml version="1.0" encoding="UTF-8"?>\n' + ET.tostring(root, "unicode") + "\n"
-
-
-def unread_suite(name: str, message: str) -> ET.Element:
-    """JUnit suite of a run or case that cannot be read or solved."""
-    counts = {"tests": "1", "failures": "0", "errors": "1", "skipped": "0"}
-    suite = ET.Element("testsuite", {"name": _for_xml(name), **counts})
-    case = ET.SubElement(suite, "testcase", classname=f"camwright.{_for_xml(name)}", name="read")
-    ET.SubElement(case, "error", type="error", message=_for_xml(message))
-    return suite
-
-
-def junit_suite(
-    records: Iterable[CheckRecord], name: str, fail_on: str, properties: Mapping[str, str]
-) -> ET.Element:
-    """JUnit suite: properties of the run, such as its verdict, and one test case a check.
-
-    A check without data is an error where it decides at the level `fail_on`, else skipped.
-    """
-    records = sorted(records, key=rank)
-    counted = failing(records, fail_on)
-    failed = {r["id"] for r in counted if r["status"] == "fail"}
-    lacking = {r["id"] for r in counted} - failed
-    skipped = {r["id"] for r in records if r["status"] == "not_evaluated"} - lacking
-    suite = ET.Element(
-        "testsuite",
-        name=_for_xml(name),
-        tests=str(len(records)),
-        failures=str(len(failed)),
-        errors=str(len(lacking)),
-        skipped=str(len(skipped)),
-    )
-    stated = ET.SubElement(suite, "properties")
-    for key, value in properties.items():
-        ET.SubElement(stated, "property", name=key, value=_for_xml(value))
-    for record in records:
-        case = ET.SubElement(
-            suite, "testcase", classname=f"camwright.{_for_xml(name)}", name=record["id"]
-        )
-        text = _for_xml(
-            f"{record['title']}: {number(record['demand'])} against {number(record['limit'])}"
-            f" {record['unit']}, {status(record)}; {record['source']}"
-        )
-        if record["not_proven"]:
-            text += f"; {_for_xml(not_proven(record))}"
-        if record["id"] in failed:
-            ET.SubElement(case, "failure", type=record["status"], message=text)
-        elif record["id"] in lacking:
-            note = f"{text}; {_for_xml(record['note'])}" if record["note"] else text
-            ET.SubElement(case, "error", type=record["status"], message=note)
-        elif record["id"] in skipped:
-            ET.SubElement(case, "skipped", message=text)
-        else:
-            waiver = _for_xml(waiver_words(record))
-            words = f"{text}; waiver {waiver}" if waiver else text
-            ET.SubElement(case, "system-out").text = words
-    return suite
-
-
-def _for_xml(text: str) -> str:
-    """Text with the characters that XML cannot hold replaced."""
-    return _NOT_XML.sub("\ufffd", text)
 
 
 def consistency_line(finding: Finding) -> str:

@@ -162,8 +162,9 @@ class SummaryOfAnyRun(TypedDict):
 
 
 class Summary(SummaryOfAnyRun, total=False):
-    """Contents of ``run.json``."""
+    """Contents of ``run.json``; started: of the program, UTC, None of a design of a study."""
 
+    started: str | None
     valve_train: Json
     governing: str | None
 

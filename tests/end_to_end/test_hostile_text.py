@@ -24,7 +24,7 @@ from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_file import parse_case
 from camwright.pipeline.case.template import template
 from camwright.pipeline.results import run_reader, signoff
-from camwright.pipeline.results.check_report import junit, junit_suite
+from camwright.pipeline.results.junit_report import junit, junit_suite
 from camwright.pipeline.results.run_folder import RunFolder
 from camwright.pipeline.results.workshop_files import write_workshop
 
@@ -74,16 +74,16 @@ def test_a_run_keeps_them_in_a_folder_of_any_name(tmp_path: Path) -> None:
 def test_junit_is_whole_xml() -> None:
     odd = small_run.check("fail", id="odd", title="bell \x07 and \x00 nothing")
     suite = ET.fromstring(
-        junit([junit_suite([*records(), odd], "hostile", "must", {"scope": HARM + ABROAD})])
+        junit([junit_suite([*records(), odd], "hostile", "must", "fail", {"scope": HARM + ABROAD})])
     )
     told = " ".join(
         text for node in suite.iter() for text in (*node.attrib.values(), node.text or "")
     )
-    assert told.count(LONG) == 4  # titles, and the note of the check without data
+    assert told.count(LONG) == 8  # title and note: twice of the failure, in message and text
     assert HARM in told and ABROAD in told
     assert "bell \ufffd and \ufffd nothing" in told
     assert {node.tag for node in suite.iter()} <= {
-        "testsuite", "properties", "property", "testcase", "failure", "error", "system-out"
+        "testsuite", "properties", "property", "testcase", "failure", "skipped", "system-out"
     }  # fmt: skip
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import re
 from dataclasses import replace
+from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
@@ -100,7 +101,8 @@ def test_resumed_run_equals_a_straight_one_to_the_byte(
     assert {"workshop/cam.step", "workshop/contour.dxf", "fields/stress.vtkhdf"} <= set(other)
     again = json.loads((straight / "run.json").read_text())
     files = {name: value for name, value in summary["files"].items() if name not in pages}
-    assert summary | {"timings_s": 0, "files": files} == again | {"timings_s": 0}
+    clocks = {"timings_s": 0, "started": 0}
+    assert summary | clocks | {"files": files} == again | clocks
 
 
 def test_run_folder_holds_what_was_promised(
@@ -112,6 +114,7 @@ def test_run_folder_holds_what_was_promised(
     assert all(value is not None for value in summary["headline"].values())
     stages = {"torque", "lift and contour", "mesh", "cycle", "checks", "report", "total"}
     assert stages <= set(summary["timings_s"])
+    assert datetime.fromisoformat(summary["started"]).tzinfo == UTC
     assert summary["input_sha256"] == case.sha256
     assert summary["mesh_quality"]["edges_across_half_width"] >= 7.9
     for name in ("case.toml", "1_torque.csv", "8_report.html", "fields/stress.vtkhdf",

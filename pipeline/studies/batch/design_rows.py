@@ -215,7 +215,7 @@ class DesignSolver:
 def _without_clock(folder: Path) -> bytes:
     """Take the clock figures out of ``run.json``; they are returned as JSON."""
     summary = read_json(folder / "run.json")
-    clock, summary["timings_s"] = summary["timings_s"], {}
+    clock, summary["timings_s"], summary["started"] = summary["timings_s"], {}, None
     write_atomic(folder / "run.json", json_text(summary) + "\n")
     return f"{json_text(clock)}\n".encode()
 
