@@ -286,7 +286,8 @@ def _trials(material: Material) -> Section:
     machine_lead = (
         "First-order change of the torque ripple at the crank, with losses and jerk where they are "
         "weighted, when a number of the machine is greater and the lift synthesised anew: the "
-        "greatest change would help most. A greater roller keeps the base radius."
+        "greatest change would help most. A greater roller keeps the base radius. The phase of the "
+        "cam on the shaft has no price: the lift shifts with the engine torque."
     )
     return Section(
         "trials", "Trials and shadow prices",

@@ -196,7 +196,7 @@ def _change(price: Json, per: str = "") -> str:
     """A price as the change of the ripple: relaxing a limit reduces it."""
     if not isinstance(price, (int, float)):
         return DASH
-    return f"{quantity(-float(price), 'N m', 3)} {per}".rstrip()
+    return f"{quantity(0.0 - float(price), 'N m', 3)} {per}".rstrip()
 
 
 def _ranges(ranges: Json) -> str:

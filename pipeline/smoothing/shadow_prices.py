@@ -106,8 +106,10 @@ NUMBERS = (
     _own("follower.overhang_at_max_lift", "overhang at maximum lift", "mm"),
     _own("guides.a.friction", "friction of guide A", "-"),
     _own("guides.b.friction", "friction of guide B", "-"),
+    _own("tolerances.phase", "phase tolerance between engine and cam", "deg"),
 )
-"""Numbers of the machine with a price. The phase has none: the lift may shift on the shaft."""
+"""Numbers of the machine with a price."""
+PHASE = "phase"
 
 
 def machine_prices(
@@ -121,6 +123,10 @@ def machine_prices(
     greater roller keeps the base radius. The finite-element corrections are constant, as are limits
     that follow from the solved cam; a number that is free in the synthesis has no price, nor is one
     below `FLOOR` listed.
+
+    The phase of the cam on the shaft is last, with a price of zero, unless it is free: the lift of
+    a new optimum shifts with the engine torque, and no limit depends on the angle on the shaft
+    (the wall at bore and keyway is limited at every angle as at the keyway).
 
     Parameters
     ----------
@@ -174,7 +180,23 @@ def machine_prices(
                 "sentence": _sentence(bound, price, of),
             }
         )
-    return sorted(records, key=lambda record: -abs(record["ripple_per_percent_Nm"]))
+    records.sort(key=lambda record: -abs(record["ripple_per_percent_Nm"]))
+    return records if PHASE in problem.freed else [*records, _of_phase(design, of)]
+
+
+def _of_phase(design: Design, of: str) -> MachinePriceRecord:
+    words = "phase of the cam on the shaft"
+    return {
+        "parameter": PHASE,
+        "words": words,
+        "value": in_unit(float(design.variables.phase), "deg"),
+        "unit": "deg",
+        "ripple_per_unit_Nm": 0.0,
+        "ripple_per_percent_Nm": 0.0,
+        "of": of,
+        "sentence": f"{words}: no price, as the lift shifts with the engine torque and no limit"
+        " depends on the angle on the shaft",
+    }
 
 
 def _changed(number: MachineNumber, case: Case) -> tuple[Case, float]:

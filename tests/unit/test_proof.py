@@ -69,6 +69,9 @@ def test_a_price_of_the_machine_is_the_change_by_more_of_a_number() -> None:
         "spring rate", "180\u00a0N/mm", "0.0083\u00a0N\u00a0m per N/mm", "0.015\u00a0N\u00a0m",
     ]  # fmt: skip
     assert table.rows[1][2] == "−3.3\u00a0N\u00a0m per unit"
+    phase = {"words": "phase", "value": 0.0, "unit": "deg", "ripple_per_unit_Nm": 0.0}
+    (row,) = verification_tables.machine_prices([phase | {"ripple_per_percent_Nm": 0.0}]).rows
+    assert row[1:] == ["0\u00a0deg", "0\u00a0N\u00a0m per deg", "0\u00a0N\u00a0m"]
     assert all(len(row) == len(table.head) for row in table.rows)
     assert verification_tables.machine_prices(None).rows == []
 

@@ -12,6 +12,7 @@ from camwright.geometry.contour import RollerContour
 from camwright.geometry.lift import Lift
 from camwright.geometry.pitch_curve import PitchCurve
 from camwright.pipeline.case.case_file import read_case
+from camwright.pipeline.case.case_values import replaced
 from camwright.pipeline.case.load_case_torque import engine_torques
 from camwright.pipeline.smoothing.bounds import bounds_of
 from camwright.pipeline.smoothing.constrained_synthesis import synthesise
@@ -22,6 +23,7 @@ from camwright.pipeline.smoothing.scenario import DesignVariables, Scenario
 from camwright.pipeline.smoothing.shadow_prices import (
     FLOOR,
     NUMBERS,
+    PHASE,
     limits_in_use,
     machine_prices,
     prices,
@@ -130,8 +132,8 @@ def test_limits_in_use_stand_at_the_cam_angles_of_the_lift():
 CASES = Path(__file__).parents[2] / "cases"
 
 
-def optimum_of(jerk_weight):
-    """The redesigned case without tolerance corners: case, torques, problem, design.
+def optimum_of(jerk_weight, corners=False, **tolerances):
+    """The redesigned case at its nominal values by default: case, torques, problem, design.
 
     Without speed limits of the guides: the optimum is so near them that a step would reach them.
     """
@@ -139,8 +141,9 @@ def optimum_of(jerk_weight):
     slow, fast = case.guides, {"speed_limit": None}
     guides = replace(slow, a=replace(slow.a, **fast), b=replace(slow.b, **fast))
     case = case.model_copy(update={"guides": guides})
-    changed = {"corners": False, "jerk_weight": jerk_weight, "loss_weight": 0.0}
+    changed = {"corners": corners, "jerk_weight": jerk_weight, "loss_weight": 0.0}
     case = case.model_copy(update={"smoothing": case.smoothing.model_copy(update=changed)})
+    case = replaced(case, tolerances)
     torques = engine_torques(case)
     problem = problem_of(case, torques)
     return case, torques, problem, synthesise(problem)
@@ -211,6 +214,50 @@ def test_price_with_a_jerk_weight_is_that_of_the_objective():
         assert record["sentence"].endswith("N m off the objective")
 
 
+@pytest.mark.slow
+def test_price_of_the_phase_tolerance_is_the_difference_of_new_optima():
+    """Of a tolerance wide enough for its ends to have the greatest ripples, both of them."""
+    wide = optimum_of(1e-5, corners=True, **{
+        "tolerances.phase": np.radians(8.0), "tolerances.mass": 1e-6,
+        "spring.rate_tolerance": 1e-6, "spring.preload_tolerance": 1e-6,
+    })  # fmt: skip
+    record = price_of(wide, "tolerances.phase")
+    expected = difference_of_new_optima(wide, "tolerances.phase")
+    assert record["ripple_per_percent_Nm"] < 0
+    # second order in the step, and optima converged to 1e-6 of the ripple
+    assert record["ripple_per_percent_Nm"] == pytest.approx(expected, rel=0.01)
+
+
+@pytest.mark.parametrize(
+    ("splines", "spacings", "tolerance"),
+    [
+        (64, 5.0, 1e-5),  # of the convergence; the points of the cam angle remain
+        # of the splines, which do not shift: 2.4e-3 with 64
+        pytest.param(96, 2.5, 5e-4, marks=pytest.mark.slow),
+    ],
+)
+def test_phase_on_the_shaft_has_no_price_as_the_lift_shifts(optimum, splines, spacings, tolerance):
+    """Engine torque delayed by spacings of the splines, solved again from its own start."""
+    case, torques, problem, design = optimum
+    if splines != problem.coefficients:
+        problem = replace(problem, coefficients=splines)
+        design = synthesise(problem)
+    shift = 2.0 * np.pi * spacings / splines
+    turned = [replace(item, torque=item.torque_at(-shift)[0]) for item in problem.scenarios]
+    solved = synthesise(replace(problem, scenarios=tuple(turned)))
+    assert solved.feasible
+    assert solved.converged
+    assert solved.ripple == pytest.approx(design.ripple, rel=tolerance)
+    theta, top = np.linspace(0.0, 2.0 * np.pi, 90), design.lift().highest.value
+    # the lift is flat in the ripple: of second order
+    tight = np.sqrt(tolerance) * top
+    np.testing.assert_allclose(solved.lift()(theta + shift), design.lift()(theta), atol=tight)
+    record = machine_prices(design, problem, case, torques)[-1]
+    assert record["parameter"] == PHASE
+    assert record["ripple_per_unit_Nm"] == 0.0
+    assert "no limit depends on the angle" in record["sentence"]
+
+
 def test_numbers_stand_as_in_the_case_and_change_together(optimum):
     case, *_ = optimum
     radius = {each.key: each for each in NUMBERS if "radius" in each.key}
@@ -237,4 +284,8 @@ def test_prices_below_the_floor_and_of_free_numbers_are_left_out(optimum):
     left = [each["parameter"] for each in machine_prices(design, freed, case, torques)]
     assert "spring.rate" in keys
     assert left == [key for key in keys if key != "spring.rate"]
+    assert left[-1] == PHASE
+    turned = replace(problem, freed={"phase": (-0.1, 0.1)})
+    ours = [each["parameter"] for each in machine_prices(design, turned, case, torques)]
+    assert ours == keys[:-1]
     assert prices(replace(design, multipliers={"jump": 0.5 * 100.0 * FLOOR}), problem) == []
