@@ -154,7 +154,7 @@ def test_a_failure_states_demand_limit_unit_and_reason() -> None:
     )
     text = (failure.text or "").splitlines()
     assert text[0] == message
-    assert {"demand: 3 deg", "limit: 2 deg", "used: 150%", "where: idle 12.5 deg",
+    assert {"demand: 3 deg", "limit: 2 deg", "used: 150 %", "where: idle 12.5 deg",
             "remedy: base radius 30 mm", "limit by: Rothbart"} <= set(text)  # fmt: skip
 
 
