@@ -6,22 +6,25 @@ import ast
 import inspect
 import re
 import tomllib
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Mapping
+from itertools import groupby
 from pathlib import Path
-from types import UnionType
-from typing import Annotated, Literal, Union, get_args, get_origin
 
-from pydantic.fields import FieldInfo
-from pydantic_core import PydanticUndefined
-
-from camwright.pipeline.base.quantities import Count, In, Part
 from camwright.pipeline.base.tables import Column
-from camwright.pipeline.base.units import in_unit
-from camwright.pipeline.case.case import Case
+from camwright.pipeline.base.units import shown
 from camwright.pipeline.case.case_file import read_case
-from camwright.pipeline.case.limits import LIMITS
+from camwright.pipeline.case.keys import (
+    DIGITS,
+    TABLE,
+    accepted,
+    case_keys,
+    default,
+    nested,
+    of_field,
+    sections,
+)
+from camwright.pipeline.case.limits import LIMITS, AnyLimit
 from camwright.pipeline.case.requirements_section import Smoothing
-from camwright.pipeline.case.section import Section, section_of
 from camwright.pipeline.checks.check import Declaration
 from camwright.pipeline.checks.registry import CHECKS, DECLARED, MODULES
 from camwright.pipeline.contact.tiers import Tier
@@ -59,12 +62,16 @@ def limits() -> str:
     rows = (
         (
             f"`{row.id}`", row.title, row.quantity.limit.replace(" and ", ", "),
-            shown(row.default, row.quantity.unit),
+            _default_of(row),
             "maximum" if row.sense == "at_most" else "minimum", row.source,
         )
         for row in LIMITS.values()
     )  # fmt: skip
     return markdown(("key", "limit", "accepted", "default", "bound", "source"), rows)
+
+
+def _default_of(row: AnyLimit) -> str:
+    return "" if row.default is None else shown(row.default, row.quantity.unit, DIGITS)
 
 
 def checks() -> str:
@@ -108,17 +115,17 @@ def _limit(one: Declaration) -> str:
     if one.limit is None:
         return one.source
     row = one.limit
-    value = shown(row.default, row.quantity.unit)
+    value = _default_of(row)
     default_of = f", default {value}" if value else ", without a default"
     return f"`limits.{row.id}`{default_of}; {row.source}"
 
 
 def objective() -> str:
     """Terms of the objective of a synthesis with their references and default weights."""
-    default = Smoothing.model_fields
+    fields = Smoothing.model_fields
     rows = (
         (f"`{term.key}_weight`", term.words, term.reference,
-         shown(default[f"{term.key}_weight"].default, ""))
+         default(fields[f"{term.key}_weight"]))
         for term in (TORQUE, SPEED, harmonics(()), *COSTS)
     )  # fmt: skip
     return markdown(("key", "term", "1 at", "default weight"), rows)
@@ -210,127 +217,34 @@ def renamed(*tables: str) -> str:
     return markdown(("earlier", "now"), rows)
 
 
-def keys(root: type[Section]) -> str:
-    """A table of keys for each section of a case or study file."""
+def keys() -> str:
+    """Every key of a case file with its meaning, a table for each table of the file."""
     parts = []
-    for title, section in sections(root, ""):
+    for header, listed in groupby(case_keys(), key=lambda key: key.header):
+        whole = list(listed)
+        about = "".join(f"\n\n{_sentence(key.meaning)}" for key in whole if key.accepted == TABLE)
+        rows = (
+            (f"`{key.name}`", key.meaning, key.accepted, key.default)
+            for key in whole
+            if key.accepted != TABLE
+        )
+        table = markdown(("key", "meaning", "accepted", "default"), rows)
+        parts.append(f"### `{header}`{about}\n\n{table}")
+    return "\n\n".join(parts)
+
+
+def study_keys() -> str:
+    """A table of keys for each section of a study file."""
+    parts = []
+    for _, header, section in sections(Study, ""):
         rows = [
-            (
-                f"`{field.alias or name}`",
-                accepted(field),
-                default(field) or section.defaults.get(name, ""),
-            )
+            (f"`{field.alias or name}`", accepted(field), of_field(section, name))
             for name, field in section.model_fields.items()
             if not any(nested(field))
         ]
         if rows:
-            parts.append(f"### `{title}`\n\n{markdown(('key', 'accepted', 'default'), rows)}")
+            parts.append(f"### `{header}`\n\n{markdown(('key', 'accepted', 'default'), rows)}")
     return "\n\n".join(parts)
-
-
-def sections(section: type[Section], path: str) -> Iterator[tuple[str, type[Section]]]:
-    """A section and those within it, by their headers in a case file."""
-    if not path:
-        yield "top of the file", section
-    for name, field in section.model_fields.items():
-        for kind, inner in nested(field):
-            key = f"{path}.{field.alias or name}".lstrip(".")
-            header = {"table": f"[{key}]", "rows": f"[[{key}]]", "names": f"[{key}.NAME]"}[kind]
-            word = inner.model_fields.get("kind")
-            marks = (
-                get_args(word.annotation) if word and get_origin(word.annotation) is Literal else ()
-            )
-            yield header + (f' kind = "{marks[0]}"' if len(marks) == 1 else ""), inner
-            yield from sections(inner, header.strip("[]"))
-
-
-def nested(field: FieldInfo) -> Iterator[tuple[str, type[Section]]]:
-    yield from _nested(field.annotation, "table")
-
-
-def _nested(hint: object, kind: str) -> Iterator[tuple[str, type[Section]]]:
-    origin = get_origin(hint)
-    if origin is Annotated:
-        yield from _nested(get_args(hint)[0], kind)
-    elif origin in (Union, UnionType):
-        for each in get_args(hint):
-            yield from _nested(each, kind)
-    elif origin is tuple:
-        yield from _nested(get_args(hint)[0], "rows")
-    elif origin is dict:
-        yield from _nested(get_args(hint)[1], "names")
-    elif isinstance(hint, type) and issubclass(hint, Section):
-        yield kind, hint
-    elif isinstance(hint, type) and issubclass(hint, Part) and hint.__name__ != "Material":
-        yield kind, section_of(hint)
-
-
-def accepted(field: FieldInfo) -> str:
-    """What a key may hold: unit and bounds, words, or kind of value."""
-    for mark in [*field.metadata, *_marks(field.annotation)]:
-        if isinstance(mark, In):
-            return mark.limit.replace("finite ", "any, ").replace(" and ", ", ")
-        if isinstance(mark, Count):
-            return f"whole number, {mark.at_least} to {mark.at_most}"
-    words = [
-        word
-        for hint in _leaves(field.annotation)
-        if get_origin(hint) is Literal
-        for word in get_args(hint)
-    ]
-    if words:
-        return " or ".join(f"`{word}`" for word in words)
-    names = {str: "text", bool: "`true` or `false`", float: "number", int: "whole number"}
-    leaves = [
-        names.get(hint, getattr(hint, "__name__", ""))
-        for hint in _leaves(field.annotation)
-        if isinstance(hint, type)
-    ]
-    listed = "list of " if get_origin(field.annotation) in (tuple, list) else ""
-    return listed + " or ".join(
-        dict.fromkeys(word for word in leaves if word and word != "NoneType")
-    )
-
-
-def _marks(hint: object) -> Iterator[object]:
-    yield from getattr(hint, "__metadata__", ())
-    for each in get_args(hint):
-        yield from _marks(each)
-
-
-def _leaves(hint: object) -> Iterator[object]:
-    inner = get_args(hint)
-    if get_origin(hint) is Literal or not inner:
-        yield hint
-    elif get_origin(hint) is Annotated:
-        yield from _leaves(inner[0])
-    else:
-        for each in inner:
-            yield from _leaves(each)
-
-
-def default(field: FieldInfo) -> str:
-    if field.is_required():
-        return "required"
-    value = field.default
-    if value is None or value is PydanticUndefined or value == "":
-        return ""
-    marks = [mark for mark in [*field.metadata, *_marks(field.annotation)] if isinstance(mark, In)]
-    if isinstance(value, float):
-        unit = marks[0].unit if marks else ""
-        return shown(value, unit)
-    if isinstance(value, tuple) and marks:
-        return "[" + ", ".join(f'"{shown(each, marks[0].unit)}"' for each in value) + "]"
-    if isinstance(value, bool):
-        return f"`{str(value).lower()}`"
-    return f"`{value}`"
-
-
-def shown(value: float | None, unit: str) -> str:
-    """A value, SI, in a unit; "" for None."""
-    if value is None:
-        return ""
-    return f"{in_unit(value, unit) if unit else value:.6g} {unit}".rstrip()
 
 
 TABLES: Mapping[str, Callable[[], str]] = {
@@ -343,8 +257,8 @@ TABLES: Mapping[str, Callable[[], str]] = {
     "study_files": study_files,
     "packages": packages,
     "screening": screening,
-    "keys": lambda: keys(Case),
-    "study_keys": lambda: keys(Study),
+    "keys": keys,
+    "study_keys": study_keys,
     "renamed_case": lambda: renamed("case"),
     "renamed_results": lambda: renamed("columns", "headline", "files"),
     "renamed_checks": lambda: renamed("checks"),

@@ -21,6 +21,7 @@ In the order of the calculation:
 | `cards`                | cards of materials and parts, catalogues     |                  |
 | `given_lift`           | lift of a case without engine                | s, m             |
 | `case_file`            | reading of a case file                       |                  |
+| `keys`                 | every key: meaning, unit, range, default     |                  |
 | `case_values`          | values by dotted key; the case with others   |                  |
 | `template`             | case file of `camwright init`                |                  |
 | `load_case_torque`     | engine torque of each load case              | T, N m           |
