@@ -165,6 +165,7 @@ def _summary(
         "trial_points": [point.as_record() for point in points],
         "scope": case.scope.as_record(),
         "headline": headline(torques, final),
+        "load_ends": final.load_ends,
         "prices": None if final.synthesis is None else final.synthesis["prices"],
         "machine_prices": None if final.synthesis is None else final.synthesis["machine_prices"],
         "mesh_quality": None if final.mesh is None else asdict(final.mesh.quality),

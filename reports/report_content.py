@@ -11,7 +11,7 @@ import numpy as np
 
 from camwright.pipeline.base.files import Json
 from camwright.pipeline.results.model_limits import MODEL_LIMITS
-from camwright.pipeline.results.run_reader import CERTIFIED, TrialRecord
+from camwright.pipeline.results.run_reader import CERTIFIED, TrialRecord, load_end_words
 from camwright.reports import report_tables, verification_tables
 from camwright.reports.figure_svg import Drawn, drawn_groups
 from camwright.reports.picture_list import Picture, pictures
@@ -177,6 +177,7 @@ def report_content(material: Material) -> Report:
         verdict(
             str(run.verdict or run.screen), final.checks, final.binding, statement,
             str(run.summary["scope"]["statement"]), final.depth,
+            load_end_words(run.summary.get("load_ends", ())),
         ),
         report_tables.tiles(run.summary["headline"]),
         (

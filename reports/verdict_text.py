@@ -35,7 +35,8 @@ class Verdict:
     check of the design of highest utilisation, `binding` are titles of required checks that fail.
     `unproven`, `missing` and `waived` are lines on required checks whose error bar lies across the
     limit, that lack data, and that are waived. `stopped` are the clauses of the reason for which
-    the trials ended, `scope` the parts not covered, `label` what is stated.
+    the trials ended, `scope` the parts not covered, `label` what is stated; `ends` where the
+    follower leaves the cam or locks.
     """
 
     outcome: str
@@ -50,6 +51,7 @@ class Verdict:
     missing: tuple[str, ...] = ()
     waived: tuple[str, ...] = ()
     label: str = "Verdict"
+    ends: str = ""
 
     @property
     def word(self) -> str:
@@ -64,6 +66,7 @@ class Verdict:
     def lines(self) -> list[tuple[str, str]]:
         """(label, text) of the lines below the sentence."""
         lines = (
+            ("The follower", f"{self.ends}: loads there are not evaluated." if self.ends else ""),
             ("Governing", self.governing),
             ("Binding", f"{'; '.join(self.binding)}." if self.binding else ""),
         )
@@ -88,6 +91,7 @@ def verdict(
     stopped: str,
     scope: str = "",
     depth: str = CERTIFIED,
+    load_ends: str = "",
 ) -> Verdict:
     """Verdict in sentences.
 
@@ -99,6 +103,7 @@ def verdict(
     stopped : str          reason for which the trials ended
     scope : str            parts that the sign-off does not cover, in a sentence
     depth : str            of the run: below certified it has a screen, no verdict
+    load_ends : str        where the follower leaves the cam or locks, in words
 
     The outcome is the worse of the recorded one and that of the checks.
     """
@@ -117,6 +122,7 @@ def verdict(
         scope=scope,
         sentence=_sentence(checks, required, missing),
         governing=governing(checks),
+        ends=load_ends,
         binding=tuple(titles.get(n, words(n)) for n in map(str, binding) if n not in unknown),
         stopped=tuple(clause for clause in clauses if not _names_all(clause, unknown.values())),
         unproven=tuple(

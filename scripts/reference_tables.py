@@ -85,6 +85,15 @@ def checks() -> str:
     return "\n\n".join(parts)
 
 
+RESTS_ON = {
+    "": "",
+    "contact": "\n- Not evaluated in a load case in which the follower leaves the cam; fails by the"
+    " others.",
+    "loads": "\n- Not evaluated in a load case in which the follower leaves the cam or locks; fails"
+    " by the others.",
+}
+
+
 def _check(one: Declaration) -> str:
     title = one.title.format(follower="follower")
     needs = f"; a {one.needs} only" if one.needs else ""
@@ -94,13 +103,14 @@ def _check(one: Declaration) -> str:
         word = one.fails_from.word
         depth += f" At the depth {word} its utilisation is a lower bound: it can only fail."
     decides = "Decides the verdict" if one.must_have else "Does not decide the verdict"
+    ends = RESTS_ON[one.rests_on]
     if one.evidence:
         decides += "; evidence, which never governs"
     lines = (
         f"#### `{one.id}`: {title}",
         f"{_sentence(one.formula)} Unit: {one.unit}{needs}{part}.",
         f"- Calculation: {one.method.rstrip('.')}.\n- Limit: {_limit(one)}.\n"
-        f"- Load cases: {one.load_cases}.\n- {decides}. {_sentence(one.reason)}{depth}",
+        f"- Load cases: {one.load_cases}.\n- {decides}. {_sentence(one.reason)}{ends}{depth}",
     )
     return "\n\n".join(lines)
 

@@ -26,6 +26,7 @@ In the order of the calculation:
 | `plane_strain_validity` | validity limits of the plane-strain model  | half-widths              |
 | `solution_verification` | residuals, meshes, certificate, benchmarks | relative                 |
 | `error_bars`            | error bars of the demands                  | relative                 |
+| `lost_loads`            | checks where the follower leaves the cam   | cam angle, rad           |
 | `confirmation`          | recalled values on which a check rests     |                          |
 | `registry`              | all checks of a solution, with waivers     |                          |
 | `tolerance_corners`     | governing tolerance corner of each check   |                          |

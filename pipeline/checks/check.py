@@ -19,6 +19,7 @@ Status = Literal["pass", "fail", "not_evaluated", "waived"]
 Verdict = Literal["pass", "incomplete", "fail"]
 Screen = Literal["open", "fail"]
 Error = Literal["sampling", "contact", "guides", "guide_edges", "bore", "unknown"]
+RestsOn = Literal["", "contact", "loads"]
 Record = dict[str, str | float | bool | list[str] | None]
 EVERY = "all, standstill and over-speed included"
 BY_DUTY = (
@@ -103,6 +104,8 @@ class Declaration:
     formula : str              demand and limit with their symbols, for the documentation
     reason : str               why it decides the verdict, or why it does not
     load_cases : str           load cases in which it is made, in words
+    rests_on : str             "loads": of the cam, none where the follower has left it or locked;
+                               "contact": with it; "": neither, such as the contact force itself
     demand : callable          solution -> demand; None where the check does not apply
     """
 
@@ -126,6 +129,7 @@ class Declaration:
     formula: str
     reason: str
     load_cases: str
+    rests_on: RestsOn
     demand: Callable[[Solution], Demand | None] = field(repr=False)
 
     def __call__(self, solution: Solution) -> Check | None:
@@ -209,11 +213,16 @@ def check(
     formula: str = "",
     reason: str = "",
     load_cases: str = EVERY,
+    rests_on: RestsOn | None = None,
 ) -> Callable[[Callable[[Solution], Demand | None]], Declaration]:
     """Declare a check of the demand that the decorated function returns; see `Declaration`.
 
-    Id, unit and sense default to those of the function and the limit, fails_from to the tier.
+    Id, unit and sense default to those of the function and the limit, fails_from to the tier; a
+    check of the design made in load cases rests on their loads.
     """
+
+    if rests_on is None:
+        rests_on = "loads" if load_cases in (EVERY, RIPPLE) and not evidence else ""
 
     def declared(demand: Callable[[Solution], Demand | None]) -> Declaration:
         return Declaration(
@@ -237,6 +246,7 @@ def check(
             formula=formula,
             reason=reason,
             load_cases=load_cases,
+            rests_on=rests_on,
             demand=demand,
         )
 
@@ -271,6 +281,8 @@ class Check:
     corner_demand : float    demand at that corner; None: none was solved
     unconfirmed : tuple      dotted keys of the values on which it rests and no source confirms
     judged_at : str          depth that judges it, where the solution is less deep; "": judged
+    without : str            load cases without loads, as the follower has left the cam or locked:
+                             the demand is that of the others, by which it can only fail; "": none
     """
 
     declaration: Declaration
@@ -290,6 +302,7 @@ class Check:
     corner_demand: float | None = None
     unconfirmed: tuple[str, ...] = ()
     judged_at: str = ""
+    without: str = ""
 
     def __str__(self) -> str:
         """Title, worst demand, limit and status in one line, in `unit`."""
@@ -349,11 +362,22 @@ class Check:
 
     @property
     def evaluated(self) -> bool:
-        """Whether demand and limit are known; NaN and an infinite limit are not."""
+        """Whether demand and limit are known; NaN and an infinite limit are not.
+
+        `without` the loads of a load case the demand is a bound: within the limit it says nothing.
+        """
         demand, limit = self.worst, self.limit
-        return not (
-            demand is None or math.isnan(demand) or limit is None or not math.isfinite(limit)
-        )
+        if demand is None or math.isnan(demand) or limit is None or not math.isfinite(limit):
+            return False
+        return not self.is_bound
+
+    @property
+    def is_bound(self) -> bool:
+        """Whether its demand is a bound within the limit, which says nothing; see `without`."""
+        demand, limit = self.worst, self.limit
+        if not self.without or demand is None or limit is None:
+            return bool(self.without)
+        return math.isnan(demand) or self._holds(demand, limit)
 
     @property
     def utilisation(self) -> float | None:
@@ -410,19 +434,22 @@ class Check:
     def as_record(self) -> Record:
         """JSON record, in `unit` and degrees; NaN and infinity become null.
 
+        A demand `without` the loads of a load case that does not fail is null, too.
         A utilisation of null is infinite with the status `fail`, missing with `not_evaluated`.
         """
         unit = self.unit
+        bound = self.is_bound
+        demand, corner = (None, None) if bound else (self.demand, self.corner_demand)
         return {
             "id": self.id,
             "title": self.title,
-            "demand": _shown(self.demand, unit),
+            "demand": _shown(demand, unit),
             "limit": _shown(self.limit, unit),
             "unit": unit,
             "utilisation": _shown(self.utilisation),
             "status": self.status,
-            "load_case": self.load_case,
-            "cam_angle_deg": _shown(self.cam_angle, "deg"),
+            "load_case": "" if bound else self.load_case,
+            "cam_angle_deg": None if bound else _shown(self.cam_angle, "deg"),
             "source": self.source,
             "method": self.method,
             "sense": self.sense,
@@ -432,11 +459,11 @@ class Check:
             "waived_up_to": _shown(None if self.waiver is None else self.waiver.up_to, unit),
             "not_proven": self.not_proven,
             "missing": list(self.missing),
-            "note": self.note,
-            "error": _shown(self.error, unit),
+            "note": "; ".join(filter(None, (self.without, self.note))),
+            "error": None if bound else _shown(self.error, unit),
             "margin": _shown(self.margin),
-            "corner": self.corner,
-            "corner_demand": _shown(self.corner_demand, unit),
+            "corner": "" if bound else self.corner,
+            "corner_demand": _shown(corner, unit),
             "evidence": self.evidence,
             "to_be_confirmed": list(self.unconfirmed),
             "judged_at": self.judged_at,

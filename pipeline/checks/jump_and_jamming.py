@@ -42,6 +42,7 @@ _TIE = 1e-9  # relative difference up to which two forces are equal, and one is 
     " cases and angles with guide friction and inertia, without surge, F_0: spring force at minimum"
     " lift",
     reason="A follower that leaves the cam lands on it with an impact.",
+    rests_on="",
 )
 def contact_force_margin(solution: Solution) -> Demand:
     """Minimum contact force over the least spring force."""
@@ -59,6 +60,7 @@ def contact_force_margin(solution: Solution) -> Demand:
     formula="max(-m w^2 s'' / F_s) <= limits.jump over all load cases and angles; m: moving mass,"
     " w: cam speed, s'': second derivative of the lift, F_s: spring force",
     reason="At 1 the inertia of the follower lifts it off the cam.",
+    rests_on="",
 )
 def jump(solution: Solution) -> Demand:
     """Maximum unloading inertia force over the spring force."""
@@ -83,6 +85,7 @@ def jump(solution: Solution) -> Demand:
     formula="max((mu_A R_A + mu_B R_B) / F_a) <= j on the rise; R: sum of the pushes on both sides"
     " of a guide, mu: its nominal friction, F_a: axial force of the cam, j: limits.jam_index.",
     reason="at 1 the follower locks on the rise and the cam or the stem breaks.",
+    rests_on="contact",
 )
 def jam_index(solution: Solution) -> Demand:
     """Friction of the guides over the axial cam force on the rise."""
@@ -113,6 +116,7 @@ def jam_index(solution: Solution) -> Demand:
     " cam, j: limits.jam_index.",
     reason="friction of bushes scatters by a factor, and it is the greatest that locks"
     " the follower.",
+    rests_on="contact",
 )
 def jam_index_friction_max(solution: Solution) -> Demand:
     """Jam index at the maximum friction coefficients of both guides."""

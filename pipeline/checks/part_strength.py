@@ -428,6 +428,7 @@ def torque_reversals(solution: Solution) -> Demand:
     " camshaft.counterweight.residual, m: camshaft.rotor_mass, or the mass of the cam alone, w:"
     " greatest cam speed of all load cases",
     reason="the force m e w^2 loads shaft, bearings and frame at every speed",
+    rests_on="",
 )
 def cam_unbalance(solution: Solution) -> Demand:
     """Eccentricity times speed of the rotor, m/s, and the counter-hole for it."""

@@ -57,6 +57,7 @@ def edge_factor(solution: Solution) -> Demand:
     evidence=True,
     tier=Tier.CYCLE,
     error="contact",
+    rests_on="loads",
 )
 def held_distance(solution: Solution) -> Demand:
     """Minimum distance of the contact from a fixed boundary, in half-widths."""

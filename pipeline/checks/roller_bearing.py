@@ -404,6 +404,7 @@ def _mean_speed(cycle: Cycle) -> float:
     f" {BY_DUTY}.",
     reason="a bearing greased for life ends with its grease",
     load_cases=NONE,
+    rests_on="loads",
 )
 def grease_life(solution: Solution) -> Demand | None:
     """Life of the grease, s; None with oil."""

@@ -174,6 +174,7 @@ def _over_speed(solution: Solution, use: Callable[[SpringSweep], Array]) -> Over
     reason="A spring beyond its yield strength sets and loses the preload that keeps the"
     " follower on the cam.",
     load_cases=SPEED_RANGE,
+    rests_on="loads",
 )
 def spring_stress(solution: Solution) -> Demand:
     """Greatest shear stress of the wire with surge over the static strength."""
@@ -206,6 +207,7 @@ def spring_stress(solution: Solution) -> Demand:
     " over-speed, S_su = 0.67 R_m, S_e: endurance by Zimmerli's point",
     reason="A broken spring releases the follower.",
     load_cases=SPEED_RANGE,
+    rests_on="loads",
 )
 def spring_fatigue(solution: Solution) -> Demand:
     """Least fatigue safety of the wire with surge over the speed range."""

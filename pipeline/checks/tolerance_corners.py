@@ -35,11 +35,17 @@ POSITIONS = 90
 
 @dataclass(frozen=True)
 class Outcome:
-    """Demands by check id at one corner, or the refusal in words."""
+    """Demands by check id at one corner, or the refusal in words.
+
+    `bounds` are the ids of checks that rest on loads lost there, `lost` in words: their demand is
+    that of the other load cases, if there are any.
+    """
 
     corner: Corner
     demands: Mapping[str, float]
     refused: str = ""
+    bounds: frozenset[str] = frozenset()
+    lost: str = ""
 
 
 def corners_of(case: Case) -> tuple[Corner, ...]:
@@ -106,7 +112,12 @@ def corners_record(case: Case, tried: Sequence[Outcome]) -> dict[str, Json]:
         "positions": POSITIONS,
         "method": "closed forms on the final cam; demands scale the nominal figures of the run",
         "corners": [
-            {**asdict(one.corner), "demands": _plain(one.demands), "refused": one.refused}
+            {
+                **asdict(one.corner),
+                "demands": _plain(one.demands),
+                "refused": one.refused,
+                "lost": one.lost,
+            }
             for one in tried
         ],
     }
@@ -196,7 +207,13 @@ def _outcome(
     except CamError as error:
         return Outcome(corner, {}, str(error))
     known = {one.id: float(one.demand) for one in checks if one.demand is not None}
-    return Outcome(corner, {name: value for name, value in known.items() if not np.isnan(value)})
+    bounds = {one.id: one.without for one in checks if one.without}
+    return Outcome(
+        corner,
+        {name: value for name, value in known.items() if not np.isnan(value)},
+        bounds=frozenset(bounds),
+        lost=next(iter(bounds.values()), ""),
+    )
 
 
 def _shape(contour: Contour, corner: Corner) -> Contour:
@@ -225,19 +242,28 @@ def _phased(each: Turn, corner: Corner) -> Turn:
 
 
 def _governed(one: Check, tried: Sequence[Outcome]) -> Check:
-    """Check with its worst corner; a demand without a value at a solved corner is missing."""
+    """Check with its worst corner; a demand without a value at a solved corner is missing.
+
+    Where loads are lost at a corner it can only fail, by the others; see `lost_loads`.
+    """
     nominal = tried[0]
-    here = nominal.demands.get(one.id)
-    if one.demand is None or here is None:
+    nominal_demand, here = one.demand, nominal.demands.get(one.id)
+    if nominal_demand is None or here is None:
         return one
     solved = [outcome for outcome in tried if not outcome.refused]
-    unknown = [outcome for outcome in solved if one.id not in outcome.demands]
+    bounds = [outcome for outcome in solved if one.id in outcome.bounds]
+    if bounds and not one.without:
+        one = replace(
+            one, without=f"at the tolerance corner {bounds[0].corner.name} {bounds[0].lost}"
+        )
+    known = [outcome for outcome in solved if one.id in outcome.demands]
+    unknown = [outcome for outcome in solved if outcome not in known and outcome not in bounds]
     if unknown:
         return replace(one, corner=unknown[0].corner.name, corner_demand=float("nan"))
     sign = 1.0 if one.sense == "at_most" else -1.0
-    worst = max(solved, key=lambda outcome: sign * outcome.demands[one.id])
+    worst = max(known, key=lambda outcome: sign * outcome.demands[one.id])
     if worst is nominal:
         return replace(one, corner="nominal", corner_demand=one.demand)
     there = worst.demands[one.id]
-    demand = one.demand * there / here if here and np.isfinite(here) else there
+    demand = nominal_demand * there / here if here and np.isfinite(here) else there
     return replace(one, corner=worst.corner.name, corner_demand=float(demand))

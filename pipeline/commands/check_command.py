@@ -232,6 +232,7 @@ def _checked_case(path: Path) -> tuple[dict[str, Any], Clock]:
         "to_be_confirmed": to_be_confirmed(checks),
         "binding": list(trial.binding),
         "governing": governing_id(checks),
+        "load_ends": trial.load_ends,
         "scope": case.scope.as_record(),
         "checks": checks,
     }

@@ -106,6 +106,7 @@ def show_failures(document: dict[str, Any], places: Places) -> None:
     from camwright.pipeline.results.run_reader import within_depth
 
     checks = within_depth(document["checks"])
+    _print_all(verdict_summary.load_end_line(document))
     _print_all(verdict_summary.failure_lines(checks))
     _print_all(verdict_summary.missing_lines(checks, places.case))
     _print_all(_changes(document))
@@ -130,9 +131,10 @@ def show_all(document: dict[str, Any], places: Places) -> None:
         table,
     )
     from camwright.pipeline.results.run_reader import within_depth
-    from camwright.pipeline.results.verdict_summary import place_line, verdict_words
+    from camwright.pipeline.results.verdict_summary import load_end_line, place_line, verdict_words
 
     checks = within_depth(document["checks"])
+    _print_all(load_end_line(document))
     stdout.print(table(check for check in checks if not check["evidence"]))
     evidence = [check for check in checks if check["evidence"]]
     if evidence:

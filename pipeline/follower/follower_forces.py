@@ -15,6 +15,7 @@ from camwright.geometry.follower_path import FollowerPath
 from camwright.pipeline.follower.spring import Spring
 
 REST = 1e-9  # slope over stroke, 1/rad, up to which a spline is in a dwell
+LEAVES, LOCKS = "leaves the cam", "locks"
 JAM_FLOOR = 0.01  # lower bound of 1 - jam index in the forces
 
 
@@ -254,6 +255,21 @@ class Loads:
     def jammed(self) -> NDArray[np.bool_]:
         """Where the follower moves outward and jams at any force (n,), bool."""
         return np.asarray((self.jam_index >= 1.0) & (self.lift_slope > 0.0))
+
+    @property
+    def end(self) -> tuple[float, str] | None:
+        """Cam angle, rad, at which the loads end being those of the cam, and why; None: nowhere.
+
+        The follower leaves the cam or locks there. The angle is the first one of the turn at which
+        one of both begins: the loads of a turn before it are those after it in the next one.
+        """
+        leaves, locks = self.separated, self.jammed
+        lost = leaves | locks
+        if not lost.any():
+            return None
+        begins = np.flatnonzero(lost & ~np.roll(lost, 1))
+        first = int(begins[0]) if begins.size else 0
+        return float(self.theta[first]), LEAVES if leaves[first] else LOCKS
 
     @property
     def friction_force(self) -> Array:

@@ -133,6 +133,14 @@ class TrialPointRecord(TypedDict):
     passes: bool
 
 
+class LoadEndRecord(TypedDict):
+    """Cam angle from which a load case has no loads of the cam; see `checks.lost_loads`."""
+
+    load_case: str
+    cam_angle_deg: float
+    statement: str
+
+
 class SummaryOfAnyRun(TypedDict):
     """Contents of ``run.json`` that every run has."""
 
@@ -167,6 +175,7 @@ class Summary(SummaryOfAnyRun, total=False):
     started: str | None
     valve_train: Json
     governing: str | None
+    load_ends: list[LoadEndRecord]
 
 
 @dataclass(frozen=True, eq=False)
@@ -273,6 +282,7 @@ def read_verdict(path: Path) -> dict[str, Any]:
         "to_be_confirmed": to_be_confirmed(checks),
         "binding": list(binding_of(checks)),
         "governing": governing_id(checks),
+        "load_ends": summary.get("load_ends", []),
         "trials": summary["trials"],
         "scope": summary["scope"],
         "statement": summary["statement"],
@@ -358,6 +368,11 @@ def governing_of(checks: Iterable[AnyCheck]) -> AnyCheck | None:
         if governs(check) and (used := utilisation_of(check)) is not None
     ]
     return min(ranked, key=lambda each: each[:2])[2] if ranked else None
+
+
+def load_end_words(ends: Iterable[LoadEndRecord]) -> str:
+    """Such as ``leaves the cam at 150.5 deg (over-speed)``; "" without any."""
+    return ", ".join(end["statement"] for end in ends)
 
 
 def governs(check: AnyCheck) -> bool:

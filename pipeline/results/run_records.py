@@ -126,19 +126,24 @@ def pressure_arrays(cycles: tuple[Cycle, ...]) -> dict[str, Array]:
 
 
 def headline(torques: Mapping[str, Torque], trial: Trial) -> dict[str, float | None]:
-    """Key figures of the final trial in mm, N and MPa; None where not applicable."""
+    """Key figures of the final trial in mm, N and MPa; None where not applicable.
+
+    Loads are those of the load cases in which the follower neither leaves the cam nor locks.
+    """
     first, contour = trial.cycles[0], trial.contour
     design = torques.get(first.load_case)
+    loaded = [cycle for cycle in trial.cycles if cycle.loads.end is None]
 
-    def over(measure: Callable[[Cycle], Array]) -> float:
-        return float(np.max([np.max(measure(cycle)) for cycle in trial.cycles]))
+    def over(measure: Callable[[Cycle], Array]) -> float | None:
+        worst = max((float(np.max(measure(cycle))) for cycle in loaded), default=np.nan)
+        return worst if np.isfinite(worst) else None
 
     def contact(measure: Callable[[ContactHistory], Array], scale: float) -> float | None:
         known = trial.mesh is not None or trial.depth < Tier.CYCLE
-        worst = over(lambda c: measure(c.contact)) if known else np.nan
-        return scale * worst if np.isfinite(worst) else None
+        worst = over(lambda c: measure(c.contact)) if known else None
+        return None if worst is None else scale * worst
 
-    after = first.turn.torque_after
+    after = first.turn.torque_after if first in loaded else None
     return {
         "torque_std_before_Nm": None if design is None else design.std,
         "torque_std_after_Nm": None if after is None else float(np.std(after)),
@@ -156,7 +161,9 @@ def headline(torques: Mapping[str, Torque], trial: Trial) -> dict[str, float | N
         "von_mises_max_MPa": contact(lambda h: h.von_mises, _MPA),
         "guide_reaction_A_max_N": over(lambda c: np.abs(c.guides.reaction_a)),
         "guide_reaction_B_max_N": over(lambda c: np.abs(c.guides.reaction_b)),
-        "friction_loss_J_per_cam_turn": float(first.loads.friction_loss),
+        "friction_loss_J_per_cam_turn": float(first.loads.friction_loss)
+        if first in loaded
+        else None,
         "p0_difference_max_percent": contact(lambda h: np.abs(h.p0_difference), 100.0)
         if trial.depth >= Tier.CYCLE
         else None,

@@ -12,6 +12,7 @@ import numpy as np
 from camwright.geometry.arrays import Array
 from camwright.geometry.contour import Contour
 from camwright.geometry.lift import Lift
+from camwright.pipeline.base.units import in_unit
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.checks.check import (
     Check,
@@ -23,12 +24,13 @@ from camwright.pipeline.checks.check import (
     verdict,
     within_depth,
 )
+from camwright.pipeline.checks.lost_loads import load_ends
 from camwright.pipeline.checks.tolerance_corners import Outcome
 from camwright.pipeline.contact.contact_history import CertificatePoint
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.cycle import Cycle
 from camwright.pipeline.cycle.solution import ContactMesh, Solution
-from camwright.pipeline.results.run_reader import TrialPointRecord
+from camwright.pipeline.results.run_reader import LoadEndRecord, TrialPointRecord
 
 
 @dataclass(frozen=True)
@@ -153,6 +155,18 @@ class Trial:
     def certificate(self) -> tuple[CertificatePoint, ...]:
         """Angles solved in full; empty unless certified."""
         return self.solution.certificate
+
+    @property
+    def load_ends(self) -> list[LoadEndRecord]:
+        """Records of the load cases in which the follower leaves the cam or locks."""
+        return [
+            {
+                "load_case": end.load_case,
+                "cam_angle_deg": in_unit(end.cam_angle, "deg"),
+                "statement": end.words,
+            }
+            for end in load_ends(self.solution)
+        ]
 
     @property
     def depth(self) -> Tier:

@@ -19,6 +19,7 @@ from camwright.pipeline.results.run_reader import (
     governing_of,
     governs,
     judged,
+    load_end_words,
     utilisation_of,
     within_depth,
 )
@@ -48,13 +49,15 @@ class Places(NamedTuple):
 def summary_lines(document: Mapping[str, Any], places: Places) -> list[str]:
     """Verdict of a run in at most `LINES` lines of `WIDTH` columns.
 
-    Verdict or screen; the worst `WORST` failures with demand, limit and remedy; number of missing
-    keys; headline; governing check, unless it is the first failure; scope; page, trials and time.
+    Verdict or screen; where the follower leaves the cam or locks; the worst `WORST` failures with
+    demand, limit and remedy; number of missing keys; headline; governing check, unless it is the
+    first failure; scope; page, trials and time.
     Only a path makes a line longer.
     """
     checks: Sequence[CheckRecord] = within_depth(document["checks"])
     failed = failures(checks)
     lines = folded(verdict_words(document))
+    lines += [shortened(line) for line in load_end_line(document)]
     for count, record in enumerate(failed[:WORST], 1):
         lines.append(shortened(f"  {count}. {failure_words(record, WIDTH - 5)}"))
         if record.get("remedy"):
@@ -77,6 +80,12 @@ def verdict_words(document: Mapping[str, Any]) -> str:
     if document["verdict"] is None:
         return f"screen: {line}; no verdict below the certified depth"
     return f"verdict: {line}"
+
+
+def load_end_line(document: Mapping[str, Any]) -> list[str]:
+    """Line on the cam angles at which the follower leaves the cam or locks; none without any."""
+    words = load_end_words(document.get("load_ends") or ())
+    return [f"the follower {words}: loads there are not evaluated"] if words else []
 
 
 def failures(checks: Iterable[CheckRecord]) -> list[CheckRecord]:

@@ -124,6 +124,8 @@ def _corrected(check: Check, candidate: Mapping[str, Check], own: Mapping[str, C
     there, here = candidate.get(check.id), own.get(check.id)
     if there is None or here is None:
         return check
+    if check.without or there.without:
+        return _with_margin(there)
     if check.demand is None or there.demand is None or here.demand is None:
         return replace(check, demand=None)
     return _with_margin(replace(check, demand=check.demand + there.demand - here.demand))

@@ -80,7 +80,7 @@ def row_of(trial: Trial, headline: Mapping[str, float | None]) -> Row:
     for one in trial.checks:
         unit = one.unit
         row |= {
-            f"{one.id}.demand": _number(one.worst, unit),
+            f"{one.id}.demand": _number(None if one.is_bound else one.worst, unit),
             f"{one.id}.limit": _number(one.limit, unit),
             f"{one.id}.utilisation": _number(one.utilisation),
             f"{one.id}.status": one.status,

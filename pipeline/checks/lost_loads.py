@@ -1,0 +1,95 @@
+"""Checks of load cases in which the follower leaves the cam or locks.
+
+After it the loads of the cam are not those of the follower: it lands with an impact, or does not
+move. A check that rests on them is made of the other load cases. It fails where they exceed its
+limit; within it, it is not evaluated. The contact force, the jump and what follows from the lift
+alone are judged as they are.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Collection, Iterable, Sequence
+from dataclasses import replace
+from typing import NamedTuple
+
+from camwright.pipeline.base.units import shown
+from camwright.pipeline.checks.check import Check
+from camwright.pipeline.cycle.solution import Solution
+from camwright.pipeline.follower.follower_forces import LEAVES
+
+
+class LoadEnd(NamedTuple):
+    """Load case, cam angle, rad, at which its loads end, and why: leaves the cam, or locks."""
+
+    load_case: str
+    cam_angle: float
+    why: str
+
+    @property
+    def words(self) -> str:
+        """Such as ``leaves the cam at 150.5 deg (over-speed)``."""
+        return f"{self.why} at {shown(self.cam_angle, 'deg')} ({self.load_case})"
+
+
+def load_ends(solution: Solution) -> tuple[LoadEnd, ...]:
+    """End of the loads of each load case that has one."""
+    ends = ((cycle.load_case, cycle.loads.end) for cycle in solution.cycles)
+    return tuple(LoadEnd(name, *end) for name, end in ends if end is not None)
+
+
+def without_lost_loads(checks: Iterable[Check], solution: Solution) -> tuple[Check, ...]:
+    """The checks, those that rest on lost loads made of the other load cases."""
+    ends = load_ends(solution)
+    if not ends:
+        return tuple(checks)
+    left = tuple(end for end in ends if end.why == LEAVES)
+    parts = {"loads": _Parts.of(solution, ends), "contact": _Parts.of(solution, left)}
+    return tuple(_bound(one, parts.get(one.declaration.rests_on)) for one in checks)
+
+
+class _Parts(NamedTuple):
+    """Solution in the load cases with and without lost loads; None without any."""
+
+    lost: Solution
+    sound: Solution | None
+    words: str
+
+    @classmethod
+    def of(cls, solution: Solution, ends: Sequence[LoadEnd]) -> _Parts | None:
+        names = {end.load_case for end in ends}
+        if not names:
+            return None
+        others = {cycle.load_case for cycle in solution.cycles} - names
+        words = f"the follower {', '.join(end.words for end in ends)}"
+        return cls(_in(solution, names), _in(solution, others) if others else None, words)
+
+
+def _bound(one: Check, parts: _Parts | None) -> Check:
+    """Check made of the sound load cases, unless it is not made in the others."""
+    if parts is None:
+        return one
+    there = one.declaration(parts.lost)
+    if there is None or (_unknown(there) and not there.load_case):
+        return one
+    rest = None if parts.sound is None else one.declaration(parts.sound)
+    if rest is None:
+        return replace(one, demand=None, error_share=None, without=parts.words)
+    return replace(rest, without=parts.words)
+
+
+def _unknown(one: Check) -> bool:
+    return one.demand is None or math.isnan(one.demand)
+
+
+def _in(solution: Solution, load_cases: Collection[str]) -> Solution:
+    """The solution in some of its load cases."""
+    return replace(
+        solution,
+        machines=tuple(each for each in solution.machines if each.load_case in load_cases),
+        cycles=tuple(each for each in solution.cycles if each.load_case in load_cases),
+        crank_speed={k: v for k, v in solution.crank_speed.items() if k in load_cases},
+        crank_speed_halved={
+            k: v for k, v in solution.crank_speed_halved.items() if k in load_cases
+        },
+    )

@@ -1,0 +1,135 @@
+"""Checks where the follower leaves the cam or locks: the contact and the jam are the results."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+import pytest
+from made_check import made_check
+
+from camwright.pipeline.case.case import Case
+from camwright.pipeline.case.case_file import parse_case
+from camwright.pipeline.case.machine import Corner
+from camwright.pipeline.checks.check import Check
+from camwright.pipeline.checks.lost_loads import load_ends
+from camwright.pipeline.checks.tolerance_corners import NOMINAL, Outcome, governed
+from camwright.pipeline.contact.tiers import Tier
+from camwright.pipeline.cycle.cycle import Cycle
+from camwright.pipeline.preview import preview_case
+from camwright.pipeline.results.run_reader import status_of
+from camwright.pipeline.results.run_records import headline
+from camwright.pipeline.results.trial import Trial
+from camwright.pipeline.solver import solve
+
+TEXT = (Path(__file__).parents[2] / "cases" / "gx120.toml").read_text(encoding="utf-8")
+OVERSPEED = 'overspeed = "3960 rpm"'
+POSITIONS = 72
+
+
+@cache
+def trial(*changes: tuple[str, str]) -> Trial:
+    """The published cam, which the follower leaves at over-speed; the case with changes."""
+    drawn, text = preview_case(parse_case(TEXT), corners=False).contour, TEXT
+    for old, new in changes:
+        assert old in text
+        text = text.replace(old, new)
+    case: Case = parse_case(text)
+    return solve(case, drawn, tier=Tier.PREVIEW, positions=POSITIONS, corners=False)
+
+
+def checks(made: Trial) -> dict[str, Check]:
+    return {one.id: one for one in made.checks}
+
+
+def cycle(made: Trial, load_case: str) -> Cycle:
+    return next(each for each in made.cycles if each.load_case == load_case)
+
+
+def test_the_loads_of_a_load_case_end_where_the_contact_force_is_zero() -> None:
+    (end,) = load_ends(trial().solution)
+    over = cycle(trial(), "over-speed")
+    force = over.loads.normal_force
+    assert (end.load_case, end.why) == ("over-speed", "leaves the cam")
+    first = int(np.flatnonzero(force <= 0.0)[0])
+    assert force[first - 1] > 0.0
+    assert end.cam_angle == over.theta[first]
+    assert end.words == f"leaves the cam at {math.degrees(end.cam_angle):.4g} deg (over-speed)"
+    assert cycle(trial(), "idle").loads.end is None
+
+
+def test_contact_jump_and_shape_are_judged_as_they_are() -> None:
+    made = checks(trial())
+    contact = made["contact_force_margin"]
+    assert (contact.status, contact.demand, contact.load_case) == ("fail", 0.0, "over-speed")
+    for name in ("jump", "jump_speed", "contact_at_overspeed", "pressure_angle", "cam_unbalance"):
+        assert made[name].evaluated and not made[name].without
+
+
+def test_loads_after_the_follower_has_left_the_cam_are_no_results() -> None:
+    """What rests on them is that of the case without over-speed: fails by it, or says nothing."""
+    made, slower = checks(trial()), checks(trial((OVERSPEED, "")))
+    touched = [one for one in made.values() if one.without]
+    assert {"guide_pv_A", "jam_index", "bore_pressure", "shakedown"} <= {one.id for one in touched}
+    for one in touched:
+        other = slower[one.id]
+        if other.demand is None:
+            assert one.demand is None, one.id
+        else:
+            assert one.demand == pytest.approx(other.demand, rel=1e-12, nan_ok=True), one.id
+        assert one.status == ("fail" if other.status == "fail" else "not_evaluated")
+    assert made["guide_pv_A"].status == "fail" and made["bore_pressure"].status == "not_evaluated"
+    record = made["bore_pressure"].as_record()
+    assert (record["demand"], record["utilisation"], record["load_case"]) == (None, None, "")
+    assert str(record["note"]).startswith("the follower leaves the cam at 155 deg (over-speed)")
+    assert all(status_of(one.as_record()) == one.status for one in touched)
+
+
+def test_a_check_that_is_not_made_in_that_load_case_is_judged() -> None:
+    reduction = checks(trial())["torque_reduction"]
+    assert (reduction.status, reduction.without) == ("pass", "")
+
+
+def test_a_follower_that_locks_is_judged_by_its_jam_alone() -> None:
+    rough = trial(
+        ("friction = 0.04", "friction = 0.6"), ("friction_max = 0.11", "friction_max = 0.7")
+    )
+    ends = {end.load_case: end for end in load_ends(rough.solution)}
+    assert ends["idle"].why == "locks"
+    made, idle = checks(rough), cycle(rough, "idle").loads
+    at = int(np.argmin(np.abs(idle.theta - ends["idle"].cam_angle)))
+    assert idle.jam_index[at] >= 1.0 > idle.jam_index[at - 1] and idle.lift_slope[at] > 0.0
+    assert made["jam_index"].status == "fail" and float(made["jam_index"].demand or 0.0) >= 1.0
+    for name in ("guide_pressure_A", "contact_pressure", "torque_reduction"):
+        assert made[name].demand is None and made[name].status == "not_evaluated"
+
+
+def test_the_headline_has_the_loads_of_the_others() -> None:
+    figures, slower = headline({}, trial()), headline({}, trial((OVERSPEED, "")))
+    for name in ("normal_force_max_N", "p0_max_MPa", "guide_reaction_A_max_N"):
+        assert figures[name] == pytest.approx(slower[name], rel=1e-12)
+    assert figures["normal_force_min_N"] == 0.0
+
+
+@pytest.mark.parametrize(
+    ("nominal", "there", "status"),
+    [(0.5, 0.9, "not_evaluated"), (0.5, 1.1, "fail"), (1.2, 1.1, "fail")],
+)
+def test_loads_lost_at_a_corner_leave_the_other_corners(
+    nominal: float, there: float, status: str
+) -> None:
+    one = made_check("load", nominal, 1.0)
+    tried = [
+        Outcome(NOMINAL, {"load": nominal}),
+        Outcome(Corner("mass high"), {"load": there}, bounds=frozenset({"load"}), lost="the cam"),
+        Outcome(Corner("rate low"), {}, bounds=frozenset({"load"}), lost="the cam"),
+    ]
+    (judged,) = governed([one], tried)
+    assert judged.status == status
+    assert judged.without == "at the tolerance corner mass high the cam"
+    assert judged.as_record()["demand"] == (None if status == "not_evaluated" else nominal)
+    (free,) = governed([replace(one)], tried[:1])
+    assert free.without == ""
