@@ -8,6 +8,7 @@ from functools import partial
 from pathlib import Path
 
 from camwright.geometry.errors import InputError, ResultError
+from camwright.pipeline.base.progress import SILENT, Progress
 from camwright.pipeline.base.worker_processes import Crew, Task
 from camwright.reports import figure_svg, page, pdf, picture_list, scene_page
 from camwright.reports.report_data import FIGURES, Material, read_material
@@ -93,7 +94,10 @@ class Ahead:
 
 
 def report(
-    folder: Path, parts: Iterable[Part] | None = None, ahead: Mapping[str, Task] | None = None
+    folder: Path,
+    parts: Iterable[Part] | None = None,
+    ahead: Mapping[str, Task] | None = None,
+    progress: Progress = SILENT,
 ) -> dict[str, Sequence[Path]]:
     """Write parts of the report of a finished run; nothing is solved.
 
@@ -115,6 +119,11 @@ def report(
         selected = chosen() if parts is None else tuple(parts)
         if any(part.as_png for part in selected):
             (material.folder / FIGURES).mkdir(exist_ok=True)
-        return {part.name: part.write(material) for part in selected}
+        written = {}
+        progress.stage("report")
+        for k, part in enumerate(selected, 1):
+            written[part.name] = part.write(material)
+            progress.advance(k, len(selected))
+        return written
     except OSError as error:
         raise ResultError(f"{folder}: {error.strerror or error}") from None

@@ -13,8 +13,8 @@ from typing import Protocol, Self
 from rich.console import Console
 from rich.progress import (
     BarColumn,
-    MofNCompleteColumn,
     TaskID,
+    TaskProgressColumn,
     TextColumn,
     TimeElapsedColumn,
     TimeRemainingColumn,
@@ -22,8 +22,6 @@ from rich.progress import (
 from rich.progress import (
     Progress as RichProgress,
 )
-
-LINE_EVERY_S = 10.0
 
 
 class Progress(Protocol):
@@ -53,40 +51,29 @@ SILENT = Silent()
 
 
 class Lines:
-    """Plain lines: one a stage, and one every `LINE_EVERY_S` with the remaining time."""
+    """A plain line for each stage and remark, for a file or pipe."""
 
-    def __init__(
-        self, say: Callable[[str], None], clock: Callable[[], float] = time.monotonic
-    ) -> None:
-        self._say, self._clock = say, clock
-        self._name, self._began, self._spoke = "", clock(), clock()
+    def __init__(self, say: Callable[[str], None]) -> None:
+        self._say = say
 
     def stage(self, name: str) -> None:
-        self._name, self._began = name, self._clock()
-        self._spoke = self._began
         self._say(name)
 
-    def advance(self, k: int, total: int) -> None:
-        now = self._clock()
-        if now - self._spoke < LINE_EVERY_S or k <= 0:
-            return
-        self._spoke = now
-        remaining = (now - self._began) * (total - k) / k
-        self._say(f"{self._name}: {k} of {total}, {remaining:.0f} s remain")
+    def advance(self, k: int, total: int) -> None: ...
 
     def note(self, text: str) -> None:
         self._say(text)
 
 
 class Bars:
-    """A bar with the remaining time for each stage; a context manager."""
+    """A bar with percent and remaining time for each stage; a context manager."""
 
     def __init__(self, console: Console) -> None:
         self._console = console
         self._bars = RichProgress(
             TextColumn("{task.description}"),
             BarColumn(),
-            MofNCompleteColumn(),
+            TaskProgressColumn(text_format="{task.percentage:>3.0f} %"),
             TimeElapsedColumn(),
             TextColumn("remaining"),
             TimeRemainingColumn(),

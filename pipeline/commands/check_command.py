@@ -17,6 +17,7 @@ from camwright.pipeline.commands.terminal import (
     INCOMPLETE,
     PASSED,
     page_of,
+    progress_shown,
     say,
     show_all,
     show_failures,
@@ -222,7 +223,9 @@ def _checked_case(path: Path) -> tuple[dict[str, Any], Clock]:
 
     began = time.perf_counter()
     case = read_case(path)
-    trial = preview_case(case)
+    with progress_shown() as progress:
+        progress.stage(f"preview of {case.name}")
+        trial = preview_case(case, progress=progress)
     seconds = time.perf_counter() - began
     checks: list[Any] = [one.as_record() for one in trial.checks]
     document = {

@@ -7,7 +7,13 @@ from typing import Annotated
 
 import typer
 
-from camwright.pipeline.commands.terminal import PASSED, CaseArgument, show_json, stdout
+from camwright.pipeline.commands.terminal import (
+    PASSED,
+    CaseArgument,
+    progress_shown,
+    show_json,
+    stdout,
+)
 
 
 def compare(
@@ -33,7 +39,8 @@ def compare(
     from camwright.reports import smoother_page
 
     design = read_case(case)
-    results = ranked(list(compared(design, engine_torques(design))))
+    with progress_shown() as progress:
+        results = ranked(list(compared(design, engine_torques(design), progress)))
     for line in lines(results):
         stdout.print(line, markup=False)
     if out is not None:
@@ -71,7 +78,8 @@ def validate(
     from camwright.pipeline.studies.papers import validate as studies
     from camwright.reports.validation_page import page
 
-    document = studies()
+    with progress_shown() as progress:
+        document = studies(progress)
     write_atomic(out / "validation.json", json_text(document) + "\n")
     write_atomic(out / "validation.html", page(document))
     counts = ", ".join(f"{name} {number}" for name, number in document["counts"].items())
@@ -94,14 +102,16 @@ def compare_mechanisms(
     from camwright.pipeline.studies.papers.mechanism_comparison import compared, lines
     from camwright.reports import mechanism_figures
 
-    document = compared(case)
+    with progress_shown() as progress:
+        progress.stage("mechanisms")
+        document = compared(case)
+        progress.stage("figures")
+        folder = Path(f"{document['case']}_figures") if out is None else out
+        drawn = mechanism_figures.draw(document, folder)
     if as_json:
         show_json(document)
     else:
         for line in lines(document):
             stdout.print(line, markup=False)
-    folder = Path(f"{document['case']}_figures") if out is None else out
-    drawn = mechanism_figures.draw(document, folder)
-    if not as_json:
         stdout.print(f"figures: {', '.join(path.name for path in drawn)} in {folder}", markup=False)
     return PASSED

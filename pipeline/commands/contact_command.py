@@ -11,6 +11,7 @@ from camwright.pipeline.commands.terminal import (
     PASSED,
     DirArgument,
     NoCacheOption,
+    progress_shown,
     show_json,
     stdout,
     use_cache,
@@ -56,7 +57,9 @@ def contact(
 
     use_cache(not no_cache)
     options = Options(r1, r2, e1, e2, nu1, nu2, line_load, load, width, friction, depth1, depth2)
-    document = solved(options, with_approach=approach, field=field)
+    with progress_shown() as progress:
+        progress.stage("contact")
+        document = solved(options, with_approach=approach, field=field)
     if as_json:
         show_json(document)
     else:

@@ -54,8 +54,9 @@ def inspect(
         part = cam_inspection.inspect_part(
             case, contour, points, keep_phase=keep_phase, jobs=jobs, progress=progress
         )
-    record = cam_inspection.write_inspection(folder, part, band)
-    picture = draw(folder, units.in_unit(band, "um"))
+        progress.stage("pictures")
+        record = cam_inspection.write_inspection(folder, part, band)
+        picture = draw(folder, units.in_unit(band, "um"))
     if as_json:
         show_json(record)
     else:

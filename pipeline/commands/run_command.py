@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Sequence
 from contextlib import nullcontext
 from pathlib import Path
@@ -102,10 +101,10 @@ def run(
                 ahead=None if no_report else drawings.begin,
                 also=valve_record,
             )
-    from camwright.pipeline.results.run_reader import read_verdict
+    from camwright.pipeline.results.run_reader import read_summary, read_verdict
     from camwright.pipeline.results.verdict_summary import Places
 
-    seconds = time.perf_counter() - process_began()
+    seconds = read_summary(out)["timings_s"]["total"]
     show(read_verdict(out), Places(str(out), str(case), page_of(out), seconds))
     return PASSED
 
@@ -141,8 +140,7 @@ def report(
     names = [part.name for part in sections.chosen(only or (), png=png)]
     names += ["pdf"] if pdf else []
     with progress_shown() as shown:
-        shown.stage("report")
-        made = sections.report(folder, sections.chosen(names))
+        made = sections.report(folder, sections.chosen(names), progress=shown)
     for name, files in made.items():
         stdout.print(f"{name}: {_listed(files)}", markup=False)
     if show:

@@ -78,7 +78,7 @@ def use_cache(enabled: bool) -> None:
 
 @contextmanager
 def progress_shown() -> Iterator[Progress]:
-    """Progress bars on a terminal, plain lines elsewhere; on the error stream."""
+    """Progress bars on a terminal, a line a stage elsewhere; on the error stream."""
     if stderr.is_terminal:
         with Bars(stderr) as bars:
             yield bars

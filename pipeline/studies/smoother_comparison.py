@@ -11,6 +11,7 @@ import numpy as np
 
 from camwright.geometry.errors import CamError, InputError
 from camwright.geometry.lift import Lift
+from camwright.pipeline.base.progress import SILENT, Progress
 from camwright.pipeline.base.units import in_unit
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.checks.check import Check, in_order, verdict, within_depth
@@ -92,7 +93,9 @@ class Compared:
         return self.ripple() < _USELESS * self.ripple("initial")
 
 
-def compared(case: Case, torques: Mapping[str, Torque]) -> Iterator[Compared]:
+def compared(
+    case: Case, torques: Mapping[str, Torque], progress: Progress = SILENT
+) -> Iterator[Compared]:
     """Results of all smoothers, the constrained synthesis last.
 
     Raises
@@ -103,7 +106,9 @@ def compared(case: Case, torques: Mapping[str, Torque]) -> Iterator[Compared]:
     if not torques:
         raise InputError("engine", "missing", "specified: smoothers act on its torque")
     case = case.with_positions(_POSITIONS)
-    for smoother in _SMOOTHERS:
+    progress.stage("smoothers")
+    for k, smoother in enumerate(_SMOOTHERS):
+        progress.advance(k, len(_SMOOTHERS) + 1)
         words = smoother.width_in_words
         try:
             contour = case.contour(cam_lift(case, torques, smoother))
@@ -112,6 +117,7 @@ def compared(case: Case, torques: Mapping[str, Torque]) -> Iterator[Compared]:
             yield Compared(smoother.kind, words, trial.lift, record, width)
         except CamError as error:
             yield _without(smoother.kind, words, error, smoother.angular_width)
+    progress.advance(len(_SMOOTHERS), len(_SMOOTHERS) + 1)
     try:
         yield _constrained(case)
     except CamError as error:

@@ -28,6 +28,7 @@ from collections.abc import Mapping
 from importlib import import_module
 from typing import Any
 
+from camwright.pipeline.base.progress import SILENT, Progress
 from camwright.pipeline.studies.papers.published_figures import (
     PaperResult,
     citations,
@@ -43,11 +44,13 @@ PAPERS: Mapping[str, str] = {
 }
 
 
-def validate() -> dict[str, Any]:
+def validate(progress: Progress = SILENT) -> dict[str, Any]:
     """Contents of ``validation.json``: published and computed values with verdicts."""
-    results: dict[str, PaperResult] = {
-        paper: import_module(module).study(targets(paper)) for paper, module in PAPERS.items()
-    }
+    results: dict[str, PaperResult] = {}
+    progress.stage("papers")
+    for paper, module in PAPERS.items():
+        results[paper] = import_module(module).study(targets(paper))
+        progress.advance(len(results), len(PAPERS))
     rows = []
     for target in targets().values():
         result = results.get(target.paper)
