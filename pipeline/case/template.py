@@ -1,212 +1,348 @@
-"""Case file written by `camwright init`: short, commented, ready to run."""
+"""First case of each kind, written by `camwright init`: complete, commented, within its limits.
+
+The kinds differ at the source alone: a cylinder model, a measurement on the engine of that model,
+or a lift. The machine is the same.
+"""
 
 from __future__ import annotations
 
+import tomllib
+from typing import Literal, NamedTuple, get_args
+
 from camwright.geometry.errors import InputError
+from camwright.pipeline.case.case import Case
+from camwright.pipeline.case.case_file import case_of
+from camwright.pipeline.case.load_case_torque import engine_torque
 from camwright.pipeline.case.section import SAFE_NAME
+from camwright.pipeline.engine.crankshaft import Inertia, crank_motion
+from camwright.pipeline.engine.cylinder import CylinderEngine
+from camwright.pipeline.engine.indicated_cycle_solver import working_cycle
+from camwright.pipeline.engine.modelled_trace import (
+    pressure_text,
+    tooth_times_text,
+    torque_text,
+    voltage_text,
+)
+from camwright.pipeline.engine.speed_trace import WheelTable
+
+Kind = Literal["cylinder", "table", "pressure", "speed", "voltage", "lift", "eccentric"]
+KINDS: tuple[Kind, ...] = get_args(Kind)
 
 
-def template(name: str) -> str:
-    """Text of a new case file.
+class FirstCase(NamedTuple):
+    """Text of a case file, and name and text of the data file that it reads; "" without one."""
+
+    text: str
+    data_name: str
+    data: str
+
+
+def first_case(name: str, kind: str = "cylinder") -> FirstCase:
+    """The first case of a kind.
 
     Raises
     ------
     InputError
-        If the name is not valid for a folder.
+        If the name is not valid for a folder, or the kind is unknown.
     """
     if not SAFE_NAME.fullmatch(name):
         raise InputError("name", name, "1 to 40 letters, digits, '_', '-' or '.'")
-    return _TEMPLATE.replace("@NAME@", name)
+    known = next((each for each in KINDS if each == kind), None)
+    if known is None:
+        raise InputError("--kind", kind, f"one of: {', '.join(KINDS)}")
+    text = _text(name, known)
+    if known not in _MEASURED:
+        return FirstCase(text, "", "")
+    return FirstCase(text, _data_name(name, known), _data(known, _case(text)))
 
 
-_TEMPLATE = """\
-# A balancing cam. Run it with:  camwright run @NAME@.toml --out runs/@NAME@
+def _text(name: str, kind: Kind) -> str:
+    balances = kind not in ("lift", "eccentric")
+    parts = (_HEAD, _SOURCES[kind], _MACHINE, _BALANCE if balances else "", _REQUIREMENTS)
+    text = "\n".join(part for part in parts if part).replace("@NAME@", name)
+    reduction = _REDUCTION if balances else ""
+    return text.replace("@DATA@", _data_name(name, kind)).replace("@REDUCTION@", reduction)
+
+
+def _data_name(name: str, kind: Kind) -> str:
+    return f"{name}_{_MEASURED.get(kind, kind)}.csv"
+
+
+def _case(text: str) -> Case:
+    """A case without its data file, which is still to be written."""
+    return case_of(tomllib.loads(text))
+
+
+def _data(kind: Kind, case: Case) -> str:
+    """What would be measured on the engine of the kind `cylinder`."""
+    modelled = _case(_text("modelled", "cylinder"))
+    engine, state = modelled.engine, modelled.load_cases[0]
+    if not isinstance(engine, CylinderEngine):
+        raise InputError("engine.kind", kind, "cylinder")
+    if kind == "pressure":
+        return pressure_text(working_cycle(engine, state.speed))
+    torque = engine_torque(modelled, state)
+    if kind == "table" or case.crankshaft is None or not isinstance(case.engine, WheelTable):
+        return torque_text(torque)
+    inertia = Inertia.constant_only(case.crankshaft.inertia, torque.theta_crank.size)
+    speed = crank_motion(torque.total, inertia, state.speed).speed
+    write = voltage_text if kind == "voltage" else tooth_times_text
+    return write(speed, case.engine.wheel)
+
+
+_MEASURED: dict[Kind, str] = {
+    "table": "torque", "pressure": "pressure", "speed": "tooth_times", "voltage": "voltage",
+}  # fmt: skip
+"""Quantity of the data file of a kind, as in its name."""
+
+_HEAD = """\
+# A first case: complete, and within all limits. Change one thing at a time, and look again:
+#   camwright check @NAME@.toml
 #
-# A number with a dimension is written as text with its unit: "24.2 kN/m", "60 deg", "1500 rpm".
-# Keys left out have their defaults; case.toml in the run folder states all of them.
+# A number with a dimension is written as text with its unit: "100 kN/m", "60 deg", "1500 rpm".
+# A card fills in what its table leaves out; keys left out have their defaults, and case.toml in
+# the run folder states all of them. Values without a source are those of an example.
 
 schema_version = 1
 name = "@NAME@"
 title = "What is this design for?"
+"""
 
-# --- The torque to balance. Crank angle 0: top dead centre where intake starts; 360 deg: firing.
-# Measured torque instead of a model: kind = "table" and file = "torque.csv", in the same folder,
-# with a column of angle and one of torque, units in the header.
-[engine]
-kind = "cylinder"
+_CRANK_DRIVE = """\
 bore = "60 mm"
 crank_radius = "21 mm"               # half of the stroke
 rod_length = "73 mm"
 compression_ratio = 8.5
 piston_mass = "144 g"                # with rings and pin
 rod_mass = "123 g"
-intake_pressure = "28 kPa"           # at idle the throttle is nearly shut
+"""
+
+_CRANKSHAFT = """
+[crankshaft]
+inertia = "0.0139 kg m^2"            # of all that turns: it makes a torque of the speed
+"""
+
+_SOURCES: dict[Kind, str] = {
+    "cylinder": f"""\
+# --- The torque to balance, of a cylinder model. Crank angle 0: top dead centre where intake
+# starts; 360 deg: firing.
+[engine]
+kind = "cylinder"
+{_CRANK_DRIVE}\
+intake_pressure = "30 kPa"           # at idle the throttle is nearly shut
 spark = "335 deg"                    # 25 deg before firing top dead centre
 burn_duration = "80 deg"
-# friction_pressure = "165 kPa"      # left out: the friction that closes the torque balance
+""",
+    "table": """\
+# --- The torque to balance, from a table: a column of crank angle over 720 deg, one of torque,
+# units in the header. Crank angle 0: top dead centre where intake starts.
+[engine]
+kind = "table"
+file = "@DATA@"
+""",
+    "pressure": f"""\
+# --- The torque to balance, from the cylinder pressure: a column of crank angle over 720 deg, one
+# of pressure for each cycle. Crank angle 0: top dead centre where intake starts; 360 deg: firing.
+[engine]
+kind = "pressure"
+file = "@DATA@"
+# intake_pressure = "30 kPa"         # pegs a sensor that does not measure absolute pressure
+{_CRANK_DRIVE}""",
+    "speed": f"""\
+# --- The torque to balance, from the speed of the crank: times of the edges of a trigger wheel,
+# rising and falling in turn, a column for each run.
+[engine]
+kind = "speed"
+file = "@DATA@"
+teeth = 36                           # pitches of the wheel, with
+missing_teeth = 2                    # a gap
+reference_angle = "0 deg"            # crank angle of the first rising edge after the gap
+{_CRANKSHAFT}""",
+    "voltage": f"""\
+# --- The torque to balance, from the speed of the crank: voltage of an inductive pick-up at a
+# trigger wheel, a column of time and one of voltage for each run.
+[engine]
+kind = "voltage"
+file = "@DATA@"
+teeth = 36                           # pitches of the wheel, with
+missing_teeth = 2                    # a gap
+reference_angle = "0 deg"            # crank angle of the middle of the first tooth after the gap
+{_CRANKSHAFT}""",
+    "lift": """\
+# --- The lift: rises, dwells and returns that fill the turn. Other laws: harmonic,
+# modified_sine, polynomial_345, polynomial_4567 and more.
+[lift]
+kind = "segments"
+segment = [
+    { law = "cycloidal", angle = "120 deg", stroke = "10 mm" },
+    { law = "dwell", angle = "60 deg" },
+    { law = "cycloidal", angle = "120 deg", stroke = "-10 mm" },
+    { law = "dwell", angle = "60 deg" },
+]
+""",
+    "eccentric": """\
+# --- The lift: of a circular disc
+[lift]
+kind = "eccentric"
+eccentricity = "5 mm"                # half of the lift
+""",
+}
 
+_MACHINE = """\
+# --- The mechanism: parts by their cards where there are any, else as drawn
 [mechanism]
 gear_ratio = 2.0                     # crank turns per cam turn
 
-# --- The mechanism
 [spring]
-rate = "24.2 kN/m"
-preload = "400 N"                    # at the smallest cam radius
-# travel_max = "40 mm"
-# catalogue = "shipped"              # or a file: selects the lightest spring for travel_max
+rate = "100 kN/m"
+preload = "1000 N"                   # at the smallest cam radius
+travel_max = "16 mm"
+
+[spring.design]
+card = "chrome_silicon"              # wire; also music_wire, chrome_vanadium and others
+wire_diameter = "8 mm"
+mean_diameter = "44 mm"
+coils = 4.64
+free_length = "86 mm"
+treatment = "peened"
+temperature = "60 degC"
+relaxation = 0.005                   # share of the force lost: ask the maker
 
 [cam]
-prime_radius = "60 mm"          # smallest radius of the roller's CENTRE
-width = "10 mm"
-bore_radius = "10 mm"
-material = "hardened_steel"
-# [cam.keyway]
-# width = "6 mm"
-# depth = "2.8 mm"
-# [cam.key]                          # height, shaft_depth and chamfer: DIN 6885 by the width
-# length = "14 mm"                   # of form A, its round ends included
-# material = "hardened_steel"
-# [cam.counter_hole]                 # hole that removes the unbalance
-# wall = "3 mm"
+prime_radius = "60 mm"               # smallest radius of the roller's CENTRE
+width = "17.5 mm"
+bore_radius = "15 mm"
+material = "case_hardened"
+roughness = "0.3 um"
+profile_tolerance = "8 um"           # ground; for waves of waviness_length, 5 mm
+keyway = { width = "8 mm", depth = "3.3 mm" }
+key = { length = "17 mm", form = "B", material = "c45" }
 
-# [camshaft]                         # for the checks of its fatigue, bearings and gear
-# bearing_spacing = "60 mm"
-# cam_position = "20 mm"             # from the first bearing; overhung places may be negative
-# gear_position = "-15 mm"
-# gear_radius = "20 mm"
-# diameter = "20 mm"
-# material = "hardened_steel"        # with fatigue_bending and tensile_strength
-# bearing_rating = "9.95 kN"
-# bearing_static_rating = "5.0 kN"
-# slip_torque = "0 N m"              # of a press or clamped seat of the cam; 0: sliding fit
-# rotor_mass = "1.2 kg"              # of cam, shaft and gear, for the unbalance
+[camshaft]
+bearing_spacing = "70 mm"
+cam_position = "35 mm"               # from the first bearing; overhung places may be negative
+gear_position = "-25 mm"
+gear_radius = "40 mm"
+diameter = "30 mm"
+material = "c45"
+surface = "ground"
+drag = "0.1 N m"
+bearing_rating = "14 kN"             # of a 6205, on seats of 25 mm
+bearing_static_rating = "7.8 kN"
+rotor_mass = "1.8 kg"                # cam, gear and shaft
+slip_torque = "120 N m"              # the cam shrunk on; 0 N m: sliding fit
+counterweight = { residual = "20 g mm", position = "35 mm" }  # balanced on a bench
+
+[camshaft.gear]
+teeth = 40
+pinion_teeth = 20
+width = "20 mm"
+material = "case_hardened"
+bending_limit = "430 MPa"
+contact_limit = "1500 MPa"
+pinion_bending_limit = "430 MPa"
+pinion_contact_limit = "1500 MPa"
+source = "ISO 6336-5, case-hardened steel, quality MQ, recalled: verify"
 
 [roller]
-radius = "16 mm"
-width = "11 mm"
-chamfer = "0.5 mm"
-hub_radius = "8 mm"                  # pin or inner ring
-material = "hardened_steel"
+radius = "23.5 mm"
+width = "17.5 mm"
+chamfer = "0.6 mm"
+hub_radius = "11.5 mm"               # shoulder of the inner ring
+axial_offset = "0.3 mm"
+friction = 0.10                      # oiled steel on steel
+roughness = "0.1 um"
+material = "bearing_steel"
 
-[roller.bearing]                     # ratings of its maker; a check without them is not evaluated
-name = "track roller, 32 mm"
-C = "6.8 kN"
-C0 = "8.3 kN"
-speed_limit = "6500 rpm"
-# fatigue_load_limit = "350 N"       # P_u; with viscosity and contamination for the modified life
-# viscosity = "30 mm^2/s"            # of the oil or base oil, in operation
-# contamination = "normal_cleanliness"
-# lubrication = "grease_for_life"    # or "grease_relubricated", "oil"
-# temperature = "343.15 K"           # for the life of the grease
-# radial_limit = "4 kN"              # F_r,max and F_0r,max of an outer ring that rolls on a cam
-# static_radial_limit = "6 kN"
-source = "made up for this template: replace by the maker's table"
+[roller.bearing]
+card = "track_roller_47x18"          # 47 x 17.5 mm: compare with the maker's table
+static_radial_limit = "8.3 kN"
+lubrication = "oil"
+viscosity = "27 mm^2/s"              # ISO VG 150 at 80 degC
+contamination = "normal_cleanliness"
 
-# [roller.pin]
-# diameter = "10 mm"
-# span = "17 mm"                     # between the middles of the cheeks
-# material = "hardened_steel"
+[roller.pin]
+diameter = "17 mm"
+span = "23 mm"                       # between the middles of the cheeks
+material = "case_hardened"
 
-# [roller.fork]
-# cheek_width = "6 mm"               # of each of two cheeks; height, length and bridge for the mass
-# cheek_height = "16 mm"
-# cheek_length = "22 mm"
-# bridge_length = "8 mm"
-# material = "hardened_steel"
+[roller.fork]
+cheek_width = "5 mm"
+cheek_height = "22 mm"
+cheek_length = "26 mm"
+bridge_length = "4 mm"
+material = "c45"
 
 [follower]
-mass = "250 g"                       # with the roller and half of the spring
-stem_diameter = "12 mm"
-stem_material = "hardened_steel"
-overhang_at_max_lift = "30 mm"       # from guide A to the roller's centre
-anti_rotation = "flat"               # or key, square, guided_fork; not_needed by a flat face
-# kind = "flat"                      # with a table [follower.face] instead of [roller]: see README
+mass = "1.1 kg"                      # all that moves, with a third of the spring
+stem_diameter = "20 mm"
+stem_length = "220 mm"
+stem_material = "c45"
+overhang_at_max_lift = "50 mm"       # from guide A to the roller's centre
+anti_rotation = "guided_fork"
 
 [guides]
-spacing = "80 mm"                    # middle to middle
-ambient_temperature = "40 degC"      # of the air that cools the housing
+spacing = "132 mm"                   # middle to middle
+ambient_temperature = "60 degC"
 
 [guides.a]                           # next to the cam
-length = "24 mm"
-diameter = "12 mm"
-friction = 0.04                      # friction_min and friction_max bound it; of a nylon bush
-                                     # lubrication, "dry" to "flooded", grades the PV limit
-clearance = "0.05 mm"
+card = "ptfe_lined"                  # bush; also bronze, sintered_bronze, pom and others
+length = "30 mm"
+diameter = "20 mm"
 wall = "1.5 mm"
-housing_resistance = "2 K/W"         # from the outside of the bush to the ambient; assumed
-material = "bronze"
-pressure_limit = "14 MPa"            # pressure_limit_temperature: where it holds above 20 degC
-speed_limit = "6 m/s"                # assumed: take it from the maker's table, as all limits
-pv_limit = "1.75 MPa m/s"
-# wear_rate = "1e-7 mm^3/N/m"        # of the maker, for the wear at limits.target_life
-source = "Mott, Machine Elements in Mechanical Design, porous bronze, oiled"
+clearance = "0.03 mm"
+housing_resistance = "1 K/W"
+wear_rate = "3e-8 mm^3/N/m"
 
 [guides.b]
-length = "24 mm"
-diameter = "12 mm"
-friction = 0.04
-clearance = "0.05 mm"
+card = "ptfe_lined"
+length = "30 mm"
+diameter = "20 mm"
 wall = "1.5 mm"
-housing_resistance = "2 K/W"
-material = "bronze"
-pressure_limit = "14 MPa"
-speed_limit = "6 m/s"
-pv_limit = "1.75 MPa m/s"
-source = "as guide A"
+clearance = "0.03 mm"
+housing_resistance = "1 K/W"
+wear_rate = "3e-8 mm^3/N/m"
 
-# --- Materials, each with the source of its values
-[materials.hardened_steel]
-E = "210 GPa"
-nu = 0.3
-yield_strength = "1200 MPa"
-endurance_pressure = "1490 MPa"      # p0 for 1e8 cycles of rolling with some sliding
-density = "7850 kg/m^3"
-expansion = "1.2e-5 1/K"             # with that of the bush, for the clearance when warm
-condition = "AISI 4340, induction hardened, 50 to 58 HRC"
-source = "endurance: Rothbart, Cam Design Handbook (2004), table 9.3; yield assumed"
+[lubricant]
+card = "iso_vg_150"
+temperature = "80 degC"
 
-[materials.bronze]
-E = "110 GPa"
-nu = 0.34
-yield_strength = "150 MPa"
-# strength_at = [{ temperature = "150 degC", yield_strength = "120 MPa" }]  # above 100 degC
-density = "8800 kg/m^3"
-conductivity = "60 W/m/K"
-temperature_limit = "150 degC"
-expansion = "1.8e-5 1/K"
-source = "assumed"
+[materials]
+case_hardened = { card = "case_hardened" }
+bearing_steel = { card = "bearing_steel" }
+c45 = { card = "c45" }
+"""
 
-# --- Smoothing, limits and solver
+_BALANCE = """\
+# --- The lift of least torque ripple within all limits
 [smoothing]
-# or none, gaussian, harmonic, savitzky_golay, smoothing_spline; "constrained" minimises ripple
-# and loss by their weights within all limits, over the values that `free` names
-kind = "moving_average"
-points = 12
-spacing = "5 deg"                    # crank angle: 12 points make a window of 60 deg
+kind = "constrained"                 # or a filter of the torque: moving_average, gaussian, ...
+corners = true                       # within the limits at the ends of all tolerances
+jerk_weight = 2.0                    # more: smoother lift, less ripple removed
+rest_force_weight = 0.2              # more: weaker spring force, less ripple removed
+"""
 
+_REDUCTION = """
+torque_reduction = 0.4               # least reduction of the torque ripple"""
+
+_REQUIREMENTS = """\
+# --- Requirements without a default
 [limits]
-pressure_angle = "30 deg"
-torque_reduction = 0.4               # minimum reduction of the torque ripple
-# curvature_rate = "0.01 1/mm^2"     # maximum change of the contour curvature per length
-# tool_radius = "10 mm"              # concave radii at least a tenth above it
+overspeed = "1650 rpm"               # greatest speed that the machine can reach@REDUCTION@
+roller_life = "1000 h"
+shaft_bearing_life = "1000 h"
+target_life = "1000 h"               # for wear and fatigue
+tool_radius = "25 mm"                # grinding wheel or cutter
+cam_radius = "90 mm"                 # room for the cam
 
-[limits.sources]
-torque_reduction = "what this design is for"
+[tolerances]
+source = "the profile is ground; the rest: defaults"
 
 [solver]
-positions = 72                       # per cam turn; 720 for a final run
-max_trials = 3                       # number of lifts, each smoother than the last
-certificate_positions = 1            # cam angles solved in full
+positions = 72                       # per cam turn; 720 for a sign-off
 
-# --- Workshop files
-[workshop]
-table_step = "0.5 deg"               # step of the contour table, 0.1 to 1 deg
-# tool_radius = "10 mm"              # cutter or grinding wheel; left out: that of the roller
-# chord_error = "1 um"               # of the polyline of the drawing
-
-# --- Load cases, one table each
+# --- Load cases, one table each; standstill and over-speed are judged besides
 [[load_case]]
-name = "idle"
-speed = "1500 rpm"
-# duty = 1.0                         # share of the operating time, 1 in sum, for life and wear
+name = "running"
+speed = "1500 rpm"                   # of the crank
 """

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Sequence
 from contextlib import nullcontext
 from pathlib import Path
@@ -165,17 +166,30 @@ def _open(page: Path) -> None:
 
 def init(
     name: Annotated[str, typer.Argument(metavar="NAME", help="Name of the new case.")],
+    kind: Annotated[
+        str,
+        typer.Option(
+            metavar="cylinder|table|pressure|speed|voltage|lift|eccentric",
+            help="Source of the cam: an engine as a cylinder model, or measured as torque, "
+            "cylinder pressure, tooth times or pick-up voltage; a lift; an eccentric.",
+        ),
+    ] = "cylinder",
 ) -> int:
-    """Write NAME.toml, a commented case file."""
-    from camwright.pipeline.case.template import template
+    """Write NAME.toml, a commented case that passes, and the data file that it reads."""
+    from camwright.pipeline.case.template import first_case
 
     name = name.removesuffix(TEMPLATE_SUFFIX)
-    text = template(name)
-    path = Path(f"{name}{TEMPLATE_SUFFIX}")
-    try:
-        with path.open("x", encoding="utf-8") as file:
+    first = first_case(name, kind)
+    texts = {Path(f"{name}{TEMPLATE_SUFFIX}"): first.text}
+    if first.data_name:  # written first: a case is never without its data
+        texts = {Path(first.data_name): first.data} | texts
+    for path in texts:
+        if os.path.lexists(path):
+            raise ResultError(f"{path}: exists already, not overwritten")
+    for path, text in texts.items():
+        with path.open("x", encoding="utf-8", newline="") as file:
             file.write(text)
-    except FileExistsError:
-        raise ResultError(f"{path}: exists already, not overwritten") from None
-    stdout.print(f"wrote {path}; next: camwright run {path} --out runs/{name}", markup=False)
+    *_, case = texts
+    stdout.print(f"wrote {', '.join(str(path) for path in texts)}", markup=False)
+    stdout.print(f"next: camwright run {case} --out runs/{name}", markup=False)
     return PASSED

@@ -20,6 +20,7 @@ In the order of the calculation:
 | `speed_trace`            | measured crank speed, its torque            | omega, rad/s; T, N m    |
 | `pickup_voltage`         | edges from the voltage of a pick-up         | U, V; t, s              |
 | `torque_consistency`     | torque, speed, inertia and work compared    | J, kg m2; E, J          |
+| `modelled_trace`         | trace files of a modelled engine            | T, N m; p, Pa; t, s; V  |
 
 Imports `geometry` and `pipeline.base`.
 """

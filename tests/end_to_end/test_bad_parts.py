@@ -7,9 +7,9 @@ import sys
 from pathlib import Path
 
 import pytest
+from small_machine import small_machine
 
 from camwright.pipeline import cli
-from camwright.pipeline.case.template import template
 
 CARD = """
 [bearings.own]
@@ -95,7 +95,7 @@ def moving(text: str) -> str:
 def test_refused_with_the_reason(monkeypatch, capsys, tmp_path: Path, old, new, said) -> None:
     monkeypatch.chdir(tmp_path)
     Path("cards.toml").write_text(CARD.format(rest=""))
-    text = moving(template("bad"))
+    text = moving(small_machine("bad"))
     assert old in text
     Path("bad.toml").write_text(text.replace(old, new))
     assert camwright(monkeypatch, "run", "bad.toml", "--out", "out", "--positions", 36) == 2
@@ -109,7 +109,7 @@ def test_a_spring_that_goes_solid_fails_a_check(monkeypatch, capsys, tmp_path: P
     """With a bearing of one's own card besides: what its C0 says is in the checks."""
     monkeypatch.chdir(tmp_path)
     Path("cards.toml").write_text(CARD.format(rest='C0 = "0.5 kN"'))
-    text = moving(template("solid"))
+    text = moving(small_machine("solid"))
     start, stop = text.index("[roller.bearing]"), text.index("[follower]")
     Path("solid.toml").write_text(text[:start] + '[roller.bearing]\ncard = "own"\n' + text[stop:])
     assert camwright(monkeypatch, "run", "solid.toml", "--out", "out", "--positions", 36) == 0

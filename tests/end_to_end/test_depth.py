@@ -7,10 +7,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from small_machine import small_machine
 
 from camwright.geometry.errors import InputError, ResultError
 from camwright.pipeline.case.case_file import parse_case
-from camwright.pipeline.case.template import template
 from camwright.pipeline.checks.registry import DECLARED
 from camwright.pipeline.commands.check_command import check
 from camwright.pipeline.contact.tiers import Tier
@@ -26,7 +26,7 @@ CLOSED_FORMS = (Tier.SCREENING, Tier.PREVIEW)
 def shallow(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The run of a new case by closed forms, without its page."""
     out = tmp_path_factory.mktemp("shallow") / request.param.word
-    run_case(parse_case(template("small")), out, depth=request.param, positions=36)
+    run_case(parse_case(small_machine("small")), out, depth=request.param, positions=36)
     return out
 
 

@@ -17,13 +17,13 @@ from types import ModuleType
 
 import numpy as np
 import pytest
+from small_machine import small_machine
 
 from camwright.geometry import motion_laws
 from camwright.pipeline.base.tables import table
 from camwright.pipeline.case import limits
 from camwright.pipeline.case.case_file import case_of, read_case
 from camwright.pipeline.case.renamed_keys import with_new_keys
-from camwright.pipeline.case.template import template
 from camwright.pipeline.checks import cam_shape
 from camwright.pipeline.cli import app
 from camwright.pipeline.cycle import cycle
@@ -143,7 +143,7 @@ def test_the_laws_of_contributing_are_laws() -> None:
 
 def test_the_column_of_contributing_is_a_column() -> None:
     (column,) = fragments("An output column")
-    case = case_of(tomllib.loads(template("demo"))).with_positions(36)
+    case = case_of(tomllib.loads(small_machine("demo"))).with_positions(36)
     turn = preview_case(case, corners=False).cycles[0].turn
     made = eval(column, {**vars(cycle), "loads": turn.loads, "turn": turn})
     np.testing.assert_allclose(
@@ -174,7 +174,7 @@ def test_readme_lists_every_command() -> None:
 )
 def test_toml_snippets_fit_into_a_case(page: str, block: str) -> None:
     given = tomllib.loads(block)
-    case = tomllib.loads(template("demo")) | given
+    case = tomllib.loads(small_machine("demo")) | given
     if "lift" in given:
         del case["engine"]
     if given.get("follower", {}).get("kind") == "flat":
@@ -196,7 +196,7 @@ def test_error_lines_are_the_real_ones(tmp_path: Path) -> None:
     (example,) = blocks("docs/case-file.md", "text")
     changes = (('rate = "24.2 kN/m"', 'rate = "-24.2 kN/m"'), ('radius = "16 mm"', 'radus = "1"'))
     for (old, new), line in zip(changes, example.splitlines(), strict=True):
-        text = template("demo").replace(old, new)
+        text = small_machine("demo").replace(old, new)
         (tmp_path / "bad.toml").write_text(text, encoding="utf-8")
         result = shell("camwright run bad.toml --out run", tmp_path)
         assert (result.returncode, result.stderr.rstrip()) == (2, line)

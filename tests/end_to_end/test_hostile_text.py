@@ -16,13 +16,13 @@ import pytest
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "unit"))
 import small_run
+from small_machine import small_machine
 
 from camwright.geometry.arrays import uniform_turn
 from camwright.geometry.errors import InputError
 from camwright.geometry.lift import Lift
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_file import parse_case
-from camwright.pipeline.case.template import template
 from camwright.pipeline.results import run_reader, signoff
 from camwright.pipeline.results.junit_report import junit, junit_suite
 from camwright.pipeline.results.run_folder import RunFolder
@@ -40,7 +40,7 @@ def case() -> Case:
         f"title = {json.dumps(LONG, ensure_ascii=False)}",
         f"notes = {json.dumps(LONG, ensure_ascii=False)}",
     ]
-    text = template("hostile").replace('title = "What is this design for?"', "\n".join(lines))
+    text = small_machine("hostile").replace('title = "What is this design for?"', "\n".join(lines))
     quoted = json.dumps(HARM + ABROAD, ensure_ascii=False)
     return parse_case(text.replace('"what this design is for"', quoted))
 
@@ -117,4 +117,4 @@ def test_workshop_files_lie_in_a_folder_of_any_name_and_read_back(tmp_path: Path
 def test_what_steers_a_terminal_or_turns_a_text_round_is_refused(letter: str) -> None:
     escaped = json.dumps(f"a{letter}b")
     with pytest.raises(InputError, match="printable text"):
-        parse_case(template("part").replace('"What is this design for?"', escaped))
+        parse_case(small_machine("part").replace('"What is this design for?"', escaped))

@@ -7,12 +7,12 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from small_machine import small_machine
 
 from camwright.pipeline.base.tables import CAM_ANGLE, CRANK_ANGLE, LOAD_CASE, Column, Values
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_file import parse_case
 from camwright.pipeline.case.scope_section import Scope
-from camwright.pipeline.case.template import template
 from camwright.pipeline.results import run_reader
 from camwright.pipeline.results.run_folder import RunFolder
 
@@ -38,7 +38,7 @@ TORQUE = (CRANK_ANGLE, Column("total", "N m"))
 
 
 def small_case(name: str = "small") -> Case:
-    return parse_case(template(name))
+    return parse_case(small_machine(name))
 
 
 def values(columns: tuple[Column, ...], rows: int = ROWS) -> dict[Column, Any]:

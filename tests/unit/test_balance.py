@@ -7,6 +7,7 @@ import ezdxf
 import numpy as np
 import pytest
 from cam_parts import mesh_area
+from small_machine import small_machine
 
 from camwright.geometry.arrays import uniform_turn
 from camwright.geometry.contour import RollerContour
@@ -17,7 +18,6 @@ from camwright.meshes.body_mesh import cam_mesh
 from camwright.meshes.element_size import Sizing
 from camwright.pipeline.case.case_file import parse_case
 from camwright.pipeline.case.machine import machines
-from camwright.pipeline.case.template import template
 from camwright.pipeline.checks.part_strength import cam_unbalance
 from camwright.pipeline.contact.certificate import solve_pair
 from camwright.pipeline.contact.tiers import Tier
@@ -43,7 +43,7 @@ SLIGHT, HEAVY = a_cam(2e-3), a_cam(16e-3)
 
 
 def case_of(extra=""):
-    return parse_case(template("balance") + KEY + extra)
+    return parse_case(small_machine("balance") + KEY + extra)
 
 
 def moments_by_sectors(contour, cam, hole):
@@ -124,7 +124,7 @@ def solved(case, contour):
 
 
 def test_the_check_judges_the_cam_as_it_is_made():
-    plain = template("balance").replace("[limits]", '[limits]\nunbalance = "16 mm/s"', 1) + KEY
+    plain = small_machine("balance").replace("[limits]", '[limits]\nunbalance = "16 mm/s"', 1) + KEY
     left_out, drilled = (
         cam_unbalance(solved(parse_case(plain + extra), SLIGHT)) for extra in ("", ORDERED)
     )

@@ -2,13 +2,13 @@
 
 import made_trial as made
 import pytest
+from small_machine import small_machine
 
 from camwright.geometry.errors import InputError
 from camwright.pipeline.base.material import Material
 from camwright.pipeline.case.cards.card_filling import known_cards, viscosity
 from camwright.pipeline.case.case_file import parse_case
 from camwright.pipeline.case.limits import LIMITS
-from camwright.pipeline.case.template import template
 from camwright.pipeline.checks.contact_strength import contact_pressure, pressure_at_life
 from camwright.pipeline.contact.hertz import contact_modulus
 from camwright.pipeline.contact.oil_film import Lubricant
@@ -16,7 +16,7 @@ from camwright.pipeline.preview import preview_case
 
 
 def with_card(table, *lines):
-    return parse_case(template("cards") + f"\n[{table}]\n" + "\n".join(lines) + "\n")
+    return parse_case(small_machine("cards") + f"\n[{table}]\n" + "\n".join(lines) + "\n")
 
 
 def extra(*lines):
@@ -67,7 +67,7 @@ def test_a_resolved_case_holds_the_numbers_and_no_card():
 
 
 def test_a_bush_brings_its_material():
-    text = template("cards")
+    text = small_machine("cards")
     head, _, tail = text.partition("[guides.a]")
     body, _, rest = tail.partition("\n[")
     kept = [line for line in body.splitlines() if line.startswith(("length", "diameter"))]
@@ -91,7 +91,7 @@ def test_a_users_card_beside_the_case_goes_first(tmp_path):
         '[materials.structural]\nE = "200 GPa"\nnu = 0.29\nyield_strength = "300 MPa"\n'
         'density = "7800 kg/m^3"\nsource = "certificate 4711"\n'
     )
-    text = template("cards") + '\n[materials.extra]\ncard = "structural"\n'
+    text = small_machine("cards") + '\n[materials.extra]\ncard = "structural"\n'
     card = parse_case(text, tmp_path).materials["extra"]
     assert (card.E, card.source) == (200e9, "card structural: certificate 4711")
 
@@ -106,7 +106,7 @@ def test_a_users_card_beside_the_case_goes_first(tmp_path):
 )
 def test_a_users_card_that_is_none(tmp_path, written, message):
     (tmp_path / "cards.toml").write_text(written)
-    text = template("cards") + '\n[materials.extra]\ncard = "structural"\n'
+    text = small_machine("cards") + '\n[materials.extra]\ncard = "structural"\n'
     with pytest.raises(InputError, match=message.replace(".", r"\.")):
         parse_case(text, tmp_path)
 
@@ -128,7 +128,7 @@ def test_a_users_card_that_is_none(tmp_path, written, message):
 )
 def test_a_users_oil_that_is_incomplete_is_refused(tmp_path, entries, message):
     (tmp_path / "cards.toml").write_text(f'[oils.own]\n{entries}\nsource = "label"\n')
-    text = template("cards") + '\n[lubricant]\ncard = "own"\n'
+    text = small_machine("cards") + '\n[lubricant]\ncard = "own"\n'
     with pytest.raises(InputError, match=message.replace(".", r"\.")):
         parse_case(text, tmp_path)
 
@@ -148,7 +148,7 @@ def test_a_recalled_number_makes_the_check_say_so():
 
 def carded() -> str:
     """The template with every card it can have, and a clause of the case's own for each limit."""
-    text = template("cards").replace('material = "hardened_steel"', 'material = "hard"')
+    text = small_machine("cards").replace('material = "hardened_steel"', 'material = "hard"')
     text = text.replace('stem_material = "hardened_steel"', 'stem_material = "hard"')
     for side in "ab":
         head, _, tail = text.partition(f"[guides.{side}]")

@@ -10,7 +10,6 @@ from pathlib import Path
 import pytest
 
 from camwright.geometry.errors import InputError
-from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_file import CASE_BYTES, parse_case, read_case
 from camwright.pipeline.case.limits import (
     CURVATURE_RATE,
@@ -21,7 +20,6 @@ from camwright.pipeline.case.limits import (
     AnyLimit,
     Limits,
 )
-from camwright.pipeline.case.template import template
 from camwright.pipeline.engine.cylinder import CylinderEngine
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -312,14 +310,6 @@ def test_a_limit_left_out_is_that_of_its_row(row: AnyLimit) -> None:
 def test_the_tables_of_a_case_are_those_of_its_text() -> None:
     case = parse_case(GX120)
     assert case.tables() == tomllib.loads(case.to_toml())
-
-
-def test_template_is_a_case() -> None:
-    case = parse_case(template("demo"))
-    assert case.name == "demo"
-    assert isinstance(case, Case)
-    with pytest.raises(InputError):
-        template("../demo")
 
 
 def test_a_press_fit_of_the_stem_is_refused_with_the_reason() -> None:

@@ -1,11 +1,11 @@
 """``spring.catalogue`` in a case: what it finds, what it refuses."""
 
 import pytest
+from small_machine import small_machine
 
 from camwright.geometry.errors import InputError
 from camwright.pipeline.case.cards.spring_catalogue import CATALOGUE, SpringDemand, read_catalogue
 from camwright.pipeline.case.case_file import parse_case, read_case
-from camwright.pipeline.case.template import template
 
 WIRE = """
 [wires.steel]
@@ -34,7 +34,7 @@ free_length = "120 mm"
 def case_text(*lines, preload="400 N"):
     asked = "\n".join(["[spring]", *lines])
     return (
-        template("spring")
+        small_machine("spring")
         .replace("[spring]", asked, 1)
         .replace('# travel_max = "40 mm"', "", 1)
         .replace('preload = "400 N"', f'preload = "{preload}"', 1)

@@ -13,12 +13,12 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from small_machine import small_machine
 from small_run import check, small_case, summary, write_run, write_trial
 
 from camwright.geometry.errors import InputError
 from camwright.pipeline import cli
 from camwright.pipeline.case.case_file import case_of
-from camwright.pipeline.case.template import template
 from camwright.pipeline.results.baseline_comparison import changes, lines
 from camwright.pipeline.results.check_report import (
     binding_lines,
@@ -248,7 +248,7 @@ def test_a_changed_byte_fails_the_record_and_is_named(run: Path, command: Comman
 
 def test_a_case_file_is_previewed_and_never_passes(tmp_path: Path, command: Command) -> None:
     file = tmp_path / "early.toml"
-    file.write_text(template("early"))
+    file.write_text(small_machine("early"))
     code, out, _ = command("check", file, "--json")
     document = json.loads(out)
     assert code == 1
@@ -278,7 +278,7 @@ STATED = (
 
 def test_the_scope_is_stated_in_every_record(tmp_path: Path, command: Command) -> None:
     """Hostile text in its reason is printed unchanged, on one line."""
-    case = case_of(tomllib.loads(template("small")) | {"scope": SCOPE})
+    case = case_of(tomllib.loads(small_machine("small")) | {"scope": SCOPE})
     out = tmp_path / "run"
     with RunFolder(out, case) as folder:
         write_trial(folder, [check("pass", to_be_confirmed=["[bold]PV[/bold]", "C0"])])

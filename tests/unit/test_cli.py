@@ -16,10 +16,12 @@ from typing import Any
 
 import numpy as np
 import pytest
+from small_machine import small_machine
 from small_run import check, small_case, summary, write_run, write_trial
 
 from camwright.geometry.errors import ContactError
 from camwright.pipeline import cli
+from camwright.pipeline.case.case_file import read_case
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.results.run_folder import RunFolder
 
@@ -59,10 +61,11 @@ def runner(monkeypatch: pytest.MonkeyPatch) -> Callable[[Callable[..., Any]], No
 
 
 @pytest.fixture
-def case_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, command: Command) -> Path:
+def case_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     monkeypatch.chdir(tmp_path)
-    assert command("init", "small")[0] == 0
-    return tmp_path / "small.toml"
+    file = tmp_path / "small.toml"
+    file.write_text(small_machine("small"), encoding="utf-8")
+    return file
 
 
 def short_run(
@@ -236,14 +239,55 @@ def test_check_of_what_is_no_run(tmp_path: Path, command: Command) -> None:
         assert is_one_line(err)
 
 
-def test_init_does_not_overwrite(case_file: Path, command: Command) -> None:
-    case_file.write_text("mine")
-    code, _, err = command("init", "small.toml")
+def test_init_writes_case_and_data_and_names_the_next_command(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, command: Command
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    for kind, files in (
+        ("cylinder", ["first.toml"]),
+        ("lift", ["first.toml"]),
+        ("speed", ["first.toml", "first_tooth_times.csv"]),
+    ):
+        for file in tmp_path.iterdir():
+            file.unlink()
+        code, text, _ = command("init", "first.toml", "--kind", kind)
+        assert code == 0
+        assert sorted(file.name for file in tmp_path.iterdir()) == files
+        wrote, after = text.splitlines()
+        assert all(file in wrote for file in files)
+        assert after == "next: camwright run first.toml --out runs/first"
+        assert read_case(tmp_path / "first.toml").name == "first"
+
+
+@pytest.mark.parametrize("file", ["first.toml", "first_torque.csv"])
+def test_init_does_not_overwrite(
+    file: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, command: Command
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / file).write_text("as it was")
+    code, _, err = command("init", "first", "--kind", "table")
     assert code == 2
-    assert is_one_line(err)
-    assert case_file.read_text() == "mine"
-    assert command("init", "../other")[0] == 2
-    assert not Path("../other.toml").exists()
+    assert is_one_line(err) and file in err
+    assert [each.name for each in tmp_path.iterdir()] == [file]
+    assert (tmp_path / file).read_text() == "as it was"
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (("../other",), "name = ../other, must be 1 to 40 letters"),
+        (("first", "--kind", "guess"), "--kind = guess, must be one of: cylinder, table"),
+    ],
+)
+def test_init_refuses(
+    arguments: tuple[str, ...], message: str,
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, command: Command,
+) -> None:  # fmt: skip
+    monkeypatch.chdir(tmp_path)
+    code, _, err = command("init", *arguments)
+    assert code == 2
+    assert is_one_line(err) and message in err
+    assert not [*tmp_path.iterdir(), *tmp_path.parent.glob("other*")]
 
 
 def test_bad_case_file_is_one_line(case_file: Path, command: Command) -> None:

@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 from made_check import made_check
+from small_machine import small_machine
 
 from camwright.geometry.errors import ContactError, InputError
 from camwright.geometry.lift import Lift
 from camwright.pipeline.case.case_file import parse_case
 from camwright.pipeline.case.machine import Corner, machines
-from camwright.pipeline.case.template import template
 from camwright.pipeline.checks import tolerance_corners
 from camwright.pipeline.checks.tolerance_corners import (
     Outcome,
@@ -41,7 +41,7 @@ OVERSPEED = '[limits]\noverspeed = "12000 rpm"'
 
 def case():
     """The template's machine with a smaller cam and roller."""
-    text = template("corners")
+    text = small_machine("corners")
     for wide, narrow in (
         ('prime_radius = "60 mm"', 'prime_radius = "50 mm"'),
         ('radius = "16 mm"', 'radius = "8 mm"'),
@@ -92,7 +92,7 @@ def test_one_at_a_time_then_a_seeded_sample():
      ("cam", 'profile_tolerance = "16 um"')],
 )  # fmt: skip
 def test_a_tolerance_is_tightened_with_a_source_and_never_dropped(table, line):
-    text = template("corners")
+    text = small_machine("corners")
     header = f"[{table}]\n"
     text = text.replace(header, header + line + "\n") if header in text else text + header + line
     with pytest.raises(InputError, match=line.split(" = ")[0]):
@@ -109,7 +109,7 @@ def test_a_tolerance_is_tightened_with_a_source_and_never_dropped(table, line):
 
 def test_every_case_has_corners():
     """Spring, mass, friction, phase and profile have default tolerances."""
-    names = {corner.name for corner in corners_of(parse_case(template("corners")))}
+    names = {corner.name for corner in corners_of(parse_case(small_machine("corners")))}
     assert {
         f"{each} {end}"
         for each in ("friction", "spring rate", "preload", "mass", "phase", "line profile")
@@ -140,7 +140,7 @@ def test_tendencies_at_a_fixed_lift(demands):
 @pytest.mark.parametrize("line", ["inertia = 1.0", 'inertia = "10 %"', "inertia = -0.1"])
 def test_a_tolerance_of_inertia_that_is_none_is_refused(line):
     with pytest.raises(InputError, match=r"tolerances\.inertia"):
-        parse_case(template("corners") + TOLERANCES.replace("inertia = 0.2", line))
+        parse_case(small_machine("corners") + TOLERANCES.replace("inertia = 0.2", line))
 
 
 def test_phase_and_inertia_move_the_speed_ripple_alone(torque):

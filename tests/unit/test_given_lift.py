@@ -2,12 +2,12 @@
 
 import numpy as np
 import pytest
+from small_machine import small_machine
 
 from camwright.geometry.errors import InputError
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_file import parse_case, read_case
 from camwright.pipeline.case.given_lift import given_lift, lift_origin
-from camwright.pipeline.case.template import template
 
 SEGMENTS = """
 [lift]
@@ -28,7 +28,7 @@ stroke = "-8 mm"
 
 def with_lift(text: str) -> str:
     """The template case, its engine replaced by a lift."""
-    head, rest = template("given").split("[engine]")
+    head, rest = small_machine("given").split("[engine]")
     after = rest[rest.index("\n[") :]
     return head + text + after
 
@@ -195,6 +195,6 @@ def test_bad_face_is_refused(change, message):
 
 
 def test_synthesis_within_limits_knows_rollers_only():
-    text = flat(template("flat")).replace('kind = "moving_average"', 'kind = "constrained"')
+    text = flat(small_machine("flat")).replace('kind = "moving_average"', 'kind = "constrained"')
     with pytest.raises(InputError, match=r"smoothing\.kind = constrained, must be other than"):
         parse_case(text)

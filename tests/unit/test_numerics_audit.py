@@ -8,6 +8,7 @@ import made_trial as made
 import numpy as np
 import pytest
 from made_check import made_check
+from small_machine import small_machine
 from trial_variants import with_certificate, with_cycle
 
 from camwright.geometry.acceleration_jump import acceleration_jump
@@ -21,7 +22,6 @@ from camwright.geometry.pitch_curve import PitchCurve
 from camwright.pipeline.case import case_file
 from camwright.pipeline.case.given_lift import given_lift
 from camwright.pipeline.case.machine import machines
-from camwright.pipeline.case.template import template
 from camwright.pipeline.checks import torque_balance
 from camwright.pipeline.checks.cam_shape import acceleration_step, closure, tool_gouge
 from camwright.pipeline.checks.error_bars import with_error_bars
@@ -236,7 +236,7 @@ def test_the_closure_limit_is_that_of_the_reader_of_tables():
             continue
         lift = Lift.from_samples(theta, ends)
         contour = RollerContour(PitchCurve(lift, 0.05), 8e-3)
-        plain = case_file.parse_case(template("minimal"))
+        plain = case_file.parse_case(small_machine("minimal"))
         solution = replace(made.solution(contour=contour), case=plain, machines=machines(plain))
         assert closure(solution).status == status
 

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from bearing_files import read_cards
+from small_machine import small_machine
 
 from camwright.geometry.arrays import uniform_turn
 from camwright.geometry.contour import RollerContour
@@ -13,7 +14,6 @@ from camwright.geometry.lift import Lift
 from camwright.geometry.pitch_curve import PitchCurve
 from camwright.pipeline.case.case_file import parse_case
 from camwright.pipeline.case.machine import machines
-from camwright.pipeline.case.template import template
 from camwright.pipeline.contact.follower_body import RollerBody
 from camwright.pipeline.contact.ring_body import BallRing, RingBody
 from camwright.pipeline.contact.two_scale import CycleBodies, two_scale_history
@@ -31,7 +31,7 @@ RING = {
 def case(**changes):
     """The template's roller of 32 mm as a track roller's ring."""
     rows = "\n".join(f"{key} = {value}" for key, value in (RING | changes).items() if value)
-    return parse_case(template("ring") + f"\n[roller.bearing.ring]\n{rows}\n")
+    return parse_case(small_machine("ring") + f"\n[roller.bearing.ring]\n{rows}\n")
 
 
 def pair_of(given, contour):
@@ -61,7 +61,7 @@ def test_a_case_may_tell_of_the_ring_itself():
 
 
 def test_without_a_ring_the_roller_stays_solid():
-    plain = parse_case(template("plain"))
+    plain = parse_case(small_machine("plain"))
     assert isinstance(pair_of(plain, a_contour()).follower, RollerBody)
     assert ring_of(plain) is None
     assert "ring and balls of the bearing are not specified" in plain.roller.body_model
@@ -90,7 +90,7 @@ def test_between_two_balls_the_pressure_is_lower_by_what_is_told():
 def test_stiffer_balls_take_more_of_the_load_alone():
     """The static rating sets their stiffness; without it the preload does."""
     rated = ring_of(case())
-    text = template("ring").replace('C0 = "8.3 kN"', "")
+    text = small_machine("ring").replace('C0 = "8.3 kN"', "")
     rows = "\n".join(f"{key} = {value}" for key, value in RING.items())
     unrated = ring_of(parse_case(text + f"\n[roller.bearing.ring]\n{rows}\n"))
     assert unrated.ring.ball_stiffness < rated.ring.ball_stiffness

@@ -6,6 +6,7 @@ from dataclasses import replace
 import made_trial as made
 import numpy as np
 import pytest
+from small_machine import small_machine
 from small_run import named
 
 from camwright.geometry.arrays import uniform_turn
@@ -16,7 +17,6 @@ from camwright.geometry.pitch_curve import PitchCurve
 from camwright.pipeline.base.tables import table
 from camwright.pipeline.case.case_file import parse_case
 from camwright.pipeline.case.machine import machines
-from camwright.pipeline.case.template import template
 from camwright.pipeline.checks import (
     camshaft_strength,
     guide_strength,
@@ -74,7 +74,7 @@ gear_radius = "20 mm"
 
 
 def text(extra=""):
-    return template("parts") + extra
+    return small_machine("parts") + extra
 
 
 def declared_in(module):
@@ -96,7 +96,7 @@ PARTS = (
 
 
 def full_case():
-    plain = parse_case(template("parts"))
+    plain = parse_case(small_machine("parts"))
     pin = PIN.format(material=plain.roller.material.name)
     return parse_case(text(SPRING + pin + KEYWAY + SHAFT))
 
@@ -119,7 +119,7 @@ def full():
 
 @pytest.fixture(scope="module")
 def bare():
-    return harmonic(parse_case(template("parts")))
+    return harmonic(parse_case(small_machine("parts")))
 
 
 def parts_checks(solved):
@@ -276,7 +276,7 @@ def test_columns_of_all_parts(full):
 
 
 def test_a_card_fills_in_what_the_case_leaves_out():
-    rows = template("parts").splitlines()
+    rows = small_machine("parts").splitlines()
     start = next(k for k, row in enumerate(rows) if row.startswith("[roller.bearing]"))
     end = next(k for k in range(start + 1, len(rows)) if rows[k].startswith("["))
     head, tail = "\n".join(rows[:start]), "\n".join(rows[end:])
@@ -364,7 +364,7 @@ def test_a_preview_loses_the_contact_but_follows_no_flight(bare):
 def test_ring_of_a_card():
     """The stress grows with the load; Goodman's line takes fatigue and tensile strength."""
     bearing = "[roller.bearing]                     # ratings"
-    named = template("ring").replace(bearing, '[roller.bearing]\ncard = "maker_1_625_2RS"\n#')
+    named = small_machine("ring").replace(bearing, '[roller.bearing]\ncard = "maker_1_625_2RS"\n#')
     open_ring = part_strength.roller_ring_fatigue(harmonic(parse_case(named)))
     assert open_ring.status == "not_evaluated"
     assert "not the outer ring of the bearing" in open_ring.note
@@ -459,7 +459,7 @@ def test_a_lift_with_a_step_of_acceleration_fails():
 
 def test_a_shaft_with_its_gear_is_judged():
     """Of every load case; the teeth of 20 and 40 with the torque of the cam."""
-    steel = parse_case(template("parts")).cam.material.name
+    steel = parse_case(small_machine("parts")).cam.material.name
     more = f"""diameter = "20 mm"
 material = "{steel}"
 bearing_rating = "9.95 kN"
@@ -498,12 +498,12 @@ source = "made up"
 def test_guides_that_overlap_are_refused():
     """Two of 24 mm, 24 mm apart in the middle, would touch."""
     with pytest.raises(InputError, match=r"guides\.spacing"):
-        parse_case(template("parts").replace('spacing = "80 mm"', 'spacing = "24 mm"'))
+        parse_case(small_machine("parts").replace('spacing = "80 mm"', 'spacing = "24 mm"'))
 
 
 @pytest.mark.parametrize("name", ["friction_min", "friction_max"])
 def test_friction_bounds_out_of_order_are_refused(name):
-    lines = template("parts").replace("friction = 0.04", f"friction = 0.04\n{name} = PUT", 1)
+    lines = small_machine("parts").replace("friction = 0.04", f"friction = 0.04\n{name} = PUT", 1)
     value = {"friction_min": "0.05", "friction_max": "0.03"}[name]
     with pytest.raises(InputError, match="friction"):
         parse_case(lines.replace("PUT", value))

@@ -5,6 +5,7 @@ import tomllib
 from datetime import date
 
 import pytest
+from small_machine import small_machine
 
 from camwright.geometry.errors import InputError
 from camwright.pipeline.case.cards.card_filling import FOLDER, KINDS, known_cards
@@ -19,7 +20,6 @@ from camwright.pipeline.case.cards.provenance import (
 from camwright.pipeline.case.cards.substitution import with_roller
 from camwright.pipeline.case.case_file import case_of, parse_case
 from camwright.pipeline.case.requirements_section import Confirmation
-from camwright.pipeline.case.template import template
 from camwright.pipeline.case.value_sources import confirms, source_of, values_at, values_in
 
 CARDS = known_cards(None)
@@ -74,12 +74,12 @@ def test_a_users_provenance_that_is_incomplete(tmp_path, entry, message):
         f'density = "7800 kg/m^3"\nsource = "mill"\n[materials.own.provenance]\n{entry}\n'
     )
     with pytest.raises(InputError, match=message):
-        parse_case(template("cards") + '\n[materials.extra]\ncard = "own"\n', tmp_path)
+        parse_case(small_machine("cards") + '\n[materials.extra]\ncard = "own"\n', tmp_path)
 
 
 def extra(*lines):
     """The template with a material more."""
-    return parse_case("\n".join([template("cards"), "[materials.extra]", *lines]))
+    return parse_case("\n".join([small_machine("cards"), "[materials.extra]", *lines]))
 
 
 def test_the_resolved_case_has_the_source_of_every_number_of_a_card():
@@ -107,7 +107,9 @@ def test_a_number_of_the_case_has_the_source_of_the_case():
 
 
 def test_the_case_may_state_the_source_of_a_single_number():
-    text = template("cards") + '\n[sources]\n"materials.extra.swelling" = "measured, report 12"\n'
+    text = (
+        small_machine("cards") + '\n[sources]\n"materials.extra.swelling" = "measured, report 12"\n'
+    )
     case = parse_case(text + '[materials.extra]\ncard = "pa66"\n')
     assert case.sources["materials.extra.swelling"] == "measured, report 12"
     assert "Ultramid" in case.sources["materials.extra.E"]
@@ -126,7 +128,7 @@ def test_texts_that_confirm(text):
 
 
 def test_the_source_of_a_bearing_reaches_its_ring():
-    tables = parse_case(template("cards")).tables()
+    tables = parse_case(small_machine("cards")).tables()
     ring = {"outer_diameter": "16 mm", "balls": 6, "source": "ring"}
     tables["roller"] = {"bearing": {"C": "1 kN", "ring": ring, "source": "maker"}}
     assert source_of(tables, "roller.bearing.C") == "maker"
@@ -174,7 +176,7 @@ def test_values_of_a_role_are_those_of_its_material():
     ],
 )
 def test_sources_and_confirmations_that_are_refused(section, message):
-    text = template("cards") + '\n[materials.structural]\ncard = "structural"\n'
+    text = small_machine("cards") + '\n[materials.structural]\ncard = "structural"\n'
     with pytest.raises(InputError, match=re.escape(message)):
         parse_case(text.replace("\n[[load_case]]", f"\n{section}\n[[load_case]]", 1))
 
@@ -196,7 +198,7 @@ def test_a_replaced_part_brings_its_own_sources_and_no_confirmation_of_the_old_o
         {"value": "roller.inertia", "source": "weighed"},
         {"value": "cam.width", "source": "drawing"},
     ]
-    tables = tomllib.loads(template("cards"))
+    tables = tomllib.loads(small_machine("cards"))
     tables["roller"] |= {"bearing": {"card": "maker_1_625_2RS"}, "inertia": "1 g cm^2"}
     case = case_of(tables | {"confirmed": confirmed})
     assert not confirms(case.sources["roller.bearing.speed_limit"])
@@ -208,7 +210,7 @@ def test_a_replaced_part_brings_its_own_sources_and_no_confirmation_of_the_old_o
 
 
 def test_the_lightest_spring_of_a_catalogue_has_the_sources_of_its_wire():
-    tables = tomllib.loads(template("cards"))
+    tables = tomllib.loads(small_machine("cards"))
     tables["spring"] |= {"catalogue": "shipped", "travel_max": "30 mm"}
     tables["spring"].pop("design", None)
     case = case_of(tables)

@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from typing import Any, get_args
 
 import pytest
+from small_machine import small_machine
 
 from camwright.geometry.errors import InputError
 from camwright.pipeline.base.quantities import Part
@@ -16,7 +17,6 @@ from camwright.pipeline.case.limits import GUIDE_GAP, LIMITS, TRACTION_SHARE
 from camwright.pipeline.case.renamed_keys import renamed_names, with_new_keys
 from camwright.pipeline.case.requirements_section import FreeName
 from camwright.pipeline.case.section import section_of
-from camwright.pipeline.case.template import template
 from camwright.pipeline.checks.registry import (
     CHECKS,
     TOLERANCE_CORNERS,
@@ -72,7 +72,7 @@ def replaced(text: str, old: str, new: str) -> str:
 
 def case_text(names: Mapping[str, str]) -> str:
     """One case, in the words of version 0.1 or in those of today."""
-    text = replaced(template("old"), "prime_radius =", f"{names['radius']} =")
+    text = replaced(small_machine("old"), "prime_radius =", f"{names['radius']} =")
     text = replaced(text, "[workshop]\n", f"[{names['workshop']}]\n")
     for table, rows in ROWS.items():
         text = replaced(text, f"{table}\n", f"{table}\n{rows.format(**names)}\n")
@@ -82,7 +82,7 @@ def case_text(names: Mapping[str, str]) -> str:
 def test_a_case_file_of_version_0_1_is_the_case_of_today() -> None:
     case = parse_case(case_text(OLD))
     assert case.cam.prime_radius == 0.060
-    assert case.workshop.table_step == parse_case(template("new")).workshop.table_step
+    assert case.workshop.table_step == parse_case(small_machine("new")).workshop.table_step
     assert (case.limits[TRACTION_SHARE], case.limits[GUIDE_GAP]) == (0.25, 0.002)
     assert case.limits.source(TRACTION_SHARE) == "dry"
     assert case.limits.source(GUIDE_GAP) == "room for a finger"
@@ -127,12 +127,12 @@ def test_an_old_and_a_new_name_of_one_value_are_refused(
     table: str, rows: str, message: str
 ) -> None:
     with pytest.raises(InputError) as refusal:
-        parse_case(replaced(template("both"), f"{table}\n", f"{table}\n{rows}\n"))
+        parse_case(replaced(small_machine("both"), f"{table}\n", f"{table}\n{rows}\n"))
     assert str(refusal.value) == message
 
 
 def test_a_bad_value_under_an_old_name_is_told_by_the_new_one() -> None:
-    bad = replaced(template("bad"), 'prime_radius = "60', 'pitch_base_radius = "-60')
+    bad = replaced(small_machine("bad"), 'prime_radius = "60', 'pitch_base_radius = "-60')
     with pytest.raises(InputError) as refusal:
         parse_case(bad)
     assert refusal.value.field == "cam.prime_radius"

@@ -1,14 +1,14 @@
 """Optional case fields of the rolling surface: read in their units, written back bit for bit."""
 
 import pytest
+from small_machine import small_machine
 
 from camwright.geometry.errors import InputError
 from camwright.pipeline.case.case_file import parse_case
-from camwright.pipeline.case.template import template
 
 
 def with_fields():
-    text = template("rolled")
+    text = small_machine("rolled")
     for section, lines in (
         ("[cam]", 'roughness = "0.8 um"'),
         ("[roller]", 'roughness = "100 nm"\nfriction = 0.1'),

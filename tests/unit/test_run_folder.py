@@ -9,12 +9,12 @@ from typing import Any
 
 import numpy as np
 import pytest
+from small_machine import small_machine
 from small_run import TORQUE, check, small_case, summary, values, write_run, write_trial
 
 from camwright.geometry.errors import ResultError
 from camwright.pipeline.base.files import write_atomic
 from camwright.pipeline.case.case_file import parse_case
-from camwright.pipeline.case.template import template
 from camwright.pipeline.results import run_folder, run_reader
 from camwright.pipeline.results.run_folder import RunFolder, set_aside
 
@@ -29,7 +29,7 @@ def keep_piece(folder: RunFolder) -> None:
 
 
 def other_case() -> Any:
-    return parse_case(template("small").replace('"400 N"', '"401 N"'))
+    return parse_case(small_machine("small").replace('"400 N"', '"401 N"'))
 
 
 def test_a_finished_run_leaves_nothing_else_behind(tmp_path: Path) -> None:
@@ -253,7 +253,7 @@ def test_set_aside_makes_room_and_puts_back(tmp_path: Path) -> None:
 
 
 def test_included_files_are_kept(tmp_path: Path) -> None:
-    text = template("small")
+    text = small_machine("small")
     engine = text[text.index("[engine]") : text.index("[mechanism]")]
     (tmp_path / "torque.csv").write_text("crank_angle_deg,torque_Nm\n0,1\n")
     text = text.replace(engine, '[engine]\nkind = "table"\nfile = "torque.csv"\n')

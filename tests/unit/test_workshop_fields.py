@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from small_machine import small_machine
 
 from camwright.geometry.arrays import uniform_turn
 from camwright.geometry.contour import Contour
@@ -16,7 +17,6 @@ from camwright.geometry.errors import InputError
 from camwright.geometry.lift import Lift
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_file import parse_case
-from camwright.pipeline.case.template import template
 from camwright.pipeline.results.workshop_files import write_workshop
 
 LIMITS = "[limits]\n"
@@ -27,7 +27,7 @@ GROUND = '\n[tolerances]\nsource = "ground track"\n'
 
 
 def case(workshop: str = ORDER, limits: str = "", cam: str = "", tail: str = "") -> Case:
-    text = template("part")
+    text = small_machine("part")
     own = text[text.index("[workshop]") : text.index("# --- Load cases")]
     text = text.replace(own, workshop).replace(LIMITS, LIMITS + limits)
     return parse_case(text.replace("[cam]\n", "[cam]\n" + cam) + tail)

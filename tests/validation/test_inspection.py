@@ -11,6 +11,7 @@ import pytest
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "unit"))
 import small_run
+from small_machine import small_machine
 
 from camwright.geometry.arrays import uniform_turn
 from camwright.geometry.contour import Contour, RollerContour
@@ -22,7 +23,6 @@ from camwright.pipeline.base.tables import read_table
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_file import parse_case
 from camwright.pipeline.case.machine import machines
-from camwright.pipeline.case.template import template
 from camwright.pipeline.contact.closed_form import closed_form_history
 from camwright.pipeline.cycle.contact_setup import contact_pair
 from camwright.pipeline.cycle.solution import turns_of
@@ -107,7 +107,7 @@ def test_kept_phase_turns_the_lift() -> None:
 
 
 def small_case(positions: int = 180) -> Case:
-    text = template("part").replace("certificate_positions = 8", "certificate_positions = 1")
+    text = small_machine("part").replace("certificate_positions = 8", "certificate_positions = 1")
     return parse_case(text).with_positions(positions)
 
 

@@ -12,6 +12,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from small_machine import small_machine
 from stated_loads import stated_loads
 
 from camwright.geometry.arrays import uniform_turn
@@ -23,7 +24,6 @@ from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_file import parse_case
 from camwright.pipeline.case.load_case_torque import engine_torques
 from camwright.pipeline.case.machine import Corner, Machine, machines
-from camwright.pipeline.case.template import template
 from camwright.pipeline.checks.check import Check, verdict
 from camwright.pipeline.checks.registry import all_checks
 from camwright.pipeline.contact.closed_form import closed_form_history
@@ -42,7 +42,7 @@ CAM_CHECKS = ("contact_pressure", "edge_pressure", "shakedown", "first_yield")
 
 @lru_cache(maxsize=1)
 def machine() -> Machine:
-    return machines(parse_case(template("tendency")))[0]
+    return machines(parse_case(small_machine("tendency")))[0]
 
 
 def cam() -> Contour:

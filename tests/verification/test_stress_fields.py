@@ -11,13 +11,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from small_machine import small_machine
 
 from camwright.geometry.arrays import uniform_turn
 from camwright.geometry.lift import Lift
 from camwright.meshes.mesh_files import UNITS
 from camwright.pipeline.case.case_file import parse_case
 from camwright.pipeline.case.machine import machines
-from camwright.pipeline.case.template import template
 from camwright.pipeline.contact.body_compliance import hertz_stress
 from camwright.pipeline.contact.certificate import solve_pair
 from camwright.pipeline.contact.elasticity import plane_stress_measures
@@ -48,7 +48,7 @@ POSITIONS = 12
 
 @pytest.fixture(scope="module")
 def series(tmp_path_factory: pytest.TempPathFactory):
-    case = parse_case(template("series")).with_positions(72)
+    case = parse_case(small_machine("series")).with_positions(72)
     theta = uniform_turn(360)
     contour = case.contour(Lift(theta, 0.006 * (1 - np.cos(theta))))
     turn = turns_of(machines(case), contour, case, {}, POSITIONS)[0]

@@ -7,6 +7,7 @@ from functools import lru_cache
 
 import numpy as np
 import pytest
+from small_machine import small_machine
 
 from camwright.geometry.arrays import uniform_turn
 from camwright.geometry.contour import Contour
@@ -14,7 +15,6 @@ from camwright.geometry.lift import Lift
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_file import parse_case
 from camwright.pipeline.case.machine import Corner, Machine, machines
-from camwright.pipeline.case.template import template
 from camwright.pipeline.checks import contact_strength, guide_strength, jump_and_jamming
 from camwright.pipeline.checks.check import Check, Declaration
 from camwright.pipeline.contact.tiers import Tier
@@ -32,7 +32,7 @@ ELEMENTS = 2e-3
 @lru_cache(maxsize=1)
 def case() -> Case:
     """The template's machine in guides without play, which answer in proportion to the load."""
-    plain = parse_case(template("tendency"))
+    plain = parse_case(small_machine("tendency"))
     tight = {name: replace(getattr(plain.guides, name), clearance=0.0) for name in "ab"}
     return plain.model_copy(update={"guides": replace(plain.guides, **tight)})
 

@@ -1,0 +1,88 @@
+"""What an engine bench would record of a modelled engine, as text of trace files."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from camwright.geometry.arrays import FULL_TURN, Array
+from camwright.geometry.periodic_spline import periodic_cubic
+from camwright.pipeline.engine.cylinder import CYCLE_ANGLE
+from camwright.pipeline.engine.indicated_cycle import CylinderCycle
+from camwright.pipeline.engine.torque import Torque
+from camwright.pipeline.engine.trigger_wheel import TriggerWheel
+
+ANGLE_STEP = 2  # deg, of torque and pressure
+SAMPLE = 5e-5  # s, of the voltage: 20 kHz
+PEAK = 3.0  # V
+TOOTH_WIDTH = 0.18  # of the pitch, standard deviation of the bell of flux over a tooth
+
+
+def torque_text(torque: Torque) -> str:
+    """Crank angle and torque over a cycle, as text of `read_trace`; `torque` on whole degrees."""
+    degrees = np.arange(0.0, 720.0, ANGLE_STEP)
+    return _text("crank_angle_deg,torque_Nm", "%d,%.3f", degrees, torque.total[::ANGLE_STEP])
+
+
+def pressure_text(cycle: CylinderCycle) -> str:
+    """Crank angle and absolute cylinder pressure over a cycle, as text of `pressure_from_csv`."""
+    degrees = np.arange(0.0, 720.0, ANGLE_STEP)
+    return _text("crank_angle_deg,pressure_Pa", "%d,%.0f", degrees, cycle.pressure[::ANGLE_STEP])
+
+
+def tooth_times_text(speed: Array, wheel: TriggerWheel) -> str:
+    """Times of the edges of a cycle, rising and falling in turn, as text of `speed_from_csv`.
+
+    Parameters
+    ----------
+    speed : array (n,)     rad/s at equal crank angles over a cycle, from 0
+    wheel : TriggerWheel   the record begins with the tooth at its reference
+    """
+    places = np.arange(2.0 * wheel.teeth + 1.0)
+    places = places[np.mod(places, wheel.teeth) < wheel.present]
+    edges = np.stack([wheel.angle(places, falling=False), wheel.angle(places, falling=True)])
+    times = passing_times(speed, edges.T.ravel())
+    return _text("time_s", "%.9f", times - times[0])
+
+
+def voltage_text(speed: Array, wheel: TriggerWheel) -> str:
+    """Times and voltages of a variable-reluctance pick-up over a cycle, as text of
+    `speed_from_voltage`.
+
+    The flux rises by a bell over each tooth, and the voltage is its rate: it falls through zero
+    in the middle of a tooth, in proportion to the speed.
+
+    Parameters
+    ----------
+    speed : array (n,)     rad/s at equal crank angles over a cycle, from 0
+    wheel : TriggerWheel   the record begins half a pitch before the tooth at its reference
+    """
+    places = np.linspace(-0.5, 2.0 * wheel.teeth + 1.5, 128 * (wheel.teeth + 1) + 1)
+    fine = wheel.reference_angle + wheel.pitch * places
+    passed = passing_times(speed, fine)
+    times = np.arange(passed[0], passed[-1], SAMPLE)
+    angle = np.interp(times, passed, fine)
+    place = (angle - wheel.reference_angle) / wheel.pitch
+    tooth = np.round(place) + np.array([[-1.0], [0.0], [1.0]])
+    off = (place - tooth) / TOOTH_WIDTH
+    bells = np.where(np.mod(tooth, wheel.teeth) < wheel.present, -off * np.exp(-0.5 * off**2), 0.0)
+    local = periodic_cubic(speed)(angle * (FULL_TURN / CYCLE_ANGLE)) / speed.mean()
+    volts = PEAK * np.exp(0.5) * local * bells.sum(axis=0)
+    return _text("time_s,voltage_V", "%.6f,%.4f", times - times[0], volts)
+
+
+def passing_times(speed: Array, angle: Array) -> Array:
+    """Times, s, at which the crank passes angles, rad of any turn; 0 at angle 0.
+
+    Parameters
+    ----------
+    speed : array (n,)   rad/s at equal crank angles over a cycle, from 0, n >= 12
+    """
+    slowness, cycle = periodic_cubic(1.0 / speed).antiderivative()
+    turns = CYCLE_ANGLE / FULL_TURN
+    count = np.floor(angle / CYCLE_ANGLE)
+    return np.asarray(turns * (count * cycle + slowness((angle - count * CYCLE_ANGLE) / turns)))
+
+
+def _text(header: str, row: str, *columns: Array) -> str:
+    rows = (row % values for values in zip(*columns, strict=True))
+    return "\n".join([header, *rows, ""])

@@ -1,0 +1,45 @@
+"""The first case of each kind, run to its certificate: PASS, and `check` says so."""
+
+import re
+from pathlib import Path
+
+import pytest
+
+from camwright.pipeline.base.progress import Silent
+from camwright.pipeline.case.case_file import read_case
+from camwright.pipeline.case.template import KINDS
+from camwright.pipeline.commands.check_command import check
+from camwright.pipeline.commands.run_command import init
+from camwright.pipeline.commands.terminal import INCOMPLETE, PASSED
+from camwright.pipeline.results.run_reader import read_run
+from camwright.pipeline.run import run_case
+
+LEAST_MARGIN = 0.05
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("kind", KINDS)
+def test_a_first_case_passes(tmp_path, monkeypatch, kind):
+    monkeypatch.chdir(tmp_path)
+    assert init("first", kind) == PASSED
+    run_case(read_case(Path("first.toml")), Path("run"), progress=Silent())
+    run = read_run(Path("run"))
+    assert run.verdict == "pass"
+    assert check([Path("run")]) == PASSED
+    required = [each for each in run.final.checks if each["must_have"]]
+    assert all(each["status"] == "pass" for each in required)
+    design = {each["id"]: each["margin"] for each in required if not each["evidence"]}
+    assert min(design.values()) >= LEAST_MARGIN, min(design, key=lambda each: design[each])
+
+
+@pytest.mark.slow
+def test_without_a_datum_it_is_incomplete(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    assert init("first", "eccentric") == PASSED
+    path = tmp_path / "first.toml"
+    text, count = re.subn(r"^roller_life = .*\n", "", path.read_text(), flags=re.MULTILINE)
+    assert count == 1
+    path.write_text(text)
+    run_case(read_case(path), Path("run"), progress=Silent())
+    assert read_run(Path("run")).verdict == "incomplete"
+    assert check([Path("run")]) == INCOMPLETE
