@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from camwright.geometry.arrays import FULL_TURN, Array, readonly
+from camwright.geometry.arrays import FULL_TURN, Array, median, readonly
 
 _BESIDE = 5
 """Values on either side of the interval in which a discontinuity is sought."""
@@ -92,8 +92,8 @@ def _at_spacing(values: Array, stride: int) -> Jump:
     gain = jumps.gain[place] / step**2
     scatter = with_jump[with_jump > _ROUND_OFF * np.abs(values).max()]
     free = jumps.complement.shape[2]
-    middle = float(np.median(scatter)) if scatter.size else 0.0
-    noise = _CONFIDENCE * float(np.median(gain)) * middle / float(np.sqrt(free))
+    middle = median(scatter) if scatter.size else 0.0
+    noise = _CONFIDENCE * median(gain) * middle / float(np.sqrt(free))
     proven = (with_jump <= _PROOF * with_kink) & (size > noise)
     greatest = float(np.max(size, where=proven, initial=0.0))
     # a jump in the other intervals of its window explains the residual there

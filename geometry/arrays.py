@@ -62,6 +62,23 @@ def uniform_turn(count: int) -> Array:
     return readonly(np.arange(count) * (FULL_TURN / count))
 
 
+def distinct(values: ArrayLike) -> Array:
+    """Distinct values, ascending; none is NaN.
+
+    As `numpy.unique`, which imports the masked arrays for it, 20 ms.
+    """
+    ordered = np.sort(np.asarray(values, dtype=float), axis=None)
+    first = np.ones(ordered.shape, dtype=bool)
+    np.not_equal(ordered[1:], ordered[:-1], out=first[1:])
+    return ordered[first]
+
+
+def median(values: Array) -> float:
+    """Median of values (n,), n >= 1; none is NaN. `numpy.median` imports the masked arrays."""
+    ordered, half = np.sort(values), values.size // 2
+    return float(0.5 * (ordered[(values.size - 1) // 2] + ordered[half]))
+
+
 def rotation(angle: float) -> Array:
     """Matrix (2, 2) that turns vectors counter-clockwise by `angle`, rad."""
     cosine, sine = np.cos(angle), np.sin(angle)

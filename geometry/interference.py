@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from camwright.geometry.arrays import FULL_TURN, Array, uniform_turn
+from camwright.geometry.arrays import FULL_TURN, Array, distinct, uniform_turn
 from camwright.geometry.extrema import Function, local_minima
 
 Curve = Callable[[Array], Array]
@@ -129,7 +129,7 @@ def _knots(factor: Function, count: int) -> Array:
     short = cusp < _LOOP_CHORDS / 4 * step
     window = _LOOP_REACH * cusp[short, None] * np.linspace(-1, 1, _LOOP_CHORDS)
     finer = np.mod(bottoms[short, None] + window, FULL_TURN)
-    return np.unique(np.concatenate([uniform_turn(count), finer.ravel()]))
+    return distinct(np.concatenate([uniform_turn(count), finer.ravel()]))
 
 
 def _overlapping(start: Array, chord: Array) -> tuple[Array, Array]:

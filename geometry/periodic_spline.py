@@ -86,7 +86,9 @@ class PeriodicPolynomial:
         for order in range(first, last + 1):
             value = np.zeros_like(angle)
             for power in range(degree, order - 1, -1):
-                value = value * step + _falling(power, order) * local[power]
+                value *= step
+                front = _falling(power, order)
+                value += local[power] if front == 1.0 else front * local[power]
             values[order - first] = value
         return values
 

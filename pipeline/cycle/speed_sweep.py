@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from camwright.geometry.arrays import Array, freeze, uniform_turn
+from camwright.geometry.arrays import Array, distinct, freeze, uniform_turn
 from camwright.geometry.contour import Contour
 from camwright.geometry.follower_path import FollowerPath
 from camwright.pipeline.base.tables import Column
@@ -273,7 +273,7 @@ class _Resonant:
         peak = total * self.amplitude / (2.0 * damping)
         own = np.array([np.sqrt(total / machine.mass_without_spring)])
         speeds.append(_about(_met(own, peak, enough, top), damping))
-        return np.unique(np.clip(np.concatenate(speeds), 0.0, top))
+        return distinct(np.clip(np.concatenate(speeds), 0.0, top))
 
 
 @dataclass(frozen=True, eq=False)
@@ -387,7 +387,8 @@ def _between(grid: Array, worst: set[int]) -> Array:
     finer = [
         np.linspace(grid[max(k - 1, 0)], grid[min(k + 1, last)], _REFINED + 2)[1:-1] for k in worst
     ]
-    return np.setdiff1d(np.concatenate(finer), grid)
+    beside = distinct(np.concatenate(finer))
+    return beside[grid.take(np.searchsorted(grid, beside), mode="clip") != beside]
 
 
 def _sampling_error(values: Array, at: NDArray[np.intp]) -> Array:

@@ -126,7 +126,7 @@ class GuideTable:
         low = keys.min(axis=0)
         extent = keys.max(axis=0) - low + 1
         flat = (keys[:, 0] - low[0]) * extent[1] + (keys[:, 1] - low[1])
-        needed = np.unique(flat)
+        needed = np.flatnonzero(np.bincount(flat))
         numbers = np.empty(extent[0] * extent[1], dtype=np.intp)
         for each in needed:
             key = int(low[0] + each // extent[1]), int(low[1] + each % extent[1])

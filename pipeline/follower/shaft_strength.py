@@ -10,7 +10,7 @@ import numpy as np
 import scipy
 from numpy.typing import ArrayLike
 
-from camwright.geometry.arrays import Array, finite, uniform_turn
+from camwright.geometry.arrays import Array, distinct, finite, uniform_turn
 from camwright.geometry.errors import InputError
 from camwright.pipeline.base.units import in_unit
 from camwright.pipeline.follower.camshaft_loads import (
@@ -234,7 +234,7 @@ def shaft_bending(
     stiffness = elastic_modulus * np.pi * diameter**4 / 64.0
     weight = shaft.counterweight
     beside = cam if weight is None else weight.position
-    places = np.unique([0.0, span, cam, shaft.gear_position, beside])
+    places = distinct([0.0, span, cam, shaft.gear_position, beside])
 
     def under_cam(x: float) -> float:
         """Moment of a unit force at the cam."""
