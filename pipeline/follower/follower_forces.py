@@ -79,6 +79,14 @@ class Push:
         return on_a, on_b
 
 
+class LoadEnds(NamedTuple):
+    """End of the loads of many followers (...): whether, index of the angle, whether by leaving."""
+
+    lost: NDArray[np.bool_]
+    first: NDArray[np.intp]
+    leaves: NDArray[np.bool_]
+
+
 class MovedMass(Protocol):
     """Mass, friction and supports of a follower, or of many: floats, or arrays (m, 1).
 
@@ -257,19 +265,22 @@ class Loads:
         return np.asarray((self.jam_index >= 1.0) & (self.lift_slope > 0.0))
 
     @property
-    def end(self) -> tuple[float, str] | None:
-        """Cam angle, rad, at which the loads end being those of the cam, and why; None: nowhere.
+    def ends(self) -> LoadEnds:
+        """Where the follower leaves the cam or locks, so that the loads end being those of the cam.
 
-        The follower leaves the cam or locks there. The angle is the first one of the turn at which
-        one of both begins: the loads of a turn before it are those after it in the next one.
+        The angle is the first one of the turn at which one of both begins: the loads of a turn
+        before it are those after it in the next one.
         """
-        leaves, locks = self.separated, self.jammed
-        lost = leaves | locks
-        if not lost.any():
-            return None
-        begins = np.flatnonzero(lost & ~np.roll(lost, 1))
-        first = int(begins[0]) if begins.size else 0
-        return float(self.theta[first]), LEAVES if leaves[first] else LOCKS
+        lost = self.separated | self.jammed
+        first = np.argmax(lost & ~np.roll(lost, 1, axis=-1), axis=-1)
+        leaves = np.take_along_axis(self.separated, first[..., None], axis=-1)[..., 0]
+        return LoadEnds(np.asarray(lost.any(axis=-1)), first, leaves)
+
+    @property
+    def end(self) -> tuple[float, str] | None:
+        """Cam angle, rad, at which the loads of one follower end, and why; None: nowhere."""
+        lost, first, leaves = self.ends
+        return (float(self.theta[first]), LEAVES if leaves else LOCKS) if lost else None
 
     @property
     def friction_force(self) -> Array:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import copy
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Literal, NamedTuple
@@ -301,6 +302,13 @@ class Designs:
         if state.torque_reduction is None and state.ripple_weight > 0:
             return self.limit(TORQUE_REDUCTION)
         return np.asarray(state.torque_reduction) if state.torque_reduction else None
+
+    def in_load_cases(self, kept: Sequence[bool]) -> Designs:
+        """The designs in some of their load cases, with what is known of them."""
+        part = copy.copy(self)
+        chosen = tuple(turns for turns, keep in zip(self.turns, kept, strict=True) if keep)
+        part.__dict__["turns"] = chosen  # as the cached property would
+        return part
 
     @cached_property
     def turns(self) -> tuple[Turns, ...]:

@@ -253,12 +253,13 @@ def judged_columns(designs: Designs) -> dict[str, Column]:
     fails = np.zeros(count, dtype=bool)
     most = np.full(count, -np.inf)
     governing = np.full(count, "", dtype=object)
+    lost = _lost_loads(designs)
     for each in SCREENED:
         declared = DECLARED[each.check]
         part = declared.part
         if part and not (machine.scope.covers(part) and machine.describes(part)):
             continue
-        judged = each.judged(designs)
+        judged = _without_lost_loads(designs, each, lost.get(declared.rests_on))
         if judged is None:
             continue
         figures = _figures(designs, each, declared, *judged)
@@ -283,6 +284,37 @@ def judged_columns(designs: Designs) -> dict[str, Column]:
     }
 
 
+def _lost_loads(designs: Designs) -> dict[str, NDArray[np.bool_]]:
+    """Whether a load case has no loads (k, m), by what a check rests on; see `lost_loads`."""
+    ends = [turns.loads.ends for turns in designs.turns]
+    lost = np.array([end.lost for end in ends])
+    return {"loads": lost, "contact": lost & np.array([end.leaves for end in ends])}
+
+
+def _without_lost_loads(
+    designs: Designs, screened: Screened, lost: NDArray[np.bool_] | None
+) -> tuple[Array, Array | float | None, NDArray[np.bool_]] | None:
+    """Demand (m,), limit, and whether the demand is a bound by the other load cases (m,)."""
+    judged = screened.judged(designs)
+    if judged is None:
+        return None
+    demand, limit = judged
+    bound = np.zeros(designs.count, dtype=bool)
+    if lost is None or not lost.any():
+        return demand, limit, bound
+    demand = np.array(np.broadcast_to(demand, bound.shape))
+    patterns, which = np.unique(lost, axis=1, return_inverse=True)
+    for number, pattern in enumerate(patterns.T):
+        there = screened.judged(designs.in_load_cases(pattern)) if pattern.any() else None
+        if there is None:
+            continue
+        at = (which.ravel() == number) & ~np.isnan(there[0])
+        rest = None if pattern.all() else screened.judged(designs.in_load_cases(~pattern))
+        demand[at] = np.nan if rest is None else np.broadcast_to(rest[0], at.shape)[at]
+        bound |= at
+    return demand, limit, bound
+
+
 _STATUS = np.array(["not_evaluated", "pass", "fail"], dtype=object)
 _SCREEN = np.array(["open", "fail"], dtype=object)
 
@@ -293,6 +325,7 @@ def _figures(
     declared: Declaration,
     demand: Array,
     limit: Array | float | None,
+    bound: NDArray[np.bool_],
 ) -> dict[str, Column]:
     """Demand, limit, utilisation, error and status (m,) in the unit of the record."""
     allowed = np.broadcast_to(
@@ -305,6 +338,8 @@ def _figures(
         used = utilisations(demand, allowed, at_most=at_most)
     if declared.is_bound(Tier.SCREENING):
         known &= ~holds  # a lower bound within the limit says nothing
+    known &= ~(bound & holds)
+    demand = np.where(bound & ~known, np.nan, demand)
     status = _STATUS[np.where(known, np.where(holds, 1, 2), 0)]
     status[~screened.applies(designs)] = ""
     for waiver in designs.case.waivers:
@@ -332,10 +367,15 @@ def utilisations(demand: Array, limit: Array, *, at_most: bool) -> Array:
 def headline_columns(designs: Designs) -> dict[str, Column]:
     """Columns ``headline.{key}`` (m,) as in ``run.json``."""
     first, turns = designs.turns[0], designs.turns
-    before = first.state.torque
+    before, lost = first.state.torque, first.loads.ends.lost
 
     def over(measure: Callable[[Turns], Array]) -> Array:
-        return np.max([sampled_greatest(measure(each)) for each in turns], axis=0)
+        loaded = [
+            np.where(each.loads.ends.lost, -np.inf, sampled_greatest(measure(each)))
+            for each in turns
+        ]
+        worst = np.max(loaded, axis=0)
+        return np.where(np.isneginf(worst), np.nan, worst)
 
     p0 = over(lambda each: each.p0_line)
     least = np.min([sampled_least(each.loads.normal_force) for each in turns], axis=0)
@@ -352,16 +392,16 @@ def headline_columns(designs: Designs) -> dict[str, Column]:
         "guide_reaction_B_max_N": over(
             lambda each: np.abs(each.guides.net_b * each.loads.reaction_b)
         ),
-        "friction_loss_J_per_cam_turn": _friction_loss(first),
+        "friction_loss_J_per_cam_turn": np.where(lost, np.nan, _friction_loss(first)),
     }
     if before is not None:
         after = torque_after(designs, first)
         whole = (designs.count,)
         figures |= {
             "torque_std_before_Nm": np.broadcast_to(before.std(axis=-1), whole),
-            "torque_std_after_Nm": after.std(axis=-1),
+            "torque_std_after_Nm": np.where(lost, np.nan, after.std(axis=-1)),
             "torque_p2p_before_Nm": np.broadcast_to(np.ptp(before, axis=-1), whole),
-            "torque_p2p_after_Nm": np.ptp(after, axis=-1),
+            "torque_p2p_after_Nm": np.where(lost, np.nan, np.ptp(after, axis=-1)),
         }
     return {f"headline.{name}": np.array(each, dtype=float) for name, each in figures.items()}
 

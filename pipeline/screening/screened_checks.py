@@ -278,7 +278,9 @@ def _roller_life(designs: Designs) -> Judged:
         for turns in designs.turns
         if (each := turns.state).duty != 0.0
     ]
-    if all(duty is None for _, duty in lives):
+    if not lives:
+        life = np.full(designs.count, np.nan)
+    elif all(duty is None for _, duty in lives):
         life = np.min([each for each, _ in lives], axis=0)
     else:
         life = 1.0 / np.sum([(duty or 0.0) / each for each, duty in lives], axis=0)
