@@ -13,6 +13,7 @@ from camwright.pipeline.base.files import Json
 from camwright.pipeline.base.units import used
 from camwright.pipeline.results.check_report import not_proven
 from camwright.pipeline.results.run_reader import utilisation_of
+from camwright.pipeline.results.verdict_summary import body_stresses
 
 Scalar: TypeAlias = str | float | None
 Record: TypeAlias = Mapping[str, Any]
@@ -51,7 +52,11 @@ HEADLINES = {
     "p0_max_MPa": ("Peak contact pressure p0, finite elements", "MPa"),
     "p0_hertz_max_MPa": ("Peak contact pressure p0, Hertz", "MPa"),
     "half_width_max_mm": ("Maximum contact half-width", "mm"),
-    "von_mises_max_MPa": ("Maximum von Mises stress", "MPa"),
+    "von_mises_max_MPa": ("Maximum von Mises stress in the cam", "MPa"),
+    "von_mises_depth_mm": ("Its depth below the surface of the cam", "mm"),
+    "follower_von_mises_max_MPa": ("Maximum von Mises stress in the follower", "MPa"),
+    "follower_von_mises_depth_mm": ("Its depth below the surface of the follower", "mm"),
+    "ring_stress_max_MPa": ("Maximum bending stress in the ring of the roller", "MPa"),
     "guide_reaction_A_max_N": ("Maximum reaction, guide A", "N"),
     "guide_reaction_B_max_N": ("Maximum reaction, guide B", "N"),
     "friction_loss_J_per_cam_turn": ("Friction loss per cam turn", "J"),
@@ -324,6 +329,12 @@ def tiles(headline: Record) -> list[Tile]:
         ("Maximum reaction, guide A", "guide_reaction_A_max_N", "N",
          "guide B {} N", "guide_reaction_B_max_N"),
     )  # fmt: skip
+    if headline.get("von_mises_max_MPa") is not None:
+        value, *others = body_stresses(headline)
+        made.append(Tile(
+            "Maximum von Mises stress", quantity(headline["von_mises_max_MPa"], "MPa"),
+            "; ".join((value.partition(" MPa ")[2], *others)),
+        ))  # fmt: skip
     for title, key, unit, below, other in rows:
         if headline.get(key) is not None:
             second = headline.get(other)

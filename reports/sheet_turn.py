@@ -51,13 +51,18 @@ class Turn:
 
     @property
     def counter_hole(self) -> tuple[float, float, float, bool] | None:
-        """Centre x, y and radius, mm, and whether it is drilled; None without a hole."""
+        """Centre x, y and radius, mm, and whether it is drilled; None without a hole.
+
+        A hole that does not balance the cam is no proposal.
+        """
         names = ("hole_x_mm", "hole_y_mm", "hole_diameter_mm")
         values = [self.balance[name] for name in names]
-        if not all(isinstance(value, (int, float)) for value in values):
+        drilled = bool(self.balance["hole_drilled"])
+        proposed = not self.balance["hole_note"]
+        if not (drilled or proposed) or not all(isinstance(v, (int, float)) for v in values):
             return None
         x, y, diameter = (float(value) for value in values if value is not None)
-        return x, y, 0.5 * diameter, bool(self.balance["hole_drilled"])
+        return x, y, 0.5 * diameter, drilled
 
     @property
     def crank(self) -> Array:

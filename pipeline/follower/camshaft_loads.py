@@ -341,10 +341,6 @@ class Unbalance:
         """Whether the first moment is round-off, such as by symmetry."""
         return bool(np.hypot(*self.moment) <= _BALANCED * self.area**1.5)
 
-    def force(self, cam_speed: float) -> float:
-        """Centrifugal force m e w^2, N."""
-        return self.product * cam_speed**2
-
 
 def rotating_force(product: float, direction: float, cam_speed: float, theta: Array) -> Array:
     """Centrifugal force of an unbalance on the shaft (2, n), N, in the frame of `ShaftLoads`.
@@ -447,7 +443,7 @@ def counter_hole(
     places = np.linspace(bore_radius, _reach(unbalance, ring), _PLACES)
     fits = places[spare(places) >= 0.0]
     if not fits.size:
-        raise GeometryError("no counter-hole fits between bore and contour")
+        raise GeometryError("no counter-hole that balances the cam fits between bore and contour")
     # spare() decreases to zero beyond the outermost feasible place
     inside, outside = fits[-1], places[-1]
     for _ in range(_CUTS):
@@ -457,7 +453,7 @@ def counter_hole(
     outermost = float(inside)
     radius = float(np.sqrt(need / (np.pi * outermost)))
     if outermost - radius - wall < bore_radius + keyway_depth:
-        raise GeometryError("no counter-hole fits between bore and contour")
+        raise GeometryError("no counter-hole that balances the cam fits between bore and contour")
     return CounterHole(outermost * direction, radius)
 
 

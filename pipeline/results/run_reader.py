@@ -24,6 +24,8 @@ HEADLINE = (
     *("lift_max_mm", "pressure_angle_max_deg", "pitch_radius_of_curvature_min_mm"),
     *("normal_force_min_N", "normal_force_max_N"),
     *("p0_max_MPa", "p0_hertz_max_MPa", "half_width_max_mm", "von_mises_max_MPa"),
+    *("von_mises_depth_mm", "follower_von_mises_max_MPa", "follower_von_mises_depth_mm"),
+    "ring_stress_max_MPa",
     *("guide_reaction_A_max_N", "guide_reaction_B_max_N", "friction_loss_J_per_cam_turn"),
     *("p0_difference_max_percent", "residual_equilibrium_max"),
 )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict
 
 import numpy as np
@@ -17,6 +17,7 @@ from camwright.pipeline.base.units import in_unit
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.contact.contact_history import CertificatePoint, ContactHistory
 from camwright.pipeline.contact.elasticity.mesh_convergence import Convergence
+from camwright.pipeline.contact.hertz import von_mises_peak
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.cam_balance import balance
 from camwright.pipeline.cycle.crank_speed import SpeedStudy, consistency, study_of
@@ -158,7 +159,7 @@ def headline(torques: Mapping[str, Torque], trial: Trial) -> dict[str, float | N
         "p0_max_MPa": contact(lambda h: h.p0, _MPA),
         "p0_hertz_max_MPa": contact(lambda h: h.p0_hertz, _MPA),
         "half_width_max_mm": contact(lambda h: h.half_width, _MM),
-        "von_mises_max_MPa": contact(lambda h: h.von_mises, _MPA),
+        **_body_stresses(trial, loaded),
         "guide_reaction_A_max_N": over(lambda c: np.abs(c.guides.reaction_a)),
         "guide_reaction_B_max_N": over(lambda c: np.abs(c.guides.reaction_b)),
         "friction_loss_J_per_cam_turn": float(first.loads.friction_loss)
@@ -169,6 +170,38 @@ def headline(torques: Mapping[str, Torque], trial: Trial) -> dict[str, float | N
         else None,
         "residual_equilibrium_max": _residual_max(trial),
     }
+
+
+def _body_stresses(trial: Trial, loaded: Sequence[Cycle]) -> dict[str, float | None]:
+    """Maximum von Mises stress below the contact with its depth, in cam and follower; ring.
+
+    The contact presses on both bodies alike: in the follower stress and depth are those of the cam
+    times the ratio of the half-planes of both Poisson ratios. The ring of the roller's bearing
+    bends: greatest amplitude plus mean at its groove, None where it is not described.
+    """
+    bodies = trial.solution.machine.bodies.values()
+    (own, at), (other, there) = (von_mises_peak(card.nu) for card in bodies)
+    known = [c for c in loaded if trial.mesh is not None or trial.depth < Tier.CYCLE]
+    worst = max(known, key=lambda c: float(np.max(c.contact.von_mises)), default=None)
+    stress = depth = np.nan
+    if worst is not None:
+        k = int(np.argmax(worst.contact.von_mises))
+        stress = _MPA * float(worst.contact.von_mises[k])
+        depth = _MM * float(worst.contact.von_mises_depth[k])
+    rings = [
+        float(np.max(amplitude + np.abs(mean)))
+        for cycle in loaded
+        if (amplitude := cycle.parts.ring_amplitude) is not None
+        and (mean := cycle.parts.ring_mean) is not None
+    ]
+    figures = {
+        "von_mises_max_MPa": stress,
+        "von_mises_depth_mm": depth,
+        "follower_von_mises_max_MPa": stress * other / own,
+        "follower_von_mises_depth_mm": depth * there / at if at > 0.0 else np.nan,
+        "ring_stress_max_MPa": _MPA * max(rings, default=np.nan),
+    }
+    return {name: value if np.isfinite(value) else None for name, value in figures.items()}
 
 
 def _residual_max(trial: Trial) -> float | None:

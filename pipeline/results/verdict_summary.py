@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import textwrap
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, NamedTuple
@@ -159,18 +158,30 @@ def missing_lines(checks: Sequence[CheckRecord], case: str) -> list[str]:
 
 
 def headline_line(document: Mapping[str, Any]) -> list[str]:
-    """Ripple without and with the cam, greatest contact pressure and von Mises stress; or none."""
+    """Ripple without and with the cam, greatest contact pressure, stress of each body; or none."""
     figures = document.get("headline") or {}
     before, after = (figures.get(f"torque_std_{when}_Nm") for when in ("before", "after"))
     parts = []
     if before and after is not None:
         change = f"{after / before - 1.0:+.0%}".replace("%", " %")
         parts.append(f"torque ripple {before:.3g} to {after:.3g} N m ({change})")
-    for name, words in (("p0_max_MPa", "p0"), ("von_mises_max_MPa", "von Mises")):
-        value = figures.get(name)
-        if value is not None and math.isfinite(value):
-            parts.append(f"{words} {value:.4g} MPa")
+    if (pressure := figures.get("p0_max_MPa")) is not None:
+        parts.append(f"p0 {pressure:.4g} MPa")
+    if stresses := body_stresses(figures):
+        parts.append(f"von Mises {'; '.join(stresses)}")
     return [f"headline: {', '.join(parts)}"] if parts else []
+
+
+def body_stresses(figures: Mapping[str, Any]) -> list[str]:
+    """Greatest stress of each body with its place, such as ``606 MPa in the cam, ...``."""
+    stress, depth = (figures.get(f"von_mises_{of}") for of in ("max_MPa", "depth_mm"))
+    place = f", {depth:.2g} mm below the surface" if depth is not None else ""
+    parts = (
+        (stress, f"in the cam{place}"),
+        (figures.get("follower_von_mises_max_MPa"), "in the follower"),
+        (figures.get("ring_stress_max_MPa"), "in the roller ring by bending"),
+    )
+    return [f"{value:.4g} MPa {words}" for value, words in parts if value is not None]
 
 
 def governing_line(checks: Iterable[CheckRecord]) -> list[str]:

@@ -90,7 +90,7 @@ def test_a_heavy_cam_gets_the_hole_that_helps_most():
     """None takes it all; the greatest keeps its walls, and no other hole of a grid beats it."""
     cam = case_of(ORDERED).cam
     drilled = balance(cam, HEAVY)
-    assert "no counter-hole fits" in drilled.missed
+    assert "no counter-hole that balances the cam fits" in drilled.missed
     hole, ring = drilled.hole, HEAVY.polygon(7200)
     assert 0.0 < drilled.left.product < drilled.unbalance.product
     away = np.hypot(*(ring - hole.centre[:, None])).min() - hole.radius
@@ -135,7 +135,7 @@ def test_the_check_judges_the_cam_as_it_is_made():
     assert (left_out.status, drilled.status) == ("fail", "pass")
     heavy = cam_unbalance(solved(parse_case(plain + ORDERED), HEAVY))
     assert heavy.status == "fail"
-    assert "no counter-hole fits" in heavy.note
+    assert "no counter-hole that balances the cam fits" in heavy.note
 
 
 def test_the_record_is_plain_numbers():

@@ -23,6 +23,7 @@ from camwright.pipeline.preview import preview_case
 from camwright.pipeline.results.run_reader import status_of
 from camwright.pipeline.results.run_records import headline
 from camwright.pipeline.results.trial import Trial
+from camwright.pipeline.results.verdict_summary import body_stresses
 from camwright.pipeline.solver import solve
 
 TEXT = (Path(__file__).parents[2] / "cases" / "gx120.toml").read_text(encoding="utf-8")
@@ -133,3 +134,22 @@ def test_loads_lost_at_a_corner_leave_the_other_corners(
     assert judged.as_record()["demand"] == (None if status == "not_evaluated" else nominal)
     (free,) = governed([replace(one)], tried[:1])
     assert free.without == ""
+
+
+def test_the_headline_names_the_stress_of_each_body() -> None:
+    """Half-planes of nu = 0.3: 0.558 p0 at 0.704 a, Johnson (1985) sec. 4.2(c), to its digits."""
+    figures = headline({}, trial())
+    loaded = [each for each in trial().cycles if each.load_case != "over-speed"]
+    worst = max(loaded, key=lambda each: float(each.contact.p0.max()))
+    k = int(worst.contact.p0.argmax())
+    for body in ("", "follower_"):
+        stress, depth = figures[f"{body}von_mises_max_MPa"], figures[f"{body}von_mises_depth_mm"]
+        assert stress == pytest.approx(0.558e-6 * worst.contact.p0[k], rel=2e-3)
+        assert depth == pytest.approx(0.704e3 * worst.contact.half_width[k], rel=5e-3)
+    parts = [each.parts for each in loaded]
+    rings = [(one.ring_amplitude, one.ring_mean) for one in parts]
+    highest = max(float(np.max(a + np.abs(m))) for a, m in rings if a is not None and m is not None)
+    assert figures["ring_stress_max_MPa"] == pytest.approx(1e-6 * highest, rel=1e-12)
+    assert (
+        body_stresses(figures)[2] == f"bending {1e-6 * highest:.4g} MPa in the ring of the roller"
+    )
