@@ -225,11 +225,8 @@ gear_position = "-25 mm"
 gear_radius = "40 mm"
 diameter = "30 mm"
 material = "c45"
-surface = "ground"
-drag = "0.1 N m"
 bearing_rating = "19.5 kN"           # of two 6206
 bearing_static_rating = "11.2 kN"
-rotor_mass = "1.8 kg"                # cam, gear and shaft
 slip_torque = "120 N m"              # the cam shrunk on; 0 N m: sliding fit
 counterweight = { residual = "20 g mm", position = "35 mm" }  # balanced on a bench
 
