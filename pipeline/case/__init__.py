@@ -23,8 +23,8 @@ In the order of the calculation:
 | `case_file`            | reading of a case file                       |                  |
 | `keys`                 | every key: meaning, unit, range, default     |                  |
 | `case_values`          | values by dotted key; the case with others   |                  |
-| `template`             | case file of `camwright init`                |                  |
 | `load_case_torque`     | engine torque of each load case              | T, N m           |
+| `template`             | first case of each kind of source            |                  |
 | `machine`              | `Machine`: the parts in one load case        | SI               |
 
 Imports `geometry`, `pipeline.base`, `pipeline.engine`, `pipeline.contact` and `pipeline.follower`.
