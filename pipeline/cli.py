@@ -41,6 +41,7 @@ app = typer.Typer(
 for _command in (
     run_command.run,
     check_command.check,
+    check_command.schema,
     run_command.report,
     run_command.init,
     comparison_commands.compare,

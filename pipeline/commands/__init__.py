@@ -4,7 +4,7 @@
 | --------------------- | ------------------------------------------------------- |
 | `terminal`            | exit codes, output streams, progress, text of a verdict |
 | `run_command`         | `run`, `report`, `init`                                 |
-| `check_command`       | `check`: verdict of a run or preview of a case          |
+| `check_command`       | `check` of a run or the preview of a case; `schema`     |
 | `comparison_commands` | `compare`, `validate`, `compare-mechanisms`             |
 | `contact_command`     | `contact`, `deck`                                       |
 | `inspect_command`     | `inspect`: measured cam                                 |

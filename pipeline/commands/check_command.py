@@ -1,4 +1,4 @@
-"""Command `check`: verdict of a run, or preview of a case."""
+"""Commands `check`, verdict of a run or preview of a case, and `schema` of their records."""
 
 from __future__ import annotations
 
@@ -106,6 +106,18 @@ def check(
 
         stdout.print(overview(each.row for each in judged))
     return max((each.code for each in judged), key=SEVERITY.index)
+
+
+def schema(
+    name: Annotated[
+        str, typer.Argument(metavar="NAME", help="run, checks, check (of check --json) or signoff.")
+    ],
+) -> int:
+    """Print the JSON Schema of a record: run.json, 6_checks.json, check --json, signoff.json."""
+    from camwright.pipeline.results.record_schemas import record_schema
+
+    show_json(record_schema(name))
+    return PASSED
 
 
 def _case_of(target: Path) -> Path:

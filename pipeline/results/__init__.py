@@ -8,6 +8,7 @@ In the order of a run:
 | `run_reader`           | a finished run read from its folder; schema of the records            |
 | `model_limits`         | limits of the model, for report, sign-off record and documentation    |
 | `signoff`              | sign-off record: figures, evidence, validity limits, hashes of files  |
+| `record_schemas`       | JSON Schemas of summary, checks and sign-off record                   |
 | `run_folder`           | the folder of a run while it is written; resumption                   |
 | `run_records`          | columns of the tables, key figures, records of trial and crank speed  |
 | `trial_writer`         | files of a trial                                                      |

@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from record_validation import schema_errors
 from run_recomputed import RECOMPUTED, RunFiles, line_contact_by_quadrature
 
 from camwright.geometry.arrays import uniform_turn
@@ -105,6 +106,28 @@ def test_resumed_run_equals_a_straight_one_to_the_byte(
     files = {name: value for name, value in summary["files"].items() if name not in pages}
     clocks = {"timings_s": 0, "started": 0}
     assert summary | clocks | {"files": files} == again | clocks
+
+
+def test_records_keep_their_schemas(finished: tuple[Case, Path, dict[str, Any]]) -> None:
+    _, out, _ = finished
+    for name, file in (
+        ("run", "run.json"),
+        ("checks", "trial_1/6_checks.json"),
+        ("signoff", "signoff.json"),
+    ):
+        document = json.loads((out / file).read_text(encoding="utf-8"))
+        assert schema_errors(name, document) == []
+        if name != "checks":
+            for key in document:
+                lacking = {other: value for other, value in document.items() if other != key}
+                assert schema_errors(name, lacking), f"{file} without {key}"
+                assert schema_errors(name, document | {key: object_of_another_type(document[key])})
+            assert schema_errors(name, document | {"further": 1})
+            assert schema_errors(name, document | {"files": {"run.json": "12"}})
+
+
+def object_of_another_type(value: object) -> object:
+    return 7 if isinstance(value, (str, dict, list)) or value is None else "seven"
 
 
 def test_run_folder_holds_what_was_promised(

@@ -1,0 +1,18 @@
+"""Violations of the JSON Schemas by an independent validator."""
+
+from functools import cache
+
+from jsonschema import Draft202012Validator
+
+from camwright.pipeline.results.record_schemas import record_schema
+
+
+@cache
+def validator(name: str) -> Draft202012Validator:
+    return Draft202012Validator(record_schema(name))
+
+
+def schema_errors(name: str, document: object) -> list[str]:
+    """Place and message of each violation."""
+    errors = validator(name).iter_errors(document)
+    return [f"{error.json_path}: {error.message}" for error in errors]
