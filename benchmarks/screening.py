@@ -11,8 +11,7 @@ import numpy as np
 
 from camwright.geometry.arrays import Array
 from camwright.pipeline.case.case import Case
-from camwright.pipeline.case.case_file import read_case
-from camwright.pipeline.case.case_values import with_values
+from camwright.pipeline.case.case_file import read_case, with_values
 from camwright.pipeline.preview import preview_case
 from camwright.pipeline.screening.design_screening import screen_designs
 

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from camwright.geometry.arrays import Array, positive, readonly, uniform_turn
-from camwright.geometry.errors import GeometryError, InputError
+from camwright.geometry.errors import GeometryError, InputError, in_millimetres
 from camwright.geometry.extrema import Extremum, greatest, least
 from camwright.geometry.follower_height import roller_height
 from camwright.geometry.follower_path import FollowerPath, cam_axes, reciprocal
@@ -337,8 +337,8 @@ class RollerContour(Contour):
     def __post_init__(self) -> None:
         positive("roller.radius", self.roller_radius, "m")
         if not self.roller_radius < self.pitch.prime_radius:
-            limit = f"below the prime radius of {self.pitch.prime_radius:g} m"
-            raise InputError("roller.radius", self.roller_radius, limit)
+            shown, most = in_millimetres(self.roller_radius, self.pitch.prime_radius)
+            raise InputError("roller.radius", shown, f"below the prime radius of {most}")
 
     @property
     def rolls(self) -> bool:

@@ -7,7 +7,7 @@ from typing import Protocol
 import numpy as np
 
 from camwright.geometry.arrays import Array, readonly, rotation
-from camwright.geometry.errors import InputError
+from camwright.geometry.errors import InputError, in_millimetres
 
 
 class KeywayLike(Protocol):
@@ -45,7 +45,8 @@ def keyway_corners(bore_radius: float, keyway: KeywayLike) -> Array:
     """
     half = 0.5 * keyway.width
     if not half < bore_radius:
-        raise InputError("cam.keyway.width", keyway.width, f"< {2 * bore_radius:g} m")
+        shown, most = in_millimetres(keyway.width, 2 * bore_radius)
+        raise InputError("cam.keyway.width", shown, f"< {most}, 2 bore radii")
     mouth, floor = np.sqrt(bore_radius**2 - half**2), bore_radius + keyway.depth
     local = np.array([[mouth, floor, floor, mouth], [-half, -half, half, half]])
     return readonly(rotation(keyway.angle) @ local)

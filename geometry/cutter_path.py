@@ -8,7 +8,7 @@ import numpy as np
 
 from camwright.geometry.arrays import Array, positive, readonly
 from camwright.geometry.contour import Contour
-from camwright.geometry.errors import GeometryError
+from camwright.geometry.errors import GeometryError, in_millimetres
 from camwright.geometry.interference import SecondContact, second_contact
 
 
@@ -42,9 +42,10 @@ def cutter_path(contour: Contour, tool_radius: float, theta: Array) -> CutterPat
     contour.require_no_undercut()
     concave = contour.concave_radius_min()
     if not tool_radius < concave.value:
+        shown, least = in_millimetres(tool_radius, float(concave.value))
         raise GeometryError(
-            f"tool.radius = {tool_radius:g} m, must be < {concave.value:.6g} m, the minimum "
-            f"concave radius, at cam angle {np.degrees(concave.theta):.2f} deg"
+            f"tool.radius = {shown}, must be < {least}, "
+            f"the minimum concave radius, at cam angle {np.degrees(concave.theta):.2f} deg"
         )
     centre = contour.points(theta) + tool_radius * contour.normal(theta)
     return CutterPath(

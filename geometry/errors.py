@@ -6,6 +6,15 @@ Refused = str | float | tuple[float, ...] | None
 """Value of an input that is out of bounds: text, number, shape, or None where it is missing."""
 
 
+def in_millimetres(*lengths: float) -> tuple[str, ...]:
+    """Lengths (m) as text in mm for a message: four digits, more where two would read alike."""
+    for digits in (4, 8, 17):
+        texts = tuple(f"{1e3 * length:.{digits}g} mm" for length in lengths)
+        if len(set(texts)) == len(set(lengths)):
+            break
+    return texts
+
+
 class CamError(Exception):
     """Error that the user can correct; its message is one line."""
 
@@ -18,6 +27,8 @@ class InputError(CamError):
     field : str        dotted name of the input, such as ``roller.radius``
     value : Refused    value of the input
     limit : str        accepted values, such as ``> 0 m``
+
+    The message rounds a float to four digits.
     """
 
     def __init__(self, field: str, value: Refused, limit: str) -> None:
@@ -25,7 +36,8 @@ class InputError(CamError):
         super().__init__(field, value, limit)
 
     def __str__(self) -> str:
-        text = " ".join(str(self.value).split())
+        value = self.value
+        text = f"{value:.4g}" if isinstance(value, float) else " ".join(str(value).split())
         shortened = text if len(text) <= 80 else f"{text[:30]}...{text[-47:]}"  # paths end in names
         return f"{self.field} = {shortened}, must be {self.limit}"
 

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 
 from camwright.geometry.arrays import Array
 from camwright.geometry.contour import Contour, Frame, Undercut
-from camwright.geometry.errors import InputError
+from camwright.geometry.errors import InputError, in_millimetres
 from camwright.geometry.extrema import Extremum, greatest, least
 from camwright.geometry.follower_height import face_height
 from camwright.geometry.follower_path import FollowerPath, reciprocal, require_offset
@@ -188,5 +188,6 @@ class FlatFaceContour(Contour):
         """
         needed = self.face_width_min()
         if not width > needed:
-            limit = f"> {needed:.6g} m, twice the greatest |s' - cam.offset|"
-            raise InputError("follower.face.width", f"{width:g} m", limit)
+            shown, least = in_millimetres(width, needed)
+            limit = f"> {least}, twice the greatest |s' - cam.offset|"
+            raise InputError("follower.face.width", shown, limit)

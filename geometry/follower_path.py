@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from camwright.geometry.arrays import Array, positive
-from camwright.geometry.errors import InputError
+from camwright.geometry.errors import InputError, in_millimetres
 from camwright.geometry.extrema import Extremum, greatest, least
 from camwright.geometry.lift import Lift
 
@@ -135,9 +135,10 @@ def require_offset(offset: float, name: str, radius: float) -> None:
     InputError
         If the radius is not positive or the offset not below it; NaN included.
     """
-    positive("cam.pitch_base_radius", radius, "m")
+    positive("cam.prime_radius", radius, "m")
     if not abs(offset) < radius:
-        raise InputError("cam.offset", offset, f"below the {name} of {radius:g} m")
+        shown, most = in_millimetres(offset, radius)
+        raise InputError("cam.offset", shown, f"below the {name} of {most}")
 
 
 def cam_axes(theta: ArrayLike, along: Array, across: Array | float) -> Array:

@@ -215,5 +215,6 @@ def one_turn(theta: Array, values: Array, field: str = "lift.theta") -> tuple[Ar
         closure = float(abs(values[-1] - values[0]))
         theta, values = readonly(theta[:-1]), readonly(values[:-1])
     if not closure <= CLOSURE_LIMIT:
-        raise InputError("lift.closure", closure, f"<= {CLOSURE_LIMIT:g} m: the turn must close")
+        limit = f"<= {1e6 * CLOSURE_LIMIT:.4g} um: the turn must close"
+        raise InputError("lift.closure", f"{1e6 * closure:.4g} um", limit)
     return theta, values, closure

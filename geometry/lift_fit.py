@@ -102,8 +102,10 @@ def fitted_lift(theta: ArrayLike, values: ArrayLike, noise: float) -> FittedLift
         if fit.residual_rms <= noise:
             return fit
         if parts == parts_max:
-            limit = f">= {fit.residual_rms:.6g} m, the rms residual of the closest smooth lift"
-            raise InputError("lift.noise", f"{noise:.6g} m", limit)
+            limit = (
+                f">= {1e6 * fit.residual_rms:.4g} um, the rms residual of the closest smooth lift"
+            )
+            raise InputError("lift.noise", f"{1e6 * noise:.4g} um", limit)
         parts = min(int(np.ceil(parts * _GROWTH)), parts_max)
 
 

@@ -229,14 +229,14 @@ class Motion:
             raise InputError("lift.repeat", self.repeat, f">= 1 and <= {REPEAT_MAX}")
         angle = sum(segment.angle for segment in self.segments)
         if not abs(angle - self.period) <= CLOSURE_TOLERANCE * FULL_TURN:
-            limit = f"{np.degrees(self.period):.12g} deg in all, the turn over lift.repeat"
-            raise InputError("lift.segment.angle", f"{np.degrees(angle):.12g} deg in all", limit)
+            limit = f"{np.degrees(self.period):.4g} deg in all, the turn over lift.repeat"
+            raise InputError("lift.segment.angle", f"{np.degrees(angle):.4g} deg in all", limit)
         strokes = [segment.stroke for segment in self.segments]
         if not any(strokes):
             raise InputError("lift.segment.stroke", "dwells only", "a rise and a return")
         if not abs(sum(strokes)) <= CLOSURE_TOLERANCE * max(map(abs, strokes)):
-            limit = "0 m in all: the lift must close"
-            raise InputError("lift.segment.stroke", f"{sum(strokes):.6g} m in all", limit)
+            limit = "0 mm in all: the lift must close"
+            raise InputError("lift.segment.stroke", f"{1e3 * sum(strokes):.4g} mm in all", limit)
 
     @property
     def period(self) -> float:

@@ -9,7 +9,7 @@ import numpy as np
 
 from camwright.geometry.arrays import FULL_TURN, Array, positive, rotation
 from camwright.geometry.cutouts import HoleLike, KeywayLike
-from camwright.geometry.errors import GeometryError, InputError
+from camwright.geometry.errors import GeometryError, InputError, in_millimetres
 from camwright.meshes.element_size import EDGES_PER_TURN, SizeField, Sizing
 from camwright.meshes.outline import Piece, Zone, arc, line
 
@@ -122,9 +122,9 @@ def cam_size(
     wall, place = least_wall(path, bore_radius, keyway)
     if not wall > _WALL_MIN * bore_radius:
         raise GeometryError(
-            f"minimum wall between bore or keyway and contour = {wall * 1e3:.3f} mm "
-            f"(bore_radius = {bore_radius * 1e3:g} mm), "
-            f"must be > {_WALL_MIN * bore_radius * 1e3:.3f} mm"
+            f"minimum wall between bore or keyway and contour = {wall * 1e3:.4g} mm "
+            f"(cam.bore_radius = {bore_radius * 1e3:.4g} mm), "
+            f"must be > {_WALL_MIN * bore_radius * 1e3:.4g} mm"
         )
     size = sizing.field()
     size = size.with_spot((0.0, 0.0), FULL_TURN * bore_radius / EDGES_PER_TURN, bore_radius)
@@ -224,14 +224,16 @@ def hole_pieces(bore_radius: float, keyway: KeywayLike | None) -> list[Piece]:
     positive("cam.keyway.width", keyway.width, "m")
     positive("cam.keyway.depth", keyway.depth, "m")
     if not keyway.width < 1.8 * bore_radius:
-        raise InputError("cam.keyway.width", keyway.width, f"< {1.8 * bore_radius:g} m")
+        shown, most = in_millimetres(keyway.width, 1.8 * bore_radius)
+        raise InputError("cam.keyway.width", shown, f"< {most}, 1.8 bore radii")
     half, outer = 0.5 * keyway.width, bore_radius + keyway.depth
     mouth = float(np.arcsin(half / bore_radius))
     fillet = keyway.fillet
     # a short straight side between the fillets would give sliver triangles
     fillet_max = 0.8 * min(half, outer - bore_radius * np.cos(mouth))
     if not 0 <= fillet <= fillet_max:
-        raise InputError("cam.keyway.fillet", fillet, f"in 0..{fillet_max:g} m")
+        shown, most = in_millimetres(fillet, fillet_max)
+        raise InputError("cam.keyway.fillet", shown, f">= 0 and <= {most}")
     frame, x = rotation(keyway.angle), bore_radius * np.cos(mouth)
     # clockwise along the bore from the lower edge of the mouth to the upper one
     pieces = [arc("bore", bore_radius, keyway.angle + FULL_TURN - mouth, keyway.angle + mouth)]

@@ -7,6 +7,7 @@ from dataclasses import replace
 
 from camwright.pipeline.base.progress import SILENT, Progress
 from camwright.pipeline.case.case import Case
+from camwright.pipeline.case.case_values import refused_as_written
 from camwright.pipeline.case.load_case_torque import engine_torques
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.engine.torque import Torque
@@ -37,6 +38,11 @@ def preview_case(case: Case, *, corners: bool = True, progress: Progress = SILEN
     CamError
         If the case has no such cam.
     """
+    with refused_as_written(case):
+        return _previewed(case, corners, progress)
+
+
+def _previewed(case: Case, corners: bool, progress: Progress) -> Trial:
     torques = engine_torques(case)
     if case.smoothing.kind != "constrained":
         contour = case.contour(cam_lift(case, torques))

@@ -12,6 +12,7 @@ from camwright.geometry.errors import CamError
 from camwright.pipeline.base.progress import SILENT, Progress, utc
 from camwright.pipeline.base.worker_processes import Crew, crew
 from camwright.pipeline.case.case import Case
+from camwright.pipeline.case.case_values import refused_as_written
 from camwright.pipeline.case.load_case_torque import engine_torques, measurement_record
 from camwright.pipeline.checks.tolerance_corners import corners_record
 from camwright.pipeline.contact.tiers import Tier
@@ -74,7 +75,11 @@ def run_case(
     """
     out = Path(out)
     case = case if positions is None else case.with_positions(positions)
-    with RunFolder(out, case, depth=depth, resume=resume) as folder, crew(jobs) as workers:
+    with (
+        refused_as_written(case),
+        RunFolder(out, case, depth=depth, resume=resume) as folder,
+        crew(jobs) as workers,
+    ):
         watch = Stopwatch(progress, began)
         summary = _solved(folder, case, depth, workers, fields, watch, also, ahead)
         if report is not None:

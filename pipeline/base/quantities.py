@@ -33,6 +33,10 @@ if TYPE_CHECKING:
     from pydantic_core import CoreSchema
 
 
+PURE = "a number without a unit"
+"""Limit of a pure number."""
+
+
 @dataclass(frozen=True)
 class In:
     """Marks a float field: unit in a case file, and bounds in that unit; the value is in SI.
@@ -117,7 +121,7 @@ class In:
         if self.unit:
             return units.parse(value, self.unit, "")
         if isinstance(value, bool) or not isinstance(value, (int, float)):
-            raise InputError("", str(value), "a number without a unit")
+            raise InputError("", str(value), PURE)
         number = float(value) if abs(value) < 1e308 else inf
         if not isfinite(number):
             raise InputError("", value, "finite")

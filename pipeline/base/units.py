@@ -227,6 +227,19 @@ def format(value: float, unit: str) -> str:  # noqa: A001 - reads as units.forma
     return f"{_plain(shortest)} {unit}"
 
 
+def rounded(text: str, digits: int = 4) -> str:
+    """Text with its number rounded; as it stands where that has no more digits, or is none."""
+    match = _QUANTITY.fullmatch(text) if len(text) <= _LONGEST else None
+    number = Decimal(match.group(1)) if match else Decimal("NaN")
+    if (
+        match is None
+        or not number.is_finite()
+        or len(number.normalize().as_tuple().digits) <= digits
+    ):
+        return " ".join(text.split())
+    return f"{_plain(Decimal(f'{number:.{digits}g}'))} {match.group(2)}".rstrip()
+
+
 def _plain(number: Decimal) -> str:
     """Without an exponent where that stays readable: 24200, 0.0055, 2.1e-07."""
     if number == 0:

@@ -14,7 +14,7 @@ from camwright.geometry.lift import Lift
 from camwright.pipeline.base.files import hash_inputs
 from camwright.pipeline.base.material import Material
 from camwright.pipeline.case.engine_section import Engine, engine_files
-from camwright.pipeline.case.error_text import first_error
+from camwright.pipeline.case.error_text import Written, first_error
 from camwright.pipeline.case.lift_section import GivenLift, LiftTable
 from camwright.pipeline.case.limits import TOOL_RADIUS, Limits
 from camwright.pipeline.case.parts_section import Follower, ValveTrain
@@ -85,6 +85,7 @@ class Case(Section):
 
     _included: Mapping[str, bytes] = PrivateAttr(default_factory=dict)
     _folder: Path | None = PrivateAttr(default=None)
+    _written: Written = PrivateAttr(default_factory=Written)
 
     def to_toml(self) -> str:
         """The case with every default written out; reads back bit for bit.
@@ -105,6 +106,11 @@ class Case(Section):
     def included(self) -> Mapping[str, bytes]:
         """Bytes of each included file, by its name in a run folder."""
         return self._included
+
+    @property
+    def written(self) -> Written:
+        """The case as its file states it, for messages."""
+        return self._written
 
     @property
     def sha256(self) -> str:

@@ -3,23 +3,28 @@
 from __future__ import annotations
 
 import tomllib
+from collections.abc import Mapping
 from pathlib import Path
 from types import MappingProxyType
+from typing import Any
 
 from pydantic import ValidationError
 
 from camwright.geometry.errors import InputError
+from camwright.pipeline.base import units
 from camwright.pipeline.base.files import inside
 from camwright.pipeline.base.material import Material
+from camwright.pipeline.base.quantities import In
 from camwright.pipeline.case.cards.card_filling import fill_cards
 from camwright.pipeline.case.cards.part_table import read_part
 from camwright.pipeline.case.case import Case, includes, kept_as
+from camwright.pipeline.case.case_values import quantity_of, refused_as_written, steps_of
 from camwright.pipeline.case.consistency import check_sections
-from camwright.pipeline.case.error_text import first_error
+from camwright.pipeline.case.error_text import Written, first_error
 from camwright.pipeline.case.given_lift import given_lift
 from camwright.pipeline.case.renamed_keys import with_new_keys
 from camwright.pipeline.case.section import named
-from camwright.pipeline.case.toml_text import Tables, TomlValue
+from camwright.pipeline.case.toml_text import Tables, TomlValue, tables_of
 
 CASE_BYTES = 256 * 1024
 INCLUDE_BYTES = 16 * 1024 * 1024
@@ -56,7 +61,8 @@ def completed(case: Case, folder: Path | None) -> Case:
     case._folder = folder
     case._included = MappingProxyType(_read_includes(case, folder))
     if case.lift is not None and case.follower.face is not None:
-        case.follower.face.contour(given_lift(case), case.cam)  # refuses a face too narrow
+        with refused_as_written(case):
+            case.follower.face.contour(given_lift(case), case.cam)  # refuses a face too narrow
     return case
 
 
@@ -68,8 +74,44 @@ def case_of(data: Tables, folder: Path | None = None) -> Case:
         case = Case.model_validate(tables, context={"materials": _cards(tables.get("materials"))})
     except ValidationError as error:
         raise first_error(error) from None
+    case._written = Written(tables)
     check_sections(case)
     return case
+
+
+def with_values(case: Case, values: Mapping[str, TomlValue]) -> Case:
+    """The case with other values, read and checked as a case file.
+
+    Parameters
+    ----------
+    values : mapping   by dotted key: text as in a case file; a float of a field with a unit in SI
+
+    Raises
+    ------
+    InputError
+        If a key is unknown, or the case is refused; by its dotted name.
+    """
+    tables = tables_of(case)
+    for key, value in values.items():
+        quantity = quantity_of(key)
+        if isinstance(value, float) and isinstance(quantity, In) and quantity.unit:
+            _enter(tables, key, units.format(value, quantity.unit))
+        else:
+            _enter(tables, key, value)
+    return completed(case_of(tables, case.folder), case.folder)
+
+
+def _enter(tables: Tables, key: str, value: TomlValue) -> None:
+    *path, last = steps_of(key)
+    table: Any = tables
+    for step in path:
+        known = isinstance(table, list) if isinstance(step, int) else isinstance(table, dict)
+        if not known or (isinstance(step, int) and step >= len(table)):
+            raise InputError("factor", key, "a value in a table of the case")
+        table = table[step] if isinstance(step, int) else table.setdefault(step, {})
+    if not isinstance(table, dict) or isinstance(last, int):
+        raise InputError("factor", key, "a value in a table of the case")
+    table[last] = value
 
 
 def _cards(tables: TomlValue | None) -> dict[str, Material]:

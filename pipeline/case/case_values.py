@@ -1,4 +1,4 @@
-"""Values of a case by dotted key: their unit, the value, and the case with others.
+"""Values of a case by dotted key: their unit, the value and its text; the case with other numbers.
 
 A key is that of the case file: ``spring.rate``, ``roller.bearing.C``, ``load_case[0].speed``.
 """
@@ -6,17 +6,17 @@ A key is that of the case file: ``spring.rate``, ``roller.bearing.C``, ``load_ca
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import fields, replace
 from typing import Any, TypeVar, get_args
 
-from camwright.geometry.errors import InputError
+from camwright.geometry.errors import InputError, Refused
 from camwright.pipeline.base import units
 from camwright.pipeline.base.quantities import Count, In, Part
 from camwright.pipeline.case.case import Case
-from camwright.pipeline.case.case_file import case_of, completed
+from camwright.pipeline.case.error_text import as_written
 from camwright.pipeline.case.section import Section, section_of, suggestion
-from camwright.pipeline.case.toml_text import Tables, TomlValue, tables_of
 
 _STEP = re.compile(r"([A-Za-z_0-9]+)(?:\[(0|[1-9][0-9]{0,3})\])?")
 Node = TypeVar("Node", Section, Part)
@@ -115,6 +115,47 @@ def value_of(case: Case, key: str) -> Any:
     return node
 
 
+def text_of(case: Case, key: str, digits: int = 4) -> str:
+    """Value at a key as the case file states it, rounded to `digits`; "missing" without one.
+
+    A default, and a number that has replaced that of the file, are shown in the unit of the key.
+    """
+    value, quantity = value_of(case, key), quantity_of(key)
+    stated = case.written.value(steps_of(key))
+    if value is None:
+        return "missing"
+    if not isinstance(value, float) or not isinstance(quantity, In):
+        return str(value)
+    if stated is not None and quantity.read(stated) == value:
+        return as_written(stated, digits)
+    return units.shown(value, quantity.unit, digits)
+
+
+@contextmanager
+def refused_as_written(case: Case) -> Iterator[None]:
+    """Within it a refusal of the value at a key states the value as the case file does.
+
+    A number other than that of the case is stated in the unit of the key.
+    """
+    try:
+        yield
+    except InputError as error:
+        raise InputError(error.field, _refused_text(case, error), error.limit) from None
+
+
+def _refused_text(case: Case, error: InputError) -> Refused:
+    try:
+        quantity, value = quantity_of(error.field), value_of(case, error.field)
+        if not isinstance(quantity, In):
+            return error.value
+        refused = error.value if isinstance(error.value, float) else quantity.read(error.value)
+    except InputError:  # no key of a case, or no number
+        return error.value
+    text = units.shown(refused, quantity.unit)
+    same = isinstance(value, float) and units.shown(value, quantity.unit) == text
+    return text_of(case, error.field) if same else text
+
+
 def _attribute(node: Section | Part, key: str) -> str:
     """Name of the field with a key."""
     if isinstance(node, Part):
@@ -162,38 +203,3 @@ def _put(node: Any, path: Sequence[str | int], values: Mapping[str | int, Any]) 
             raise InputError("factor", name, f"a key of {node.table}")
         return replace(node, **named)  # type: ignore[type-var]
     return node.model_copy(update=named)
-
-
-def with_values(case: Case, values: Mapping[str, TomlValue]) -> Case:
-    """The case with other values, read and checked as a case file.
-
-    Parameters
-    ----------
-    values : mapping   by dotted key: text as in a case file; a float of a field with a unit in SI
-
-    Raises
-    ------
-    InputError
-        If a key is unknown, or the case is refused; by its dotted name.
-    """
-    tables = tables_of(case)
-    for key, value in values.items():
-        quantity = quantity_of(key)
-        if isinstance(value, float) and isinstance(quantity, In) and quantity.unit:
-            _enter(tables, key, units.format(value, quantity.unit))
-        else:
-            _enter(tables, key, value)
-    return completed(case_of(tables, case.folder), case.folder)
-
-
-def _enter(tables: Tables, key: str, value: TomlValue) -> None:
-    *path, last = steps_of(key)
-    table: Any = tables
-    for step in path:
-        known = isinstance(table, list) if isinstance(step, int) else isinstance(table, dict)
-        if not known or (isinstance(step, int) and step >= len(table)):
-            raise InputError("factor", key, "a value in a table of the case")
-        table = table[step] if isinstance(step, int) else table.setdefault(step, {})
-    if not isinstance(table, dict) or isinstance(last, int):
-        raise InputError("factor", key, "a value in a table of the case")
-    table[last] = value

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING
 
 from camwright.geometry.errors import InputError
+from camwright.pipeline.base.quantities import In
 from camwright.pipeline.base.units import shown
+from camwright.pipeline.case.case_values import quantity_of, text_of
 from camwright.pipeline.case.lift_section import LiftSegments, motion_of
 from camwright.pipeline.case.limits import OVERSPEED, TOOL_RADIUS
 from camwright.pipeline.case.requirements_section import OVER_SPEED, STANDSTILL, Tolerances
@@ -21,6 +24,8 @@ if TYPE_CHECKING:
     from camwright.pipeline.case.case import Case
 
 
+_KEYWAY_WIDTH = 1.8  # greatest, over the bore radius
+_DIGITS = (4, 8, 17)  # more where a value and its limit would read alike
 _ROUND_OFF = 1e-9  # of a share of the friction
 _SHARES = 1e-6  # of the sum of the duty
 
@@ -75,8 +80,8 @@ def _check_start(case: Case) -> None:
         limit = 'other than "constrained" with a flat face'
         raise InputError("smoothing.kind", "constrained", limit)
     ratio = case.mechanism.gear_ratio
-    if case.engine is not None and ratio != 2.0:
-        raise InputError("mechanism.gear_ratio", ratio, "2 with an engine: a cam turn is 720 deg")
+    fits = case.engine is None or ratio == 2.0
+    _require(case, "mechanism.gear_ratio", fits, "2 with an engine: a cam turn is 720 deg")
     engine = case.engine
     if isinstance(engine, (SpeedTable, VoltageTable)) and case.crankshaft is None:
         raise InputError(
@@ -89,20 +94,19 @@ def _check_start(case: Case) -> None:
     share, constrained = case.mechanism.compensation, case.smoothing.kind == "constrained"
     if share != 1.0 and (case.engine is None or constrained):
         limit = "1 with a lift" if case.engine is None else '1 with smoothing.kind = "constrained"'
-        raise InputError("mechanism.compensation", share, limit)
+        _require(case, "mechanism.compensation", False, limit)
     for k, load_case in enumerate(case.load_cases):
         if constrained and load_case.preload is not None:
             limit = 'left out with smoothing.kind = "constrained", which has one spring'
-            raise InputError(f"load_case[{k}].preload", load_case.preload, limit)
+            _require(case, f"load_case[{k}].preload", False, limit)
         for name in ("torque", "torque_reduction", "speed_reduction"):
-            value = getattr(load_case, name)
-            if case.engine is None and value is not None:
-                raise InputError(f"load_case[{k}].{name}", value, "left out with a lift")
+            unused = case.engine is not None or getattr(load_case, name) is None
+            _require(case, f"load_case[{k}].{name}", unused, "left out with a lift")
         modelled = isinstance(case.engine, CylinderEngine) and load_case.torque is None
         if not modelled and (load_case.intake_pressure is not None or not load_case.fired):
             name = "fired" if load_case.intake_pressure is None else "intake_pressure"
             limit = 'left out unless engine.kind = "cylinder" without a torque file'
-            raise InputError(f"load_case[{k}].{name}", getattr(load_case, name), limit)
+            _require(case, f"load_case[{k}].{name}", False, limit)
 
 
 def tightened_tolerances(case: Case) -> dict[str, tuple[str, str]]:
@@ -147,10 +151,9 @@ def _check_tolerances(case: Case) -> None:
 
 def _check_mass(case: Case) -> None:
     """The mass of the follower contains a share of the spring's."""
-    mass, share = case.follower.mass, case.spring_mass
-    if not mass > share:
-        limit = f"> {shown(share, 'g')}, follower.spring_share of the spring's mass"
-        raise InputError("follower.mass", shown(mass, "g"), limit)
+    share = case.spring_mass
+    limit = "> {}, the share {follower.spring_share} of the spring's mass"
+    _require(case, "follower.mass", case.follower.mass > share, limit, share)
 
 
 def _check_film(case: Case) -> None:
@@ -168,84 +171,99 @@ def _check_film(case: Case) -> None:
 
 
 def _check_geometry(case: Case) -> None:
-    if case.roller_given is not None:
-        _check_roller(case.cam, case.roller_given)
-    cam, surface = case.cam, case.base_circle
-    _require(
-        "cam.offset",
-        cam.offset,
-        abs(cam.offset) < cam.prime_radius,
-        "smaller than cam.prime_radius",
-    )
-    _require(
-        "cam.bore_radius",
-        cam.bore_radius,
-        cam.bore_radius < surface,
-        f"< {surface:.6g} m, the base circle of the surface",
-    )
+    cam, roller, face = case.cam, case.roller_given, case.follower.face
+    if roller is not None:
+        _check_roller(case, roller)
+    smaller = "smaller than {cam.prime_radius}"
+    _require(case, "cam.offset", abs(cam.offset) < cam.prime_radius, smaller)
+    _check_ring(case)
     tool, largest = case.workshop.tool_radius, case.limits[TOOL_RADIUS]
     if tool is not None and largest is not None:
-        _require("workshop.tool_radius", tool, tool <= largest, "<= limits.tool_radius")
+        _require(case, "workshop.tool_radius", tool <= largest, "<= {limits.tool_radius}")
     if cam.keyway is not None:
-        reach = cam.bore_radius + cam.keyway.depth
-        _require(
-            "cam.keyway.depth",
-            cam.keyway.depth,
-            reach < surface,
-            f"< {surface - cam.bore_radius:.6g} m, the ring of steel around the bore",
-        )
-        _require(
-            "cam.keyway.width",
-            cam.keyway.width,
-            cam.keyway.width < 1.8 * cam.bore_radius,
-            "< 1.8 bore radii",
-        )
-    _check_key(cam)
+        most = _KEYWAY_WIDTH * cam.bore_radius
+        limit = f"< {{}}, {_KEYWAY_WIDTH:g} times {{cam.bore_radius}}"
+        _require(case, "cam.keyway.width", cam.keyway.width < most, limit, most)
+    _check_key(case)
     for side, guide in (("a", case.guides.a), ("b", case.guides.b)):
-        _require(
-            f"guides.{side}.diameter",
-            guide.diameter,
-            guide.diameter >= case.follower.stem_diameter,
-            ">= follower.stem_diameter",
-        )
+        wide = guide.diameter >= case.follower.stem_diameter
+        _require(case, f"guides.{side}.diameter", wide, ">= {follower.stem_diameter}")
+    least, overhang = 0.5 * case.guides.a.length, case.follower.overhang_at_max_lift
+    part = "roller" if face is None else "face"
+    limit = f">= {{}}, half of {{guides.a.length}}, or the {part} enters guide A"
+    _require(case, "follower.overhang_at_max_lift", overhang >= least, limit, least)
 
 
-def _check_key(cam: CamBody) -> None:
+def _check_ring(case: Case) -> None:
+    """Steel is left between the bore with its keyway and the base circle of the cam."""
+    cam, roller, surface = case.cam, case.roller_given, case.base_circle
+    base = "{cam.prime_radius}" + ("" if roller is None else " less {roller.radius}")
+    if roller is not None and roller.radius > cam.bore_radius:
+        most = cam.prime_radius - cam.bore_radius
+        limit = "< {}, {cam.prime_radius} less {cam.bore_radius}"
+        _require(case, "roller.radius", roller.radius < most, limit, most)
+    limit = f"< {{}}, the base circle: {base}"
+    _require(case, "cam.bore_radius", cam.bore_radius < surface, limit, surface)
+    if cam.keyway is not None:
+        wall = surface - cam.bore_radius
+        limit = f"< {{}}, the wall around the bore: {base} less {{cam.bore_radius}}"
+        _require(case, "cam.keyway.depth", cam.keyway.depth < wall, limit, wall)
+
+
+def _check_key(case: Case) -> None:
+    cam = case.cam
     if cam.key is None:
         return
     if cam.keyway is None:
         raise InputError("cam.key", "a table", "given with cam.keyway")
-    flanks, data = cam.key_flanks, cam.key_data
+    flanks = cam.key_flanks
     if flanks is None:
         return
-    length, depth, height = data["length"], data["shaft_depth"], data["height"]
-    width = f"> {cam.keyway.width:.6g} m, the round ends of form A"
-    _require("cam.key.length", length or 0.0, flanks.length > 0.0, width)
-    _require("cam.key.shaft_depth", depth or 0.0, flanks.shaft_height > 0.0, "> cam.key.chamfer")
-    limit = "> cam.key.shaft_depth + cam.key.chamfer"
-    _require("cam.key.height", height or 0.0, flanks.hub_height > 0.0, limit)
+    ends = "> {cam.keyway.width}, the round ends of form A"
+    _require(case, "cam.key.length", flanks.length > 0.0, ends)
+    _require(case, "cam.key.shaft_depth", flanks.shaft_height > 0.0, "> {cam.key.chamfer}")
+    limit = "> {cam.key.shaft_depth} plus {cam.key.chamfer}"
+    _require(case, "cam.key.height", flanks.hub_height > 0.0, limit)
 
 
-def _check_roller(cam: CamBody, roller: Roller) -> None:
+def _check_roller(case: Case, roller: Roller) -> None:
     radius, width = roller.radius, roller.width
-    _require("roller.radius", radius, radius < cam.prime_radius, "< cam.prime_radius")
-    _require("roller.hub_radius", roller.hub_radius, roller.hub_radius < radius, "< roller.radius")
-    half = "< half of roller.width"
-    _require("roller.chamfer", roller.chamfer, 2 * roller.chamfer < width, half)
+    _require(case, "roller.radius", radius < case.cam.prime_radius, "< {cam.prime_radius}")
+    _require(case, "roller.hub_radius", roller.hub_radius < radius, "< {roller.radius}")
+    limit = "< {}, half of {roller.width}"
+    _require(case, "roller.chamfer", 2 * roller.chamfer < width, limit, 0.5 * width)
     ring = roller.bearing.ring
     if ring is not None:
         # A ring is stated to a micrometre; a tyre on it may be larger.
-        holds = radius >= 0.5 * ring.outer_diameter - 1e-6
-        limit = f">= {0.5 * ring.outer_diameter:.6g} m, half of roller.bearing.ring.outer_diameter"
-        _require("roller.radius", radius, holds, limit)
+        least = 0.5 * ring.outer_diameter
+        limit = ">= {}, half of {roller.bearing.ring.outer_diameter}"
+        _require(case, "roller.radius", radius >= least - 1e-6, limit, least)
     pin = roller.pin
     if pin is not None and pin.mounting == "straddled":
-        _require("roller.pin.span", pin.span, pin.span >= width, f">= {width:.6g} m, roller.width")
+        _require(case, "roller.pin.span", pin.span >= width, ">= {roller.width}")
 
 
-def _require(field: str, value: float, holds: bool, limit: str) -> None:
-    if not holds:
-        raise InputError(field, f"{value:.6g} m", limit)
+def _require(case: Case, key: str, holds: bool, limit: str, bound: float | None = None) -> None:
+    """Refuse the number at a key unless it holds.
+
+    Parameters
+    ----------
+    limit : str     ``{KEY}``: the key and its value as written; ``{}``: the bound
+    bound : float   SI
+    """
+    if holds:
+        return
+    quantity = quantity_of(key)
+    unit = quantity.unit if isinstance(quantity, In) else ""
+    for digits in _DIGITS:
+        value = text_of(case, key, digits)
+        texts = {"": shown(bound or 0.0, unit, digits)}
+        for other in re.findall(r"{([^}]+)}", limit):
+            texts[other] = text_of(case, other, digits)
+        if value not in texts.values():
+            break
+    texts |= {other: f"{other} = {text}" for other, text in texts.items() if other}
+    raise InputError(key, value, re.sub(r"{([^}]*)}", lambda match: texts[match[1]], limit))
 
 
 def _check_duty(case: Case) -> None:
@@ -270,10 +288,9 @@ def _check_names(case: Case) -> None:
         if name in seen:
             raise InputError(f"load_case[{k}].name", load_case.name, "unlike every other")
         seen.add(name)
-        if name.startswith(STANDSTILL) and speed != 0.0:
-            raise InputError(f"load_case[{k}].speed", shown(speed, "rpm"), "0 rpm at standstill")
-        if over is not None and speed > over:
-            limit = f"<= {shown(over, 'rpm')}, limits.overspeed"
-            raise InputError(f"load_case[{k}].speed", shown(speed, "rpm"), limit)
-        if name.startswith(OVER_SPEED) and speed != over:
-            raise InputError(f"load_case[{k}].speed", shown(speed, "rpm"), "limits.overspeed")
+        key = f"load_case[{k}].speed"
+        at_rest = not name.startswith(STANDSTILL) or speed == 0.0
+        _require(case, key, at_rest, "0 rpm at standstill")
+        _require(case, key, over is None or speed <= over, "<= {limits.overspeed}")
+        at_most = not name.startswith(OVER_SPEED) or speed == over
+        _require(case, key, at_most, "{limits.overspeed}")

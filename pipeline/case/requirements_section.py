@@ -19,6 +19,7 @@ from camwright.pipeline.base.quantities import (
     Preload,
     Rate,
 )
+from camwright.pipeline.base.units import shown
 from camwright.pipeline.case.section import Name, Section, Text
 from camwright.pipeline.case.value_sources import confirms
 
@@ -115,8 +116,13 @@ class Smoothing(Section):
 
     @model_validator(mode="after")
     def _fits_into_a_cycle(self) -> Self:
-        if self.points * self.spacing > radians(720.0) + 1e-9:
-            raise InputError("smoothing.points", self.points, "<= 720 deg over smoothing.spacing")
+        fill = radians(720.0) / self.spacing
+        cycle = f"a cycle of 720 deg over smoothing.spacing = {shown(self.spacing, 'deg')}"
+        if self.points > fill * (1.0 + 1e-12):
+            raise InputError("smoothing.points", self.points, f"<= {fill:.4g}, {cycle}")
+        if self.kind == "moving_average" and self.points >= fill * (1.0 - 1e-12):
+            limit = f"< {fill:.4g}, {cycle}: over all of it the average is zero"
+            raise InputError("smoothing.points", self.points, limit)
         return self
 
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
 
 import typer
 
-from camwright.geometry.errors import CamError, InputError
+from camwright.geometry.errors import CamError, InputError, ResultError
 from camwright.pipeline.commands.terminal import (
     ERROR,
     EXIT_CODE,
@@ -152,6 +152,8 @@ def _judged(
     from camwright.pipeline.results.junit_report import junit_suite
     from camwright.pipeline.results.run_reader import VERDICTS, exit_word
 
+    if not target.exists():
+        raise ResultError(f"{target}: no such case file or run folder")
     document, clock = _checked_case(target) if target.is_file() else _checked_run(target)
     document["checks"] = list(selected(document["checks"], only))
     decided = outcome(document["checks"], fail_on)

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
+from camwright.geometry.errors import InputError
 from camwright.pipeline.commands.terminal import (
     PASSED,
     DirArgument,
@@ -87,6 +89,8 @@ def deck(
 
     text = angle if any(c.isalpha() or c == "°" for c in angle) else f"{angle} deg"
     theta = units.parse(text, "deg", "--angle")
+    if not 0.0 <= theta <= math.tau:
+        raise InputError("--angle", units.rounded(text), ">= 0 and <= 360 deg, one cam turn")
     path = (
         folder / "exports" / f"contact_{units.in_unit(theta, 'deg'):07.3f}.inp"
         if out is None

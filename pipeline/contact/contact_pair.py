@@ -44,14 +44,13 @@ class ContactPair:
         Raises
         ------
         ContactError
-            If the concave radius of the contour is not larger than the roller radius.
+            If the contour is undercut: 1/R = 1/(r_r (1 - r_r kappa_p)) is positive elsewhere.
         """
         curvature = self.contour.follower_curvature + self.contour.curvature(theta)
         if not (curvature > 0).all():
             worst = float(np.atleast_1d(theta)[np.argmin(np.atleast_1d(curvature))])
-            name = self.follower.name
-            place = shown(worst, "deg", 6)
-            raise ContactError(f"the {name} does not fit the concave contour at {place}")
+            name, place = self.follower.name, shown(worst, "deg")
+            raise ContactError(f"the contour is undercut at {place}: the {name} has no contact")
         return 1 / curvature
 
     def gap(self, theta: Array, xi: Array) -> Array:

@@ -7,8 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from camwright.geometry.arrays import Array
+from camwright.geometry.errors import InputError
 from camwright.meshes.body_mesh import cam_mesh
 from camwright.meshes.element_size import Sizing
+from camwright.pipeline.base.units import shown
 from camwright.pipeline.contact import hertz
 from camwright.pipeline.contact.body_compliance import Correction, LoadedBody
 from camwright.pipeline.contact.contact_history import ContactHistory
@@ -50,7 +52,15 @@ def loaded_cam(pair: ContactPair, refinement: float = 1.0) -> LoadedBody:
     """Cam on a coarse mesh, of an element size divided by a refinement."""
     outline = float(pair.contour.perimeter())
     depth = 0.0 if pair.keyway is None else pair.keyway.depth
-    wall = float(pair.contour.radius_min().value) - pair.bore_radius - depth
+    least = pair.contour.radius_min()
+    wall = float(least.value) - pair.bore_radius - depth
+    if not wall > 0.0:
+        less = "" if pair.keyway is None else f" less cam.keyway.depth = {shown(depth, 'mm')}"
+        limit = (
+            f"< {shown(pair.bore_radius + wall, 'mm')}, the least radius of the contour, "
+            f"{shown(float(least.value), 'mm')} at {shown(float(least.theta), 'deg')}{less}"
+        )
+        raise InputError("cam.bore_radius", shown(pair.bore_radius, "mm"), limit)
     size = min(outline / _GRID_OF_CYCLE_MESH, wall / EDGES_ACROSS_WALL) / refinement
     sizing = Sizing(far_size=size)
     cam = cam_mesh(pair.contour, pair.bore_radius, pair.keyway, sizing, pair.counter_hole)

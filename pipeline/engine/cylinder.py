@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from itertools import pairwise
-from math import degrees, isfinite, pi, radians
+from math import isfinite, pi, radians
 from typing import Annotated, ClassVar, Literal
 
 import numpy as np
@@ -27,6 +27,7 @@ from camwright.pipeline.base.quantities import (
     Share,
     Temperature,
 )
+from camwright.pipeline.base.units import shown
 
 CYCLE_ANGLE = 4.0 * pi
 LIFT_ROWS = (4, 720)  # least and most rows of a lift table
@@ -75,11 +76,13 @@ class CrankDrive(Part):
     def __post_init__(self) -> None:
         super().__post_init__()
         if not self.rod_length > self.crank_radius + abs(self.pin_offset):
-            limit = "longer than the crank radius and the pin offset"
-            raise InputError("engine.rod_length", f"{self.rod_length:.6g} m", limit)
+            limit = f"> crank_radius = {shown(self.crank_radius, 'mm')}"
+            if self.pin_offset:
+                limit += f" plus pin_offset = {shown(abs(self.pin_offset), 'mm')}"
+            raise InputError("engine.rod_length", shown(self.rod_length, "mm"), limit)
         if not self.firing_offsets or not all(isfinite(angle) for angle in self.firing_offsets):
-            shown = self.firing_offsets or "empty"
-            raise InputError("engine.firing_offsets", shown, "one angle per cylinder")
+            stated = self.firing_offsets or "empty"
+            raise InputError("engine.firing_offsets", stated, "one angle per cylinder")
 
     @property
     def linkage(self) -> SliderCrank:
@@ -226,25 +229,25 @@ class CylinderEngine(CrankDrive):
                 _guard_lift_table(f"engine.{name}_lift_table", table)
             opens, closes = getattr(self, f"{name}_window")
             if not opens < closes < opens + CYCLE_ANGLE:
-                limit = f"within 720 deg after {name}_valve_open, {degrees(opens):g} deg"
-                raise InputError(f"engine.{name}_valve_close", f"{degrees(closes):g} deg", limit)
+                limit = f"within 720 deg after {name}_valve_open = {shown(opens, 'deg')}"
+                raise InputError(f"engine.{name}_valve_close", shown(closes, "deg"), limit)
 
     def _guard_burn(self) -> None:
         if not pi <= self.spark <= 3.0 * pi:
             limit = "from 180 to 540 deg, with firing TDC at 360 deg"
-            raise InputError("engine.spark", f"{degrees(self.spark):g} deg", limit)
+            raise InputError("engine.spark", shown(self.spark, "deg"), limit)
         for name, (opens, closes) in (
             ("intake", self.intake_window),
             ("exhaust", self.exhaust_window),
         ):
             if (self.spark - opens) % CYCLE_ANGLE < closes - opens:
                 limit = f"while the {name} valve is shut"
-                raise InputError("engine.spark", f"{degrees(self.spark):g} deg", limit)
+                raise InputError("engine.spark", shown(self.spark, "deg"), limit)
         burning = self.ignition_delay + max(self.burn_duration, self.premixed_duration)
         room = min(2.0 * pi, CYCLE_ANGLE - (self.spark - self.intake_window[1]) % CYCLE_ANGLE)
         if not burning < room:
-            limit = f"less than {degrees(room):g} deg with the ignition delay"
-            raise InputError("engine.burn_duration", f"{degrees(self.burn_duration):g} deg", limit)
+            limit = f"less than {shown(room, 'deg')} with the ignition delay"
+            raise InputError("engine.burn_duration", shown(self.burn_duration, "deg"), limit)
 
     @property
     def intake_window(self) -> tuple[float, float]:

@@ -234,7 +234,11 @@ def settle(
         push[:, going] = now + length * push_step
         rigid[:, going] = at + length * rigid_step
         unsettled = unsettled[~settled]
-    raise ContactError(f"guides: {len(unsettled)} positions not converged in {MAX_STEPS} steps")
+    raise ContactError(
+        f"guides: no equilibrium of the stem at {len(unsettled)} of {load.shape[1]} cam angles "
+        f"in {MAX_STEPS} steps: it is too flexible for its load and clearance "
+        "(follower.stem_diameter, E of follower.stem_material)"
+    )
 
 
 def _first_guess(line: BearingLine, load: Array) -> tuple[Array, Array]:

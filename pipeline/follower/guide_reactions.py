@@ -81,9 +81,11 @@ class Guide(Part):
         _no_press_fit("guide.clearance", self.clearance)
         low, high = self.friction_min, self.friction_max
         if low is not None and not low <= self.friction:
-            raise InputError("guide.friction_min", low, f"<= {self.friction:g}, the friction")
+            limit = f"<= friction = {self.friction:.4g}"
+            raise InputError("guide.friction_min", low, limit)
         if high is not None and not self.friction <= high:
-            raise InputError("guide.friction_max", high, f">= {self.friction:g}, the friction")
+            limit = f">= friction = {self.friction:.4g}"
+            raise InputError("guide.friction_max", high, limit)
 
     @cached_property
     def foundation_modulus(self) -> float:
@@ -132,8 +134,11 @@ class GuidePair(Part):
         super().__post_init__()
         least = 0.5 * (self.a.length + self.b.length)
         if not least < self.spacing:
-            limit = f"> {least:.6g} m, half the sum of both lengths"
-            raise InputError("guides.spacing", f"{self.spacing:.6g} m", limit)
+            limit = (
+                f"> {shown(least, 'mm')}, half of guides.a.length = {shown(self.a.length, 'mm')} "
+                f"plus half of guides.b.length = {shown(self.b.length, 'mm')}"
+            )
+            raise InputError("guides.spacing", shown(self.spacing, "mm"), limit)
 
     @property
     def both(self) -> tuple[tuple[Literal["A", "B"], Guide], ...]:
@@ -434,16 +439,16 @@ def require_fit(stem: Stem, guides: GuidePair, overhang: Array, knots: int) -> N
     for name, guide in (("a", guides.a), ("b", guides.b)):
         widest = guide.diameter + guide.clearance
         if stem.diameter > widest * (1.0 + 1e-9):
-            raise InputError(
-                "follower.stem_diameter", stem.diameter, f"<= {widest:g} m of guide {name}"
-            )
+            limit = f"<= {shown(widest, 'mm')}, diameter and clearance of guide {name.upper()}"
+            raise InputError("follower.stem_diameter", shown(stem.diameter, "mm"), limit)
     if not (overhang >= 0.5 * guides.a.length).all():
-        limit = f">= {0.5 * guides.a.length:g} m, or the roller enters guide A"
-        raise InputError("follower.overhang", float(overhang.min()), limit)
+        limit = f">= {shown(0.5 * guides.a.length, 'mm')}, or the roller enters guide A"
+        least = shown(float(overhang.min()), "mm")
+        raise InputError("follower.overhang_at_max_lift", least, limit)
     needed = float(overhang.max()) + guides.spacing + 0.5 * guides.b.length
     if not stem.length >= needed * (1.0 - 1e-12):
-        limit = f">= {needed:g} m, or the stem leaves guide B at the largest overhang"
-        raise InputError("follower.stem_length", stem.length, limit)
+        limit = f">= {shown(needed, 'mm')}, or the stem leaves guide B at the largest overhang"
+        raise InputError("follower.stem_length", shown(stem.length, "mm"), limit)
 
 
 @lru_cache(maxsize=8)

@@ -18,6 +18,7 @@ from camwright.pipeline.base.quantities import (
     Pressure,
     Temperature,
 )
+from camwright.pipeline.base.units import shown
 
 Cleanliness = Literal[
     "extreme_cleanliness", "high_cleanliness", "normal_cleanliness", "slight_contamination",
@@ -51,19 +52,24 @@ class OuterRing(Part):
     def __post_init__(self) -> None:
         super().__post_init__()
         if not self.ball_diameter > 0.0:
-            limit = "> pitch_diameter + 2 thickness, to leave the balls room"
-            self._refuse("outer_diameter", self.outer_diameter, limit)
+            least = self.outer_diameter - self.ball_diameter
+            limit = (
+                f"> {shown(least, 'mm')}, pitch_diameter = {shown(self.pitch_diameter, 'mm')} plus "
+                f"twice thickness = {shown(self.thickness, 'mm')}, to leave the balls room"
+            )
+            self._refuse("outer_diameter", shown(self.outer_diameter, "mm"), limit)
         if not self.ball_diameter < self.pitch_diameter * sin(pi / self.balls):
             self._refuse("balls", self.balls, "fewer: they overlap on the pitch circle")
         if not self.thickness < 0.2 * self.outer_diameter:
-            self._refuse("thickness", self.thickness, "< 0.2 outer_diameter, a thin ring")
+            limit = f"< 0.2 times outer_diameter = {shown(self.outer_diameter, 'mm')}, a thin ring"
+            self._refuse("thickness", shown(self.thickness, "mm"), limit)
 
     @property
     def ball_diameter(self) -> float:
         """Ball diameter from ring and pitch circle, m."""
         return self.outer_diameter - 2.0 * self.thickness - self.pitch_diameter
 
-    def _refuse(self, name: str, value: float, limit: str) -> None:
+    def _refuse(self, name: str, value: str | float, limit: str) -> None:
         raise InputError(f"{self.table}.{name}", value, limit)
 
 

@@ -23,6 +23,7 @@ from camwright.pipeline.base.quantities import (
     Share,
     Temperature,
 )
+from camwright.pipeline.base.units import shown
 
 INDEX_MIN, INDEX_MAX = 3.0, 20.0  # D/d that can be coiled
 DEAD_COILS = 2.0  # of squared and ground ends
@@ -267,11 +268,14 @@ class HelicalSpring(WoundWire[float], Part):
     def __post_init__(self) -> None:
         super().__post_init__()
         if not INDEX_MIN <= self.index <= INDEX_MAX:
-            limit = f"{INDEX_MIN:g} to {INDEX_MAX:g} wire diameters: the range of coiling"
-            raise InputError("spring.design.mean_diameter", self.mean_diameter, limit)
+            limit = (
+                f"{INDEX_MIN:g} to {INDEX_MAX:g} times wire_diameter = "
+                f"{shown(self.wire_diameter, 'mm')}: the range of coiling"
+            )
+            raise InputError("spring.design.mean_diameter", shown(self.mean_diameter, "mm"), limit)
         if not self.solid_length < self.free_length:
-            limit = f"> {self.solid_length:g} m, the solid length"
-            raise InputError("spring.design.free_length", self.free_length, limit)
+            limit = f"> {shown(self.solid_length, 'mm')}, the solid length"
+            raise InputError("spring.design.free_length", shown(self.free_length, "mm"), limit)
 
     @property
     def damping(self) -> float:

@@ -15,7 +15,8 @@ from camwright.geometry.errors import CamError, InputError
 from camwright.pipeline.base import units
 from camwright.pipeline.base.quantities import In
 from camwright.pipeline.case.case import Case
-from camwright.pipeline.case.case_values import quantity_of, replaced, value_of, with_values
+from camwright.pipeline.case.case_file import with_values
+from camwright.pipeline.case.case_values import quantity_of, replaced, value_of
 from camwright.pipeline.case.consistency import check_numbers
 from camwright.pipeline.case.limits import LIMITS
 from camwright.pipeline.case.machine import machine

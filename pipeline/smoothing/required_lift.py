@@ -14,6 +14,8 @@ from camwright.pipeline.case.given_lift import given_lift
 from camwright.pipeline.engine.torque import Torque
 from camwright.pipeline.smoothing.smoothers import Smoother, smoothed
 
+_ROUND_OFF = 1e-9  # of the torque
+
 
 def cam_lift(case: Case, torques: Mapping[str, Torque], smoother: Smoother | None = None) -> Lift:
     """Lift of the case file, or the one required by the smoothed engine torque.
@@ -41,8 +43,21 @@ def required_lift(case: Case, torque: Torque, smoother: Smoother) -> Lift:
     Parameters
     ----------
     torque : Torque   of the design load case
+
+    Raises
+    ------
+    InputError
+        If the smoothing leaves no torque.
     """
     target = case.mechanism.gear_ratio * required_torque(case, torque, smoother)
+    _require_ripple(torque, target, smoother)
     return lift_from_torque(
         uniform_turn(target.size), target, case.spring.rate, case.spring.preload
     )
+
+
+def _require_ripple(torque: Torque, target: Array, smoother: Smoother) -> None:
+    """Refuse a smoothing that leaves nothing but round-off of the torque."""
+    before, after = float(np.ptp(torque.total)), float(np.ptp(target))
+    if before > 0.0 and not after > _ROUND_OFF * before:
+        smoother.refuse_as_too_wide()

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NoReturn
 
 import numpy as np
 import scipy
@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike
 
 from camwright.geometry.arrays import Array, finite, readonly
 from camwright.geometry.errors import InputError
+from camwright.pipeline.base.units import shown
 
 if TYPE_CHECKING:
     from camwright.pipeline.case.requirements_section import Smoothing
@@ -102,6 +103,16 @@ class Smoother:
             "smoothing_spline": self.cutoff,
         }
         return float(widths[self.kind] * self.strength)
+
+    def refuse_as_too_wide(self) -> NoReturn:
+        """Refuse a smoother that leaves no torque, by the key that narrows it."""
+        key, value, sense = {
+            "gaussian": ("width", shown(self.width, "deg"), "smaller"),
+            "harmonic": ("harmonics", f"{self.harmonics:.4g}", "greater"),
+            "smoothing_spline": ("cutoff", shown(self.cutoff, "deg"), "smaller"),
+        }.get(self.kind, ("points", str(self.points), "smaller"))
+        limit = f"{sense}: {self.width_in_words} leaves no torque for the cam to balance"
+        raise InputError(f"smoothing.{key}", value, limit)
 
     @property
     def curvature_weight(self) -> float:

@@ -67,16 +67,20 @@ class TwoCylinders:
             if np.isnan(radius) or radius == 0:
                 raise InputError(name, radius, "a length other than 0, or inf for a flat body")
         if not self.curvature > 0:
-            raise InputError(
-                "radius_2",
-                self.radius_2,
-                "such that 1/r1 + 1/r2 > 0",
-            )
+            self._refuse_the_concave_body()
         if not 0 <= self.line_load < np.inf:
             raise InputError("line_load", self.line_load, ">= 0 N/m")
         if not 0 <= self.friction < 2:
             raise InputError("friction", self.friction, "in [0, 2)")
         hertz.contact_modulus(*_elastic(self.body_1), *_elastic(self.body_2))
+
+    def _refuse_the_concave_body(self) -> None:
+        radii = {"radius_2": self.radius_2, "radius_1": self.radius_1}
+        concave, other = sorted(radii, key=lambda name: 1.0 / radii[name])
+        limit = "> 0, as the other body is flat or concave"
+        if 0.0 < radii[other] < np.inf:
+            limit = f"< {shown(-radii[other], 'mm')}: concave and wider than {other}"
+        raise InputError(concave, shown(radii[concave], "mm"), limit)
 
     @property
     def curvature(self) -> float:

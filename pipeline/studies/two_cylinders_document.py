@@ -71,7 +71,8 @@ class Options:
         )
         for number, body in ((1, first), (2, second)):
             if not body.modulus > 0:
-                raise InputError(f"--e{number}", body.modulus, "> 0 Pa")
+                text = self.e1 if number == 1 or self.e2 is None else self.e2
+                raise InputError(f"--e{number}", _as_read(text, "MPa"), "> 0 MPa")
             if not 0 <= body.poisson < 0.5:
                 raise InputError(f"--nu{number}", body.poisson, "in [0, 0.5)")
         radii = _radius(self.r1, "--r1"), _radius(self.r2, "--r2")
@@ -79,8 +80,11 @@ class Options:
         try:
             return TwoCylinders(*radii, first, second, load, self.friction)
         except InputError as error:
-            option = _OPTIONS.get(error.field, error.field)
-            raise InputError(option, error.value, error.limit) from None
+            option, limit = _OPTIONS.get(error.field, error.field), error.limit
+            stated = {"--r1": _as_read(self.r1, "mm"), "--r2": _as_read(self.r2, "mm")}
+            for name, other in _OPTIONS.items():
+                limit = limit.replace(name, f"{other} = {stated.get(other)}")
+            raise InputError(option, stated.get(option, error.value), limit) from None
 
     def depths(self) -> tuple[float | None, float | None]:
         """Depths of the reference points of the approach, m; None: the centre."""
@@ -100,10 +104,16 @@ class Options:
                 raise InputError("--line-load", "missing", "specified, or --load and --width")
             width = _quantity(self.width, "mm", "--width")
             if not width > 0:
-                raise InputError("--width", width, "> 0 m")
+                raise InputError("--width", _as_read(self.width, "mm"), "> 0 mm")
             line_load = _quantity(self.load, "N", "--load") / width
         if not line_load >= 0:
-            raise InputError("--line-load", line_load, ">= 0 N/m")
+            unit = "N/mm" if self.load is None else "N"
+            text = self.load or self.line_load or ""
+            raise InputError(
+                "--line-load" if self.load is None else "--load",
+                _as_read(text, unit),
+                f">= 0 {unit}",
+            )
         return line_load
 
 
@@ -183,6 +193,15 @@ def _quantity(text: str, unit: str, option: str) -> float:
     except ValueError:
         return units.parse(text, unit, option)
     return units.parse(f"{text.strip()} {unit}", unit, option)
+
+
+def _as_read(text: str, unit: str) -> str:
+    """A number of an option as typed, in a message; with the unit it is read in."""
+    try:
+        float(text)
+    except ValueError:
+        return units.rounded(text)
+    return f"{units.rounded(text)} {unit}"
 
 
 def _radius(text: str, option: str) -> float:

@@ -70,7 +70,7 @@ def moving(text: str) -> str:
         (
             'length = "24 mm"',
             'length = "90 mm"',
-            "guides.spacing = 0.08 m, must be > 0.09 m, half the sum of both lengths",
+            "guides.spacing = 80 mm, must be > 90 mm, half of guides.a.length = ",
         ),
         (
             'clearance = "0.05 mm"',

@@ -143,12 +143,12 @@ def test_undercut_is_a_verdict_of_the_run(tmp_path, cam):
     ("old", "new", "message"),
     [
         ('width = "16 mm"', 'width = "11.9 mm"',
-         "follower.face.width = 0.0119 m, must be > 0.0119999 m, twice the greatest |s' - cam.off"),
+         "follower.face.width = 11.9 mm, must be > 12 mm, twice the greatest |s' - cam.off"),
         ('stroke = "-6 mm"', 'stroke = "-5 mm"',
          "lift.segment.stroke = 0.001 m in all, must be 0 m in all: the lift must close"),
         ('angle = "180 deg"', 'angle = "170 deg"', "lift.segment.angle = 350 deg in all, must be"),
         ('bore_radius = "6 mm"', 'offset = "13.1 mm"\nbore_radius = "6 mm"',
-         "cam.offset = 0.0131 m, must be smaller than cam.prime_radius"),
+         "cam.offset = 13.1 mm, must be smaller than cam.prime_radius = "),
     ],
     ids=["face too narrow", "does not close", "no turn", "offset too great"],
 )  # fmt: skip

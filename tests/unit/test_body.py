@@ -335,9 +335,9 @@ def test_gmsh_ends_with_the_mesh():
 
 def test_bore_reaching_the_contour_names_the_wall():
     # The contour's least radius is 50 - 8 = 42 mm; the wall must be over 1 % of the bore radius.
-    with pytest.raises(GeometryError, match=r"wall .* = 0\.400 mm"):
+    with pytest.raises(GeometryError, match=r"wall .* = 0\.4 mm"):
         cam_mesh(CONTOUR, 0.0416, None, Sizing(far_size=3e-3))
-    with pytest.raises(GeometryError, match=r"wall .* = -1\.000 mm"):
+    with pytest.raises(GeometryError, match=r"wall .* = -1 mm"):
         cam_mesh(CONTOUR, 0.043, None, Sizing(far_size=3e-3))
 
 

@@ -212,7 +212,7 @@ def test_several_runs_give_one_table_one_file_and_the_worst_code(
     code, out, err = command("check", good, run, gone, open_, "--junit", file)
     assert code == 2
     assert re.findall(r"PASS|FAIL|ERROR|INCOMPLETE", out) == ["PASS", "FAIL", "ERROR", "INCOMPLETE"]
-    assert err == f"camwright: {gone}: no such folder\n"
+    assert err == f"camwright: {gone}: no such case file or run folder\n"
     root = ET.parse(file).getroot()
     assert [suite.get("name") for suite in root] == [str(each) for each in (good, run, gone, open_)]
     for count, expected in (("tests", 12), ("failures", 2), ("errors", 2), ("skipped", 3)):
@@ -221,7 +221,7 @@ def test_several_runs_give_one_table_one_file_and_the_worst_code(
     code, out, _ = command("check", good, gone, "--json")
     first, second = json.loads(out)["runs"]
     assert (code, first["verdict"], first["target"]) == (2, "pass", str(good))
-    assert second == {"target": str(gone), "error": f"{gone}: no such folder"}
+    assert second == {"target": str(gone), "error": f"{gone}: no such case file or run folder"}
 
 
 def test_several_runs_and_their_records(run: Path, tmp_path: Path, command: Command) -> None:

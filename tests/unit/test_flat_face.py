@@ -46,7 +46,7 @@ def test_contact_travels_by_the_eccentricity(circle):
 
 @pytest.mark.parametrize("share", [0.99, 0.5, np.nan, -1.0])
 def test_face_too_narrow_is_refused(circle, share):
-    with pytest.raises(InputError, match=r"follower\.face\.width = .* must be > 0\.008 m"):
+    with pytest.raises(InputError, match=r"follower\.face\.width = .* must be > 8 mm"):
         circle.require_face(share * 2 * ECCENTRICITY)
     circle.require_face(1.01 * 2 * ECCENTRICITY)
 
@@ -79,7 +79,7 @@ def test_curvature_condition_decides_at_its_limit():
 
 @pytest.mark.parametrize("radius", [0.0, -0.01, np.nan, np.inf])
 def test_bad_base_radius_is_refused(radius):
-    with pytest.raises(InputError, match=r"cam\.pitch_base_radius"):
+    with pytest.raises(InputError, match=r"cam\.prime_radius"):
         flat(eccentric_lift(), radius)
 
 

@@ -115,7 +115,7 @@ def test_friction_rests_in_a_dwell():
 def test_face_is_needed_as_wide_as_the_contact_wanders():
     contour = FlatFaceContour(path(0.001))
     contour.require_face(2 * (E + 0.001) * 1.0001)
-    with pytest.raises(InputError, match=r"follower\.face\.width = 0.01 m, must be > 0\.01"):
+    with pytest.raises(InputError, match=r"follower\.face\.width = 9\.999999 mm, must be > 10 mm"):
         contour.require_face(2 * (E + 0.001) * 0.9999999)
 
 

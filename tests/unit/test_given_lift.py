@@ -167,7 +167,7 @@ def test_flat_face_takes_the_place_of_the_roller():
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        (lambda t: flat(t, "15.9 mm"), r"follower\.face\.width = 0\.0159 m, must be > 0\.016 m"),
+        (lambda t: flat(t, "15.9 mm"), r"follower\.face\.width = 15\.9 mm, must be > 16 mm"),
         (lambda t: flat(t, "-1 mm"), r"follower\.face\.width = -1 mm, must be > 0"),
         (
             lambda t: flat(t).replace('kind = "flat"', 'kind = "roller"'),

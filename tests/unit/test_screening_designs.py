@@ -11,8 +11,8 @@ import pytest
 
 from camwright.geometry.errors import GeometryError, InputError
 from camwright.pipeline.case.case import Case
-from camwright.pipeline.case.case_file import read_case
-from camwright.pipeline.case.case_values import quantity_of, replaced, value_of, with_values
+from camwright.pipeline.case.case_file import read_case, with_values
+from camwright.pipeline.case.case_values import quantity_of, replaced, value_of
 from camwright.pipeline.checks.check import Check
 from camwright.pipeline.checks.registry import CHECKS
 from camwright.pipeline.preview import preview_case

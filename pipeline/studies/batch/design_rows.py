@@ -19,7 +19,7 @@ from camwright.pipeline.base.files import files_in, json_text, read_json, write_
 from camwright.pipeline.base.units import in_unit
 from camwright.pipeline.base.worker_processes import crew
 from camwright.pipeline.case.case import Case
-from camwright.pipeline.case.case_values import with_values
+from camwright.pipeline.case.case_file import with_values
 from camwright.pipeline.case.load_case_torque import engine_torques
 from camwright.pipeline.checks.check import screen
 from camwright.pipeline.contact.tiers import Tier

@@ -1,0 +1,201 @@
+"""Messages in the words of the case file: key, value and unit as written, the limit with its value.
+
+The inputs are those of users who could not tell from the message what to change.
+"""
+
+import signal
+import sys
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from camwright.geometry.arrays import uniform_turn
+from camwright.geometry.contour import RollerContour
+from camwright.geometry.errors import ContactError, InputError
+from camwright.geometry.lift import Lift
+from camwright.geometry.pitch_curve import PitchCurve
+from camwright.pipeline import cli
+from camwright.pipeline.base.units import rounded
+from camwright.pipeline.case.case_file import parse_case, with_values
+from camwright.pipeline.case.case_values import replaced, text_of
+from camwright.pipeline.case.consistency import check_numbers
+from camwright.pipeline.contact.contact_pair import ContactPair
+from camwright.pipeline.contact.elasticity.elastic_body import Elastic
+from camwright.pipeline.contact.follower_body import RollerBody
+from camwright.pipeline.contact.two_scale import loaded_cam
+from camwright.pipeline.engine.torque import Torque, uniform_cycle
+from camwright.pipeline.smoothing.required_lift import cam_lift
+
+CASES = Path(__file__).parents[2] / "cases"
+GX120 = (CASES / "gx120.toml").read_text(encoding="utf-8")
+REDESIGN = (CASES / "gx120-redesign.toml").read_text(encoding="utf-8")
+
+
+def changed(text: str, *changes: tuple[str, str]) -> str:
+    for old, new in changes:
+        assert old in text
+        text = text.replace(old, new, 1)
+    return text
+
+
+def refused(text: str) -> str:
+    with pytest.raises(InputError) as error:
+        parse_case(text)
+    return str(error.value)
+
+
+ROLLER = 'radius = "8 mm"'
+OVERHANG = 'overhang_at_max_lift = "30 mm"'
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ([("positions = 720", 'positions = "72"')],
+         'solver.positions = "72", must be a whole number, not in quotes'),
+        ([("gear_ratio = 2.0", 'gear_ratio = "2"')],
+         'mechanism.gear_ratio = "2", must be a number without a unit, not in quotes'),
+        ([(ROLLER, 'radius = "70 mm"')],
+         "roller.radius = 70 mm, must be < cam.prime_radius = 50 mm"),
+        ([(ROLLER, 'radius = "7 cm"')],
+         "roller.radius = 7 cm, must be < cam.prime_radius = 50 mm"),
+        ([(ROLLER, 'radius = "59.9 mm"'), ('prime_radius = "50 mm"', 'prime_radius = "60 mm"')],
+         "roller.radius = 59.9 mm, must be < 51.5 mm, cam.prime_radius = 60 mm less "
+         "cam.bore_radius = 8.5 mm"),
+        ([(OVERHANG, 'overhang_at_max_lift = "1.0109935417781614 mm"'),
+          ('length = "20 mm"', 'length = "24 mm"')],
+         "follower.overhang_at_max_lift = 1.011 mm, must be >= 12 mm, half of guides.a.length = "
+         "24 mm, or the roller enters guide A"),
+        ([("points = 12", "points = 144")],
+         "smoothing.points = 144, must be < 144, a cycle of 720 deg over smoothing.spacing = "
+         "5 deg: over all of it the average is zero"),
+        ([('"8.5 mm"', '"45 mm"')],
+         "cam.bore_radius = 45 mm, must be < 42 mm, the base circle: cam.prime_radius = 50 mm less "
+         "roller.radius = 8 mm"),
+        ([('mass = "175 g"', 'mass = "175 mm"')],
+         "follower.mass = 175 mm, must be in a unit of the dimension of g"),
+        ([("friction_min = 0.01 ", "friction_min = 0.05 ")],
+         "guides.a.friction_min = 0.05, must be <= friction = 0.04"),
+        ([('spacing = "80 mm"', 'spacing = "2 cm"')],
+         "guides.spacing = 2 cm, must be > 20 mm, half of guides.a.length = 20 mm plus half of "
+         "guides.b.length = 20 mm"),
+        ([('overspeed = "3960 rpm"', 'overspeed = "1400 rpm"')],
+         "load_case[0].speed = 1500 rpm, must be <= limits.overspeed = 1400 rpm"),
+    ],
+)  # fmt: skip
+def test_a_case_is_refused_in_its_own_words(changes: list[tuple[str, str]], message: str) -> None:
+    assert refused(changed(GX120, *changes)) == message
+
+
+def test_the_wall_around_the_bore_is_stated_with_all_that_makes_it() -> None:
+    assert refused(changed(REDESIGN, ('bore_radius = "15 mm"', 'bore_radius = "30 mm"'))) == (
+        "cam.keyway.depth = 3.3 mm, must be < 2.5 mm, the wall around the bore: "
+        "cam.prime_radius = 56 mm less roller.radius = 23.5 mm less cam.bore_radius = 30 mm"
+    )
+
+
+def test_values_that_would_read_alike_get_more_digits() -> None:
+    text = changed(GX120, (ROLLER, 'radius = "50.00001 mm"'))
+    expected = "roller.radius = 50.00001 mm, must be < cam.prime_radius = 50 mm"
+    assert refused(text) == expected
+
+
+@pytest.mark.parametrize(
+    ("text", "shown"),
+    [("72 mm", "72 mm"), ("0.0010109935417781614 m", "0.001011 m"), ("1e-9 N/m", "1e-9 N/m"),
+     ("123456 N", "123500 N"), ("nan mm", "nan mm"), ("x", "x"), ("8.50000", "8.50000"),
+     ("-1.23456e-7 m", "-1.235e-7 m")],
+)  # fmt: skip
+def test_text_is_rounded_only_where_it_has_more_digits(text: str, shown: str) -> None:
+    assert rounded(text) == shown
+
+
+def test_text_of_a_value_is_that_of_the_file_its_card_or_its_unit() -> None:
+    case = parse_case(GX120)
+    assert text_of(case, "materials.nylon.E") == "2.8 GPa"
+    assert text_of(case, "load_case[0].speed") == "1500 rpm"
+    assert text_of(case, "smoothing.width") == "60 deg"  # a default
+    assert text_of(case, "limits.tool_radius") == "missing"
+    assert text_of(replaced(case, {"roller.radius": 0.01}), "roller.radius") == "10 mm"
+
+
+def test_a_design_of_a_study_is_refused_by_its_own_number() -> None:
+    case = replaced(parse_case(GX120), {"roller.radius": 0.07})
+    with pytest.raises(InputError, match=r"^roller\.radius = 70 mm, must be < cam\.prime_radius ="):
+        check_numbers(case)
+    with pytest.raises(InputError, match=r"^roller\.radius = 70 mm, must be < cam\.prime_radius ="):
+        with_values(parse_case(GX120), {"roller.radius": 0.07})
+
+
+def test_a_smoothing_that_leaves_no_torque_names_its_key() -> None:
+    text = changed(GX120, ('kind = "moving_average"', 'kind = "harmonic"\ntaper = 0.0'))
+    case = parse_case(changed(text, ("points = 12", "harmonics = 1.0")))
+    theta = uniform_cycle(720)
+    torque = Torque(theta, {"twice a turn": np.sin(2.0 * theta)})
+    with pytest.raises(InputError) as error:
+        cam_lift(case, {case.load_cases[0].name: torque})
+    assert str(error.value).startswith("smoothing.harmonics = 1, must be greater: harmonics of")
+    assert "leaves no torque for the cam to balance" in str(error.value)
+
+
+STEEL = Elastic(210e9, 0.3)
+
+
+def pair(lift: float, roller: float) -> ContactPair:
+    """A cam of 50 mm of prime radius that lifts three times a turn."""
+    theta = uniform_turn(360)
+    curve = PitchCurve(Lift(theta, lift * (1.0 - np.cos(3.0 * theta))), 50e-3)
+    body = RollerBody(roller, 0.5 * roller, STEEL)
+    return ContactPair(RollerContour(curve, roller), 5e-3, 10e-3, None, STEEL, body)
+
+
+def test_a_bore_larger_than_the_contour_is_named() -> None:
+    with pytest.raises(InputError) as error:
+        loaded_cam(replace(pair(1e-3, 8e-3), bore_radius=43.2e-3))
+    text = "cam.bore_radius = 43.2 mm, must be < 42 mm, the least radius of the contour, 42 mm at"
+    assert str(error.value).startswith(text)
+
+
+def test_an_undercut_is_called_so() -> None:
+    with pytest.raises(ContactError, match=r"^the contour is undercut at 60 deg: the roller"):
+        pair(4e-3, 45e-3).relative_radius(np.radians([0.0, 60.0]))
+    assert (pair(40e-3, 9e-3).relative_radius(0.0) > 0.0).all()  # concave, whatever the roller
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ("contact --r1 -5 --r2 8",
+         "--r1 = -5 mm, must be < -8 mm: concave and wider than --r2 = 8 mm"),
+        ("contact --r1 10 --r2 -0.8cm",
+         "--r2 = -0.8cm, must be < -10 mm: concave and wider than --r1 = 10 mm"),
+        ("contact --r1 -5 --r2 inf",
+         "--r1 = -5 mm, must be > 0, as the other body is flat or concave"),
+        ("check no_such_case.toml", "no_such_case.toml: no such case file or run folder"),
+        ("run no_such_case.toml --out x", "case = no_such_case.toml, must be an existing file"),
+        ("deck run --angle 400", "--angle = 400 deg, must be >= 0 and <= 360 deg, one cam turn"),
+        ("deck run --angle -1rad", "--angle = -1rad, must be >= 0 and <= 360 deg, one cam turn"),
+    ],
+)  # fmt: skip
+def test_commands_refuse_in_the_words_of_their_options(
+    arguments: str,
+    message: str,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    words = arguments.split()
+    if words[0] == "contact":
+        words += ["--e1", "210000", "--nu1", "0.3", "--line-load", "100"]
+    monkeypatch.setattr(sys, "argv", ["camwright", *words])
+    handler = signal.getsignal(signal.SIGTERM)
+    try:
+        with pytest.raises(SystemExit) as leaving:
+            cli.main()
+    finally:
+        signal.signal(signal.SIGTERM, handler)
+    assert leaving.value.code == 2
+    assert capsys.readouterr().err == f"camwright: {message}\n"
