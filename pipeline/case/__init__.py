@@ -20,8 +20,9 @@ In the order of the calculation:
 | `error_text`           | first error in one line: field, value, limit |                  |
 | `cards`                | cards of materials and parts, catalogues     |                  |
 | `given_lift`           | lift of a case without engine                | s, m             |
-| `case_file`            | reading of a case file                       |                  |
 | `keys`                 | every key: meaning, unit, range, default     |                  |
+| `added_tables`         | tables that complete a case; missing keys    |                  |
+| `case_file`            | reading of a case file                       |                  |
 | `case_values`          | values by dotted key; the case with others   |                  |
 | `load_case_torque`     | engine torque of each load case              | T, N m           |
 | `template`             | first case of each kind of source            |                  |

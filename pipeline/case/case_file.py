@@ -15,6 +15,7 @@ from camwright.pipeline.base import units
 from camwright.pipeline.base.files import inside
 from camwright.pipeline.base.material import Material
 from camwright.pipeline.base.quantities import In
+from camwright.pipeline.case.added_tables import with_added
 from camwright.pipeline.case.cards.card_filling import fill_cards
 from camwright.pipeline.case.cards.part_table import read_part
 from camwright.pipeline.case.case import Case, includes, kept_as
@@ -68,7 +69,7 @@ def completed(case: Case, folder: Path | None) -> Case:
 
 def case_of(data: Tables, folder: Path | None = None) -> Case:
     """A case from its tables and the cards of `folder`; included files are not read."""
-    tables = with_new_keys(data)
+    tables = with_new_keys(with_added(data))
     fill_cards(tables, folder)
     try:
         case = Case.model_validate(tables, context={"materials": _cards(tables.get("materials"))})

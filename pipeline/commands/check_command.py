@@ -63,6 +63,10 @@ def check(
     whole: Annotated[
         bool, typer.Option("--all", help="Print every check, also those that pass.")
     ] = False,
+    missing: Annotated[
+        bool,
+        typer.Option("--missing", help="Print only the missing data, as TOML to be pasted."),
+    ] = False,
     verify_record: Annotated[
         bool,
         typer.Option("--verify-record", help="Compare the files of the run with signoff.json."),
@@ -85,6 +89,8 @@ def check(
         judged = [_judged(targets[0], patterns, fail_on, baseline)]
     elif baseline is not None:
         raise InputError("--baseline", str(baseline), "stated with one run or case alone")
+    elif missing:
+        raise InputError("--missing", f"{len(targets)} targets", "stated with one run or case")
     else:
         judged = [_of_several(each, patterns, fail_on, verify_record) for each in targets]
     if junit is not None:
@@ -93,7 +99,9 @@ def check(
 
         write_atomic(junit, junit_text([each.suite for each in judged]))
     documents = [each.document for each in judged]
-    if as_json:
+    if missing:
+        _show_missing(targets[0], documents[0]["checks"])
+    elif as_json:
         show_json(documents[0] if alone else {"runs": documents})
     elif alone:
         from camwright.pipeline.results.verdict_summary import Places
@@ -123,6 +131,17 @@ def schema(
 def _case_of(target: Path) -> Path:
     """The case file of a target of `check`."""
     return target if target.is_file() else target / "case.toml"
+
+
+def _show_missing(target: Path, checks: Sequence[CheckRecord]) -> None:
+    """Print the keys that the case of a target lacks, with examples, as TOML."""
+    from camwright.pipeline.case.added_tables import added_text
+    from camwright.pipeline.case.case_file import read_case
+    from camwright.pipeline.results.verdict_summary import missing_keys
+
+    needed, optional = (missing_keys(checks, must_have=each) for each in (True, False))
+    text = added_text(needed, optional, read_case(_case_of(target)).materials)
+    print(text, end="")  # noqa: T201 - rich would wrap it
 
 
 class _Judged(NamedTuple):

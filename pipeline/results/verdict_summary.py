@@ -111,11 +111,14 @@ def failure_words(check: CheckRecord, room: int | None = None) -> str:
     return f"{title}{words}"
 
 
-def missing_keys(checks: Iterable[CheckRecord]) -> dict[str, list[str]]:
-    """Keys that the case lacks, each with the ids of the required checks that need it."""
+def missing_keys(checks: Iterable[CheckRecord], *, must_have: bool = True) -> dict[str, list[str]]:
+    """Keys that the case lacks, each with the ids of the checks that need it.
+
+    Of the required checks, else of the optional ones.
+    """
     keys: dict[str, list[str]] = {}
     for check in checks:
-        if check["must_have"] and check["status"] == "not_evaluated":
+        if check["must_have"] is must_have and check["status"] == "not_evaluated":
             for key in check.get("missing") or ():
                 keys.setdefault(key, []).append(check["id"])
     return keys

@@ -1,0 +1,136 @@
+"""Tables `[[added]]` that complete a case, and their text for keys that it lacks.
+
+TOML forbids to open a table twice: lines below a second ``[guides.a]`` cannot be read. What stands
+below ``[added.guides.a]`` is added to the table of that name, wherever in the file it stands.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from copy import deepcopy
+from itertools import groupby
+
+import tomli_w
+
+from camwright.geometry.errors import InputError
+from camwright.pipeline.base.material import Material
+from camwright.pipeline.case.keys import TABLE, Key, case_keys, keys_at, keys_in
+from camwright.pipeline.case.toml_text import Tables, TomlValue
+
+ADDED = "added"
+NOTHING = "# No data are missing.\n"
+_HEAD = (
+    "# Data that the case lacks. Replace each example by the value of your machine, and paste the\n"
+    "# block at the end of the case file.\n"
+)
+_OPTIONAL = (
+    "# Optional: the verdict does not need these. Without the leading # they can be pasted, too.\n"
+)
+
+
+def with_added(case: Tables) -> Tables:
+    """Tables of a case file with its tables ``[[added]]`` in their places.
+
+    Raises
+    ------
+    InputError
+        If the case states a key already, with another value.
+    """
+    if ADDED not in case:
+        return case
+    whole = deepcopy(case)
+    blocks = whole.pop(ADDED)
+    for block in blocks if isinstance(blocks, list) else [blocks]:
+        if not isinstance(block, dict) or not isinstance(blocks, list):
+            raise InputError(ADDED, str(block), "tables below [[added]]")
+        _add(whole, block, "")
+    return whole
+
+
+def _add(table: Tables, more: Tables, path: str) -> None:
+    for key, value in more.items():
+        stated, name = table.get(key), f"{path}.{key}".lstrip(".")
+        if isinstance(stated, dict) and isinstance(value, dict):
+            _add(stated, value, name)
+        elif key in table and stated != value:
+            raise InputError(f"{ADDED}.{name}", str(value), f"left out: the case states {stated}")
+        else:
+            table[key] = value
+
+
+def added_text(
+    needed: Iterable[str], optional: Iterable[str], materials: Mapping[str, Material]
+) -> str:
+    """Tables ``[[added]]`` with an example for each missing key, as TOML.
+
+    Parameters
+    ----------
+    needed, optional : iterable   dotted keys, or tables of parts that are not described; the
+                                  optional ones are commented out
+    materials : mapping           materials of the case by name
+    """
+    first = _rows(needed)
+    stated = {path for path, _ in first}
+    second = [row for row in _rows(optional) if row[0] not in stated]
+    parts = [_HEAD + _block(first, materials)] if first else []
+    if second:
+        lines = _block(second, materials).splitlines()
+        parts.append(_OPTIONAL + "".join(f"# {line}".rstrip() + "\n" for line in lines))
+    return "\n".join(parts) or NOTHING
+
+
+def _rows(paths: Iterable[str]) -> list[tuple[str, Key]]:
+    """Paths with their keys in the order of a case file; a table as the keys that it needs."""
+    rows: dict[str, Key] = {}
+    for path in paths:
+        for key in keys_at(path)[:1]:
+            listed = [each for each in keys_in(key.path) if each.needed]
+            if key.accepted == TABLE and not key.example:
+                rows |= {f"{path}.{each.name}": each for each in listed}
+            else:
+                rows[path] = key
+    order = {key.path: place for place, key in enumerate(case_keys())}
+    return sorted(rows.items(), key=lambda row: (order[row[1].path], row[0]))
+
+
+def _block(rows: Sequence[tuple[str, Key]], materials: Mapping[str, Material]) -> str:
+    by_table = sorted(rows, key=lambda row: _place(row[0], rows))
+    text = f"[[{ADDED}]]\n"
+    for table, listed in groupby(by_table, key=lambda row: row[0].rpartition(".")[0]):
+        pairs = [(_line(key.name, key.example), _remark(key)) for _, key in listed]
+        card = _card_of(table, materials)
+        if card:
+            pairs.insert(0, (_line("card", card), "as now"))
+        width = max(len(line) for line, _ in pairs)
+        body = "".join(f"{line:{width}}  # {remark}\n" for line, remark in pairs)
+        text += f"\n[{ADDED}.{table}]\n{body}" if table else body
+    return text
+
+
+def _place(path: str, rows: Sequence[tuple[str, Key]]) -> int:
+    """Place of the first key of the same table."""
+    table = path.rpartition(".")[0]
+    return next(k for k, (each, _) in enumerate(rows) if each.rpartition(".")[0] == table)
+
+
+def _line(name: str, example: TomlValue) -> str:
+    if isinstance(example, list) and any(isinstance(each, dict) for each in example):
+        rows = (", ".join(_lines(each)) for each in example if isinstance(each, dict))
+        return f"{name} = [{', '.join(f'{{ {row} }}' for row in rows)}]"
+    return tomli_w.dumps({name: example}).strip()
+
+
+def _lines(table: Mapping[str, TomlValue]) -> list[str]:
+    return [_line(name, value) for name, value in table.items()]
+
+
+def _remark(key: Key) -> str:
+    words = key.accepted.replace("`", '"') if key.accepted.startswith("`") else ""
+    return "; ".join(filter(None, ("example", key.meaning, words, f"found: {key.found}")))
+
+
+def _card_of(table: str, materials: Mapping[str, Material]) -> str:
+    """Card that a bush has put among the materials: its table keeps it where the case adds keys."""
+    *parents, name = table.split(".")
+    card = materials.get(name) if parents == ["materials"] else None
+    return name if card is not None and card.source.startswith(f"card {name}: ") else ""
