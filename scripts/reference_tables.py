@@ -11,10 +11,8 @@ from itertools import groupby
 from pathlib import Path
 
 from camwright.pipeline.base.tables import Column
-from camwright.pipeline.base.units import shown
 from camwright.pipeline.case.case_file import read_case
 from camwright.pipeline.case.keys import (
-    DIGITS,
     TABLE,
     accepted,
     case_keys,
@@ -23,9 +21,10 @@ from camwright.pipeline.case.keys import (
     of_field,
     sections,
 )
-from camwright.pipeline.case.limits import LIMITS, AnyLimit
+from camwright.pipeline.case.limits import LIMITS
 from camwright.pipeline.case.requirements_section import Smoothing
 from camwright.pipeline.checks.check import Declaration
+from camwright.pipeline.checks.check_text import check_text, default_of, sentence
 from camwright.pipeline.checks.registry import CHECKS, DECLARED, MODULES
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.preview import preview_case
@@ -62,16 +61,12 @@ def limits() -> str:
     rows = (
         (
             f"`{row.id}`", row.title, row.quantity.limit.replace(" and ", ", "),
-            _default_of(row),
+            default_of(row),
             "maximum" if row.sense == "at_most" else "minimum", row.source,
         )
         for row in LIMITS.values()
     )  # fmt: skip
     return markdown(("key", "limit", "accepted", "default", "bound", "source"), rows)
-
-
-def _default_of(row: AnyLimit) -> str:
-    return "" if row.default is None else shown(row.default, row.quantity.unit, DIGITS)
 
 
 def checks() -> str:
@@ -85,49 +80,16 @@ def checks() -> str:
     return "\n\n".join(parts)
 
 
-RESTS_ON = {
-    "": "",
-    "contact": "\n- Not evaluated in a load case in which the follower leaves the cam; fails by the"
-    " others.",
-    "loads": "\n- Not evaluated in a load case in which the follower leaves the cam or locks; fails"
-    " by the others.",
-}
-
-
 def _check(one: Declaration) -> str:
-    title = one.title.format(follower="follower")
-    needs = f"; a {one.needs} only" if one.needs else ""
-    part = f"; part `{one.part}`" if one.part else ""
-    depth = f"\n- Judged from the depth {one.tier.word} on."
-    if one.fails_from < one.tier:
-        word = one.fails_from.word
-        depth += f" At the depth {word} its utilisation is a lower bound: it can only fail."
-    decides = "Decides the verdict" if one.must_have else "Does not decide the verdict"
-    ends = RESTS_ON[one.rests_on]
-    if one.evidence:
-        decides += "; evidence, which never governs"
+    words = check_text(one)
+    load_end = f"- {words.load_end}\n" if words.load_end else ""
     lines = (
-        f"#### `{one.id}`: {title}",
-        f"{_sentence(one.formula)} Unit: {one.unit}{needs}{part}.",
-        f"- Calculation: {one.method.rstrip('.')}.\n- Limit: {_limit(one)}.\n"
-        f"- Load cases: {one.load_cases}.\n- {decides}. {_sentence(one.reason)}{ends}{depth}",
+        f"#### `{one.id}`: {words.title}",
+        words.formula,
+        f"- Calculation: {words.calculation}\n- Limit: {words.limit}\n"
+        f"- Load cases: {words.load_cases}\n- {words.decision}\n{load_end}- {words.depth}",
     )
     return "\n\n".join(lines)
-
-
-def _sentence(text: str) -> str:
-    """Text with a full stop; a word at its start, unlike a symbol, with a capital letter."""
-    start = text[:1].upper() if text[1:2].islower() and text[:3].isalpha() else text[:1]
-    return f"{start}{text[1:].rstrip('.')}."
-
-
-def _limit(one: Declaration) -> str:
-    if one.limit is None:
-        return one.source
-    row = one.limit
-    value = _default_of(row)
-    default_of = f", default {value}" if value else ", without a default"
-    return f"`limits.{row.id}`{default_of}; {row.source}"
 
 
 def objective() -> str:
@@ -232,7 +194,7 @@ def keys() -> str:
     parts = []
     for header, listed in groupby(case_keys(), key=lambda key: key.header):
         whole = list(listed)
-        about = "".join(f"\n\n{_sentence(key.meaning)}" for key in whole if key.accepted == TABLE)
+        about = "".join(f"\n\n{sentence(key.meaning)}" for key in whole if key.accepted == TABLE)
         rows = (
             (f"`{key.name}`", key.meaning, key.accepted, key.default)
             for key in whole

@@ -97,7 +97,7 @@ def _block(rows: Sequence[tuple[str, Key]], materials: Mapping[str, Material]) -
     by_table = sorted(rows, key=lambda row: _place(row[0], rows))
     text = f"[[{ADDED}]]\n"
     for table, listed in groupby(by_table, key=lambda row: row[0].rpartition(".")[0]):
-        pairs = [(_line(key.name, key.example), _remark(key)) for _, key in listed]
+        pairs = [(line_of(key), _remark(key)) for _, key in listed]
         card = _card_of(table, materials)
         if card:
             pairs.insert(0, (_line("card", card), "as now"))
@@ -111,6 +111,11 @@ def _place(path: str, rows: Sequence[tuple[str, Key]]) -> int:
     """Place of the first key of the same table."""
     table = path.rpartition(".")[0]
     return next(k for k, (each, _) in enumerate(rows) if each.rpartition(".")[0] == table)
+
+
+def line_of(key: Key) -> str:
+    """A key with its example as a line of TOML."""
+    return _line(key.name, key.example)
 
 
 def _line(name: str, example: TomlValue) -> str:

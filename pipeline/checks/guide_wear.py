@@ -35,9 +35,9 @@ def _guide_expansion(side: Side) -> Declaration:
         part="guides",
         formula="c d e + d a_s (T - 20 degC) <= C; e = a_b (T - 20 degC) + w: free strain of the"
         " bush by heat and moisture, c = (k - 1)(1 + nu) / (1 + (1 - 2 nu) k) with"
-        " k = (1 + 2 t/d)^2: Lame's closure of the bore of a wall t held axially, the greater of"
-        " the bounds, d: bore, a_b, a_s: thermal expansion of bush and stem, T: temperature of the"
-        " guide, C: guides.*.clearance.",
+        " k = (1 + 2 t/d)^2: Lame's closure of the bore of a wall t, guides.*.wall, held axially,"
+        " the greater of the bounds, d: bore, a_b, a_s: thermal expansion of bush and stem, T:"
+        " temperature of the guide, C: guides.*.clearance.",
         reason="a stem that binds in a hot or wet bush jams, whatever its loads.",
     )
     def expansion(solution: Solution) -> Demand:

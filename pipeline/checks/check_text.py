@@ -1,0 +1,108 @@
+"""Declaration of a check in words: formula, limit, calculation, what it rests on."""
+
+from __future__ import annotations
+
+import re
+from fnmatch import fnmatchcase
+from typing import NamedTuple
+
+from camwright.pipeline.base.units import shown
+from camwright.pipeline.case.keys import DIGITS, NAME, Key
+from camwright.pipeline.case.limits import AnyLimit
+from camwright.pipeline.checks.check import Declaration
+from camwright.pipeline.checks.confirmation import RESTS_ON
+from camwright.pipeline.checks.registry import DECLARED
+
+
+class CheckText(NamedTuple):
+    """A check in words: sentences, and the dotted keys on which it rests.
+
+    A key such as ``cam.material.E`` is that of the material which the part names. load_end: what
+    a follower that leaves the cam or locks does to the check; "": nothing.
+    """
+
+    title: str
+    formula: str
+    calculation: str
+    limit: str
+    load_cases: str
+    decision: str
+    load_end: str
+    depth: str
+    rests_on: tuple[str, ...]
+
+
+_LOAD_END = {
+    "": "",
+    "contact": "Not evaluated in a load case in which the follower leaves the cam; fails by the"
+    " others.",
+    "loads": "Not evaluated in a load case in which the follower leaves the cam or locks; fails by"
+    " the others.",
+}
+"""Words by what a check rests on, see `Declaration.rests_on`."""
+
+
+def check_text(one: Declaration) -> CheckText:
+    """Words of a declaration."""
+    needs = f"; a {one.needs} only" if one.needs else ""
+    part = f"; part `{one.part}`" if one.part else ""
+    depth = f"Judged from the depth {one.tier.word} on."
+    if one.fails_from < one.tier:
+        word = one.fails_from.word
+        depth += f" At the depth {word} its utilisation is a lower bound: it can only fail."
+    decides = "Decides the verdict" if one.must_have else "Does not decide the verdict"
+    if one.evidence:
+        decides += "; evidence, which never governs"
+    return CheckText(
+        title=one.title.format(follower="follower"),
+        formula=f"{sentence(one.formula)} Unit: {one.unit}{needs}{part}.",
+        calculation=f"{one.method.rstrip('.')}.",
+        limit=f"{_limit(one)}.",
+        load_cases=f"{one.load_cases}.",
+        decision=f"{decides}. {sentence(one.reason)}",
+        load_end=_LOAD_END[one.rests_on],
+        depth=depth,
+        rests_on=RESTS_ON.get(one.id, ()),
+    )
+
+
+def sentence(text: str) -> str:
+    """Text with a full stop; a word at its start, unlike a symbol, with a capital letter."""
+    is_word = re.match(r"(a|[a-z]{2,})(?=$|[,:;.]|-[a-z]| (?![-=<>/+]))", text) is not None
+    start = text[:1].upper() if is_word else text[:1]
+    return f"{start}{text[1:].rstrip('.')}."
+
+
+def default_of(row: AnyLimit) -> str:
+    """Default of a limit in its unit; "" without one."""
+    return "" if row.default is None else shown(row.default, row.quantity.unit, DIGITS)
+
+
+def _limit(one: Declaration) -> str:
+    if one.limit is None:
+        return one.source
+    value = default_of(one.limit)
+    stated = f", default {value}" if value else ", without a default"
+    return f"`limits.{one.limit.id}`{stated}; {one.limit.source}"
+
+
+def checks_with(key: Key) -> tuple[str, ...]:
+    """Ids of the checks that rest on a key, have it as limit or name it in their formula."""
+    return tuple(
+        one.id
+        for one in DECLARED.values()
+        if (one.limit is not None and key.path == f"limits.{one.limit.id}")
+        or any(fnmatchcase(key.path, _of_card(rest)) for rest in RESTS_ON.get(one.id, ()))
+        or _named(key.path, one.formula)
+    )
+
+
+def _of_card(rest: str) -> str:
+    """A key on which a check rests as that of the material card, where it is one."""
+    before, name, last = rest.rpartition("material.")
+    return f"materials.{NAME}.{last}" if name and before else rest
+
+
+def _named(path: str, formula: str) -> bool:
+    words = re.escape(re.sub(r"^guides\.[ab]\.", "guides.*.", path))
+    return "." in path and re.search(rf"(?<![\w.]){words}(?![\w])", formula) is not None

@@ -1,0 +1,159 @@
+"""Command `explain`: a key of the case file, or a check, in words."""
+
+from __future__ import annotations
+
+import difflib
+from textwrap import fill
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from camwright.geometry.errors import InputError
+from camwright.pipeline.commands.terminal import PASSED, stdout
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+
+    from camwright.pipeline.case.keys import Key
+
+WIDTH, LABEL = 100, 14
+CLOSEST = 6
+"""Names in the message on an unknown one."""
+
+
+def explain(
+    words: Annotated[
+        list[str],
+        typer.Argument(metavar="KEY...", help="Keys or tables of a case file, or check ids."),
+    ],
+) -> int:
+    """Explain keys of the case file, such as guides.a.wall, tables such as spring, and checks.
+
+    Of a key meaning, unit, range, default, example, where it is found and what uses it; of a check
+    formula, limit, source, load cases and the values on which it rests.
+    """
+    texts = [_explained(word) for word in words]
+    stdout.print("\n\n".join(texts), markup=False)
+    return PASSED
+
+
+def _explained(word: str) -> str:
+    from camwright.pipeline.case.keys import keys_at
+    from camwright.pipeline.checks.registry import DECLARED
+
+    parts = _of_keys(word, keys_at(word))
+    if word in DECLARED:
+        parts.append(_of_check(word))
+    if not parts:
+        raise InputError("KEY", word, f"a key or table of a case file, or a check{_closest(word)}")
+    return "\n\n".join(parts)
+
+
+def _of_keys(word: str, keys: Sequence[Key]) -> list[str]:
+    """Texts of the keys at a path: one where all kinds of its table agree."""
+    from camwright.pipeline.case.keys import TABLE
+
+    kinds: dict[tuple[str, str], list[Key]] = {}
+    for key in keys:
+        kinds.setdefault((key.accepted, key.default), []).append(key)
+    return [
+        _of_table(word, same) if same[0].accepted == TABLE else _of_key(word, same)
+        for same in kinds.values()
+    ]
+
+
+def _of_key(word: str, keys: Sequence[Key]) -> str:
+    from camwright.pipeline.case.added_tables import line_of
+    from camwright.pipeline.case.keys import REQUIRED
+    from camwright.pipeline.checks.check_text import checks_with
+
+    key = keys[0]
+    absent = "none" if key.default != REQUIRED else "none: the key is required"
+    return _text(
+        f"{word}: {key.meaning}",
+        (
+            ("table", ", ".join(each.header for each in keys)),
+            ("accepted", key.accepted.replace("`", '"')),
+            ("default", absent if key.default in ("", REQUIRED) else key.default.replace("`", "")),
+            ("example", line_of(key)),
+            ("found", key.found),
+            ("used by", key.used),
+            ("checks", ", ".join(checks_with(key))),
+        ),
+    )
+
+
+def _of_table(word: str, keys: Sequence[Key]) -> str:
+    from camwright.pipeline.case.keys import TABLE, case_keys, keys_in
+
+    table = keys[0].path
+    within = [
+        each.path.removeprefix(f"{table}.")
+        for each in case_keys()
+        if each.accepted == TABLE and each.path.rpartition(".")[0] == table
+    ]
+    rows = [
+        ("table", ", ".join(each.header for each in keys)),
+        ("used by", keys[0].used),
+        ("tables", ", ".join(dict.fromkeys(within))),
+    ]
+    listed = [(each.name, each.meaning) for each in keys_in(table)]
+    width = max((len(name) for name, _ in listed), default=0) + 4
+    return _text(f"{word}: {keys[0].meaning}", rows) + "\n" + _listed(listed, width)
+
+
+def _of_check(name: str) -> str:
+    from camwright.pipeline.checks.check_text import check_text
+    from camwright.pipeline.checks.registry import DECLARED
+
+    words = check_text(DECLARED[name])
+    return _text(
+        f"{name}: {words.title}",
+        (
+            ("formula", words.formula.replace("`", "")),
+            ("limit", words.limit.replace("`", "")),
+            ("calculation", words.calculation),
+            ("load cases", words.load_cases),
+            ("verdict", words.decision),
+            ("loads", words.load_end),
+            ("depth", words.depth),
+            ("rests on", ", ".join(words.rests_on)),
+        ),
+    )
+
+
+def _text(heading: str, rows: Iterable[tuple[str, str]]) -> str:
+    return fill(heading, WIDTH) + "\n" + _listed([row for row in rows if row[1]], LABEL)
+
+
+def _listed(rows: Iterable[tuple[str, str]], width: int) -> str:
+    """Rows of a name and a text, which is wrapped beside the name."""
+    return "\n".join(
+        fill(
+            text,
+            WIDTH,
+            initial_indent=f"  {name:<{width - 2}}",
+            subsequent_indent=" " * width,
+            break_long_words=False,
+            break_on_hyphens=False,
+        )
+        for name, text in rows
+    )
+
+
+def _closest(word: str) -> str:
+    """The closest keys and checks, for a message."""
+    from camwright.pipeline.case.keys import case_keys
+    from camwright.pipeline.checks.registry import DECLARED
+
+    known = list(dict.fromkeys([*(key.path for key in case_keys()), *DECLARED]))
+    last = word.rpartition(".")[2]
+    alike = [each for each in known if each.rpartition(".")[2] == last]
+    alike += difflib.get_close_matches(word, known, n=3)
+    names: dict[str, list[str]] = {}
+    for each in known:
+        names.setdefault(each.rpartition(".")[2], []).append(each)
+    for name in difflib.get_close_matches(last, names, n=1):
+        alike += names[name]
+    listed = list(dict.fromkeys(alike))[:CLOSEST]
+    return f"; did you mean {', '.join(listed)}?" if listed else ""

@@ -1,0 +1,94 @@
+"""`camwright explain`: keys and checks in words; a misspelt one is refused with the closest."""
+
+from __future__ import annotations
+
+import pytest
+from check_tools import BY_ID
+
+from camwright.geometry.errors import InputError
+from camwright.pipeline.case.keys import case_keys, keys_at
+from camwright.pipeline.checks.check_text import checks_with, sentence
+from camwright.pipeline.commands.explain_command import WIDTH, explain
+
+
+def explained(capsys: pytest.CaptureFixture[str], *words: str) -> str:
+    assert explain(list(words)) == 0
+    return capsys.readouterr().out
+
+
+def test_a_key_has_meaning_range_default_example_place_and_use(capsys):
+    text = explained(capsys, "guides.a.wall")
+    *lines, checks = text.splitlines()
+    assert lines == [
+        "guides.a.wall: wall thickness of the bush",
+        "  table       [guides.a]",
+        "  accepted    > 0, <= 10000 mm",
+        "  default     none",
+        '  example     wall = "2 mm"',
+        "  found       bush catalogue",
+        "  used by     cycle, checks of the guides",
+    ]
+    assert checks.split()[0] == "checks"
+    named = {f"guide_{name}_{side}" for name in ("temperature", "expansion") for side in "AB"}
+    assert set(checks.replace(",", "").split()[1:]) == named
+
+
+def test_a_limit_has_its_source_and_its_checks(capsys):
+    text = explained(capsys, "limits.contact_safety")
+    assert "default     1\n" in text
+    assert "surface endurance of cam and follower" in text
+    assert "contact_pressure" in text
+
+
+def test_a_key_of_a_material_is_explained_by_any_name(capsys):
+    text = explained(capsys, "materials.nylon.expansion")
+    assert text.startswith("materials.nylon.expansion: coefficient of thermal expansion")
+    assert "guide_expansion_A" in text and ">= 0, <= 0.01 1/K" in text
+
+
+def test_a_check_has_formula_limit_source_load_cases_and_what_it_rests_on(capsys):
+    text = " ".join(explained(capsys, "jam_index").split())
+    one = BY_ID["jam_index"]
+    for words in (one.formula, one.method, one.load_cases, "limits.jam_index, default 0.5"):
+        assert words.rstrip(".") in text
+    assert "rests on spring.rate, spring.preload" in text
+
+
+def test_a_table_lists_its_keys_and_tables(capsys):
+    text = explained(capsys, "cam")
+    assert "  tables      keyway, key, counter_hole" in text
+    assert "  bore_radius        half of the bore diameter" in text
+
+
+@pytest.mark.parametrize(
+    ("word", "closest"),
+    [("guides.a.wal", "guides.a.wall"), ("wall", "guides.b.wall"), ("jam_indx", "jam_index"),
+     ("limits.overspeeed", "limits.overspeed")],
+)  # fmt: skip
+def test_a_misspelt_word_is_refused_with_the_closest(word, closest):
+    with pytest.raises(InputError, match=f"KEY = {word}, must be .*did you mean .*{closest}"):
+        explain([word])
+
+
+def test_every_key_and_check_is_explained_within_the_width(capsys):
+    words = [*dict.fromkeys(key.path for key in case_keys()), *BY_ID]
+    text = explained(capsys, *words)
+    assert max(len(line) for line in text.splitlines()) <= WIDTH
+    for word in words:
+        assert f"{word}:" in text
+
+
+def test_every_limit_names_the_checks_that_have_it():
+    for one in BY_ID.values():
+        if one.limit is not None:
+            (key,) = keys_at(f"limits.{one.limit.id}")
+            assert one.id in checks_with(key)
+
+
+@pytest.mark.parametrize(
+    ("text", "starts"),
+    [("strength, wear", "Strength, wear."), ("at 1 it locks.", "At 1 it locks."),
+     ("tau <= R", "tau <= R."), ("max(a) <= b", "max(a) <= b."), ("F/A <= p", "F/A <= p.")],
+)  # fmt: skip
+def test_a_sentence_starts_with_a_capital_letter_but_for_symbols(text, starts):
+    assert sentence(text) == starts
