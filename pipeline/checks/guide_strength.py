@@ -288,8 +288,8 @@ def _guide_temperature(side: Side) -> Declaration:
         part="guides",
         formula="T_amb + Q (R_wall + R_housing) <= T_max; Q: mean friction power over the turn at"
         " the greatest friction, R_wall: ln(1 + 2 t/d) / (2 pi lambda L) of a wall t:"
-        " guides.*.wall, R_housing: guides.*.housing_resistance; guides.*.thermal_resistance in place of both;"
-        " T_amb: guides.ambient_temperature; T_max: temperature limit of the bush.",
+        " guides.*.wall, R_housing: guides.*.housing_resistance; guides.*.thermal_resistance in"
+        " place of both; T_amb: guides.ambient_temperature; T_max: temperature limit of the bush.",
         reason="strength, clearance and wear of a bush depend on its temperature.",
     )
     def temperature(solution: Solution) -> Demand:

@@ -28,8 +28,6 @@ FAIL_ON = ("must", "open", "any", "never")
 any optional check that fails; none."""
 
 HEADINGS = ("check", "demand", "limit", "used", "where, worst corner", "status")
-_LEAST_WIDTHS = {"check": 28, "status": 13}
-"""Columns below which a column of the table does not shrink."""
 OVERVIEW = ("run", "case", "depth", "result", "failed", "missing", "governing")
 """Columns of `overview`."""
 STYLES = {"pass": "green", "fail": "red", "waived": "yellow", "not_evaluated": "magenta"}
@@ -157,8 +155,7 @@ def table(records: Iterable[CheckRecord]) -> Table:
         made.add_column(
             heading,
             justify="right" if right else "left",
-            no_wrap=right,
-            min_width=_LEAST_WIDTHS.get(heading),
+            no_wrap=heading in ("limit", "used"),
         )
     for row in rows(records):
         style = STYLES.get(re.split("[ ,]", row[-1])[0], "")

@@ -2,6 +2,7 @@
 
 import json
 from dataclasses import replace
+from types import SimpleNamespace
 
 import ezdxf
 import numpy as np
@@ -27,6 +28,7 @@ from camwright.pipeline.cycle.contact_setup import contact_pair
 from camwright.pipeline.cycle.solution import Solution
 from camwright.pipeline.follower.camshaft_loads import CounterHole, greatest_hole, unbalance
 from camwright.pipeline.results.workshop_files import outline_of, write_workshop
+from camwright.reports.sheet_turn import Turn
 
 KEY = '\n[cam.keyway]\nwidth = "6 mm"\ndepth = "2.8 mm"\nangle = "50 deg"\n'
 ORDERED = "\n[cam.counter_hole]\n"
@@ -201,3 +203,18 @@ def test_the_mesh_leaves_the_hole_out():
     out = CounterHole(np.array([0.05, 0.0]), 0.05)
     with pytest.raises(GeometryError, match="wall of the counter-hole"):
         cam_mesh(HEAVY, 0.01, None, sizing, out)
+
+
+@pytest.mark.parametrize(
+    ("note", "drilled", "drawn"),
+    [
+        ("", False, True),
+        ("no counter-hole fits", False, False),
+        ("no counter-hole fits", True, True),
+    ],
+)
+def test_a_hole_that_does_not_balance_the_cam_is_not_proposed(note, drilled, drawn):
+    sizes = {"hole_x_mm": 20.0, "hole_y_mm": -37.0, "hole_diameter_mm": 56.0}
+    turn = SimpleNamespace(balance=sizes | {"hole_note": note, "hole_drilled": drilled})
+    hole = Turn.counter_hole.fget(turn)
+    assert hole == ((20.0, -37.0, 28.0, drilled) if drawn else None)

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import io
 import math
 from pathlib import Path
 from typing import Any
 
 import pytest
+from rich.console import Console
 from small_run import check
 
 from camwright.pipeline.base.units import used
@@ -14,6 +16,7 @@ from camwright.pipeline.case.case_file import read_case
 from camwright.pipeline.checks.registry import DECLARED
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.preview import preview_case
+from camwright.pipeline.results.check_report import table
 from camwright.pipeline.results.run_reader import judgement, read_verdict
 from camwright.pipeline.results.verdict_summary import (
     LINES,
@@ -147,6 +150,9 @@ def test_the_summary_of_the_published_cam_fits() -> None:
     trial = preview_case(read_case(SOLVED[[each.stem for each in SOLVED].index("gx120")]))
     checks: list[Any] = [one.as_record() for one in trial.checks]
     scope = trial.case.scope.as_record()
+    printed = io.StringIO()
+    Console(file=printed, width=WIDTH, soft_wrap=True).print(table(checks))
+    assert max(map(len, printed.getvalue().split("\n"))) <= WIDTH
     assert fits(summary_lines(document(checks, scope=scope) | judgement(checks, "preview"), PLACES))
 
 
