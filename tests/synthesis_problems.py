@@ -4,15 +4,16 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
-from oracle_limits import LIMITS
 from synthesis_ratings import rated
 
+from camwright.geometry.arrays import uniform_turn
 from camwright.pipeline.case.case_file import read_case
 from camwright.pipeline.case.load_case_torque import engine_torques
+from camwright.pipeline.checks.roller_bearing import Grease
 from camwright.pipeline.smoothing.constraints import CONSTRAINTS
 from camwright.pipeline.smoothing.objective import TORQUE, Weighted
 from camwright.pipeline.smoothing.problem_setup import problem_of
-from camwright.pipeline.smoothing.scenario import DesignVariables, Scenario
+from camwright.pipeline.smoothing.scenario import Correction, DesignVariables, Scenario
 from camwright.pipeline.smoothing.synthesis_problem import Problem
 
 ROOT = Path(__file__).parents[1]
@@ -92,14 +93,61 @@ def measured(name):
     )
 
 
-def signed():
-    """Problem of the signed case, with the constraints that the oracle has."""
-    case = read_case(ROOT / "cases" / "gx120-redesign.toml")
-    unknown = {each.check for each in CONSTRAINTS} - {each.check for each in LIMITS}
+def constrained(path):
+    """Problem of a case with all its constraints; the torque ripple alone is the objective."""
+    case = read_case(ROOT / path)
     problem = problem_of(case, engine_torques(case))
-    return replace(
-        problem, coefficients=96, objective=(Weighted(TORQUE, 1.0),), left_out=frozenset(unknown)
+    return replace(problem, coefficients=96, objective=(Weighted(TORQUE, 1.0),))
+
+
+def signed():
+    """Problem of the signed case."""
+    return constrained("cases/gx120-redesign.toml")
+
+
+def described(problem):
+    """The problem with what the signed case lacks: grease, wall of a free cam, curvature rate.
+
+    The grease has three times the rating of the bearing, as its estimate ends at P/C = 0.2.
+    """
+    rating, diameter = 3.0 * problem.ratings.dynamic_rating, 2.0 * problem.ratings.roller_radius
+    grease = Grease(9000.0 * 3600.0, rating, diameter, 343.15)
+    held = problem.ratings.keyway.held_radius
+    ratings = rated(problem.ratings, grease=grease, held_radius=held, curvature_rate=9e3)
+    return replace(problem, ratings=ratings)
+
+
+def with_corrections(problem, seed):
+    """The problem with smooth corrections of every kind, damping, and two load cases in operation.
+
+    The speeds of the least force and the mean spin are of the order of the signed case.
+    """
+    random, turn = np.random.default_rng(seed), uniform_turn(64)
+
+    def about(mean, spread):
+        order, shift = random.integers(1, 5), random.uniform(0.0, 2.0 * np.pi)
+        return mean + spread * np.sin(order * turn + shift)
+
+    ratios = ("contact", "guide_a", "guide_b", "rubbing_a", "rubbing_b", "jam", "edge_a", "edge_b",
+              "hot_a", "hot_b")  # fmt: skip
+    forces = ("surge", "swept_surge", "elastic")  # N
+    single = {"swept_speed": 180.0, "elastic_speed": 190.0, "rolling": 1.6, "least_lift": 8e-4}
+    correction = Correction(
+        **{name: about(1.1, 0.2) for name in ratios},
+        **{name: about(0.0, 30.0) for name in forces},
+        **{name: np.full(turn.size, value) for name, value in single.items()},
     )
+    scenarios = tuple(
+        replace(item, correction=correction, viscous_damping=3.0, duty=0.5 * (item.name[0] in "ig"))
+        for item in problem.scenarios
+    )
+    return replace(problem, scenarios=scenarios)
+
+
+def nominal(problem):
+    """The problem without the tolerance corners of its load cases."""
+    scenarios = tuple(item for item in problem.scenarios if "," not in item.name)
+    return replace(problem, scenarios=scenarios)
 
 
 def thinned(problem, coefficients, points):
