@@ -20,10 +20,6 @@ from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 from markupsafe import Markup
-from matplotlib import rc_context
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure as Canvas
-from matplotlib.ticker import MaxNLocator
 from numpy.typing import ArrayLike
 
 from camwright.pipeline.base.files import write_atomic
@@ -48,6 +44,8 @@ from camwright.reports.figures import (
 from camwright.reports.report_data import FIGURES, Material
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure as Canvas
     from matplotlib.typing import RcKeyType
 
 _CSS = (Path(__file__).parent / "templates" / "report.css").read_text(encoding="utf-8")
@@ -136,6 +134,8 @@ def write(material: Material) -> list[Path]:
 @contextmanager
 def style(salt: str) -> Iterator[None]:
     """Settings of all drawings; `salt` makes the ids in the SVG unique on a page."""
+    from matplotlib import rc_context
+
     with rc_context({**STYLE, "svg.hashsalt": salt}):
         yield
 
@@ -206,6 +206,8 @@ def _angles(figure: AngleFigure) -> Canvas:
 
 def _lines(figure: LineFigure) -> Canvas:
     """Panels with a common axis of another quantity, points marked."""
+    from matplotlib.ticker import MaxNLocator
+
     canvas, axes = _stacked(figure)
     for ax, panel in zip(axes, figure.panels, strict=True):
         for curve in panel.curves:
@@ -228,6 +230,13 @@ def _lines(figure: LineFigure) -> Canvas:
     return canvas
 
 
+def _canvas(height: float) -> Canvas:
+    """Empty canvas of the width of all figures; height in inches."""
+    from matplotlib.figure import Figure as Canvas
+
+    return Canvas(figsize=(FIGURE_WIDTH, height))
+
+
 def _stacked(figure: AngleFigure | LineFigure) -> tuple[Canvas, list[Axes]]:
     """Axes of the panels, one below the other."""
     rows = -(-max(panel.legend_entries for panel in figure.panels) // LEGEND_ROW)
@@ -236,7 +245,7 @@ def _stacked(figure: AngleFigure | LineFigure) -> tuple[Canvas, list[Axes]]:
     named_above = isinstance(figure, AngleFigure)
     top = (TOP - 0.2 if named_above else GAP) + 0.2 * (rows if figure.legends[0] else 0)
     total = top + sum(heights) + sum(gaps[1:]) + BOTTOM
-    canvas = Canvas(figsize=(FIGURE_WIDTH, total))
+    canvas = _canvas(total)
     edge = total - top
     axes: list[Axes] = []
     for number, height in enumerate(heights):
@@ -292,6 +301,8 @@ def _panel(ax: Axes, figure: AngleFigure, panel: Panel) -> None:
 
 def _vertical(ax: Axes, panel: Panel, *, strokes: bool) -> None:
     """Vertical axis of a panel with its limits; frame and grid."""
+    from matplotlib.ticker import MaxNLocator
+
     low, high = vertical_span(panel, strokes)
     ax.set_ylim(low, high)
     if low < 0 < high:
@@ -346,7 +357,7 @@ def _cam_axis(ax: Axes, gear_ratio: float) -> None:
 
 def _outline(figure: OutlineFigure) -> Canvas:
     """Curves and text of the outline on equal axes."""
-    canvas = Canvas(figsize=(FIGURE_WIDTH, FIGURE_WIDTH - 0.1))
+    canvas = _canvas(FIGURE_WIDTH - 0.1)
     ax = canvas.add_axes((LEFT / FIGURE_WIDTH, 0.42 / 5.5, 4.84 / FIGURE_WIDTH, 4.84 / 5.5))
     for order, curve in enumerate(figure.curves, start=1):
         if curve.fill:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
@@ -14,7 +14,6 @@ from camwright.pipeline.results.model_limits import MODEL_LIMITS
 from camwright.pipeline.results.run_reader import CERTIFIED, TrialRecord, load_end_words
 from camwright.reports import report_tables, verification_tables
 from camwright.reports.figure_svg import Drawn, drawn_groups
-from camwright.reports.picture_list import Picture, pictures
 from camwright.reports.report_data import Material
 from camwright.reports.report_tables import (
     DASH,
@@ -29,6 +28,9 @@ from camwright.reports.report_tables import (
 )
 from camwright.reports.sheet_turn import Turn
 from camwright.reports.verdict_text import Verdict, verdict
+
+if TYPE_CHECKING:
+    from camwright.reports.picture_list import Picture
 
 SHORT = 140
 """Maximum number of characters of a title or name on one line."""
@@ -169,6 +171,9 @@ class Report:
 
 def report_content(material: Material) -> Report:
     """Contents of the report of a run."""
+    # study pages share these tables, without matplotlib
+    from camwright.reports.picture_list import pictures
+
     run = material.run
     final = run.final
     statement = titled(str(run.summary["statement"]), final.checks)

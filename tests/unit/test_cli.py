@@ -339,6 +339,23 @@ def test_a_case_is_read_without_the_heavy_libraries() -> None:
     assert last_line_of(script) == "[]"
 
 
+def test_rows_and_study_page_are_written_without_pandas_and_matplotlib() -> None:
+    """Each worker of a study and its main process would import them for half a second."""
+    script = (
+        "import sys\n"
+        "from camwright.reports.study import study_page\n"
+        "from camwright.pipeline.studies.batch import dataset\n"
+        "rows = {'id': ['a', 'b'], 'depth': ['preview'] * 2, 'message': [None, 'm'],\n"
+        "        'jump.demand': [1.0, None]}\n"
+        "table = dataset.table_from(dataset.parquet_bytes(dataset.table_of(rows, {})))\n"
+        "clock = dataset.parquet_bytes(dataset.timings_of(rows, [0.5, 0.1]))\n"
+        "assert dataset.values_of(dataset.table_from(clock)['wall_s']).tolist() == [0.5, 0.1]\n"
+        "assert dataset.values_of(table['jump.demand'])[0] == 1.0\n"
+        "print(sorted({'matplotlib', 'pandas', 'scipy.stats'} & set(sys.modules)))"
+    )
+    assert last_line_of(script) == "[]"
+
+
 @pytest.mark.parametrize(
     ("open_checks", "code"), [([[], []], 0), ([["shaft"], []], 3), ([["shaft"], ["shaft"]], 3)]
 )

@@ -23,6 +23,7 @@ from camwright.pipeline.studies.batch.dataset import (
     read_dataset,
     table_from,
     table_of,
+    values_of,
 )
 from camwright.pipeline.studies.batch.row_selection import Figures, states_in
 from camwright.pipeline.studies.batch.study_file import Objective
@@ -284,3 +285,13 @@ def test_selection() -> None:
     assert states_in(table).tolist() == [PASSES, PASSES, FAILS, PASSES, UNKNOWN]
     figures.keep({"a"})
     assert figures.best(2) == ["a"]
+
+
+@pytest.mark.parametrize("start", [0, 3, 9])
+def test_numbers_of_a_column_are_those_of_arrow_whatever_its_chunks(start: int) -> None:
+    numbers = np.where(np.arange(21) % 4 == 1, np.nan, np.arange(21) / 7.0)
+    table = table_of(rows("abcdefghijklmnopqrstu", **{"jump.demand": numbers}), {})
+    column = pa.concat_tables([table.slice(start, 11), table, table.slice(2, 1)])["jump.demand"]
+    np.testing.assert_array_equal(values_of(column), column.to_numpy())
+    whole = pa.chunked_array([], type=pa.float64())
+    assert values_of(whole).size == 0

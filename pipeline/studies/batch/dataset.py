@@ -147,19 +147,55 @@ def table_of(rows: Rows, units: Mapping[str, str | None]) -> pa.Table:
     for name in in_order(list(rows)):
         values, column = rows[name], column_of(name, units)
         if is_text(name, units):
-            array = pa.array([None if each in (None, "") else str(each) for each in values])
-            array = array.cast(pa.string())
+            array = _texts(["" if each is None else str(each) for each in values])
         elif name == DESIGN.name:
-            array = pa.array(np.asarray(values, dtype=np.int64))
+            array = whole_numbers(np.asarray(values))
         else:
-            numbers = np.array([np.nan if v is None else v for v in values], dtype=float)
-            array = pa.array(numbers, mask=~np.isfinite(numbers))
+            array = _numbers(np.array([np.nan if v is None else v for v in values], dtype=float))
         if array.null_count == len(array) and name not in always and not name.startswith(FACTOR):
             continue
         metadata = {"unit": column.unit, "meaning": column.meaning}
         fields.append(pa.field(name, array.type, metadata=metadata))
         arrays.append(array)
     return pa.Table.from_arrays(arrays, schema=pa.schema(fields))
+
+
+# `pyarrow.array` imports pandas, half a second in each process: arrays are made of their buffers.
+
+
+def whole_numbers(values: NDArray[np.integer[Any]]) -> pa.Array:
+    """Arrow array of whole numbers (n,)."""
+    import pyarrow as pa
+
+    whole = np.ascontiguousarray(values, dtype=np.int64)
+    return pa.Array.from_buffers(pa.int64(), whole.size, [None, pa.py_buffer(whole)])
+
+
+def _numbers(values: NDArray[np.float64]) -> pa.Array:
+    """Arrow array of numbers (n,); NaN and infinity become null."""
+    import pyarrow as pa
+
+    numbers = np.ascontiguousarray(values, dtype=float)
+    buffers = [_validity(np.isfinite(numbers)), pa.py_buffer(numbers)]
+    return pa.Array.from_buffers(pa.float64(), numbers.size, buffers)
+
+
+def _texts(values: Sequence[str]) -> pa.Array:
+    """Arrow array of texts (n,); empty ones become null."""
+    import pyarrow as pa
+
+    parts = [each.encode() for each in values]
+    ends = np.cumsum([0, *(len(each) for each in parts)], dtype=np.int32)
+    known = np.array([bool(each) for each in parts], dtype=bool)
+    buffers = [_validity(known), pa.py_buffer(ends), pa.py_buffer(b"".join(parts))]
+    return pa.Array.from_buffers(pa.string(), len(parts), buffers)
+
+
+def _validity(known: NDArray[np.bool_]) -> pa.Buffer | None:
+    """Bits of the values that are not null; None: all are not."""
+    import pyarrow as pa
+
+    return None if known.all() else pa.py_buffer(np.packbits(known, bitorder="little"))
 
 
 def parquet_bytes(table: pa.Table) -> bytes:
@@ -181,8 +217,8 @@ def timings_of(rows: Rows, walls: Sequence[float]) -> pa.Table:
     """Clock figures of the rows of a shard: id, depth, wall time of the solution in s."""
     import pyarrow as pa
 
-    columns = {name: list(rows[name]) for name in (ID.name, DEPTH.name)}
-    return pa.table({**columns, "wall_s": np.asarray(walls, dtype=float)})
+    texts = {each: _texts([str(value) for value in rows[each]]) for each in (ID.name, DEPTH.name)}
+    return pa.table({**texts, "wall_s": _numbers(np.asarray(walls, dtype=float))})
 
 
 def joined(tables: Sequence[pa.Table]) -> pa.Table:
@@ -198,7 +234,9 @@ def table_from(content: bytes) -> pa.Table:
     """The table of the bytes of a Parquet file."""
     import pyarrow.parquet as pq
 
-    return pq.read_table(io.BytesIO(content), page_checksum_verification=True)
+    # `read_table` imports the reader of folders, and with it pandas
+    with pq.ParquetFile(io.BytesIO(content), page_checksum_verification=True) as file:
+        return file.read()
 
 
 def read_parquet(path: Path) -> pa.Table:
@@ -316,4 +354,15 @@ def values_of(column: pa.ChunkedArray) -> NDArray[Any]:
 
     if pa.types.is_string(column.type):
         return np.array([each or "" for each in column.to_pylist()], dtype=np.str_)
-    return np.asarray(column.to_numpy())
+    kind = np.dtype(np.int64 if pa.types.is_int64(column.type) else np.float64)
+    parts = [np.empty(0, dtype=kind)]
+    # `to_numpy` and `fill_null` import pandas
+    for chunk in column.chunks:
+        valid, buffer = chunk.buffers()
+        part = slice(chunk.offset, chunk.offset + len(chunk))
+        numbers = np.frombuffer(buffer or b"", dtype=kind)[part]
+        if chunk.null_count:
+            known = np.unpackbits(np.frombuffer(valid, np.uint8), bitorder="little")[part]
+            numbers = np.where(known, numbers, np.nan)
+        parts.append(numbers)
+    return np.concatenate(parts)

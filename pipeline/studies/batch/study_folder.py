@@ -33,6 +33,7 @@ from camwright.pipeline.studies.batch.dataset import (
     in_order,
     read_parquet,
     require_columns,
+    whole_numbers,
 )
 from camwright.pipeline.studies.batch.design_rows import CLOCK
 
@@ -257,12 +258,12 @@ def _block(
 
     if not parts:
         return schema.empty_table()
-    below = pa.concat_tables(parts, promote_options="default").take(pa.array(rows))
+    below = pa.concat_tables(parts, promote_options="default").take(whole_numbers(rows))
     count = len(rows)
     columns = []
     for field in schema:
         if field.name == DESIGN.name:
-            columns.append(pa.array(np.arange(start, start + count)))
+            columns.append(whole_numbers(np.arange(start, start + count)))
         elif field.name in below.column_names:
             columns.append(below[field.name].combine_chunks())
         else:
