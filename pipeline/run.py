@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Any
 
 from camwright.geometry.errors import CamError
 from camwright.pipeline.base.progress import SILENT, Progress, utc
-from camwright.pipeline.base.worker_processes import Crew, crew
+from camwright.pipeline.base.worker_processes import Crew, Task, crew
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_values import refused_as_written
 from camwright.pipeline.case.load_case_torque import engine_torques, measurement_record
@@ -19,6 +19,7 @@ from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.ripple_map import ripple_map
 from camwright.pipeline.engine.torque import Torque
 from camwright.pipeline.iteration import trials_of
+from camwright.pipeline.remedies.remedy_search import order_of, texts_of, with_remedies
 from camwright.pipeline.results.field_output import Shown, write_fields
 from camwright.pipeline.results.run_folder import RunFolder
 from camwright.pipeline.results.run_reader import Run, governing_id, read_run
@@ -127,10 +128,21 @@ def _solved(
     if depth < Tier.CERTIFIED:
         rest()
         return summary | _judged(final, statement)
+    sought = _remedies_begun(final, workers, folder.path)
     failing = _failing(final)
     certified = certify_trial(final, workers, progress=watch, meanwhile=rest)
+    if sought is not None:
+        watch.stage("remedies")
+        texts = sought.result()
+        certified = replace(certified, checks=with_remedies(certified.checks, texts))
     writer.judge(certified)
     return summary | _judged(certified, restated(statement, failing, _failing(certified)))
+
+
+def _remedies_begun(final: Trial, workers: Crew, folder: Path) -> Task | None:
+    """Search of the remedies of a final trial in a worker process; None if no check fails."""
+    order = order_of(final, folder)
+    return workers.submit(texts_of, order) if order.failures else None
 
 
 def restated(statement: str, before: Sequence[str], after: Sequence[str]) -> str:

@@ -207,6 +207,7 @@ class CheckRow:
     unproven: str = ""
     judged_at: str = ""
     evidence: bool = False
+    remedy: str = ""
 
     @property
     def place(self) -> str:
@@ -215,13 +216,14 @@ class CheckRow:
 
     @property
     def remarks(self) -> list[tuple[str, bool]]:
-        """(text, emphasised) of the lines below the title: method, note, proof, corner, waiver."""
+        """(text, emphasised) below the title: method, note, proof, corner, waiver, remedy."""
         limit = f"Limit: {self.source}" if self.source else ""
         corner = f"Worst tolerance corner: {self.corner}" if self.corner else ""
         lines = [
             (" · ".join(filter(None, (self.method, limit))), False), (self.note, True),
             (self.unproven, True), (corner, False),
             (f"Waiver: {self.waiver}" if self.waiver else "", True),
+            (f"Remedy: {self.remedy}" if self.remedy else "", True),
         ]  # fmt: skip
         return [line for line in lines if line[0]]
 
@@ -263,6 +265,7 @@ def check_rows(checks: Sequence[Record]) -> list[CheckRow]:
             error=_error(check, unit), corner=": ".join(worst_corner(check) or ()),
             unproven=not_proven(check), judged_at=str(check["judged_at"]),
             evidence=bool(check["evidence"]),
+            remedy=str(check.get("remedy") or ""),
         ))  # fmt: skip
     return rows
 

@@ -283,6 +283,7 @@ class Check:
     judged_at : str          depth that judges it, where the solution is less deep; "": judged
     without : str            load cases without loads, as the follower has left the cam or locked:
                              the demand is that of the others, by which it can only fail; "": none
+    remedy : str             smallest change of the case that cures it, in one line; "": none known
     """
 
     declaration: Declaration
@@ -303,6 +304,7 @@ class Check:
     unconfirmed: tuple[str, ...] = ()
     judged_at: str = ""
     without: str = ""
+    remedy: str = ""
 
     def __str__(self) -> str:
         """Title, worst demand, limit and status in one line, in `unit`."""
@@ -467,6 +469,7 @@ class Check:
             "evidence": self.evidence,
             "to_be_confirmed": list(self.unconfirmed),
             "judged_at": self.judged_at,
+            "remedy": self.remedy,
         }
 
 

@@ -7,7 +7,7 @@ corner is the nominal demand times the ratio of the closed forms at the corner a
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 
 import numpy as np
@@ -20,7 +20,7 @@ from camwright.pipeline.base.files import Json
 from camwright.pipeline.base.units import in_unit
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.machine import Corner, Machine, machines
-from camwright.pipeline.checks.check import Check, Demand
+from camwright.pipeline.checks.check import Check, Declaration, Demand
 from camwright.pipeline.checks.registry import TOLERANCE_CORNERS, TOLERANCED, checks_of
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.solution import solved_turns
@@ -67,19 +67,45 @@ def corners_of(case: Case) -> tuple[Corner, ...]:
     return (*alone, *sample)
 
 
-def outcomes(case: Case, torques: Mapping[str, Torque], contour: Contour) -> tuple[Outcome, ...]:
-    """Outcomes at the nominal, then at each corner."""
-    corners = NOMINAL, *corners_of(case)
+def outcomes(
+    case: Case,
+    torques: Mapping[str, Torque],
+    contour: Contour,
+    corners: Sequence[Corner] | None = None,
+    declarations: Sequence[Declaration] = TOLERANCED,
+) -> tuple[Outcome, ...]:
+    """Outcomes at the nominal, then at each corner.
+
+    Parameters
+    ----------
+    corners : sequence        None: every corner of the case
+    declarations : sequence   of the checks made there
+    """
+    corners = NOMINAL, *(corners_of(case) if corners is None else corners)
     try:
-        tried = [_Tried.at(case, torques, contour, each) for each in corners]
-        every = turns([given for each in tried for given in each.inputs], POSITIONS, coarse=True)
+        solved = _turns_at(case, torques, contour, corners)
     except CamError:  # of one corner at least: each on its own
-        return tuple(_alone(case, torques, contour, each) for each in corners)
-    count = len(tried[0].inputs)
-    return tuple(
-        _outcome(case, torques, each, every[k * count : (k + 1) * count])
-        for k, each in enumerate(tried)
-    )
+        return tuple(_alone(case, torques, contour, each, declarations) for each in corners)
+    return tuple(_outcome(case, torques, *each, declarations) for each in solved)
+
+
+def checks_at(
+    case: Case,
+    torques: Mapping[str, Torque],
+    contour: Contour,
+    corners: Sequence[Corner],
+    declarations: Iterable[Declaration],
+) -> tuple[tuple[Check, ...], ...]:
+    """Checks at each corner by the coarse closed forms, for ratios of demands.
+
+    Raises
+    ------
+    CamError
+        If a corner cannot be solved.
+    """
+    solved = _turns_at(case, torques, contour, corners)
+    wanted = tuple(declarations)
+    return tuple(_checks(case, torques, tried, every, wanted) for tried, every in solved)
 
 
 def governed(checks: Sequence[Check], tried: Sequence[Outcome]) -> tuple[Check, ...]:
@@ -184,26 +210,57 @@ class _Tried:
         )
 
 
-def _alone(case: Case, torques: Mapping[str, Torque], contour: Contour, corner: Corner) -> Outcome:
+def _turns_at(
+    case: Case, torques: Mapping[str, Torque], contour: Contour, corners: Sequence[Corner]
+) -> list[tuple[_Tried, tuple[Turn, ...]]]:
+    """Turns of every load case at each corner, solved at once."""
+    tried = [_Tried.at(case, torques, contour, each) for each in corners]
+    every = turns([given for each in tried for given in each.inputs], POSITIONS, coarse=True)
+    count = len(tried[0].inputs)
+    return [(each, every[k * count : (k + 1) * count]) for k, each in enumerate(tried)]
+
+
+def _alone(
+    case: Case,
+    torques: Mapping[str, Torque],
+    contour: Contour,
+    corner: Corner,
+    declarations: Sequence[Declaration],
+) -> Outcome:
     try:
-        tried = _Tried.at(case, torques, contour, corner)
-        solved = turns(tried.inputs, POSITIONS, coarse=True)
+        ((tried, solved),) = _turns_at(case, torques, contour, (corner,))
     except CamError as error:
         return Outcome(corner, {}, str(error))
-    return _outcome(case, torques, tried, solved)
+    return _outcome(case, torques, tried, solved, declarations)
+
+
+def _checks(
+    case: Case,
+    torques: Mapping[str, Torque],
+    tried: _Tried,
+    solved: Sequence[Turn],
+    declarations: Sequence[Declaration],
+) -> tuple[Check, ...]:
+    """Checks of the turns at a corner."""
+    corner, shape = tried.corner, tried.shape
+    advance = corner.phase / case.mechanism.gear_ratio
+    solution = solved_turns(
+        case, shape, tuple(_phased(each, corner) for each in solved), Tier.PREVIEW, torques,
+        body=True, speed_contour=_early(shape, advance), advance=advance, error_bars=False,
+    )  # fmt: skip
+    return checks_of(solution, declarations)
 
 
 def _outcome(
-    case: Case, torques: Mapping[str, Torque], tried: _Tried, solved: Sequence[Turn]
+    case: Case,
+    torques: Mapping[str, Torque],
+    tried: _Tried,
+    solved: Sequence[Turn],
+    declarations: Sequence[Declaration],
 ) -> Outcome:
-    corner, shape = tried.corner, tried.shape
-    advance = corner.phase / case.mechanism.gear_ratio
+    corner = tried.corner
     try:
-        solution = solved_turns(
-            case, shape, tuple(_phased(each, corner) for each in solved), Tier.PREVIEW, torques,
-            body=True, speed_contour=_early(shape, advance), advance=advance, error_bars=False,
-        )  # fmt: skip
-        checks = checks_of(solution, TOLERANCED)
+        checks = _checks(case, torques, tried, solved, declarations)
     except CamError as error:
         return Outcome(corner, {}, str(error))
     known = {one.id: float(one.demand) for one in checks if one.demand is not None}

@@ -67,6 +67,14 @@ def check(
         bool,
         typer.Option("--missing", help="Print only the missing data, as TOML to be pasted."),
     ] = False,
+    remedies: Annotated[
+        bool,
+        typer.Option(
+            "--remedies",
+            help="Seek the smallest change of a case that cures each failed check; of a run those "
+            "recorded are printed in any event.",
+        ),
+    ] = False,
     verify_record: Annotated[
         bool,
         typer.Option("--verify-record", help="Compare the files of the run with signoff.json."),
@@ -86,7 +94,9 @@ def check(
     if alone:
         if verify_record and not _as_signed(targets[0]):
             return FAILED
-        judged = [_judged(targets[0], patterns, fail_on, baseline)]
+        judged = [_judged(targets[0], patterns, fail_on, baseline, remedies=remedies)]
+    elif remedies:
+        raise InputError("--remedies", len(targets), "stated with one run or case alone")
     elif baseline is not None:
         raise InputError("--baseline", str(baseline), "stated with one run or case alone")
     elif missing:
@@ -154,13 +164,20 @@ class _Judged(NamedTuple):
 
 
 def _judged(
-    target: Path, only: Sequence[str], fail_on: str, baseline: Path | None, suite: str = ""
+    target: Path,
+    only: Sequence[str],
+    fail_on: str,
+    baseline: Path | None,
+    suite: str = "",
+    *,
+    remedies: bool = False,
 ) -> _Judged:
     """Checks of a run folder or of a preview of a case file.
 
     Parameters
     ----------
-    suite : str   name of the JUnit suite; "": that of the case
+    suite : str       name of the JUnit suite; "": that of the case
+    remedies : bool   seek the remedies of a case
 
     Raises
     ------
@@ -173,7 +190,7 @@ def _judged(
 
     if not target.exists():
         raise ResultError(f"{target}: no such case file or run folder")
-    document, clock = _checked_case(target) if target.is_file() else _checked_run(target)
+    document, clock = _checked_case(target, remedies) if target.is_file() else _checked_run(target)
     document["checks"] = list(selected(document["checks"], only))
     decided = outcome(document["checks"], fail_on)
     if not only and fail_on != "never":
@@ -246,7 +263,7 @@ def _checked_run(folder: Path) -> tuple[dict[str, Any], Clock]:
     return read_verdict(folder) | limitations(), Clock.of(read_summary(folder))
 
 
-def _checked_case(path: Path) -> tuple[dict[str, Any], Clock]:
+def _checked_case(path: Path, remedies: bool) -> tuple[dict[str, Any], Clock]:
     """Checks of the preview of a case, with the clock of the preview."""
     from camwright.pipeline.base.progress import utc
     from camwright.pipeline.case.case_file import read_case
@@ -259,8 +276,14 @@ def _checked_case(path: Path) -> tuple[dict[str, Any], Clock]:
     with progress_shown() as progress:
         progress.stage(f"preview of {case.name}")
         trial = preview_case(case, progress=progress)
+    made = trial.checks
+    if remedies:
+        from camwright.pipeline.remedies.remedy_search import remedies_of, with_remedies
+
+        texts = {name: remedy.text for name, remedy in remedies_of(trial).items()}
+        made = with_remedies(made, texts)
     seconds = time.perf_counter() - began
-    checks: list[Any] = [one.as_record() for one in trial.checks]
+    checks: list[Any] = [one.as_record() for one in made]
     document = {
         "case": case.name,
         "input_sha256": case.sha256,

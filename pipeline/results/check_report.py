@@ -195,7 +195,7 @@ def overview_row(target: str, document: Mapping[str, Any]) -> tuple[str, ...]:
 
 
 def remarks(records: Iterable[CheckRecord]) -> list[str]:
-    """Lines below the table: missing data, not proven checks, waivers."""
+    """Lines below the table: missing data, not proven checks, waivers, remedies."""
     records = sorted(records, key=rank)
     waived = [f"{_waived(r)}: {r['id']}: {waiver_words(r)}" for r in records if r["waiver"]]
     unproven = [f"{r['id']}: {not_proven(r)}" for r in records if r["not_proven"]]
@@ -205,7 +205,8 @@ def remarks(records: Iterable[CheckRecord]) -> list[str]:
         for r in records
         if r["status"] == "not_evaluated"
     ]
-    return [*still_open, *unproven, *waived]
+    remedies = [f"remedy: {r['id']}: {r['remedy']}" for r in records if r.get("remedy")]
+    return [*still_open, *unproven, *waived, *remedies]
 
 
 def deeper_lines(records: Iterable[CheckRecord]) -> list[str]:

@@ -30,6 +30,7 @@ ORDER = (
     "pipeline.checks",
     "pipeline.smoothing",
     "pipeline.results",
+    "pipeline.remedies",
     "pipeline",
     "pipeline.screening",
     "pipeline.studies",

@@ -5,13 +5,14 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Literal
 
 from camwright.pipeline.base import units
 from camwright.pipeline.case.cards.bearing_cards import BearingCard
 from camwright.pipeline.case.cards.catalogue import Catalogue, nearest_spring
 from camwright.pipeline.case.cards.spring_catalogue import SpringDemand
 from camwright.pipeline.case.case import Case
-from camwright.pipeline.case.case_file import case_of
+from camwright.pipeline.case.case_file import case_of, completed
 from camwright.pipeline.case.limits import (
     CAM_RADIUS,
     MINIMUM_WALL,
@@ -108,7 +109,8 @@ def variant(case: Case, parts: Catalogue, choice: Choice, folder: Path | None) -
     _put_spring(data, case, spring)
     _put_mass(data, case, card, spring, parts)
     if choice.bush != AS_GIVEN:
-        _put_bushes(data, choice.bush)
+        for side in ("a", "b"):
+            _put_bush(data, side, choice.bush)
     _put_search(data, case, choice, 0.5 * card.outer_diameter)
     return case_of(data, folder)
 
@@ -121,14 +123,41 @@ def with_roller(case: Case, name: str, card: BearingCard, folder: Path | None) -
     InputError
         If the roller does not fit into the case.
     """
-    data = case.tables()
+    data = tables_of(case)
     _put_roller(data, case, card, name)
     table_in(data, "follower")["mass"] = units.format(
         case.follower.mass + _heavier(case, card), "g"
     )
     base = case.cam.prime_radius + 0.5 * card.outer_diameter - case.roller.radius
     table_in(data, "cam")["prime_radius"] = _mm(base)
-    return case_of(data, folder)
+    return completed(case_of(data, folder), case.folder)
+
+
+def with_bush(case: Case, side: Literal["a", "b"], name: str, folder: Path | None) -> Case:
+    """The case with another bush in one guide, of the same size.
+
+    Raises
+    ------
+    InputError
+        If the bush does not fit into the case.
+    """
+    data = tables_of(case)
+    _put_bush(data, side, name)
+    return completed(case_of(data, folder), case.folder)
+
+
+def with_cam_material(case: Case, name: str, folder: Path | None) -> Case:
+    """The case with the cam of the material of a card.
+
+    Raises
+    ------
+    InputError
+        If the material does not fit into the case.
+    """
+    data = tables_of(case)
+    table_in(data, "materials").setdefault(name, {"card": name})
+    table_in(data, "cam")["material"] = name
+    return completed(case_of(data, folder), case.folder)
 
 
 def _put_roller(data: Tables, case: Case, card: BearingCard, name: str) -> None:
@@ -188,13 +217,12 @@ def _heavier(case: Case, card: BearingCard) -> float:
     return math.pi * roller.material.density * disc
 
 
-def _put_bushes(data: Tables, name: str) -> None:
+def _put_bush(data: Tables, side: str, name: str) -> None:
     place = ("length", "diameter", "wall", "clearance", "stiffness", "housing_resistance")
     guides = table_in(data, "guides")
-    for side in ("a", "b"):
-        kept = {key: value for key, value in table_in(guides, side).items() if key in place}
-        guides[side] = kept | {"card": name}
-        forget_sources(data, f"guides.{side}")
+    kept = {key: value for key, value in table_in(guides, side).items() if key in place}
+    guides[side] = kept | {"card": name}
+    forget_sources(data, f"guides.{side}")
 
 
 def _put_search(data: Tables, case: Case, choice: Choice, radius: float) -> None:

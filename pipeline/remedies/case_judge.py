@@ -1,0 +1,175 @@
+"""Checks of a changed case: quickly at its governing corners, and as a preview."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Collection, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from camwright.geometry.contour import Contour
+from camwright.geometry.errors import GeometryError
+from camwright.geometry.lift import Lift
+from camwright.pipeline.case.case import Case
+from camwright.pipeline.case.machine import Corner
+from camwright.pipeline.checks.check import Check, Declaration
+from camwright.pipeline.checks.registry import CHECKS, DECLARED, TOLERANCED, checks_of
+from camwright.pipeline.checks.tolerance_corners import (
+    NOMINAL,
+    checks_at,
+    corners_of,
+    governed,
+    outcomes,
+)
+from camwright.pipeline.contact.tiers import Tier
+from camwright.pipeline.cycle.solution import Solution, is_body, solution
+from camwright.pipeline.engine.torque import Torque
+from camwright.pipeline.follower.camshaft_loads import unbalance
+from camwright.pipeline.smoothing.required_lift import cam_lift
+
+_DECIDING = tuple(each for each in CHECKS if each.must_have and not each.evidence)
+
+
+@dataclass(frozen=True)
+class Headline:
+    """Figures of a design: std of the crank torque, N m, None without an engine; peak pressure, Pa;
+    mass of cam and follower, kg; greatest cam radius, m.
+    """
+
+    ripple: float | None
+    pressure: float
+    mass: float
+    radius: float
+
+
+@dataclass(frozen=True, eq=False)
+class Preview:
+    """Solved preview of a case; its checks are made when they are read.
+
+    Parameters
+    ----------
+    solved : Solution
+    torques : mapping   engine torque by load case
+    governing : tuple   tolerance corners, besides the nominal, at which every check is judged
+    worst : tuple       those at which the check of the remedy is judged
+    """
+
+    solved: Solution
+    torques: Mapping[str, Torque]
+    governing: tuple[Corner, ...]
+    worst: tuple[Corner, ...]
+
+    def check(self, name: str) -> Check | None:
+        """One check at its worst corner; None where it does not apply."""
+        made = self._at_corners([DECLARED[name]], self.worst)
+        return made[0] if made else None
+
+    @cached_property
+    def checks(self) -> Mapping[str, Check]:
+        """Every must-have check of the design at its worst corner, by id."""
+        return {one.id: one for one in self._at_corners(_DECIDING, self.governing)}
+
+    @cached_property
+    def headline(self) -> Headline:
+        """Figures of the design."""
+        solved, contour = self.solved, self.solved.contour
+        cam, after = solved.case.cam, solved.cycles[0].turn.torque_after
+        disc = unbalance(contour, cam.bore_radius, cam.keyway, cam.width, cam.material.density)
+        return Headline(
+            None if after is None else float(np.std(after)),
+            max(float(np.max(cycle.contact.p0)) for cycle in solved.cycles),
+            float(disc.mass) + solved.case.follower.mass,
+            float(contour.radius_max().value),
+        )
+
+    def _at_corners(
+        self, declared: Sequence[Declaration], corners: Sequence[Corner]
+    ) -> tuple[Check, ...]:
+        case, moved = self.solved.case, [one for one in declared if one in TOLERANCED]
+        made = checks_of(self.solved, declared)
+        if not moved or not corners:
+            return made
+        contour = self.solved.contour
+        return governed(made, outcomes(case, self.torques, contour, corners, moved))
+
+
+@dataclass(frozen=True, eq=False)
+class Judge:
+    """Checks of changed cases.
+
+    Parameters
+    ----------
+    torques : mapping   engine torque by load case; no lever changes it
+    lift : Lift         held by every case, that of a constrained synthesis; None: by the case
+    corners : mapping   check -> names of its worst tolerance corners, the governing one first
+    """
+
+    torques: Mapping[str, Torque]
+    lift: Lift | None
+    corners: Mapping[str, Sequence[str]]
+
+    def utilisations(self, case: Case, wanted: Collection[str]) -> dict[str, float]:
+        """Worst utilisation of checks at their governing corners by the coarse closed forms.
+
+        Infinite where it is not known.
+
+        Raises
+        ------
+        CamError
+            If the case has no such cam, or a corner no solution.
+        """
+        contour, declared = self._contour(case), [DECLARED[name] for name in wanted]
+        names = {name for each in wanted for name in self.corners.get(each, ())[:1]}
+        corners = tuple(self._named(case, names))
+        if len(corners) < len(names) or not all(self.corners.get(each) for each in wanted):
+            corners = (NOMINAL, *corners)
+        worst = dict.fromkeys(wanted, 0.0)
+        for corner, made in zip(
+            corners, checks_at(case, self.torques, contour, corners, declared), strict=True
+        ):
+            by_id = {one.id: one for one in made}
+            for name in wanted:
+                if corner is not NOMINAL and not DECLARED[name].moved_by_tolerance:
+                    continue
+                worst[name] = max(worst[name], used(by_id.get(name)))
+        return worst
+
+    def preview(self, case: Case, wanted: Iterable[str]) -> Preview:
+        """Preview of a case, judged at the corners that govern `wanted` and at their worst ones.
+
+        Raises
+        ------
+        CamError
+            If the case has no such cam, or it cannot be solved.
+        """
+        contour = self._contour(case)
+        solved = solution(case, contour, Tier.PREVIEW, torques=self.torques)
+        worst = [self.corners.get(name, ()) for name in wanted]
+        governing = {names[0] for names in self.corners.values() if names}
+        return Preview(
+            solved,
+            self.torques,
+            tuple(self._named(case, {name for names in worst for name in names[:1]})),
+            tuple(self._named(case, governing.union(*worst))),
+        )
+
+    def _contour(self, case: Case) -> Contour:
+        contour = case.contour(cam_lift(case, self.torques) if self.lift is None else self.lift)
+        if not is_body(contour):
+            raise GeometryError("the contour is undercut")
+        return contour
+
+    @staticmethod
+    def _named(case: Case, names: Collection[str]) -> list[Corner]:
+        """Corners of a case by their names."""
+        return [corner for corner in corners_of(case) if corner.name in names]
+
+
+def used(check: Check | None) -> float:
+    """Utilisation of a check, its error bar included; infinite where it is not known."""
+    if check is None or check.utilisation is None:
+        return math.inf
+    bar = 1.0 + (check.error_share or 0.0) if check.not_proven else 1.0
+    return check.utilisation * bar

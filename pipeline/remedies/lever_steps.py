@@ -1,0 +1,262 @@
+"""Steps of a lever in a case: the changed values as text, and the case with them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from decimal import ROUND_CEILING, ROUND_FLOOR, Decimal
+from functools import cached_property
+from pathlib import Path
+from typing import NamedTuple
+
+from camwright.pipeline.base import units
+from camwright.pipeline.base.material import Material
+from camwright.pipeline.base.quantities import Count, In, marks_of
+from camwright.pipeline.case.cards.bearing_cards import BearingCard
+from camwright.pipeline.case.cards.card_filling import known_cards
+from camwright.pipeline.case.cards.catalogue import Catalogue, catalogue_of
+from camwright.pipeline.case.cards.substitution import (
+    with_bush,
+    with_cam_material,
+    with_roller,
+)
+from camwright.pipeline.case.case import Case
+from camwright.pipeline.case.case_values import quantity_of, replaced, value_of, with_values
+from camwright.pipeline.case.consistency import check_numbers
+from camwright.pipeline.case.toml_text import TomlValue
+from camwright.pipeline.contact.cam_body import BalanceHole
+from camwright.pipeline.follower.guide_reactions import Guide
+from camwright.pipeline.follower.roller_parts import Bearing
+from camwright.pipeline.remedies.levers import (
+    BEARING,
+    BUSH_A,
+    BUSH_B,
+    CAM_MATERIAL,
+    Catalogued,
+    Drilled,
+    Lever,
+    Scaled,
+)
+
+PARTS = (BEARING, CAM_MATERIAL, BUSH_A, BUSH_B)
+"""Keys whose value is the name of a card."""
+_DIGITS = 3  # of a value that a designer writes
+_OF_RATING = 0.05  # share of the rating in the change of a bearing; the rest is its dimensions
+_SLIGHT = Decimal("1e-9")  # relative: a value is rounded up unless it is one of these digits
+
+
+class Step(NamedTuple):
+    """Values of a lever.
+
+    Parameters
+    ----------
+    changes : dict   dotted key -> text as in a case file, or the name of a card
+    size : float     |ln| of the ratio of the new value to that of the case
+    figure : str     rating of a card in words; "": none
+    """
+
+    changes: dict[str, str]
+    size: float
+    figure: str = ""
+
+
+@dataclass(frozen=True, eq=False)
+class Workbench:
+    """A case and the folder of the user's cards.
+
+    Parameters
+    ----------
+    folder : Path   None: shipped cards only
+    """
+
+    case: Case
+    folder: Path | None
+
+    def applied(self, changes: Mapping[str, str]) -> Case:
+        """The case with the values of a step.
+
+        A part of the catalogue brings the values that depend on it: a bearing the size of the
+        roller, its pin, the widths, the overhang and the mass, with the same base circle.
+
+        Raises
+        ------
+        InputError
+            If the values do not fit into the case.
+        """
+        case = self.case
+        numbers: dict[str, TomlValue] = {
+            key: value if _unit(quantity_of(key)) else float(value)
+            for key, value in changes.items()
+            if key not in PARTS
+        }
+        if numbers:
+            case = with_values(case, numbers)
+        for key in PARTS:
+            if key not in changes:
+                continue
+            name = changes[key]
+            if key == BEARING:
+                case = with_roller(case, name, self.parts.rollers[name], self.folder)
+            elif key == CAM_MATERIAL:
+                case = with_cam_material(case, name, self.folder)
+            else:
+                case = with_bush(case, "a" if key == BUSH_A else "b", name, self.folder)
+        return case
+
+    def tried(self, changes: Mapping[str, str]) -> Case:
+        """As `applied`, without a comparison of the sources with the values.
+
+        Raises
+        ------
+        InputError
+            If the values do not fit into the case.
+        """
+        if any(key in PARTS or value_of(self.case, key) is None for key in changes):
+            return self.applied(changes)
+        case = replaced(self.case, {key: _read(key, text) for key, text in changes.items()})
+        check_numbers(case)
+        return case
+
+    @cached_property
+    def parts(self) -> Catalogue:
+        """Rollers, springs and bushes of the catalogue."""
+        return catalogue_of(self.folder)
+
+    def acts(self, lever: Lever) -> bool:
+        """Whether a lever can be pulled in this case."""
+        case = self.case
+        if isinstance(lever, Drilled):
+            return case.cam.counter_hole is None
+        if isinstance(lever, Catalogued):
+            if lever.key == BEARING:
+                return case.roller_given is not None and case.scope.covers("roller_bearing")
+            return True
+        drawn = case.engine is not None and case.smoothing.kind in lever.smoothers
+        if lever.smoothers and not drawn:
+            return False
+        first = self._numbers(lever.keys)
+        return bool(first) and next(iter(first.values())) > 0.0
+
+    def scaled(self, lever: Scaled, size: float) -> Step:
+        """Step of a lever: values of three digits, at least `size` away from those of the case."""
+        factor = math.exp(lever.direction * size)
+        before = self._numbers(lever.keys)
+        changes: dict[str, str] = {}
+        first, *_ = before
+        for key, value in before.items():
+            changes[key] = _rounded(key, value * factor, lever.direction)
+        new = _read(first, changes[first])
+        for key, value in self._numbers(lever.along).items():
+            changes[key] = _text(key, value + new - before[first])
+        return Step(changes, abs(math.log(new / before[first])))
+
+    def cards(self, lever: Catalogued) -> list[Step]:
+        """Steps of a part, one for each better card of the catalogue, the smallest change first."""
+        here, unit = self.rating_here(lever), self.unit(lever)
+        steps: list[tuple[float, float, Step]] = []
+        for name, rating in self._ratings(lever).items():
+            ratio = 0.0 if here is None else math.log(rating / here)
+            if here is not None and not (ratio < 0.0 if lever.less else ratio > 0.0):
+                continue
+            size = abs(ratio)
+            if lever.key == BEARING:
+                size = self._resized(name) + _OF_RATING * size
+            words = f"{lever.rating.replace('_', ' ')} {told(rating, unit)}"
+            steps.append((size, rating, Step({lever.key: name}, size, words)))
+        return [step for *_, step in sorted(steps, key=lambda each: each[:2])]
+
+    def _resized(self, name: str) -> float:
+        """Size of the change of the diameter and width of the roller to those of a bearing."""
+        card, roller = self.parts.rollers[name], self.case.roller
+        ratios = 0.5 * card.outer_diameter / roller.radius, card.width / roller.width
+        return sum(abs(math.log(ratio)) for ratio in ratios)
+
+    def rating(self, lever: Catalogued, card: str) -> float:
+        """Rating of a card, SI."""
+        return self._ratings(lever)[card]
+
+    @staticmethod
+    def unit(lever: Catalogued) -> str:
+        """Unit of the rating of a lever."""
+        part = {BEARING: BearingCard, CAM_MATERIAL: Material}.get(lever.key, Guide)
+        return _unit(marks_of(part)[lever.rating])
+
+    def drilled(self, lever: Drilled) -> Step:
+        """Step of a counter-hole; as a change it is the smallest one."""
+        return Step({lever.key: units.format(BalanceHole().wall, "mm")}, 0.0)
+
+    def _numbers(self, keys: tuple[str, ...]) -> dict[str, float]:
+        """Numbers of the case at the keys that it has, SI."""
+        numbers: dict[str, float] = {}
+        for pattern in keys:
+            name = pattern.replace("{cam}", self.case.cam.material.name)
+            count = len(self.case.load_cases) if "[*]" in name else 1
+            for key in (name.replace("*", str(k)) for k in range(count)):
+                value = value_of(self.case, key)
+                if isinstance(value, float):
+                    numbers[key] = value
+        return numbers
+
+    def _ratings(self, lever: Catalogued) -> dict[str, float]:
+        """Rating of each card that has one, SI; without the card of the case."""
+        if lever.key == BEARING:
+            known = {name: getattr(card, lever.rating) for name, card in self.parts.rollers.items()}
+            return {name: value for name, value in known.items() if value is not None}
+        material = lever.key == CAM_MATERIAL
+        mark = marks_of(Material if material else Guide)[lever.rating]
+        cards = known_cards(self.folder)["materials" if material else "bushes"]
+        known = {
+            name: card.get(lever.rating, card.get("friction") if lever.less else None)
+            for name, card in cards.items()
+        }
+        return {name: mark.read(value) for name, value in known.items() if value is not None}
+
+    def rating_here(self, lever: Catalogued) -> float | None:
+        """Rating of the part of the case, SI; None where it states none."""
+        case = self.case
+        if lever.key == CAM_MATERIAL:
+            card = case.cam.material
+            if lever.rating == "endurance_pressure":
+                return card.endurance(sliding=case.facing.slides).pressure
+            return float(getattr(card, lever.rating))
+        if lever.key == BEARING:
+            part: Bearing | Guide = case.roller.bearing
+        else:
+            part = case.guides.a if lever.key == BUSH_A else case.guides.b
+        value: float | None = getattr(part, lever.rating)
+        if value is None and isinstance(part, Guide) and lever.less:
+            return part.friction
+        return value
+
+
+def told(value: float, unit: str, digits: int = 4) -> str:
+    """A value (SI) as text in a unit without an exponent, such as ``27710 rpm``."""
+    number = f"{float(f'{units.in_unit(value, unit) if unit else value:.{digits}g}'):.10g}"
+    return f"{number} {unit}" if unit else number
+
+
+def _unit(quantity: In | Count | None) -> str:
+    return quantity.unit if isinstance(quantity, In) else ""
+
+
+def _read(key: str, text: str) -> float:
+    unit = _unit(quantity_of(key))
+    return units.parse(text, unit, key) if unit else float(text)
+
+
+def _rounded(key: str, value: float, direction: int) -> str:
+    """Text of a value (SI) in the unit of its key, rounded away from that of the case."""
+    unit = _unit(quantity_of(key))
+    exact = Decimal(units.in_unit(value, unit) if unit else value)
+    digit = Decimal(1).scaleb(exact.adjusted() - _DIGITS + 1)
+    slack = abs(exact) * _SLIGHT
+    away = ROUND_CEILING if direction > 0 else ROUND_FLOOR
+    number = f"{((exact - direction * slack) / digit).to_integral_value(away) * digit:f}"
+    number = number.rstrip("0").rstrip(".") if "." in number else number
+    return f"{number} {unit}" if unit else number
+
+
+def _text(key: str, value: float) -> str:
+    """Text of a value (SI), to six digits."""
+    return units.shown(value, _unit(quantity_of(key)), 6)

@@ -1,0 +1,48 @@
+"""Remedy of a failed check: the change in one line, with its side effects."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+
+WIDTH = 87
+"""Columns of the line of a remedy: 100 less the indent and the word before it."""
+
+
+@dataclass(frozen=True)
+class Remedy:
+    """Smallest single change of a case that turns a failed check to pass.
+
+    Parameters
+    ----------
+    check : str        id of the check
+    changes : mapping  dotted key -> text as in a case file, or the name of a card
+    figure : str       rating of the card, or what the check needs, in words
+    effects : tuple    what else changes, the gravest first
+    cures : bool       the check passes with the change; False: it is the closest one
+    """
+
+    check: str
+    changes: Mapping[str, str]
+    figure: str = ""
+    effects: tuple[str, ...] = ()
+    cures: bool = True
+
+    @property
+    def text(self) -> str:
+        """The change and its side effects in at most `WIDTH` columns; effects that fit alone."""
+        change = ", ".join(f"{key}: {value}" for key, value in self.changes.items())
+        change += f" ({self.figure})" if self.figure and change else ""
+        if not self.cures:
+            closest = f"; closest: {change}" if change else ""
+            change = f"no single change cures it{closest}"
+        return joined((change, *self.effects))
+
+
+def joined(parts: Iterable[str]) -> str:
+    """Parts of a line, as many as fit into `WIDTH` columns; the first always."""
+    line, *rest = parts
+    for part in rest:
+        if len(line) + 2 + len(part) <= WIDTH:
+            line += f"; {part}"
+    return line

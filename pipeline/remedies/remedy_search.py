@@ -1,0 +1,462 @@
+"""Search of the smallest single change for each failed check, and its verification.
+
+The levers of all failed checks are pulled by rising steps, each solved once for every check that
+it can cure. Between the last two steps the value is found by interpolation, rounded, put into the
+case and verified by a preview.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import NamedTuple
+
+from camwright.geometry.errors import CamError
+from camwright.geometry.lift import Lift
+from camwright.pipeline.case.case import Case
+from camwright.pipeline.case.case_file import parse_case
+from camwright.pipeline.case.case_values import value_of, with_values
+from camwright.pipeline.case.load_case_torque import engine_torques
+from camwright.pipeline.checks.check import Check
+from camwright.pipeline.remedies.case_judge import Headline, Judge, Preview, used
+from camwright.pipeline.remedies.lever_steps import Step, Workbench, told
+from camwright.pipeline.remedies.levers import LEVERS, Catalogued, Drilled, Lever, Scaled
+from camwright.pipeline.remedies.remedy import Remedy
+from camwright.pipeline.results.trial import Trial
+
+IN_A_RUN = 8
+"""Failed checks of a run whose remedies are sought, the worst ones."""
+LEVELS = (0.15, 0.4, 0.8, math.log(4.0), 2.0, 3.0)
+"""Sizes of the steps, |ln| of the factor on a value."""
+_ALIKE = 1.1  # ratio of two sizes that count as equal: the side effects then decide
+_TRIES = 3  # levers verified for a check
+_REFINED = 1  # interpolations between two steps, at most
+_PREVIEWS = 4  # of one lever for a check, at most
+_ENOUGH = 0.9  # utilisation of a change that is small enough
+_FURTHER = 1.005  # size of a change over the interpolated one
+_HOPELESS = 4.0  # utilisation at the end of the range, extrapolated, beyond which a lever is left
+_CORNERS = 5  # worst ones of a check, at which its remedy is verified
+_FROM = 0.3  # size of a change from which it is extrapolated
+_SLIGHT = 0.01  # relative change of a figure that is not told
+_LEAST_USED = 1e-3  # utilisation of an interpolation
+
+
+class Failure(NamedTuple):
+    """A failed check: id, utilisation at the worst corner, names of the worst corners in order."""
+
+    check: str
+    used: float
+    corners: tuple[str, ...]
+
+
+def failures_of(trial: Trial) -> tuple[Failure, ...]:
+    """Must-have checks of the design that fail in a trial, the worst first."""
+    failing = [
+        one
+        for one in trial.checks
+        if one.must_have and one.status == "fail" and not one.evidence and one.id in LEVERS
+    ]
+    made = [Failure(one.id, used(one), _worst_corners(trial, one)) for one in failing]
+    return tuple(sorted(made, key=lambda each: (-each.used, each.check)))
+
+
+def _worst_corners(trial: Trial, one: Check) -> tuple[str, ...]:
+    """Names of the tolerance corners with the worst demands of a check, the governing one first."""
+    sign = -1.0 if one.sense == "at_most" else 1.0
+    solved = [each for each in trial.corners if one.id in each.demands]
+    ranked = sorted(solved, key=lambda each: sign * each.demands[one.id])
+    names = (one.corner, *(each.corner.name for each in ranked))
+    return tuple(dict.fromkeys(name for name in names if name))[:_CORNERS]
+
+
+class Order(NamedTuple):
+    """Plain values from which a worker process finds the remedies of a trial.
+
+    Parameters
+    ----------
+    case : str         text of the case, with the smoother of the trial
+    folder : Path      of the files that it includes; None: it includes none
+    cards : Path       folder of the user's cards; None: shipped cards only
+    lift : Lift        of a constrained synthesis; None: drawn from the case
+    failures : tuple
+    """
+
+    case: str
+    folder: Path | None
+    cards: Path | None
+    lift: Lift | None
+    failures: tuple[Failure, ...]
+
+
+def order_of(trial: Trial, folder: Path | None) -> Order:
+    """Order for the remedies of the worst failed checks of a trial, `IN_A_RUN` at most.
+
+    Parameters
+    ----------
+    folder : Path   with the copies of the included files, such as the run folder
+    """
+    held = trial.lift if trial.case.smoothing.kind == "constrained" else None
+    worst = failures_of(trial)[:IN_A_RUN]
+    return Order(as_drawn(trial).to_toml(), folder, trial.case.folder, held, worst)
+
+
+def texts_of(order: Order) -> dict[str, str]:
+    """Remedy of each failed check in one line, by its id; a function of a worker process."""
+    case = parse_case(order.case, order.folder)
+    return {
+        name: remedy.text
+        for name, remedy in remedies(case, order.cards, order.lift, order.failures).items()
+    }
+
+
+def remedies_of(trial: Trial) -> dict[str, Remedy]:
+    """Remedies of the failed must-have checks of a trial by id; empty where none fails."""
+    case, held = as_drawn(trial), None
+    if case.smoothing.kind == "constrained":
+        held = trial.lift
+    return remedies(case, case.folder, held, failures_of(trial))
+
+
+def with_remedies(checks: Iterable[Check], texts: Mapping[str, str]) -> tuple[Check, ...]:
+    """The checks with the remedies of those that fail."""
+    return tuple(
+        replace(one, remedy=texts.get(one.id, "")) if one.status == "fail" else one
+        for one in checks
+    )
+
+
+def as_drawn(trial: Trial) -> Case:
+    """Case of a trial with the width of the smoother that has drawn its lift."""
+    case, strength = trial.case, trial.smoothing.strength
+    if strength is None or strength == 1.0:
+        return case
+    widths = {"harmonic": "harmonics", "gaussian": "width", "smoothing_spline": "cutoff"}
+    key = f"smoothing.{widths.get(case.smoothing.kind, 'spacing')}"
+    width: float = value_of(case, key)
+    wider = width / strength if case.smoothing.kind == "harmonic" else width * strength
+    return with_values(case, {key: wider})
+
+
+def remedies(
+    case: Case, cards: Path | None, lift: Lift | None, failures: Sequence[Failure]
+) -> dict[str, Remedy]:
+    """Smallest single change that turns each failed check to pass, by its id.
+
+    Of several levers the one with the smallest ratio of the new value to the old is taken. A check
+    without levers has no remedy.
+
+    Parameters
+    ----------
+    cards : Path     folder of the user's cards; None: shipped cards only
+    lift : Lift      held, that of a constrained synthesis; None: drawn from each case
+    failures : sequence
+    """
+    wanted = {each.check: each for each in failures if each.check in LEVERS}
+    if not wanted:
+        return {}
+    corners = {each.check: each.corners for each in wanted.values()}
+    judge = Judge(engine_torques(case), lift, corners)
+    search = _Search(Workbench(case, cards), judge, wanted)
+    return search.remedies()
+
+
+class _Seen(NamedTuple):
+    """Step of a lever with the utilisation of a check, by a preview or by the search."""
+
+    step: Step
+    used: float
+    previewed: bool = False
+
+    def times(self, ratio: float) -> _Seen:
+        """The step with the utilisation of the search corrected by a ratio."""
+        return self if self.previewed else self._replace(used=ratio * self.used)
+
+
+class _Crossing(NamedTuple):
+    """Lever that cures a check between two steps: `above` its limit, None: the case, and below."""
+
+    size: float
+    lever: Lever
+    above: _Seen | None
+    below: _Seen
+
+
+@dataclass(eq=False)
+class _Search:
+    """Search of the remedies of one case."""
+
+    bench: Workbench
+    judge: Judge
+    failures: Mapping[str, Failure]
+    previews: dict[str, Preview | None] = field(default_factory=dict)
+    closest: dict[str, _Seen] = field(default_factory=dict)
+
+    def remedies(self) -> dict[str, Remedy]:
+        """Remedy of every failure, in their order."""
+        self.base = self.judge.preview(self.bench.case, self.failures)
+        quick = self.judge.utilisations(self.bench.case, self.failures)
+        self.scale = {
+            name: _ratio(failure.used, quick[name]) for name, failure in self.failures.items()
+        }
+        self.deeper = {
+            name: max(1.0, _ratio(failure.used, used(self.base.checks.get(name))))
+            for name, failure in self.failures.items()
+        }
+        made: dict[str, Remedy] = {}
+        last: dict[tuple[Lever, str], _Seen] = {}
+        left: set[tuple[Lever, str]] = set()
+        below = 0.0
+        for level in LEVELS:
+            crossings: dict[str, list[_Crossing]] = {}
+            for lever, every in self._levers(name for name in self.failures if name not in made):
+                names = [name for name in every if (lever, name) not in left]
+                if not names:
+                    continue
+                for step in self._steps(lever, below, level):
+                    for name, value in self._used(step, names).items():
+                        seen = _Seen(step, value)
+                        if value <= 1.0:
+                            above = last.get((lever, name))
+                            size = _crossing(above, seen, self.failures[name].used)
+                            crossings.setdefault(name, []).append(
+                                _Crossing(size, lever, above, seen)
+                            )
+                        elif name not in self.closest or value < self.closest[name].used:
+                            self.closest[name] = seen
+                        if isinstance(lever, Scaled):
+                            last[lever, name] = seen
+                            if _hopeless(lever, seen, self.failures[name].used):
+                                left.add((lever, name))
+            for name, ways in crossings.items():
+                remedy = self._verified(name, sorted(ways, key=lambda way: way.size)[:_TRIES])
+                if remedy is not None:
+                    made[name] = remedy
+            below = level
+        return {name: made[name] if name in made else self._none(name) for name in self.failures}
+
+    def _levers(self, names: Iterable[str]) -> list[tuple[Lever, list[str]]]:
+        """Levers that act in the case, with the checks that each can cure."""
+        table: dict[Lever, list[str]] = {}
+        for name in names:
+            for lever in LEVERS[name]:
+                table.setdefault(lever, []).append(name)
+        return [(lever, checks) for lever, checks in table.items() if self.bench.acts(lever)]
+
+    def _steps(self, lever: Lever, below: float, level: float) -> Iterator[Step]:
+        """Steps of a lever with a size above `below`, up to a level."""
+        if isinstance(lever, Scaled):
+            most = math.log(lever.most)
+            if below < most:
+                yield self.bench.scaled(lever, min(level, most))
+        elif isinstance(lever, Drilled):
+            if below == 0.0:
+                yield self.bench.drilled(lever)
+        else:
+            low, top = _ALIKE * below, _ALIKE * level
+            for step in self.bench.cards(lever):
+                if (low < step.size or low == step.size == 0.0) and step.size <= top:
+                    yield step
+
+    def _used(self, step: Step, names: Sequence[str]) -> dict[str, float]:
+        """Utilisations with a step; infinite where the case has no such cam."""
+        try:
+            quick = self.judge.utilisations(self.bench.tried(step.changes), names)
+        except CamError:
+            return dict.fromkeys(names, math.inf)
+        return {name: self.scale[name] * value for name, value in quick.items()}
+
+    def _verified(self, name: str, ways: Sequence[_Crossing]) -> Remedy | None:
+        """Remedy by the smallest way that a preview confirms; None without one.
+
+        Of ways of about the same size the one that makes the fewest other checks fail.
+        """
+        best: tuple[int, float, Remedy] | None = None
+        for way in ways:
+            if best is not None and (best[0] == 0 or way.size > _ALIKE * best[1]):
+                break
+            confirmed = self._confirmed(name, way)
+            if confirmed is not None:
+                step, preview = confirmed
+                fails = len(newly_failing(self.base, preview))
+                if best is None or fails < best[0]:
+                    best = fails, step.size, self._remedy(name, way.lever, step, preview)
+        return None if best is None else best[2]
+
+    def _confirmed(self, name: str, way: _Crossing) -> tuple[Step, Preview] | None:
+        """Least step of a way that previews confirm, and its preview."""
+        if not isinstance(way.lever, Scaled):
+            preview = self._preview(name, way.below.step)
+            if preview is None or self._judged(name, preview) > 1.0:
+                return None
+            return way.below.step, preview
+        above, below, best = way.above, way.below, None
+        size = self._refined(name, way, way.lever)
+        for _ in range(_PREVIEWS):
+            step = self.bench.scaled(way.lever, size)
+            preview = self._preview(name, step)
+            value = math.inf if preview is None else self._judged(name, preview)
+            # the search expects 1 here, and errs by about the same ratio nearby
+            ratio = _ratio(value, 1.0)
+            if value <= 1.0 and preview is not None:
+                best = step, preview
+                below, above = _Seen(step, value, True), above and above.times(ratio)
+            else:
+                above, below = _Seen(step, value, True), below.times(ratio)
+            if _ENOUGH <= value <= 1.0:
+                break
+            size = _crossing(above, below, self.failures[name].used)
+            size = min(_FURTHER * size, math.log(way.lever.most))
+        return best
+
+    def _refined(self, name: str, way: _Crossing, lever: Scaled) -> float:
+        """Size of a change at which a check meets its limit, by interpolation."""
+        size, above, below = way.size, way.above, way.below
+        for _ in range(_REFINED):
+            if size >= below.step.size:
+                break
+            step = self.bench.scaled(lever, size)
+            seen = _Seen(step, self._used(step, [name])[name])
+            if seen.used <= 1.0:
+                below = seen
+            else:
+                above = seen
+            size = _crossing(above, below, self.failures[name].used)
+        return size
+
+    def _preview(self, name: str, step: Step) -> Preview | None:
+        """Preview of the case with a step at the corner of a check; None without a solution."""
+        key = f"{self.failures[name].corners}: {step.changes}"
+        if key not in self.previews:
+            try:
+                case = self.bench.applied(step.changes)
+                self.previews[key] = self.judge.preview(case, [name])
+            except CamError:
+                self.previews[key] = None
+        return self.previews[key]
+
+    def _judged(self, name: str, preview: Preview) -> float:
+        """Utilisation of a check in a preview, times the ratio of finite elements to closed forms.
+
+        Infinite where it does not pass for another reason.
+        """
+        one = preview.check(name)
+        value = used(one) * self.deeper[name]
+        return math.inf if value <= 1.0 and (one is None or one.status != "pass") else value
+
+    def _remedy(self, name: str, lever: Lever, step: Step, preview: Preview) -> Remedy:
+        least = ""
+        if isinstance(lever, Catalogued) and lever.inverse:
+            share = used(preview.check(name)) * self.deeper[name]
+            rating = self.bench.rating(lever, step.changes[lever.key])
+            least = self._least_rating(lever, share * rating)
+        return Remedy(
+            name,
+            step.changes,
+            step.figure,
+            (*((least,) if least else ()), *effects(name, self.base, preview)),
+        )
+
+    def _least_rating(self, lever: Catalogued, value: float) -> str:
+        words = f"least {lever.rating.replace('_', ' ')}"
+        return f"{words} {told(value, self.bench.unit(lever))}"
+
+    def _none(self, name: str) -> Remedy:
+        """Closest change of a check that no single change cures."""
+        seen = self.closest.get(name)
+        needed = self._needed(name)
+        if seen is None or not math.isfinite(seen.used):
+            return Remedy(name, {}, effects=needed, cures=False)
+        left = f"leaves {seen.used:.3g} x limit"
+        return Remedy(name, seen.step.changes, seen.step.figure, (*needed, left), cures=False)
+
+    def _needed(self, name: str) -> tuple[str, ...]:
+        """Rating that a check would need at the loads of the case; empty without one."""
+        used = self.failures[name].used
+        for lever in LEVERS[name]:
+            if isinstance(lever, Catalogued) and lever.inverse and self.bench.acts(lever):
+                here = self.bench.rating_here(lever)
+                if here is not None and math.isfinite(used):
+                    return (self._least_rating(lever, used * here),)
+        return ()
+
+
+def effects(name: str, before: Preview, after: Preview) -> tuple[str, ...]:
+    """Side effects of a change, the gravest first: checks that fail now, figures, checks cured.
+
+    Parameters
+    ----------
+    name : str   check that the change cures
+    """
+    failing = newly_failing(before, after)
+    cured = [
+        each
+        for each in _failing(before)
+        if each != name and each in after.checks and after.checks[each].status == "pass"
+    ]
+    words = [f"fails {', '.join(failing)}"] if failing else []
+    words += _figures(before.headline, after.headline)
+    if cured:
+        words.append(f"also cures {cured[0] if len(cured) == 1 else f'{len(cured)} others'}")
+    return tuple(words)
+
+
+def newly_failing(before: Preview, after: Preview) -> list[str]:
+    """Ids of the must-have checks that fail after a change alone."""
+    known = _failing(before)
+    return [each for each in _failing(after) if each not in known]
+
+
+def _failing(preview: Preview) -> list[str]:
+    return [one.id for one in preview.checks.values() if one.must_have and one.status == "fail"]
+
+
+def _figures(before: Headline, after: Headline) -> list[str]:
+    """Figures of the headline that change."""
+    words = []
+    for label, unit, old, new in (
+        ("ripple", "N m", before.ripple, after.ripple),
+        ("p0", "MPa", before.pressure, after.pressure),
+        ("cam radius", "mm", before.radius, after.radius),
+    ):
+        if old is not None and new is not None and abs(new - old) > _SLIGHT * abs(old):
+            digits = 4 if unit == "MPa" else 3
+            number = told(old, unit, digits).removesuffix(f" {unit}")
+            words.append(f"{label} {number} -> {told(new, unit, digits)}")
+    heavier = after.mass - before.mass
+    if abs(heavier) > _SLIGHT * before.mass:
+        words.append(f"{'adds' if heavier > 0 else 'saves'} {told(abs(heavier), 'g', 3)}")
+    return words
+
+
+def _ratio(wanted: float, known: float) -> float:
+    """Ratio of two utilisations; 1 where one is not a positive number."""
+    if 0.0 < known < math.inf and 0.0 < wanted < math.inf:
+        return wanted / known
+    return 1.0
+
+
+def _hopeless(lever: Scaled, seen: _Seen, first: float) -> bool:
+    """Whether the rest of the range of a lever is not worth a solution."""
+    size = seen.step.size
+    if size < _FROM or not (0.0 < first < math.inf and 0.0 < seen.used < math.inf):
+        return False
+    slope = math.log(seen.used / first) / size
+    return math.log(first) + slope * math.log(lever.most) > math.log(_HOPELESS)
+
+
+def _crossing(above: _Seen | None, below: _Seen, first: float) -> float:
+    """Size of a change at the limit, by the logarithm of the utilisation; the middle of infinity.
+
+    Parameters
+    ----------
+    first : float   utilisation without a change
+    """
+    start, high = (0.0, first) if above is None else (above.step.size, above.used)
+    end, low = below.step.size, max(below.used, _LEAST_USED)
+    if not math.isfinite(high):
+        return 0.5 * (start + end)
+    if not low < high:
+        return end
+    return start + (end - start) * math.log(high) / math.log(high / low)

@@ -1,0 +1,172 @@
+"""Remedies: levers of the checks, their steps in a case, the line of a remedy."""
+
+from __future__ import annotations
+
+import math
+from itertools import pairwise
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from camwright.geometry.errors import InputError
+from camwright.pipeline.case.case import Case
+from camwright.pipeline.case.case_file import read_case
+from camwright.pipeline.case.case_values import quantity_of, value_of, with_values
+from camwright.pipeline.checks.registry import DECLARED
+from camwright.pipeline.remedies.lever_steps import PARTS, Workbench, told
+from camwright.pipeline.remedies.levers import (
+    BEARING,
+    BUSH_A,
+    CAM_MATERIAL,
+    LEVERS,
+    Catalogued,
+    Drilled,
+    Scaled,
+)
+from camwright.pipeline.remedies.remedy import WIDTH, Remedy
+from camwright.pipeline.remedies.remedy_search import LEVELS
+
+GX120 = Path(__file__).parents[2] / "cases" / "gx120.toml"
+
+
+@pytest.fixture(scope="module")
+def case() -> Case:
+    return read_case(GX120)
+
+
+@pytest.fixture(scope="module")
+def bench(case: Case) -> Workbench:
+    return Workbench(case, case.folder)
+
+
+def test_every_lever_belongs_to_a_must_have_check_of_the_design() -> None:
+    for name, levers in LEVERS.items():
+        assert DECLARED[name].must_have and not DECLARED[name].evidence, name
+        assert levers and len(set(levers)) == len(levers), name
+
+
+def test_every_scaled_key_is_a_number_of_the_case_file() -> None:
+    for levers in LEVERS.values():
+        for lever in levers:
+            if not isinstance(lever, Scaled):
+                continue
+            assert 1.0 < lever.most <= math.exp(LEVELS[-1]) * (1.0 + 1e-9), lever
+            for key in (*lever.keys, *lever.along):
+                assert quantity_of(key.replace("*", "0").replace("{cam}", "s355")), key
+
+
+@pytest.mark.parametrize(
+    ("key", "direction", "size", "text"),
+    [
+        ("cam.prime_radius", 1, math.log(1.23456), "61.8 mm"),  # 61.728 mm upwards
+        ("follower.mass", -1, math.log(1.5), "116 g"),  # 116.67 g downwards
+        ("spring.preload", 1, math.log(2.0), "484 N"),  # exact: round-off adds no digit
+        ("mechanism.compensation", -1, math.log(3.0), "0.333"),
+    ],
+)
+def test_a_scaled_value_has_three_digits_away_from_that_of_the_case(
+    bench: Workbench, key: str, direction: Any, size: float, text: str
+) -> None:
+    step = bench.scaled(Scaled((key,), direction), size)
+    assert step.changes == {key: text}
+    assert step.size >= size * (1.0 - 1e-8)
+    changed = value_of(bench.applied(step.changes), key)
+    assert changed / value_of(bench.case, key) == pytest.approx(
+        math.exp(direction * step.size), rel=1e-12
+    )
+
+
+def test_the_fast_way_makes_the_same_case(bench: Workbench) -> None:
+    step = bench.scaled(Scaled(("cam.width", "roller.width", "roller.pin.span"), 1), 0.3)
+    assert list(step.changes) == ["cam.width", "roller.width"]  # the case has no pin
+    assert bench.tried(step.changes).to_toml() == bench.applied(step.changes).to_toml()
+
+
+def test_a_greater_roller_keeps_the_base_circle(bench: Workbench) -> None:
+    lever = Scaled(("roller.radius",), 1, along=("cam.prime_radius",))
+    changed = bench.applied(bench.scaled(lever, math.log(1.5)).changes)
+    assert changed.roller.radius == pytest.approx(12e-3, rel=1e-12)
+    assert changed.base_circle == pytest.approx(bench.case.base_circle, rel=1e-12)
+
+
+def test_the_preload_of_every_load_case_changes(case: Case) -> None:
+    two = with_values(case, {"load_case[0].preload": "121 N"})
+    step = Workbench(two, None).scaled(Scaled(("spring.preload", "load_case[*].preload"), 1), 0.5)
+    assert set(step.changes) == {"spring.preload", "load_case[0].preload"}
+
+
+def test_smoothers_act_by_their_own_key(bench: Workbench, case: Case) -> None:
+    spacing = Scaled(("smoothing.spacing",), 1, smoothers=("moving_average",))
+    width = Scaled(("smoothing.width",), 1, smoothers=("gaussian",))
+    assert bench.acts(spacing) and not bench.acts(width)
+    other = Workbench(with_values(case, {"smoothing.kind": "gaussian"}), None)
+    assert other.acts(width) and not other.acts(spacing)
+    assert not bench.acts(Scaled(("camshaft.diameter",), 1))  # the case has no camshaft
+
+
+def test_better_bearings_come_by_their_dimensions_first(bench: Workbench) -> None:
+    lever = Catalogued(BEARING, "C0", inverse=True)
+    steps = bench.cards(lever)
+    assert [step.changes[BEARING] for step in steps[:2]] == ["maker_2_625", "track_roller_24x7"]
+    assert all(a.size <= b.size for a, b in pairwise(steps))
+    assert steps[0].figure == "C0 670 N"
+    changed = bench.applied(steps[1].changes)
+    assert (changed.roller.bearing.C0, changed.roller.radius) == (1300.0, 12e-3)
+    assert changed.base_circle == pytest.approx(bench.case.base_circle, rel=1e-12)
+
+
+def test_a_bush_and_a_material_come_from_their_cards(bench: Workbench) -> None:
+    bushes = bench.cards(Catalogued(BUSH_A, "pressure_limit"))
+    assert [step.changes[BUSH_A] for step in bushes] == [
+        "pom", "bronze", "wrapped_bronze", "ptfe_lined",
+    ]  # fmt: skip
+    changed = bench.applied(bushes[-1].changes)
+    assert changed.guides.a.pressure_limit == 56e6
+    assert changed.guides.b == bench.case.guides.b
+    assert changed.guides.a.length == bench.case.guides.a.length
+    materials = bench.cards(Catalogued(CAM_MATERIAL, "yield_strength"))
+    steel = next(s for s in materials if s.changes[CAM_MATERIAL] == "through_hardened")
+    assert steel.figure == "yield strength 800 MPa"
+    assert bench.applied(steel.changes).cam.material.yield_strength == 800e6
+
+
+def test_a_lower_friction_is_the_better_one(bench: Workbench) -> None:
+    steps = bench.cards(Catalogued("guides.b", "friction_max", less=True))
+    assert [step.changes["guides.b"] for step in steps] == [
+        "bronze", "wrapped_bronze", "sintered_bronze", "pa66_regularly_greased",
+    ]  # fmt: skip
+
+
+def test_a_counter_hole_is_drilled_once(bench: Workbench) -> None:
+    assert bench.acts(Drilled())
+    drilled = bench.applied(bench.drilled(Drilled()).changes)
+    assert drilled.cam.counter_hole is not None
+    assert not Workbench(drilled, None).acts(Drilled())
+
+
+def test_a_value_that_does_not_fit_is_refused(bench: Workbench) -> None:
+    with pytest.raises(InputError, match=r"guides\.spacing"):
+        bench.tried({"guides.spacing": "15 mm"})
+
+
+def test_the_line_of_a_remedy_keeps_the_width() -> None:
+    changes = {"cam.width": "26 mm", "roller.width": "26 mm"}
+    effects = ("fails cam_radius", "x" * 60, "adds 40 g")
+    text = Remedy("contact_pressure", changes, effects=effects).text
+    assert text == "cam.width: 26 mm, roller.width: 26 mm; fails cam_radius; adds 40 g"
+    assert len(text) <= WIDTH
+    card = Remedy("roller_static", {BEARING: "6203"}, "C0 4.75 kN", ("least C0 4.56 kN",))
+    assert card.text == "roller.bearing: 6203 (C0 4.75 kN); least C0 4.56 kN"
+
+
+def test_without_a_remedy_the_line_says_so() -> None:
+    assert Remedy("jump", {}, cures=False).text == "no single change cures it"
+    closest = Remedy("jump", {"follower.mass": "90 g"}, effects=("leaves 2",), cures=False)
+    assert closest.text == "no single change cures it; closest: follower.mass: 90 g; leaves 2"
+
+
+def test_numbers_are_told_without_an_exponent() -> None:
+    assert told(2901.9, "rpm") == "27710 rpm"
+    assert told(0.7085, "", 3) == "0.709"
+    assert PARTS == (BEARING, CAM_MATERIAL, BUSH_A, "guides.b")

@@ -1,0 +1,122 @@
+"""Each remedy of the published GX120, put into its case, turns its check to pass.
+
+The line of a remedy is read back as a user would read it, and the changed case is previewed anew
+with every tolerance corner: none of the search is used but the way to put a part into a case.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from pathlib import Path
+
+import pytest
+
+from camwright.pipeline.case.case_file import read_case
+from camwright.pipeline.preview import preview_case
+from camwright.pipeline.remedies.lever_steps import Workbench
+from camwright.pipeline.remedies.levers import LEVERS
+from camwright.pipeline.remedies.remedy import WIDTH
+from camwright.pipeline.remedies.remedy_search import (
+    IN_A_RUN,
+    Failure,
+    failures_of,
+    order_of,
+    remedies,
+    remedies_of,
+    texts_of,
+    with_remedies,
+)
+from camwright.pipeline.results.trial import Trial
+
+GX120 = Path(__file__).parents[2] / "cases" / "gx120.toml"
+NONE = "no single change cures it"
+CURED = (
+    "contact_at_overspeed", "contact_force_margin", "elastic_contact", "guide_pressure_A",
+    "guide_edge_pressure_A", "guide_edge_pressure_B", "shakedown", "jam_index",
+    "jam_index_friction_max", "jump", "jump_speed", "pressure_angle", "roller_speed",
+)  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def trial() -> Trial:
+    return preview_case(read_case(GX120))
+
+
+@pytest.fixture(scope="module")
+def texts(trial: Trial) -> dict[str, str]:
+    return {name: remedy.text for name, remedy in remedies_of(trial).items()}
+
+
+def changes_in(text: str) -> dict[str, str]:
+    """Changes of the line of a remedy: ``KEY: VALUE, KEY: VALUE (rating); ...``."""
+    clause = text.split("; ")[0]
+    return dict(re.findall(r"([a-z_][a-z_.0-9\[\]]*): ([^,(]*[^,( ])", clause))
+
+
+def test_a_remedy_read_back_cures_its_check() -> None:
+    case = read_case(GX120)
+    base = preview_case(case)
+    known = {one.check: one for one in failures_of(base)}
+    two = [known[name] for name in ("roller_speed", "pressure_angle")]
+    found = remedies(case, case.folder, None, two)
+    assert list(found) == ["roller_speed", "pressure_angle"]
+    for name, remedy in found.items():
+        assert_cures(name, remedy.text)
+    # the pressure angle follows tan(alpha) = s'/(d + s) at the same lift: d grows by as much
+    angle = next(one for one in base.checks if one.id == "pressure_angle")
+    assert angle.cam_angle is not None
+    lift, slope = (float(base.lift(angle.cam_angle, k)) for k in (0, 1))
+    least = abs(slope) / math.tan(math.radians(30.0)) - lift
+    prime = float(found["pressure_angle"].changes["cam.prime_radius"].removesuffix(" mm"))
+    # the worst angle moves a little towards the greater slope, and the line profile adds to it
+    assert 1e3 * least < prime < 1.02 * 1e3 * least
+
+
+def test_no_failure_costs_nothing_and_evidence_has_no_remedy(trial: Trial) -> None:
+    assert remedies(trial.case, None, None, ()) == {}
+    assert "held_distance" not in LEVERS
+    assert remedies(trial.case, None, None, [Failure("held_distance", 2.0, ())]) == {}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", CURED)
+def test_the_remedies_of_the_gx120_hold(texts: dict[str, str], name: str) -> None:
+    assert_cures(name, texts[name])
+
+
+@pytest.mark.slow
+def test_further_remedies_of_the_gx120_hold(texts: dict[str, str]) -> None:
+    others = [name for name, text in texts.items() if NONE not in text and name not in CURED]
+    for name in others:
+        assert_cures(name, texts[name])
+
+
+@pytest.mark.slow
+def test_what_no_single_change_cures_is_told(trial: Trial, texts: dict[str, str]) -> None:
+    failing = [one.id for one in trial.checks if one.must_have and one.status == "fail"]
+    assert list(texts) == [one.check for one in failures_of(trial)]
+    assert set(texts) == set(failing)
+    assert max(map(len, texts.values())) <= WIDTH
+    uncured = [name for name, text in texts.items() if text.startswith(NONE)]
+    assert "roller_static" in uncured and "closest: " in texts["roller_static"]
+    # unbalance: no counter-hole of a single size balances the cam, its note says so
+    assert "closest: cam.counter_hole.wall: 3 mm" in texts["cam_unbalance"]
+
+
+@pytest.mark.slow
+def test_a_worker_finds_the_same_remedies(trial: Trial, texts: dict[str, str]) -> None:
+    order = order_of(trial, GX120.parent)
+    assert [each.check for each in order.failures] == list(texts)[:IN_A_RUN]
+    again = texts_of(order._replace(failures=failures_of(trial)))
+    assert again == texts
+    marked = {one.id: one.remedy for one in with_remedies(trial.checks, again)}
+    assert {name: text for name, text in marked.items() if text} == texts
+
+
+def assert_cures(name: str, text: str) -> None:
+    """The line of a remedy, applied to the case, turns its check to pass."""
+    case = read_case(GX120)
+    changed = Workbench(case, case.folder).applied(changes_in(text))
+    one = next(one for one in preview_case(changed).checks if one.id == name)
+    assert one.status == "pass", f"{text}: {one}"
