@@ -14,6 +14,7 @@ from camwright.pipeline.base.worker_processes import Crew, Task, crew
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_values import refused_as_written
 from camwright.pipeline.case.load_case_torque import engine_torques, measurement_record
+from camwright.pipeline.case.plausibility import implausible
 from camwright.pipeline.checks.tolerance_corners import corners_record
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.ripple_map import ripple_map
@@ -104,6 +105,8 @@ def _solved(
     """Solve a case and write all files but report and records; the contents of ``run.json``."""
     watch.stage("torque")
     torques = engine_torques(case)
+    for finding in implausible(case, torques):
+        watch.note(f"warning: {finding.how}")
     if torques:
         folder.write_torque(torque_columns(torques[case.load_cases[0].name]))
     writer = TrialWriter(folder)

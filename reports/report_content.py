@@ -357,7 +357,7 @@ def _evidence(material: Material) -> Section:
             ),
             (
                 consistency, "Consistency of the inputs",
-                "Some inputs contradict each other." if contradicted else
+                "Some inputs contradict each other or are not usual." if contradicted else
                 "Each input beside the value that the other inputs imply.",
             ),
             (

@@ -24,10 +24,10 @@ from camwright.pipeline.case.keys import (
 from camwright.pipeline.case.limits import LIMITS
 from camwright.pipeline.case.requirements_section import Smoothing
 from camwright.pipeline.checks.check import Declaration
-from camwright.pipeline.checks.check_text import check_text, default_of, sentence
 from camwright.pipeline.checks.registry import CHECKS, DECLARED, MODULES
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.preview import preview_case
+from camwright.pipeline.results.check_text import check_text, default_of, sentence
 from camwright.pipeline.results.model_limits import MODEL_LIMITS
 from camwright.pipeline.results.run_records import column_table
 from camwright.pipeline.screening.screened_checks import SCREENED

@@ -26,6 +26,7 @@ In the order of the calculation:
 | `case_values`          | values by dotted key; the case with others   |                  |
 | `load_case_torque`     | engine torque of each load case              | T, N m           |
 | `template`             | first case of each kind of source            |                  |
+| `plausibility`         | values beyond their usual ranges             |                  |
 | `machine`              | `Machine`: the parts in one load case        | SI               |
 
 Imports `geometry`, `pipeline.base`, `pipeline.engine`, `pipeline.contact` and `pipeline.follower`.

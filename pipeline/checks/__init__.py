@@ -29,7 +29,6 @@ In the order of the calculation:
 | `lost_loads`            | checks where the follower leaves the cam   | cam angle, rad           |
 | `confirmation`          | recalled values on which a check rests     |                          |
 | `registry`              | all checks of a solution, with waivers     |                          |
-| `check_text`            | declaration of a check in words            |                          |
 | `tolerance_corners`     | governing tolerance corner of each check   |                          |
 
 Imports `geometry`, `meshes`, `base`, `engine`, `contact`, `follower`, `case` and `cycle`.

@@ -137,9 +137,11 @@ def jam_index_friction_max(solution: Solution) -> Demand:
     " closely.",
     load_cases=SPEED_RANGE,
 )
-def jump_speed(solution: Solution) -> Demand:
-    """Minimum crank speed of follower jump, rad/s."""
+def jump_speed(solution: Solution) -> Demand | None:
+    """Minimum crank speed of follower jump, rad/s; None for a round cam, which has no jump."""
     worst = least(solution.cycles, _jump_speed)._replace(load_case="")
+    if np.isposinf(worst.value):
+        return None
     over = overspeed(solution.machines)
     if over is None:
         return Demand(worst.value, None, worst, unset(solution.machine.limits, OVERSPEED))

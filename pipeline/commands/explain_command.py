@@ -65,7 +65,7 @@ def _of_keys(word: str, keys: Sequence[Key]) -> list[str]:
 def _of_key(word: str, keys: Sequence[Key]) -> str:
     from camwright.pipeline.case.added_tables import line_of
     from camwright.pipeline.case.keys import REQUIRED
-    from camwright.pipeline.checks.check_text import checks_with
+    from camwright.pipeline.results.check_text import checks_with
 
     key = keys[0]
     absent = "none" if key.default != REQUIRED else "none: the key is required"
@@ -103,8 +103,8 @@ def _of_table(word: str, keys: Sequence[Key]) -> str:
 
 
 def _of_check(name: str) -> str:
-    from camwright.pipeline.checks.check_text import check_text
     from camwright.pipeline.checks.registry import DECLARED
+    from camwright.pipeline.results.check_text import check_text
 
     words = check_text(DECLARED[name])
     return _text(

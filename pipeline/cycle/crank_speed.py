@@ -267,7 +267,8 @@ def consistency(
     Parameters
     ----------
     demand : array (n,)   crank torque about its mean, N m, for which the lift is drawn; None where
-                          limits shape the lift: power and energy are then not compared
+                          limits shape the lift: power and energy are then not compared, as
+                          for a torque of zero
     measured : bool       the measured speed is that of this load case
     """
     ratio, shaft = machine.gear_ratio, machine.crankshaft
@@ -275,7 +276,7 @@ def consistency(
     theta = uniform_turn(torque.theta_crank.size)
     loads = follower_loads(pitch, system, machine.speed / ratio, theta)
     findings = []
-    if demand is not None:
+    if demand is not None and demand.any():
         stored = machine.spring.energy(pitch.lift.stroke)
         findings.append(ratio_finding(demand, loads.spring_force * loads.lift_slope, ratio))
         findings.append(energy_finding(demand, stored))

@@ -19,6 +19,7 @@ In the order of a run:
 | `field_output`         | files of ``fields/``                                                  |
 | `workshop_files`       | contour table, DXF drawing, STEP solid, cutter path, inspection sheet |
 | `contact_deck`         | contact at one cam angle as an input deck                             |
+| `check_text`           | declaration of a check in words: formula, limit, calculation          |
 | `check_report`         | checks of a run as table and lines                                    |
 | `junit_report`         | checks of runs and cases as JUnit XML                                 |
 | `verdict_summary`      | verdict in few lines: failures, missing data, headline                |

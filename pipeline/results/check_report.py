@@ -260,7 +260,9 @@ def with_error(value: float | None, error: float | None) -> str:
 
 
 def consistency_line(finding: Finding) -> str:
-    """An input beside the value that the other inputs imply, as a line."""
+    """An input beside the value that the other inputs or usage imply, as a line."""
+    if finding["id"] == "plausibility":
+        return f"plausibility: {finding['how']}"
     share = finding["difference_percent"]
     off = "beyond bounds" if share is None else f"{share:+.1f} %"
     words = f"{finding['title']}: given {finding['given']:.4g}, implied {finding['implied']:.4g}"

@@ -117,6 +117,8 @@ class Finding(TypedDict):
     """An input beside the value that the other inputs imply."""
 
     load_case: str
+    id: str
+    how: str
     title: str
     given: float
     implied: float

@@ -15,6 +15,7 @@ from camwright.pipeline.base.files import Json
 from camwright.pipeline.base.tables import CAM_ANGLE, CRANK_ANGLE, Cells, Column, Values
 from camwright.pipeline.base.units import in_unit
 from camwright.pipeline.case.case import Case
+from camwright.pipeline.case.plausibility import implausible
 from camwright.pipeline.contact.contact_history import CertificatePoint, ContactHistory
 from camwright.pipeline.contact.elasticity.mesh_convergence import Convergence
 from camwright.pipeline.contact.hertz import von_mises_peak
@@ -254,7 +255,7 @@ def trial_record(trial: Trial) -> dict[str, Json]:
 def crank_speed_record(
     torques: Mapping[str, Torque], trial: Trial, required: Array | None
 ) -> tuple[dict[str, Json], Values | None]:
-    """Crank speed with and without the cam, and the consistency of the inputs.
+    """Crank speed with and without the cam, and consistency and plausibility of the inputs.
 
     Parameters
     ----------
@@ -268,7 +269,8 @@ def crank_speed_record(
     """
     case = trial.case
     speed: dict[str, Json] = {}
-    findings: list[Json] = []
+    odd = implausible(case, torques)
+    findings: list[Json] = [{"load_case": "", **one.as_record()} for one in odd]
     columns: Values | None = None
     running = [c for c in trial.cycles if c.load_case in torques and c.machine.speed > 0]
     for number, cycle in enumerate(running):

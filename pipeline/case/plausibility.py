@@ -1,0 +1,143 @@
+"""Plausibility: values of a case beyond their usual ranges, which stand in `usual_ranges.toml`.
+
+Such a value is allowed; it is stated with the consistency of the inputs.
+"""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from functools import cache
+from importlib.resources import files
+from typing import Any
+
+import numpy as np
+
+from camwright.geometry.energy import spring_deflection
+from camwright.pipeline.base.units import factor, in_unit, shown
+from camwright.pipeline.case.case import Case
+from camwright.pipeline.case.case_values import text_of, value_of
+from camwright.pipeline.engine.crankshaft import energy_swing
+from camwright.pipeline.engine.torque import Torque
+from camwright.pipeline.engine.torque_consistency import Finding
+
+PLAUSIBILITY = "plausibility"
+"""Id of a finding on a value beyond its usual range."""
+
+
+@dataclass(frozen=True)
+class Usual:
+    """Usual range of a quantity, low to high in `unit`, and the source of the range."""
+
+    unit: str
+    low: float
+    high: float
+    source: str
+
+    def nearest(self, value: float) -> float:
+        """The closest value (SI) of the range to a value in SI."""
+        scale = factor(self.unit) if self.unit != "-" else 1.0
+        return min(max(value, self.low * scale), self.high * scale)
+
+    def finding(self, title: str, value: float, text: str) -> Finding | None:
+        """What is said of a value (SI) with its text; None within the range or a tenth of it."""
+        nearest = in_unit(self.nearest(value), self.unit)
+        unit = f" {self.unit}".replace(" -", "")
+        words = f"{text}, usually {self.low:g} to {self.high:g}{unit} ({self.source})"
+        made = Finding(PLAUSIBILITY, title, in_unit(value, self.unit), nearest, self.unit, words)
+        return made if made.flagged else None
+
+
+def implausible(case: Case, torques: Mapping[str, Torque]) -> tuple[Finding, ...]:
+    """Values of a case beyond their usual ranges, one finding each.
+
+    Besides the values of single keys: the amplitude of the engine torque, and the spring against
+    the energy swing of the torque of the design load case.
+
+    Parameters
+    ----------
+    torques : mapping   engine torque by load case
+    """
+    odd: list[Finding | None] = []
+    for usual, keys in _ranges():
+        for key in _keys_in(case, keys):
+            value = value_of(case, key)
+            if isinstance(value, float):
+                odd.append(usual.finding(key, value, f"{key} = {text_of(case, key)}"))
+    odd += _odd_torques(case, torques)
+    findings = [one for one in odd if one is not None]
+    if not {one.title for one in findings} & {"spring.rate", "spring.preload", *_TORQUES}:
+        findings += _odd_spring(case, torques)
+    return tuple(findings)
+
+
+_TORQUES = ("engine", "engine.file")
+
+
+def _odd_torques(case: Case, torques: Mapping[str, Torque]) -> Iterator[Finding | None]:
+    """Amplitudes of the torque of the engine, in its design load case, and of further files."""
+    for k, state in enumerate(case.load_cases):
+        torque = torques.get(state.name)
+        if torque is None or (state.torque is None and k > 0):
+            continue
+        measured = "engine" if not hasattr(case.engine, "file") else "engine.file"
+        key = measured if state.torque is None else f"load_case[{k}].torque"
+        amplitude = float(np.ptp(torque.total))
+        measure = (
+            "greatest less least" if amplitude > 0.0 else "0 N m everywhere, greatest less least"
+        )
+        text = f"{key}: torque, {measure} = {shown(amplitude, 'N m')}"
+        yield _usual("torque").finding(key, amplitude, text)
+
+
+def _odd_spring(case: Case, torques: Mapping[str, Torque]) -> Iterator[Finding]:
+    """The spring against the energy swing, unless the synthesis chooses it: one finding."""
+    torque, smoothing, spring = torques.get(case.load_cases[0].name), case.smoothing, case.spring
+    chosen = smoothing.kind == "constrained" and {"spring_rate", "preload"} & {*smoothing.free}
+    if torque is None or chosen:
+        return
+    swing = case.mechanism.compensation * float(np.ptp(energy_swing(torque.total)))
+    lift = float(spring_deflection(swing, spring.rate, spring.preload))
+    of_rate, of_radius = 0.5 * spring.rate * lift**2 / swing, lift / case.cam.prime_radius
+    of_torque = f"of the energy swing of the torque, {shown(swing, 'J')}"
+    rate = f"spring.rate = {text_of(case, 'spring.rate')}"
+    stores = f"{rate}: it stores {of_rate:.2g} {of_torque}, the preload the rest"
+    stiff = of_rate < 0.5 and lift < case.cam.prime_radius
+    key = "spring.preload" if stiff else "spring.rate"
+    deflects = (
+        f"{key} = {text_of(case, key)}: storage {of_torque}, takes a lift of {shown(lift, 'mm')}, "
+        f"{of_radius:.2g} of cam.prime_radius = {text_of(case, 'cam.prime_radius')}"
+    )
+    for one in (
+        _usual("rate_share").finding("spring.rate", of_rate, stores),
+        _usual("lift").finding(key, of_radius, deflects),
+    ):
+        if one is not None:
+            yield one
+            return
+
+
+def _keys_in(case: Case, keys: tuple[str, ...]) -> Iterator[str]:
+    """Keys of the case that patterns stand for."""
+    for key in keys:
+        if key.startswith("materials.*"):
+            yield from (key.replace("*", name) for name in case.materials)
+        else:
+            yield key
+
+
+@cache
+def _table() -> Mapping[str, Any]:
+    text = files(__package__).joinpath("usual_ranges.toml").read_text(encoding="utf-8")
+    return tomllib.loads(text)
+
+
+def _usual(name: str) -> Usual:
+    return Usual(**_table()[name])
+
+
+@cache
+def _ranges() -> tuple[tuple[Usual, tuple[str, ...]], ...]:
+    rows = [dict(row) for row in _table()["usual"]]
+    return tuple((Usual(**row), tuple(keys)) for row in rows for keys in [row.pop("keys")])

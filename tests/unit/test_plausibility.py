@@ -1,0 +1,134 @@
+"""Plausibility of a case: values that are allowed and cannot be meant, each with one warning."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from camwright.pipeline.base.progress import Progress
+from camwright.pipeline.case.case import Case
+from camwright.pipeline.case.case_file import parse_case, read_case
+from camwright.pipeline.case.load_case_torque import engine_torques
+from camwright.pipeline.case.plausibility import PLAUSIBILITY, implausible
+from camwright.pipeline.contact.tiers import Tier
+from camwright.pipeline.results.check_report import consistency_line
+from camwright.pipeline.run import run_case
+
+ROOT = Path(__file__).parents[2]
+GX120 = (ROOT / "cases" / "gx120.toml").read_text(encoding="utf-8")
+REDESIGN = (ROOT / "cases" / "gx120-redesign.toml").read_text(encoding="utf-8")
+
+
+def changed(text: str, old: str, new: str) -> str:
+    assert old in text
+    return text.replace(old, new, 1)
+
+
+def warnings(case: Case) -> list[str]:
+    return [one.how for one in implausible(case, engine_torques(case))]
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "words"),
+    [
+        ('rate = "24.2 kN/m"', 'rate = "1e-9 N/m"',
+         "spring.rate = 1e-9 N/m, usually 0.05 to 20000 kN/m"),
+        ('rate = "24.2 kN/m"', 'rate = "24.2 N/m"',
+         "spring.rate = 24.2 N/m, usually 0.05 to 20000 kN/m"),
+        ('rate = "24.2 kN/m"', 'rate = "24.2 MN/m"',
+         "spring.rate = 24.2 MN/m, usually 0.05 to 20000 kN/m"),
+        ('preload = "242 N" ', 'preload = "400 kN" ',
+         "spring.preload = 400 kN, usually 0.0001 to 200 kN"),
+        ('preload = "242 N" ', 'preload = "24.2 kN" ', "spring.rate = 24.2 kN/m: it stores"),
+        ('mass = "175 g"', 'mass = "250 kg"', "follower.mass = 250 kg, usually 0.001 to 50 kg"),
+        ('clearance = "0.05 mm"', 'clearance = "0.05 mm"\nwall = "0.1 mm"',
+         "guides.a.wall = 0.1 mm, usually 0.5 to 50 mm"),
+        ('[materials.c45]\nE = "210 GPa"', '[materials.c45]\nE = "210 MPa"',
+         "materials.c45.E = 210 MPa, usually 0.4 to 700 GPa"),
+    ],
+)  # fmt: skip
+def test_a_value_that_cannot_be_meant_has_one_warning(old: str, new: str, words: str) -> None:
+    (one,) = warnings(parse_case(changed(GX120, old, new)))
+    assert one.startswith(words)
+    assert one.endswith(")")  # the source of the range
+
+
+def test_a_rate_a_thousand_times_too_low_is_found_by_the_torque() -> None:
+    text = changed(REDESIGN, 'rate = "180 kN/m"', 'rate = "180 N/m"')
+    text = text[: text.index("[spring.design]")] + text[text.index("[cam]") :]
+    (one,) = warnings(parse_case(text))
+    assert one.startswith("spring.rate = 180 N/m: it stores 0.0018 of the energy swing of the torq")
+
+
+def measured(folder: Path, torque: np.ndarray, unit: str = "Nm") -> Case:
+    """The published case with a measured torque, N m."""
+    rows = [f"{angle},{value:.9g}" for angle, value in enumerate(torque)]
+    text = "\n".join([f"crank_angle_deg,torque_{unit}", *rows, ""])
+    (folder / "torque.csv").write_text(text, encoding="utf-8")
+    engine = '[engine]\nkind = "table"\nfile = "torque.csv"\n\n'
+    case = GX120[: GX120.index("[engine]")] + engine + GX120[GX120.index("[crankshaft]") :]
+    (folder / "case.toml").write_text(case, encoding="utf-8")
+    return read_case(folder / "case.toml")
+
+
+ANGLE = np.radians(np.arange(720.0))
+TORQUE = 30.0 * np.sin(ANGLE) + 10.0 * np.sin(2.0 * ANGLE)
+
+
+@pytest.mark.parametrize(
+    ("scale", "words"),
+    [
+        (0.0, "engine.file: torque, 0 N m everywhere, greatest less least = 0 N m, usually 0.1 to"),
+        (1e-3, "engine.file: torque, greatest less least = 0.0697 N m, usually 0.1 to"),
+        (1e3, "spring.rate = 24.2 kN/m: storage of the energy swing of the torque, 6e+04 J, takes"),
+    ],
+)
+def test_a_torque_of_zero_or_in_the_wrong_unit(tmp_path: Path, scale: float, words: str) -> None:
+    (one,) = warnings(measured(tmp_path, scale * TORQUE))
+    assert one.startswith(words)
+
+
+def test_a_torque_in_kilonewton_metres_that_says_so_is_none(tmp_path: Path) -> None:
+    assert warnings(measured(tmp_path, 1e-3 * TORQUE, "kNm")) == []
+    assert warnings(measured(tmp_path, TORQUE)) == []
+
+
+SHIPPED = sorted(
+    path
+    for path in (ROOT / "cases").rglob("*.toml")
+    if path.name != "mechanisms.toml"  # mechanisms without a case
+)
+
+
+@pytest.mark.parametrize("path", SHIPPED, ids=lambda path: path.stem)
+def test_shipped_cases_have_no_warning(path: Path) -> None:
+    """Those of the studies too, which are the base cases of ``studies/*.toml``."""
+    assert warnings(read_case(path)) == []
+
+
+class Notes(Progress):
+    """Keeps the notes of a run."""
+
+    def __init__(self) -> None:
+        self.notes: list[str] = []
+
+    def stage(self, name: str) -> None: ...
+
+    def advance(self, k: int, total: int) -> None: ...
+
+    def note(self, text: str) -> None:
+        self.notes.append(text)
+
+
+def test_a_run_warns_goes_on_and_records_it(tmp_path: Path) -> None:
+    """A torque of zero: a round cam, no division by its swing."""
+    case, notes = measured(tmp_path, 0.0 * TORQUE).with_positions(36), Notes()
+    run_case(case, tmp_path / "run", depth=Tier.SCREENING, progress=notes)
+    (warning,) = (note for note in notes.notes if note.startswith("warning: "))
+    record = json.loads((tmp_path / "run" / "run.json").read_text(encoding="utf-8"))
+    (finding,) = (one for one in record["consistency"] if one["id"] == PLAUSIBILITY)
+    assert warning == f"warning: {finding['how']}"
+    assert (finding["given"], finding["implied"], finding["flagged"]) == (0.0, 0.1, True)
+    assert finding["title"] == "engine.file"
+    assert consistency_line(finding) == f"plausibility: {finding['how']}"
