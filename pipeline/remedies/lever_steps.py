@@ -22,7 +22,8 @@ from camwright.pipeline.case.cards.substitution import (
     with_roller,
 )
 from camwright.pipeline.case.case import Case
-from camwright.pipeline.case.case_values import quantity_of, replaced, value_of, with_values
+from camwright.pipeline.case.case_file import with_values
+from camwright.pipeline.case.case_values import quantity_of, replaced, value_of
 from camwright.pipeline.case.consistency import check_numbers
 from camwright.pipeline.case.toml_text import TomlValue
 from camwright.pipeline.contact.cam_body import BalanceHole

@@ -219,7 +219,7 @@ LEVERS: Mapping[str, tuple[Lever, ...]] = {
     "face_width": (_one("follower.face.width"), *_GENTLER),
     "face_pv": (_one("follower.face.depth"), *_GENTLER),
     "guide_gap": (_one("follower.overhang_at_max_lift", most=2.0),),
-    "profile_waviness": (_one("cam.profile_tolerance", -1), _MASS, *_SPRING),
+    "profile_waviness": (_one("cam.profile_tolerance", -1, 10.0), _MASS, *_SPRING),
     "chord_error": (_one("workshop.table_step", -1),),
 }
 """Levers by check. A check without levers has no remedy: its data are missing, it verifies the

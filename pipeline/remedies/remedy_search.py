@@ -13,11 +13,13 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import NamedTuple
 
+import numpy as np
+
 from camwright.geometry.errors import CamError
 from camwright.geometry.lift import Lift
 from camwright.pipeline.case.case import Case
-from camwright.pipeline.case.case_file import parse_case
-from camwright.pipeline.case.case_values import value_of, with_values
+from camwright.pipeline.case.case_file import parse_case, with_values
+from camwright.pipeline.case.case_values import value_of
 from camwright.pipeline.case.load_case_torque import engine_torques
 from camwright.pipeline.checks.check import Check
 from camwright.pipeline.remedies.case_judge import Headline, Judge, Preview, used
@@ -26,8 +28,9 @@ from camwright.pipeline.remedies.levers import LEVERS, Catalogued, Drilled, Leve
 from camwright.pipeline.remedies.remedy import Remedy
 from camwright.pipeline.results.trial import Trial
 
-IN_A_RUN = 8
-"""Failed checks of a run whose remedies are sought, the worst ones."""
+IN_A_RUN, LEAST_IN_A_RUN = 18, 3
+"""Failed checks of a run whose remedies are sought, the worst ones: their number times that of the
+load cases, and the least number."""
 LEVELS = (0.15, 0.4, 0.8, math.log(4.0), 2.0, 3.0)
 """Sizes of the steps, |ln| of the factor on a value."""
 _ALIKE = 1.1  # ratio of two sizes that count as equal: the side effects then decide
@@ -63,12 +66,18 @@ def failures_of(trial: Trial) -> tuple[Failure, ...]:
 
 
 def _worst_corners(trial: Trial, one: Check) -> tuple[str, ...]:
-    """Names of the tolerance corners with the worst demands of a check, the governing one first."""
+    """Names of the tolerance corners with the worst demands of a check, the governing one first.
+
+    Every corner where the worst demands are equal or infinite: another one may then govern.
+    """
     sign = -1.0 if one.sense == "at_most" else 1.0
     solved = [each for each in trial.corners if one.id in each.demands]
     ranked = sorted(solved, key=lambda each: sign * each.demands[one.id])
     names = (one.corner, *(each.corner.name for each in ranked))
-    return tuple(dict.fromkeys(name for name in names if name))[:_CORNERS]
+    every = tuple(dict.fromkeys(name for name in names if name))
+    demands = [each.demands[one.id] for each in ranked[:_CORNERS]]
+    tied = not np.isfinite(demands).all() or len(set(demands)) < len(demands)
+    return every if tied else every[:_CORNERS]
 
 
 class Order(NamedTuple):
@@ -91,14 +100,15 @@ class Order(NamedTuple):
 
 
 def order_of(trial: Trial, folder: Path | None) -> Order:
-    """Order for the remedies of the worst failed checks of a trial, `IN_A_RUN` at most.
+    """Order for the remedies of the worst failed checks of a trial; see `IN_A_RUN`.
 
     Parameters
     ----------
     folder : Path   with the copies of the included files, such as the run folder
     """
     held = trial.lift if trial.case.smoothing.kind == "constrained" else None
-    worst = failures_of(trial)[:IN_A_RUN]
+    count = max(LEAST_IN_A_RUN, IN_A_RUN // len(trial.cycles))
+    worst = failures_of(trial)[:count]
     return Order(as_drawn(trial).to_toml(), folder, trial.case.folder, held, worst)
 
 

@@ -107,7 +107,7 @@ def test_what_no_single_change_cures_is_told(trial: Trial, texts: dict[str, str]
 @pytest.mark.slow
 def test_a_worker_finds_the_same_remedies(trial: Trial, texts: dict[str, str]) -> None:
     order = order_of(trial, GX120.parent)
-    assert [each.check for each in order.failures] == list(texts)[:IN_A_RUN]
+    assert [each.check for each in order.failures] == list(texts)[: IN_A_RUN // 3]  # load cases
     again = texts_of(order._replace(failures=failures_of(trial)))
     assert again == texts
     marked = {one.id: one.remedy for one in with_remedies(trial.checks, again)}
