@@ -11,8 +11,8 @@ import pytest
 
 from camwright.geometry.errors import InputError
 from camwright.pipeline.case.case import Case
-from camwright.pipeline.case.case_file import read_case
-from camwright.pipeline.case.case_values import quantity_of, value_of, with_values
+from camwright.pipeline.case.case_file import read_case, with_values
+from camwright.pipeline.case.case_values import quantity_of, value_of
 from camwright.pipeline.checks.registry import DECLARED
 from camwright.pipeline.remedies.lever_steps import PARTS, Workbench, told
 from camwright.pipeline.remedies.levers import (
