@@ -13,8 +13,7 @@ from camwright.geometry.arrays import FULL_TURN, uniform_turn
 from camwright.geometry.contour import RollerContour
 from camwright.geometry.lift import Lift
 from camwright.geometry.pitch_curve import PitchCurve
-from camwright.pipeline.case.case_file import read_case
-from camwright.pipeline.case.case_values import with_values
+from camwright.pipeline.case.case_file import read_case, with_values
 from camwright.pipeline.case.load_case_torque import engine_torques
 from camwright.pipeline.checks.check import screen
 from camwright.pipeline.contact.tiers import Tier
