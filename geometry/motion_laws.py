@@ -194,14 +194,16 @@ class Segment:
 
     def __post_init__(self) -> None:
         if self.law != DWELL and self.law not in LAWS:
-            raise InputError("segment.law", self.law, f"one of {', '.join((DWELL, *LAWS))}")
+            raise InputError("lift.segment.law", self.law, f"one of {', '.join((DWELL, *LAWS))}")
         if not 0.0 < self.angle <= FULL_TURN * (1.0 + CLOSURE_TOLERANCE):
-            raise InputError("segment.angle", self.angle, "> 0 rad and at most a turn")
+            raise InputError(
+                "lift.segment.angle", f"{np.degrees(self.angle):.4g} deg", "> 0 and <= 360 deg"
+            )
         if not abs(self.stroke) < np.inf:
-            raise InputError("segment.stroke", self.stroke, "finite")
+            raise InputError("lift.segment.stroke", self.stroke, "finite")
         if (self.law == DWELL) != (self.stroke == 0.0):
-            limit = "0 m in a dwell" if self.law == DWELL else "not 0 m: write a dwell"
-            raise InputError("segment.stroke", self.stroke, limit)
+            limit = "0 m in a dwell" if self.law == DWELL else "other than 0: write a dwell"
+            raise InputError("lift.segment.stroke", f"{1e3 * self.stroke:.4g} mm", limit)
 
 
 @dataclass(frozen=True)

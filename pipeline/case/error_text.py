@@ -85,10 +85,11 @@ def first_error(error: ValidationError, section: str = "") -> InputError:
         key, value = f"{key}.kind", context["tag"]
     if first["type"] == "union_tag_not_found":
         context["kinds"] = " or ".join(f'"{kind}"' for kind in _kinds(first["loc"]))
+    quoted = isinstance(value, str)
     if isinstance(value, (dict, list)):
         value = "a table" if isinstance(value, dict) else "an array"
     limit = _WORDS.get(first["type"], first["msg"]).format_map(context)
-    if isinstance(value, str) and limit in _NUMBERS:
+    if quoted and limit in _NUMBERS:
         value, limit = f'"{value}"', f"{limit}, not in quotes"
     more = f" (and {others} more)" if others else ""
     return InputError(key or "case", as_written(value), f"{limit}{more}")

@@ -145,7 +145,7 @@ def test_undercut_is_a_verdict_of_the_run(tmp_path, cam):
         ('width = "16 mm"', 'width = "11.9 mm"',
          "follower.face.width = 11.9 mm, must be > 12 mm, twice the greatest |s' - cam.off"),
         ('stroke = "-6 mm"', 'stroke = "-5 mm"',
-         "lift.segment.stroke = 0.001 m in all, must be 0 m in all: the lift must close"),
+         "lift.segment.stroke = 1 mm in all, must be 0 mm in all: the lift must close"),
         ('angle = "180 deg"', 'angle = "170 deg"', "lift.segment.angle = 350 deg in all, must be"),
         ('bore_radius = "6 mm"', 'offset = "13.1 mm"\nbore_radius = "6 mm"',
          "cam.offset = 13.1 mm, must be smaller than cam.prime_radius = "),

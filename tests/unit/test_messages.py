@@ -3,10 +3,15 @@
 The inputs are those of users who could not tell from the message what to change.
 """
 
+import random
+import re
 import signal
 import sys
+import tomllib
+from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -18,7 +23,7 @@ from camwright.geometry.lift import Lift
 from camwright.geometry.pitch_curve import PitchCurve
 from camwright.pipeline import cli
 from camwright.pipeline.base.units import rounded
-from camwright.pipeline.case.case_file import parse_case, with_values
+from camwright.pipeline.case.case_file import case_of, parse_case, with_values
 from camwright.pipeline.case.case_values import replaced, text_of
 from camwright.pipeline.case.consistency import check_numbers
 from camwright.pipeline.contact.contact_pair import ContactPair
@@ -199,3 +204,52 @@ def test_commands_refuse_in_the_words_of_their_options(
         signal.signal(signal.SIGTERM, handler)
     assert leaving.value.code == 2
     assert capsys.readouterr().err == f"camwright: {message}\n"
+
+
+KEY = re.compile(r"[a-z_]+(\[\d+\])?(\.\w+(\[\d+\])?)*( = |, )")
+NUMBER = re.compile(r"(?<![\w.])\d+\.?\d*")
+TIMES = ("0", "-1.23456789", "1.23456789e9", "1.23456789e-9")
+WRONG = (5, "abc", True, [1], "3 furlong", "3 K", "72")
+
+
+def places(table: Any, path: tuple[str | int, ...] = ()) -> Iterator[tuple[str | int, ...]]:
+    """Paths of the numbers of a case, with their units."""
+    for key, value in table.items() if isinstance(table, dict) else enumerate(table):
+        if isinstance(value, (dict, list)):
+            if key != "sources":
+                yield from places(value, (*path, key))
+        elif not isinstance(value, str) or value[:1] in "-0123456789":
+            yield (*path, key)
+
+
+def put(case: Any, path: tuple[str | int, ...], value: object) -> Any:
+    """Value at a path before; the one stated is put there."""
+    for step in path[:-1]:
+        case = case[step]
+    old, case[path[-1]] = case[path[-1]], value
+    return old
+
+
+def test_every_number_of_a_case_is_refused_in_its_words() -> None:
+    """A seeded sample of numbers set to 0, negative, huge, tiny, another unit, another type."""
+    draw, refusals = random.Random(18), 0
+    for text in (GX120, REDESIGN):
+        paths = sorted(places(tomllib.loads(text)), key=str)
+        for path in draw.sample(paths, 40):
+            case = tomllib.loads(text)
+            old = put(case, path, None)
+            unit = old.partition(" ")[2] if isinstance(old, str) else ""
+            scaled = [f"{each} {unit}" if unit else float(each) for each in TIMES]
+            for value in draw.sample([*scaled, *WRONG], 4):
+                case = tomllib.loads(text)
+                put(case, path, value)
+                try:
+                    case_of(case)
+                except InputError as error:
+                    message, refusals = str(error), refusals + 1
+                    assert KEY.match(message), message
+                    assert message.count("must be") == 1, message
+                    for number in NUMBER.findall(message):
+                        digits = number.replace(".", "").lstrip("0").rstrip("0")
+                        assert len(digits) <= 4, message
+    assert refusals > 200
