@@ -92,7 +92,9 @@ def _page(document: Record, picture: bytes) -> str:
     ]
     pruned = [[str(row["part"]), str(row["why"])] for row in document["pruned"]]
     alt = f"Residual torque ripple over {AXES[document['against']][1]}"
+    excluded = document["without_result"]
     front = [
+        *([] if excluded is None else [Block(Note(f"{line}.")) for line in excluded["lines"]]),
         _table("Points of the front", [words for _, words in COLUMNS], points, 5, 7),
         Block(Pictures([Picture("Front", alt=alt, png=picture)])),
     ]

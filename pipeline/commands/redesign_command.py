@@ -52,7 +52,7 @@ def redesign(
     if as_json:
         show_json(document)
     else:
-        _show(document)
+        _show(document, folder)
         stdout.print(f"record: {folder / RECORD}\npage: {made}", markup=False)
     if not document["points"]:
         return FAILED
@@ -60,7 +60,7 @@ def redesign(
     return INCOMPLETE if lacking else PASSED
 
 
-def _show(document: dict[str, Any]) -> None:
+def _show(document: dict[str, Any], folder: Path) -> None:
     from rich.table import Table
 
     from camwright.reports.redesign_page import COLUMNS
@@ -71,12 +71,15 @@ def _show(document: dict[str, Any]) -> None:
         table.add_column(words)
     for row in document["points"]:
         table.add_row(*(listed(row.get(name)) for name, _ in COLUMNS))
-    if document["points"]:
-        stdout.print(table)
-    else:
-        stdout.print("no choice of the catalogues keeps all limits", markup=False)
+    counts = f"{len(document['tried'])} tried, {len(document['pruned'])} left out by bounds"
+    if not document["points"]:
+        for line in document["without_result"]["lines"]:
+            stdout.print(line, markup=False)
+        stdout.print(f"{counts} and dominance", markup=False)
+        return
+    stdout.print(table)
     missing = sorted({name for row in document["points"] for name in row["open"]})
     if missing:
         stdout.print(f"missing data of these points: {', '.join(missing)}", markup=False)
-    counts = f"{len(document['tried'])} tried, {len(document['pruned'])} left out by bounds"
-    stdout.print(f"{counts} and dominance; next: camwright run point_01.toml", markup=False)
+    first = folder / document["points"][0]["file"]
+    stdout.print(f"{counts} and dominance; next: camwright run {first}", markup=False)

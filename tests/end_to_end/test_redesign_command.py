@@ -18,6 +18,7 @@ from camwright.pipeline.case.cards.catalogue import Catalogue, catalogue_of
 from camwright.pipeline.case.cards.substitution import Choice
 from camwright.pipeline.case.case_file import case_of, parse_case, read_case
 from camwright.pipeline.case.toml_text import to_toml
+from camwright.pipeline.commands.redesign_command import redesign
 from camwright.pipeline.preview import preview_case
 from camwright.pipeline.studies.redesign import part_search, redesign_study
 from camwright.reports import redesign_page as page
@@ -140,6 +141,30 @@ def test_a_point_is_what_its_case_file_gives(done):
     failing = {c.id for c in checks.values() if c.must_have and c.status == "fail"}
     assert not failing
     assert case.roller.radius == 0.0175
+
+
+@pytest.mark.slow
+def test_without_a_result_limit_and_way_are_named_and_no_file_is(
+    small, case_file, tmp_path, capsys
+):
+    """In a room of 48 mm every cam leaves too much of the ripple; more room is one of the ways."""
+    text = case_file.read_text(encoding="utf-8")
+    assert text.count('cam_radius = "90 mm"') == 1
+    path = tmp_path / "tight.toml"
+    path.write_text(text.replace('cam_radius = "90 mm"', 'cam_radius = "48 mm"'), encoding="utf-8")
+    code = redesign(path, tmp_path / "out", "size", 1, as_json=False)
+    shown = capsys.readouterr().out
+    assert code == 1
+    assert "no choice of the catalogues keeps all limits" in shown
+    assert "excluded most by torque_reduction (torque ripple reduction): 3 of 3" in shown
+    ways = shown.split("what would have to give: ")[1]
+    assert "cam radius: " in ways and " mm instead of 48 mm" in ways
+    assert "its limits in conflict: cam_radius, torque_reduction" in shown
+    assert "point_01" not in shown
+    document = json.loads((tmp_path / "out" / "redesign.json").read_text(encoding="utf-8"))
+    assert document["points"] == []
+    page_text = (tmp_path / "out" / "redesign.html").read_text(encoding="utf-8")
+    assert "what would have to give: " in page_text
 
 
 def test_what_is_solved_is_used_again(done, case_file):

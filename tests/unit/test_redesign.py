@@ -23,8 +23,9 @@ from camwright.pipeline.case.load_case_torque import engine_torques
 from camwright.pipeline.smoothing.problem_setup import problem_of, roller_problems
 from camwright.pipeline.studies.redesign import point_store, redesign_study
 from camwright.pipeline.studies.redesign.design_point import Point, Rough
+from camwright.pipeline.studies.redesign.exclusions import exclusions
 from camwright.pipeline.studies.redesign.pareto_front import front, thinned
-from camwright.pipeline.studies.redesign.part_search import RUNG, RUNGS, branch
+from camwright.pipeline.studies.redesign.part_search import RUNG, RUNGS, Pruned, branch
 from camwright.pipeline.studies.redesign.ripple_bounds import RippleBound, bearable_energy
 
 CASES = Path(__file__).parents[2] / "cases"
@@ -310,13 +311,73 @@ def test_a_point_that_passes_keeps_one_without_data_off_the_front():
     assert redesign_study._split([fails, refused], "size")[0] == []
 
 
+def shortfall(check, demand=3.0, limit=2.0, unit="N"):
+    """A failing check of a point."""
+    used = None if demand is None else demand / limit
+    return {"check": check, "title": f"Title of {check}", "demand": demand, "limit": limit,
+            "unit": unit, "utilisation": used}  # fmt: skip
+
+
+def test_without_a_result_the_limit_that_excludes_most_is_named():
+    """Each choice counts once, for the limit that it exceeds most; the nearest is solved."""
+
+    def rough(name, limit, used):
+        return Choice(name, "s", "b"), {"feasible": False, "limit": limit, "utilisation": used}
+
+    refused = {"feasible": False, "why": "cam.bore = 9, must be < 8"}
+    tried = [rough("a", "cam_radius", 1.4), rough("b", "cam_radius", 1.2),
+             rough("c", "roller_static", 3.0), (Choice("d", "s", "b"), refused)]  # fmt: skip
+    pruned = [Pruned("weak", "too low", "torque_reduction"), Pruned("twin", "dominated")]
+    asked = []
+
+    def conflict(choice):
+        asked.append(choice)
+        ways = [{"sentence": f"way {k}"} for k in range(4)]
+        return {"conflict": ["cam_radius", "jump"], "relaxations": ways}
+
+    record = exclusions(tried, [], pruned, conflict)
+    assert asked == [tried[1][0]]
+    assert [(each["limit"], each["count"]) for each in record["excluded"]] == [
+        ("cam_radius", 2), ("cam.bore", 1), ("roller_static", 1), ("torque_reduction", 1),
+    ]  # fmt: skip
+    assert record["lines"][1] == (
+        "excluded most by cam_radius (cam radius): 2 of 5 choices and parts"
+    )
+    assert record["lines"][3:] == [
+        "nearest: b, spring s, bushes b",
+        "its limits in conflict: cam_radius, jump",
+        "what would have to give: way 0; or way 1; or way 2",
+    ]
+
+
+def test_of_points_solved_in_full_the_demand_says_what_would_have_to_give():
+    far, near = ({"feasible": True, "shortfalls": [shortfall("life", demand)]} for demand in (9, 3))
+    refused = [(Choice("far", "s", "b"), far), (Choice("near", "s", "b"), near)]
+    tried = [(choice, {"feasible": True}) for choice, _ in refused]
+    record = exclusions(tried, refused, [], lambda choice: pytest.fail("not solved again"))
+    assert record["excluded"] == [{"limit": "life", "title": "", "count": 2}]
+    assert record["nearest"] == "near, spring s, bushes b"
+    assert record["ways"] == ["Title of life: 3 N instead of 2 N"]
+
+
+def test_without_any_choice_the_case_itself_is_solved():
+    asked = []
+    pruned = [Pruned("weak", "too low", "torque_reduction")]
+    record = exclusions([], [], pruned, lambda choice: asked.append(choice) or {})
+    assert asked == [None]
+    assert record["lines"][-2:] == [
+        "nearest: the parts of the case",
+        "what would have to give: more than any single limit, spring or prime radius",
+    ]
+
+
 def test_the_verdict_of_a_point_is_that_of_its_checks():
     figures = dict.fromkeys(
         ("ripple_before", "ripple_left", "cam_radius", "mass", "prime_radius", "preload",
          "spring_rate", "lift_max", "pressure_angle_max", "normal_force_max", "p0_max"), 1.0
     )  # fmt: skip
-    good = Point(feasible=True, failing=(), open=(), binding=(), **figures)
+    good = Point(feasible=True, shortfalls=(), open=(), binding=(), **figures)
     assert good.verdict == good.as_record()["verdict"] == "pass"
     assert replace(good, open=("film",)).verdict == "incomplete"
-    assert replace(good, open=("film",), failing=("jump",)).verdict == "fail"
+    assert replace(good, open=("film",), shortfalls=(shortfall("jump"),)).verdict == "fail"
     assert replace(good, feasible=False).verdict == "fail"

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from typing import TypedDict
 
 import numpy as np
 
@@ -16,7 +17,7 @@ from camwright.geometry.errors import InputError
 from camwright.pipeline.base.units import in_unit
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.limits import TORQUE_REDUCTION
-from camwright.pipeline.checks.check import Verdict, within_depth
+from camwright.pipeline.checks.check import Check, Verdict, in_order, within_depth
 from camwright.pipeline.engine.torque import Torque
 from camwright.pipeline.follower.camshaft_loads import unbalance
 from camwright.pipeline.preview import preview_case
@@ -29,12 +30,17 @@ from camwright.pipeline.smoothing.synthesis_problem import coarsened
 
 @dataclass(frozen=True)
 class Rough:
-    """Result of the synthesis alone: residual over engine torque ripple, cam radius m, mass kg."""
+    """Result of the synthesis alone: residual over engine torque ripple, cam radius m, mass kg.
+
+    limit, utilisation: id and utilisation of the limit furthest exceeded; "" and 0: feasible.
+    """
 
     feasible: bool
     ripple: float
     cam_radius: float
     mass: float
+    limit: str = ""
+    utilisation: float = 0.0
 
     @classmethod
     def impossible(cls) -> Rough:
@@ -42,14 +48,26 @@ class Rough:
         return cls(feasible=False, ripple=1.0, cam_radius=0.0, mass=0.0)
 
 
+class Shortfall(TypedDict):
+    """A blocking check that fails: demand and limit in `unit`; null: infinite."""
+
+    check: str
+    title: str
+    demand: float | None
+    limit: float | None
+    unit: str
+    utilisation: float | None
+
+
 @dataclass(frozen=True)
 class Point:
     """Result of a case by its preview, SI.
 
     ripple_before, ripple_left: standard deviation of the crank torque without and with the cam,
-    N m; mass: of cam, follower and the half of the spring not part of the follower; failing, open:
-    ids of the blocking checks that fail or lack data, without those of a sign-off; binding: limits
-    by decreasing shadow price. p0_max is NaN where the contour does not bound a body.
+    N m; mass: of cam, follower and the half of the spring not part of the follower; shortfalls:
+    blocking checks that fail, the worst first; open: ids of those that lack data, without those of
+    a sign-off; binding: limits by decreasing shadow price. p0_max is NaN where the contour does not
+    bound a body.
     """
 
     feasible: bool
@@ -64,18 +82,18 @@ class Point:
     pressure_angle_max: float
     normal_force_max: float
     p0_max: float
-    failing: tuple[str, ...]
+    shortfalls: tuple[Shortfall, ...]
     open: tuple[str, ...]
     binding: tuple[str, ...]
 
     @property
     def verdict(self) -> Verdict:
         """Verdict of the preview, without the certificate of a sign-off."""
-        if self.failing or not self.feasible:
+        if self.shortfalls or not self.feasible:
             return "fail"
         return "incomplete" if self.open else "pass"
 
-    def as_record(self) -> dict[str, str | float | list[str] | None]:
+    def as_record(self) -> dict[str, str | float | list[str] | list[Shortfall] | None]:
         """Record for JSON, names with units."""
         return {
             "feasible": self.feasible,
@@ -92,7 +110,8 @@ class Point:
             "pressure_angle_max_deg": in_unit(self.pressure_angle_max, "deg"),
             "normal_force_max_N": self.normal_force_max,
             "p0_max_MPa": in_unit(self.p0_max, "MPa") if np.isfinite(self.p0_max) else None,
-            "failing": list(self.failing),
+            "failing": [each["check"] for each in self.shortfalls],
+            "shortfalls": list(self.shortfalls),
             "open": list(self.open),
             "binding": list(self.binding),
         }
@@ -112,7 +131,7 @@ def point_of(case: Case) -> Point:
     if rest is None or torque is None:
         raise InputError("engine", "missing", "specified: a redesign balances its torque")
     record = trial.synthesis or {"feasible": False, "prices": []}
-    blocking = [check for check in within_depth(trial.checks) if check.blocks]
+    blocking = [check for check in in_order(within_depth(trial.checks)) if check.blocks]
     return Point(
         feasible=record["feasible"],
         ripple_before=float(np.std(torque)),
@@ -126,7 +145,7 @@ def point_of(case: Case) -> Point:
         pressure_angle_max=float(contour.pressure_angle_max().value),
         normal_force_max=max(float(c.loads.normal_force.max()) for c in trial.cycles),
         p0_max=max(float(np.max(c.contact.p0)) for c in trial.cycles),
-        failing=tuple(check.id for check in blocking if check.status == "fail"),
+        shortfalls=tuple(_shortfall(check) for check in blocking if check.status == "fail"),
         open=tuple(check.id for check in blocking if check.status == "not_evaluated"),
         binding=tuple(price["limit"] for price in record["prices"]),
     )
@@ -142,13 +161,36 @@ def rough_point(case: Case, torques: Mapping[str, Torque]) -> Rough:
     problem = replace(every, left_out=frozenset({TORQUE_REDUCTION.id}))
     design = continued(problem, approached(coarsened(problem)))
     contour = redrawn(case, design).contour(design.lift())
-    enough = every.ceiling is None or design.ripple <= every.ceiling
+    uses = dict(design.utilisation)
+    if every.ceiling is not None:
+        uses[TORQUE_REDUCTION.id] = design.ripple / every.ceiling
+    limit = max(uses, key=lambda name: uses[name])
+    beyond = uses[limit] > 1.0
     return Rough(
-        design.feasible and enough,
+        not beyond,
         design.ripple,
         float(contour.radius_max().value),
         _mass(case, contour),
+        limit if beyond else "",
+        uses[limit] if beyond else 0.0,
     )
+
+
+def _shortfall(check: Check) -> Shortfall:
+    record = check.as_record()
+    demand, limit, used = (_finite(record[key]) for key in ("demand", "limit", "utilisation"))
+    return {
+        "check": check.id,
+        "title": check.title,
+        "demand": demand,
+        "limit": limit,
+        "unit": check.unit,
+        "utilisation": used,
+    }
+
+
+def _finite(value: object) -> float | None:
+    return value if isinstance(value, float) else None
 
 
 def _mass(case: Case, contour: Contour) -> float:

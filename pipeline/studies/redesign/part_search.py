@@ -18,8 +18,9 @@ from camwright.pipeline.case.cards.catalogue import (
 )
 from camwright.pipeline.case.cards.substitution import AS_GIVEN, Choice, travel_of
 from camwright.pipeline.case.case import Case
-from camwright.pipeline.case.limits import JUMP
+from camwright.pipeline.case.limits import JUMP, TORQUE_REDUCTION
 from camwright.pipeline.follower.spring import HelicalSpring
+from camwright.pipeline.smoothing.scenario import Scenario
 from camwright.pipeline.smoothing.synthesis_problem import Problem
 from camwright.pipeline.studies.redesign import ripple_bounds
 from camwright.pipeline.studies.redesign.design_point import Rough
@@ -31,10 +32,11 @@ Branch = Generator[Choice, Rough, None]
 
 @dataclass(frozen=True)
 class Pruned:
-    """A part excluded without solution, and the reason."""
+    """A part excluded without solution, the reason, and the limit; "": excluded by no limit."""
 
     part: str
     why: str
+    limit: str = ""
 
 
 @dataclass(frozen=True)
@@ -133,12 +135,17 @@ def branches(
     running: dict[str, Branch] = {}
     for name, card in rollers.items():
         force = ripple_bounds.bearable_force(card, case)
-        bound = least.by_spring(force)
+        bounds = least.by_spring(force)
+        bound = {name: each for name, each in bounds.items() if each <= least.allowed}
         if bound:
             running[name] = branch(name, bound, names)
         else:
-            words = f"roller load limit {force:.0f} N: too low for the required torque reduction"
-            pruned.append(Pruned(name, words))
+            most, required = 1.0 - min(bounds.values(), default=1.0), 1.0 - least.allowed
+            words = (
+                f"roller load limit {force:.0f} N: too low for the required torque reduction, "
+                f"at most {most:.2f} of {required:.2f}"
+            )
+            pruned.append(Pruned(name, words, TORQUE_REDUCTION.id))
     return running, pruned
 
 
@@ -150,20 +157,26 @@ class _Least:
     problem: Problem
     springs: dict[str, tuple[HelicalSpring, float]]
 
+    @property
+    def design(self) -> Scenario:
+        """Scenario whose ripple counts most."""
+        return max(self.problem.scenarios, key=lambda item: item.weight)
+
+    @property
+    def allowed(self) -> float:
+        """Greatest residual ripple of the required torque reduction."""
+        return 1.0 - (self.design.torque_reduction or 0.0)
+
     def by_spring(self, force: float) -> dict[str, float]:
-        """Bounds by spring for a roller load limit (N), without infeasible springs."""
-        case, problem = self.case, self.problem
-        design = max(problem.scenarios, key=lambda item: item.weight)
+        """Bounds by spring for a roller load limit (N)."""
+        case, problem, design = self.case, self.problem, self.design
         bound = ripple_bounds.RippleBound(design.torque, problem.gear_ratio)
         relief = ripple_bounds.relief_of(problem.scenarios, problem.ratings.limits.get(JUMP))
-        allowed = 1.0 - (design.torque_reduction or 0.0) + ripple_bounds.RESERVE
         preload, bounds = case.spring.preload, {}
         for name, (spring, travel) in self.springs.items():
             held = preload * travel + 0.5 * spring.rate * travel**2
             borne = ripple_bounds.bearable_energy(force, spring.rate, preload, relief)
-            least = bound(min(held, borne))
-            if least <= allowed:
-                bounds[name] = max(0.0, least - ripple_bounds.RESERVE)
+            bounds[name] = max(0.0, bound(min(held, borne)) - ripple_bounds.RESERVE)
         return bounds
 
 

@@ -14,6 +14,8 @@ from camwright.pipeline.base.files import json_text, read_json, write_atomic
 from camwright.pipeline.case.case_file import parse_case
 from camwright.pipeline.case.load_case_torque import engine_torques
 from camwright.pipeline.engine.torque import Torque
+from camwright.pipeline.smoothing.infeasibility import infeasibility
+from camwright.pipeline.smoothing.problem_setup import problem_of
 from camwright.pipeline.studies.redesign.design_point import point_of, rough_point
 
 Record = dict[str, Any]
@@ -23,7 +25,7 @@ SOLVED = "solved"
 
 @dataclass(frozen=True)
 class Task:
-    """A case as text, to be solved by the synthesis alone or in full.
+    """A case as text, to be solved by the synthesis alone, in full, or for its conflict of limits.
 
     base: the original case, whose torque all variants share; folder: of the included files and of
     the cache ``solved/``; version: of the source.
@@ -33,7 +35,7 @@ class Task:
     base: str
     folder: Path
     version: str
-    tier: Literal["rough", "whole"]
+    tier: Literal["rough", "whole", "conflict"]
 
     @property
     def path(self) -> Path:
@@ -51,6 +53,9 @@ def solved(task: Task) -> Record:
         case = parse_case(task.text, task.folder)
         if task.tier == "rough":
             record = asdict(rough_point(case, _torques(task.base, task.folder)))
+        elif task.tier == "conflict":
+            problem = problem_of(case, _torques(task.base, task.folder))
+            record = {"feasible": False, **infeasibility(problem).as_record()}
         else:
             record = point_of(case).as_record()
     except CamError as error:

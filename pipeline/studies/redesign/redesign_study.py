@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from dataclasses import asdict, dataclass
 from pathlib import Path
@@ -22,6 +22,7 @@ from camwright.pipeline.case.load_case_torque import engine_torques
 from camwright.pipeline.results.run_folder import versions
 from camwright.pipeline.smoothing.problem_setup import problem_of
 from camwright.pipeline.studies.redesign.design_point import Rough
+from camwright.pipeline.studies.redesign.exclusions import exclusions
 from camwright.pipeline.studies.redesign.pareto_front import front, thinned
 from camwright.pipeline.studies.redesign.part_search import Branch, branches
 from camwright.pipeline.studies.redesign.point_store import SOLVED, Record, Task, solved
@@ -51,7 +52,7 @@ class Search:
         """Resolved text of the case with the parts of a choice."""
         return variant(self.case, self.parts, choice, self.folder).to_toml()
 
-    def task(self, text: str, tier: Literal["rough", "whole"]) -> Task:
+    def task(self, text: str, tier: Literal["rough", "whole", "conflict"]) -> Task:
         return Task(text, self.case.to_toml(), self.out, self.version, tier)
 
 
@@ -88,7 +89,11 @@ def redesign(
         progress.stage("search the catalogue")
         tried = _searched(search, running, workers, progress)
         original, points = _solved_whole(search, _chosen(tried, against), workers, progress)
-    kept, refused = _split(points, against)
+        kept, refused = _split(points, against)
+        excluded = None
+        if not kept:
+            progress.stage("conflicting limits")
+            excluded = exclusions(tried, refused, pruned, _conflict_of(search, workers))
     verdict = kept[0][1]["verdict"] if kept else "fail"
     document: dict[str, Json] = {
         "schema": 1,
@@ -99,6 +104,7 @@ def redesign(
         "given": original,
         "points": _written(search, kept),
         "refused": [_named(choice) | {"why": _why(record, verdict)} for choice, record in refused],
+        "without_result": excluded,
         "pruned": [asdict(one) for one in pruned],
         "tried": [_named(choice) | record for choice, record in tried],
     }
@@ -185,6 +191,16 @@ def _solved_whole(
         records.append(future.result())
         progress.advance(len(records), len(futures))
     return records[0], list(zip(chosen, records[1:], strict=True))
+
+
+def _conflict_of(search: Search, workers: ProcessPoolExecutor) -> Callable[[Choice | None], Record]:
+    """Record of the infeasibility of a choice, of the case as it is for None."""
+
+    def conflict(choice: Choice | None) -> Record:
+        text = search.case.to_toml() if choice is None else search.text(choice)
+        return workers.submit(solved, search.task(text, "conflict")).result()
+
+    return conflict
 
 
 def _split(points: Sequence[Tried], against: str) -> tuple[list[Tried], list[Tried]]:

@@ -1,0 +1,124 @@
+"""Redesign without a result: limits that excluded the choices, and what would have to give."""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
+
+from camwright.pipeline.case.cards.substitution import Choice
+from camwright.pipeline.case.limits import LIMITS
+from camwright.pipeline.studies.redesign.part_search import Pruned
+from camwright.pipeline.studies.redesign.point_store import Record
+
+_SHOWN = 3  # relaxations in a line
+_TITLES = {row.id: row.title for row in LIMITS.values()}
+
+
+def exclusions(
+    tried: Sequence[tuple[Choice, Record]],
+    refused: Sequence[tuple[Choice, Record]],
+    pruned: Sequence[Pruned],
+    conflict: Callable[[Choice | None], Record],
+) -> Record:
+    """Reasons why no choice is on the front.
+
+    A choice counts once, for the limit that it exceeds most: of its preview if it was solved in
+    full, else of its synthesis, else of the bounds.
+
+    Parameters
+    ----------
+    tried : sequence      choices with their points of the synthesis alone
+    refused : sequence    choices with their points in full; none is on the front
+    pruned : sequence     parts excluded without solution
+    conflict : callable   choice, None of the case as it is -> record of its infeasibility
+
+    Returns
+    -------
+    dict   ``excluded``: limit, title and count, the most frequent first; ``nearest``: parts of the
+           choice that exceeds its limit least; ``conflict``, ``ways``: its conflicting limits, and
+           the changes that would make room, the smallest first; ``lines``: all in words
+    """
+    whole = dict(refused)
+    reasons = [_reason(whole.get(choice, record)) for choice, record in tried]
+    reasons += [each.limit for each in pruned if each.limit]
+    counts = Counter(reason for reason in reasons if reason)
+    first = sorted(counts, key=lambda name: (-counts[name], name))
+    excluded = [
+        {"limit": name, "title": _TITLES.get(name, ""), "count": counts[name]} for name in first
+    ]
+    short = [pair for pair in refused if first and _reason(pair[1]) == first[0]]
+    if short and short[0][1].get("shortfalls"):
+        nearest = min(short, key=lambda pair: _excess(pair[1]))
+        ways, conflicting = [_way(nearest[1]["shortfalls"][0])], []
+        choice: Choice | None = nearest[0]
+    else:
+        solved = [pair for pair in tried if pair[1].get("limit")]
+        choice = min(solved, key=lambda pair: pair[1]["utilisation"])[0] if solved else None
+        record = conflict(choice)
+        conflicting = record.get("conflict", [])
+        ways = [each["sentence"] for each in record.get("relaxations", ())]
+    made: Record = {
+        "excluded": excluded,
+        "nearest": None if choice is None else choice.words,
+        "conflict": conflicting,
+        "ways": ways,
+    }
+    return made | {"lines": _lines(made)}
+
+
+def _lines(record: Record) -> list[str]:
+    """Limits by the number of excluded choices, and the smallest changes that make room."""
+    counts = [
+        f"{each['limit']}{' (' + each['title'] + ')' if each['title'] else ''}: {each['count']}"
+        for each in record["excluded"]
+    ]
+    said = ["no choice of the catalogues keeps all limits"]
+    if counts:
+        said.append(f"excluded most by {counts[0]} of {_total(record)} choices and parts")
+    if counts[1:]:
+        said.append(f"excluded further by {'; '.join(counts[1:])}")
+    which = record["nearest"] or "the parts of the case"
+    said.append(f"nearest: {which}")
+    if record["conflict"]:
+        said.append(f"its limits in conflict: {', '.join(record['conflict'])}")
+    ways = "; or ".join(record["ways"][:_SHOWN])
+    said.append(
+        f"what would have to give: {ways}"
+        if ways
+        else "what would have to give: more than any single limit, spring or prime radius"
+    )
+    return said
+
+
+def _total(record: Record) -> int:
+    return sum(int(each["count"]) for each in record["excluded"])
+
+
+def _reason(record: Record) -> str:
+    """Limit that a point exceeds most; field of the case that refuses it; "": none."""
+    if record.get("shortfalls"):
+        return str(record["shortfalls"][0]["check"])
+    if record.get("limit"):
+        return str(record["limit"])
+    return str(record["why"]).partition(" = ")[0][:60] if record.get("why") else ""
+
+
+def _excess(record: Record) -> tuple[int, float]:
+    """Number of failing checks of a point, and the utilisation of the worst."""
+    used = record["shortfalls"][0]["utilisation"]
+    return len(record["shortfalls"]), math.inf if used is None else used
+
+
+def _way(shortfall: Mapping[str, Any]) -> str:
+    """The limit at which a check would pass."""
+    unit = "" if shortfall["unit"] == "-" else f" {shortfall['unit']}"
+    demand, limit = shortfall["demand"], shortfall["limit"]
+    if demand is None or limit is None:
+        return f"{shortfall['title']}: unbounded against {_number(limit)}{unit}"
+    return f"{shortfall['title']}: {demand:.4g}{unit} instead of {limit:.4g}{unit}"
+
+
+def _number(value: float | None) -> str:
+    return "-" if value is None else f"{value:.4g}"
