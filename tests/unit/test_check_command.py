@@ -14,7 +14,7 @@ from typing import Any
 
 import pytest
 from small_machine import small_machine
-from small_run import check, small_case, summary, write_run, write_trial
+from small_run import TORQUE, check, small_case, summary, values, write_run, write_trial
 
 from camwright.geometry.errors import InputError
 from camwright.pipeline import cli
@@ -331,3 +331,20 @@ def test_what_binds_is_told_apart_from_what_nobody_can_judge():
         "binding, as data are missing: guide_pv_B",
     ]
     assert binding_lines(records, []) == []
+
+
+def test_remedies_are_those_of_one_case(command: Command, tmp_path: Path) -> None:
+    code, _, err = command("check", tmp_path / "a.toml", tmp_path / "b.toml", "--remedies")
+    assert code == 2 and "--remedies = 2, must be stated with one run or case alone" in err
+
+
+def test_recorded_remedies_of_a_run_are_printed(command: Command, tmp_path: Path) -> None:
+    failed = check("fail", id="a_two", remedy="follower.mass: 99 g; saves 76 g")
+    folder = tmp_path / "run"
+    with RunFolder(folder, small_case()) as made:
+        made.write_torque(values(TORQUE))
+        write_trial(made, [failed])
+        made.finish(summary("fail"))
+    for option in ((), ("--all",)):
+        code, out, _ = command("check", folder, *option)
+        assert code == 1 and "follower.mass: 99 g; saves 76 g" in out
