@@ -65,7 +65,7 @@ class Lift:
         if values.shape != theta.shape:
             raise InputError("lift.values", len(values), f"{len(theta)} values, one per angle")
         if not values.min() >= -NEGATIVE_TOLERANCE:
-            raise InputError("lift.values", float(values.min()), ">= 0 m")
+            raise InputError("lift.values", f"{1e3 * values.min():.4g} mm", ">= 0 mm")
         if not 0 <= self.closure < np.inf:
             raise InputError("lift.closure", self.closure, ">= 0 m and finite")
         freeze(self, theta=theta, values=values)

@@ -202,7 +202,7 @@ class Segment:
         if not abs(self.stroke) < np.inf:
             raise InputError("lift.segment.stroke", self.stroke, "finite")
         if (self.law == DWELL) != (self.stroke == 0.0):
-            limit = "0 m in a dwell" if self.law == DWELL else "other than 0: write a dwell"
+            limit = "0 mm in a dwell" if self.law == DWELL else "other than 0: write a dwell"
             raise InputError("lift.segment.stroke", f"{1e3 * self.stroke:.4g} mm", limit)
 
 
