@@ -135,9 +135,9 @@ def test_straight_places_have_infinite_radius():
 @pytest.mark.parametrize(
     ("prime_radius", "offset", "field"),
     [
-        (0.0, 0.0, "cam.pitch_base_radius"),
-        (-0.05, 0.0, "cam.pitch_base_radius"),
-        (np.nan, 0.0, "cam.pitch_base_radius"),
+        (0.0, 0.0, "cam.prime_radius"),
+        (-0.05, 0.0, "cam.prime_radius"),
+        (np.nan, 0.0, "cam.prime_radius"),
         (0.05, 0.05, "cam.offset"),
         (0.05, -0.06, "cam.offset"),
         (0.05, np.nan, "cam.offset"),
