@@ -76,10 +76,13 @@ class Preview:
         """Figures of the design."""
         solved, contour = self.solved, self.solved.contour
         cam, after = solved.case.cam, solved.cycles[0].turn.torque_after
+        # as in the headline of a run: after the follower has left the cam the loads are not its own
+        sound = [cycle for cycle in solved.cycles if cycle.loads.end is None]
+        pressures = [float(np.max(cycle.contact.p0)) for cycle in sound]
         disc = unbalance(contour, cam.bore_radius, cam.keyway, cam.width, cam.material.density)
         return Headline(
             None if after is None else float(np.std(after)),
-            max(float(np.max(cycle.contact.p0)) for cycle in solved.cycles),
+            max(pressures, default=math.nan),
             float(disc.mass) + solved.case.follower.mass,
             float(contour.radius_max().value),
         )
@@ -136,15 +139,19 @@ class Judge:
                 worst[name] = max(worst[name], used(by_id.get(name)))
         return worst
 
-    def preview(self, case: Case, wanted: Iterable[str]) -> Preview:
+    def preview(self, case: Case, wanted: Iterable[str], *, undercut: bool = False) -> Preview:
         """Preview of a case, judged at the corners that govern `wanted` and at their worst ones.
+
+        Parameters
+        ----------
+        undercut : bool   judge an undercut contour as well
 
         Raises
         ------
         CamError
             If the case has no such cam, or it cannot be solved.
         """
-        contour = self._contour(case)
+        contour = self._contour(case, undercut=undercut)
         solved = solution(case, contour, Tier.PREVIEW, torques=self.torques)
         worst = [self.corners.get(name, ()) for name in wanted]
         governing = {names[0] for names in self.corners.values() if names}
@@ -155,9 +162,9 @@ class Judge:
             tuple(self._named(case, governing.union(*worst))),
         )
 
-    def _contour(self, case: Case) -> Contour:
+    def _contour(self, case: Case, *, undercut: bool = False) -> Contour:
         contour = case.contour(cam_lift(case, self.torques) if self.lift is None else self.lift)
-        if not is_body(contour):
+        if not (undercut or is_body(contour)):
             raise GeometryError("the contour is undercut")
         return contour
 

@@ -8,7 +8,7 @@ case and verified by a preview.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import NamedTuple
@@ -205,8 +205,9 @@ class _Search:
 
     def remedies(self) -> dict[str, Remedy]:
         """Remedy of every failure, in their order."""
-        self.base = self.judge.preview(self.bench.case, self.failures)
-        quick = self.judge.utilisations(self.bench.case, self.failures)
+        case = self.bench.case
+        self.base = self.judge.preview(case, self.failures, undercut=True)
+        quick = self._quick(case, self.failures)
         self.scale = {
             name: _ratio(failure.used, quick[name]) for name, failure in self.failures.items()
         }
@@ -272,10 +273,18 @@ class _Search:
     def _used(self, step: Step, names: Sequence[str]) -> dict[str, float]:
         """Utilisations with a step; infinite where the case has no such cam."""
         try:
-            quick = self.judge.utilisations(self.bench.tried(step.changes), names)
+            case = self.bench.tried(step.changes)
         except CamError:
             return dict.fromkeys(names, math.inf)
+        quick = self._quick(case, names)
         return {name: self.scale[name] * value for name, value in quick.items()}
+
+    def _quick(self, case: Case, names: Collection[str]) -> dict[str, float]:
+        """Utilisations of a case by the coarse closed forms; infinite without a solution."""
+        try:
+            return self.judge.utilisations(case, names)
+        except CamError:
+            return dict.fromkeys(names, math.inf)
 
     def _verified(self, name: str, ways: Sequence[_Crossing]) -> Remedy | None:
         """Remedy by the smallest way that a preview confirms; None without one.

@@ -373,14 +373,16 @@ def test_redesign_exits_by_its_points(
     from camwright.reports import redesign_page
 
     points = [{"file": "point.toml", "verdict": "pass", "open": one} for one in open_checks]
-    document = {"points": points, "tried": [], "pruned": []}
+    document: dict[str, Any] = {"points": points, "tried": [], "pruned": []}
     monkeypatch.setattr(redesign_study, "redesign", lambda *_: document)
     monkeypatch.setattr(redesign_page, "write", lambda *_: Path("page.html"))
     found, out, _ = command("redesign", case_file)
     assert found == code
     assert ("missing data of these points: shaft" in out) == (code == 3)
-    document["points"] = []
-    assert command("redesign", case_file)[0] == 1
+    document |= {"points": [], "without_result": {"lines": ["excluded most by cam_radius"]}}
+    code, out, _ = command("redesign", case_file)
+    assert code == 1
+    assert "excluded most by cam_radius" in out
 
 
 def test_command_names_every_choice_of_cam_angles() -> None:

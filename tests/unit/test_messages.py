@@ -203,7 +203,9 @@ def test_commands_refuse_in_the_words_of_their_options(
     finally:
         signal.signal(signal.SIGTERM, handler)
     assert leaving.value.code == 2
-    assert capsys.readouterr().err == f"camwright: {message}\n"
+    *stages, refusal = capsys.readouterr().err.splitlines()
+    assert refusal == f"camwright: {message}"
+    assert stages in ([], [words[0]])
 
 
 KEY = re.compile(r"[a-z_]+(\[\d+\])?(\.\w+(\[\d+\])?)*( = |, )")

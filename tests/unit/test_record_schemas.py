@@ -191,6 +191,7 @@ def document() -> dict[str, Any]:
         "to_be_confirmed": [],
         "binding": ["life", "jump"],
         "governing": "jump",
+        "load_ends": [],
         "scope": {"not_covered": [], "reason": "", "statement": ""},
         "checks": made,
     }
