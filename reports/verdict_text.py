@@ -4,16 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass
+from typing import cast
 
 from camwright.pipeline.results.check_report import not_proven
 from camwright.pipeline.results.run_reader import (
     CERTIFIED,
     OPEN,
     VERDICTS,
+    CheckRecord,
     governing_of,
     judgement,
     to_be_confirmed,
 )
+from camwright.pipeline.results.verdict_summary import WORST, failure_words, failures
 from camwright.reports.report_tables import (
     Record,
     check_rows,
@@ -36,7 +39,8 @@ class Verdict:
     `unproven`, `missing` and `waived` are lines on required checks whose error bar lies across the
     limit, that lack data, and that are waived. `stopped` are the clauses of the reason for which
     the trials ended, `scope` the parts not covered, `label` what is stated; `ends` where the
-    follower leaves the cam or locks.
+    follower leaves the cam or locks; `worst` are the worst failed required checks in words, each
+    with its remedy, "" without one.
     """
 
     outcome: str
@@ -52,6 +56,7 @@ class Verdict:
     waived: tuple[str, ...] = ()
     label: str = "Verdict"
     ends: str = ""
+    worst: tuple[tuple[str, str], ...] = ()
 
     @property
     def word(self) -> str:
@@ -68,7 +73,6 @@ class Verdict:
         lines = (
             ("The follower", f"{self.ends}: loads there are not evaluated." if self.ends else ""),
             ("Governing", self.governing),
-            ("Binding", f"{'; '.join(self.binding)}." if self.binding else ""),
         )
         return [line for line in lines if line[1]]
 
@@ -76,6 +80,7 @@ class Verdict:
     def lists(self) -> list[tuple[str, Sequence[str]]]:
         """(label, items) of the lists below the lines."""
         lists = (
+            ("Binding", self.binding),
             ("Missing data", self.missing),
             ("Not proven", self.unproven),
             ("Waived", self.waived),
@@ -135,6 +140,10 @@ def verdict(
             if row.status.id == "waived"
         ),
         label="Verdict" if depth == CERTIFIED else "Screen, no verdict",
+        worst=tuple(
+            (isolated(failure_words(c)), isolated(str(c.get("remedy") or "")))
+            for c in failures(cast("Sequence[CheckRecord]", checks))[:WORST]
+        ),
     )
 
 

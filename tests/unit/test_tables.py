@@ -129,10 +129,11 @@ def test_the_page_lists_what_is_missing_not_proven_waived_and_to_be_confirmed():
     assert said.waived == (
         "D: demand 1\xa0MPa, accepted up to 2.5\xa0MPa, A. Engineer, 2025-01-02: proven",
     )
-    assert [label for label, _ in said.lists] == ["Missing data", "Not proven", "Waived"]
+    assert [label for label, _ in said.lists] == ["Binding", "Missing data", "Not proven", "Waived"]
     assert verdict("fail", checks, (), "no room; a").lists[-1] == (
         "Stopping criterion", ("no room", "a"),
     )  # fmt: skip
+    assert said.worst == (("B: 1.95 MPa, limit <= 2 MPa (98 %), idle 12.5 deg", ""),)
     row = next(row for row in report_tables.check_rows(checks) if row.id == "b")
     assert row.status.words == "fail, not proven"
     assert ("not proven: 1.950 ± 0.060 against 2", True) in row.remarks
