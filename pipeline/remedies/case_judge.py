@@ -61,9 +61,10 @@ class Preview:
     governing: tuple[Corner, ...]
     worst: tuple[Corner, ...]
 
-    def check(self, name: str) -> Check | None:
-        """One check at its worst corner; None where it does not apply."""
-        made = self._at_corners([DECLARED[name]], self.worst)
+    def check(self, name: str, *, everywhere: bool = False) -> Check | None:
+        """One check at its worst corner, or at every corner; None where it does not apply."""
+        corners = corners_of(self.solved.case) if everywhere else self.worst
+        made = self._at_corners([DECLARED[name]], corners)
         return made[0] if made else None
 
     @cached_property

@@ -36,13 +36,14 @@ LEVELS = (0.15, 0.4, 0.8, math.log(4.0), 2.0, 3.0)
 _ALIKE = 1.1  # ratio of two sizes that count as equal: the side effects then decide
 _TRIES = 3  # levers verified for a check
 _REFINED = 1  # interpolations between two steps, at most
-_PREVIEWS = 4  # of one lever for a check, at most
+_PREVIEWS = 5  # of one lever for a check, at most
 _ENOUGH = 0.9  # utilisation of a change that is small enough
 _FURTHER = 1.005  # size of a change over the interpolated one
 _HOPELESS = 4.0  # utilisation at the end of the range, extrapolated, beyond which a lever is left
-_CORNERS = 5  # worst ones of a check, at which its remedy is verified
+_CORNERS = 5  # worst ones of a check, at which its remedy is sought
 _FROM = 0.3  # size of a change from which it is extrapolated
 _SLIGHT = 0.01  # relative change of a figure that is not told
+_LOST = "first keep the follower on the cam"  # until then no change is judged in every load case
 _LEAST_USED = 1e-3  # utilisation of an interpolation
 
 
@@ -307,7 +308,7 @@ class _Search:
         """Least step of a way that previews confirm, and its preview."""
         if not isinstance(way.lever, Scaled):
             preview = self._preview(name, way.below.step)
-            if preview is None or self._judged(name, preview) > 1.0:
+            if preview is None or self._judged(name, preview, everywhere=True) > 1.0:
                 return None
             return way.below.step, preview
         above, below, best = way.above, way.below, None
@@ -316,6 +317,8 @@ class _Search:
             step = self.bench.scaled(way.lever, size)
             preview = self._preview(name, step)
             value = math.inf if preview is None else self._judged(name, preview)
+            if preview is not None and _ENOUGH <= value <= 1.0:
+                value = max(value, self._judged(name, preview, everywhere=True))
             # the search expects 1 here, and errs by about the same ratio nearby
             ratio = _ratio(value, 1.0)
             if value <= 1.0 and preview is not None:
@@ -327,6 +330,10 @@ class _Search:
                 break
             size = _crossing(above, below, self.failures[name].used)
             size = min(_FURTHER * size, math.log(way.lever.most))
+        else:
+            # larger than it need be, and not yet judged at every corner
+            if best is not None and self._judged(name, best[1], everywhere=True) > 1.0:
+                return None
         return best
 
     def _refined(self, name: str, way: _Crossing, lever: Scaled) -> float:
@@ -355,12 +362,13 @@ class _Search:
                 self.previews[key] = None
         return self.previews[key]
 
-    def _judged(self, name: str, preview: Preview) -> float:
+    def _judged(self, name: str, preview: Preview, *, everywhere: bool = False) -> float:
         """Utilisation of a check in a preview, times the ratio of finite elements to closed forms.
 
-        Infinite where it does not pass for another reason.
+        Infinite where it does not pass for another reason. Another corner than the worst ones of
+        the case may govern after a change: `everywhere` judges at all of them.
         """
-        one = preview.check(name)
+        one = preview.check(name, everywhere=everywhere)
         value = used(one) * self.deeper[name]
         return math.inf if value <= 1.0 and (one is None or one.status != "pass") else value
 
@@ -383,6 +391,9 @@ class _Search:
 
     def _none(self, name: str) -> Remedy:
         """Closest change of a check that no single change cures."""
+        before = self.base.checks.get(name)
+        if before is not None and before.without:
+            return Remedy(name, {}, effects=(_LOST,), cures=False)
         seen = self.closest.get(name)
         needed = self._needed(name)
         if seen is None or not math.isfinite(seen.used):

@@ -33,7 +33,9 @@ def test_a_first_case_passes(tmp_path, monkeypatch, kind):
 
 
 @pytest.mark.slow
-def test_without_a_datum_it_is_incomplete(tmp_path, monkeypatch):
+def test_without_a_datum_it_is_incomplete_until_the_printed_block_is_pasted(
+    tmp_path, monkeypatch, capsys
+):
     monkeypatch.chdir(tmp_path)
     assert init("first", "eccentric") == PASSED
     path = tmp_path / "first.toml"
@@ -43,3 +45,12 @@ def test_without_a_datum_it_is_incomplete(tmp_path, monkeypatch):
     run_case(read_case(path), Path("run"), progress=Silent())
     assert read_run(Path("run")).verdict == "incomplete"
     assert check([Path("run")]) == INCOMPLETE
+
+    capsys.readouterr()
+    assert check([path], missing=True) == INCOMPLETE
+    block, count = re.subn('roller_life = ".*?"', 'roller_life = "1000 h"', capsys.readouterr().out)
+    assert count == 1
+    path.write_text(f"{text}\n{block}")
+    run_case(read_case(path), Path("cured"), progress=Silent())
+    assert read_run(Path("cured")).verdict == "pass"
+    assert check([Path("cured")]) == PASSED
