@@ -13,15 +13,25 @@ from typing import Protocol, Self
 from rich.console import Console
 from rich.progress import (
     BarColumn,
+    ProgressColumn,
+    Task,
     TaskID,
-    TaskProgressColumn,
     TextColumn,
     TimeElapsedColumn,
-    TimeRemainingColumn,
 )
 from rich.progress import (
     Progress as RichProgress,
 )
+from rich.text import Text
+
+USUAL = {
+    "synthesis": 3.0, "preview": 1.5, "mesh": 0.2, "checks": 3.5, "benchmarks": 0.5,
+    "workshop": 0.4, "report": 3.0, "remedies": 4.0, "contact": 2.0, "conflicting limits": 30.0,
+    "fit": 2.0, "pictures": 2.0, "figures": 2.0,
+}  # fmt: skip
+"""Usual duration of the stages without steps, s, of the reference case on two cores: their percent
+and remaining time on a terminal are estimates by it."""
+_MOST = 0.99  # share of an estimate that is exceeded
 
 
 class Progress(Protocol):
@@ -65,6 +75,29 @@ class Lines:
         self._say(text)
 
 
+def share(task: Task) -> float | None:
+    """Complete share of a stage, by its steps or its usual duration; None: unknown."""
+    if task.total:
+        return task.completed / task.total
+    usual: float | None = task.fields.get("usual")
+    return None if usual is None else min((task.elapsed or 0.0) / usual, _MOST)
+
+
+class _Percent(ProgressColumn):
+    def render(self, task: Task) -> Text:
+        part = share(task)
+        return Text("" if part is None else f"{part:>4.0%}".replace("%", " %"))
+
+
+class _Remaining(ProgressColumn):
+    def render(self, task: Task) -> Text:
+        part = share(task)
+        if not part:
+            return Text("")
+        left = (task.elapsed or 0.0) * (1.0 / part - 1.0)
+        return Text(f"{timedelta(seconds=round(left))} remaining")
+
+
 class Bars:
     """A bar with percent and remaining time for each stage; a context manager."""
 
@@ -73,10 +106,9 @@ class Bars:
         self._bars = RichProgress(
             TextColumn("{task.description}"),
             BarColumn(),
-            TaskProgressColumn(text_format="{task.percentage:>3.0f} %"),
+            _Percent(),
             TimeElapsedColumn(),
-            TextColumn("remaining"),
-            TimeRemainingColumn(),
+            _Remaining(),
             console=console,
             transient=True,
         )
@@ -100,7 +132,8 @@ class Bars:
             self._bars.remove_task(self._task)
             self._console.print(f"{self._name} done", highlight=False, markup=False)
         self._name = name
-        self._task = self._bars.add_task(name, total=None)
+        usual = USUAL.get(name.rpartition(": ")[2].partition(" of ")[0])
+        self._task = self._bars.add_task(name, total=None, usual=usual)
 
     def advance(self, k: int, total: int) -> None:
         if self._task is not None:

@@ -7,8 +7,9 @@ import time
 
 import pytest
 from rich.console import Console
+from rich.progress import Progress as RichProgress
 
-from camwright.pipeline.base.progress import Bars, Lines, Silent, process_began
+from camwright.pipeline.base.progress import Bars, Lines, Silent, process_began, share
 from camwright.pipeline.run import START, Stopwatch
 
 
@@ -36,6 +37,19 @@ def test_bars_show_stage_percent_and_remaining_time() -> None:
     assert " 30 %" in text
     assert "remaining" in text
     assert "[not markup]" in text
+
+
+def test_a_stage_without_steps_is_estimated_by_its_usual_duration() -> None:
+    now = [100.0]
+    bars = RichProgress(get_time=lambda: now[0])
+    bars.add_task("cycle", total=10, completed=4, usual=None)
+    bars.add_task("checks", total=None, usual=4.0)
+    bars.add_task("torque", total=None, usual=None)
+    steps, timed, unknown = bars.tasks
+    now[0] += 1.0
+    assert [share(task) for task in (steps, timed, unknown)] == [0.4, 0.25, None]
+    now[0] += 100.0
+    assert share(timed) == 0.99
 
 
 def test_silent_says_nothing(capsys: pytest.CaptureFixture[str]) -> None:
