@@ -1,9 +1,11 @@
 """The first case of each kind, run to its certificate: PASS, and `check` says so."""
 
+import json
 import re
 from pathlib import Path
 
 import pytest
+from record_validation import schema_errors
 
 from camwright.pipeline.base.progress import Silent
 from camwright.pipeline.case.case_file import read_case
@@ -26,6 +28,8 @@ def test_a_first_case_passes(tmp_path, monkeypatch, kind):
     run = read_run(Path("run"))
     assert run.verdict == "pass"
     assert check([Path("run")]) == PASSED
+    for name in ("run", "signoff"):
+        assert schema_errors(name, json.loads(Path("run", f"{name}.json").read_text())) == []
     required = [each for each in run.final.checks if each["must_have"]]
     assert all(each["status"] == "pass" for each in required)
     design = {each["id"]: each["margin"] for each in required if not each["evidence"]}
