@@ -68,8 +68,15 @@ def write_fields(
 
 
 def hardest(cycles: Sequence[Cycle]) -> int:
-    """Number, from 0, of the load case with the maximum contact pressure."""
-    return int(np.argmax([cycle.contact.p0_hertz.max() for cycle in cycles]))
+    """Number, from 0, of the load case with the maximum contact pressure.
+
+    A load case in which the follower leaves the cam or locks counts only where every one does: its
+    loads are no results.
+    """
+    whole = [cycle.loads.end is None for cycle in cycles]
+    counted = whole if any(whole) else [True] * len(cycles)
+    pressures = [cycle.contact.p0_hertz.max() for cycle in cycles]
+    return int(np.argmax(np.where(counted, pressures, -np.inf)))
 
 
 def shown_positions(cycle: Cycle, shown: Shown, certified: Sequence[int]) -> IntArray:

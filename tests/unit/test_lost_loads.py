@@ -21,6 +21,7 @@ from camwright.pipeline.checks.tolerance_corners import NOMINAL, Outcome, govern
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.cycle import Cycle
 from camwright.pipeline.preview import preview_case
+from camwright.pipeline.results.field_output import hardest
 from camwright.pipeline.results.run_reader import status_of
 from camwright.pipeline.results.run_records import headline
 from camwright.pipeline.results.trial import Trial
@@ -155,3 +156,15 @@ def test_the_headline_names_the_stress_of_each_body() -> None:
     words = body_stresses(figures)
     assert re.fullmatch(r"\d+\.?\d* MPa in the cam, 0\.\d+ mm below the surface", words[0])
     assert words[2] == f"{1e-6 * highest:.4g} MPa in the roller ring by bending"
+
+
+def test_the_stress_field_is_of_a_load_case_with_its_loads() -> None:
+    """Over-speed has the greatest pressure, of loads that are no results."""
+    every = trial().cycles
+    pressures = [float(each.contact.p0_hertz.max()) for each in every]
+    assert every[int(np.argmax(pressures))].load_case == "over-speed"
+    shown = hardest(every)
+    assert every[shown].load_case != "over-speed"
+    assert pressures[shown] == max(pressures[k] for k in range(len(every) - 1))
+    assert every[-1].load_case == "over-speed"
+    assert hardest(every[-1:]) == 0  # there is no other
