@@ -27,7 +27,7 @@ from camwright.reports.report_tables import (
     shortened,
 )
 from camwright.reports.sheet_turn import Turn
-from camwright.reports.verdict_text import Verdict, verdict
+from camwright.reports.verdict_text import Verdict, governing_load_case, verdict
 
 if TYPE_CHECKING:
     from camwright.reports.picture_list import Picture
@@ -223,7 +223,7 @@ def _facts(material: Material) -> list[tuple[str, str]]:
     code = [str(versions.get("camwright", "")), str(versions.get("source", ""))[:8]]
     return [
         ("Case", shortened(str(material.case.get("name") or summary["case"]), SHORT)),
-        ("Governing load case", shortened(material.turn.load_case, SHORT)),
+        ("Governing load case", shortened(_governing_load_case(material), SHORT)),
         ("Trials", str(count)),
         ("Input", str(summary["input_sha256"])[:12]),
         ("Camwright", " · ".join(filter(None, code))),
@@ -268,10 +268,18 @@ def _numbers(material: Material) -> Section:
     return Section("numbers", "Key figures", blocks, "Over one turn of the final trial.")
 
 
+def _governing_load_case(material: Material) -> str:
+    final = material.run.final
+    return governing_load_case(final.checks, final.cycle.load_cases)
+
+
 def _sheet(material: Material) -> Section:
     turn = material.turn
-    count = len(turn.others)
-    others = f", the governing one; ribbons: range of all {count} load cases" if count > 1 else ""
+    count, others = len(turn.others), ""
+    if count > 1:
+        whole = turn.load_case == _governing_load_case(material)
+        words = "the governing one" if whole else "in which the follower stays on the cam"
+        others = f", {words}; ribbons: range of all {count} load cases"
     return Section(
         "sheet", "Cam analysis sheet",
         [Block(Figures(drawn), title) for title, drawn in drawn_groups(material)],

@@ -47,13 +47,18 @@ def read_material(folder: Path, ahead: Mapping[str, Task] | None = None) -> Mate
 
 
 def governing_turn(run: Run, case: Record) -> Turn:
-    """The governing load case of the final trial."""
+    """The governing load case of the final trial among those that keep the follower on the cam.
+
+    Of all of them where it leaves the cam or locks in each.
+    """
     final = run.final
     names = final.cycle.load_cases
     if not names:
         raise ResultError(f"{final.path}: the cycle has no rows")
     by_name = {name: final.cycle.of_load_case(name) for name in names}
-    drawn = governing_load_case(final.checks, names)
+    ended = {each["load_case"] for each in run.summary.get("load_ends", ())}
+    whole = [name for name in names if name not in ended]
+    drawn = governing_load_case(final.checks, whole or names)
     return Turn(
         by_name[drawn], tuple(by_name.values()), final.lift, final.contour, run.torque,
         final.checks, case, final.record["balance"], drawn, run.speed, final.limits,

@@ -219,6 +219,17 @@ def test_several_load_cases_show_the_governing_one_and_a_ribbon(tmp_path, monkey
     assert "Load case rated, the governing one" in html
     assert "range of all 2 load cases" in html
 
+    summary = json.loads((folder / "run.json").read_text())
+    summary["load_ends"] = [
+        {"load_case": "rated", "cam_angle_deg": 150.5, "statement": "leaves the cam at 150.5 deg"}
+    ]
+    (folder / "run.json").write_text(json.dumps(summary))
+    html = report_fixture.page_of(folder).read_text(encoding="utf-8")
+    assert "Load case idle, in which the follower stays on the cam" in html.replace(
+        "\u2068", ""
+    ).replace("\u2069", "")
+    assert ">rated<" in html[: html.index('id="verdict"')]  # the governing load case
+
 
 def test_a_passing_run_says_pass(tmp_path, undrawn):
     records = [r for r in report_fixture.checks() if r["status"] == "pass"]
