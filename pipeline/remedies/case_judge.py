@@ -34,8 +34,9 @@ _DECIDING = tuple(each for each in CHECKS if each.must_have and not each.evidenc
 
 @dataclass(frozen=True)
 class Headline:
-    """Figures of a design: std of the crank torque, N m, None without an engine; peak pressure, Pa;
-    mass of cam and follower, kg; greatest cam radius, m.
+    """Figures of a design: std of the crank torque, N m, None without an engine or where the
+    follower leaves the cam or locks; peak pressure, Pa; mass of cam and follower, kg; greatest cam
+    radius, m.
     """
 
     ripple: float | None
@@ -76,9 +77,10 @@ class Preview:
     def headline(self) -> Headline:
         """Figures of the design."""
         solved, contour = self.solved, self.solved.contour
-        cam, after = solved.case.cam, solved.cycles[0].turn.torque_after
+        cam, first = solved.case.cam, solved.cycles[0]
         # as in the headline of a run: after the follower has left the cam the loads are not its own
         sound = [cycle for cycle in solved.cycles if cycle.loads.end is None]
+        after = first.turn.torque_after if first in sound else None
         pressures = [float(np.max(cycle.contact.p0)) for cycle in sound]
         disc = unbalance(contour, cam.bore_radius, cam.keyway, cam.width, cam.material.density)
         return Headline(
@@ -91,12 +93,12 @@ class Preview:
     def _at_corners(
         self, declared: Sequence[Declaration], corners: Sequence[Corner]
     ) -> tuple[Check, ...]:
-        case, moved = self.solved.case, [one for one in declared if one in TOLERANCED]
+        case, contour = self.solved.case, self.solved.contour
         made = checks_of(self.solved, declared)
-        if not moved or not corners:
+        toleranced = [one for one in declared if one in TOLERANCED]
+        if not toleranced or not corners:
             return made
-        contour = self.solved.contour
-        return governed(made, outcomes(case, self.torques, contour, corners, moved))
+        return governed(made, outcomes(case, self.torques, contour, corners, toleranced))
 
 
 @dataclass(frozen=True, eq=False)
@@ -154,13 +156,13 @@ class Judge:
         """
         contour = self._contour(case, undercut=undercut)
         solved = solution(case, contour, Tier.PREVIEW, torques=self.torques)
-        worst = [self.corners.get(name, ()) for name in wanted]
-        governing = {names[0] for names in self.corners.values() if names}
+        of_wanted = [self.corners.get(name, ()) for name in wanted]
+        of_any = {names[0] for names in self.corners.values() if names}
         return Preview(
             solved,
             self.torques,
-            tuple(self._named(case, {name for names in worst for name in names[:1]})),
-            tuple(self._named(case, governing.union(*worst))),
+            governing=tuple(self._named(case, {name for names in of_wanted for name in names[:1]})),
+            worst=tuple(self._named(case, of_any.union(*of_wanted))),
         )
 
     def _contour(self, case: Case, *, undercut: bool = False) -> Contour:

@@ -22,6 +22,7 @@ from camwright.pipeline.case.case_file import parse_case, with_values
 from camwright.pipeline.case.case_values import value_of
 from camwright.pipeline.case.load_case_torque import engine_torques
 from camwright.pipeline.checks.check import Check
+from camwright.pipeline.follower.follower_forces import LEAVES, LOCKS
 from camwright.pipeline.remedies.case_judge import Headline, Judge, Preview, used
 from camwright.pipeline.remedies.lever_steps import Step, Workbench, told
 from camwright.pipeline.remedies.levers import LEVERS, Catalogued, Drilled, Lever, Scaled
@@ -42,8 +43,12 @@ _FURTHER = 1.005  # size of a change over the interpolated one
 _HOPELESS = 4.0  # utilisation at the end of the range, extrapolated, beyond which a lever is left
 _CORNERS = 5  # worst ones of a check, at which its remedy is sought
 _FROM = 0.3  # size of a change from which it is extrapolated
-_SLIGHT = 0.01  # relative change of a figure that is not told
-_LOST = "first keep the follower on the cam"  # until then no change is judged in every load case
+_SLIGHT = 0.01  # relative change of a figure up to which the remedy leaves it out
+_FIRST = {
+    LEAVES: "first keep the follower on the cam",
+    LOCKS: "first keep the follower from locking",
+}
+"""Until then no change is judged in every load case."""
 _LEAST_USED = 1e-3  # utilisation of an interpolation
 
 
@@ -107,10 +112,9 @@ def order_of(trial: Trial, folder: Path | None) -> Order:
     ----------
     folder : Path   with the copies of the included files, such as the run folder
     """
-    held = trial.lift if trial.case.smoothing.kind == "constrained" else None
     count = max(LEAST_IN_A_RUN, IN_A_RUN // len(trial.cycles))
     worst = failures_of(trial)[:count]
-    return Order(as_drawn(trial).to_toml(), folder, trial.case.folder, held, worst)
+    return Order(as_drawn(trial).to_toml(), folder, trial.case.folder, _held_lift(trial), worst)
 
 
 def texts_of(order: Order) -> dict[str, str]:
@@ -124,10 +128,13 @@ def texts_of(order: Order) -> dict[str, str]:
 
 def remedies_of(trial: Trial) -> dict[str, Remedy]:
     """Remedies of the failed must-have checks of a trial by id; empty where none fails."""
-    case, held = as_drawn(trial), None
-    if case.smoothing.kind == "constrained":
-        held = trial.lift
-    return remedies(case, case.folder, held, failures_of(trial))
+    case = as_drawn(trial)
+    return remedies(case, case.folder, _held_lift(trial), failures_of(trial))
+
+
+def _held_lift(trial: Trial) -> Lift | None:
+    """Lift of a constrained synthesis; None: drawn from the case."""
+    return trial.lift if trial.case.smoothing.kind == "constrained" else None
 
 
 def with_remedies(checks: Iterable[Check], texts: Mapping[str, str]) -> tuple[Check, ...]:
@@ -192,6 +199,14 @@ class _Crossing(NamedTuple):
     lever: Lever
     above: _Seen | None
     below: _Seen
+
+
+class _Confirmed(NamedTuple):
+    """Step that cures a check, its preview, and the utilisation at the worst of all corners."""
+
+    step: Step
+    preview: Preview
+    used: float
 
 
 @dataclass(eq=False)
@@ -298,27 +313,27 @@ class _Search:
                 break
             confirmed = self._confirmed(name, way)
             if confirmed is not None:
-                step, preview = confirmed
-                fails = len(newly_failing(self.base, preview))
+                fails = len(newly_failing(self.base, confirmed.preview))
                 if best is None or fails < best[0]:
-                    best = fails, step.size, self._remedy(name, way.lever, step, preview)
+                    best = fails, confirmed.step.size, self._remedy(name, way.lever, confirmed)
         return None if best is None else best[2]
 
-    def _confirmed(self, name: str, way: _Crossing) -> tuple[Step, Preview] | None:
-        """Least step of a way that previews confirm, and its preview."""
+    def _confirmed(self, name: str, way: _Crossing) -> _Confirmed | None:
+        """Least step of a way that previews confirm at every corner; None without one."""
         if not isinstance(way.lever, Scaled):
             preview = self._preview(name, way.below.step)
-            if preview is None or self._judged(name, preview, everywhere=True) > 1.0:
-                return None
-            return way.below.step, preview
-        above, below, best = way.above, way.below, None
+            return None if preview is None else self._at_every_corner(name, way.below.step, preview)
+        above, below = way.above, way.below
+        best: tuple[Step, Preview] | None = None
         size = self._refined(name, way, way.lever)
         for _ in range(_PREVIEWS):
             step = self.bench.scaled(way.lever, size)
             preview = self._preview(name, step)
             value = math.inf if preview is None else self._judged(name, preview)
             if preview is not None and _ENOUGH <= value <= 1.0:
-                value = max(value, self._judged(name, preview, everywhere=True))
+                value = self._judged(name, preview, everywhere=True)
+                if value <= 1.0:
+                    return _Confirmed(step, preview, value)
             # the search expects 1 here, and errs by about the same ratio nearby
             ratio = _ratio(value, 1.0)
             if value <= 1.0 and preview is not None:
@@ -326,15 +341,15 @@ class _Search:
                 below, above = _Seen(step, value, True), above and above.times(ratio)
             else:
                 above, below = _Seen(step, value, True), below.times(ratio)
-            if _ENOUGH <= value <= 1.0:
-                break
             size = _crossing(above, below, self.failures[name].used)
             size = min(_FURTHER * size, math.log(way.lever.most))
-        else:
-            # larger than it need be, and not yet judged at every corner
-            if best is not None and self._judged(name, best[1], everywhere=True) > 1.0:
-                return None
-        return best
+        # a larger change than necessary, judged at the worst corners alone so far
+        return None if best is None else self._at_every_corner(name, *best)
+
+    def _at_every_corner(self, name: str, step: Step, preview: Preview) -> _Confirmed | None:
+        """A step that passes at every tolerance corner; None if it fails at one."""
+        value = self._judged(name, preview, everywhere=True)
+        return _Confirmed(step, preview, value) if value <= 1.0 else None
 
     def _refined(self, name: str, way: _Crossing, lever: Scaled) -> float:
         """Size of a change at which a check meets its limit, by interpolation."""
@@ -352,7 +367,7 @@ class _Search:
         return size
 
     def _preview(self, name: str, step: Step) -> Preview | None:
-        """Preview of the case with a step at the corner of a check; None without a solution."""
+        """Preview of the case with a step at the corners of a check; None without a solution."""
         key = f"{self.failures[name].corners}: {step.changes}"
         if key not in self.previews:
             try:
@@ -372,18 +387,13 @@ class _Search:
         value = used(one) * self.deeper[name]
         return math.inf if value <= 1.0 and (one is None or one.status != "pass") else value
 
-    def _remedy(self, name: str, lever: Lever, step: Step, preview: Preview) -> Remedy:
-        least = ""
+    def _remedy(self, name: str, lever: Lever, confirmed: _Confirmed) -> Remedy:
+        step, preview, value = confirmed
+        words = effects(name, self.base, preview)
         if isinstance(lever, Catalogued) and lever.inverse:
-            share = used(preview.check(name)) * self.deeper[name]
             rating = self.bench.rating(lever, step.changes[lever.key])
-            least = self._least_rating(lever, share * rating)
-        return Remedy(
-            name,
-            step.changes,
-            step.figure,
-            (*((least,) if least else ()), *effects(name, self.base, preview)),
-        )
+            words = (self._least_rating(lever, value * rating), *words)
+        return Remedy(name, step.changes, step.figure, words)
 
     def _least_rating(self, lever: Catalogued, value: float) -> str:
         words = f"least {lever.rating.replace('_', ' ')}"
@@ -393,7 +403,7 @@ class _Search:
         """Closest change of a check that no single change cures."""
         before = self.base.checks.get(name)
         if before is not None and before.without:
-            return Remedy(name, {}, effects=(_LOST,), cures=False)
+            return Remedy(name, {}, effects=needed_first(before.without), cures=False)
         seen = self.closest.get(name)
         needed = self._needed(name)
         if seen is None or not math.isfinite(seen.used):
@@ -403,13 +413,23 @@ class _Search:
 
     def _needed(self, name: str) -> tuple[str, ...]:
         """Rating that a check would need at the loads of the case; empty without one."""
-        used = self.failures[name].used
+        value = self.failures[name].used
         for lever in LEVERS[name]:
             if isinstance(lever, Catalogued) and lever.inverse and self.bench.acts(lever):
                 here = self.bench.rating_here(lever)
-                if here is not None and math.isfinite(used):
-                    return (self._least_rating(lever, used * here),)
+                if here is not None and math.isfinite(value):
+                    return (self._least_rating(lever, value * here),)
         return ()
+
+
+def needed_first(without: str) -> tuple[str, ...]:
+    """What must hold before any change can cure a check, by its load cases without loads.
+
+    Parameters
+    ----------
+    without : str   as that of `Check`
+    """
+    return tuple(words for why, words in _FIRST.items() if f"{why} at " in without)
 
 
 def effects(name: str, before: Preview, after: Preview) -> tuple[str, ...]:

@@ -13,7 +13,9 @@ from camwright.geometry.errors import InputError
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_file import read_case, with_values
 from camwright.pipeline.case.case_values import quantity_of, value_of
+from camwright.pipeline.checks.lost_loads import LoadEnd
 from camwright.pipeline.checks.registry import DECLARED
+from camwright.pipeline.follower.follower_forces import LEAVES, LOCKS
 from camwright.pipeline.remedies.lever_steps import PARTS, Workbench, told
 from camwright.pipeline.remedies.levers import (
     BEARING,
@@ -25,7 +27,7 @@ from camwright.pipeline.remedies.levers import (
     Scaled,
 )
 from camwright.pipeline.remedies.remedy import WIDTH, Remedy
-from camwright.pipeline.remedies.remedy_search import LEVELS
+from camwright.pipeline.remedies.remedy_search import LEVELS, needed_first
 
 GX120 = Path(__file__).parents[2] / "cases" / "gx120.toml"
 
@@ -164,6 +166,14 @@ def test_without_a_remedy_the_line_says_so() -> None:
     assert Remedy("jump", {}, cures=False).text == "no single change cures it"
     closest = Remedy("jump", {"follower.mass": "90 g"}, effects=("leaves 2",), cures=False)
     assert closest.text == "no single change cures it; closest: follower.mass: 90 g; leaves 2"
+
+
+def test_where_the_follower_locks_the_remedy_says_so() -> None:
+    leaves, locks = LoadEnd("over-speed", 2.0, LEAVES), LoadEnd("start", 1.0, LOCKS)
+    assert needed_first(leaves.words) == ("first keep the follower on the cam",)
+    assert needed_first(locks.words) == ("first keep the follower from locking",)
+    both = needed_first(f"the follower {locks.words}, {leaves.words}")
+    assert both == (*needed_first(leaves.words), *needed_first(locks.words))
 
 
 def test_numbers_are_told_without_an_exponent() -> None:
