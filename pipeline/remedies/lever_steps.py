@@ -163,7 +163,7 @@ class Workbench:
             size = abs(ratio)
             if lever.key == BEARING:
                 size = self._resized(name) + _OF_RATING * size
-            words = f"{lever.rating.replace('_', ' ')} {told(rating, unit)}"
+            words = f"{lever.rating.replace('_', ' ')} {without_exponent(rating, unit)}"
             steps.append((size, rating, Step({lever.key: name}, size, words)))
         return [step for *_, step in sorted(steps, key=lambda each: each[:2])]
 
@@ -231,7 +231,7 @@ class Workbench:
         return value
 
 
-def told(value: float, unit: str, digits: int = 4) -> str:
+def without_exponent(value: float, unit: str, digits: int = 4) -> str:
     """A value (SI) as text in a unit without an exponent, such as ``27710 rpm``."""
     number = f"{float(f'{units.in_unit(value, unit) if unit else value:.{digits}g}'):.10g}"
     return f"{number} {unit}" if unit else number

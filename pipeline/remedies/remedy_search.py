@@ -24,7 +24,7 @@ from camwright.pipeline.case.load_case_torque import engine_torques
 from camwright.pipeline.checks.check import Check
 from camwright.pipeline.follower.follower_forces import LEAVES, LOCKS
 from camwright.pipeline.remedies.case_judge import Headline, Judge, Preview, used
-from camwright.pipeline.remedies.lever_steps import Step, Workbench, told
+from camwright.pipeline.remedies.lever_steps import Step, Workbench, without_exponent
 from camwright.pipeline.remedies.levers import LEVERS, Catalogued, Drilled, Lever, Scaled
 from camwright.pipeline.remedies.remedy import Remedy
 from camwright.pipeline.results.trial import Trial
@@ -397,7 +397,7 @@ class _Search:
 
     def _least_rating(self, lever: Catalogued, value: float) -> str:
         words = f"least {lever.rating.replace('_', ' ')}"
-        return f"{words} {told(value, self.bench.unit(lever))}"
+        return f"{words} {without_exponent(value, self.bench.unit(lever))}"
 
     def _none(self, name: str) -> Remedy:
         """Closest change of a check that no single change cures."""
@@ -472,11 +472,13 @@ def _figures(before: Headline, after: Headline) -> list[str]:
     ):
         if old is not None and new is not None and abs(new - old) > _SLIGHT * abs(old):
             digits = 4 if unit == "MPa" else 3
-            number = told(old, unit, digits).removesuffix(f" {unit}")
-            words.append(f"{label} {number} -> {told(new, unit, digits)}")
+            number = without_exponent(old, unit, digits).removesuffix(f" {unit}")
+            words.append(f"{label} {number} -> {without_exponent(new, unit, digits)}")
     heavier = after.mass - before.mass
     if abs(heavier) > _SLIGHT * before.mass:
-        words.append(f"{'adds' if heavier > 0 else 'saves'} {told(abs(heavier), 'g', 3)}")
+        words.append(
+            f"{'adds' if heavier > 0 else 'saves'} {without_exponent(abs(heavier), 'g', 3)}"
+        )
     return words
 
 

@@ -16,7 +16,7 @@ from camwright.pipeline.case.case_values import quantity_of, value_of
 from camwright.pipeline.checks.lost_loads import LoadEnd
 from camwright.pipeline.checks.registry import DECLARED
 from camwright.pipeline.follower.follower_forces import LEAVES, LOCKS
-from camwright.pipeline.remedies.lever_steps import PARTS, Workbench, told
+from camwright.pipeline.remedies.lever_steps import PARTS, Workbench, without_exponent
 from camwright.pipeline.remedies.levers import (
     BEARING,
     BUSH_A,
@@ -177,6 +177,6 @@ def test_where_the_follower_locks_the_remedy_says_so() -> None:
 
 
 def test_numbers_are_told_without_an_exponent() -> None:
-    assert told(2901.9, "rpm") == "27710 rpm"
-    assert told(0.7085, "", 3) == "0.709"
+    assert without_exponent(2901.9, "rpm") == "27710 rpm"
+    assert without_exponent(0.7085, "", 3) == "0.709"
     assert PARTS == (BEARING, CAM_MATERIAL, BUSH_A, "guides.b")
