@@ -1,9 +1,9 @@
 """Checks of load cases in which the follower leaves the cam or locks.
 
 After it the loads of the cam are not those of the follower: it lands with an impact, or does not
-move. A check that rests on them is made of the other load cases. It fails where they exceed its
-limit; within it, it is not evaluated. The contact force, the jump and what follows from the lift
-alone are judged as they are.
+move. A check that rests on them is made in the other load cases alone. It fails where they exceed
+its limit; otherwise it is not evaluated. The contact force, the jump and what follows from the lift
+alone are judged in every load case.
 """
 
 from __future__ import annotations

@@ -34,10 +34,10 @@ class CheckText(NamedTuple):
 
 _LOAD_END = {
     "": "",
-    "contact": "Not evaluated in a load case in which the follower leaves the cam; fails by the"
-    " others.",
-    "loads": "Not evaluated in a load case in which the follower leaves the cam or locks; fails by"
-    " the others.",
+    "contact": "If the follower leaves the cam in a load case, the others alone are judged and can"
+    " only make it fail.",
+    "loads": "If the follower leaves the cam or locks in a load case, the others alone are judged"
+    " and can only make it fail.",
 }
 """Words by what a check rests on, see `Declaration.rests_on`."""
 
