@@ -432,10 +432,8 @@ def tooth_torque_limits(machine: Machine) -> dict[str, float]:
     gear = None if shaft is None else shaft.gear
     if shaft is None or gear is None or not machine.scope.covers("gear"):
         return {}
-    module, force = (
-        2.0 * shaft.gear_radius / gear.teeth,
-        gear.application_factor / shaft.gear_radius,
-    )
+    module = 2.0 * shaft.gear_radius / gear.teeth
+    force = gear.application_factor / shaft.gear_radius  # of a torque of 1 N m
     safety, allowed = machine.limits[GEAR_BENDING_SAFETY], {}
     for name, teeth, limit in (
         ("gear_bending", gear.teeth, gear.bending_limit),

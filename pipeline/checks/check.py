@@ -436,7 +436,7 @@ class Check:
     def as_record(self) -> Record:
         """JSON record, in `unit` and degrees; NaN and infinity become null.
 
-        A demand `without` the loads of a load case that does not fail is null, too.
+        The demand of a check `without` the loads of a load case is null as well, unless it fails.
         A utilisation of null is infinite with the status `fail`, missing with `not_evaluated`.
         """
         unit = self.unit

@@ -95,8 +95,7 @@ def greatest_temperatures(guide: Guide, stem: Material) -> dict[str, float]:
     bush, allowed = guide.material, {}
     if bush.temperature_limit is not None:
         allowed["guide_temperature"] = bush.temperature_limit
-    values = (bush.expansion, stem.expansion, bush.moisture_growth)
-    of_bush, of_stem, moisture = values
+    of_bush, of_stem, moisture = bush.expansion, stem.expansion, bush.moisture_growth
     if guide.wall is None or of_bush is None or of_stem is None or moisture is None:
         return allowed
     cold, warm = (

@@ -133,7 +133,7 @@ def chord_error(solution: Solution) -> Demand:
         float(sag[worst]),
         None if tolerance is None else limits[CHORD_SHARE] * tolerance,
         Extreme(float(sag[worst]), "", float(theta[worst])),
-        lacking("cam", solution.machine.cam, "profile_tolerance"),
+        lacking(solution.machine.cam.table, solution.machine.cam, "profile_tolerance"),
         note=f"{theta.size} points",
     )
 

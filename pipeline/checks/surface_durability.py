@@ -254,15 +254,15 @@ def _hardened_demand(
         return lambda cycle: use(cycle.rolling.envelope, card)
 
     worst = {body: worst_case(solution.cycles, of_turn(card)) for body, card in bodies.items()}
-    bare = [body for body, card in bodies.items() if math.isnan(_probe(use, card))]
-    known = [body for body in bodies if body not in bare]
+    incomplete = [body for body, card in bodies.items() if math.isnan(_probe(use, card))]
+    known = [body for body in bodies if body not in incomplete]
     governing = max(known or bodies, key=lambda body: _rank(worst[body].value))
     extreme = worst[governing]
     return Demand(
-        None if bare and not extreme.value > allowed else extreme.value,
+        None if incomplete and not extreme.value > allowed else extreme.value,
         allowed,
         extreme,
-        tuple(key for body in bare for key in _lacks(bodies[body], *keys)),
+        tuple(key for body in incomplete for key in _lacks(bodies[body], *keys)),
         figures=tuple(f"{card.name}: {card.source}" for card in bodies.values()),
     )
 
@@ -298,12 +298,12 @@ def case_depth(solution: Solution) -> Demand | None:
     limit = solution.machine.limits[CASE_DEPTH_RATIO]
     depths = [card.case_depth for card in bodies.values() if card.case_depth is not None]
     ratio = min(depths) / worst.value if depths and loaded else None
-    bare = [card for card in bodies.values() if card.case_depth is None]
+    incomplete = [card for card in bodies.values() if card.case_depth is None]
     return Demand(
-        None if bare and not (ratio is not None and ratio < limit) else ratio,
+        None if incomplete and not (ratio is not None and ratio < limit) else ratio,
         limit,
         worst,
-        tuple(key for card in bare for key in _lacks(card, "case_depth")),
+        tuple(key for card in incomplete for key in _lacks(card, "case_depth")),
         figures=tuple(f"{card.name}: {card.source}" for card in bodies.values()),
     )
 
@@ -382,15 +382,17 @@ def _estimate(
     worst = peak_pressure(solution)
     limits = {body: rule(card) for body, card in bodies.items()}
     known = {body: value for body, value in limits.items() if value is not None}
-    bare = {body: card for body, card in bodies.items() if body not in known}
+    incomplete = {body: card for body, card in bodies.items() if body not in known}
     notes = [
-        f"the {body}, {card.name}, {reason(card)}" for body, card in bare.items() if not lacks(card)
+        f"the {body}, {card.name}, {reason(card)}"
+        for body, card in incomplete.items()
+        if not lacks(card)
     ]
     return Demand(
         worst.value,
         min(known.values()) if known else None,
         worst,
-        tuple(key for card in bare.values() for key in lacks(card)),
+        tuple(key for card in incomplete.values() for key in lacks(card)),
         note="; ".join(notes),
         figures=tuple(f"{bodies[body].name}: {bodies[body].source}" for body in known),
     )

@@ -7,7 +7,7 @@ corner is the nominal demand times the ratio of the closed forms at the corner a
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 
 import numpy as np
@@ -94,7 +94,7 @@ def checks_at(
     torques: Mapping[str, Torque],
     contour: Contour,
     corners: Sequence[Corner],
-    declarations: Iterable[Declaration],
+    declarations: Sequence[Declaration],
 ) -> tuple[tuple[Check, ...], ...]:
     """Checks at each corner by the coarse closed forms, for ratios of demands.
 
@@ -104,8 +104,7 @@ def checks_at(
         If a corner cannot be solved.
     """
     solved = _turns_at(case, torques, contour, corners)
-    wanted = tuple(declarations)
-    return tuple(_checks(case, torques, tried, every, wanted) for tried, every in solved)
+    return tuple(_checks(case, torques, *each, declarations) for each in solved)
 
 
 def governed(checks: Sequence[Check], tried: Sequence[Outcome]) -> tuple[Check, ...]:
@@ -215,7 +214,7 @@ def _turns_at(
 ) -> list[tuple[_Tried, tuple[Turn, ...]]]:
     """Turns of every load case at each corner, solved at once."""
     tried = [_Tried.at(case, torques, contour, each) for each in corners]
-    every = turns([given for each in tried for given in each.inputs], POSITIONS, coarse=True)
+    every = turns([state for each in tried for state in each.inputs], POSITIONS, coarse=True)
     count = len(tried[0].inputs)
     return [(each, every[k * count : (k + 1) * count]) for k, each in enumerate(tried)]
 
@@ -301,7 +300,8 @@ def _phased(each: Turn, corner: Corner) -> Turn:
 def _governed(one: Check, tried: Sequence[Outcome]) -> Check:
     """Check with its worst corner; a demand without a value at a solved corner is missing.
 
-    Where loads are lost at a corner it can only fail, by the others; see `lost_loads`.
+    Where a load case has no loads at a corner, the demand of the others can only fail the check;
+    see `lost_loads`.
     """
     nominal = tried[0]
     nominal_demand, here = one.demand, nominal.demands.get(one.id)

@@ -90,10 +90,14 @@ def life_modification(viscosity_ratio: float, cleanliness_ratio: ArrayLike) -> A
     ----------
     ISO 281:2007, eqs 31-33; coefficients compared with a second transcription: verify.
     """
-    if not viscosity_ratio >= LEAST_VISCOSITY_RATIO:
-        raise InputError("viscosity ratio", viscosity_ratio, f">= {LEAST_VISCOSITY_RATIO:g}")
+    _within_standard(viscosity_ratio)
     kappa = np.asarray(viscosity_ratio, dtype=float)
     return _modification(kappa, finite("e_C P_u / P", cleanliness_ratio))
+
+
+def _within_standard(viscosity_ratio: float) -> None:
+    if not viscosity_ratio >= LEAST_VISCOSITY_RATIO:
+        raise InputError("viscosity ratio", viscosity_ratio, f">= {LEAST_VISCOSITY_RATIO:g}")
 
 
 def _modification(viscosity_ratio: Values, load: Values) -> Values:
@@ -152,7 +156,7 @@ def modified_life(
     """
     loaded = normal_force > 0.0
     force = normal_force[loaded]
-    life_modification(viscosity_ratio, 0.0)  # refuses a ratio outside of the standard
+    _within_standard(viscosity_ratio)
     used = life_used(force, dynamic_rating, cleanliness_load, np.asarray(viscosity_ratio))
     rate = float(np.sum(used * np.abs(spin[loaded]))) / normal_force.size / FULL_TURN
     if rate == 0.0:
