@@ -17,6 +17,7 @@ import numpy as np
 
 from camwright.geometry.errors import CamError
 from camwright.geometry.lift import Lift
+from camwright.pipeline.base import units
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_file import parse_case, with_values
 from camwright.pipeline.case.case_values import value_of
@@ -408,7 +409,7 @@ class _Search:
         needed = self._needed(name)
         if seen is None or not math.isfinite(seen.used):
             return Remedy(name, {}, effects=needed, cures=False)
-        left = f"leaves {seen.used:.3g} x limit"
+        left = f"still {units.used(seen.used)} used"
         return Remedy(name, seen.step.changes, seen.step.figure, (*needed, left), cures=False)
 
     def _needed(self, name: str) -> tuple[str, ...]:

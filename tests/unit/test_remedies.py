@@ -164,8 +164,10 @@ def test_the_line_of_a_remedy_keeps_the_width() -> None:
 
 def test_without_a_remedy_the_line_says_so() -> None:
     assert Remedy("jump", {}, cures=False).text == "no single change cures it"
-    closest = Remedy("jump", {"follower.mass": "90 g"}, effects=("leaves 2",), cures=False)
-    assert closest.text == "no single change cures it; closest: follower.mass: 90 g; leaves 2"
+    closest = Remedy("jump", {"follower.mass": "90 g"}, effects=("still 200 % used",), cures=False)
+    assert (
+        closest.text == "no single change cures it; closest: follower.mass: 90 g; still 200 % used"
+    )
 
 
 def test_where_the_follower_locks_the_remedy_says_so() -> None:
