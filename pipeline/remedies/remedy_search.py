@@ -24,7 +24,7 @@ from camwright.pipeline.case.case_values import value_of
 from camwright.pipeline.case.load_case_torque import engine_torques
 from camwright.pipeline.checks.check import Check
 from camwright.pipeline.follower.follower_forces import LEAVES, LOCKS
-from camwright.pipeline.remedies.case_judge import Headline, Judge, Preview, used
+from camwright.pipeline.remedies.case_judge import Judge, Preview, effects, newly_failing, used
 from camwright.pipeline.remedies.lever_steps import Step, Workbench, without_exponent
 from camwright.pipeline.remedies.levers import LEVERS, Catalogued, Drilled, Lever, Scaled
 from camwright.pipeline.remedies.remedy import Remedy
@@ -44,7 +44,6 @@ _FURTHER = 1.005  # size of a change over the interpolated one
 _HOPELESS = 4.0  # utilisation at the end of the range, extrapolated, beyond which a lever is left
 _CORNERS = 5  # worst ones of a check, at which its remedy is sought
 _FROM = 0.3  # size of a change from which it is extrapolated
-_SLIGHT = 0.01  # relative change of a figure up to which the remedy leaves it out
 _FIRST = {
     LEAVES: "first keep the follower on the cam",
     LOCKS: "first keep the follower from locking",
@@ -212,13 +211,19 @@ class _Confirmed(NamedTuple):
 
 @dataclass(eq=False)
 class _Search:
-    """Search of the remedies of one case."""
+    """Search of the remedies of one case.
+
+    previews by corners and changes; closest: step of each check that leaves least; previous: last
+    step of each lever that scales; hopeless: levers not pulled further for a check.
+    """
 
     bench: Workbench
     judge: Judge
     failures: Mapping[str, Failure]
     previews: dict[str, Preview | None] = field(default_factory=dict)
     closest: dict[str, _Seen] = field(default_factory=dict)
+    previous: dict[tuple[Lever, str], _Seen] = field(default_factory=dict)
+    hopeless: set[tuple[Lever, str]] = field(default_factory=set)
 
     def remedies(self) -> dict[str, Remedy]:
         """Remedy of every failure, in their order."""
@@ -233,36 +238,39 @@ class _Search:
             for name, failure in self.failures.items()
         }
         made: dict[str, Remedy] = {}
-        last: dict[tuple[Lever, str], _Seen] = {}
-        left: set[tuple[Lever, str]] = set()
         below = 0.0
         for level in LEVELS:
-            crossings: dict[str, list[_Crossing]] = {}
-            for lever, every in self._levers(name for name in self.failures if name not in made):
-                names = [name for name in every if (lever, name) not in left]
-                if not names:
-                    continue
-                for step in self._steps(lever, below, level):
-                    for name, value in self._used(step, names).items():
-                        seen = _Seen(step, value)
-                        if value <= 1.0:
-                            above = last.get((lever, name))
-                            size = _crossing(above, seen, self.failures[name].used)
-                            crossings.setdefault(name, []).append(
-                                _Crossing(size, lever, above, seen)
-                            )
-                        elif name not in self.closest or value < self.closest[name].used:
-                            self.closest[name] = seen
-                        if isinstance(lever, Scaled):
-                            last[lever, name] = seen
-                            if _hopeless(lever, seen, self.failures[name].used):
-                                left.add((lever, name))
-            for name, ways in crossings.items():
+            names = [name for name in self.failures if name not in made]
+            for name, ways in self._crossings(names, below, level).items():
                 remedy = self._verified(name, sorted(ways, key=lambda way: way.size)[:_TRIES])
                 if remedy is not None:
                     made[name] = remedy
             below = level
         return {name: made[name] if name in made else self._none(name) for name in self.failures}
+
+    def _crossings(
+        self, names: Iterable[str], below: float, level: float
+    ) -> dict[str, list[_Crossing]]:
+        """Levers that cure a check by a step with a size above `below`, up to a level."""
+        crossings: dict[str, list[_Crossing]] = {}
+        for lever, every in self._levers(names):
+            checks = [name for name in every if (lever, name) not in self.hopeless]
+            if not checks:
+                continue
+            for step in self._steps(lever, below, level):
+                for name, value in self._used(step, checks).items():
+                    first, seen = self.failures[name].used, _Seen(step, value)
+                    if value <= 1.0:
+                        above = self.previous.get((lever, name))
+                        way = _Crossing(_crossing(above, seen, first), lever, above, seen)
+                        crossings.setdefault(name, []).append(way)
+                    elif name not in self.closest or value < self.closest[name].used:
+                        self.closest[name] = seen
+                    if isinstance(lever, Scaled):
+                        self.previous[lever, name] = seen
+                        if _hopeless(lever, seen, first):
+                            self.hopeless.add((lever, name))
+        return crossings
 
     def _levers(self, names: Iterable[str]) -> list[tuple[Lever, list[str]]]:
         """Levers that act in the case, with the checks that each can cure."""
@@ -431,56 +439,6 @@ def needed_first(without: str) -> tuple[str, ...]:
     without : str   as that of `Check`
     """
     return tuple(words for why, words in _FIRST.items() if f"{why} at " in without)
-
-
-def effects(name: str, before: Preview, after: Preview) -> tuple[str, ...]:
-    """Side effects of a change, the gravest first: checks that fail now, figures, checks cured.
-
-    Parameters
-    ----------
-    name : str   check that the change cures
-    """
-    failing = newly_failing(before, after)
-    cured = [
-        each
-        for each in _failing(before)
-        if each != name and each in after.checks and after.checks[each].status == "pass"
-    ]
-    words = [f"fails {', '.join(failing)}"] if failing else []
-    words += _figures(before.headline, after.headline)
-    if cured:
-        words.append(f"also cures {cured[0] if len(cured) == 1 else f'{len(cured)} others'}")
-    return tuple(words)
-
-
-def newly_failing(before: Preview, after: Preview) -> list[str]:
-    """Ids of the must-have checks that fail after a change alone."""
-    known = _failing(before)
-    return [each for each in _failing(after) if each not in known]
-
-
-def _failing(preview: Preview) -> list[str]:
-    return [one.id for one in preview.checks.values() if one.must_have and one.status == "fail"]
-
-
-def _figures(before: Headline, after: Headline) -> list[str]:
-    """Figures of the headline that change."""
-    words = []
-    for label, unit, old, new in (
-        ("ripple", "N m", before.ripple, after.ripple),
-        ("p0", "MPa", before.pressure, after.pressure),
-        ("cam radius", "mm", before.radius, after.radius),
-    ):
-        if old is not None and new is not None and abs(new - old) > _SLIGHT * abs(old):
-            digits = 4 if unit == "MPa" else 3
-            number = without_exponent(old, unit, digits).removesuffix(f" {unit}")
-            words.append(f"{label} {number} -> {without_exponent(new, unit, digits)}")
-    heavier = after.mass - before.mass
-    if abs(heavier) > _SLIGHT * before.mass:
-        words.append(
-            f"{'adds' if heavier > 0 else 'saves'} {without_exponent(abs(heavier), 'g', 3)}"
-        )
-    return words
 
 
 def _ratio(wanted: float, known: float) -> float:
