@@ -131,7 +131,7 @@ def _lines(table: Mapping[str, TomlValue]) -> list[str]:
 
 def _remark(key: Key) -> str:
     words = key.accepted.replace("`", '"') if key.accepted.startswith("`") else ""
-    return "; ".join(filter(None, ("example", key.meaning, words, f"found: {key.found}")))
+    return "; ".join(filter(None, ("example", key.meaning, words, f"source: {key.source}")))
 
 
 def _card_of(table: str, materials: Mapping[str, Material]) -> str:

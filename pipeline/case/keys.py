@@ -61,7 +61,7 @@ class Key:
     accepted : str    unit and bounds, words, or kind of value; of a table `TABLE`
     default : str     value or meaning of its absence; "required", or "": a datum that is missing
     meaning : str     what it states, in the terms of the field
-    found : str       where such a value is found
+    source : str      where such a value comes from
     example : object  value as a case file has it
     used : str        stages that use its table
     """
@@ -71,7 +71,7 @@ class Key:
     accepted: str
     default: str
     meaning: str
-    found: str
+    source: str
     example: TomlValue
     used: str
 
@@ -127,8 +127,8 @@ def _keys_of(table: TableKeys) -> Iterator[Key]:
     about = _text(path, TABLE)
     used = str(about["used"])
     if path:
-        place = str(about.get("found", ""))
-        yield Key(path, header, TABLE, "", str(about["meaning"]), place,
+        source = str(about.get("source", ""))
+        yield Key(path, header, TABLE, "", str(about["meaning"]), source,
                   about.get("example", {}), used)  # fmt: skip
     for name, field in section.model_fields.items():
         if not any(nested(field)):
@@ -147,7 +147,7 @@ def _key(table: TableKeys, name: str, words: str, default: str, used: str) -> Ke
             value = written(row.default, row.quantity.unit)
             return Key(path, table.header, words, default, row.title, row.source, value, used)
         text = _text(table.path, name)
-        return Key(path, table.header, words, "", row.title, str(text["found"]),
+        return Key(path, table.header, words, "", row.title, str(text["source"]),
                    text["example"], used)  # fmt: skip
     text = _text(table.path, name)
     field = table.section.model_fields.get(name)
@@ -156,7 +156,7 @@ def _key(table: TableKeys, name: str, words: str, default: str, used: str) -> Ke
         example = words.strip("`")
     else:
         example = text["example"] if "example" in text else _default_value(field)
-    return Key(path, table.header, words, default, str(text["meaning"]), str(text["found"]),
+    return Key(path, table.header, words, default, str(text["meaning"]), str(text["source"]),
                example, used)  # fmt: skip
 
 

@@ -29,8 +29,8 @@ def explain(
 ) -> int:
     """Explain keys of the case file, such as guides.a.wall, tables such as spring, and checks.
 
-    Of a key meaning, unit, range, default, example, where it is found and what uses it; of a check
-    formula, limit, source, load cases and the values on which it rests.
+    Of a key meaning, unit, range, default, example, source of the value and what uses it; of a
+    check formula, limit, source, load cases and the values on which it rests.
     """
     texts = [_explained(word) for word in words]
     stdout.print("\n\n".join(texts), markup=False)
@@ -76,7 +76,7 @@ def _of_key(word: str, keys: Sequence[Key]) -> str:
             ("accepted", key.accepted.replace("`", '"')),
             ("default", absent if key.default in ("", REQUIRED) else key.default.replace("`", "")),
             ("example", line_of(key)),
-            ("found", key.found),
+            ("source", key.source),
             ("used by", key.used),
             ("checks", ", ".join(checks_with(key))),
         ),

@@ -85,7 +85,7 @@ def test_every_line_is_an_example_with_meaning_and_place():
         .rstrip()
         .endswith(
             "[[added]]\n\n[added.guides.a]\n"
-            'wall = "2 mm"  # example; wall thickness of the bush; found: bush catalogue'
+            'wall = "2 mm"  # example; wall thickness of the bush; source: bush catalogue'
         )
     )
 

@@ -25,7 +25,7 @@ def test_a_key_has_meaning_range_default_example_place_and_use(capsys):
         "  accepted    > 0, <= 10000 mm",
         "  default     none",
         '  example     wall = "2 mm"',
-        "  found       bush catalogue",
+        "  source      bush catalogue",
         "  used by     cycle, checks of the guides",
     ]
     assert checks.split()[0] == "checks"

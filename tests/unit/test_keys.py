@@ -18,7 +18,7 @@ RESOLVED = {key.path for key in KEYS if key.default == "none"}
 """Keys that the reader replaces by what they name."""
 
 
-def test_every_key_of_a_case_has_a_meaning_a_place_and_an_example():
+def test_every_key_of_a_case_has_a_meaning_a_source_and_an_example():
     """A key without its text raises on reading the table of keys."""
     fields = {
         f"{table.path}.{field.alias or name}".lstrip(".")
@@ -28,7 +28,7 @@ def test_every_key_of_a_case_has_a_meaning_a_place_and_an_example():
     }
     assert {key.path for key in KEYS} == fields | RESOLVED
     for key in KEYS:
-        assert key.meaning and key.found and key.used and key.accepted
+        assert key.meaning and key.source and key.used and key.accepted
         assert key.example is not None
 
 
