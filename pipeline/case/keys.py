@@ -169,8 +169,9 @@ def texts() -> Mapping[str, Mapping[str, Mapping[str, TomlValue]]]:
 
 def _text(path: str, name: str) -> Mapping[str, TomlValue]:
     known = texts()
-    table = known[_SAME_TEXTS.get(path, path)]
-    return table[name] if name in table else known["*"][name]
+    table = known[path]
+    same = known[_SAME_TEXTS.get(path, path)]
+    return table.get(name) or same.get(name) or known["*"][name]
 
 
 def sections(section: type[Section], path: str) -> Iterator[TableKeys]:

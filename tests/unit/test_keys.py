@@ -85,3 +85,9 @@ def test_a_key_that_some_kinds_of_a_table_share_has_one_entry_for_each():
 def test_needed_are_the_data_without_which_a_part_is_not_whole():
     needed = [key.name for key in keys_in("roller.fork") if key.needed]
     assert needed == ["cheek_width", "cheek_height", "cheek_length", "bridge_length", "material"]
+
+
+def test_the_guides_share_the_texts_of_their_keys_alone():
+    a, b = (keys_at(f"guides.{side}")[0].meaning for side in "ab")
+    assert (a, b) == ("guide A next to the cam", "guide B beyond guide A")
+    assert keys_at("guides.a.wall")[0].meaning == keys_at("guides.b.wall")[0].meaning
