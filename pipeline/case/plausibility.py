@@ -6,7 +6,7 @@ Such a value is allowed; it is stated with the consistency of the inputs.
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 from importlib.resources import files
@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from camwright.geometry.energy import spring_deflection
-from camwright.pipeline.base.units import factor, in_unit, shown
+from camwright.pipeline.base.units import in_unit, shown
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_values import text_of, value_of
 from camwright.pipeline.engine.crankshaft import energy_swing
@@ -28,70 +28,65 @@ PLAUSIBILITY = "plausibility"
 
 @dataclass(frozen=True)
 class Usual:
-    """Usual range of a quantity, low to high in `unit`, and the source of the range."""
+    """Usual range of a quantity, low to high in `unit`, its source, and keys of such values."""
 
     unit: str
     low: float
     high: float
     source: str
-
-    def nearest(self, value: float) -> float:
-        """The closest value (SI) of the range to a value in SI."""
-        scale = factor(self.unit) if self.unit != "-" else 1.0
-        return min(max(value, self.low * scale), self.high * scale)
+    keys: Sequence[str] = ()
 
     def finding(self, title: str, value: float, text: str) -> Finding | None:
-        """What is said of a value (SI) with its text; None within the range or a tenth of it."""
-        nearest = in_unit(self.nearest(value), self.unit)
+        """Finding on a value (SI) with its text; None within the range and 10 % beyond."""
+        stated = in_unit(value, self.unit)
+        nearest = min(max(stated, self.low), self.high)
         unit = f" {self.unit}".replace(" -", "")
         words = f"{text}, usually {self.low:g} to {self.high:g}{unit} ({self.source})"
-        made = Finding(PLAUSIBILITY, title, in_unit(value, self.unit), nearest, self.unit, words)
+        made = Finding(PLAUSIBILITY, title, stated, nearest, self.unit, words)
         return made if made.flagged else None
 
 
 def implausible(case: Case, torques: Mapping[str, Torque]) -> tuple[Finding, ...]:
     """Values of a case beyond their usual ranges, one finding each.
 
-    Besides the values of single keys: the amplitude of the engine torque, and the spring against
+    Besides the values of single keys: the peak-to-peak engine torque, and the spring against
     the energy swing of the torque of the design load case.
 
     Parameters
     ----------
     torques : mapping   engine torque by load case
     """
-    odd: list[Finding | None] = []
-    for usual, keys in _ranges():
-        for key in _keys_in(case, keys):
+    judged: list[Finding | None] = []
+    for usual in _ranges():
+        for key in _keys_in(case, usual.keys):
             value = value_of(case, key)
             if isinstance(value, float):
-                odd.append(usual.finding(key, value, f"{key} = {text_of(case, key)}"))
-    odd += _odd_torques(case, torques)
-    findings = [one for one in odd if one is not None]
+                judged.append(usual.finding(key, value, f"{key} = {text_of(case, key)}"))
+    judged += _torque_findings(case, torques)
+    findings = [one for one in judged if one is not None]
     if not {one.title for one in findings} & {"spring.rate", "spring.preload", *_TORQUES}:
-        findings += _odd_spring(case, torques)
+        findings += _spring_findings(case, torques)
     return tuple(findings)
 
 
 _TORQUES = ("engine", "engine.file")
 
 
-def _odd_torques(case: Case, torques: Mapping[str, Torque]) -> Iterator[Finding | None]:
-    """Amplitudes of the torque of the engine, in its design load case, and of further files."""
+def _torque_findings(case: Case, torques: Mapping[str, Torque]) -> Iterator[Finding | None]:
+    """Peak-to-peak torque of the engine, in its design load case, and of further files."""
     for k, state in enumerate(case.load_cases):
         torque = torques.get(state.name)
         if torque is None or (state.torque is None and k > 0):
             continue
         measured = "engine" if not hasattr(case.engine, "file") else "engine.file"
         key = measured if state.torque is None else f"load_case[{k}].torque"
-        amplitude = float(np.ptp(torque.total))
-        measure = (
-            "greatest less least" if amplitude > 0.0 else "0 N m everywhere, greatest less least"
-        )
-        text = f"{key}: torque, {measure} = {shown(amplitude, 'N m')}"
-        yield _usual("torque").finding(key, amplitude, text)
+        swing = float(np.ptp(torque.total))
+        level = "torque" if swing > 0.0 else "constant torque"
+        text = f"{key}: {level}, peak to peak = {shown(swing, 'N m')}"
+        yield _usual("torque").finding(key, swing, text)
 
 
-def _odd_spring(case: Case, torques: Mapping[str, Torque]) -> Iterator[Finding]:
+def _spring_findings(case: Case, torques: Mapping[str, Torque]) -> Iterator[Finding]:
     """The spring against the energy swing, unless the synthesis chooses it: one finding."""
     torque, smoothing, spring = torques.get(case.load_cases[0].name), case.smoothing, case.spring
     chosen = smoothing.kind == "constrained" and {"spring_rate", "preload"} & {*smoothing.free}
@@ -118,7 +113,7 @@ def _odd_spring(case: Case, torques: Mapping[str, Torque]) -> Iterator[Finding]:
             return
 
 
-def _keys_in(case: Case, keys: tuple[str, ...]) -> Iterator[str]:
+def _keys_in(case: Case, keys: Sequence[str]) -> Iterator[str]:
     """Keys of the case that patterns stand for."""
     for key in keys:
         if key.startswith("materials.*"):
@@ -138,6 +133,5 @@ def _usual(name: str) -> Usual:
 
 
 @cache
-def _ranges() -> tuple[tuple[Usual, tuple[str, ...]], ...]:
-    rows = [dict(row) for row in _table()["usual"]]
-    return tuple((Usual(**row), tuple(keys)) for row in rows for keys in [row.pop("keys")])
+def _ranges() -> tuple[Usual, ...]:
+    return tuple(Usual(**row) for row in _table()["usual"])

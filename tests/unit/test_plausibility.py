@@ -79,8 +79,8 @@ TORQUE = 30.0 * np.sin(ANGLE) + 10.0 * np.sin(2.0 * ANGLE)
 @pytest.mark.parametrize(
     ("scale", "words"),
     [
-        (0.0, "engine.file: torque, 0 N m everywhere, greatest less least = 0 N m, usually 0.1 to"),
-        (1e-3, "engine.file: torque, greatest less least = 0.0697 N m, usually 0.1 to"),
+        (0.0, "engine.file: constant torque, peak to peak = 0 N m, usually 0.1 to"),
+        (1e-3, "engine.file: torque, peak to peak = 0.0697 N m, usually 0.1 to"),
         (1e3, "spring.rate = 24.2 kN/m: storage of the energy swing of the torque, 6e+04 J, takes"),
     ],
 )
