@@ -117,9 +117,15 @@ piston_mass = "144 g"                # with rings and pin
 rod_mass = "123 g"
 """
 
+_WHEEL = """\
+file = "@DATA@"
+teeth = 36                           # pitches of the wheel, with
+missing_teeth = 2                    # a gap
+"""
+
 _CRANKSHAFT = """
 [crankshaft]
-inertia = "0.0139 kg m^2"            # of all that turns: it makes a torque of the speed
+inertia = "0.0139 kg m^2"            # of all that turns: times its acceleration it is the torque
 """
 
 _SOURCES: dict[Kind, str] = {
@@ -153,9 +159,7 @@ file = "@DATA@"
 # rising and falling in turn, a column for each run.
 [engine]
 kind = "speed"
-file = "@DATA@"
-teeth = 36                           # pitches of the wheel, with
-missing_teeth = 2                    # a gap
+{_WHEEL}\
 reference_angle = "0 deg"            # crank angle of the first rising edge after the gap
 {_CRANKSHAFT}""",
     "voltage": f"""\
@@ -163,9 +167,7 @@ reference_angle = "0 deg"            # crank angle of the first rising edge afte
 # trigger wheel, a column of time and one of voltage for each run.
 [engine]
 kind = "voltage"
-file = "@DATA@"
-teeth = 36                           # pitches of the wheel, with
-missing_teeth = 2                    # a gap
+{_WHEEL}\
 reference_angle = "0 deg"            # crank angle of the middle of the first tooth after the gap
 {_CRANKSHAFT}""",
     "lift": """\
