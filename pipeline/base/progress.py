@@ -144,7 +144,7 @@ class Bars:
 
 
 def utc(ago: float = 0.0) -> str:
-    """Time of day `ago` seconds before now, UTC, such as ``2026-01-31T12:00:00Z``."""
+    """Date and time `ago` seconds before now, UTC, such as ``2026-01-31T12:00:00Z``."""
     moment = datetime.now(UTC) - timedelta(seconds=ago)
     return f"{moment:%Y-%m-%dT%H:%M:%SZ}"
 

@@ -100,7 +100,7 @@ def _block(rows: Sequence[tuple[str, Key]], materials: Mapping[str, Material]) -
         pairs = [(line_of(key), _remark(key)) for _, key in listed]
         card = _card_of(table, materials)
         if card:
-            pairs.insert(0, (_line("card", card), "as now"))
+            pairs.insert(0, (_line("card", card), "unchanged"))
         width = max(len(line) for line, _ in pairs)
         body = "".join(f"{line:{width}}  # {remark}\n" for line, remark in pairs)
         text += f"\n[{ADDED}.{table}]\n{body}" if table else body
@@ -135,7 +135,7 @@ def _remark(key: Key) -> str:
 
 
 def _card_of(table: str, materials: Mapping[str, Material]) -> str:
-    """Card that a bush has put among the materials: its table keeps it where the case adds keys."""
+    """Card of a material that a bush brings; a table of added keys has to name it. "": none."""
     *parents, name = table.split(".")
     card = materials.get(name) if parents == ["materials"] else None
     return name if card is not None and card.source.startswith(f"card {name}: ") else ""

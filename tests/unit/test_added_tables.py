@@ -78,7 +78,7 @@ def test_a_removed_datum_is_cured_by_the_printed_block(path):
         assert cured.sha256 == parse_case(tomli_w.dumps(COMPLETE)).sha256
 
 
-def test_every_line_is_an_example_with_meaning_and_place():
+def test_every_line_is_an_example_with_meaning_and_source():
     block = printed(parse_case(tomli_w.dumps(without("guides", "a", "wall"))))
     assert (
         block.partition("# Optional")[0]
