@@ -16,7 +16,12 @@ from camwright.pipeline.results.run_reader import (
     judgement,
     to_be_confirmed,
 )
-from camwright.pipeline.results.verdict_summary import WORST, failure_words, failures
+from camwright.pipeline.results.verdict_summary import (
+    WORST,
+    failure_words,
+    failures,
+    governs_first,
+)
 from camwright.reports.report_tables import (
     Record,
     check_rows,
@@ -35,12 +40,12 @@ class Verdict:
     `outcome` is ``pass``, ``incomplete`` or ``fail``, of a screen ``open`` or ``fail``; `line` the
     verdict with its reasons, the numbers of waived checks and of values to be confirmed; `confirm`
     names these values. `sentence` counts the checks by status, `governing` describes the required
-    check of the design of highest utilisation, `binding` are titles of required checks that fail.
-    `unproven`, `missing` and `waived` are lines on required checks whose error bar lies across the
-    limit, that lack data, and that are waived. `stopped` are the clauses of the reason for which
-    the trials ended, `scope` the parts not covered, `label` what is stated; `ends` where the
-    follower leaves the cam or locks; `worst` are the worst failed required checks in words, each
-    with its remedy, "" without one.
+    check of the design of highest utilisation, "" where it is the first of `worst`; `binding` are
+    titles of required checks that fail. `unproven`, `missing` and `waived` are lines on required
+    checks whose error bar lies across the limit, that lack data, and that are waived. `stopped` are
+    the clauses of the reason for which the trials ended, `scope` the parts not covered, `label`
+    what is stated; `ends` where the follower leaves the cam or locks; `worst` are the worst failed
+    required checks in words, each with its remedy, "" without one.
     """
 
     outcome: str
@@ -117,6 +122,7 @@ def verdict(
     titles = {str(c["id"]): isolated(str(c["title"])) for c in checks}
     unknown = {str(c["id"]): titles[str(c["id"])] for c in missing}
     clauses = (clause for clause in stopped.split("; ") if clause)
+    records = cast("Sequence[CheckRecord]", checks)
     judged = judgement(checks, depth)
     by_checks = str(judged["verdict"] or judged["screen"])
     outcome = max(recorded, by_checks, key=(*VERDICTS[:-1], OPEN, VERDICTS[-1]).index)
@@ -126,7 +132,7 @@ def verdict(
         confirm=tuple(to_be_confirmed(checks)),
         scope=scope,
         sentence=_sentence(checks, required, missing),
-        governing=governing(checks),
+        governing="" if governs_first(records) else governing(checks),
         ends=load_ends,
         binding=tuple(titles.get(n, words(n)) for n in map(str, binding) if n not in unknown),
         stopped=tuple(clause for clause in clauses if not _names_all(clause, unknown.values())),
@@ -142,7 +148,7 @@ def verdict(
         label="Verdict" if depth == CERTIFIED else "Screen, no verdict",
         worst=tuple(
             (isolated(failure_words(c)), isolated(str(c.get("remedy") or "")))
-            for c in failures(cast("Sequence[CheckRecord]", checks))[:WORST]
+            for c in failures(records)[:WORST]
         ),
     )
 

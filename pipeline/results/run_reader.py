@@ -369,17 +369,12 @@ def governing_of(checks: Iterable[AnyCheck]) -> AnyCheck | None:
     ranked = [
         (-used, str(check["id"]), check)
         for check in checks
-        if governs(check) and (used := utilisation_of(check)) is not None
+        if _governs(check) and (used := utilisation_of(check)) is not None
     ]
     return min(ranked, key=lambda each: each[:2])[2] if ranked else None
 
 
-def load_end_words(ends: Iterable[LoadEndRecord]) -> str:
-    """Such as ``leaves the cam at 150.5 deg (over-speed)``; "" without any."""
-    return ", ".join(end["statement"] for end in ends)
-
-
-def governs(check: AnyCheck) -> bool:
+def _governs(check: AnyCheck) -> bool:
     """Whether a check is ranked as governing: a must-have of the design that passes or fails."""
     ranked = check["must_have"] and not check["evidence"]
     return bool(ranked and check["status"] in ("pass", "fail"))
@@ -389,6 +384,11 @@ def governing_id(checks: Iterable[AnyCheck]) -> str | None:
     """Id of the governing check; see `governing_of`."""
     governing = governing_of(checks)
     return None if governing is None else str(governing["id"])
+
+
+def load_end_words(ends: Iterable[LoadEndRecord]) -> str:
+    """Such as ``leaves the cam at 150.5 deg (over-speed)``; "" without any."""
+    return ", ".join(end["statement"] for end in ends)
 
 
 def utilisation_of(check: AnyCheck) -> float | None:

@@ -15,8 +15,8 @@ from camwright.pipeline.results.check_report import (
 )
 from camwright.pipeline.results.run_reader import (
     CheckRecord,
+    governing_id,
     governing_of,
-    governs,
     judged,
     load_end_words,
     utilisation_of,
@@ -66,7 +66,7 @@ def summary_lines(document: Mapping[str, Any], places: Places) -> list[str]:
     lines += missing_count(checks, places.case)
     for line in headline_line(document):
         lines += folded(line)
-    if not any(governs(record) for record in failed):
+    if not governs_first(checks):
         lines += [shortened(line) for line in governing_line(checks)]
     if document["scope"]["statement"]:
         lines.append(shortened(document["scope"]["statement"]))
@@ -91,6 +91,12 @@ def failures(checks: Iterable[CheckRecord]) -> list[CheckRecord]:
     """Failed required checks: those of the design, then evidence; worst first."""
     failed = [check for check in checks if check["must_have"] and check["status"] == "fail"]
     return sorted(failed, key=_severity)
+
+
+def governs_first(checks: Iterable[CheckRecord]) -> bool:
+    """Whether the governing check is the first of `failures`, where it is described."""
+    checks = tuple(checks)
+    return [governing_id(checks)] == [check["id"] for check in failures(checks)[:1]]
 
 
 def _severity(check: CheckRecord) -> tuple[bool, float, str]:

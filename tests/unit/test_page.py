@@ -114,7 +114,10 @@ def test_the_verdict_comes_first_and_names_what_binds(html):
     top = html[order[0] : order[1]]
     assert "FAIL" in top
     assert "4 of 8 required checks pass, 3 fail, 1 is waived." in top
-    assert "Static safety of the roller bearing, load case idle, cam angle 192" in top
+    worst = re.search(r'<ol class="worst">\s*<li>(.*?)</li>', top)
+    assert worst and worst[1].startswith("<bdi>Static safety of the roller bearing: ")
+    assert "idle 192" in worst[1]
+    assert "<b>Governing:</b>" not in top  # it is the worst failure
     assert "no smoothing that keeps the torque reduction" in top
 
 

@@ -176,6 +176,14 @@ def test_the_governing_check_is_required_and_not_waived():
     )
 
 
+def test_a_governing_check_that_is_the_worst_failure_is_described_once():
+    failed, unproven = check("a", "fail", 2.0), check("b", "fail", 0.98, not_proven=True)
+    assert verdict("fail", [failed, check("c")], ("a",), "").governing == ""
+    beside = verdict("fail", [unproven, check("c", utilisation=0.99)], ("b",), "")
+    assert beside.governing.startswith("C, load case idle")
+    assert beside.worst[0][0].startswith("B: ")
+
+
 def test_an_infinite_utilisation_governs_and_of_equal_ones_the_first_id():
     beyond = check("b", "fail", None, load_case="rated")
     assert governing_id([check("a", "fail", 50.0), beyond]) == "b"

@@ -119,6 +119,15 @@ def test_a_pass_names_what_governs() -> None:
     ]
 
 
+def test_a_check_that_governs_beside_a_lesser_failure_is_named() -> None:
+    checks: list[Any] = [
+        check("fail", id="a", title="A", demand=1.9, utilisation=0.95, not_proven=True),
+        check(id="p", title="P", utilisation=0.99),
+    ]
+    lines = summary_lines(document(checks), PLACES)
+    assert "governing: P, 99 % used, idle 12.5 deg" in lines
+
+
 def test_missing_keys_are_listed_once_with_the_checks_that_need_them() -> None:
     checks: list[Any] = [
         check("not_evaluated", id="a", missing=["guides.a.wall", "limits.target_life"]),
