@@ -6,7 +6,7 @@ from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from typing import cast
 
-from camwright.pipeline.results.check_report import not_proven
+from camwright.pipeline.results.check_report import not_proven, reason_without_data
 from camwright.pipeline.results.run_reader import (
     CERTIFIED,
     OPEN,
@@ -155,8 +155,7 @@ def verdict(
 
 def _stated(check: Check) -> str:
     """A check without data, and what to state."""
-    note = str(check["note"]) or "a number is missing"
-    return f"{isolated(str(check['title']))}: {isolated(note)}"
+    return f"{isolated(str(check['title']))}: {isolated(reason_without_data(check))}"
 
 
 def _names_all(clause: str, titles: Collection[str]) -> bool:

@@ -100,7 +100,7 @@ def waiver_words(record: CheckRecord) -> str:
     """Value up to which a waiver accepts the demand, and its name, date and reason."""
     if not record["waiver"]:
         return ""
-    unit = "" if record["unit"] == "-" else f" {record['unit']}"
+    unit = unit_text(record["unit"])
     return f"up to {number(record['waived_up_to'])}{unit}, {record['waiver']}"
 
 
@@ -135,7 +135,17 @@ def rows(records: Iterable[CheckRecord]) -> list[tuple[str, ...]]:
 
 
 def _unit(record: CheckRecord) -> str:
-    return "" if record["unit"] == "-" or record["demand"] is None else f" {record['unit']}"
+    return "" if record["demand"] is None else unit_text(record["unit"])
+
+
+def unit_text(unit: str) -> str:
+    """Unit behind a number, after a space; "" of a ratio, whose unit is ``-``."""
+    return "" if unit == "-" else f" {unit}"
+
+
+def reason_without_data(record: AnyCheck) -> str:
+    """Reason why a check is not evaluated."""
+    return str(record["note"]) or "a number is missing"
 
 
 def status(record: CheckRecord) -> str:
@@ -201,7 +211,7 @@ def remarks(records: Iterable[CheckRecord]) -> list[str]:
     unproven = [f"{r['id']}: {not_proven(r)}" for r in records if r["not_proven"]]
     still_open = [
         f"missing data{'' if r['must_have'] else ' (optional)'}: {r['id']}: "
-        f"{r['note'] or 'a number is missing'}"
+        f"{reason_without_data(r)}"
         for r in records
         if r["status"] == "not_evaluated"
     ]
@@ -266,6 +276,6 @@ def consistency_line(finding: Finding) -> str:
     share = finding["difference_percent"]
     off = "beyond bounds" if share is None else f"{share:+.1f} %"
     words = f"{finding['title']}: given {finding['given']:.4g}, implied {finding['implied']:.4g}"
-    unit = "" if finding["unit"] == "-" else f" {finding['unit']}"
+    unit = unit_text(finding["unit"])
     mark = "; MORE THAN 10 % APART" if finding["flagged"] else ""
     return f"consistency, {finding['load_case']}: {words}{unit} ({off}){mark}"

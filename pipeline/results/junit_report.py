@@ -20,7 +20,9 @@ from camwright.pipeline.results.check_report import (
     number,
     place,
     rank,
+    reason_without_data,
     status,
+    unit_text,
     waiver_words,
     with_error,
 )
@@ -142,7 +144,7 @@ def _counted(suite: ET.Element) -> ET.Element:
 
 def _reason(record: CheckRecord) -> str:
     """Reason why a check is not evaluated."""
-    said = [record["note"] or "a number is missing"]
+    said = [reason_without_data(record)]
     judged_at = record["judged_at"]
     if judged_at and judged_at not in record["note"]:
         said.append(f"judged at the depth {judged_at}")
@@ -154,7 +156,7 @@ def _reason(record: CheckRecord) -> str:
 
 def _shortfall(record: CheckRecord) -> str:
     """Demand against limit with unit and status, the reason of a failure, in one line."""
-    unit = "" if record["unit"] == "-" else f" {record['unit']}"
+    unit = unit_text(record["unit"])
     demand = record["demand"]
     if record["corner"] and record["corner_demand"] is not None:
         demand = record["corner_demand"]
@@ -174,7 +176,7 @@ def _shortfall(record: CheckRecord) -> str:
 
 def _details(record: CheckRecord) -> list[str]:
     """Further lines on a check: demand, limit, place, corner, waiver, remedy, method, source."""
-    unit = "" if record["unit"] == "-" else f" {record['unit']}"
+    unit = unit_text(record["unit"])
     named = {
         "demand": f"{with_error(record['demand'], record['error'])}{unit}",
         "limit": f"{number(record['limit'])}{unit}",

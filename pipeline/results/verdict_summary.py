@@ -12,6 +12,8 @@ from camwright.pipeline.results.check_report import (
     not_proven,
     number,
     place,
+    reason_without_data,
+    unit_text,
 )
 from camwright.pipeline.results.run_reader import (
     CheckRecord,
@@ -105,7 +107,7 @@ def _severity(check: CheckRecord) -> tuple[bool, float, str]:
 
 def failure_words(check: CheckRecord, room: int | None = None) -> str:
     """Title, demand, limit, utilisation, place of a failed check; room: columns, None: any."""
-    worst, unit = judged(check), "" if check["unit"] == "-" else f" {check['unit']}"
+    worst, unit = judged(check), unit_text(check["unit"])
     demand = number(None if worst is None else worst.demand)
     sense = ">=" if check["sense"] == "at_least" else "<="
     where = place(check)
@@ -159,7 +161,7 @@ def missing_lines(checks: Sequence[CheckRecord], case: str) -> list[str]:
     keys = missing_keys(checks)
     lines = [f"missing: {key}, for {', '.join(ids)}" for key, ids in keys.items()]
     lines += [
-        f"not evaluated: {check['id']}: {check['note'] or 'a number is missing'}"
+        f"not evaluated: {check['id']}: {reason_without_data(check)}"
         for check in checks
         if check["must_have"] and check["status"] == "not_evaluated" and not check.get("missing")
     ]
