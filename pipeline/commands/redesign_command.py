@@ -82,4 +82,6 @@ def _show(document: dict[str, Any], folder: Path) -> None:
     if missing:
         stdout.print(f"missing data of these points: {', '.join(missing)}", markup=False)
     first = folder / document["points"][0]["file"]
-    stdout.print(f"{counts} and dominance; next: camwright run {first}", markup=False)
+    stdout.print(
+        f"{counts} and dominance; next: camwright run {first} --out runs/{first.stem}", markup=False
+    )

@@ -157,14 +157,14 @@ def test_without_a_result_limit_and_way_are_named_and_no_file_is(
     assert code == 1
     assert "no choice of the catalogues keeps all limits" in shown
     assert "excluded most by torque_reduction (torque ripple reduction): 3 of 3" in shown
-    ways = shown.split("what would have to give: ")[1]
+    ways = shown.split("changes that make it feasible: ")[1]
     assert "cam radius: " in ways and " mm instead of 48 mm" in ways
     assert "its limits in conflict: cam_radius, torque_reduction" in shown
     assert "point_01" not in shown
     document = json.loads((tmp_path / "out" / "redesign.json").read_text(encoding="utf-8"))
     assert document["points"] == []
     page_text = (tmp_path / "out" / "redesign.html").read_text(encoding="utf-8")
-    assert "what would have to give: " in page_text
+    assert "changes that make it feasible: " in page_text
 
 
 def test_what_is_solved_is_used_again(done, case_file):

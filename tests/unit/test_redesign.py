@@ -346,11 +346,11 @@ def test_without_a_result_the_limit_that_excludes_most_is_named():
     assert record["lines"][3:] == [
         "nearest: b, spring s, bushes b",
         "its limits in conflict: cam_radius, jump",
-        "what would have to give: way 0; or way 1; or way 2",
+        "changes that make it feasible: way 0; or way 1; or way 2",
     ]
 
 
-def test_of_points_solved_in_full_the_demand_says_what_would_have_to_give():
+def test_of_points_solved_in_full_the_demand_is_the_limit_needed():
     far, near = ({"feasible": True, "shortfalls": [shortfall("life", demand)]} for demand in (9, 3))
     refused = [(Choice("far", "s", "b"), far), (Choice("near", "s", "b"), near)]
     tried = [(choice, {"feasible": True}) for choice, _ in refused]
@@ -367,7 +367,7 @@ def test_without_any_choice_the_case_itself_is_solved():
     assert asked == [None]
     assert record["lines"][-2:] == [
         "nearest: the parts of the case",
-        "what would have to give: more than any single limit, spring or prime radius",
+        "no single change of a limit, the spring or the prime radius makes it feasible",
     ]
 
 

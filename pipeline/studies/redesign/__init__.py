@@ -9,7 +9,7 @@ In the order of the calculation:
 | `point_store`    | points in worker processes, cached on disk    |              |
 | `part_search`    | search order over rollers, springs and bushes |              |
 | `pareto_front`   | front of two objectives                       |              |
-| `exclusions`     | limits that exclude every choice, ways out    |              |
+| `exclusions`     | limits that exclude choices, changes needed   |              |
 | `redesign_study` | command: search, front, case files, record    |              |
 
 Imported by `commands` alone.

@@ -1,4 +1,4 @@
-"""Redesign without a result: limits that excluded the choices, and what would have to give."""
+"""Redesign without a result: limits that excluded the choices, changes that would admit one."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from typing import Any
 
 from camwright.pipeline.case.cards.substitution import Choice
 from camwright.pipeline.case.limits import LIMITS
+from camwright.pipeline.results.check_report import number, unit_text
 from camwright.pipeline.studies.redesign.part_search import Pruned
 from camwright.pipeline.studies.redesign.point_store import Record
 
@@ -38,7 +39,7 @@ def exclusions(
     -------
     dict   ``excluded``: limit, title and count, the most frequent first; ``nearest``: parts of the
            choice that exceeds its limit least; ``conflict``, ``ways``: its conflicting limits, and
-           the changes that would make room, the smallest first; ``lines``: all in words
+           the changes that would admit it, the smallest first; ``lines``: all in words
     """
     whole = dict(refused)
     reasons = [_reason(whole.get(choice, record)) for choice, record in tried]
@@ -48,8 +49,9 @@ def exclusions(
     excluded = [
         {"limit": name, "title": _TITLES.get(name, ""), "count": counts[name]} for name in first
     ]
-    short = [pair for pair in refused if first and _reason(pair[1]) == first[0]]
-    if short and short[0][1].get("shortfalls"):
+    short = [pair for pair in refused if pair[1].get("shortfalls")]
+    short = [pair for pair in short if _reason(pair[1]) == first[0]]
+    if short:
         nearest = min(short, key=lambda pair: _excess(pair[1]))
         ways, conflicting = [_way(nearest[1]["shortfalls"][0])], []
         choice: Choice | None = nearest[0]
@@ -69,7 +71,7 @@ def exclusions(
 
 
 def _lines(record: Record) -> list[str]:
-    """Limits by the number of excluded choices, and the smallest changes that make room."""
+    """Limits by the number of excluded choices, and the smallest changes that admit one."""
     counts = [
         f"{each['limit']}{' (' + each['title'] + ')' if each['title'] else ''}: {each['count']}"
         for each in record["excluded"]
@@ -85,9 +87,9 @@ def _lines(record: Record) -> list[str]:
         said.append(f"its limits in conflict: {', '.join(record['conflict'])}")
     ways = "; or ".join(record["ways"][:_SHOWN])
     said.append(
-        f"what would have to give: {ways}"
+        f"changes that make it feasible: {ways}"
         if ways
-        else "what would have to give: more than any single limit, spring or prime radius"
+        else "no single change of a limit, the spring or the prime radius makes it feasible"
     )
     return said
 
@@ -113,12 +115,8 @@ def _excess(record: Record) -> tuple[int, float]:
 
 def _way(shortfall: Mapping[str, Any]) -> str:
     """The limit at which a check would pass."""
-    unit = "" if shortfall["unit"] == "-" else f" {shortfall['unit']}"
+    unit = unit_text(shortfall["unit"])
     demand, limit = shortfall["demand"], shortfall["limit"]
     if demand is None or limit is None:
-        return f"{shortfall['title']}: unbounded against {_number(limit)}{unit}"
+        return f"{shortfall['title']}: unbounded against {number(limit)}{unit}"
     return f"{shortfall['title']}: {demand:.4g}{unit} instead of {limit:.4g}{unit}"
-
-
-def _number(value: float | None) -> str:
-    return "-" if value is None else f"{value:.4g}"
