@@ -9,14 +9,14 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from camwright.geometry.errors import InputError
-from camwright.pipeline.commands.terminal import PASSED, stdout
+from camwright.pipeline.commands.terminal import PASSED, WIDTH, stdout
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
     from camwright.pipeline.case.keys import Key
 
-WIDTH, LABEL = 100, 14
+LABEL = 14
 CLOSEST = 6
 """Names in the message on an unknown one."""
 

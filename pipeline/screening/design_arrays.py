@@ -304,7 +304,7 @@ class Designs:
         return np.asarray(state.torque_reduction) if state.torque_reduction else None
 
     def in_load_cases(self, kept: Sequence[bool]) -> Designs:
-        """The designs in some of their load cases, with what is known of them."""
+        """The designs in some of their load cases; figures without loads are not computed again."""
         part = copy.copy(self)
         chosen = tuple(turns for turns, keep in zip(self.turns, kept, strict=True) if keep)
         part.__dict__["turns"] = chosen  # as the cached property would

@@ -19,6 +19,7 @@ from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.engine.torque import Torque
 from camwright.pipeline.preview import preview_case
 from camwright.pipeline.results.trial import Trial
+from camwright.pipeline.results.verdict_summary import WIDTH, shortened
 from camwright.pipeline.smoothing.required_lift import cam_lift
 from camwright.pipeline.smoothing.smoothers import Smoother
 from camwright.pipeline.solver import solve
@@ -35,7 +36,6 @@ _SMOOTHERS = (
     Smoother("smoothing_spline", cutoff=float(np.radians(120.0))),
 )
 _POSITIONS = 720
-_COLUMNS = 100
 RANK = (
     "ranked: fewest failing must-have checks first, then least ripple left; a cam that removes "
     "less than 1 % of the ripple comes last"
@@ -89,7 +89,7 @@ class Compared:
 
     @property
     def reduces(self) -> bool:
-        """Whether the cam removes any of the ripple to speak of."""
+        """Whether the cam removes at least 1 % of the ripple."""
         return self.ripple() < _USELESS * self.ripple("initial")
 
 
@@ -136,7 +136,9 @@ def recommendation(best: Compared) -> str:
     left, before = best.ripple(), best.ripple("initial")
     ripple = f"{left:.3g} N m of ripple left of {before:.3g} N m"
     if not best.reduces:
-        return f"no smoother reduces the ripple; {best.label} fails least: {ripple}"
+        return (
+            f"no smoother reduces the ripple; {best.label} has the fewest failing checks: {ripple}"
+        )
     if best.failing:
         count = len(best.failing)
         fewest = f"fewest failing must-have checks, {count}; none passes"
@@ -155,7 +157,7 @@ def common_missing(results: Sequence[Compared]) -> tuple[str, ...]:
 def lines(results: Sequence[Compared]) -> list[str]:
     """Recommendation, a line a smoother in the order of the rank, and the missing data once.
 
-    No line is longer than 100 columns.
+    No line is longer than `WIDTH`.
 
     Parameters
     ----------
@@ -168,9 +170,9 @@ def lines(results: Sequence[Compared]) -> list[str]:
         mark = ">" if k == 0 and one.reduces else " "
         ripple, p0 = (_number(one.record.get(key)) for key in ("residual_std_Nm", "p0_max_MPa"))
         start = f"{mark} {one.label:{wide}}  {ripple:>11}  {p0:>7}  "
-        table.append(start + _state(one, _COLUMNS - len(start)))
+        table.append(start + _state(one, WIDTH - len(start)))
     said = [recommendation(results[0]), *_missing_line(results), RANK]
-    first, *rest = (textwrap.wrap(text, _COLUMNS, subsequent_indent="  ") for text in said)
+    first, *rest = (textwrap.wrap(text, WIDTH, subsequent_indent="  ") for text in said)
     return [*first, *table, *(line for text in rest for line in text)]
 
 
@@ -189,7 +191,7 @@ def _missing_line(results: Sequence[Compared]) -> list[str]:
 def _state(one: Compared, columns: int) -> str:
     """Failing checks, the worst first; the reason without a cam."""
     if one.lift is None:
-        return _cut(f"no cam: {one.record['why']}", columns)
+        return shortened(f"no cam: {one.record['why']}", columns)
     if not one.failing:
         return "none fails"
     start = f"{len(one.failing)} fail: "
@@ -203,12 +205,7 @@ def _listed_within(names: Sequence[str], columns: int) -> str:
         text = ", ".join(names[:shown]) + (f", +{rest}" if rest else "")
         if len(text) <= columns:
             return text
-    return _cut(names[0], columns)
-
-
-def _cut(text: str, columns: int) -> str:
-    text = " ".join(text.split())
-    return text if len(text) <= columns else f"{text[: columns - 1]}…"
+    return shortened(names[0], columns)
 
 
 def _number(value: object) -> str:
