@@ -95,13 +95,8 @@ def check(
         if verify_record and not _as_signed(targets[0]):
             return FAILED
         judged = [_judged(targets[0], patterns, fail_on, baseline, remedies=remedies)]
-    elif remedies:
-        raise InputError("--remedies", len(targets), "stated with one run or case alone")
-    elif baseline is not None:
-        raise InputError("--baseline", str(baseline), "stated with one run or case alone")
-    elif missing:
-        raise InputError("--missing", f"{len(targets)} targets", "stated with one run or case")
     else:
+        _refuse_for_several(len(targets), remedies, baseline, missing)
         judged = [_of_several(each, patterns, fail_on, verify_record) for each in targets]
     if junit is not None:
         from camwright.pipeline.base.files import write_atomic
@@ -124,6 +119,14 @@ def check(
 
         stdout.print(overview(each.row for each in judged))
     return max((each.code for each in judged), key=SEVERITY.index)
+
+
+def _refuse_for_several(count: int, remedies: bool, baseline: Path | None, missing: bool) -> None:
+    """Refuse the options that serve one run or case."""
+    options = {"--remedies": remedies, "--baseline": baseline, "--missing": missing}
+    for option, value in options.items():
+        if value:
+            raise InputError(option, f"{count} targets", "stated with one run or case alone")
 
 
 def schema(
