@@ -254,7 +254,7 @@ def judged_columns(designs: Designs) -> dict[str, Column]:
     most = np.full(count, -np.inf)
     governing = np.full(count, "", dtype=object)
     lost = _lost_loads(designs)
-    for each in SCREENED:
+    for each in sorted(SCREENED, key=lambda one: one.check):  # the first governs among equal ones
         declared = DECLARED[each.check]
         part = declared.part
         if part and not (machine.scope.covers(part) and machine.describes(part)):

@@ -16,6 +16,7 @@ from camwright.pipeline.case.case_values import quantity_of, replaced, value_of
 from camwright.pipeline.checks.check import Check
 from camwright.pipeline.checks.registry import CHECKS
 from camwright.pipeline.preview import preview_case
+from camwright.pipeline.results.run_reader import governing_id
 from camwright.pipeline.screening import design_screening
 from camwright.pipeline.screening.design_arrays import Designs, TorqueOfSpeed
 from camwright.pipeline.screening.design_factors import ARRAYS, groups
@@ -65,6 +66,17 @@ def test_an_undercut_cam_fails_with_its_factor() -> None:
     assert columns["message"][1].startswith("undercut factor of the contour = -")
     assert columns["screen"][1] == columns["undercut.status"][1] == "fail"
     assert columns["contact_pressure.status"][1] == "not_evaluated"
+
+
+def test_of_equal_utilisations_the_check_of_the_preview_governs() -> None:
+    """A follower that leaves the cam fails two checks without bound."""
+    design = {"spring.preload": 20.0, "follower.mass": 2.0}
+    columns = screen_designs(case(), {key: [value] for key, value in design.items()})
+    unbounded = ("contact_at_overspeed.utilisation", "contact_force_margin.utilisation")
+    assert all(np.isposinf(columns[name][0]) for name in unbounded)
+    checks = preview_case(replaced(case(), design), corners=False).checks
+    governing = governing_id(check.as_record() for check in checks)
+    assert columns["governing"][0] == governing == "contact_at_overspeed"
 
 
 def test_designs_of_other_structure_are_grouped() -> None:
