@@ -26,7 +26,7 @@ from camwright.pipeline.results.check_report import (
     waiver_words,
     with_error,
 )
-from camwright.pipeline.results.run_reader import CheckRecord
+from camwright.pipeline.results.run_reader import CheckRecord, judged
 
 VERDICT = "verdict"
 """Name of the test case that is the verdict of the suite."""
@@ -157,13 +157,12 @@ def _reason(record: CheckRecord) -> str:
 def _shortfall(record: CheckRecord) -> str:
     """Demand against limit with unit and status, the reason of a failure, in one line."""
     unit = unit_text(record["unit"])
-    demand = record["demand"]
-    if record["corner"] and record["corner_demand"] is not None:
-        demand = record["corner_demand"]
+    worst = judged(record)
+    demand = record["demand"] if worst is None else worst.demand
     sign = "<=" if record["sense"] == "at_most" else ">="
     unbounded = demand is None and record["status"] == "fail"
-    worst = "unbounded" if unbounded else f"{with_error(demand, record['error'])}{unit}"
-    text = f"{record['title']}: {worst}, must be {sign} {number(record['limit'])}{unit}"
+    words = "unbounded" if unbounded else f"{with_error(demand, record['error'])}{unit}"
+    text = f"{record['title']}: {words}, must be {sign} {number(record['limit'])}{unit}"
     reasons = [f"{status(record)}"]
     if record["status"] == "fail" and not record["not_proven"]:
         utilisation = used(record["utilisation"])
