@@ -177,6 +177,15 @@ def test_what_is_solved_is_used_again(done, case_file):
     assert all(path.stat().st_mtime_ns == kept[path] for path in kept if path != lost)
 
 
+def test_the_next_command_names_case_and_run_folder(done, case_file, capsys):
+    out, document = done
+    redesign(case_file, out, "size", 1, as_json=False)
+    shown = " ".join(capsys.readouterr().out.split())
+    first = document["points"][0]["file"]
+    command = f"next: camwright run {out / first} --out runs/{Path(first).stem}"
+    assert command in shown
+
+
 def test_page_and_record(done):
     out, document = done
     assert json.loads((out / "redesign.json").read_text(encoding="utf-8")) == document
