@@ -1,8 +1,11 @@
-"""Shared by all tests: one BLAS thread, and data that not every machine has."""
+"""Shared by all tests: one BLAS thread, the command line, data that not every machine has."""
 
 from __future__ import annotations
 
 import os
+import signal
+import sys
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -20,3 +23,24 @@ def shared_data() -> Path:
     if not folder.is_dir():
         pytest.skip("no reference data: set CAMWRIGHT_SHARED to its folder")
     return folder
+
+
+@pytest.fixture
+def command(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> Callable[..., tuple[int, str, str]]:
+    """Runs `camwright` in this process: exit code, output, errors."""
+    from camwright.pipeline import cli
+
+    def call(*arguments: object) -> tuple[int, str, str]:
+        monkeypatch.setattr(sys, "argv", ["camwright", *map(str, arguments)])
+        handler = signal.getsignal(signal.SIGTERM)
+        try:
+            with pytest.raises(SystemExit) as leaving:
+                cli.main()
+        finally:
+            signal.signal(signal.SIGTERM, handler)
+        captured = capsys.readouterr()
+        return int(leaving.value.code or 0), captured.out, captured.err
+
+    return call

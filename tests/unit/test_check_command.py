@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import json
 import re
-import signal
-import sys
 import tomllib
 import xml.etree.ElementTree as ET
 from collections.abc import Callable
@@ -17,7 +15,6 @@ from small_machine import small_machine
 from small_run import TORQUE, check, small_case, summary, values, write_run, write_trial
 
 from camwright.geometry.errors import InputError
-from camwright.pipeline import cli
 from camwright.pipeline.case.case_file import case_of
 from camwright.pipeline.results.baseline_comparison import changes, lines
 from camwright.pipeline.results.check_report import (
@@ -42,22 +39,6 @@ RECORDS = (
 )
 
 Command = Callable[..., tuple[int, str, str]]
-
-
-@pytest.fixture
-def command(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> Command:
-    def call(*arguments: object) -> tuple[int, str, str]:
-        monkeypatch.setattr(sys, "argv", ["camwright", *map(str, arguments)])
-        handler = signal.getsignal(signal.SIGTERM)
-        try:
-            with pytest.raises(SystemExit) as leaving:
-                cli.main()
-        finally:
-            signal.signal(signal.SIGTERM, handler)
-        captured = capsys.readouterr()
-        return int(leaving.value.code or 0), captured.out, captured.err
-
-    return call
 
 
 @pytest.fixture

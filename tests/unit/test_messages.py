@@ -5,10 +5,8 @@ The inputs are those of users who could not tell from the message what to change
 
 import random
 import re
-import signal
-import sys
 import tomllib
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -21,7 +19,6 @@ from camwright.geometry.contour import RollerContour
 from camwright.geometry.errors import ContactError, InputError
 from camwright.geometry.lift import Lift
 from camwright.geometry.pitch_curve import PitchCurve
-from camwright.pipeline import cli
 from camwright.pipeline.base.units import rounded
 from camwright.pipeline.case.case_file import case_of, parse_case, with_values
 from camwright.pipeline.case.case_values import replaced, text_of
@@ -189,21 +186,15 @@ def test_commands_refuse_in_the_words_of_their_options(
     message: str,
     tmp_path: Path,
     monkeypatch: pytest.MonkeyPatch,
-    capsys: pytest.CaptureFixture[str],
+    command: Callable[..., tuple[int, str, str]],
 ) -> None:
     monkeypatch.chdir(tmp_path)
     words = arguments.split()
     if words[0] == "contact":
         words += ["--e1", "210000", "--nu1", "0.3", "--line-load", "100"]
-    monkeypatch.setattr(sys, "argv", ["camwright", *words])
-    handler = signal.getsignal(signal.SIGTERM)
-    try:
-        with pytest.raises(SystemExit) as leaving:
-            cli.main()
-    finally:
-        signal.signal(signal.SIGTERM, handler)
-    assert leaving.value.code == 2
-    *stages, refusal = capsys.readouterr().err.splitlines()
+    code, _, err = command(*words)
+    assert code == 2
+    *stages, refusal = err.splitlines()
     assert refusal == f"camwright: {message}"
     assert stages in ([], [words[0]])
 

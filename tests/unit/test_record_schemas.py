@@ -4,9 +4,7 @@ from __future__ import annotations
 
 import copy
 import json
-import signal
-import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -16,7 +14,6 @@ from made_check import made_check
 from record_validation import schema_errors
 
 from camwright.geometry.errors import InputError
-from camwright.pipeline import cli
 from camwright.pipeline.case.case_file import read_case
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.results import run_reader
@@ -74,18 +71,10 @@ def test_an_unknown_schema_is_refused() -> None:
         record_schema("runs")
 
 
-def test_the_command_prints_a_schema(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    monkeypatch.setattr(sys, "argv", ["camwright", "schema", "signoff"])
-    handler = signal.getsignal(signal.SIGTERM)
-    try:
-        with pytest.raises(SystemExit) as leaving:
-            cli.main()
-    finally:
-        signal.signal(signal.SIGTERM, handler)
-    assert leaving.value.code == 0
-    assert json.loads(capsys.readouterr().out) == record_schema("signoff")
+def test_the_command_prints_a_schema(command: Callable[..., tuple[int, str, str]]) -> None:
+    code, out, _ = command("schema", "signoff")
+    assert code == 0
+    assert json.loads(out) == record_schema("signoff")
 
 
 # --- the schemas say what the modules say
