@@ -52,6 +52,7 @@ OPTIONS = {
         "pressure_viscosity": "20 1/GPa",
         "film": "mixed",
     },
+    "limits": {"overspeed": "2400 rpm"},  # at the 3960 rpm of the case the follower leaves the cam
     "smoothing": {"kind": "moving_average"},
     "solver": {"positions": 36, "certificate_positions": 1, "max_trials": 1},
 }
