@@ -107,13 +107,42 @@ def test_splines_of_scipy_close_and_differentiate():
         np.testing.assert_allclose((ahead - behind) / 2e-5, exact, atol=1e-7 * np.abs(exact).max())
 
 
+def jamming_on_the_rise(utilisations):
+    """Utilisations with the jam index of the return at zero; the product has it negative."""
+    return {
+        name: max(use, 0.0) if name.startswith("jam_index") else use
+        for name, use in utilisations.items()
+    }
+
+
+def at_a_random_cam(problem, seed, free):
+    """Objective and utilisations of the product and of the oracle at one random cam."""
+    oracle = Oracle(problem)
+    energy, _ = oracle.random_start(seed)
+    # the oracle counts knots from the first of the spline, the product from its last
+    state = Search(problem).state(np.roll(energy, -DEGREE), problem.variables)
+    own = jamming_on_the_rise(state.utilisation)
+    expected = {
+        name: pytest.approx(use, rel=1e-8, abs=1e-10)
+        for name, use in jamming_on_the_rise(oracle.utilisation(energy, free)).items()
+    }
+    ripple, jerk = oracle.objective(energy, free)
+    own |= {"ripple": state.ripple, "jerk": state.jerk}
+    expected |= {
+        "ripple": pytest.approx(ripple, rel=1e-9),
+        "jerk": pytest.approx(jerk, rel=1e-6),  # of its scale: a fit of the torque
+    }
+    return own, expected
+
+
 @pytest.mark.parametrize(("seed", "phase"), [(1, 0.0), (2, 0.07)])
 def test_utilisations_are_those_of_the_formulas(seed, phase):
     """At any smooth cam, within its limits or not; 1e-8: round-off of both, to the third power."""
     problem = thinned(measured("v10"), 24, 120)
     variables = replace(problem.variables, preload=500.0, phase=phase)
     problem = replace(problem, variables=variables, freed={"phase": (-0.1, 0.1)})
-    agree_at_a_cam(problem, seed, {"phase": phase})
+    own, expected = at_a_random_cam(problem, seed, {"phase": phase})
+    assert own == expected
 
 
 @pytest.mark.parametrize("seed", [1, 2, 3])
@@ -122,29 +151,9 @@ def test_utilisations_of_every_part_are_those_of_the_formulas(seed):
     problem = thinned(described(signed()), 24, 120)
     if seed > 1:
         problem = with_corrections(problem, seed)
-    compared = agree_at_a_cam(problem, seed, {})
-    assert compared == {each.check for each in LIMITS} | {"torque_reduction"}
-
-
-def agree_at_a_cam(problem, seed, free):
-    """Oracle and product at one random cam; the limits compared."""
-    oracle = Oracle(problem)
-    energy, _ = oracle.random_start(seed)
-    # knots are counted from the first of the spline there, from its last here
-    state = Search(problem).state(np.roll(energy, -DEGREE), problem.variables)
-    own = oracle.utilisation(energy, free)
-    assert set(own) == set(state.utilisation)
-    expected = {
-        # zero on the return there, negative here
-        name: pytest.approx(max(use, 0.0) if name.startswith("jam_index") else use, 1e-8, 1e-10)
-        for name, use in state.utilisation.items()
-    }
-    own |= {name: max(own[name], 0.0) for name in own if name.startswith("jam_index")}
+    own, expected = at_a_random_cam(problem, seed, {})
     assert own == expected
-    ripple, jerk = oracle.objective(energy, free)
-    assert ripple == pytest.approx(state.ripple, rel=1e-9)
-    assert jerk == pytest.approx(state.jerk, rel=1e-6)  # of its scale: a fit of the torque
-    return set(own)
+    assert set(own) == {each.check for each in LIMITS} | {"torque_reduction", "ripple", "jerk"}
 
 
 def test_small_problem_ends_at_the_optimum_of_the_nonlinear_program():
