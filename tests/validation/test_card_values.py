@@ -83,14 +83,17 @@ def test_nylon_bushes_end_where_their_maker_ends_them():
 
 @pytest.mark.parametrize("name", sorted(CARDS["bearings"]))
 def test_fatigue_load_limit_is_near_a_22nd_of_the_static_rating(name):
-    """ISO 281:2007: C_u = C0/22 of ball bearings; a maker prints 16 N where that has 17 N."""
+    """ISO 281:2007: C_u = C0/22 of ball bearings; a maker prints 16 N for 17.3 N, 7.4 % less."""
     fatigue = value("bearings", name, "fatigue_load_limit", "N")
     static = value("bearings", name, "C0", "kN")
     assert fatigue == pytest.approx(static / 22.0, rel=0.08)
 
 
 def test_hardness_of_c45_agrees_with_its_strength():
-    """ISO 18265 table A.1: 190 HB are 640 MPa; both minima of one section of bar."""
+    """ISO 18265 table A.1: 190 HB are 640 MPa; both minima of one section of bar.
+
+    The 192 HB of the card are 647 MPa, 2.6 % above its strength.
+    """
     card = CARDS["materials"]["c45"]
     strength = value("materials", "c45", "tensile_strength", "MPa")
     assert strength == pytest.approx(640e6 * card["hardness_brinell"] / 190, rel=0.04)

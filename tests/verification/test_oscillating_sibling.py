@@ -128,7 +128,7 @@ class OscillatingContour(Contour):
         return Extremum(np.inf if value >= 0 else ROLLER - 1.0 / value, theta)
 
     def standing(self, polygon, theta):
-        raise NotImplementedError
+        raise NotImplementedError  # needed for the lift of a measured contour alone
 
     def _track(self, theta):
         frame = self.local_frame(theta)
@@ -177,7 +177,8 @@ def test_speed_and_curvature_are_derivatives_of_the_points():
 def test_tools_for_contours_take_it():
     xi = np.array([-1e-4, 0.0, 1e-4])
     bend = -0.5 * CAM.curvature(THETA)[:, None] * xi**2
-    np.testing.assert_allclose(CAM.surface_offset(THETA, xi), bend, rtol=0.02, atol=1e-15)
+    # the cubic term over the quadratic one, kappa' xi / (3 kappa), is 6.1e-5 at most
+    np.testing.assert_allclose(CAM.surface_offset(THETA, xi), bend, rtol=1e-4, atol=1e-15)
     assert chords(CAM, 1e-6).points.shape[1] > 100
     np.testing.assert_allclose(
         cutter_path(CAM, ROLLER, THETA).centre, CAM.pitch.points(THETA), atol=1e-12
