@@ -165,7 +165,7 @@ def test_a_demand_without_bound_fails_in_words() -> None:
     assert failure.get("message") == said
 
 
-def test_a_failure_at_a_corner_is_told_by_the_demand_there() -> None:
+def test_a_failure_at_a_corner_states_the_demand_there() -> None:
     one = check("fail", id="x", demand=1.0, corner="friction high", corner_demand=3.0)
     (failure,) = suite_of([one]).findall("testcase/failure[@type='fail']")[:1]
     assert "Pressure angle: 3 deg, must be <= 2 deg" in failure.get("message", "")

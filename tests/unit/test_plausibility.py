@@ -54,7 +54,7 @@ def test_a_value_that_cannot_be_meant_has_one_warning(old: str, new: str, words:
     assert one.endswith(")")  # the source of the range
 
 
-def test_a_rate_a_thousand_times_too_low_is_found_by_the_torque() -> None:
+def test_a_rate_a_thousand_times_too_low_contradicts_the_torque() -> None:
     text = changed(REDESIGN, 'rate = "180 kN/m"', 'rate = "180 N/m"')
     text = text[: text.index("[spring.design]")] + text[text.index("[cam]") :]
     (one,) = warnings(parse_case(text))

@@ -328,15 +328,15 @@ def test_without_a_result_the_limit_that_excludes_most_is_named():
     tried = [rough("a", "cam_radius", 1.4), rough("b", "cam_radius", 1.2),
              rough("c", "roller_static", 3.0), (Choice("d", "s", "b"), refused)]  # fmt: skip
     pruned = [Pruned("weak", "too low", "torque_reduction"), Pruned("twin", "dominated")]
-    asked = []
+    solved = []
 
     def conflict(choice):
-        asked.append(choice)
+        solved.append(choice)
         ways = [{"sentence": f"way {k}"} for k in range(4)]
         return {"conflict": ["cam_radius", "jump"], "relaxations": ways}
 
     record = exclusions(tried, [], pruned, conflict)
-    assert asked == [tried[1][0]]
+    assert solved == [tried[1][0]]
     assert [(each["limit"], each["count"]) for each in record["excluded"]] == [
         ("cam_radius", 2), ("cam.bore", 1), ("roller_static", 1), ("torque_reduction", 1),
     ]  # fmt: skip
@@ -361,10 +361,10 @@ def test_of_points_solved_in_full_the_demand_is_the_limit_needed():
 
 
 def test_without_any_choice_the_case_itself_is_solved():
-    asked = []
+    solved = []
     pruned = [Pruned("weak", "too low", "torque_reduction")]
-    record = exclusions([], [], pruned, lambda choice: asked.append(choice) or {})
-    assert asked == [None]
+    record = exclusions([], [], pruned, lambda choice: solved.append(choice) or {})
+    assert solved == [None]
     assert record["lines"][-2:] == [
         "nearest: the parts of the case",
         "no single change of a limit, the spring or the prime radius makes it feasible",

@@ -178,7 +178,7 @@ def test_where_the_follower_locks_the_remedy_says_so() -> None:
     assert both == (*needed_first(leaves.words), *needed_first(locks.words))
 
 
-def test_numbers_are_told_without_an_exponent() -> None:
+def test_numbers_are_printed_without_an_exponent() -> None:
     assert without_exponent(2901.9, "rpm") == "27710 rpm"
     assert without_exponent(0.7085, "", 3) == "0.709"
     assert PARTS == (BEARING, CAM_MATERIAL, BUSH_A, "guides.b")

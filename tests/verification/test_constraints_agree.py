@@ -119,8 +119,8 @@ def worst_loads(case, judged, ratings):
     theta, top = uniform_turn(POSITIONS), solved.contour.pitch.lift.highest.value
     moving, variables, worst = jet(solved.contour, theta), variables_of(case), {}
     corrections = corrections_of(solved)
-    for given in problem.scenarios:
-        scenario = replace(given, correction=corrections[given.name])
+    for state in problem.scenarios:
+        scenario = replace(state, correction=corrections[state.name])
         loads = load_utilisations(moving, top, variables, ratings, scenario)
         for name, value in loads.items():
             use = float(np.max(value.value if isinstance(value, Mean) else value))

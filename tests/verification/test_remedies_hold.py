@@ -59,16 +59,16 @@ def test_a_remedy_read_back_cures_its_check() -> None:
     base = preview_case(case)
     known = {one.check: one for one in failures_of(base)}
     two = [known[name] for name in ("jump_speed", "pressure_angle")]
-    found = remedies(case, case.folder, None, two)
-    assert list(found) == ["jump_speed", "pressure_angle"]
-    for name, remedy in found.items():
+    cures = remedies(case, case.folder, None, two)
+    assert list(cures) == ["jump_speed", "pressure_angle"]
+    for name, remedy in cures.items():
         assert_cures(name, remedy.text)
     # the pressure angle follows tan(alpha) = s'/(d + s) at the same lift: d grows by as much
     angle = next(one for one in base.checks if one.id == "pressure_angle")
     assert angle.cam_angle is not None
     lift, slope = (float(base.lift(angle.cam_angle, k)) for k in (0, 1))
     least = abs(slope) / math.tan(math.radians(30.0)) - lift
-    prime = float(found["pressure_angle"].changes["cam.prime_radius"].removesuffix(" mm"))
+    prime = float(cures["pressure_angle"].changes["cam.prime_radius"].removesuffix(" mm"))
     # the worst angle moves a little towards the greater slope, and the line profile adds to it
     assert 1e3 * least < prime < 1.02 * 1e3 * least
 
