@@ -98,34 +98,25 @@ def bounds_of(ratings: Ratings) -> dict[str, Bound]:
 def _of_parts(ratings: Ratings) -> dict[str, Bound | None]:
     """Bounds set by parts and tools."""
     bounds = {
-        "spring_travel": _of_part(
-            "spring travel", "mm", ratings.travel,
-            lambda each, factor: replace(each, travel=_times(each.travel, factor)),
-        ),
+        "spring_travel": _of_part("spring travel", "mm", ratings.travel, _rating("travel")),
         "contact_pressure": _of_part(
-            _PRESSURES[ratings.pressure_by], "MPa", ratings.pressure,
-            lambda each, factor: replace(each, pressure=_times(each.pressure, factor)),
+            _PRESSURES[ratings.pressure_by], "MPa", ratings.pressure, _rating("pressure")
         ),
         "roller_speed": _of_part(
-            "limiting speed of the roller", "rpm", ratings.roller_spin,
-            lambda each, factor: replace(each, roller_spin=_times(each.roller_spin, factor)),
+            "limiting speed of the roller", "rpm", ratings.roller_spin, _rating("roller_spin")
         ),
         "roller_static": _of_part(
             _FORCES[ratings.normal_force_by], "N",
-            _times(ratings.normal_force, ratings.force_safety),
-            lambda each, factor: replace(each, normal_force=_times(each.normal_force, factor)),
+            _times(ratings.normal_force, ratings.force_safety), _rating("normal_force"),
         ),
         "traction_demand": _of_part(
-            "friction of the roller on the cam", "-", ratings.friction,
-            lambda each, factor: replace(each, friction=_times(each.friction, factor)),
+            "friction of the roller on the cam", "-", ratings.friction, _rating("friction")
         ),
         "key_pressure": _of_part(
-            _TORQUES[ratings.cam_torque_by], "N m", ratings.cam_torque,
-            lambda each, factor: replace(each, cam_torque=_times(each.cam_torque, factor)),
+            _TORQUES[ratings.cam_torque_by], "N m", ratings.cam_torque, _rating("cam_torque")
         ),
         "gear_bending": _of_part(
-            _TORQUES[ratings.tooth_torque_by], "N m", ratings.tooth_torque,
-            lambda each, factor: replace(each, tooth_torque=_times(each.tooth_torque, factor)),
+            _TORQUES[ratings.tooth_torque_by], "N m", ratings.tooth_torque, _rating("tooth_torque")
         ),
         "guide_gap": _guide_gap(ratings),
         "bearing_lubrication": _roller_spin_least(ratings),
@@ -140,6 +131,17 @@ def _of_parts(ratings: Ratings) -> dict[str, Bound | None]:
     return bounds
 
 
+def _rating(name: str, place: int | None = None) -> Change:
+    """Change of the rating of a name by a factor; place: of guide A, 0, or B, 1."""
+
+    def change(ratings: Ratings, factor: float) -> Ratings:
+        value = getattr(ratings, name)
+        scaled = _times(value, factor) if place is None else _side_times(value, place, factor)
+        return replace(ratings, **{name: scaled})  # type: ignore[arg-type]
+
+    return change
+
+
 def _of_part(words: str, unit: str, value: float | None, relaxed: Change) -> Bound | None:
     if value is None:
         return None
@@ -148,63 +150,39 @@ def _of_part(words: str, unit: str, value: float | None, relaxed: Change) -> Bou
 
 
 def _of_guide(ratings: Ratings, place: int, side: str) -> dict[str, Bound | None]:
-    def with_pressure(each: Ratings, factor: float) -> Ratings:
-        return replace(each, guide_pressure=_side_times(each.guide_pressure, place, factor))
+    def bound(words: str, unit: str, name: str) -> Bound | None:
+        return _of_part(words, unit, getattr(ratings, name)[place], _rating(name, place))
 
-    def with_pv(each: Ratings, factor: float) -> Ratings:
-        return replace(each, guide_pv=_side_times(each.guide_pv, place, factor))
-
-    def with_wear(each: Ratings, factor: float) -> Ratings:
-        return replace(each, guide_wear_pv=_side_times(each.guide_wear_pv, place, factor))
-
-    def with_load(each: Ratings, factor: float) -> Ratings:
-        return replace(each, guide_edge_load=_side_times(each.guide_edge_load, place, factor))
-
-    def with_power(each: Ratings, factor: float) -> Ratings:
-        return replace(each, guide_power=_side_times(each.guide_power, place, factor))
-
-    def with_slope(each: Ratings, factor: float) -> Ratings:
-        return replace(each, guide_slope=_side_times(each.guide_slope, place, factor))
-
-    pressure, pv = ratings.guide_pressure[place], ratings.guide_pv[place]
-    load, power = ratings.guide_edge_load[place], ratings.guide_power[place]
     expands = ratings.guide_power_by[place] != f"guide_temperature_{side}"
-    at = "clearance" if expands else "temperature"
-    heat = (
-        f"friction power of guide {side} at its least {at}"
-        if expands
-        else (f"friction power of guide {side} at its greatest {at}")
-    )
+    at = "least clearance" if expands else "greatest temperature"
     return {
-        f"guide_pressure_{side}": _of_part(
-            f"bearing pressure of guide {side}", "MPa", pressure, with_pressure
+        f"guide_pressure_{side}": bound(
+            f"bearing pressure of guide {side}", "MPa", "guide_pressure"
         ),
-        f"guide_pv_{side}": _of_part(f"PV of guide {side}", "MPa m/s", pv, with_pv),
-        f"guide_wear_{side}": _of_part(
-            f"PV of guide {side} at its wear depth", "MPa m/s",
-            ratings.guide_wear_pv[place], with_wear,
+        f"guide_pv_{side}": bound(f"PV of guide {side}", "MPa m/s", "guide_pv"),
+        f"guide_wear_{side}": bound(
+            f"PV of guide {side} at its wear depth", "MPa m/s", "guide_wear_pv"
         ),
-        f"guide_edge_pressure_{side}": _of_part(
-            f"line load of guide {side} at the yield strength", "N/mm", load, with_load
+        f"guide_edge_pressure_{side}": bound(
+            f"line load of guide {side} at the yield strength", "N/mm", "guide_edge_load"
         ),
-        f"guide_temperature_{side}": _of_part(heat, "W", power, with_power),
-        f"guide_speed_{side}": _of_part(
-            f"lift per radian at the maximum sliding speed in guide {side}", "mm",
-            ratings.guide_slope[place], with_slope,
+        f"guide_temperature_{side}": bound(
+            f"friction power of guide {side} at its {at}", "W", "guide_power"
         ),
-    }  # fmt: skip
+        f"guide_speed_{side}": bound(
+            f"lift per radian at the maximum sliding speed in guide {side}", "mm", "guide_slope"
+        ),
+    }
 
 
 def _guide_gap(ratings: Ratings) -> Bound | None:
     """Utilisation by the gap over the roller radius."""
     if ratings.guide_gap is None:
         return None
-
-    def with_gap(each: Ratings, factor: float) -> Ratings:
-        return replace(each, guide_gap=_times(each.guide_gap, factor))
-
     slope = -1.0 / in_unit(ratings.roller_radius, "mm")
-    return Bound(GUIDE_GAP.title, in_unit(ratings.guide_gap, "mm"), "mm", slope, with_gap)
+    return Bound(
+        GUIDE_GAP.title, in_unit(ratings.guide_gap, "mm"), "mm", slope, _rating("guide_gap")
+    )
 
 
 def _roller_spin_least(ratings: Ratings) -> Bound | None:
@@ -265,11 +243,7 @@ def _concave_radius(ratings: Ratings) -> Bound | None:
     unit = TOOL_RADIUS.quantity.unit
     shown, room = in_unit(hollow / TOOL_ALLOWANCE, unit), hollow - ratings.roller_radius
     slope = -TOOL_ALLOWANCE / in_unit(room, unit)
-
-    def with_radius(each: Ratings, factor: float) -> Ratings:
-        return replace(each, hollow_radius=_times(each.hollow_radius, factor))
-
-    return Bound(TOOL_RADIUS.title, shown, unit, slope, with_radius)
+    return Bound(TOOL_RADIUS.title, shown, unit, slope, _rating("hollow_radius"))
 
 
 def _jump_speed(ratings: Ratings) -> Bound | None:

@@ -38,25 +38,17 @@ from camwright.pipeline.contact.hertz import peak_pressure_square
 from camwright.pipeline.follower.roller_motion import BALL_LIFE_EXPONENT, wear
 from camwright.pipeline.smoothing.cam_state import (
     Constraint,
-    Forces,
     Jet,
     Loads,
     Mean,
-    Motion,
     Shape,
     State,
     forces,
-    lift_jet,
     loaded,
     motion,
 )
 from camwright.pipeline.smoothing.part_constraints import PART_SHAPE, PARTS
 from camwright.pipeline.smoothing.scenario import DesignVariables, Ratings, Scenario
-
-__all__ = [
-    "CONSTRAINTS", "FACTOR_MAX", "LOADS", "ROWS", "SHAPE", "Forces", "Jet", "Mean", "Motion",
-    "delivered_torque", "forces", "lift_jet", "load_utilisations", "motion", "shape_utilisations",
-]  # fmt: skip
 
 FACTOR_MAX = 4.0
 """Maximum factor of a relaxation."""

@@ -18,7 +18,7 @@ from camwright.geometry.arrays import FULL_TURN, Array
 from camwright.geometry.errors import InputError
 from camwright.geometry.pitch_curve import magnitude
 from camwright.pipeline.follower.roller_motion import rolling_share
-from camwright.pipeline.smoothing.constraints import Forces, Jet, Mean, Motion, forces, motion
+from camwright.pipeline.smoothing.cam_state import Forces, Jet, Mean, Motion, forces, motion
 from camwright.pipeline.smoothing.scenario import DesignVariables, Ratings, Scenario, Value
 
 

@@ -11,13 +11,11 @@ from numpy.typing import NDArray
 
 from camwright.geometry.arrays import Array, uniform_turn
 from camwright.pipeline.case.limits import PRESSURE_ANGLE, TORQUE_REDUCTION
+from camwright.pipeline.smoothing.cam_state import Jet, Mean, lift_jet
 from camwright.pipeline.smoothing.cone_program import Linear, Norm
 from camwright.pipeline.smoothing.constraints import (
     SHAPE,
-    Jet,
-    Mean,
     delivered_torque,
-    lift_jet,
     load_utilisations,
     shape_utilisations,
 )

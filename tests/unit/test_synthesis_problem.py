@@ -9,7 +9,8 @@ import pytest
 from camwright.geometry.errors import InputError
 from camwright.pipeline.case.case_file import parse_case, read_case
 from camwright.pipeline.case.load_case_torque import engine_torques
-from camwright.pipeline.smoothing.constraints import lift_jet, load_utilisations
+from camwright.pipeline.smoothing.cam_state import lift_jet
+from camwright.pipeline.smoothing.constraints import load_utilisations
 from camwright.pipeline.smoothing.problem_setup import problem_of
 from camwright.pipeline.smoothing.sampled_problem import Search
 from camwright.pipeline.smoothing.scenario import Correction

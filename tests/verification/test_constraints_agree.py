@@ -28,11 +28,10 @@ from camwright.pipeline.contact.traction import Drag
 from camwright.pipeline.cycle.solution import Solution, solution
 from camwright.pipeline.follower.roller_parts import Fork
 from camwright.pipeline.smoothing.allowables import force_limits, ratings_of, travel_limits
+from camwright.pipeline.smoothing.cam_state import Jet, Mean
 from camwright.pipeline.smoothing.cone_program import ConeSolution
 from camwright.pipeline.smoothing.constraints import (
     CONSTRAINTS,
-    Jet,
-    Mean,
     load_utilisations,
     shape_utilisations,
 )

@@ -21,8 +21,8 @@ from camwright.pipeline.contact.traction import Drag
 from camwright.pipeline.cycle.solution import solution
 from camwright.pipeline.preview import preview_case
 from camwright.pipeline.results.run_records import headline
+from camwright.pipeline.smoothing.cam_state import Jet, Mean, lift_jet
 from camwright.pipeline.smoothing.constrained_synthesis import synthesise
-from camwright.pipeline.smoothing.constraints import Jet, Mean, lift_jet
 from camwright.pipeline.smoothing.gradients import FREED, Point, differentiated
 from camwright.pipeline.smoothing.objective import (
     COSTS,

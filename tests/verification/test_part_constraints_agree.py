@@ -34,12 +34,10 @@ from camwright.pipeline.smoothing.allowables import (
     travel_limits,
 )
 from camwright.pipeline.smoothing.bounds import bounds_of
-from camwright.pipeline.smoothing.cam_state import Shape, loaded, motion
+from camwright.pipeline.smoothing.cam_state import Jet, Mean, Shape, loaded, motion
 from camwright.pipeline.smoothing.constraints import (
     CONSTRAINTS,
     SHAPE,
-    Jet,
-    Mean,
     load_utilisations,
     shape_utilisations,
 )

@@ -15,8 +15,9 @@ from camwright.pipeline.case.case_file import read_case
 from camwright.pipeline.case.case_values import replaced
 from camwright.pipeline.case.load_case_torque import engine_torques
 from camwright.pipeline.smoothing.bounds import bounds_of
+from camwright.pipeline.smoothing.cam_state import Jet
 from camwright.pipeline.smoothing.constrained_synthesis import synthesise
-from camwright.pipeline.smoothing.constraints import Jet, shape_utilisations
+from camwright.pipeline.smoothing.constraints import shape_utilisations
 from camwright.pipeline.smoothing.problem_setup import problem_of
 from camwright.pipeline.smoothing.sampled_problem import Search
 from camwright.pipeline.smoothing.scenario import DesignVariables, Scenario

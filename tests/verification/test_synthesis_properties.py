@@ -15,8 +15,8 @@ from camwright.geometry.energy import lift_from_torque
 from camwright.pipeline.case.case_file import read_case
 from camwright.pipeline.case.load_case_torque import engine_torques
 from camwright.pipeline.smoothing import multistart
+from camwright.pipeline.smoothing.cam_state import lift_jet
 from camwright.pipeline.smoothing.constrained_synthesis import synthesise
-from camwright.pipeline.smoothing.constraints import lift_jet
 from camwright.pipeline.smoothing.energy_spline import Grid, exact_start, fitted_energy
 from camwright.pipeline.smoothing.multistart import explored
 from camwright.pipeline.smoothing.objective import objective_of
