@@ -264,7 +264,7 @@ def _constrained(task: _Task) -> Iteration:
         record["machine_prices"] = machine_prices(design, problem, case, torques)
         trial = task.solved(
             number,
-            redrawn(case, design),
+            redrawn(case, design.variables),
             design.lift(),
             why,
             CONSTRAINED,
@@ -302,7 +302,7 @@ def _constrained(task: _Task) -> Iteration:
 def _with_guides(task: _Task, problem: Problem, design: Design) -> Problem:
     """The problem corrected by a preview of its design: guides of finite length, Hertz contact."""
     task.progress.stage("trial 1: preview")
-    drawn = redrawn(task.case, design)
+    drawn = redrawn(task.case, design.variables)
     contour = drawn.contour(design.lift())
     solved = solution(drawn, contour, Tier.PREVIEW, torques=task.torques)
     return corrected(problem, design, [compared(problem, design, solved)])

@@ -81,7 +81,7 @@ def _synthesised(case: Case, torques: Mapping[str, Torque], progress: Progress) 
         else:
             first = explored(problem, 1)
             design, problem = first.design, replace(problem, coefficients=first.splines)
-        drawn = redrawn(case, design)
+        drawn = redrawn(case, design.variables)
         contour = drawn.contour(design.lift())
         trial = replace(
             solve(

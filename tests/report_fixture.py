@@ -14,9 +14,11 @@ from typing import Any
 import numpy as np
 from scipy.spatial import Delaunay
 
+from camwright.geometry.periodic_spline import periodic_quintic
 from camwright.pipeline.case.scope_section import Scope
 from camwright.pipeline.results.field_file import Block, field_file
 from camwright.pipeline.results.run_reader import SCHEMA, binding_of, verdict_of
+from camwright.pipeline.results.run_records import SPLINE
 
 RATE, PRELOAD, PRIME_RADIUS, ROLLER, WIDTH = 24.2e3, 242.0, 0.050, 0.008, 0.0044
 MODULUS, MASS, SPEED = 113.2e9, 0.175, 78.54
@@ -473,6 +475,11 @@ def write_run(
     for number in (1, 2):
         trial = folder / f"trial_{number}"
         trial.mkdir(exist_ok=True)
+        spline = periodic_quintic(t["lift"]).coefficients
+        write_columns(trial / "2_spline.csv", {
+            "cam_angle_deg": cycle["cam_angle_deg"],
+            **dict(zip((column.header for column in SPLINE), spline, strict=True)),
+        })  # fmt: skip
         write_columns(trial / "2_lift.csv", {
             "cam_angle_deg": cycle["cam_angle_deg"], "crank_angle_deg": t["crank"],
             "lift_mm": t["lift"] * 1e3, "lift_d1_mm_per_rad": t["d1"] * 1e3,
@@ -494,6 +501,7 @@ def write_run(
             "smoothing_kind": "moving_average", "smoothing_strength": float(number),
             "smoothing_description": f"moving average of {12 * number} values 5 deg apart",
             "smoothing_width_deg": 60.0 * number, "closure_mm": 2e-10,
+            "table_step_deg": 0.0, "synthesis": None,
             "prices": None,
             "depth": "certified" if number == 2 else "cycle",
             "contact_method": "finite elements joined to the half-plane",

@@ -31,6 +31,7 @@ In the order of a run:
 | ``signoff.json``           | sign-off record                                      |
 | ``1_torque.csv``           | engine torque and its components                     |
 | ``1_speed.csv``            | crank speed with and without the cam                 |
+| ``trial_N/2_spline.csv``   | knots and coefficients of the lift                   |
 | ``trial_N/2_lift.csv``     | lift and its derivatives                             |
 | ``trial_N/2_limits.csv``   | utilisation of the limits in a constrained synthesis |
 | ``trial_N/3_contour.csv``  | pitch curve and contour                              |

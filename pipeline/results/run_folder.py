@@ -23,7 +23,7 @@ from numpy.typing import ArrayLike
 import camwright
 from camwright.geometry.arrays import Array, readonly, uniform_turn
 from camwright.geometry.contour import Contour
-from camwright.geometry.errors import CamError, ResultError
+from camwright.geometry.errors import CamError, InputError, ResultError
 from camwright.geometry.lift import Lift
 from camwright.pipeline.base.files import (
     Json,
@@ -34,12 +34,16 @@ from camwright.pipeline.base.files import (
     read_json,
     write_atomic,
 )
-from camwright.pipeline.base.tables import Values, table
+from camwright.pipeline.base.tables import Values, read_table, table
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_file import read_case
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.results import run_reader, signoff
+from camwright.pipeline.results.run_records import SPLINE
+from camwright.pipeline.smoothing.fe_correction import redrawn
+from camwright.pipeline.smoothing.scenario import DesignVariables
 
+_SPLINE_ROUNDING = 1e-9  # of coefficients computed by another machine
 _STATE, _CHUNKS, _LOCK = ".state.json", ".chunks", ".lock"
 _OURS = re.compile(
     r"case\.toml|(run|signoff|corners)\.json|inputs|fields|figures|exports|workshop|inspection|trial_\d+"
@@ -129,6 +133,10 @@ class RunFolder:
     def write_speed(self, values: Values) -> None:
         """``1_speed.csv``."""
         self._write_table("1_speed.csv", values)
+
+    def write_spline(self, trial: int, values: Values) -> None:
+        """``2_spline.csv``: knots and coefficients of the lift."""
+        self._write_table(f"trial_{trial}/{run_reader.SPLINE_FILE}", values)
 
     def write_lift(self, trial: int, values: Values) -> None:
         """``2_lift.csv``."""
@@ -366,10 +374,37 @@ def _differing(state: Json, now: Mapping[str, Json]) -> str:
 
 
 def drawn_cam(run: Path) -> tuple[Case, Contour]:
-    """The case of a run and the contour of its final trial."""
-    case = read_case(run / "case.toml")
-    values = 1e-3 * run_reader.read_run(run).final.lift["lift_mm"]
-    return case, case.contour(Lift(uniform_turn(values.size), values))
+    """The case of a run with the spring and prime radius of its final trial, and its contour.
+
+    The contour is the one that was solved, drawn and certified, whatever the number of positions.
+
+    Raises
+    ------
+    ResultError
+        If the run is unreadable, or the coefficients of its lift are not those of a C4 spline.
+    """
+    case, final = read_case(run / "case.toml"), run_reader.read_run(run).final
+    design = final.record["synthesis"]
+    if design is not None and case.smoothing.free:
+        rate, radius = design["spring_rate_N_per_mm"], design["prime_radius_mm"]
+        case = redrawn(case, DesignVariables(1e3 * rate, design["preload_N"], 1e-3 * radius))
+    return case, case.contour(_drawn_lift(final))
+
+
+def _drawn_lift(trial: run_reader.TrialRecord) -> Lift:
+    """Lift of a trial from its knots and coefficients; ResultError if these disagree."""
+    file, record = trial.path / run_reader.SPLINE_FILE, trial.record
+    columns = read_table(file)
+    try:
+        values, *others = (columns[column.header] for column in SPLINE)
+        closure, step = record["closure_mm"], record["table_step_deg"]
+        lift = Lift(uniform_turn(len(values)), values, 1e-3 * closure, float(np.radians(step)))
+    except (InputError, KeyError) as error:
+        raise ResultError(f"{file}: {error}") from None
+    for stated, exact in zip(others, lift.spline.coefficients[1:], strict=True):
+        if np.abs(stated - exact).max() > _SPLINE_ROUNDING * np.abs(exact).max():
+            raise ResultError(f"{file}: the coefficients are not those of a C4 spline")
+    return lift
 
 
 @contextmanager

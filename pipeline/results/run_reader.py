@@ -11,13 +11,16 @@ from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, NamedTuple, TypedDict
+from typing import TYPE_CHECKING, Any, NamedTuple, TypedDict
 
 from camwright.geometry.errors import ResultError
 from camwright.pipeline.base.files import Json, hash_inputs, read_json, read_text, sha256_of
 from camwright.pipeline.base.tables import Table, read_table
 
-SCHEMA = 5
+if TYPE_CHECKING:
+    from camwright.pipeline.smoothing.fe_correction import SynthesisRecord
+
+SCHEMA = 6
 """Number of the form of a run folder; a folder of another form is refused."""
 HEADLINE = (
     *("torque_std_before_Nm", "torque_std_after_Nm", "torque_p2p_before_Nm", "torque_p2p_after_Nm"),
@@ -42,6 +45,7 @@ _DIGITS = 1e-12
 _ROUNDING = 1.001e-9
 """Share of a demand up to which its error is that of rounding, no uncertainty."""
 LIMITS_FILE = "2_limits.csv"
+SPLINE_FILE = "2_spline.csv"
 
 
 class TrialContents(TypedDict):
@@ -53,7 +57,10 @@ class TrialContents(TypedDict):
     smoothing_strength: float | None
     smoothing_width_deg: float | None
     smoothing_description: str
+    synthesis: SynthesisRecord | None
     prices: Json
+    closure_mm: float
+    table_step_deg: float
     depth: str
     contact_method: str
     balance: dict[str, Json]

@@ -35,7 +35,17 @@ from camwright.pipeline.engine.crankshaft import CrankMotion
 from camwright.pipeline.engine.torque import Torque
 from camwright.pipeline.results.trial import Trial
 
+SPLINE = (
+    Column("spline_c0", "m", "Lift at the knot"),
+    Column("spline_c1", "m/rad", "Lift to the next knot: coefficient of the angle from the knot"),
+    *(
+        Column(f"spline_c{k}", f"m/rad^{k}", f"Coefficient of power {k} of that angle, rad")
+        for k in range(2, 6)
+    ),
+)
+"""Coefficients of the lift from one knot to the next, in SI units: they read back bit for bit."""
 _MM, _MPA = 1e3, 1e-6
+_DRAWN = 720  # least number of angles at which lift and contour are listed
 
 
 def torque_columns(torque: Torque) -> dict[Column, Array]:
@@ -48,9 +58,23 @@ def torque_columns(torque: Torque) -> dict[Column, Array]:
     return {CRANK_ANGLE: torque.theta_crank, total: torque.total, **parts}
 
 
+def spline_columns(lift: Lift) -> dict[Column, Array]:
+    """Columns of ``2_spline.csv``: the lift itself, a polynomial from each knot to the next."""
+    return {CAM_ANGLE: lift.theta, **dict(zip(SPLINE, lift.spline.coefficients, strict=True))}
+
+
+def drawn_angles(case: Case) -> Array:
+    """Cam angles of ``2_lift.csv`` and ``3_contour.csv``, rad.
+
+    The positions of the cycle, and equal parts between them that leave no step above half a degree.
+    """
+    positions = case.solver.positions
+    return uniform_turn(positions * -(-_DRAWN // positions))
+
+
 def lift_columns(case: Case, lift: Lift) -> dict[Column, Array]:
     """Columns of ``2_lift.csv``."""
-    theta = uniform_turn(case.solver.positions)
+    theta = drawn_angles(case)
     return {
         CAM_ANGLE: theta,
         CRANK_ANGLE: case.mechanism.gear_ratio * theta,
@@ -69,7 +93,7 @@ def limit_columns(theta: Array, uses: Mapping[str, Array]) -> dict[Column, Array
 
 def contour_columns(case: Case, contour: Contour) -> dict[Column, Array]:
     """Columns of ``3_contour.csv``."""
-    theta = uniform_turn(case.solver.positions)
+    theta = drawn_angles(case)
     pitch, normal = contour.pitch.points(theta), contour.normal(theta)
     surface = contour.points(theta)
     return {
@@ -108,6 +132,7 @@ def column_table(trial: Trial) -> dict[str, tuple[Column, ...]]:
     """Columns of a solved trial, with unit and meaning, by file of its folder."""
     tables: dict[str, Values] = {
         "2_lift.csv": lift_columns(trial.case, trial.lift),
+        "2_spline.csv": spline_columns(trial.lift),
         "3_contour.csv": contour_columns(trial.case, trial.contour),
         "5_cycle.csv": cycle_columns(trial.cycles),
         "5_speed_sweep.csv": sweep_columns(trial.solution.speed_sweeps),
@@ -235,6 +260,7 @@ def trial_record(trial: Trial) -> dict[str, Json]:
         "synthesis": trial.synthesis,
         "prices": None if trial.synthesis is None else trial.synthesis["prices"],
         "closure_mm": _MM * trial.lift.closure,
+        "table_step_deg": in_unit(trial.lift.spacing, "deg"),
         "depth": trial.depth.word,
         "contact_method": "; ".join(filter(None, (contact.method, machine.follower.body_model))),
         "line_contact_width_mm": _MM * machine.contact_width,

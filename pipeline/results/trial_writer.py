@@ -13,6 +13,7 @@ from camwright.pipeline.results.run_records import (
     lift_columns,
     limit_columns,
     pressure_arrays,
+    spline_columns,
     sweep_columns,
     trial_record,
 )
@@ -32,6 +33,7 @@ class TrialWriter:
     def keep(self, trial: Trial) -> None:
         """Write lift, contour, mesh, cycle, checks and record of a trial."""
         folder, number, case = self._folder, trial.number, trial.case
+        folder.write_spline(number, spline_columns(trial.lift))
         folder.write_lift(number, lift_columns(case, trial.lift))
         if trial.limits_in_use is not None:
             folder.write_limits(number, limit_columns(*trial.limits_in_use))

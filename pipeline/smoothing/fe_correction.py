@@ -28,7 +28,7 @@ from camwright.pipeline.smoothing.multistart import (
     StartsRecord,
 )
 from camwright.pipeline.smoothing.sampled_problem import Search
-from camwright.pipeline.smoothing.scenario import Correction, Ratings
+from camwright.pipeline.smoothing.scenario import Correction, DesignVariables, Ratings
 from camwright.pipeline.smoothing.shadow_prices import MachinePriceRecord, PriceRecord, prices
 from camwright.pipeline.smoothing.synthesis_problem import RESERVE, Design, Problem
 
@@ -371,9 +371,8 @@ def _corrections_record(problem: Problem) -> dict[str, dict[str, list[float]]]:
     }  # fmt: skip
 
 
-def redrawn(case: Case, design: Design) -> Case:
-    """The case with the spring and prime radius of the design."""
-    variables = design.variables
+def redrawn(case: Case, variables: DesignVariables) -> Case:
+    """The case with the spring and prime radius of a design."""
     spring = replace(case.spring, rate=float(variables.rate), preload=float(variables.preload))
     cam = replace(case.cam, prime_radius=float(variables.prime_radius))
     return case.model_copy(update={"spring": spring, "cam": cam})

@@ -28,6 +28,7 @@ CYCLE = (LOAD_CASE, CAM_ANGLE, CRANK_ANGLE, Column("lift", "mm"), Column("normal
 TRIAL = {
     "number": 1, "why": "", "smoothing_kind": "none", "smoothing_strength": 1.0,
     "smoothing_width_deg": None, "smoothing_description": "none", "prices": None,
+    "synthesis": None, "closure_mm": 0.0, "table_step_deg": 0.0,
     "depth": "certified", "contact_method": "", "balance": {}, "mesh": None, "certificate": [],
     "widths": np.arange(2.0),
 }  # fmt: skip

@@ -39,7 +39,13 @@ def test_cycle_columns_are_the_promised_ones() -> None:
     case = small_case().with_positions(36)
     contour = case.contour(Lift(THETA, 0.004 * (1 - np.cos(THETA))))
     files = column_table(solve(case, contour, tier=Tier.PREVIEW, corners=False))
-    assert list(files) == ["2_lift.csv", "3_contour.csv", "5_cycle.csv", "5_speed_sweep.csv"]
+    assert list(files) == [
+        "2_lift.csv",
+        "2_spline.csv",
+        "3_contour.csv",
+        "5_cycle.csv",
+        "5_speed_sweep.csv",
+    ]
     for column in (column for columns in files.values() for column in columns):
         assert column.meaning, column.header
     headers = [column.header for column in files["5_cycle.csv"]]
@@ -352,7 +358,7 @@ def test_a_folder_of_another_schema_is_refused(
     run = write_run(tmp_path / "run")
     for name in ("run.json", "signoff.json"):
         (run / name).write_text(json.dumps({"schema": 1, "case": "small"}))
-    with pytest.raises(ResultError, match=r"\.json: schema = 1, must be 5: run the case again$"):
+    with pytest.raises(ResultError, match=r"\.json: schema = 1, must be 6: run the case again$"):
         read(run)
 
 

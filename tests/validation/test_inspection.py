@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import sys
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -15,23 +16,25 @@ from small_machine import small_machine
 
 from camwright.geometry.arrays import uniform_turn
 from camwright.geometry.contour import Contour, RollerContour
-from camwright.geometry.errors import InputError
+from camwright.geometry.errors import InputError, ResultError
 from camwright.geometry.lift import Lift
 from camwright.geometry.measured_contour import inspected, real_contour
 from camwright.geometry.pitch_curve import PitchCurve
 from camwright.pipeline.base.tables import read_table
 from camwright.pipeline.case.case import Case
-from camwright.pipeline.case.case_file import parse_case
+from camwright.pipeline.case.case_file import parse_case, read_case
+from camwright.pipeline.case.given_lift import given_lift
 from camwright.pipeline.case.machine import machines
 from camwright.pipeline.contact.closed_form import closed_form_history
 from camwright.pipeline.cycle.contact_setup import contact_pair
 from camwright.pipeline.cycle.solution import turns_of
 from camwright.pipeline.results import run_reader
-from camwright.pipeline.results.run_folder import RunFolder
-from camwright.pipeline.results.run_records import contour_columns, lift_columns
-from camwright.pipeline.results.workshop_files import inspection_sheet
+from camwright.pipeline.results.run_folder import RunFolder, drawn_cam
+from camwright.pipeline.results.run_records import contour_columns, lift_columns, spline_columns
+from camwright.pipeline.results.workshop_files import contour_table, inspection_sheet
 from camwright.pipeline.studies.cam_inspection import FOLDER, lines, read_measured
 
+FLAT_CASE = Path(__file__).parents[2] / "cases" / "papers" / "petrescu_c.toml"
 THETA = uniform_turn(360)
 RIPPLE, WAVES, PHASE = 20e-6, 12, np.radians(3.0)
 POINTS = np.sort(np.random.default_rng(7).uniform(0, 2 * np.pi, 720))
@@ -145,22 +148,90 @@ def test_rise_of_force_and_pressure_is_that_of_theory() -> None:
     np.testing.assert_allclose(contact.p0[away], p0[away], rtol=5e-3)
 
 
-@pytest.fixture(scope="module")
-def run(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Case, Contour]:
-    """A run folder whose tables are those of a given lift, at little cost."""
-    folder, case = tmp_path_factory.mktemp("inspect") / "run", small_case(72)
-    lift = Lift(THETA, 0.005 * (1 - np.cos(THETA)))
+def write_run(folder: Path, case: Case, lift: Lift, **record: object) -> Contour:
+    """A run folder whose tables are those of a given lift, at little cost; its contour."""
     made = case.contour(lift)
     with RunFolder(folder, case) as out:
+        out.write_spline(1, spline_columns(lift))
         out.write_lift(1, lift_columns(case, lift))
         out.write_contour(1, contour_columns(case, made))
         cycle = {k: np.abs(v) if v.dtype.kind == "f" else v
                  for k, v in small_run.values(small_run.CYCLE).items()}  # fmt: skip
         out.write_cycle(1, cycle)
         out.write_checks(1, [small_run.check()])
-        out.write_trial(1, small_run.TRIAL)
-        out.finish(small_run.summary())
-    return folder, case, made
+        out.write_trial(1, {**small_run.TRIAL, **record})
+        out.finish({**small_run.summary(), "scope": case.scope.as_record()})
+    return made
+
+
+@pytest.fixture(scope="module")
+def run(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Case, Contour]:
+    folder, case = tmp_path_factory.mktemp("inspect") / "run", small_case(72)
+    return folder, case, write_run(folder, case, Lift(THETA, 0.005 * (1 - np.cos(THETA))))
+
+
+def rolled(positions: int) -> tuple[Case, Lift]:
+    """A roller cam with a dwell and a double harmonic rise within 90 degrees."""
+    s = np.clip(THETA / (np.pi / 2), 0.0, 1.0) * np.clip((2 * np.pi - THETA) / np.pi, 0.0, 1.0)
+    return small_case(positions), Lift(THETA, 0.010 * s**3 * (10 - 15 * s + 6 * s**2))
+
+
+def slid(positions: int) -> tuple[Case, Lift]:
+    case = read_case(FLAT_CASE).with_positions(positions)
+    return case, given_lift(case)
+
+
+@pytest.mark.parametrize("kind", [rolled, slid])
+@pytest.mark.parametrize("positions", [36, 72, 360, 720])
+def test_part_of_its_own_contour_table_has_no_deviation(
+    kind: Callable[[int], tuple[Case, Lift]], positions: int, tmp_path: Path
+) -> None:
+    """The nominal contour does not depend on the number of positions of the cycle.
+
+    0.1 um is a thousandth of a profile tolerance and over a thousand times the last digit of the
+    table.
+    """
+    case, lift = kind(positions)
+    made = write_run(tmp_path / "run", case, lift)
+    table = tmp_path / "contour.csv"
+    table.write_text(contour_table(made, case.workshop_order.theta), encoding="utf-8")
+    points = read_measured(table)
+    drawn = drawn_cam(tmp_path / "run")[1]
+    assert np.abs(inspected(drawn, points).deviation).max() <= 1e-7
+    noise = np.random.default_rng(positions).normal(0.0, 3e-6, points.shape[1])
+    found = inspected(drawn, points + noise * made.normal(case.workshop_order.theta))
+    # the fitted phase takes a part of the noise: an angle of a few of its standard errors
+    np.testing.assert_allclose(found.deviation, noise, atol=1.5e-6)
+    assert found.deviation.std() == pytest.approx(noise.std(), rel=5e-3)
+
+
+def test_drawn_cam_has_the_spring_and_the_radius_of_its_synthesis(tmp_path: Path) -> None:
+    case, lift = rolled(72)
+    free = ("prime_radius", "spring_rate", "preload")
+    ranges = {f"{name}_range": (0.5 * value, 2.0 * value) for name, value in (
+        ("prime_radius", case.cam.prime_radius), ("spring_rate", case.spring.rate),
+        ("preload", case.spring.preload),
+    )}  # fmt: skip
+    smoothing = case.smoothing.model_copy(update={"free": free, **ranges})
+    freed = case.model_copy(update={"smoothing": smoothing})
+    design = {"spring_rate_N_per_mm": 21.5, "preload_N": 310.0, "prime_radius_mm": 51.25}
+    write_run(tmp_path / "run", freed, lift, synthesis=design)
+    drawn, contour = drawn_cam(tmp_path / "run")
+    assert drawn.spring.rate == pytest.approx(21.5e3, rel=1e-15)
+    assert drawn.spring.preload == 310.0
+    assert contour.pitch.radius_base == pytest.approx(51.25e-3, rel=1e-15)
+    np.testing.assert_array_equal(contour.lift.values, lift.values)
+
+
+def test_spline_with_a_changed_coefficient_is_refused(tmp_path: Path) -> None:
+    write_run(tmp_path / "run", *rolled(72))
+    file = tmp_path / "run" / "trial_1" / "2_spline.csv"
+    rows = file.read_text(encoding="utf-8").splitlines()
+    cells = rows[20].split(",")
+    cells[3] = repr(float(cells[3]) + 1e-6)
+    file.write_text("\n".join([*rows[:20], ",".join(cells), *rows[21:]]) + "\n", encoding="utf-8")
+    with pytest.raises(ResultError, match="not those of a C4 spline"):
+        drawn_cam(tmp_path / "run")
 
 
 def test_command_judges_the_real_part(run, tmp_path: Path, capsys) -> None:

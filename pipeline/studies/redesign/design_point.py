@@ -160,7 +160,7 @@ def rough_point(case: Case, torques: Mapping[str, Torque]) -> Rough:
     every = problem_of(case, torques)
     problem = replace(every, left_out=frozenset({TORQUE_REDUCTION.id}))
     design = continued(problem, approached(coarsened(problem)))
-    contour = redrawn(case, design).contour(design.lift())
+    contour = redrawn(case, design.variables).contour(design.lift())
     uses = dict(design.utilisation)
     if every.ceiling is not None:
         uses[TORQUE_REDUCTION.id] = design.ripple / every.ceiling
