@@ -94,17 +94,20 @@ def _crank_speed(turn: Turn) -> Figure | None:
 def _components(turn: Turn) -> Figure | None:
     if turn.torque is None:
         return None
-    whole = ("crank_angle_deg", "total_Nm")
+    whole = ("crank_angle_deg", "total_Nm", "error_bar_Nm")
+    total, bar = turn.torque["total_Nm"], turn.torque.columns.get("error_bar_Nm")
+    band = None if bar is None else (total - bar, total + bar)
     parts = [name for name in turn.torque.columns if name not in whole][: len(SERIES)]
     curves = [
         Curve(words(name.removesuffix("_Nm"))[:24], turn.torque[name], colour)
         for name, colour in zip(parts, SERIES, strict=False)
     ]
-    curves.append(Curve("total", turn.torque["total_Nm"], "ink", dashed=bool(parts)))
+    curves.append(Curve("total", total, "ink", dashed=bool(parts), band=band))
     return angle_figure(
         turn, "torque-components", "Components of the engine torque",
         "Positive torque drives the crank. Crank angle 0 is the top dead centre of gas exchange, "
-        "360 deg the firing top dead centre.",
+        "360 deg the firing top dead centre."
+        + ("" if band is None else " The band holds the measured torque with 95 % probability."),
         Panel("torque", "N m", tuple(curves), height=1.25), mark=False,
         crank=turn.torque["crank_angle_deg"],
     )  # fmt: skip

@@ -377,6 +377,14 @@ def _evidence(material: Material) -> Section:
             ),
         ),
     ]  # fmt: skip
+    measured = verification_tables.measurement(summary.get("measurement"))
+    if measured:
+        blocks.append(Block(
+            Pairs("Measurement", measured), "Measurement",
+            "The error bar holds the torque at all crank angles at once with 95 % probability; it "
+            "is that of noise and scatter of the cycles, with the inertia taken as exact.",
+            narrow=True,
+        ))  # fmt: skip
     if benchmarks:
         blocks.append(Block(
             Pairs("Benchmarks", benchmarks), "Benchmarks",

@@ -42,6 +42,18 @@ BENCHMARKS = {
     "hertz_p0": "roller on a block, peak pressure to Hertz",
     "hertz_half_width": "roller on a block, half-width to Hertz",
 }
+MEASUREMENT = {
+    "cycles": ("cycles", ""),
+    "imep_mean_kPa": ("indicated mean effective pressure, mean", "kPa"),
+    "imep_cov_percent": ("indicated mean effective pressure, coefficient of variation", "%"),
+    "peak_mean_MPa": ("peak pressure, mean", "MPa"),
+    "mean_rad_per_s": ("crank speed, mean", "rad/s"),
+    "p2p_rad_per_s": ("crank speed, peak to peak", "rad/s"),
+    "scatter_max_rad_per_s": ("crank speed, greatest scatter of the cycles", "rad/s"),
+    "bandwidth_Hz": ("bandwidth", "Hz"),
+    "torque_error_bar_max_Nm": ("torque, greatest 95 % error bar", "N m"),
+    "torque_error_bar_percent": ("the same, of peak to peak", "%"),
+}
 STATES = {
     "before": "engine alone",
     "inertia_alone": "added inertia, no cam force",
@@ -124,6 +136,16 @@ def benchmarks(record: Json) -> list[tuple[str, str]]:
         (title, quantity(100.0 * value, "%", 2))
         for name, title in BENCHMARKS.items()
         if isinstance(value := known.get(name), float)
+    ]
+
+
+def measurement(record: Json) -> list[tuple[str, str]]:
+    """(name, value) of a measurement on the engine; empty for a model."""
+    known = record if isinstance(record, Mapping) else {}
+    return [
+        (title, quantity(value, unit))
+        for name, (title, unit) in MEASUREMENT.items()
+        if isinstance(value := known.get(name), int | float)
     ]
 
 

@@ -184,6 +184,7 @@ def measurement_record(case: Case) -> Mapping[str, str | float] | None:
         }
     if isinstance(engine, (SpeedTable, VoltageTable)) and case.crankshaft is not None:
         speed, inertia = crank_speed(case, engine), case.crankshaft.inertia
+        bar = float(speed.error_bar(inertia).max())
         return {
             "kind": engine.kind,
             "cycles": speed.count,
@@ -196,5 +197,7 @@ def measurement_record(case: Case) -> Mapping[str, str | float] | None:
             "bandwidth_harmonics_of_cycle": speed.filter.harmonics,
             "noise_amplification_Nm_per_rad_per_s": speed.noise_amplification(inertia),
             "torque_noise_floor_Nm": speed.noise_floor(inertia),
+            "torque_error_bar_max_Nm": bar,
+            "torque_error_bar_percent": 100.0 * bar / speed.torque(inertia).peak_to_peak,
         }
     return None

@@ -17,6 +17,8 @@ In the order of the calculation:
 | `pressure_trace`         | measured cylinder pressure, its torque      | p, Pa; T, N m           |
 | `trigger_wheel`          | teeth of the wheel, places of the edges     | t, s; theta, rad        |
 | `crankshaft`             | crank speed from torques, energy swing      | J, kg m2; omega, rad/s  |
+| `torque_error_bar`       | noise of a speed record to torque           | T, N m                  |
+| `band_fit`               | band-limited series through a cycle         | omega, rad/s            |
 | `speed_trace`            | measured crank speed, its torque            | omega, rad/s; T, N m    |
 | `pickup_voltage`         | edges from the voltage of a pick-up         | U, V; t, s              |
 | `torque_consistency`     | torque, speed, inertia and work compared    | J, kg m2; E, J          |

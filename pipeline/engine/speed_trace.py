@@ -11,13 +11,22 @@ from typing import Annotated, ClassVar, Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
-from camwright.geometry.arrays import Array, finite, freeze, positive, readonly
+from camwright.geometry.arrays import Array, finite, freeze, positive
 from camwright.geometry.errors import InputError
 from camwright.pipeline.base.quantities import Angle, Count, FileName, In, Part, Share
 from camwright.pipeline.engine.angle_trace import guard_order, guard_span, without_end
+from camwright.pipeline.engine.band_fit import (
+    SHARE_MAX,
+    fitted,
+    integrals,
+    observation_noise,
+    points,
+    shared_edges,
+)
 from camwright.pipeline.engine.crankshaft import SpeedStatistics, speed_statistics, torque_of_motion
 from camwright.pipeline.engine.cylinder import CYCLE_ANGLE
 from camwright.pipeline.engine.torque import SAMPLES, Torque, uniform_cycle
+from camwright.pipeline.engine.torque_error_bar import SlopeNoise
 from camwright.pipeline.engine.trace_file import (
     QUANTITY_UNITS,
     HeaderText,
@@ -144,14 +153,14 @@ class SpeedTrace:
     speeds : array (m, 720)    rad/s at equal crank angles, of each cycle of each run
     filter : Filter
     noise : float              rad/s, standard deviation of one tooth's speed about the curve
-    slope_gain : float         1/rad, standard deviation of domega/dtheta per unit of `noise`
+    slope_noise : SlopeNoise   what `noise` makes of domega/dtheta
     """
 
     source: str
     speeds: Array
     filter: Filter
     noise: float
-    slope_gain: float
+    slope_noise: SlopeNoise
 
     def __post_init__(self) -> None:
         speeds = finite(f"{self.source} speed", self.speeds)
@@ -194,11 +203,20 @@ class SpeedTrace:
 
     def noise_amplification(self, inertia: float) -> float:
         """Torque noise of one cycle per speed noise of one tooth, N m per rad/s."""
-        return inertia * self.statistics.mean * self.slope_gain
+        return inertia * self.statistics.mean * self.slope_noise.mean_gain
 
     def noise_floor(self, inertia: float) -> float:
         """Standard deviation of the torque of the mean cycle due to noise, N m."""
         return self.noise_amplification(inertia) * self.noise / float(np.sqrt(self.count))
+
+    def error_bar(self, inertia: float) -> Array:
+        """Half-width (n,) of the band that holds the torque at all angles at once, N m, 95 %.
+
+        It is that of noise and scatter of the cycles within the bandwidth; the inertia (kg m2) is
+        taken as exact.
+        """
+        slopes = np.array([torque_of_motion(speed, 1.0) / speed for speed in self.speeds])
+        return inertia * self.mean * self.slope_noise.half_width(slopes, self.noise)
 
     def torque(self, inertia: float) -> Torque:
         """J omega domega/dtheta of the mean speed, its one component `measured`.
@@ -212,7 +230,8 @@ class SpeedTrace:
         """
         if not 0.0 < inertia < np.inf:
             raise InputError("engine.inertia", inertia, "> 0 kg m^2")
-        return Torque(self.theta, {"measured": torque_of_motion(self.mean, inertia)})
+        parts = {"measured": torque_of_motion(self.mean, inertia)}
+        return Torque(self.theta, parts, error_bar=self.error_bar(inertia))
 
     def with_firing(self) -> SpeedTrace:
         """The trace with the expansion of each cycle in its second crank turn.
@@ -250,14 +269,16 @@ def speed_from_edges(
     """
     starts, ends, times = _cycles_of(source, runs, wheel)
     width = ends - starts
-    matrix = _integrals(starts, ends, band.last)
-    fit, gain = _fit(source, matrix, width, band)
+    matrix = integrals(starts, ends, band.last)
+    jitter = shared_edges(starts, ends) / np.sqrt(2.0)
+    _guard_unknowns(source, matrix, band)
+    fit, slope_noise = fitted(matrix, band.weights, jitter, width.mean())
     slowness = times @ fit.T
     if not slowness.min() > 0.0:
         raise InputError(f"{source} speed", "below zero", "edges in order; check teeth and edges")
     mean_speed = float(width.sum() / times.sum(axis=1).mean())
-    noise = _noise(times, matrix) / width.mean() * mean_speed**2
-    return SpeedTrace(source, 1.0 / slowness, band, noise, gain)
+    noise = observation_noise(times, matrix, jitter) / width.mean() * mean_speed**2
+    return SpeedTrace(source, 1.0 / slowness, band, noise, slope_noise)
 
 
 def speed_from_teeth(
@@ -282,55 +303,21 @@ def speed_from_teeth(
         raise InputError("engine.averaged_over", f"{np.degrees(width):g} deg", "from 0 to 60 deg")
     ends = at + 0.5 * width
     matrix = (
-        _integrals(at - 0.5 * width, ends, band.last) / width if width else _points(at, band.last)
+        integrals(at - 0.5 * width, ends, band.last) / width if width else points(at, band.last)
     )
-    fit, gain = _fit(source, matrix, np.ones_like(at), band)
-    return SpeedTrace(source, values @ fit.T, band, _noise(values, matrix), gain)
+    single = np.eye(at.size)
+    _guard_unknowns(source, matrix, band)
+    fit, slope_noise = fitted(matrix, band.weights, single, 1.0)
+    noise = observation_noise(values, matrix, single)
+    return SpeedTrace(source, values @ fit.T, band, noise, slope_noise)
 
 
-def _fit(source: str, matrix: Array, weight: Array, band: Filter) -> tuple[Array, float]:
-    """Linear maps from the observations: to the filtered series, and the gain of its slope.
-
-    Returns
-    -------
-    fit : array (720, n)   of the filtered series
-    gain : float           rms over the angle of the slope's standard deviation per unit of noise
-    """
-    if matrix.shape[1] > 0.95 * matrix.shape[0]:
-        most = int((0.475 * matrix.shape[0] - 0.5) / (1.0 + band.taper))
+def _guard_unknowns(source: str, matrix: Array, band: Filter) -> None:
+    """Refuse a filter with too many harmonics for the intervals of a cycle."""
+    if matrix.shape[1] > SHARE_MAX * matrix.shape[0]:
+        most = int((0.5 * SHARE_MAX * matrix.shape[0] - 0.5) / (1.0 + band.taper))
         limit = f"<= {max(most, 1)} for {matrix.shape[0]} intervals in a cycle"
         raise InputError(f"{source}: engine.harmonics", band.harmonics, limit)
-    weights = band.weights
-    solve = np.linalg.pinv(matrix) * np.concatenate([weights, weights[1:]])[:, None]
-    theta = uniform_cycle(SAMPLES)
-    slope = _points(theta, band.last, derivative=True) @ solve * weight
-    gain = float(np.sqrt((slope**2).sum(axis=1).mean()))
-    return readonly(_points(theta, band.last) @ solve), gain
-
-
-def _noise(values: Array, matrix: Array) -> float:
-    """Standard deviation of one observation, from its scatter over cycles or about the fit."""
-    if values.shape[0] > 1:
-        return float(np.sqrt(values.var(axis=0, ddof=1).mean()))
-    left = values[0] - matrix @ (np.linalg.pinv(matrix) @ values[0])
-    return float(np.sqrt((left**2).sum() / (matrix.shape[0] - matrix.shape[1])))
-
-
-def _points(angle: Array, last: int, derivative: bool = False) -> Array:
-    """Constant, cosines and sines of harmonics 1 to `last`, or their slopes, (n, 2 last + 1)."""
-    order = np.arange(1, last + 1) * (2.0 * pi / CYCLE_ANGLE)
-    phase = np.outer(angle, order)
-    if derivative:
-        return np.hstack([np.zeros((angle.size, 1)), -order * np.sin(phase), order * np.cos(phase)])
-    return np.hstack([np.ones((angle.size, 1)), np.cos(phase), np.sin(phase)])
-
-
-def _integrals(start: Array, end: Array, last: int) -> Array:
-    """Integrals of constant, cosines and sines from `start` to `end`, (n, 2 last + 1)."""
-    order = np.arange(1, last + 1) * (2.0 * pi / CYCLE_ANGLE)
-    from_, to = np.outer(start, order), np.outer(end, order)
-    cosines, sines = (np.sin(to) - np.sin(from_)) / order, (np.cos(from_) - np.cos(to)) / order
-    return np.hstack([(end - start)[:, None], cosines, sines])
 
 
 def _cycles_of(

@@ -43,6 +43,8 @@ class Torque:
     varying_inertia : array (n,)           kg m2, of the reciprocating masses whose torque at
                                            constant speed is the component ``inertia``; None: not
                                            known
+    error_bar : array (n,)                 N m, half-width of the band about a measured total that
+                                           holds it at all angles at once, 95 %; None: not known
 
     Raises
     ------
@@ -54,6 +56,7 @@ class Torque:
     theta_crank: Array
     components: Mapping[str, Array]
     varying_inertia: Array | None = None
+    error_bar: Array | None = None
 
     def __post_init__(self) -> None:
         theta = finite("torque.theta_crank", self.theta_crank)
@@ -107,16 +110,19 @@ class Torque:
         step, rest = divmod(self.theta_crank.size, n)
         if rest == 0:  # exactly: without the round-off of a spline
             parts = {name: part[::step] for name, part in self.components.items()}
-            varying = self.varying_inertia
-            return Torque(
-                self.theta_crank[::step], parts, None if varying is None else varying[::step]
+            varying, bar = (
+                None if values is None else values[::step]
+                for values in (self.varying_inertia, self.error_bar)
             )
+            return Torque(self.theta_crank[::step], parts, varying, bar)
         theta = uniform_cycle(n)
         parts = {name: _periodic(part, theta) for name, part in self.components.items()}
-        varying = self.varying_inertia
-        if varying is not None:
-            varying = np.maximum(_periodic(varying, theta), 0.0)  # undershoots at a dead centre
-        return Torque(theta, parts, varying)
+        varying, bar = (
+            # The spline of an inertia undershoots at a dead centre.
+            None if values is None else np.maximum(_periodic(values, theta), 0.0)
+            for values in (self.varying_inertia, self.error_bar)
+        )
+        return Torque(theta, parts, varying, bar)
 
 
 def uniform_cycle(count: int) -> Array:

@@ -185,6 +185,7 @@ class Summary(SummaryOfAnyRun, total=False):
 
     started: str | None
     valve_train: Json
+    measurement: Json
     governing: str | None
     load_ends: list[LoadEndRecord]
 

@@ -49,13 +49,17 @@ _DRAWN = 720  # least number of angles at which lift and contour are listed
 
 
 def torque_columns(torque: Torque) -> dict[Column, Array]:
-    """Columns of ``1_torque.csv``: the torque of the engine and its components."""
+    """Columns of ``1_torque.csv``: torque of the engine, components, error bar if measured."""
     total = Column("total", "N m", "Engine torque at the crank")
     parts = {
         Column(name, "N m", f"Engine torque at the crank, {name.replace('_', ' ')}"): values
         for name, values in torque.components.items()
     }
-    return {CRANK_ANGLE: torque.theta_crank, total: torque.total, **parts}
+    columns = {CRANK_ANGLE: torque.theta_crank, total: torque.total, **parts}
+    if torque.error_bar is not None:
+        bar = Column("error_bar", "N m", "Half-width of the 95 % band about the total torque")
+        columns[bar] = torque.error_bar
+    return columns
 
 
 def spline_columns(lift: Lift) -> dict[Column, Array]:
