@@ -13,7 +13,11 @@ from camwright.pipeline.base.progress import SILENT, Progress, utc
 from camwright.pipeline.base.worker_processes import Crew, Task, crew
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_values import refused_as_written
-from camwright.pipeline.case.load_case_torque import engine_torques, measurement_record
+from camwright.pipeline.case.load_case_torque import (
+    engine_torques,
+    measurement_record,
+    pressure_words,
+)
 from camwright.pipeline.case.plausibility import implausible
 from camwright.pipeline.checks.tolerance_corners import corners_record
 from camwright.pipeline.contact.tiers import Tier
@@ -107,6 +111,8 @@ def _solved(
     torques = engine_torques(case)
     for finding in implausible(case, torques):
         watch.note(f"warning: {finding.how}")
+    for line in pressure_words(case):
+        watch.note(line)
     if torques:
         folder.write_torque(torque_columns(torques[case.load_cases[0].name]))
     writer = TrialWriter(folder)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 
 import numpy as np
@@ -22,6 +22,7 @@ from camwright.pipeline.engine import (
     working_gas,
 )
 from camwright.pipeline.engine import torque as torque_module
+from camwright.pipeline.engine.brake_balance import BrakeBalance, brake_balance
 from camwright.pipeline.engine.cylinder import CylinderEngine
 from camwright.pipeline.engine.indicated_cycle_solver import SPEED_RANGE
 from camwright.pipeline.engine.pickup_voltage import VoltageTable, speed_from_voltage
@@ -80,7 +81,8 @@ def engine_torque(case: Case, state: LoadCase) -> Torque:
     if isinstance(engine, CylinderEngine):
         return _cylinder_torque(_loaded(engine, state), state.speed or CRANKING)
     if isinstance(engine, PressureTable):
-        return torque_from_pressure(pressure(case, engine), engine, state.speed)
+        balance, trace = pressure(case, engine)
+        return torque_from_pressure(trace, engine, state.speed, balance.brake or 0.0)
     if isinstance(engine, (SpeedTable, VoltageTable)) and case.crankshaft is not None:
         return crank_speed(case, engine).torque(case.crankshaft.inertia)
     raise InputError("engine", "missing", "given")
@@ -122,8 +124,16 @@ def _loaded(engine: CylinderEngine, state: LoadCase) -> CylinderEngine:
     return replace(engine, combustion_efficiency=0.0, friction_pressure=friction)
 
 
-def pressure(case: Case, engine: PressureTable) -> PressureTrace:
-    """Measured cycles of a case, shifted to the dead centre, pegged and checked."""
+def pressure(case: Case, engine: PressureTable) -> tuple[BrakeBalance, PressureTrace]:
+    """Measured cycles of a case at their dead centre, pegged and checked, with their balance.
+
+    A brake power is that at the speed of the first load case that runs.
+
+    Raises
+    ------
+    InputError
+        As `pressure_from_csv`, `PressureTrace.guarded` and `BrakeBalance.guarded`.
+    """
 
     def read(name: str) -> PressureTrace:
         return pressure_from_csv(
@@ -135,14 +145,25 @@ def pressure(case: Case, engine: PressureTable) -> PressureTrace:
         )
 
     trace = read(engine.file)
-    if engine.motored_file is not None and engine.dead_centre != "given":
-        motored = read(engine.motored_file)
-        trace = trace.turned(dead_centre_offset(motored, engine.dead_centre, engine.loss_angle))
+    motored = None if engine.motored_file is None else read(engine.motored_file)
+    if motored is not None and engine.dead_centre != "given":
+        offset = dead_centre_offset(motored, engine.dead_centre, engine.loss_angle)
+        trace, motored = trace.turned(offset), motored.turned(offset)
     if engine.intake_pressure is None:
-        return trace.guarded()
-    trace = trace.pegged(engine.intake_pressure).guarded()
-    trace.guard_scale(engine, engine.intake_pressure)
-    return trace
+        trace = trace.guarded()
+    else:
+        trace = trace.pegged(engine.intake_pressure).guarded()
+        trace.guard_scale(engine, engine.intake_pressure)
+    speed = next(state.speed for state in case.load_cases if state.speed > 0.0)
+    balance = brake_balance(trace, engine, engine.brake(speed), motored)
+    field = "engine.brake_torque" if engine.brake_power is None else "engine.brake_power"
+    return balance.guarded(field), trace
+
+
+def pressure_words(case: Case) -> Iterator[str]:
+    """A line on the indicated torque of a measured pressure; none for another engine."""
+    if isinstance(case.engine, PressureTable):
+        yield pressure(case, case.engine)[0].words()
 
 
 def crank_speed(case: Case, engine: SpeedTable | VoltageTable) -> SpeedTrace:
@@ -167,7 +188,7 @@ def measurement_record(case: Case) -> Mapping[str, str | float] | None:
     """Statistics of a measurement for ``run.json``; None for a model."""
     engine = case.engine
     if isinstance(engine, PressureTable):
-        trace = pressure(case, engine)
+        balance, trace = pressure(case, engine)
         statistics = cycle_statistics(trace, engine)
         return {
             "kind": engine.kind,
@@ -181,6 +202,7 @@ def measurement_record(case: Case) -> Mapping[str, str | float] | None:
             "pegging_mean_kPa": 1e-3 * float(np.mean(trace.pegging)),
             "dead_centre": engine.dead_centre,
             "turned_by_deg": float(np.degrees(trace.offset)),
+            **balance.as_record(),
         }
     if isinstance(engine, (SpeedTable, VoltageTable)) and case.crankshaft is not None:
         speed, inertia = crank_speed(case, engine), case.crankshaft.inertia

@@ -18,7 +18,9 @@ from camwright.geometry.energy import spring_deflection
 from camwright.pipeline.base.units import in_unit, shown
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_values import text_of, value_of
+from camwright.pipeline.case.load_case_torque import pressure
 from camwright.pipeline.engine.crankshaft import energy_swing
+from camwright.pipeline.engine.pressure_trace import PressureTable
 from camwright.pipeline.engine.torque import Torque
 from camwright.pipeline.engine.torque_consistency import Finding
 
@@ -63,6 +65,7 @@ def implausible(case: Case, torques: Mapping[str, Torque]) -> tuple[Finding, ...
             if isinstance(value, float):
                 judged.append(usual.finding(key, value, f"{key} = {text_of(case, key)}"))
     judged += _torque_findings(case, torques)
+    judged += _pressure_findings(case)
     findings = [one for one in judged if one is not None]
     if not {one.title for one in findings} & {"spring.rate", "spring.preload", *_TORQUES}:
         findings += _spring_findings(case, torques)
@@ -84,6 +87,28 @@ def _torque_findings(case: Case, torques: Mapping[str, Torque]) -> Iterator[Find
         level = "torque" if swing > 0.0 else "constant torque"
         text = f"{key}: {level}, peak to peak = {shown(swing, 'N m')}"
         yield _usual("torque").finding(key, swing, text)
+
+
+def _pressure_findings(case: Case) -> Iterator[Finding | None]:
+    """Friction that the brake torque leaves, and dead centre, of a measured cylinder pressure."""
+    if not isinstance(case.engine, PressureTable):
+        return
+    balance, _ = pressure(case, case.engine)
+    friction, lead = balance.friction_pressure, balance.motored_lead
+    if friction is not None:
+        key = "engine.brake_torque" if case.engine.brake_power is None else "engine.brake_power"
+        text = f"{key} = {text_of(case, key)}: indicated less brake torque is a friction mean "
+        text += f"effective pressure of {shown(friction, 'kPa')}"
+        yield _usual("friction").finding(key, friction, text)
+        stated = case.engine.friction_pressure
+        if stated is not None:
+            key = "engine.friction_pressure"
+            words = f"{key} = {text_of(case, key)}, but {text}"
+            made = Finding(PLAUSIBILITY, key, 1e-3 * stated, 1e-3 * friction, "kPa", words)
+            yield made if made.flagged else None
+    if lead is not None:
+        text = f"engine.motored_file: peak {shown(lead, 'deg')} before the dead centre"
+        yield _usual("motored_lead").finding("engine.motored_file", lead, text)
 
 
 def _spring_findings(case: Case, torques: Mapping[str, Torque]) -> Iterator[Finding]:

@@ -15,6 +15,7 @@ In the order of the calculation:
 | `angle_trace`            | one quantity against crank angle            | theta, rad; SI          |
 | `torque`                 | engine torque as a sum of components        | T, N m                  |
 | `pressure_trace`         | measured cylinder pressure, its torque      | p, Pa; T, N m           |
+| `brake_balance`          | indicated torque against the brake's        | T, N m; p, Pa           |
 | `trigger_wheel`          | teeth of the wheel, places of the edges     | t, s; theta, rad        |
 | `crankshaft`             | crank speed from torques, energy swing      | J, kg m2; omega, rad/s  |
 | `torque_error_bar`       | noise of a speed record to torque           | T, N m                  |

@@ -14,6 +14,7 @@ import scipy
 from camwright.geometry.arrays import Array, finite, freeze
 from camwright.geometry.errors import InputError
 from camwright.pipeline.base.quantities import Angle, FileName, GasPressure, In, Part
+from camwright.pipeline.base.units import shown
 from camwright.pipeline.engine.angle_trace import (
     GAP_MAX,
     Trace,
@@ -68,21 +69,27 @@ class PressureTable(CrankDrive, _PressureFile):
     The file has one column a cycle, or cycles one below the other. `angle_unit` and
     `pressure_unit` together mean that it has no header. With an `intake_pressure` each cycle is
     pegged to it; without, the pressure is absolute. Without a friction pressure friction closes
-    the torque balance.
+    the torque balance, with the brake torque where it is measured.
 
     Raises
     ------
     InputError
-        As `CrankDrive`; if one unit lacks the other, or a dead centre its motored file.
+        As `CrankDrive`; if one unit lacks the other, a dead centre its motored file, or the brake
+        has both a torque and a power.
     """
 
     kind: Literal["pressure"] = "pressure"
     intake_pressure: GasPressure | None = None
     crankcase_pressure: GasPressure = 101.3e3
     friction_pressure: FrictionPressure | None = None
+    brake_torque: Annotated[float, In("N m", at_least=0, at_most=1e8)] | None = None
+    brake_power: Annotated[float, In("kW", at_least=0, at_most=1e6)] | None = None
 
     def __post_init__(self) -> None:
         super().__post_init__()
+        if self.brake_torque is not None and self.brake_power is not None:
+            power = shown(self.brake_power, "kW")
+            raise InputError("engine.brake_power", power, "left out beside engine.brake_torque")
         if bool(self.angle_unit) != bool(self.pressure_unit):
             raise InputError("engine.pressure_unit", self.pressure_unit, "given with angle_unit")
         if self.dead_centre != "given" and self.motored_file is None:
@@ -92,6 +99,10 @@ class PressureTable(CrankDrive, _PressureFile):
     def units(self) -> tuple[str, str] | None:
         """Units of angle and pressure of a file without a header; None: the header has them."""
         return (self.angle_unit, self.pressure_unit) if self.angle_unit else None
+
+    def brake(self, crank_speed: float) -> float | None:
+        """Measured brake torque at a crank speed (rad/s, > 0), N m; None: not measured."""
+        return self.brake_torque if self.brake_power is None else self.brake_power / crank_speed
 
 
 @dataclass(frozen=True, eq=False)
@@ -413,11 +424,13 @@ def _unwrapped(angle: Array) -> Array:
     return np.asarray(angle + np.concatenate([[0.0], np.cumsum(back)]) * CYCLE_ANGLE)
 
 
-def torque_from_pressure(trace: PressureTrace, engine: PressureTable, crank_speed: float) -> Torque:
+def torque_from_pressure(
+    trace: PressureTrace, engine: PressureTable, crank_speed: float, brake: float = 0.0
+) -> Torque:
     """Torque of an engine whose cylinders all have the mean of the measured cycles.
 
     Components are the gas, the inertia of the reciprocating masses at constant speed, and
-    friction: of the friction pressure, or what closes the torque balance.
+    friction: of the friction pressure, or what closes the balance with the brake torque (N m).
 
     Raises
     ------
@@ -427,7 +440,8 @@ def torque_from_pressure(trace: PressureTrace, engine: PressureTable, crank_spee
     theta = trace.theta
     gas = (trace.mean - engine.crankcase_pressure) * engine.volume_rate(theta)
     inertia = engine.inertia_torque(theta, crank_speed)
-    friction = engine.friction_torque(engine.friction_pressure, float(gas.mean()))
+    driving = float(gas.mean()) - brake / len(engine.firing_offsets)
+    friction = engine.friction_torque(engine.friction_pressure, driving)
     parts = {"gas": gas, "inertia": inertia, "friction": np.full_like(theta, friction)}
     coarse = uniform_cycle(SAMPLES)
     parts = {name: _thinned(part) for name, part in parts.items()}
