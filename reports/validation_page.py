@@ -10,39 +10,60 @@ from camwright.reports.report_content import Block, Section, Tabular
 from camwright.reports.report_tables import DASH, Cell, Record, Status, Table, words
 
 HEAD = (
-    "row", "quantity", "kind", "published", "obtained", "difference", "unit", "verdict", "reason",
+    "row", "quantity", "published", "obtained", "unit", "verdict", "reason", "tolerance", "basis",
 )  # fmt: skip
+COUNTS_HEAD = ("basis", "reproduced", "not reproduced", "not decidable", "computed value")
 STATUS = {"reproduced": "pass", "not reproduced": "fail"}
+BASES = {
+    "independent": "from the physics and printed inputs: the only test of the physics",
+    "tuned": "a model or a choice was adjusted to such values",
+    "fitted": "unknowns were solved for from values of the paper",
+    "imposed": "an input of the calculation",
+    "arithmetic": "from other printed values",
+}
 INTRODUCTION = (
-    "Values printed in the papers beside those that this version computes. Reproduced: equal "
-    "within the tolerance stated as reason; values to which a model was tuned are marked. Not "
-    "decidable: the paper does not print the inputs, or the value is not computed."
+    "Values printed in the papers beside those that this version computes. Reproduced: within the "
+    "tolerance of the row. Not decidable: the paper does not print the inputs, or the value is not "
+    "computed. A reproduced value tests the physics where its basis is independent."
 )
 
 
 def page(document: Record) -> str:
     """HTML text of the page from the contents of ``validation.json``."""
-    counts = ", ".join(f"{name} {number}" for name, number in document["counts"].items())
-    sections = [_paper(document, key) for key in document["papers"]]
-    return study_page("Reproduction of published studies", sections, f"{INTRODUCTION} {counts}.")
+    sections = [_summary(document), *(_paper(document, key) for key in document["papers"])]
+    return study_page("Reproduction of published studies", sections, INTRODUCTION)
+
+
+def _summary(document: Record) -> Section:
+    rows = [
+        [basis, *(str(numbers[name]) for name in COUNTS_HEAD[1:4]), BASES[basis]]
+        for basis, numbers in document["counts"].items()
+    ]
+    table = Table("Published values by basis and verdict", COUNTS_HEAD, rows, 1, 3)
+    return Section("summary", "Summary", [Block(Tabular(table))], "")
 
 
 def _paper(document: Record, key: str) -> Section:
     paper = document["papers"][key]
     doi = f", doi {paper['doi']}" if paper.get("doi") else ""
-    rows = [_row(row) for row in document["rows"] if row["paper"] == key]
-    blocks = [Block(Tabular(Table(f"Figures of {key}", HEAD, rows, 3, 3)))]
+    rows = [row for row in document["rows"] if row["paper"] == key]
+    blocks = []
+    for group in dict.fromkeys(row["group"] for row in rows):
+        cells = [_row(row) for row in rows if row["group"] == group]
+        table = Table(f"Figures of {key}: {group}", HEAD, cells, 2, 2)
+        blocks.append(Block(Tabular(table), f"{key}: {group}"))
     for name, study in document["studies"].get(key, {}).items():
         blocks.append(Block(Tabular(_study(name, study)), f"Study: {name}"))
     return Section(key, key, blocks, f"{paper['citation']}{doi}")
 
 
 def _row(row: Record) -> list[Cell]:
-    verdict = str(row["verdict"])
+    verdict, tolerance = str(row["verdict"]), row["tolerance"]
     return [
-        row["id"], "; ".join(filter(None, (row["quantity"], row["condition"]))), row["kind"],
-        *(_text(row[name]) for name in ("published", "obtained", "difference")), row["unit"],
+        row["id"], "; ".join(filter(None, (row["quantity"], row["condition"], row["kind"]))),
+        *(_text(row[name]) for name in ("published", "obtained")), row["unit"],
         Status(STATUS.get(verdict, "not_evaluated"), verdict), row["reason"],
+        f"{tolerance}: {row['tolerance_reason']}", f"{row['basis']}: {row['basis_reason']}",
     ]  # fmt: skip
 
 

@@ -70,20 +70,22 @@ def validate(
         Path, typer.Option("--out", metavar="DIR", help="Folder for page and record.")
     ] = Path(),
 ) -> int:
-    """Recompute the published values of the papers.
+    """Recompute the published values of the papers, counted by basis.
 
     Writes validation.html and validation.json.
     """
     from camwright.pipeline.base.files import json_text, write_atomic
     from camwright.pipeline.studies.papers import validate as studies
+    from camwright.pipeline.studies.papers.published_figures import count_lines
     from camwright.reports.validation_page import page
 
     with progress_shown() as progress:
         document = studies(progress)
     write_atomic(out / "validation.json", json_text(document) + "\n")
     write_atomic(out / "validation.html", page(document))
-    counts = ", ".join(f"{name} {number}" for name, number in document["counts"].items())
-    stdout.print(f"{len(document['rows'])} published values: {counts}", markup=False)
+    stdout.print(f"{len(document['rows'])} published values by basis:", markup=False)
+    for line in count_lines(document["counts"]):
+        stdout.print(f"  {line}", markup=False)
     stdout.print(f"page: {out / 'validation.html'}", markup=False)
     return PASSED
 

@@ -17,7 +17,7 @@ def test_validate_writes_page_and_numbers(tmp_path):
     folder = tmp_path / "new" / "place"
     document = json.loads((folder / "validation.json").read_text(encoding="utf-8"))
     assert len(document["rows"]) == 62
-    assert "published values" in done.stdout
+    assert "62 published values by basis:\n  independent: reproduced " in done.stdout
     text = (folder / "validation.html").read_text(encoding="utf-8")
     assert text.count("<tr ") >= 62
     assert sorted(path.name for path in folder.iterdir()) == ["validation.html", "validation.json"]

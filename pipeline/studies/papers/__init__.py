@@ -18,12 +18,12 @@ In the order of the calculation:
 | `mechanism_comparison`    | command `compare-mechanisms`                   |                |
 
 A paper is a module with a function `study(targets) -> PaperResult`, named in `PAPERS`. Values
-without an outcome are not decidable. Imported by `commands.comparison_commands` alone.
+without an outcome are not decidable. Basis and tolerance of each stand in ``targets.json``.
+Imported by `commands.comparison_commands` alone.
 """
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Mapping
 from importlib import import_module
 from typing import Any
@@ -32,6 +32,7 @@ from camwright.pipeline.base.progress import SILENT, Progress
 from camwright.pipeline.studies.papers.published_figures import (
     PaperResult,
     citations,
+    counts,
     row_record,
     targets,
 )
@@ -57,7 +58,7 @@ def validate(progress: Progress = SILENT) -> dict[str, Any]:
         rows.append(row_record(target, result.outcomes.get(target.id) if result else None))
     return {
         "papers": citations(),
-        "counts": dict(Counter(row["verdict"] for row in rows)),
+        "counts": counts(rows),
         "rows": rows,
         "studies": {paper: dict(result.studies) for paper, result in results.items()},
     }

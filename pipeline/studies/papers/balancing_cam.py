@@ -30,6 +30,7 @@ FOLLOWER_2025 = FollowerSystem(
 PRIME_RADIUS = 0.050
 TWELVE_VALUES = Smoother("moving_average", points=12, spacing=float(np.radians(5.0)))
 TWELVE_DEGREES = replace(TWELVE_VALUES, spacing=float(np.radians(1.0)))
+TWELVE_TEETH = replace(TWELVE_VALUES, spacing=float(np.radians(10.0)))
 
 
 @dataclass(frozen=True, eq=False)

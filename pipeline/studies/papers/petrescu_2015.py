@@ -17,7 +17,7 @@ from camwright.geometry.motion_laws import Motion, Segment
 from camwright.geometry.pitch_curve import PitchCurve
 from camwright.pipeline.follower.follower_forces import FollowerSystem, follower_loads
 from camwright.pipeline.follower.spring import Spring
-from camwright.pipeline.studies.papers.published_figures import Outcome, PaperResult, Target, within
+from camwright.pipeline.studies.papers.published_figures import PaperResult, Target, judged
 from camwright.pipeline.studies.valve_cam import (
     ElasticValve,
     ValveCam,
@@ -75,8 +75,8 @@ def study(targets: Mapping[str, Target]) -> PaperResult:
     outcomes = {}
     for number, row in enumerate(rows, start=1):
         target = targets[f"P15-{number:02d}"]
-        outcomes[target.id] = within(
-            row["shape_index_mean"], target.value, 0.01,
+        outcomes[target.id] = judged(
+            target, row["shape_index_mean"],
             f"mean of eq. 6.18 over the rise; it never passes {row['shape_index_max']:.4f}, and "
             f"the mean of sin^2 of the pressure angle is {row['sin_squared_mean']:.4f}",
         )  # fmt: skip
@@ -84,15 +84,17 @@ def study(targets: Mapping[str, Target]) -> PaperResult:
     phi = classical.rise()
     slope = classical.motion(phi, 1)
     flat = float(np.mean(slope**2 / classical.contour_radius_square(phi)))
-    outcomes["P15-05"] = within(
-        flat, targets["P15-05"].value, 0.01,
-        "mean of (s'/r_A)^2 of the flat follower over the rise",
-    )  # fmt: skip
+    outcomes["P15-05"] = judged(
+        targets["P15-05"], flat, "mean of (s'/r_A)^2 of the flat follower over the rise"
+    )
     order = " < ".join(
         sorted(SETS, key=lambda name: rows[list(SETS).index(name)]["shape_index_mean"])
     )
-    outcomes["P15-06"] = Outcome(
-        order, "not reproduced", "order of the means of eq. 6.18; that of sin^2 is the printed one"
+    outcomes["P15-06"] = judged(
+        targets["P15-06"],
+        order,
+        "order of the means of eq. 6.18; that of sin^2 is the printed one",
+        published=" < ".join(SETS),
     )
     return PaperResult(outcomes, _studies(rows))
 
