@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
 from camwright.geometry.errors import ResultError
+from camwright.pipeline.base.files import parse_toml
 from camwright.pipeline.base.worker_processes import Task
 from camwright.pipeline.results.run_reader import Run, read_run
 from camwright.reports.report_tables import Record
@@ -42,7 +42,7 @@ def read_material(folder: Path, ahead: Mapping[str, Task] | None = None) -> Mate
         If the folder does not hold a finished run.
     """
     run = read_run(folder)
-    case = _case(run)
+    case = parse_toml(run.case_text, str(run.path / "case.toml"))
     return Material(Path(folder), run, case, governing_turn(run, case), ahead or {})
 
 
@@ -64,10 +64,3 @@ def governing_turn(run: Run, case: Record) -> Turn:
         final.checks, case, final.record["balance"], drawn, run.speed, final.limits,
         run.summary["trial_points"], run.summary["ripple_map"],
     )  # fmt: skip
-
-
-def _case(run: Run) -> Record:
-    try:
-        return tomllib.loads(run.case_text)
-    except tomllib.TOMLDecodeError as error:
-        raise ResultError(f"{run.path / 'case.toml'}: {error}") from None

@@ -6,6 +6,7 @@ import hashlib
 import io
 import json
 import os
+import re
 import tempfile
 import tomllib
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -19,6 +20,17 @@ from camwright.geometry.errors import InputError, ResultError
 
 Json: TypeAlias = "str | float | Sequence[Json] | Mapping[str, Json] | None"
 """A value of a JSON record."""
+
+_TABLES_DEEP = 16
+_NO_KEY = re.compile(
+    r'"""(?:[^"\\]|\\.|"(?!""))*+(?:""")?+'  # each text is quoted to its end or the file's
+    r"|'''.*?(?:'''|\Z)"
+    r'|"(?:[^"\\\n]|\\.)*+"?+'
+    r"|'[^'\n]*+'?+"
+    r"|#[^\n]*+",
+    re.DOTALL,
+)
+_LONG_KEY = re.compile(rf"(?<![\w-])(?:[\w-]++[ \t]*+\.[ \t]*+){{{_TABLES_DEEP + 1}}}")
 
 
 def inside(folder: Path, name: str, field: str) -> Path:
@@ -55,13 +67,49 @@ def read_toml(path: Path, field: str, most: int) -> dict[str, Any]:
             content = file.read(most + 1)
         if len(content) > most:
             raise InputError(field, "larger", f"at most {most // 1024} KiB")
-        return tomllib.loads(content.decode("utf-8-sig"))
+    except OSError as error:
+        raise InputError(field, error.strerror or str(error), "a readable TOML file") from None
+    return parse_toml(content, field)
+
+
+def parse_toml(content: bytes | str, field: str) -> dict[str, Any]:
+    """Tables of a TOML text, at most 16 deep.
+
+    Raises
+    ------
+    InputError
+        Naming `field`, if the text is nested more deeply or is not TOML in UTF-8.
+    """
+    try:
+        text = content if isinstance(content, str) else content.decode("utf-8-sig")
+        # The parser takes the square of the number of parts of a key, minutes for 60,000.
+        nested = _LONG_KEY.search(_NO_KEY.sub(_blank, text)) is not None
+        tables = {} if nested else tomllib.loads(text)
+        nested = nested or _is_deeper(tables, _TABLES_DEEP)
     except RecursionError:
-        raise InputError(field, "nested too deeply", "a few tables deep") from None
-    except (OSError, ValueError) as error:  # UnicodeDecodeError and TOMLDecodeError alike
-        words = error.strerror if isinstance(error, OSError) else None
-        reason = " ".join((words or str(error)).split())
-        raise InputError(field, reason, "a readable TOML file") from None
+        nested = True
+    except ValueError as error:  # UnicodeDecodeError and TOMLDecodeError alike
+        raise InputError(field, " ".join(str(error).split()), "UTF-8 text in TOML") from None
+    if nested:
+        raise InputError(field, "nested too deeply", f"at most {_TABLES_DEEP} tables deep")
+    return tables
+
+
+def _blank(literal: re.Match[str]) -> str:
+    """A quoted text as a word, which may be a part of a key; nothing for a comment."""
+    return "" if literal[0].startswith("#") else "s"
+
+
+def _is_deeper(tables: dict[str, Any], depth: int) -> bool:
+    level: list[Any] = [tables]
+    for _ in range(depth):
+        level = [
+            entry
+            for each in level
+            for entry in (each.values() if isinstance(each, dict) else each)
+            if isinstance(entry, (dict, list))
+        ]
+    return bool(level)
 
 
 def locked(path: Path, busy: str) -> IO[str] | None:

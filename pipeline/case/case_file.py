@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import tomllib
 from collections.abc import Mapping
 from pathlib import Path
 from types import MappingProxyType
@@ -12,7 +11,7 @@ from pydantic import ValidationError
 
 from camwright.geometry.errors import InputError
 from camwright.pipeline.base import units
-from camwright.pipeline.base.files import inside
+from camwright.pipeline.base.files import inside, parse_toml
 from camwright.pipeline.base.material import Material
 from camwright.pipeline.base.quantities import In
 from camwright.pipeline.case.added_tables import with_added
@@ -29,7 +28,6 @@ from camwright.pipeline.case.toml_text import Tables, TomlValue, tables_of
 
 CASE_BYTES = 256 * 1024
 INCLUDE_BYTES = 16 * 1024 * 1024
-DEPTH_MAX = 16
 SCHEMA_VERSION = 1
 _REFUSED = Material(E=1.0, nu=0.0, yield_strength=1.0, density=1.0, source="refused")
 
@@ -48,7 +46,7 @@ def read_case(path: str | Path) -> Case:
 
 def parse_case(content: str | bytes, folder: Path | None = None) -> Case:
     """A case from its text; included files are read from `folder`."""
-    data = _parse_toml(content)
+    data: Tables = parse_toml(content, "case")
     version = data.get("schema_version")
     if version is not None and version != SCHEMA_VERSION:
         raise InputError(
@@ -124,32 +122,6 @@ def _cards(tables: TomlValue | None) -> dict[str, Material]:
         except InputError:
             cards[name] = _REFUSED
     return named(cards)
-
-
-def _parse_toml(content: str | bytes) -> Tables:
-    try:
-        text = content if isinstance(content, str) else content.decode("utf-8-sig")
-        tables: Tables = tomllib.loads(text)
-        nested = _is_deeper(tables, DEPTH_MAX)
-    except RecursionError:
-        nested = True
-    except ValueError as error:  # UnicodeDecodeError and TOMLDecodeError alike
-        raise InputError("case", " ".join(str(error).split()), "UTF-8 text in TOML") from None
-    if nested:
-        raise InputError("case", "nested too deeply", f"at most {DEPTH_MAX} tables deep")
-    return tables
-
-
-def _is_deeper(tables: Tables, depth: int) -> bool:
-    level: list[Tables | list[TomlValue]] = [tables]
-    for _ in range(depth):
-        level = [
-            entry
-            for each in level
-            for entry in (each.values() if isinstance(each, dict) else each)
-            if isinstance(entry, (dict, list))
-        ]
-    return bool(level)
 
 
 def _read(path: Path, name: str, field: str, limit: int) -> bytes:

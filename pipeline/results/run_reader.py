@@ -6,15 +6,21 @@ Reading needs no solver and no case parser.
 from __future__ import annotations
 
 import math
-import tomllib
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple, TypedDict
 
-from camwright.geometry.errors import ResultError
-from camwright.pipeline.base.files import Json, hash_inputs, read_json, read_text, sha256_of
+from camwright.geometry.errors import InputError, ResultError
+from camwright.pipeline.base.files import (
+    Json,
+    hash_inputs,
+    parse_toml,
+    read_json,
+    read_text,
+    sha256_of,
+)
 from camwright.pipeline.base.tables import Table, read_table
 
 if TYPE_CHECKING:
@@ -535,9 +541,9 @@ def _case_text(path: Path, summary: Summary) -> str:
     """Text of ``case.toml``; ResultError if the summary states another scope."""
     text = read_text(path / "case.toml")
     try:
-        scope = tomllib.loads(text).get("scope", {})
-    except tomllib.TOMLDecodeError as error:
-        raise ResultError(f"{path / 'case.toml'}: {error}") from None
+        scope = parse_toml(text, str(path / "case.toml")).get("scope", {})
+    except InputError as error:
+        raise ResultError(str(error)) from None
     said = summary["scope"]
     left_out = scope.get("not_covered", []) if isinstance(scope, dict) else None
     if not isinstance(said, dict) or said.get("not_covered") != left_out:

@@ -1,9 +1,11 @@
 """TOML files of the user's: what cannot be read is refused in one line."""
 
+import tomllib
+
 import pytest
 
 from camwright.geometry.errors import InputError
-from camwright.pipeline.base.files import read_toml
+from camwright.pipeline.base.files import parse_toml, read_toml
 from camwright.pipeline.case.cards.card_filling import known_cards
 from camwright.pipeline.case.cards.spring_catalogue import read_catalogue
 
@@ -20,8 +22,8 @@ def test_a_small_file_is_read(tmp_path):
     ("content", "limit"),
     [
         (b"a = 1 #" + b"x" * 1018, "at most 1 KiB"),
-        (b"a = ", "a readable TOML file"),
-        (b"a = '\xff'", "a readable TOML file"),
+        (b"a = ", "UTF-8 text in TOML"),
+        (b"a = '\xff'", "UTF-8 text in TOML"),
         (None, "a readable TOML file"),
     ],
 )
@@ -41,3 +43,25 @@ def test_cards_and_springs_nested_too_deeply_are_refused(tmp_path):
         (tmp_path / name).write_text(DEEP)
         with pytest.raises(InputError, match="nested too deeply"):
             read()
+
+
+@pytest.mark.parametrize(
+    "key", ["a." * 120_000 + "b", "a . " * 60_000 + "b", "'a'." * 30_000 + "b"]
+)
+@pytest.mark.parametrize("form", ["{} = 1", "[{}]", "[[{}]]", "a = {{ {} = 1 }}", "{}"])
+def test_a_key_of_many_parts_is_refused_before_it_is_parsed(form: str, key: str) -> None:
+    """The parser alone takes a minute for each."""
+    with pytest.raises(InputError, match=r"^given = nested too deeply, must be at most 16"):
+        parse_toml(form.format(key), "given")
+
+
+def test_parts_in_a_text_or_a_comment_are_no_key() -> None:
+    dotted = "a." * 40
+    text = f"""a = "{dotted}\\"{dotted}" # "{dotted}
+b = '{dotted}\\'
+c = \'\'\'{dotted}''{dotted}
+\'\'\'
+d = [1.5, 2.5, 1979-05-27T07:32:00.5Z]
+"e.{dotted}".{"a" * 10_000}.f = 1
+"""
+    assert parse_toml(text, "given") == tomllib.loads(text)
