@@ -112,8 +112,12 @@ class TraceText:
     def line_numbers(self) -> list[int]:
         return [number for number, _ in self.rows]
 
-    def numbers(self, columns: Sequence[int]) -> Array:
+    def numbers(self, columns: Sequence[int], *, gaps: bool = False) -> Array:
         """Cells of some columns as numbers, (rows, columns).
+
+        Parameters
+        ----------
+        gaps : bool   whether a row with an empty cell in these columns is left out
 
         Raises
         ------
@@ -121,19 +125,22 @@ class TraceText:
             For a row with too few or too many cells, or a cell that is no finite number.
         """
         header, delimiter = self.header, self.delimiter
-        table = np.empty((len(self.rows), len(columns)))
-        for row, (number, line) in enumerate(self.rows):
+        table, row = np.empty((len(self.rows), len(columns))), 0
+        for number, line in self.rows:
             cells = [cell.strip() for cell in _cells(line, delimiter)]
             if len(cells) < len(header) or any(cells[len(header) :]):
                 limit = f"{len(header)} as in the header"
                 raise InputError(f"{self.name} line {number}", f"{len(cells)} cells", limit)
+            if gaps and not all(cells[at] for at in columns):
+                continue
             for place, at in enumerate(columns):
                 cell = cells[at] if delimiter == "," else cells[at].replace(",", ".")
                 if not _NUMBER.fullmatch(cell) or not abs(float(cell)) < np.inf:
                     field = f"{self.name} line {number}, {header[at]}"
                     raise InputError(field, cells[at] or "nothing", "a finite number")
                 table[row, place] = float(cell)
-        return table
+            row += 1
+        return table[:row]
 
 
 def trace_text(path: Path, *, headed: bool = True, one_column: bool = False) -> TraceText:
@@ -226,7 +233,9 @@ def _decoded(coded: bytes) -> str:
 
 
 def _cells(line: str, delimiter: str) -> list[str]:
-    return next(csv.reader([line], delimiter=delimiter)) if '"' in line else line.split(delimiter)
+    if '"' not in line or len(line) >= csv.field_size_limit():
+        return line.split(delimiter)
+    return next(csv.reader([line], delimiter=delimiter))
 
 
 def _unit(header: str, units: Mapping[str, float]) -> float | None:

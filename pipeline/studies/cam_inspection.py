@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import csv
-import io
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
@@ -22,6 +20,7 @@ from camwright.pipeline.base.progress import SILENT, Progress
 from camwright.pipeline.base.tables import CAM_ANGLE, Column, Table, read_table, table
 from camwright.pipeline.base.units import in_unit
 from camwright.pipeline.case.case import Case
+from camwright.pipeline.engine.trace_file import trace_text
 from camwright.pipeline.results import run_reader
 from camwright.pipeline.results.run_records import cycle_columns
 from camwright.pipeline.results.trial import Trial
@@ -30,7 +29,6 @@ from camwright.pipeline.solver import solve
 Record = dict[str, Any]
 
 FOLDER = "inspection"
-BYTES_MAX = 64 << 20
 _WAVES_LISTED = 12
 
 _PLACES = (("measured_x_mm", "measured_y_mm"), ("x_mm", "y_mm"))
@@ -51,47 +49,26 @@ def read_measured(path: Path) -> Array:
 
     Columns, in mm and deg about the cam axis: ``measured_x_mm, measured_y_mm`` (the completed
     inspection sheet), or ``x_mm, y_mm``, or ``polar_angle_deg, measured_radius_mm``, or
-    ``angle_deg, radius_mm``. Rows with empty measured cells are skipped.
+    ``angle_deg, radius_mm``. Columns are separated by semicolons, tabs or commas; the decimal sign
+    is a point, or a comma where it does not separate columns. Rows with empty measured cells are
+    skipped.
 
     Raises
     ------
     InputError
-        If the file is missing, too large, without these columns or with a value that is no number.
+        With file, line, value and limit: if the file is missing, a folder, empty, binary or over
+        64 MiB, without these columns, or with a value that is no finite number.
     """
-    try:
-        if path.stat().st_size > BYTES_MAX:
-            raise InputError("measured", str(path), f"at most {BYTES_MAX >> 20} MiB")
-        rows = list(csv.DictReader(io.StringIO(path.read_text(encoding="utf-8-sig"))))
-    except (OSError, UnicodeDecodeError, csv.Error) as error:
-        raise InputError("measured", f"{path} ({error})", "a readable CSV file") from None
-    names = set(rows[0]) if rows else set()
+    text = trace_text(path)
     for pair in (*_PLACES, *_POLAR):
-        if names.issuperset(pair):
-            first, second = (np.array(column) for column in _numbers(rows, pair))
+        if set(text.header).issuperset(pair):
+            first, second = text.numbers([text.header.index(name) for name in pair], gaps=True).T
             if pair in _PLACES:
                 return np.stack([first, second]) * units.factor("mm")
             turned = np.radians(first)
             return np.stack([np.cos(turned), np.sin(turned)]) * second * units.factor("mm")
     known = " or ".join(", ".join(pair) for pair in (*_PLACES, *_POLAR))
-    raise InputError("measured", f"columns {', '.join(sorted(map(str, names)))[:200]}", known)
-
-
-def _numbers(rows: list[dict[str, str]], pair: tuple[str, str]) -> tuple[list[float], list[float]]:
-    """Values of two columns, without rows of empty cells."""
-    columns: tuple[list[float], list[float]] = ([], [])
-    for line, row in enumerate(rows, start=2):
-        cells = [(row[name] or "").strip() for name in pair]
-        if not all(cells):
-            continue
-        for column, name, cell in zip(columns, pair, cells, strict=True):
-            try:
-                value = float(cell)
-            except ValueError:
-                value = math.nan
-            if not math.isfinite(value):
-                raise InputError(f"measured, line {line}, {name}", cell[:40], "a number")
-            column.append(value)
-    return columns
+    raise InputError(f"{text.name} header", ", ".join(text.header)[:200], known)
 
 
 def inspect_part(

@@ -283,10 +283,18 @@ def test_filled_sheet_reads_back(tmp_path: Path) -> None:
     )
 
 
+def test_a_sheet_saved_by_an_office_program_of_another_language_reads_back(tmp_path: Path) -> None:
+    path = tmp_path / "sheet.csv"
+    rows = [f"{x:.6f};{y:.6f}".replace(".", ",") for x, y in 1e3 * contour().points(THETA).T]
+    path.write_text("\ufeffx_mm;y_mm\n" + "\r\n".join(rows), encoding="utf-8")
+    np.testing.assert_allclose(read_measured(path), contour().points(THETA), atol=1e-9)
+
+
 @pytest.mark.parametrize(
     ("text", "named"),
     [
-        ("", "columns"),
+        ("", "an empty file"),
+        ('"' + "x" * 200_000 + "\n1,2\n", "header"),
         ("a,b\n1,2\n", "x_mm"),
         ("x_mm,y_mm\n1,nan\n", "line 2"),
         ("x_mm,y_mm\n1,inf\n", "line 2"),
@@ -305,5 +313,5 @@ def test_few_points_a_gap_and_a_missing_file_are_refused(tmp_path: Path) -> None
         inspected(contour(), contour().polygon(47))
     with pytest.raises(InputError, match="gap"):
         inspected(contour(), contour().polygon(720)[:, 80:])
-    with pytest.raises(InputError, match="readable"):
+    with pytest.raises(InputError, match="no such file"):
         read_measured(tmp_path / "none.csv")
