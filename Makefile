@@ -1,6 +1,7 @@
 # make run     set up .venv, run the GX120 case into runs/gx120, print verdict and report
 # make test    set up .venv, run ruff, mypy and the tests
 # make verify  the slow certificates      make bench  benchmarks      make lint  ruff and mypy only
+# make fuzz    20,000 mutated input files
 
 PYTHON ?= python3
 CASE ?= cases/gx120.toml
@@ -12,7 +13,7 @@ PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
 export OMP_NUM_THREADS ?= 1
 export OPENBLAS_NUM_THREADS ?= 1
 
-.PHONY: help setup run test verify lint bench clean
+.PHONY: help setup run test verify fuzz lint bench clean
 
 help:
 	@sed -n 's/^# make/make/p' Makefile
@@ -44,6 +45,9 @@ test: lint
 
 verify: .venv/developing
 	$(BIN)/python -m pytest -q -m slow
+
+fuzz: .venv/developing
+	$(BIN)/python tests/mutated_inputs.py 20000
 
 lint: .venv/developing
 	$(BIN)/ruff check .

@@ -38,8 +38,12 @@ class InputError(CamError):
     def __str__(self) -> str:
         value = self.value
         text = f"{value:.4g}" if isinstance(value, float) else " ".join(str(value).split())
-        shortened = text if len(text) <= 80 else f"{text[:30]}...{text[-47:]}"  # paths end in names
-        return f"{self.field} = {shortened}, must be {self.limit}"
+        return f"{_shortened(self.field)} = {_shortened(text)}, must be {self.limit}"
+
+
+def _shortened(text: str) -> str:
+    """Ends of a long text; paths and dotted keys end in names."""
+    return text if len(text) <= 80 else f"{text[:30]}...{text[-47:]}"
 
 
 class GeometryError(CamError):

@@ -21,6 +21,7 @@ STEPS_PER_CYCLE = 720
 REPEATS_WITHIN = 1e-6
 CYCLES_MAX = 200
 SUB_STEPS_MIN = 2
+_SUB_STEPS_MAX = 1000  # five times those of a small engine at 50 rpm
 SPEED_RANGE = (10.0, 2000.0)  # rad/s
 
 
@@ -53,6 +54,12 @@ def _steps(engine: CylinderEngine, crank_speed: float) -> _Steps:
     area = intake.flow_area(whole) + exhaust.flow_area(whole)
     levelling = gas_speed / crank_speed * area / engine.volume(whole)
     steepest = np.maximum(levelling[:-1], levelling[1:]) * radians(1.0)
+    if not steepest.max() <= _SUB_STEPS_MAX:
+        radius = f"{1e3 * engine.crank_radius:.4g} mm"
+        limit = (
+            f"longer for these valves, whose flow levels the pressure {steepest.max():.3g} times"
+        )
+        raise InputError("engine.crank_radius", radius, f"{limit} in a degree of the crank")
     per_degree = np.maximum(SUB_STEPS_MIN, np.ceil(steepest / 1.5)).astype(int)
     length = np.repeat(radians(1.0) / per_degree, per_degree)
     ends = radians(start) + np.concatenate([[0.0], np.cumsum(length)])

@@ -1,0 +1,56 @@
+"""A sample of `make fuzz`: mutated input files are read, or refused in one line."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import pytest
+
+sys.path.insert(0, str(Path(__file__).parents[1]))
+from mutated_inputs import sources, tried
+
+from camwright.geometry.errors import CamError
+from camwright.pipeline.engine.angle_trace import read_trace
+from camwright.pipeline.studies.cam_inspection import read_measured
+
+HEAD = "crank_angle_deg,torque_Nm\n"
+
+
+@pytest.mark.parametrize("seed", [11, 12, 13, 14, 15])
+def test_mutated_inputs_are_read_or_refused(seed: int) -> None:
+    outcomes = list(tried(100, seed))
+    assert not [each for each in outcomes if each.failed]
+    words = {each.what for each in outcomes}
+    assert words == {"read", "refused"}  # neither are all too far from an input, nor all too near
+
+
+@pytest.mark.parametrize("source", sources(), ids=lambda source: source.name)
+def test_inputs_without_a_mutation_are_read(source, tmp_path: Path) -> None:
+    for name, content in source.files.items():
+        (tmp_path / name).write_bytes(content)
+    source.read(tmp_path / source.name)
+
+
+@pytest.mark.parametrize(
+    ("content", "named"),
+    [
+        (HEAD + "1,2\n" * 1_000_001, "lines, must be 1000000 lines or fewer"),
+        (HEAD + "0,1\n1,2\0\n", "a binary file"),
+        (HEAD + "0,1\n1;2\n", "line 3 = 1 cells"),
+        (HEAD + "0,1\n" + "1" * 300_000 + ",1\n", "line 3, crank_angle_deg = 111"),
+        (HEAD + '0,1\n"' + "1" * 300_000 + '",2\n', "line 3, crank_angle_deg"),
+        ("\ufeff" + HEAD + "0,1\n1,\n", "line 3, torque_Nm = nothing"),
+    ],
+    ids=["rows", "zero", "separator", "long", "quoted", "mark"],
+)
+def test_a_file_of_columns_names_line_and_column(content: str, named: str, tmp_path: Path) -> None:
+    path = tmp_path / "torque.csv"
+    path.write_text(content, encoding="utf-8")
+    with pytest.raises(CamError, match=named):
+        read_trace(path)
+    path.write_text(content.replace(HEAD, "x_mm,y_mm\n"), encoding="utf-8")
+    measured = named.replace("torque_Nm", "y_mm").replace("crank_angle_deg", "x_mm")
+    if "nothing" not in named:  # a row that was not measured
+        with pytest.raises(CamError, match=measured):
+            read_measured(path)
