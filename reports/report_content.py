@@ -379,11 +379,13 @@ def _evidence(material: Material) -> Section:
     ]  # fmt: skip
     measured = verification_tables.measurement(summary.get("measurement"))
     if measured:
-        blocks.append(Block(
-            Pairs("Measurement", measured), "Measurement",
+        words = (
             "The error bar holds the torque at all crank angles at once with 95 % probability; it "
-            "is that of noise and scatter of the cycles, with the inertia taken as exact.",
-            narrow=True,
+            "is that of noise and scatter of the cycles, with the inertia taken as exact."
+        )
+        barred = any("error bar" in title for title, _ in measured)
+        blocks.append(Block(
+            Pairs("Measurement", measured), "Measurement", words if barred else "", narrow=True,
         ))  # fmt: skip
     if benchmarks:
         blocks.append(Block(

@@ -18,6 +18,7 @@ from camwright.pipeline.case.plausibility import implausible
 from camwright.pipeline.engine.brake_balance import brake_balance
 from camwright.pipeline.engine.indicated_cycle_solver import working_cycle
 from camwright.pipeline.engine.pressure_trace import torque_from_pressure
+from camwright.reports import verification_tables
 
 EXPANSION = (2.0 * np.pi <= THETA) & (3.0 * np.pi > THETA)
 
@@ -114,6 +115,9 @@ def test_a_case_states_what_its_pressure_indicates(tmp_path):
     volume = case.engine.displacement
     mep = 4e-3 * np.pi * (indicated - 0.5) / volume
     assert record["friction_mep_kPa"] == pytest.approx(mep)
+    shown = dict(verification_tables.measurement(record))
+    assert shown["brake torque"].split() == ["0.5", "N", "m"]
+    assert shown["indicated torque"].split() == [f"{indicated:.4g}", "N", "m"]
     (line,) = pressure_words(case)
     assert line.startswith(f"indicated torque of p.csv: {indicated:.4g} N m, +")
     assert "with the dead centre 1 deg earlier; brake torque 0.5 N m" in line

@@ -6,6 +6,7 @@ import ast
 import re
 import tomllib
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -20,6 +21,7 @@ from camwright.pipeline.case.load_case_torque import engine_torques
 from camwright.pipeline.case.renamed_keys import renamed_names
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.results import run_records
+from camwright.pipeline.results.record_schemas import record_schema
 from camwright.pipeline.results.run_reader import HEADLINE
 from camwright.pipeline.results.trial import Trial
 from camwright.pipeline.smoothing.required_lift import cam_lift
@@ -94,9 +96,10 @@ def speed(rolls: Trial) -> tuple[dict[str, Any], Any]:
 
 @pytest.fixture(scope="module")
 def columns(rolls: Trial, slides: Trial, speed: tuple[dict[str, Any], Any]) -> set[str]:
-    """Headers of all columns of a run."""
-    torques = engine_torques(rolls.case)
-    tables = [*run_records.torque_columns(torques["idle"]), *speed[1]]
+    """Headers of all columns of a run, with the error bar of a measured torque."""
+    torque = engine_torques(rolls.case)["idle"]
+    barred = replace(torque, error_bar=torque.total)
+    tables = [*run_records.torque_columns(barred), *speed[1]]
     for trial in (rolls, slides):
         tables += [c for columns in run_records.column_table(trial).values() for c in columns]
     return {column.header for column in tables}
@@ -104,8 +107,9 @@ def columns(rolls: Trial, slides: Trial, speed: tuple[dict[str, Any], Any]) -> s
 
 @pytest.fixture(scope="module")
 def records(rolls: Trial, slides: Trial, speed: tuple[dict[str, Any], Any]) -> set[str]:
-    """Keys of headline, trial and crank speed."""
-    made = [run_records.headline(engine_torques(rolls.case), rolls), speed[0]]
+    """Keys of headline, trial, crank speed, and a measured engine by the schema."""
+    measurement = record_schema("run")["$defs"]["measurement"]["properties"]
+    made = [run_records.headline(engine_torques(rolls.case), rolls), speed[0], measurement]
     made += [run_records.trial_record(trial) for trial in (rolls, slides)]
     return {key for record in made for key in keys_of(record)}
 
