@@ -51,6 +51,7 @@ for _command in (
     study_command.study,
     contact_command.contact,
     comparison_commands.validate,
+    comparison_commands.papers,
     comparison_commands.compare_mechanisms,
     inspect_command.inspect,
     contact_command.deck,

@@ -6,7 +6,7 @@
 | `run_command`         | `run`, `report`, `init`                                 |
 | `check_command`       | `check` of a run or the preview of a case; `schema`     |
 | `explain_command`     | `explain`: a key of the case file, or a check           |
-| `comparison_commands` | `compare`, `validate`, `compare-mechanisms`             |
+| `comparison_commands` | `compare`, `validate`, `papers`, `compare-mechanisms`   |
 | `contact_command`     | `contact`, `deck`                                       |
 | `inspect_command`     | `inspect`: measured cam                                 |
 | `redesign_command`    | `redesign`: search of the catalogues                    |

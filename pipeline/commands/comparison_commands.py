@@ -1,4 +1,4 @@
-"""Commands `compare`, `validate` and `compare-mechanisms`."""
+"""Commands `compare`, `validate`, `papers` and `compare-mechanisms`."""
 
 from __future__ import annotations
 
@@ -87,6 +87,37 @@ def validate(
     for line in count_lines(document["counts"]):
         stdout.print(f"  {line}", markup=False)
     stdout.print(f"page: {out / 'validation.html'}", markup=False)
+    return PASSED
+
+
+def papers(
+    name: Annotated[
+        str,
+        typer.Argument(
+            metavar="[NAME]", help="A paper (C25, C24, P15, E24) or a figure (c25-cam)."
+        ),
+    ] = "",
+    out: Annotated[
+        Path, typer.Option("--out", metavar="DIR", help="Folder for page and record.")
+    ] = Path(),
+) -> int:
+    """Draw the figures of the papers beside their published values.
+
+    Writes papers.html and papers.json.
+    """
+    from camwright.pipeline.base.files import json_text, write_atomic
+    from camwright.pipeline.studies.papers import figures
+    from camwright.reports.papers.papers_page import page
+
+    with progress_shown() as progress:
+        document = figures(name, progress)
+        progress.stage("page")
+        text = page(document)
+    write_atomic(out / "papers.json", json_text(document) + "\n")
+    write_atomic(out / "papers.html", text)
+    names = ", ".join(one["name"] for one in document["figures"])
+    stdout.print(f"figures: {names}", markup=False)
+    stdout.print(f"page: {out / 'papers.html'}", markup=False)
     return PASSED
 
 

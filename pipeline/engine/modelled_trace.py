@@ -48,26 +48,53 @@ def voltage_text(speed: Array, wheel: TriggerWheel) -> str:
     """Times and voltages of a variable-reluctance pick-up over a cycle, as text of
     `speed_from_voltage`.
 
-    The flux rises by a bell over each tooth, and the voltage is its rate: it falls through zero
-    in the middle of a tooth, in proportion to the speed.
-
     Parameters
     ----------
     speed : array (n,)     rad/s at equal crank angles over a cycle, from 0
     wheel : TriggerWheel   the record begins half a pitch before the tooth at its reference
     """
-    places = np.linspace(-0.5, 2.0 * wheel.teeth + 1.5, 128 * (wheel.teeth + 1) + 1)
+    times, volts = pickup_voltage(speed, wheel)
+    return _text("time_s,voltage_V", "%.6f,%.4f", times, volts)
+
+
+def pickup_voltage(
+    speed: Array,
+    wheel: TriggerWheel,
+    *,
+    cycles: int = 1,
+    sample: float = SAMPLE,
+    pitch_errors: Array | None = None,
+) -> tuple[Array, Array]:
+    """Times, s, from 0, and voltages, V, of a variable-reluctance pick-up over a periodic cycle.
+
+    The flux rises by a bell over each tooth, and the voltage is its rate: it falls through zero
+    in the middle of a tooth, in proportion to the speed.
+
+    Parameters
+    ----------
+    speed : array (n,)          rad/s at equal crank angles over a cycle, from 0
+    wheel : TriggerWheel        the record begins half a pitch before the tooth at its reference
+    cycles : int                recorded, with one tooth more
+    sample : float              s, between two values
+    pitch_errors : array (teeth,)   rad, of the middles of the teeth; None: none
+    """
+    places = np.linspace(
+        -0.5, 2.0 * cycles * wheel.teeth + 1.5, 128 * (cycles * wheel.teeth + 1) + 1
+    )
     fine = wheel.reference_angle + wheel.pitch * places
     passed = passing_times(speed, fine)
-    times = np.arange(passed[0], passed[-1], SAMPLE)
+    times = np.arange(passed[0], passed[-1], sample)
     angle = np.interp(times, passed, fine)
     place = (angle - wheel.reference_angle) / wheel.pitch
     tooth = np.round(place) + np.array([[-1.0], [0.0], [1.0]])
-    off = (place - tooth) / TOOTH_WIDTH
+    off = place - tooth
+    if pitch_errors is not None:
+        off = off - pitch_errors[np.mod(tooth, wheel.teeth).astype(int)] / wheel.pitch
+    off = off / TOOTH_WIDTH
     bells = np.where(np.mod(tooth, wheel.teeth) < wheel.present, -off * np.exp(-0.5 * off**2), 0.0)
     local = periodic_cubic(speed)(angle * (FULL_TURN / CYCLE_ANGLE)) / speed.mean()
     volts = PEAK * np.exp(0.5) * local * bells.sum(axis=0)
-    return _text("time_s,voltage_V", "%.6f,%.4f", times - times[0], volts)
+    return times - times[0], volts
 
 
 def passing_times(speed: Array, angle: Array) -> Array:

@@ -38,6 +38,7 @@ ORDER = (
     "pipeline.studies.papers",
     "reports",
     "reports.study",
+    "reports.papers",
     "pipeline.studies.batch",
     "pipeline.commands",
     "pipeline.cli",

@@ -11,7 +11,7 @@ from camwright.geometry.energy import lift_from_torque
 from camwright.geometry.pitch_curve import PitchCurve
 from camwright.pipeline.cycle.crank_speed import SpeedStudy, speed_study
 from camwright.pipeline.engine.crankshaft import Inertia
-from camwright.pipeline.follower.follower_forces import FollowerSystem, follower_loads
+from camwright.pipeline.follower.follower_forces import FollowerSystem, Loads, follower_loads
 from camwright.pipeline.follower.spring import Spring
 from camwright.pipeline.smoothing.smoothers import Smoother, smoothed
 
@@ -40,18 +40,35 @@ class Balanced:
     Parameters
     ----------
     pitch : PitchCurve
+    loads : Loads            of the follower at constant speed
     residual : array (n,)    residual crank torque at constant speed without its mean, N m
     ideal : array (n,)       the same without friction and inertia of the follower, N m
     study : SpeedStudy
     """
 
     pitch: PitchCurve
+    loads: Loads
     residual: Array
     ideal: Array
     study: SpeedStudy
 
     def __post_init__(self) -> None:
         freeze(self, residual=self.residual, ideal=self.ideal)
+
+    @property
+    def spring_torque(self) -> Array:
+        """Crank torque that the spring takes (n,), N m."""
+        return self.loads.spring_force * self.loads.lift_slope / RATIO
+
+    @property
+    def inertia_torque(self) -> Array:
+        """Crank torque that the inertia of the follower takes (n,), N m."""
+        return self.loads.inertia_force * self.loads.lift_slope / RATIO
+
+    @property
+    def friction_torque(self) -> Array:
+        """Crank torque that the friction of the guides takes (n,), N m, >= 0."""
+        return self.loads.cam_torque / RATIO - self.spring_torque - self.inertia_torque
 
     def figures(self) -> dict[str, float]:
         """Ripple of torque and speed, and cam radius, names with units."""
@@ -108,7 +125,6 @@ def balanced(
     loads = follower_loads(pitch, runs, mean_speed / RATIO, uniform_turn(torque.size))
     about = torque - torque.mean()
     left = about - loads.cam_torque / RATIO
-    spring = loads.spring_force * loads.lift_slope / RATIO
     study = speed_study(
         about,
         Inertia.constant_only(inertia, torque.size),
@@ -118,4 +134,5 @@ def balanced(
         gear_ratio=RATIO,
         mechanism_inertia=added,
     )
-    return Balanced(pitch, left - left.mean(), about - spring, study)
+    spring = loads.spring_force * loads.lift_slope / RATIO
+    return Balanced(pitch, loads, left - left.mean(), about - spring, study)

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import cache
 from math import degrees, radians
 
 from scipy.optimize import brentq
 
 from camwright.pipeline.engine.cylinder import CylinderEngine
-from camwright.pipeline.engine.torque import torque_from_cylinder
+from camwright.pipeline.engine.torque import Torque, torque_from_cylinder
 
 IDLE_SPEED = 157.08  # rad/s, 1500 rpm
 SLOW_IDLE = 83.8  # rad/s, 800 rpm
@@ -53,6 +54,13 @@ FULL_LOAD_800 = replace(
 )
 
 
+@cache
+def balanced_torque(engine: CylinderEngine, speed: float) -> Torque:
+    """Torque of an engine about its mean at a speed (rad/s), computed once."""
+    return torque_from_cylinder(engine, speed).without_mean()
+
+
+@cache
 def with_peak_torque(peak: float) -> CylinderEngine:
     """GX120 with faster, later burn and the intake pressure of a peak torque (N m)."""
     fast = replace(GX120, spark=radians(342.0), burn_duration=radians(50.0))

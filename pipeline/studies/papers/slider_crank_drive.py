@@ -159,7 +159,7 @@ class SliderCrankDrive:
         y = m.rod * (y + 0.5 * l2 * (spin_up * cos2 - spin**2 * sin2))
         torque_a, torque_b = c.pin_a * (speed - spin), c.pin_b * spin
 
-        b_x = -c.guide * way - _held(self.spring, linkage, phi) - m.slider * pull
+        b_x = -c.guide * way - holding_force(self.spring, linkage, phi) - m.slider * pull
         a_x = b_x - x
         # eq. 10 with R_yA = R_yB - y
         turning = m.rod_inertia * spin_up - torque_a + torque_b
@@ -192,6 +192,13 @@ class EccentricDrive:
         side = self.linkage.height_rate(phi) - self.linkage.offset
         return np.asarray(np.hypot(self.linkage.height(phi), side) - self.roller_radius)
 
+    def rolling_way_slope(self, phi: Array) -> Array:
+        """Derivative of the rolling distance by the angle (in eq. 37), m/rad^2."""
+        d, d1 = self.linkage.height(phi), self.linkage.height_rate(phi)
+        side = d1 - self.linkage.offset
+        bend = self.linkage.height_rate_slope(phi)
+        return np.asarray((d * d1 + side * bend) / np.hypot(d, side))
+
     def losses(self, speed: float, count: int = POSITIONS) -> Losses:
         """Viscous friction energy of a turn at constant speed (rad/s), without slip (eq. 40)."""
         phi, c = uniform_turn(count), self.friction
@@ -213,11 +220,8 @@ class EccentricDrive:
     def reactions(self, phi: Array, speed: float, acceleration: float = 0.0) -> Reactions:
         """Newton-Euler equations of slider, roller and disc (eqs 25 to 31), without slip."""
         way, c, m = self.rolling_way(phi), self.friction, self.masses
-        d1, d2 = self.linkage.height_rate(phi), self.linkage.height_rate_slope(phi)
-        d, side = self.linkage.height(phi), d1 - self.linkage.offset
         spin = way * speed / self.roller_radius
-        way_slope = (d * d1 + side * d2) / np.hypot(d, side)
-        spin_up = (way_slope * speed**2 + way * acceleration) / self.roller_radius
+        spin_up = (self.rolling_way_slope(phi) * speed**2 + way * acceleration) / self.roller_radius
         traction = (c.pin_b * spin + m.roller_inertia * spin_up) / self.roller_radius
         return self._with_traction(phi, speed, acceleration, traction)
 
@@ -225,7 +229,7 @@ class EccentricDrive:
         """Axial force on the cam by slider, roller, guide and spring, N."""
         d1, d2 = self.linkage.height_rate(phi), self.linkage.height_rate_slope(phi)
         inertia = (self.masses.slider + self.masses.roller) * (d2 * speed**2 + d1 * acceleration)
-        held = _held(self.spring, self.linkage, phi)
+        held = holding_force(self.spring, self.linkage, phi)
         return np.asarray(inertia + self.friction.guide * d1 * speed + held)
 
     def _with_traction(
@@ -300,7 +304,7 @@ def stroke_efficiency(drive: SliderCrankDrive | EccentricDrive, speed: float) ->
     """Work on the spring over work of the motor on the outward stroke at constant speed."""
     phi = uniform_turn(7200)
     out = drive.linkage.height_rate(phi) > 0.0
-    held = _held(drive.spring, drive.linkage, phi) * drive.linkage.height_rate(phi)
+    held = holding_force(drive.spring, drive.linkage, phi) * drive.linkage.height_rate(phi)
     return float(np.sum(held[out]) / np.sum(drive.reactions(phi, speed).motor[out]))
 
 
@@ -346,7 +350,7 @@ def _rubbed(friction: float, force: Array, way: Array) -> float:
     return float(np.mean(friction * size * np.abs(way)) * FULL_TURN)
 
 
-def _held(spring: HoldingSpring, linkage: Eccentric, phi: Array) -> Array:
+def holding_force(spring: HoldingSpring, linkage: Eccentric, phi: Array) -> Array:
     """Spring force (n,), N."""
     travel = linkage.height(phi) - linkage.height_base
     return np.asarray(spring.preload + spring.rate * travel)

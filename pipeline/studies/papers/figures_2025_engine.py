@@ -1,0 +1,305 @@
+"""Figures of Cardoso et al. (2025) up to the cam: engine, pick-up, ten runs of three states."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from camwright.geometry.arrays import Array
+from camwright.pipeline.cycle.crank_speed import speed_study
+from camwright.pipeline.engine.crankshaft import Inertia, SpeedStatistics, crank_motion
+from camwright.pipeline.studies.papers import speed_reconstruction
+from camwright.pipeline.studies.papers.balancing_cam import (
+    FOLLOWER_2025,
+    POSITIONS,
+    RATIO,
+    balanced,
+)
+from camwright.pipeline.studies.papers.cardoso_2025 import MOUNTED
+from camwright.pipeline.studies.papers.modelled_runs import (
+    CYCLES,
+    RIG_SPEED,
+    RUNS,
+    TenRuns,
+    scattered,
+    ten_runs,
+)
+from camwright.pipeline.studies.papers.paper_engines import (
+    EFFECTIVE_INERTIA,
+    GX120,
+    IDLE_SPEED,
+    balanced_torque,
+    with_peak_torque,
+)
+from camwright.pipeline.studies.papers.paper_figure import (
+    MUTED,
+    PUBLISHED,
+    Beside,
+    Curve,
+    Look,
+    Panel,
+    PaperFigure,
+    beside,
+    closed,
+    closed_angle,
+)
+from camwright.pipeline.studies.papers.published_figures import Target
+
+CRANK, SPEED, TORQUE = "crank angle, deg", "crank speed, rad/s", "crank torque, N m"
+CYCLE = closed_angle(POSITIONS, 720.0)
+STOCK_POINTS = ((0.0, 153.0), (180.0, 147.0), (355.0, 145.0), (450.0, 155.0), (585.0, 153.0))
+"""Crank angle, deg, and speed, rad/s, that the text prints of the stock engine."""
+VOLTAGE_PEAK = 3.0  # V, printed
+VOLTAGE_WINDOW = (0.032, 0.052)  # s, of the first run, about the end of the compression
+MEASURED = "reconstructed"
+NO_DATA = (
+    "The paper prints no data of its runs: speed reconstructed from the printed statistics, "
+    "5 % scatter of the expansion torque (assumed), pick-up voltage with the printed sampling and "
+    "the wheel error behind the printed scatter at constant speed, read as a measurement is."
+)
+
+
+def figures(targets: Mapping[str, Target]) -> tuple[PaperFigure, ...]:
+    """Figures 1 to 9, 20 to 23 and 26 of the paper."""
+    rebuilt = speed_reconstruction.load()
+    states = _states(rebuilt.torque_at(POSITIONS), rebuilt.inertia)
+    rig = ten_runs([np.full(POSITIONS, RIG_SPEED)] * RUNS)
+    return (
+        _engine(targets, rebuilt),
+        _voltage(rig),
+        _rig(targets, rig),
+        *(_runs(targets, state, rig) for state in states),
+    )
+
+
+def on_cycle(label: str, values: Array, series: int = 0, look: Look = "line") -> Curve:
+    """A curve over the closed cycle of the engine."""
+    return Curve(label, CYCLE, closed(values), series, look)
+
+
+def points(pairs: Sequence[tuple[float, float]], label: str = "printed in the paper") -> Curve:
+    """Published points."""
+    x, y = np.array(pairs, dtype=float).T
+    return Curve(label, x, y, PUBLISHED, "points")
+
+
+def _engine(
+    targets: Mapping[str, Target], rebuilt: speed_reconstruction.Reconstruction
+) -> PaperFigure:
+    constant, mean = Inertia.constant_only(EFFECTIVE_INERTIA), speed_reconstruction.SPEED_MEAN
+    tuned = balanced_torque(GX120, IDLE_SPEED)
+    fast = balanced_torque(with_peak_torque(targets["C25-02"].value), IDLE_SPEED)
+    slow_motion, fast_motion = (crank_motion(t.total, constant, mean) for t in (tuned, fast))
+    torque, speed = rebuilt.torque_at(POSITIONS), rebuilt.speed_at(POSITIONS)
+    slow, quick = slow_motion.statistics, fast_motion.statistics
+    settled = float(slow_motion.speed[int(450 / 720 * POSITIONS) :].mean())
+    peaks = [
+        (float(CYCLE[values.argmax()]), float(targets[row].value))
+        for values, row in ((torque, "C25-03"), (fast.total, "C25-02"))
+    ]
+    names = (MEASURED, "model, tuned to the idle", "model, peak of 45 N m")
+    return PaperFigure(
+        "c25-engine", "C25", "1, 8 and 9", "Torque and speed of the stock engine at 1500 rpm",
+        "Cylinder model beside the measured engine. The measured curves are the smoothest ones "
+        "with the printed statistics. One model is tuned to the measured idle, the other has the "
+        "peak torque of the paper's own simulation, both with the effective inertia of "
+        f"{EFFECTIVE_INERTIA:g} kg m\u00b2; the printed 0.0026 kg m\u00b2 contradicts the printed "
+        "speeds.",
+        (
+            Panel(CRANK, TORQUE, (
+                *(on_cycle(name, values, k) for k, (name, values) in
+                  enumerate(zip(names, (torque, tuned.total, fast.total), strict=True))),
+                points(peaks),
+            )),
+            Panel(CRANK, SPEED, (
+                *(on_cycle(name, values, k) for k, (name, values) in enumerate(
+                    zip(names, (speed, slow_motion.speed, fast_motion.speed), strict=True))),
+                points(STOCK_POINTS),
+            )),
+        ),
+        (
+            beside(targets, "C25-01", fast.peak_to_peak),
+            beside(targets, "C25-02", fast.peak),
+            beside(targets, "C25-04", quick.minimum, ratio_scale=False),
+            beside(targets, "C25-05", quick.maximum, ratio_scale=False),
+            beside(targets, "C25-03", tuned.peak),
+            beside(targets, "C25-11", tuned.std),
+            beside(targets, "C25-12", tuned.peak_to_peak),
+            *_stock_speeds(targets, slow),
+            beside(targets, "C25-31", float(slow_motion.speed[POSITIONS // 4]), ratio_scale=False),
+            beside(targets, "C25-32", settled, ratio_scale=False),
+        ),
+    )  # fmt: skip
+
+
+def _stock_speeds(targets: Mapping[str, Target], ripple: SpeedStatistics) -> list[Beside]:
+    """Extremes of the speed of the stock engine with their angles, and its std."""
+    angle = np.degrees(ripple.maximum_angle)
+    return [
+        beside(targets, "C25-06", ripple.minimum, ratio_scale=False),
+        beside(targets, "C25-07", ripple.maximum, ratio_scale=False),
+        Beside("crank angle of the maximum speed, stock", 450.0, float(angle), "deg",
+               ratio_scale=False),
+        beside(targets, "C25-08", ripple.std),
+    ]  # fmt: skip
+
+
+def _voltage(rig: TenRuns) -> PaperFigure:
+    panel, peak = _voltage_panel(rig), float(np.abs(rig.voltage).max())
+    return PaperFigure(
+        "c25-voltage", "C25", "5", "Voltage of the pick-up at constant speed, with its edges",
+        "36-tooth wheel on the motor rig at 1500 rpm: sampled every 20 µs and rounded to 8 bit of "
+        "16 V, as the printed settings of the oscilloscope give. The voltage falls through zero "
+        "over the middle of a tooth and rises through zero between teeth; both edges are read.",
+        (panel,),
+        (Beside("peak of the voltage", VOLTAGE_PEAK, peak, "V"),),
+    )  # fmt: skip
+
+
+def _voltage_panel(runs: TenRuns) -> Panel:
+    low, high = VOLTAGE_WINDOW
+    inside = (runs.time >= low) & (runs.time <= high)
+    edges: list[Curve] = []
+    for label, edge in zip(("middle of a tooth", "between teeth"), runs.edges, strict=True):
+        times = edge.times[(edge.times >= low) & (edge.times <= high)]
+        edges.append(Curve(label, 1e3 * times, np.zeros(times.size), 1 + len(edges), "points"))
+    signal = Curve("voltage", 1e3 * runs.time[inside], runs.voltage[inside])
+    return Panel("time, ms", "voltage, V", (signal, *edges))
+
+
+def _rig(targets: Mapping[str, Target], rig: TenRuns) -> PaperFigure:
+    mean = rig.tooth_mean
+    thin = [
+        Curve(f"{RUNS * CYCLES} cycles of {RUNS} runs" if k == 0 else "", rig.tooth_angle, cycle,
+              MUTED, "thin")
+        for k, cycle in enumerate(rig.teeth)
+    ]  # fmt: skip
+    reference = Curve(
+        "speed of the motor", rig.tooth_angle, np.full(mean.size, RIG_SPEED), PUBLISHED, "dashed"
+    )
+    return PaperFigure(
+        "c25-rig", "C25", "3 and 4", "Noise floor: ten runs at constant speed on the motor rig",
+        "Speed from tooth to tooth of ten runs, and their mean. What is left in the mean repeats "
+        "every turn: errors of the wheel. Their size is imposed by the printed standard deviation "
+        "(0.009 deg of each tooth); the amplitude follows.",
+        (
+            Panel(CRANK, SPEED, (*thin, Curve("mean", rig.tooth_angle, mean, 1), reference)),
+        ),
+        (
+            beside(targets, "C25-28", float(mean.std()), place=0, note="standard deviation"),
+            beside(targets, "C25-28", float(np.ptp(mean)), place=1, note="amplitude"),
+        ),
+    )  # fmt: skip
+
+
+@dataclass(frozen=True, eq=False)
+class _State:
+    """A group of ten runs: modelled speeds of the runs, and the speed of the cylinder model."""
+
+    name: str
+    numbers: str
+    title: str
+    caption: str
+    inertia: float
+    speeds: Sequence[Array]
+    model: Array
+    rows: tuple[str, ...]
+
+
+def _states(torque: Array, inertia: float) -> tuple[_State, ...]:
+    """The engine alone, with the mechanism disengaged, and with it engaged at 242 N."""
+    mean = speed_reconstruction.SPEED_MEAN
+    idle = balanced_torque(GX120, IDLE_SPEED).total
+    cams = {
+        "runs": balanced(torque, inertia, mean, multiplier=1.0, added=MOUNTED * inertia),
+        "model": balanced(
+            idle, EFFECTIVE_INERTIA, mean, multiplier=1.0, added=MOUNTED * EFFECTIVE_INERTIA
+        ),
+    }
+
+    def free(added: float) -> Callable[[Array, float], Array]:
+        def speed(driving: Array, own: float) -> Array:
+            return crank_motion(driving, Inertia.constant_only(own * added), mean).speed
+
+        return speed
+
+    def engaged(driving: Array, own: float) -> Array:
+        cam = cams["runs" if own == inertia else "model"]
+        study = speed_study(
+            driving - driving.mean(), Inertia.constant_only(own), mean, cam.pitch, FOLLOWER_2025,
+            gear_ratio=RATIO, mechanism_inertia=MOUNTED * own,
+        )  # fmt: skip
+        return study.after.speed
+
+    def state(
+        name: str, numbers: str, title: str, caption: str, rows: tuple[str, ...],
+        speed: Callable[[Array, float], Array], total: float,
+    ) -> _State:  # fmt: skip
+        runs = [speed(driving - driving.mean(), inertia) for driving in scattered(torque)]
+        return _State(
+            name, numbers, title, caption, total * inertia, runs, speed(idle, EFFECTIVE_INERTIA),
+            rows,
+        )  # fmt: skip
+
+    heavier = 1.0 + MOUNTED
+    return (
+        state("stock", "6, 7 and 8", "the stock engine", "", (), free(1.0), 1.0),
+        state(
+            "disengaged", "20 and 21", "mechanism mounted, follower disengaged",
+            f"The mechanism adds {100 * MOUNTED:.1f} % of inertia, by the ratio of the printed "
+            "standard deviations.",
+            ("C25-09", "C25-10"), free(heavier), heavier,
+        ),
+        state(
+            "engaged", "22, 23 and 26", "mechanism engaged, preload of 242 N",
+            "The cam is that of the printed equations, which deliver half of the engine torque: "
+            "with a ratio of 2 the cam torque would have to be twice the crank torque.",
+            ("C25-18", "C25-19"), engaged, heavier,
+        ),
+    )  # fmt: skip
+
+
+def _runs(targets: Mapping[str, Target], state: _State, rig: TenRuns) -> PaperFigure:
+    runs = ten_runs(state.speeds)
+    trace = runs.trace
+    mean, scatter, ripple = trace.mean, trace.scatter, trace.statistics
+    floor = float(rig.tooth_mean.std())
+    thin = [
+        on_cycle(f"{trace.count} cycles of {RUNS} runs" if k == 0 else "", cycle, MUTED, "thin")
+        for k, cycle in enumerate(trace.speeds)
+    ]
+    low, high = closed(mean - scatter), closed(mean + scatter)
+    band = Curve("one standard deviation of the runs", CYCLE, low, 1, "band", high)
+    stock = state.name == "stock"
+    values = (
+        _stock_speeds(targets, ripple)
+        if stock
+        else [
+            beside(targets, row, value)
+            for row, value in zip(state.rows, (ripple.std, ripple.peak_to_peak), strict=True)
+        ]
+    )
+    return PaperFigure(
+        f"c25-runs-{state.name}", "C25", state.numbers, f"Ten runs: {state.title}",
+        " ".join(filter(None, (
+            "Above: voltage of the first run with its edges. Middle: band-limited speed of all "
+            "runs and their mean. Below: mean and scatter, the cylinder model over them.",
+            state.caption, NO_DATA,
+        ))),
+        (
+            _voltage_panel(runs),
+            Panel(CRANK, SPEED, (*thin, on_cycle("mean", mean, 1))),
+            Panel(
+                CRANK, SPEED,
+                (band, on_cycle("mean of the runs", mean, 1),
+                 on_cycle("cylinder model", state.model, 2, "dashed"),
+                 *((points(STOCK_POINTS),) if stock else ())),
+                note=f"noise floor {floor:.2f} rad/s, in the torque "
+                f"{trace.noise_amplification(state.inertia) * floor:.1f} N m; bandwidth "
+                f"{trace.bandwidth:.0f} Hz, {trace.filter.harmonics} harmonics of the cycle",
+            ),
+        ),
+        tuple(values),
+    )  # fmt: skip
