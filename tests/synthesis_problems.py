@@ -17,6 +17,8 @@ from camwright.pipeline.smoothing.scenario import Correction, DesignVariables, S
 from camwright.pipeline.smoothing.synthesis_problem import Problem
 
 ROOT = Path(__file__).parents[1]
+OF_ROLLER = tuple(each for each in CONSTRAINTS if each.needs != "face")
+"""Constraints of a cam under a roller."""
 KEPT = frozenset({
     "spring_travel", "pressure_angle", "curvature_ratio", "undercut", "concave_radius",
     "cam_radius", "contact_pressure", "contact_force_margin", "contact_at_overspeed", "jump",

@@ -76,9 +76,6 @@ def _check_start(case: Case) -> None:
         _ = case.roller  # refuses a case without roller
     elif case.roller_given is not None:
         raise InputError("roller", "a table", 'left out with follower.kind = "flat"')
-    elif case.smoothing.kind == "constrained":
-        limit = 'other than "constrained" with a flat face'
-        raise InputError("smoothing.kind", "constrained", limit)
     ratio = case.mechanism.gear_ratio
     fits = case.engine is None or ratio == 2.0
     _require(case, "mechanism.gear_ratio", fits, "2 with an engine: a cam turn is 720 deg")

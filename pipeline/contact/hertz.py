@@ -79,13 +79,18 @@ def line_contact(
         raise InputError("line_load", float(load.min()), ">= 0 N/m")
     radius = positive("relative_radius", relative_radius, "m")
     stiffness = float(positive("modulus", modulus, "Pa"))
-    half_width = np.sqrt(4 * load * radius / (np.pi * stiffness))
+    half_width = np.sqrt(half_width_square(load, radius, stiffness))
     return half_width, np.sqrt(peak_pressure_square(load, 1 / radius, stiffness))
 
 
 def peak_pressure_square(line_load: Values, curvature: Values | float, modulus: float) -> Values:
     """p0^2 (...), Pa^2, at the curvature 1/R = 1/R1 + 1/R2, 1/m."""
     return line_load * curvature * (modulus / np.pi)
+
+
+def half_width_square(line_load: Values, radius: Values | float, modulus: float) -> Values:
+    """a^2 (...), m^2, at the relative radius R, m."""
+    return line_load * radius * (4.0 / (np.pi * modulus))
 
 
 def subsurface_stress(x: ArrayLike, depth: ArrayLike, friction: float = 0.0) -> Array:

@@ -12,7 +12,7 @@ from camwright.geometry.arrays import FULL_TURN, Array, finite, freeze
 from camwright.geometry.follower_path import FollowerPath
 from camwright.pipeline.base.tables import Column
 
-_MEAN_SHARE = pi / 4.0  # mean over peak pressure of Hertz
+MEAN_SHARE = pi / 4.0  # mean over peak pressure of Hertz
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,7 +80,7 @@ class FaceSliding:
         """From peak pressures (n,) Pa and normal forces (n,) N."""
         power = friction * np.maximum(force, 0.0) * motion.sliding
         loss = float(power.mean()) * FULL_TURN / cam_speed
-        return cls(motion.place, motion.sliding, _MEAN_SHARE * peak * motion.sliding, power, loss)
+        return cls(motion.place, motion.sliding, MEAN_SHARE * peak * motion.sliding, power, loss)
 
     def columns(self) -> dict[Column, Array]:
         """Columns of ``5_cycle.csv``."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import replace
-from typing import NamedTuple, TypedDict
+from typing import Literal, NamedTuple, TypedDict
 
 import numpy as np
 import scipy
@@ -30,7 +30,12 @@ from camwright.pipeline.checks import camshaft_strength, part_strength, surface_
 from camwright.pipeline.checks.cam_shape import least_concave_radius
 from camwright.pipeline.checks.camshaft_strength import tooth_torque_limits
 from camwright.pipeline.checks.check import Declaration
-from camwright.pipeline.checks.contact_strength import LoadCycles, life_turns, pressure_allowables
+from camwright.pipeline.checks.contact_strength import (
+    FACE_PASSES,
+    LoadCycles,
+    life_turns,
+    pressure_allowables,
+)
 from camwright.pipeline.checks.guide_strength import pv_limit
 from camwright.pipeline.checks.guide_wear import greatest_temperatures, pv_of_wear
 from camwright.pipeline.checks.key_strength import keyway_root_of, torque_limits
@@ -43,16 +48,19 @@ from camwright.pipeline.checks.part_strength import (
     ring_force_limit,
     seat_pressure,
 )
-from camwright.pipeline.checks.roller_bearing import allowed_spin, grease_of, least_speed
+from camwright.pipeline.checks.roller_bearing import Grease, allowed_spin, grease_of, least_speed
 from camwright.pipeline.checks.spring_strength import Work, hardest_work, relaxation_allowed
+from camwright.pipeline.contact.traction import Drag
 from camwright.pipeline.cycle.part_loads import edge_pressure_of
 from camwright.pipeline.cycle.solution import Solution
 from camwright.pipeline.cycle.speed_sweep import highest_speed
 from camwright.pipeline.follower.bearing_life import contamination_factor, reliability_factor
 from camwright.pipeline.follower.guide_friction import thermal_resistance
 from camwright.pipeline.follower.guide_reactions import Guide
-from camwright.pipeline.smoothing.constraints import ROWS
-from camwright.pipeline.smoothing.scenario import ModifiedLife, Ratings
+from camwright.pipeline.follower.roller import Roller
+from camwright.pipeline.follower.roller_parts import Bearing
+from camwright.pipeline.smoothing.constraints import rows_kept
+from camwright.pipeline.smoothing.scenario import Face, ModifiedLife, Ratings
 
 MILLION_TURNS = 1e6 * FULL_TURN  # rad
 _TRAVEL_LEAST, _TRAVEL_MOST = 1e-6, 1.0  # m, of any spring
@@ -60,36 +68,32 @@ _LINE_LOADS = (1.0, 1e9)  # N/m, of any guide
 
 
 def ratings_of(case: Case) -> Ratings:
-    """Ratings of a case.
-
-    Raises
-    ------
-    InputError
-        If the follower has no roller.
-    """
-    states, roller = machines(case), case.roller
-    machine, bearing = states[0], roller.bearing
-    limits, guides, life = machine.limits, machine.guides, machine.limits[ROLLER_LIFE]
-    covers, cubed = case.scope.covers, None
-    if bearing.C is not None and life is not None and covers("roller_bearing"):
-        cubed = bearing.C**3 * MILLION_TURNS / life
+    """Ratings of a case."""
+    states = machines(case)
+    machine, covers = states[0], case.scope.covers
+    limits, guides = machine.limits, machine.guides
+    roller, face = machine.roller, machine.face
     pressure, pressure_by = _least(pressure_allowables(machine, greatest_cycles(case)))
     normal_force, normal_force_by = _least(force_limits(case))
     by_rating = normal_force_by == "roller_static"
     # Without a stated over-speed the contact is kept at the fastest load case.
     over = highest_speed(states) / machine.gear_ratio
-    kept = [row for row in ROWS if row is not JAM_INDEX or covers("guides")]
+    follower: Literal["roller", "face"] = "face" if roller is None else "roller"
+    kept = [row for row in rows_kept(follower) if row is not JAM_INDEX or covers("guides")]
     by_guide: _GuideRatings = {}
     if covers("guides"):
         by_guide = _of_guides(case, machine, fastest=over)
     torque, torque_by = _least(torque_limits(machine))
     tooth, tooth_by = _least(tooth_torque_limits(machine))
     shaft, cam = machine.camshaft, machine.cam
-    by_bearing: _BearingRatings = {}
-    if covers("roller_bearing"):
-        by_bearing = _of_bearing(machine)
+    by_roller: _RollerRatings = {}
+    if roller is not None:
+        by_roller = _of_roller(machine, roller)
+    if roller is not None and covers("roller_bearing"):
+        by_roller |= _of_bearing(machine, roller.bearing)
     return Ratings(
-        roller_radius=roller.radius,
+        roller_radius=machine.follower.contact_radius or 0.0,
+        face=None if face is None else Face(face.width, face.side_friction, face.pv_limit),
         offset=machine.cam.offset,
         limits={row: value for row in kept if (value := limits[row]) is not None},
         travel=_least(travel_limits(case))[0],
@@ -98,20 +102,16 @@ def ratings_of(case: Case) -> Ratings:
         pressure_by=pressure_by,
         contact_width=machine.contact_width,
         contact_modulus=machine.contact_modulus,
-        crown_radius=roller.crown_radius,
+        crown_radius=machine.follower.crown_radius,
         overspeed=over,
         fastest=over,
         jump_speed=limits[JUMP_SPEED] * over,
         normal_force=normal_force,
         normal_force_by=normal_force_by or "roller_static",
         force_safety=limits[ROLLER_STATIC_SAFETY] if by_rating else 1.0,
-        dynamic_rating=bearing.C,
-        life_force_cubed=cubed,
         guide_gap=limits[GUIDE_GAP],
         guide_mouth=machine.overhang_at_max_lift - 0.5 * guides.a.length,
         held_radius=cam.held_radius if "prime_radius" in case.smoothing.free else None,
-        friction=roller.friction,
-        drag=roller.drag,
         waves=None if cam.profile_tolerance is None else (wave_amplitude(cam), cam.waviness_length),
         cam_torque=torque,
         cam_torque_by=torque_by or "key_pressure",
@@ -119,26 +119,39 @@ def ratings_of(case: Case) -> Ratings:
         tooth_torque_by=tooth_by or "gear_bending",
         shaft_drag=0.0 if shaft is None else shaft.drag,
         keyway=keyway_root_of(machine),
-        grease=grease_of(machine),
-        **by_bearing,
+        **by_roller,
         **by_guide,
     )
 
 
-class _BearingRatings(TypedDict, total=False):
+class _RollerRatings(TypedDict, total=False):
+    friction: float | None
+    drag: Drag
+    grease: Grease | None
+    dynamic_rating: float | None
+    life_force_cubed: float
     roller_spin: float | None
     modified: ModifiedLife
     modified_rate: float
     roller_spin_least: float
 
 
-def _of_bearing(machine: Machine) -> _BearingRatings:
-    """Ratings of the roller bearing by speed, film and cleanliness."""
-    rated: _BearingRatings = {"roller_spin": allowed_spin(machine)}
-    limits, roller = machine.limits, machine.roller
-    if roller is None:
-        return rated
-    bearing, life = roller.bearing, limits[ROLLER_LIFE]
+def _of_roller(machine: Machine, roller: Roller) -> _RollerRatings:
+    """Ratings of the roller besides those of its bearing by speed, film and cleanliness."""
+    return {
+        "friction": roller.friction,
+        "drag": roller.drag,
+        "grease": grease_of(machine),
+        "dynamic_rating": roller.bearing.C,
+    }
+
+
+def _of_bearing(machine: Machine, bearing: Bearing) -> _RollerRatings:
+    """Ratings of the roller bearing by life, speed, film and cleanliness."""
+    rated: _RollerRatings = {"roller_spin": allowed_spin(machine)}
+    limits, life = machine.limits, machine.limits[ROLLER_LIFE]
+    if bearing.C is not None and life is not None:
+        rated["life_force_cubed"] = bearing.C**3 * MILLION_TURNS / life
     viscosity, circle = bearing.viscosity, bearing.ball_circle
     if viscosity is None or circle is None:
         return rated
@@ -236,11 +249,14 @@ def greatest_cycles(case: Case) -> LoadCycles:
     pressure angle per cam angle.
     """
     turns, smoothing = life_turns(machines(case)), case.smoothing
+    roller = case.roller_given
+    if roller is None:
+        return LoadCycles(turns, FACE_PASSES * turns)
     travel = _least(travel_limits(case))[0]
     prime = max(case.cam.prime_radius, *(smoothing.prime_radius_range or ()), 0.0)
     radius = prime + (prime if travel is None else travel)
     path = radius / np.cos(case.limits[PRESSURE_ANGLE])
-    return LoadCycles(turns, turns * max(path / case.roller.radius - 1.0, 1.0))
+    return LoadCycles(turns, turns * max(path / roller.radius - 1.0, 1.0))
 
 
 class Surge(NamedTuple):
@@ -388,7 +404,17 @@ def travel_limits(case: Case, surge: Surge | None = None) -> dict[str, float]:
 
 def force_limits(case: Case) -> dict[str, float]:
     """Greatest normal force allowed by each check that the scope covers, N, by its id."""
-    roller, limits, covers = case.roller, case.limits, case.scope.covers
+    roller, allowed = case.roller_given, {}
+    if roller is not None:
+        allowed = _forces_of_roller(case, roller)
+    pressure = bore_pressure_limit(machines(case)[0])
+    if pressure is not None:
+        allowed["bore_pressure"] = pressure * 2.0 * case.cam.bore_radius * case.cam.width
+    return allowed
+
+
+def _forces_of_roller(case: Case, roller: Roller) -> dict[str, float]:
+    limits, covers = case.limits, case.scope.covers
     bearing, pin = roller.bearing, roller.pin if covers("pin") else None
     fork = roller.fork if covers("fork") else None
     rated = {
@@ -412,9 +438,6 @@ def force_limits(case: Case) -> dict[str, float]:
     for name, stress in stresses.items():
         if stress.allowed is not None:
             allowed[name] = stress.allowed / stress.per_newton
-    pressure = bore_pressure_limit(machines(case)[0])
-    if pressure is not None:
-        allowed["bore_pressure"] = pressure * 2.0 * case.cam.bore_radius * case.cam.width
     return allowed
 
 

@@ -105,7 +105,7 @@ def _of_parts(ratings: Ratings) -> dict[str, Bound | None]:
         "roller_speed": _of_part(
             "limiting speed of the roller", "rpm", ratings.roller_spin, _rating("roller_spin")
         ),
-        "roller_static": _of_part(
+        "roller_static" if ratings.face is None else "bore_pressure": _of_part(
             _FORCES[ratings.normal_force_by], "N",
             _times(ratings.normal_force, ratings.force_safety), _rating("normal_force"),
         ),
@@ -128,7 +128,23 @@ def _of_parts(ratings: Ratings) -> dict[str, Bound | None]:
     }  # fmt: skip
     for place, side in enumerate("AB"):
         bounds |= _of_guide(ratings, place, side)
-    return bounds
+    return bounds | _of_face(ratings)
+
+
+def _of_face(ratings: Ratings) -> dict[str, Bound | None]:
+    if ratings.face is None:
+        return {}
+
+    def with_width(each: Ratings, factor: float) -> Ratings:
+        return replace(each, face=each.face and each.face._replace(width=each.face.width * factor))
+
+    def with_pv(each: Ratings, factor: float) -> Ratings:
+        return replace(each, face=each.face and each.face._replace(pv=_times(each.face.pv, factor)))
+
+    return {
+        "face_width": _of_part("width of the flat face", "mm", ratings.face.width, with_width),
+        "face_pv": _of_part("PV of the flat face", "MPa m/s", ratings.face.pv, with_pv),
+    }
 
 
 def _rating(name: str, place: int | None = None) -> Change:
@@ -176,10 +192,10 @@ def _of_guide(ratings: Ratings, place: int, side: str) -> dict[str, Bound | None
 
 
 def _guide_gap(ratings: Ratings) -> Bound | None:
-    """Utilisation by the gap over the roller radius."""
+    """Utilisation by the gap over the size of the follower."""
     if ratings.guide_gap is None:
         return None
-    slope = -1.0 / in_unit(ratings.roller_radius, "mm")
+    slope = -1.0 / in_unit(ratings.follower_size, "mm")
     return Bound(
         GUIDE_GAP.title, in_unit(ratings.guide_gap, "mm"), "mm", slope, _rating("guide_gap")
     )

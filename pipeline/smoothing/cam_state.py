@@ -8,13 +8,15 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from math import inf
-from typing import Generic, NamedTuple, TypeVar
+from typing import Generic, Literal, NamedTuple, TypeVar
 
 import numpy as np
 
 from camwright.geometry.arrays import Array
-from camwright.geometry.pitch_curve import magnitude, speed_and_curvature
+from camwright.geometry.errors import GeometryError
+from camwright.geometry.pitch_curve import curvature_slope, magnitude, speed_and_curvature
 from camwright.pipeline.case.limits import AnyLimit, Limit, OpenLimit
+from camwright.pipeline.checks import demands
 from camwright.pipeline.follower.follower_forces import levers
 from camwright.pipeline.follower.roller_motion import rolling_share
 from camwright.pipeline.smoothing.scenario import DesignVariables, Ratings, Scenario, Value
@@ -46,33 +48,191 @@ def lift_jet(energy: tuple[Array, ...], variables: DesignVariables) -> Jet:
     )
 
 
-class Motion(NamedTuple):
-    """Velocity of the roller centre along and across the follower axis, m/rad; pitch curve."""
+class Reaction(NamedTuple):
+    """Load of a guide over the axial force, (..., n).
 
+    whole: sum of the loads of point supports by the side force and by the couple, which the finite
+    elements correct; slack: that sum less the load by both at once, 0 without a couple.
+    """
+
+    whole: Array
+    slack: Value
+
+    @property
+    def on_points(self) -> Array:
+        """Reaction of a point support."""
+        return self.whole - self.slack
+
+    def corrected(self, fix: Array) -> Array:
+        """Load with a correction; 1: that of a point support."""
+        return self.whole * fix - self.slack
+
+
+class RollerMotion(NamedTuple):
+    """Roller on the unloaded cam; arrays (n,), m.
+
+    along, across: velocity of its centre along and across the follower axis, m/rad; speed and
+    curvature: of the pitch curve. Of any follower: height of its reference point over the cam axis;
+    bend: 1 less the undercut factor; size: relative radius of the contact over the undercut factor;
+    gain: normal over axial force; sliding: torque of the friction on the cam over the axial force;
+    contour_radius: of the contact about the cam axis; contour_speed: of the contact along the
+    contour, m/rad; curvature_slope: change of the contour's curvature along it, 1/m^2; rolling:
+    turn of a roller over that of the cam; radius_at: radius of the contour in a dwell at a lift.
+    """
+
+    jet: Jet
     along: Array
     across: Array
     speed: Array
     curvature: Array
+    offset: float
+    size: float
 
     @property
     def tangent(self) -> Array:
         """Tangent of the pressure angle."""
         return self.along / self.across
 
+    @property
+    def height(self) -> Array:
+        return self.across
 
-def motion(jet: Jet, variables: DesignVariables, offset: float) -> Motion:
-    """Motion of the roller centre of a translating follower; see `PitchCurve`."""
+    @property
+    def bend(self) -> Array:
+        """Roller radius times curvature of the pitch curve: 1 at a cusp."""
+        return self.size * self.curvature
+
+    @property
+    def gain(self) -> Array:
+        return np.sqrt(1.0 + self.tangent**2)
+
+    @property
+    def sliding(self) -> float:
+        """Zero: the roller rolls."""
+        return 0.0
+
+    @property
+    def contour_radius(self) -> Array:
+        inset = self.size / self.speed
+        return demands.contour_radius(self.along, self.across, self.offset, inset)
+
+    @property
+    def contour_speed(self) -> Array:
+        return self.speed * (1.0 - self.bend)
+
+    @property
+    def curvature_slope(self) -> Array:
+        jet = self.jet
+        change = curvature_slope(self.along, self.across, jet.slope, jet.bend, jet.jerk)
+        # the contour is shorter than the pitch curve by the undercut factor, its curvature greater
+        return change / ((1.0 - self.bend) ** 3 * self.speed)
+
+    @property
+    def rolling(self) -> Array:
+        return rolling_share(self.speed, self.size)
+
+    def radius_at(self, lift: Value) -> Array:
+        height = self.across - self.jet.lift + lift
+        return np.sqrt(height**2 + self.offset**2) - self.size
+
+    def reactions(
+        self,
+        lever: tuple[Array, Array],
+        spacing: Value,  # noqa: ARG002
+    ) -> tuple[Reaction, Reaction]:
+        """Of the side force through the roller centre."""
+        side = magnitude(self.tangent)
+        return Reaction(side * lever[0], 0.0), Reaction(side * lever[1], 0.0)
+
+
+class FaceMotion(NamedTuple):
+    """Flat face on the unloaded cam, its contact s' beside the cam axis; see `FacePath`.
+
+    radius: of curvature of the contour, r + s + s''; friction: of the face on the cam. Else as
+    `RollerMotion`.
+    """
+
+    jet: Jet
+    height: Array
+    radius: Array
+    offset: float
+    friction: float
+
+    @property
+    def arm(self) -> Array:
+        """Lever arm of the contact force about the stem axis, m."""
+        return self.jet.slope - self.offset
+
+    @property
+    def bend(self) -> Array:
+        """-s''/(r + s): 1 at a cusp."""
+        return 1.0 - self.radius / self.height
+
+    @property
+    def size(self) -> Array:
+        return self.height
+
+    @property
+    def gain(self) -> float:
+        """One: the face is square to the stem."""
+        return 1.0
+
+    @property
+    def sliding(self) -> Array:
+        return self.friction * self.height
+
+    @property
+    def contour_radius(self) -> Array:
+        return np.sqrt(self.height**2 + self.jet.slope**2)
+
+    @property
+    def contour_speed(self) -> Array:
+        return self.radius
+
+    @property
+    def curvature_slope(self) -> Array:
+        return -(self.jet.slope + self.jet.jerk) / self.radius**3
+
+    @property
+    def rolling(self) -> float:
+        """Zero: the face slides."""
+        return 0.0
+
+    def radius_at(self, lift: Value) -> Array:
+        return self.height - self.jet.lift + lift
+
+    def reactions(self, lever: tuple[Array, Array], spacing: Value) -> tuple[Reaction, Reaction]:
+        """Of the friction along the face, and of the axial force beside the stem axis."""
+        tilt = self.arm / spacing
+        along = [self.friction * each for each in lever]
+        whole = [each + magnitude(tilt) for each in along]
+        on_a, on_b = (
+            Reaction(one, one - magnitude(each - tilt))
+            for one, each in zip(whole, along, strict=True)
+        )
+        return on_a, on_b
+
+
+Motion = RollerMotion | FaceMotion
+
+
+def motion(jet: Jet, variables: DesignVariables, ratings: Ratings) -> Motion:
+    """Motion of the translating follower of the ratings; see `PitchCurve` and `FacePath`."""
+    face, offset = ratings.face, ratings.offset
+    if face is not None:
+        height = variables.prime_radius + jet.lift
+        return FaceMotion(jet, height, height + jet.bend, offset, face.friction)
     along = jet.slope - offset
     across = np.sqrt(variables.prime_radius**2 - offset**2) + jet.lift
-    return Motion(along, across, *speed_and_curvature(along, across, jet.slope, jet.bend))
+    speed, curvature = speed_and_curvature(along, across, jet.slope, jet.bend)
+    return RollerMotion(jet, along, across, speed, curvature, offset, ratings.roller_radius)
 
 
 class Forces(NamedTuple):
-    """Forces of one scenario, N; factors of the side force on guides A and B.
+    """Forces of one scenario, N; loads of guides A and B over the axial force.
 
-    lever: reactions of point supports; push: bearing load of the guides; rub: normal load of their
-    friction; share: axial force without friction over axial force; surged: normal force with the
-    surge of the spring, >= 0.
+    share: axial force without friction over axial force; surged: normal force with the surge of the
+    spring, >= 0.
     """
 
     spring: Array
@@ -80,9 +240,7 @@ class Forces(NamedTuple):
     axial: Array
     normal: Array
     jam: Array
-    lever: tuple[Array, Array]
-    push: tuple[Array, Array]
-    rub: tuple[Array, Array]
+    guides: tuple[Reaction, Reaction]
     share: Array
     surged: Array
 
@@ -106,22 +264,19 @@ def forces(
     inertia = scenario.mass * scenario.cam_speed**2 * jet.bend
     viscous = scenario.viscous_damping * scenario.cam_speed * jet.slope
     lever = levers(scenario.overhang + highest - jet.lift, scenario.guide_spacing)
-    fix = scenario.correction
-    rub = (lever[0] * fix.rubbing_a, lever[1] * fix.rubbing_b)
-    jam = (scenario.friction_a * rub[0] + scenario.friction_b * rub[1]) * magnitude(path.tangent)
+    fix, guides = scenario.correction, path.reactions(lever, scenario.guide_spacing)
+    jam = scenario.friction_a * guides[0].corrected(fix.rubbing_a)
+    jam = jam + scenario.friction_b * guides[1].corrected(fix.rubbing_b)
     share = 1.0 - np.sign(np.real(jet.slope)) * jam
     axial = (spring + inertia + viscous) / share
-    gain = np.sqrt(1.0 + path.tangent**2)
-    surged = (axial + fix.surge / share) * gain
+    surged = (axial + fix.surge / share) * path.gain
     return Forces(
         spring=spring,
         inertia=inertia,
         axial=axial,
-        normal=axial * gain,
+        normal=axial * path.gain,
         jam=jam,
-        lever=lever,
-        push=(lever[0] * fix.guide_a, lever[1] * fix.guide_b),
-        rub=rub,
+        guides=guides,
         share=share,
         surged=np.where(np.real(surged) > 0.0, surged, 0.0 * surged),
     )
@@ -140,6 +295,32 @@ class Mean(NamedTuple):
         return np.asarray(np.maximum(np.real(mean), 0.0) ** self.power)
 
 
+def roller_of(path: Motion) -> RollerMotion:
+    """The motion of a roller.
+
+    Raises
+    ------
+    GeometryError
+        If it is that of a flat face.
+    """
+    if isinstance(path, RollerMotion):
+        return path
+    raise GeometryError("the follower of the cam is no roller")
+
+
+def face_of(path: Motion) -> FaceMotion:
+    """The motion of a flat face.
+
+    Raises
+    ------
+    GeometryError
+        If it is that of a roller.
+    """
+    if isinstance(path, FaceMotion):
+        return path
+    raise GeometryError("the follower of the cam is no flat face")
+
+
 class Shape(NamedTuple):
     """Unloaded cam at n cam angles."""
 
@@ -147,17 +328,11 @@ class Shape(NamedTuple):
     path: Motion
     ratings: Ratings
 
-    @property
-    def bend(self) -> Array:
-        """Roller radius times curvature of the pitch curve: 1 at a cusp."""
-        return self.ratings.roller_radius * self.path.curvature
-
 
 class Loads(NamedTuple):
     """Cam in one scenario at n cam angles; in stacked scenarios, each array (..., n).
 
-    spin: of the roller, rad/s; side: side force on the stem, N; highest: maximum lift, m;
-    least_spring: spring force at minimum lift, N.
+    highest: maximum lift, m; least_spring: spring force at minimum lift, N.
     """
 
     jet: Jet
@@ -165,27 +340,30 @@ class Loads(NamedTuple):
     ratings: Ratings
     scenario: Scenario
     force: Forces
-    spin: Array
-    side: Array
     highest: float
     least_spring: Value
 
     @property
     def torque(self) -> Array:
         """Cam torque, N m."""
-        return self.force.axial * self.jet.slope
+        return self.force.axial * (self.jet.slope + self.path.sliding)
 
     @property
     def velocity(self) -> Array:
         """Velocity of the follower, m/s."""
         return self.scenario.cam_speed * self.jet.slope
 
+    @property
+    def spin(self) -> Array:
+        """Of the roller, rad/s."""
+        return np.asarray(self.scenario.cam_speed * self.path.rolling)
+
 
 def loaded(
     jet: Jet, highest: float, variables: DesignVariables, ratings: Ratings, scenario: Scenario
 ) -> Loads:
     """Cam of a lift in one scenario; highest: maximum lift, m."""
-    path = motion(jet, variables, ratings.offset)
+    path = motion(jet, variables, ratings)
     force = forces(jet, path, highest, variables, scenario)
     rate = variables.rate * scenario.rate_factor
     return Loads(
@@ -194,8 +372,6 @@ def loaded(
         ratings,
         scenario,
         force,
-        spin=scenario.cam_speed * rolling_share(path.speed, ratings.roller_radius),
-        side=force.axial * path.tangent,
         highest=highest,
         least_spring=variables.preload * scenario.preload_factor
         + rate * scenario.correction.least_lift,
@@ -217,6 +393,7 @@ class Constraint(Generic[State]):
     utilisation : callable   cam, limit -> (n,), or a `Mean` of the turn; None: does not apply
     factor_max : float       maximum factor on a row's limit where limits conflict; 0: fixed
     value_max : float        maximum value of a row's limit where limits conflict, SI
+    needs : str              kind of follower; "": any
     """
 
     check: str
@@ -224,6 +401,7 @@ class Constraint(Generic[State]):
     utilisation: Callable[[State, float], Array | Mean | None] = field(repr=False)
     factor_max: float = 0.0
     value_max: float = inf
+    needs: Literal["", "roller", "face"] = ""
 
     @property
     def row(self) -> AnyLimit | None:
@@ -232,6 +410,8 @@ class Constraint(Generic[State]):
 
     def value(self, ratings: Ratings) -> float | None:
         """Limit, SI; None: not constrained."""
+        if self.needs not in ("", ratings.follower):
+            return None
         if isinstance(self.limit, Limit | OpenLimit):
             return ratings.limits.get(self.limit)
         return self.limit(ratings)

@@ -20,7 +20,7 @@ import numpy as np
 
 from camwright.geometry.arrays import Array
 from camwright.geometry.monotone_cubic import MonotoneCubic
-from camwright.geometry.pitch_curve import curvature_slope, magnitude
+from camwright.geometry.pitch_curve import magnitude
 from camwright.pipeline.case.limits import (
     CAM_RADIUS,
     CONTACT_FORCE_MARGIN,
@@ -34,7 +34,6 @@ from camwright.pipeline.case.limits import (
 )
 from camwright.pipeline.checks import demands
 from camwright.pipeline.contact.elliptic_contact import pressure_cubed_per_force
-from camwright.pipeline.contact.hertz import peak_pressure_square
 from camwright.pipeline.follower.roller_motion import BALL_LIFE_EXPONENT, wear
 from camwright.pipeline.smoothing.cam_state import (
     Constraint,
@@ -43,11 +42,16 @@ from camwright.pipeline.smoothing.cam_state import (
     Mean,
     Shape,
     State,
-    forces,
     loaded,
     motion,
+    roller_of,
 )
-from camwright.pipeline.smoothing.part_constraints import PART_SHAPE, PARTS
+from camwright.pipeline.smoothing.part_constraints import (
+    PART_SHAPE,
+    PARTS,
+    line_share,
+    rubbing_load,
+)
 from camwright.pipeline.smoothing.scenario import DesignVariables, Ratings, Scenario
 
 FACTOR_MAX = 4.0
@@ -60,7 +64,8 @@ def shape_utilisations(
     jet: Jet, variables: DesignVariables, ratings: Ratings, names: Container[str] | None = None
 ) -> Mapping[str, Array | Mean]:
     """Utilisations of the limits on the shape of the cam, or of those named, by check; (n,)."""
-    return _utilisations(SHAPE, Shape(jet, motion(jet, variables, ratings.offset), ratings), names)
+    shape = Shape(jet, motion(jet, variables, ratings), ratings)
+    return _utilisations(SHAPE, shape, names)
 
 
 def load_utilisations(
@@ -80,11 +85,10 @@ def load_utilisations(
 
 
 def delivered_torque(
-    jet: Jet, highest: float, variables: DesignVariables, scenario: Scenario, offset: float
+    jet: Jet, highest: float, variables: DesignVariables, scenario: Scenario, ratings: Ratings
 ) -> Array:
-    """Cam torque F_a s', friction and inertia included, N m, (n,)."""
-    load = forces(jet, motion(jet, variables, offset), highest, variables, scenario)
-    return load.axial * jet.slope
+    """Cam torque F_a s', friction and inertia included, N m, (n,); with the sliding of a face."""
+    return loaded(jet, highest, variables, ratings, scenario).torque
 
 
 def _utilisations(
@@ -103,40 +107,23 @@ def _utilisations(
 
 def _concave_radius(cam: Shape, hollow: float) -> Array | None:
     """No constraint where the roller is larger: it cannot roll in a smaller hollow."""
-    room = hollow - cam.ratings.roller_radius
-    return -cam.path.curvature * room if room > 0.0 else None
-
-
-def _curvature_rate(cam: Shape, limit: float) -> Array:
-    jet, path = cam.jet, cam.path
-    change = curvature_slope(path.along, path.across, jet.slope, jet.bend, jet.jerk)
-    # the contour is shorter than the pitch curve by the undercut factor, its curvature greater
-    return magnitude(change / ((1.0 - cam.bend) ** 3 * path.speed)) / limit
-
-
-def _cam_radius(cam: Shape, limit: float) -> Array:
-    inset = cam.ratings.roller_radius / cam.path.speed
-    along, across = cam.path.along, cam.path.across
-    return demands.contour_radius(along, across, cam.ratings.offset, inset) / limit
+    path = roller_of(cam.path)
+    room = hollow - path.size
+    return -path.curvature * room if room > 0.0 else None
 
 
 def _contact_pressure(at: Loads, limit: float) -> Array:
-    """r kappa + N / F_lim <= 1, equivalent to p0 <= limit.
+    """As `line_pressure`, of a crowned roller by the greater of line and ellipse.
 
-    The pressure of a line contact and the undercut depend on the same factor 1 - r kappa. That of
-    a crowned roller, the greater of line and ellipse, reaches the limit at a relative curvature c:
-    r kappa + 1/(r c) <= 1.
+    The ellipse reaches the limit at a relative curvature c: r kappa + 1/(r c) <= 1.
     """
-    ratings = at.ratings
-    line_load = at.force.normal / ratings.contact_width
-    flat = peak_pressure_square(line_load, 1.0 / ratings.roller_radius, ratings.contact_modulus)
-    share: Array = at.scenario.correction.contact**2 * flat / limit**2
+    share, ratings = line_share(at, limit), at.ratings
     if ratings.crown_radius is not None:
         force = np.where(np.real(at.force.normal) > _LEAST_FORCE, at.force.normal, _LEAST_FORCE)
         relief = 3.0 * np.log(limit / at.scenario.correction.contact) - np.log(force)
-        ellipse = np.exp(-_limit_curvature(relief, ratings)) / ratings.roller_radius
+        ellipse = np.exp(-_limit_curvature(relief, ratings)) / at.path.size
         share = np.where(np.real(ellipse) > np.real(share), ellipse, share)
-    return ratings.roller_radius * at.path.curvature + share
+    return at.path.bend + share
 
 
 def _limit_curvature(relief: Array, ratings: Ratings) -> Array:
@@ -169,12 +156,11 @@ def _contact_at_overspeed(at: Loads, limit: float) -> Array | None:
 
 
 def _jam_index_friction_max(at: Loads, limit: float) -> Array | None:
-    if at.scenario.friction_worst is None:
+    worst = at.scenario.friction_worst
+    if worst is None:
         return None
-    friction_a, friction_b = at.scenario.friction_worst
-    lever_a, lever_b = at.force.lever
-    factor = (friction_a * lever_a + friction_b * lever_b) * at.scenario.correction.jam
-    return demands.jam_outward(at.jet.slope, factor * magnitude(at.path.tangent)) / limit
+    on_a, on_b = (mu * each.on_points for mu, each in zip(worst, at.force.guides, strict=True))
+    return demands.jam_outward(at.jet.slope, (on_a + on_b) * at.scenario.correction.jam) / limit
 
 
 def _roller_life(at: Loads, limit: float) -> Mean:
@@ -192,7 +178,8 @@ def _guide_pressure(side: Literal["A", "B"]) -> Constraint[Loads]:
     place = "AB".index(side)
 
     def utilisation(at: Loads, limit: float) -> Array:
-        load = at.side * at.force.push[place]
+        fix = at.scenario.correction
+        load = at.force.axial * at.force.guides[place].corrected((fix.guide_a, fix.guide_b)[place])
         return demands.guide_pressure(load, at.ratings.guide_area[place]) / limit
 
     return Constraint(
@@ -204,8 +191,8 @@ def _guide_pv(side: Literal["A", "B"]) -> Constraint[Loads]:
     place = "AB".index(side)
 
     def utilisation(at: Loads, limit: float) -> Mean:
-        load, velocity = at.side * at.force.rub[place], at.scenario.cam_speed * at.jet.slope
-        return Mean(demands.guide_pv(load, velocity, at.ratings.guide_area[place]) / limit)
+        load, area = rubbing_load(at, place), at.ratings.guide_area[place]
+        return Mean(demands.guide_pv(load, at.velocity, area) / limit)
 
     return Constraint(f"guide_pv_{side}", lambda ratings: ratings.guide_pv[place], utilisation)
 
@@ -217,15 +204,32 @@ SHAPE: tuple[Constraint[Shape], ...] = (
     Constraint(
         "pressure_angle",
         PRESSURE_ANGLE,
-        lambda cam, limit: magnitude(np.arctan(cam.path.tangent)) / limit,
+        lambda cam, limit: magnitude(np.arctan(roller_of(cam.path).tangent)) / limit,
         factor_max=inf,
         value_max=np.radians(60.0),
+        needs="roller",
     ),
-    Constraint("curvature_ratio", CURVATURE_RATIO, lambda cam, limit: cam.bend * limit),
-    Constraint("undercut", UNDERCUT_FACTOR, lambda cam, limit: cam.bend / (1.0 - limit)),
-    Constraint("concave_radius", lambda ratings: ratings.hollow_radius, _concave_radius),
-    Constraint("curvature_rate", CURVATURE_RATE, _curvature_rate),
-    Constraint("cam_radius", CAM_RADIUS, _cam_radius, factor_max=FACTOR_MAX),
+    Constraint(
+        "curvature_ratio",
+        CURVATURE_RATIO,
+        lambda cam, limit: cam.path.bend * limit,
+        needs="roller",
+    ),
+    Constraint("undercut", UNDERCUT_FACTOR, lambda cam, limit: cam.path.bend / (1.0 - limit)),
+    Constraint(
+        "concave_radius", lambda ratings: ratings.hollow_radius, _concave_radius, needs="roller"
+    ),
+    Constraint(
+        "curvature_rate",
+        CURVATURE_RATE,
+        lambda cam, limit: magnitude(cam.path.curvature_slope) / limit,
+    ),
+    Constraint(
+        "cam_radius",
+        CAM_RADIUS,
+        lambda cam, limit: cam.path.contour_radius / limit,
+        factor_max=FACTOR_MAX,
+    ),
     *PART_SHAPE,
 )
 """Limits on the shape of the cam."""
@@ -257,13 +261,23 @@ LOADS: tuple[Constraint[Loads], ...] = (
         "roller_static",
         lambda ratings: ratings.normal_force,
         lambda at, limit: at.force.normal / limit,
+        needs="roller",
+    ),
+    Constraint(
+        "bore_pressure",
+        lambda ratings: ratings.normal_force,
+        lambda at, limit: at.force.normal / limit,
+        needs="face",
     ),
     Constraint(
         "roller_speed",
         lambda ratings: ratings.roller_spin,
         lambda at, limit: magnitude(at.spin) / limit,
+        needs="roller",
     ),
-    Constraint("roller_life", lambda ratings: ratings.life_force_cubed, _roller_life),
+    Constraint(
+        "roller_life", lambda ratings: ratings.life_force_cubed, _roller_life, needs="roller"
+    ),
     _guide_pressure("A"),
     _guide_pv("A"),
     _guide_pressure("B"),
@@ -274,5 +288,8 @@ LOADS: tuple[Constraint[Loads], ...] = (
 
 CONSTRAINTS: tuple[Constraint[Shape] | Constraint[Loads], ...] = (*SHAPE, *LOADS)
 
-ROWS: tuple[AnyLimit, ...] = tuple(dict.fromkeys(each.row for each in CONSTRAINTS if each.row))
-"""Rows of the table of limits that the synthesis keeps."""
+
+def rows_kept(follower: Literal["roller", "face"]) -> tuple[AnyLimit, ...]:
+    """Rows of the table of limits that the synthesis keeps with a kind of follower."""
+    kept = (each.row for each in CONSTRAINTS if each.needs in ("", follower))
+    return tuple(dict.fromkeys(row for row in kept if row is not None))

@@ -94,7 +94,12 @@ def _program(search: Search) -> Cones:
     growth = (2.0 * variables.rate / variables.preload**2) * energy
     sigma = program.columns(scipy.sparse.csr_array(np.eye(points)), count + 1)
     steepest = ratings.limits.get(PRESSURE_ANGLE)
-    if steepest is not None:
+    if ratings.slope_max is not None:
+        wide = ratings.slope_max * (1.0 - RESERVE) * variables.preload
+        for side in (1.0, -1.0):
+            program.at_most(side * torque - wide * sigma, 0.0)
+        program.square_at_most(sigma, growth, 1.0)
+    elif steepest is not None:
         steep = np.tan(steepest * (1.0 - RESERVE)) * variables.preload
         by_root = variables.prime_radius - variables.preload / variables.rate
         room = steep * (by_root * sigma + (variables.preload / variables.rate) * growth)
@@ -104,6 +109,7 @@ def _program(search: Search) -> Cones:
     if ratings.normal_force is not None:
         share = (ratings.normal_force * (1.0 - RESERVE) / variables.preload) ** 2
         sideways = torque / (variables.prime_radius * variables.preload)
+        sideways = 0.0 * sideways if ratings.face is not None else sideways
         program.square_at_most(sideways, -growth, share - 1.0)
     return program
 

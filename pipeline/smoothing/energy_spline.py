@@ -163,8 +163,11 @@ def exact_start(
     prime_radius: float,
     pressure_angle: float,
     energy_max: float,
+    slope_max: float | None = None,
 ) -> Array:
     """Coefficients of the energy of the unsmoothed torque, raised until the pressure angle holds.
+
+    Of a flat face, until its width holds.
 
     Parameters
     ----------
@@ -174,6 +177,7 @@ def exact_start(
     prime_radius : float       of the pitch curve, m, > 0
     pressure_angle : float    limit, rad
     energy_max : float        maximum stored energy beyond the preload, J; may be infinite
+    slope_max : float         lift per radian at the edge of a flat face, m; None: a roller
 
     Returns
     -------
@@ -195,8 +199,12 @@ def exact_start(
     slope = np.abs(basis_matrix(theta, count, 1) @ coefficients)
 
     def excess(rise: float) -> float:
-        moment = force_moment(np.maximum(energy + rise, 0.0), rate, preload, prime_radius)
-        return float((slope - np.tan(pressure_angle) * moment).max())
+        level = np.maximum(energy + rise, 0.0)
+        if slope_max is not None:
+            steepest = slope_max * np.sqrt(preload**2 + 2.0 * rate * level)
+        else:
+            steepest = np.tan(pressure_angle) * force_moment(level, rate, preload, prime_radius)
+        return float((slope - steepest).max())
 
     highest = float(energy.max())
     if highest > energy_max:

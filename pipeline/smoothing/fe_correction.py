@@ -18,6 +18,7 @@ from camwright.pipeline.checks.guide_strength import GUIDES, Side, hottest
 from camwright.pipeline.cycle.cycle import Cycle
 from camwright.pipeline.cycle.solution import Solution
 from camwright.pipeline.cycle.speed_sweep import SpeedSweep, SweptForces, swept_forces
+from camwright.pipeline.follower.follower_forces import Loads, levers
 from camwright.pipeline.follower.roller_motion import rolling_share
 from camwright.pipeline.smoothing.allowables import corrected_ratings, softening
 from camwright.pipeline.smoothing.infeasibility import ConflictRecord
@@ -306,25 +307,59 @@ def _of_cycle(cycle: Cycle, swept: Correction, left: Sequence[tuple[float, float
     guides, contact, machine = cycle.guides, cycle.contact, cycle.machine
     worst, friction = cycle.parts.friction.greatest, machine.friction.greatest
     line_a, line_b = guides.line_pressure_max_a, guides.line_pressure_max_b
-    surge, contour = cycle.parts.surge_force, cycle.contour.require_roller()
-    path_speed, _ = contour.pitch.speed_and_curvature(cycle.theta)
-    rolling = rolling_share(path_speed, contour.roller_radius)
+    surge, spacing = cycle.parts.surge_force, machine.guides.spacing
+    of_guides = _Statics.of(cycle.loads, spacing, (guides.statics_a, guides.statics_b))
+    hot = _Statics.of(worst, spacing, (worst.reaction_a, worst.reaction_b))
     return replace(
         swept,
         contact=_ratio(contact.p0, contact.p0_hertz),
-        guide_a=_ratio(guides.bearing_load_a, guides.statics_a) / left[0][0],
-        guide_b=_ratio(guides.bearing_load_b, guides.statics_b) / left[1][0],
-        rubbing_a=_ratio(guides.rubbing_load_a, guides.statics_a, _RUBBING),
-        rubbing_b=_ratio(guides.rubbing_load_b, guides.statics_b, _RUBBING),
+        guide_a=of_guides.correction(0, guides.bearing_load_a / left[0][0]),
+        guide_b=of_guides.correction(1, guides.bearing_load_b / left[1][0]),
+        rubbing_a=of_guides.correction(0, guides.rubbing_load_a, _RUBBING),
+        rubbing_b=of_guides.correction(1, guides.rubbing_load_b, _RUBBING),
         jam=_ratio(worst.jam_index, worst.jam_index_statics),
-        edge_a=_ratio(line_a * machine.guides.a.length, guides.statics_a) / left[0][1],
-        edge_b=_ratio(line_b * machine.guides.b.length, guides.statics_b) / left[1][1],
-        hot_a=_ratio(worst.friction_force_a, friction[0] * worst.reaction_a, _RUBBING),
-        hot_b=_ratio(worst.friction_force_b, friction[1] * worst.reaction_b, _RUBBING),
+        edge_a=of_guides.correction(0, line_a * machine.guides.a.length / left[0][1]),
+        edge_b=of_guides.correction(1, line_b * machine.guides.b.length / left[1][1]),
+        hot_a=hot.correction(0, _over(worst.friction_force_a, friction[0]), _RUBBING),
+        hot_b=hot.correction(1, _over(worst.friction_force_b, friction[1]), _RUBBING),
         surge=np.zeros(cycle.theta.size) if surge is None else surge,
-        rolling=np.full(cycle.theta.size, np.mean(np.abs(rolling))),
+        rolling=np.full(cycle.theta.size, _mean_rolling(cycle)),
         least_lift=np.full(cycle.theta.size, cycle.contour.pitch.lift.lowest.value),
     )
+
+
+class _Statics(NamedTuple):
+    """Loads of point supports A and B, (n,), N: by side force and couple at once; by each alone."""
+
+    both: tuple[Array, Array]
+    whole: tuple[Array, Array]
+
+    @classmethod
+    def of(cls, loads: Loads, spacing: float, both: tuple[Array, Array]) -> _Statics:
+        """From the loads on the stem."""
+        side, couple = np.abs(loads.tangential_force), np.abs(loads.end_moment) / spacing
+        lever_a, lever_b = levers(loads.overhang, spacing)
+        on_a, on_b = (np.abs(each) for each in both)
+        return cls((on_a, on_b), (side * lever_a + couple, side * lever_b + couple))
+
+    def correction(self, place: int, solved: Array, least: float = _LOADED) -> Array:
+        """Correction (n,) with which `Reaction` is the solved load; 1 where unloaded."""
+        whole = self.whole[place]
+        return _ratio(np.abs(solved) + whole - self.both[place], whole, least)
+
+
+def _over(force: Array, friction: float) -> Array:
+    """Normal load of a friction force (n,), N; 0 without friction."""
+    return force / friction if friction > 0.0 else np.zeros_like(force)
+
+
+def _mean_rolling(cycle: Cycle) -> float:
+    """Mean turn of the roller over that of the cam; 0 under a flat face."""
+    roller = cycle.machine.roller
+    if roller is None:
+        return 0.0
+    path_speed, _ = cycle.contour.pitch.speed_and_curvature(cycle.theta)
+    return float(np.mean(np.abs(rolling_share(path_speed, roller.radius))))
 
 
 def _ratio(solved: Array, closed: Array, least: float = _LOADED) -> Array:

@@ -17,7 +17,6 @@ import numpy as np
 from camwright.geometry.arrays import FULL_TURN, Array
 from camwright.geometry.errors import InputError
 from camwright.geometry.pitch_curve import magnitude
-from camwright.pipeline.follower.roller_motion import rolling_share
 from camwright.pipeline.smoothing.cam_state import Forces, Jet, Mean, Motion, forces, motion
 from camwright.pipeline.smoothing.scenario import DesignVariables, Ratings, Scenario, Value
 
@@ -140,12 +139,12 @@ def torque_integral(values: Array) -> Array:
 
 
 def _loss(at: Turning) -> Mean:
-    """Work of the friction of guides and roller bearing over a turn."""
+    """Work of the friction of guides, and of roller bearing or face, over a turn."""
     ratings, force = at.ratings, at.force
     guides = (force.axial - force.spring - force.inertia) * at.jet.slope
     drag = 0.0 if ratings.drag is None else ratings.drag.bearing_torque(force.normal)
-    rolling = drag * magnitude(rolling_share(at.path.speed, ratings.roller_radius))
-    return Mean(FULL_TURN / at.scale.energy * (guides + rolling))
+    contact = drag * magnitude(np.asarray(at.path.rolling)) + force.axial * at.path.sliding
+    return Mean(FULL_TURN / at.scale.energy * (guides + contact))
 
 
 def _spring_energy(at: Turning) -> Array:
@@ -156,7 +155,7 @@ def _spring_energy(at: Turning) -> Array:
 
 def _rest_force(at: Turning) -> Mean:
     """Contact force at standstill without friction; every angle is as likely."""
-    return Mean(at.force.spring * np.sqrt(1.0 + at.path.tangent**2) / at.scale.force)
+    return Mean(at.force.spring * at.path.gain / at.scale.force)
 
 
 _ENGINE = "torque ripple of the engine"
@@ -165,7 +164,9 @@ _FORCE = "greatest engine torque of the design load case over the prime radius, 
 
 TORQUE = Residual("torque", "torque ripple", _ENGINE, torque_ripple)
 SPEED = Residual("speed", "speed ripple", "speed ripple of the engine", _speed_ripple)
-LOSS = Cost("loss", "mean loss of guides and roller bearing, work per cam turn", _SWING, _loss)
+LOSS = Cost(
+    "loss", "mean loss of guides and roller bearing or face, work per cam turn", _SWING, _loss
+)
 COSTS: tuple[Cost, ...] = (
     LOSS,
     Cost(
@@ -256,7 +257,7 @@ def costs(
     ]
     if not terms:
         return {}
-    path = motion(jet, variables, ratings.offset)
+    path = motion(jet, variables, ratings)
     force = forces(jet, path, highest, variables, item)
     at = Turning(jet, path, force, variables, ratings, item, scale)
     return {term.key: _times(term.value(at), weight) for term, weight in terms}

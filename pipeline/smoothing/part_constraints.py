@@ -22,19 +22,29 @@ from camwright.pipeline.case.limits import (
 )
 from camwright.pipeline.checks import demands
 from camwright.pipeline.checks.roller_bearing import STANDSTILL
+from camwright.pipeline.contact.hertz import half_width_square, peak_pressure_square
 from camwright.pipeline.contact.traction import rolling_demand
 from camwright.pipeline.follower import bearing_life
+from camwright.pipeline.follower.flat_face_motion import MEAN_SHARE
 from camwright.pipeline.follower.roller_motion import (
     BALL_LIFE_EXPONENT,
     path_speed_slope,
     rolling_share,
     wear,
 )
-from camwright.pipeline.smoothing.cam_state import Constraint, Loads, Mean, Shape
+from camwright.pipeline.smoothing.cam_state import (
+    Constraint,
+    Loads,
+    Mean,
+    Shape,
+    face_of,
+    roller_of,
+)
 from camwright.pipeline.smoothing.scenario import Value
 
 _LEAST_FORCE = 1.0  # N, of a force that damages a bearing
 _MARGIN = 0.2  # of the least spring force, where the case keeps no contact force margin
+_LEAST_RADIUS = 1e-6  # m, of curvature, of a half-width
 _FAR = -10.0  # utilisation in a scenario to which a limit does not apply
 _AMPLE = 100.0  # times the least mean speed, of a roller at rest, which needs no film
 
@@ -72,13 +82,17 @@ def _running(at: Loads) -> Value:
 
 
 def _guide_gap(at: Loads, limit: float) -> Array:
-    """Over the roller radius; of the cam alone, as the gap of the roller is that of the case."""
+    """Over the size of the follower; of the cam alone, as the gap of the follower is fixed."""
     path, ratings = at.path, at.ratings
-    inset = ratings.roller_radius / path.speed
-    radius = demands.contour_radius(path.along, path.across, ratings.offset, inset)
-    space = path.across - at.jet.lift + at.highest + ratings.guide_mouth - radius
-    use = 1.0 + (limit - space) / ratings.roller_radius
+    space = path.height - at.jet.lift + at.highest + ratings.guide_mouth - path.contour_radius
+    use = 1.0 + (limit - space) / ratings.follower_size
     return _where(np.multiply(at.scenario.swept, at.scenario.nominal), use)
+
+
+def rubbing_load(at: Loads, place: int) -> Array:
+    """Normal load of the friction in guide A (0) or B (1), N."""
+    fix = at.scenario.correction
+    return at.force.axial * at.force.guides[place].corrected((fix.rubbing_a, fix.rubbing_b)[place])
 
 
 def _guide_edge_pressure(side: Side) -> Constraint[Loads]:
@@ -87,8 +101,8 @@ def _guide_edge_pressure(side: Side) -> Constraint[Loads]:
 
     def utilisation(at: Loads, limit: float) -> Array:
         fix = at.scenario.correction
-        peak = at.side * at.force.lever[place] * (fix.edge_a, fix.edge_b)[place]
-        return magnitude(peak) / (at.ratings.guide_length[place] * limit)
+        peak = at.force.guides[place].corrected((fix.edge_a, fix.edge_b)[place])
+        return magnitude(at.force.axial * peak) / (at.ratings.guide_length[place] * limit)
 
     return Constraint(
         f"guide_edge_pressure_{side}", lambda ratings: ratings.guide_edge_load[place], utilisation
@@ -103,18 +117,11 @@ def _guide_heat(side: Side) -> Constraint[Loads]:
         friction = at.scenario.friction_worst
         if friction is None:
             return None
-        fix = at.scenario.correction
-        lever_a, lever_b = at.force.lever
-        tangent, rising = magnitude(at.path.tangent), np.sign(np.real(at.jet.slope))
-        jam = (friction[0] * lever_a + friction[1] * lever_b) * fix.jam * tangent
-        axial = at.force.axial * at.force.share / (1.0 - rising * jam)
-        rubbing = (
-            friction[place]
-            * at.force.lever[place]
-            * (fix.hot_a, fix.hot_b)[place]
-            * tangent
-            * axial
-        )
+        fix, guides = at.scenario.correction, at.force.guides
+        on_a, on_b = (mu * each.on_points for mu, each in zip(friction, guides, strict=True))
+        jam = np.sign(np.real(at.jet.slope)) * (on_a + on_b) * fix.jam
+        axial = at.force.axial * at.force.share / (1.0 - jam)
+        rubbing = friction[place] * guides[place].corrected((fix.hot_a, fix.hot_b)[place]) * axial
         return Mean(magnitude(rubbing * at.velocity) / limit)
 
     return Constraint(
@@ -127,7 +134,7 @@ def _guide_wear(side: Side) -> Constraint[Loads]:
     place = "AB".index(side)
 
     def utilisation(at: Loads, limit: float) -> Mean:
-        load = at.side * at.force.rub[place]
+        load = rubbing_load(at, place)
         pv = demands.guide_pv(load, at.velocity, at.ratings.guide_area[place])
         return Mean(_running(at) * pv / limit)
 
@@ -139,7 +146,8 @@ def _guide_wear(side: Side) -> Constraint[Loads]:
 def _traction_demand(at: Loads, friction: float) -> Array | None:
     if at.ratings.drag is None:
         return None
-    jet, path, radius = at.jet, at.path, at.ratings.roller_radius
+    jet, path = at.jet, roller_of(at.path)
+    radius = path.size
     rate = path_speed_slope(path.along, path.across, jet.slope, jet.bend, path.speed)
     acceleration = at.scenario.cam_speed**2 * rate / radius
     force = np.where(np.real(at.force.normal) > 0.0, at.force.normal, 0.0 * at.force.normal)
@@ -151,8 +159,7 @@ def _profile_waviness(at: Loads, limit: float) -> Array | None:
     if at.ratings.waves is None:
         return None
     amplitude, length = at.ratings.waves
-    bend = at.ratings.roller_radius * at.path.curvature
-    speed = at.scenario.cam_speed * at.path.speed * (1.0 - bend)
+    speed = at.scenario.cam_speed * at.path.contour_speed
     inertia = demands.waviness_force(at.scenario.mass, amplitude, speed, length)
     return _over_normal_force(at, inertia / limit)
 
@@ -167,7 +174,7 @@ def _swept_force(at: Loads, limit: float) -> Array | None:
     push = at.force.spring + fix.swept_surge
     push = push + (scenario.mass - scenario.spring_mass) * speed**2 * at.jet.bend
     push = push + scenario.viscous_damping * speed * at.jet.slope
-    normal = push / at.force.share * np.sqrt(1.0 + at.path.tangent**2)
+    normal = push / at.force.share * at.path.gain
     return _where(scenario.swept, 1.0 + limit - normal / at.least_spring)
 
 
@@ -187,9 +194,7 @@ def _keyway_root(at: Loads, limit: float) -> Array | None:
     keyway = at.ratings.keyway
     if keyway is None:
         return None
-    height = at.path.across - at.jet.lift + at.scenario.correction.least_lift
-    least = np.sqrt(height**2 + at.ratings.offset**2) - at.ratings.roller_radius
-    wall = least - keyway.held_radius
+    wall = at.path.radius_at(at.scenario.correction.least_lift) - keyway.held_radius
     wall = np.where(np.real(wall) < keyway.thick, wall, keyway.thick)
     return keyway.used_by(magnitude(at.torque), magnitude(at.force.normal), wall) * limit
 
@@ -199,9 +204,9 @@ def _mean_spin(at: Loads) -> tuple[Array, NDArray[np.bool_]]:
 
     That of the solved cam; before, of a roller on the prime circle.
     """
-    rolling, ratings = at.scenario.correction.rolling[..., :1], at.ratings  # one value
-    prime = np.sqrt((at.path.across - at.jet.lift)[..., :1] ** 2 + ratings.offset**2)
-    share = np.where(rolling > 0.0, rolling, rolling_share(prime, ratings.roller_radius))
+    rolling, path = at.scenario.correction.rolling[..., :1], roller_of(at.path)  # one value
+    prime = np.sqrt((path.across - at.jet.lift)[..., :1] ** 2 + path.offset**2)
+    share = np.where(rolling > 0.0, rolling, rolling_share(prime, path.size))
     mean, least = at.scenario.cam_speed * share, STANDSTILL * factor("rpm")
     turns = np.real(mean) >= least
     return np.where(turns, mean, least), turns
@@ -244,11 +249,44 @@ def _lubrication(at: Loads, limit: float) -> Mean:
 
 
 def _minimum_wall(cam: Shape, limit: float) -> Array | None:
-    held, ratings, path = cam.ratings.held_radius, cam.ratings, cam.path
-    if held is None:
-        return None
-    inset = ratings.roller_radius / path.speed
-    return limit * held / demands.contour_radius(path.along, path.across, ratings.offset, inset)
+    held = cam.ratings.held_radius
+    return None if held is None else limit * held / cam.path.contour_radius
+
+
+def _face_width(at: Loads, width: float) -> Array:
+    """Twice the distance of the contact from the stem axis and its half-width, over the width.
+
+    At the same force the half-width falls as the pressure rises.
+    """
+    ratings, path = at.ratings, face_of(at.path)
+    force = np.where(np.real(at.force.normal) > _LEAST_FORCE, at.force.normal, _LEAST_FORCE)
+    radius = np.where(np.real(path.radius) > _LEAST_RADIUS, path.radius, _LEAST_RADIUS)
+    load = force / ratings.contact_width
+    half = np.sqrt(half_width_square(load, radius, ratings.contact_modulus))
+    return 2.0 * (magnitude(path.arm) + half / at.scenario.correction.contact) / width
+
+
+def _face_pv(at: Loads, limit: float) -> Array:
+    """As `line_pressure`, of the pressure whose mean is at the PV limit at the sliding speed."""
+    return line_pressure(at, limit / (MEAN_SHARE * at.scenario.cam_speed * at.path.height))
+
+
+def line_pressure(at: Loads, allowed: Value) -> Array:
+    """bend + R_p / size <= 1, equivalent to p0 <= allowed.
+
+    R_p is the relative radius at which the line contact has the allowed pressure. Pressure and
+    undercut depend on the same undercut factor, 1 - bend.
+    """
+    return at.path.bend + line_share(at, allowed)
+
+
+def line_share(at: Loads, allowed: Value) -> Array:
+    """R_p / size, see `line_pressure`."""
+    ratings = at.ratings
+    line_load = at.force.normal / ratings.contact_width
+    flat = peak_pressure_square(line_load, 1.0 / at.path.size, ratings.contact_modulus)
+    share: Array = at.scenario.correction.contact**2 * flat / allowed**2
+    return share
 
 
 PART_SHAPE: tuple[Constraint[Shape], ...] = (
@@ -266,7 +304,9 @@ PARTS: tuple[Constraint[Loads], ...] = (
     _guide_heat("B"),
     _guide_wear("A"),
     _guide_wear("B"),
-    Constraint("traction_demand", lambda ratings: ratings.friction, _traction_demand),
+    Constraint(
+        "traction_demand", lambda ratings: ratings.friction, _traction_demand, needs="roller"
+    ),
     Constraint("profile_waviness", WAVINESS, _profile_waviness),
     Constraint("contact_over_speed", CONTACT_FORCE_MARGIN, _swept_force),
     Constraint("elastic_contact", CONTACT_FORCE_MARGIN, _elastic_contact),
@@ -285,8 +325,23 @@ PARTS: tuple[Constraint[Loads], ...] = (
         "grease_life",
         lambda ratings: None if ratings.grease is None else ratings.grease.rating,
         _grease_life,
+        needs="roller",
     ),
-    Constraint("roller_modified_life", lambda ratings: ratings.modified_rate, _modified_life),
-    Constraint("bearing_lubrication", lambda ratings: ratings.roller_spin_least, _lubrication),
+    Constraint(
+        "roller_modified_life",
+        lambda ratings: ratings.modified_rate,
+        _modified_life,
+        needs="roller",
+    ),
+    Constraint(
+        "bearing_lubrication",
+        lambda ratings: ratings.roller_spin_least,
+        _lubrication,
+        needs="roller",
+    ),
+    Constraint(
+        "face_width", lambda ratings: ratings.face and ratings.face.width, _face_width, needs="face"
+    ),
+    Constraint("face_pv", lambda ratings: ratings.face and ratings.face.pv, _face_pv, needs="face"),
 )
 """Limits of the parts on the loads of the cam in one scenario."""

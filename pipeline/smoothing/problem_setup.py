@@ -91,6 +91,8 @@ def roller_problems(
 ) -> Iterator[tuple[str, Problem]]:
     """Name and problem of each roller that fits into the case, the smallest first.
 
+    None in place of a flat face.
+
     Parameters
     ----------
     original : Problem   of the case; its corrections are applied to the alternatives
@@ -100,6 +102,8 @@ def roller_problems(
     InputError
         If cards in the folder of the case cannot be read.
     """
+    if case.roller_given is None:
+        return
     folder = _folder(case)
     rollers = catalogue_of(folder).rollers
     corrections = {item.name: item.correction for item in original.scenarios}

@@ -103,6 +103,7 @@ class Search:
             preload=variables.preload,
             prime_radius=variables.prime_radius,
             pressure_angle=ratings.limits.get(PRESSURE_ANGLE, np.pi / 3),
+            slope_max=ratings.slope_max,
             energy_max=variables.preload * travel + 0.5 * variables.rate * travel**2,
         )
         rise = float(np.clip(0.0, problem.energy[0] - 1e-12, problem.energy[1]))
@@ -201,7 +202,7 @@ class Search:
     ) -> Function:
         """Cam torque of weighted scenarios, all or some, at the points of the turn, (w, n)."""
         stack = self._weighted_stack(variables, weighted)
-        return partial(_torque, stack, self.problem.ratings.offset)
+        return partial(_torque, stack, self.problem.ratings)
 
     def _weighted_stack(
         self, variables: DesignVariables, weighted: NDArray[np.intp] | None
@@ -306,7 +307,7 @@ class Search:
         jet = lift_jet(self.turn.energy(coefficients), variables)
         top = self.highest(coefficients, variables)
         stack = self._weighted_stack(variables, None)
-        cam = delivered_torque(jet, top, variables, stack, self.problem.ratings.offset)
+        cam = delivered_torque(jet, top, variables, stack, self.problem.ratings)
         return self._engine(variables) - cam / self.problem.gear_ratio
 
     def _engine(self, variables: DesignVariables) -> Array:
@@ -561,9 +562,9 @@ def _jerk(jet: Jet, _top: float, _variables: DesignVariables) -> Mapping[str, Ar
 
 
 def _torque(
-    scenario: Scenario, offset: float, jet: Jet, top: float, variables: DesignVariables
+    scenario: Scenario, ratings: Ratings, jet: Jet, top: float, variables: DesignVariables
 ) -> Mapping[str, Array | Mean]:
-    return {"torque": delivered_torque(jet, top, variables, scenario, offset)}
+    return {"torque": delivered_torque(jet, top, variables, scenario, ratings)}
 
 
 def _shape(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
-from typing import NamedTuple
+from typing import Literal, NamedTuple
 
 import numpy as np
 
@@ -39,12 +39,25 @@ class ModifiedLife(NamedTuple):
     circle: float
 
 
+class Face(NamedTuple):
+    """Flat face: width in the plane of motion, m; friction on the cam; limit of the PV value.
+
+    pv: Pa m/s; None: not kept.
+    """
+
+    width: float
+    friction: float = 0.0
+    pv: float | None = None
+
+
 @dataclass(frozen=True)
 class Ratings:
     """Limits and fixed dimensions of a synthesis, SI; a limit of None is not kept.
 
     Parameters
     ----------
+    roller_radius : float      m; 0 under a flat face
+    face : Face                None: a roller
     limits : mapping           value by row of the table of limits; a row left out is not kept
     travel : float             maximum lift allowed by the spring, m
     hollow_radius : float      minimum concave radius of the contour, m
@@ -84,6 +97,7 @@ class Ratings:
     """
 
     roller_radius: float
+    face: Face | None = None
     offset: float = 0.0
     limits: Mapping[AnyLimit, float] = field(default_factory=dict)
     travel: float | None = None
@@ -127,6 +141,21 @@ class Ratings:
     modified: ModifiedLife | None = None
     modified_rate: float | None = None
     roller_spin_least: float | None = None
+
+    @property
+    def follower(self) -> Literal["roller", "face"]:
+        """Kind of follower."""
+        return "roller" if self.face is None else "face"
+
+    @property
+    def slope_max(self) -> float | None:
+        """Lift per radian at the edge of a face, m; None: a roller."""
+        return None if self.face is None else 0.5 * self.face.width - abs(self.offset)
+
+    @property
+    def follower_size(self) -> float:
+        """Roller radius, or half of the width of a face, m: scale of a gap."""
+        return self.roller_radius if self.face is None else 0.5 * self.face.width
 
 
 @dataclass(frozen=True, eq=False)

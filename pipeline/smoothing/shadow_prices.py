@@ -4,19 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import TypedDict
+from typing import Literal, TypedDict
 
 import numpy as np
 from numpy.typing import NDArray
 
 from camwright.geometry.arrays import FULL_TURN, Array
 from camwright.geometry.errors import InputError
-from camwright.geometry.pitch_curve import PitchCurve
 from camwright.pipeline.base.units import in_unit
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_values import replaced, value_of
 from camwright.pipeline.engine.torque import Torque
 from camwright.pipeline.smoothing.bounds import Bound, bounds_of
+from camwright.pipeline.smoothing.cam_state import lift_jet, motion
+from camwright.pipeline.smoothing.energy_spline import Grid
 from camwright.pipeline.smoothing.problem_setup import problem_of
 from camwright.pipeline.smoothing.sampled_problem import Search
 from camwright.pipeline.smoothing.scenario import Ratings
@@ -25,6 +26,7 @@ from camwright.pipeline.smoothing.synthesis_problem import RESERVE, Design, Prob
 BINDING = 2e-3  # of a limit: a constraint this near to its reserve is active
 FLOOR = 1e-4  # of the engine's ripple, by 1 % of a value: the optima are converged to 1e-6
 _STEP = 1e-4  # of a number of the machine, for its difference quotient
+_BY_SQUARE = ("contact_pressure", "face_pv")
 _WEIGHTED = 1e-3  # of the ripple: least other terms of an objective that is no ripple alone
 
 
@@ -67,6 +69,7 @@ class MachineNumber:
     keys : tuple       numbers that increase with it; value: the first less those of `less`
     less : tuple       keys
     free : str         free variable of the synthesis that it is; "": none
+    needs : str        kind of follower; "": any
     """
 
     key: str
@@ -75,6 +78,7 @@ class MachineNumber:
     keys: tuple[str, ...]
     less: tuple[str, ...] = ()
     free: str = ""
+    needs: Literal["", "roller", "face"] = ""
 
     def value(self, case: Case) -> float:
         """Value in a case, SI."""
@@ -96,12 +100,18 @@ def _own(key: str, words: str, unit: str, free: str = "") -> MachineNumber:
 
 
 _PRIME, _ROLLER = "cam.prime_radius", "roller.radius"
+_WIDTH, _DEPTH = "follower.face.width", "follower.face.depth"
 NUMBERS = (
     _own("follower.mass", "follower mass", "g"),
     _own("spring.rate", "spring rate", "N/mm", "rate"),
     _own("spring.preload", "preload", "N", "preload"),
-    MachineNumber("cam.base_radius", "base radius", "mm", (_PRIME,), (_ROLLER,), "prime_radius"),
-    MachineNumber(_ROLLER, "roller radius", "mm", (_ROLLER, _PRIME)),
+    MachineNumber(
+        "cam.base_radius", "base radius", "mm", (_PRIME,), (_ROLLER,), "prime_radius", "roller"
+    ),
+    MachineNumber(_ROLLER, "roller radius", "mm", (_ROLLER, _PRIME), needs="roller"),
+    MachineNumber(_PRIME, "base radius", "mm", (_PRIME,), free="prime_radius", needs="face"),
+    MachineNumber(_WIDTH, "width of the face", "mm", (_WIDTH,), needs="face"),
+    MachineNumber(_DEPTH, "depth of the face", "mm", (_DEPTH,), needs="face"),
     _own("guides.spacing", "spacing of the guides", "mm"),
     _own("follower.overhang_at_max_lift", "overhang at maximum lift", "mm"),
     _own("guides.a.friction", "friction of guide A", "-"),
@@ -158,6 +168,8 @@ def machine_prices(
     at_optimum = level(case)
     records: list[MachinePriceRecord] = []
     for number in NUMBERS:
+        if number.needs not in ("", problem.ratings.follower):
+            continue
         value = number.value(case)
         if number.free in problem.freed or value <= 0.0:
             continue
@@ -244,7 +256,8 @@ def prices(design: Design, problem: Problem) -> list[PriceRecord]:
     first order: the multiplier times the slope of the utilisation. With costs or a jerk
     weight it is that of their sum, the objective. Of the utilisation of the contact
     pressure, r kappa + N/F_lim, only the second part depends on the limit, by its square;
-    its mean over the active angles is taken. A mean over the turn has no active angles.
+    its mean over the active angles is taken, as of the PV value of a face. A mean over the turn
+    has no active angles.
 
     Parameters
     ----------
@@ -265,8 +278,8 @@ def prices(design: Design, problem: Problem) -> list[PriceRecord]:
             continue
         known = bounds.get(name, Bound(name.replace("_", " "), 1.0, "-", 1.0))
         slope = known.slope
-        if name == "contact_pressure":
-            slope *= 2.0 * _load_share(design, problem)
+        if name in _BY_SQUARE:
+            slope *= 2.0 * _load_share(design, problem, name)
         price = multiplier * before * slope
         records.append(
             {
@@ -302,14 +315,15 @@ def _before(problem: Problem) -> float:
     return max(float(np.std(item.torque)) for item in problem.scenarios if item.weight > 0)
 
 
-def _load_share(design: Design, problem: Problem) -> float:
+def _load_share(design: Design, problem: Problem, name: str) -> float:
     """N / F_lim of the contact pressure, mean over the active angles."""
-    theta, use = design.strip["contact_pressure"]
+    theta, use = design.strip[name]
     binds = _binding(use)
     if not binds.any():
         return 1.0
-    pitch = PitchCurve(design.lift(), float(design.variables.prime_radius), problem.ratings.offset)
-    bend = problem.ratings.roller_radius * pitch.curvature(theta[binds])
+    grid = Grid.at(theta[binds], design.coefficients.size)
+    jet = lift_jet(grid.energy(design.coefficients), design.variables)
+    bend = motion(jet, design.variables, problem.ratings).bend
     return float(np.mean(np.asarray(use)[binds] - bend))
 
 

@@ -194,7 +194,8 @@ def test_bad_face_is_refused(change, message):
         parse_case(change(with_lift(ECCENTRIC)))
 
 
-def test_synthesis_within_limits_knows_rollers_only():
+def test_synthesis_within_limits_takes_a_face():
     text = flat(small_machine("flat")).replace('kind = "moving_average"', 'kind = "constrained"')
-    with pytest.raises(InputError, match=r"smoothing\.kind = constrained, must be other than"):
-        parse_case(text)
+    case = parse_case(text)
+    assert case.smoothing.kind == "constrained"
+    assert case.follower.face is not None

@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from scipy.optimize import brentq
+from synthesis_problems import OF_ROLLER
 from synthesis_ratings import rated
 
 from camwright.geometry.arrays import uniform_turn
@@ -36,7 +37,6 @@ from camwright.pipeline.smoothing.allowables import (
 from camwright.pipeline.smoothing.bounds import bounds_of
 from camwright.pipeline.smoothing.cam_state import Jet, Mean, Shape, loaded, motion
 from camwright.pipeline.smoothing.constraints import (
-    CONSTRAINTS,
     SHAPE,
     load_utilisations,
     shape_utilisations,
@@ -64,7 +64,7 @@ APART = ("contact_pressure", "spring_travel", "concave_radius")
 EACH = [
     *NORMAL_FORCE, *TORQUE, *TOOTH, *HEAT,
     *(
-        each.check for each in CONSTRAINTS
+        each.check for each in OF_ROLLER
         if each.check not in {*NORMAL_FORCE, *TORQUE, *TOOTH, *HEAT, *APART}
     ),
 ]  # fmt: skip
@@ -334,7 +334,7 @@ def greatest(each, states, ratings):
     return most
 
 
-PRICED = [each for each in CONSTRAINTS if each.check not in ("contact_pressure", "concave_radius")]
+PRICED = [each for each in OF_ROLLER if each.check not in ("contact_pressure", "concave_radius")]
 """Two whose slope depends on the cam: `shadow_prices` and `test_prices_verification`."""
 
 
@@ -348,7 +348,7 @@ def test_the_slope_of_a_bound_is_that_of_the_utilisation_where_it_binds(
     jet, top = Jet(*pitch.lift.derivatives(theta, 3)), pitch.lift.highest.value
     variables = DesignVariables(case.spring.rate, case.spring.preload, case.cam.prime_radius)
     ratings = replace(ratings_of(case), held_radius=case.cam.held_radius)
-    states = [Shape(jet, motion(jet, variables, ratings.offset), ratings)]
+    states = [Shape(jet, motion(jet, variables, ratings), ratings)]
     if each not in SHAPE:
         states = [
             loaded(jet, top, variables, ratings, replace(one, correction=corrections[one.name]))
