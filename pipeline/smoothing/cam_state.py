@@ -52,20 +52,23 @@ class Reaction(NamedTuple):
     """Load of a guide over the axial force, (..., n).
 
     whole: sum of the loads of point supports by the side force and by the couple, which the finite
-    elements correct; slack: that sum less the load by both at once, 0 without a couple.
+    elements correct; slack: that sum less the load by both at once, None without a couple.
     """
 
     whole: Array
-    slack: Value
+    slack: Array | None = None
 
     @property
     def on_points(self) -> Array:
         """Reaction of a point support."""
-        return self.whole - self.slack
+        return self.whole if self.slack is None else self.whole - self.slack
 
     def corrected(self, fix: Array) -> Array:
-        """Load with a correction; 1: that of a point support."""
-        return self.whole * fix - self.slack
+        """Load with a correction, >= 0; 1: that of a point support."""
+        if self.slack is None:
+            return self.whole * fix
+        load = self.whole * fix - self.slack
+        return np.where(np.real(load) > 0.0, load, 0.0 * load)
 
 
 class RollerMotion(NamedTuple):
@@ -142,7 +145,7 @@ class RollerMotion(NamedTuple):
     ) -> tuple[Reaction, Reaction]:
         """Of the side force through the roller centre."""
         side = magnitude(self.tangent)
-        return Reaction(side * lever[0], 0.0), Reaction(side * lever[1], 0.0)
+        return Reaction(side * lever[0]), Reaction(side * lever[1])
 
 
 class FaceMotion(NamedTuple):
