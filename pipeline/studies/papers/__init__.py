@@ -7,6 +7,7 @@ In the order of the calculation:
 | `published_figures`       | targets, outcomes, verdicts                    |                |
 | `paper_engines`           | engines of the papers in the cylinder model    | N m            |
 | `balancing_cam`           | balancing cam under an engine torque           | N m; rad/s     |
+| `follower_contours`       | roller and flat faces for the same torque      | m; N; Pa       |
 | `speed_reconstruction`    | crank speed from published statistics          | rad/s          |
 | `cardoso_2024`            | engine at 800 rpm, cam without losses          |                |
 | `cardoso_2025`            | engine at idle and its balancing cam           |                |

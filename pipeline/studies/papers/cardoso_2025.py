@@ -19,12 +19,14 @@ from camwright.pipeline.engine.torque_consistency import implied_inertia
 from camwright.pipeline.studies.papers import speed_reconstruction
 from camwright.pipeline.studies.papers.balancing_cam import (
     POSITIONS,
+    RATIO,
     TWELVE_DEGREES,
     TWELVE_TEETH,
     TWELVE_VALUES,
     Balanced,
     balanced,
 )
+from camwright.pipeline.studies.papers.follower_contours import follower_contours
 from camwright.pipeline.studies.papers.paper_engines import (
     EFFECTIVE_INERTIA,
     GX120,
@@ -276,6 +278,13 @@ def _studies(
     return {
         "preload, full and half torque": rows,
         "smoothing window": windows,
+        "flat face and roller for the same torque": [
+            {"cut_for": name, **each.row}
+            for name in MULTIPLIERS
+            for each in follower_contours(
+                cams[name, 242.0].pitch.lift, speed_reconstruction.SPEED_MEAN / RATIO
+            )
+        ],
         "flywheel of the same speed ripple": [
             _flywheel(name, cams[name, 242.0], rebuilt.inertia) for name in MULTIPLIERS
         ],
