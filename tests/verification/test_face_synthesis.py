@@ -1,6 +1,7 @@
 """The constrained synthesis under a flat face: limits, derivatives, seeded cases, solved cams."""
 
 from dataclasses import replace
+from pathlib import Path
 
 import face_limits
 import numpy as np
@@ -11,15 +12,40 @@ from synthesis_ratings import rated
 
 from camwright.geometry.arrays import uniform_turn
 from camwright.geometry.energy import spring_deflection, stored_energy
+from camwright.geometry.lift import Lift
 from camwright.geometry.motion_laws import Motion, Segment
-from camwright.pipeline.checks.key_strength import KeywayRoot
+from camwright.pipeline.case.case_file import read_case
+from camwright.pipeline.case.load_case_torque import engine_torques
+from camwright.pipeline.case.machine import machines
+from camwright.pipeline.checks.camshaft_strength import tooth_torque_limits
+from camwright.pipeline.checks.check import depends_on_lift
+from camwright.pipeline.checks.contact_strength import pressure_allowables
+from camwright.pipeline.checks.key_strength import KeywayRoot, torque_limits
+from camwright.pipeline.checks.registry import checks_of
+from camwright.pipeline.contact.tiers import Tier
+from camwright.pipeline.cycle.solution import solution
+from camwright.pipeline.preview import preview_case
+from camwright.pipeline.smoothing.allowables import (
+    force_limits,
+    greatest_cycles,
+    power_limits,
+    ratings_of,
+)
+from camwright.pipeline.smoothing.cam_state import Jet, Mean, motion
 from camwright.pipeline.smoothing.constrained_synthesis import synthesise
-from camwright.pipeline.smoothing.constraints import CONSTRAINTS
+from camwright.pipeline.smoothing.constraints import (
+    CONSTRAINTS,
+    load_utilisations,
+    shape_utilisations,
+)
 from camwright.pipeline.smoothing.energy_spline import basis_matrix
-from camwright.pipeline.smoothing.sampled_problem import Search
+from camwright.pipeline.smoothing.fe_correction import corrections_of
+from camwright.pipeline.smoothing.problem_setup import problem_of
+from camwright.pipeline.smoothing.sampled_problem import SHAPE_LIMITS, Search
 from camwright.pipeline.smoothing.scenario import Correction, DesignVariables, Face, Scenario
 from camwright.pipeline.smoothing.synthesis_problem import Problem
 
+CASES = Path(__file__).parents[2] / "cases"
 OF_FACE = frozenset(each.check for each in CONSTRAINTS if each.needs != "roller")
 FREED = {"rate": (1e4, 2e5), "preload": (100.0, 900.0), "prime_radius": (0.03, 0.07)}
 EVERY = rated(
@@ -196,7 +222,7 @@ LAWS = ("parabolic", "harmonic")
 
 
 @pytest.mark.parametrize(
-    "seed", [0, 1, *(pytest.param(k, marks=pytest.mark.slow) for k in range(2, 10))]
+    "seed", [0, *(pytest.param(k, marks=pytest.mark.slow) for k in range(1, 10))]
 )
 def test_optimum_is_better_than_the_cams_of_motion_laws(seed):
     """Both laws, scaled and raised to the best cam within all limits; the search from each, too."""
@@ -219,3 +245,107 @@ def test_optimum_is_better_than_the_cams_of_motion_laws(seed):
         other = synthesise(replace(problem, seed=start))
         assert other.feasible, law
         assert other.ripple < 0.8 * best, law
+
+
+@pytest.fixture(scope="module")
+def drawn():
+    """The case of a flat face at nominal values, with every limit that a synthesis knows."""
+    case = read_case(CASES / "gx120-flat-face.toml")
+    smoothing = case.smoothing.model_copy(
+        update={"corners": False, "coefficients": 48, "starts": 1}
+    )
+    limits = case.limits.model_copy(update={"curvature_rate": 9e3})
+    return case.model_copy(update={"smoothing": smoothing, "limits": limits})
+
+
+MARGINS = (
+    "contact_force_margin", "contact_at_overspeed", "contact_over_speed", "elastic_contact",
+)  # fmt: skip
+PRESSURES = ("contact_pressure", "face_pv")
+SWEPT = ("contact_over_speed", "elastic_contact")
+APART = ("guide_edge_pressure_A", "guide_edge_pressure_B", "guide_gap", "spring_travel")
+"""Nonlinear in the load, of two gaps, of several checks: in `test_part_constraints_agree`."""
+
+
+def strain(check, ambient):
+    """What the constraint is at the demand of its check; of a pressure the part by the force."""
+    demand, limit, name = check.demand, check.limit, check.id
+    if name in MARGINS:
+        return 1.0 + limit - demand
+    if name == "undercut":
+        return (1.0 - demand) / (1.0 - limit)
+    if name in (*PRESSURES, "jump_speed"):
+        return check.utilisation**2  # forces grow with the square of pressure and speed
+    if name.startswith("guide_temperature"):
+        return (demand - ambient) / (limit - ambient)
+    return check.utilisation
+
+
+def own_limits(case):
+    """Ratings with the limit of one check alone where the synthesis keeps the least of several."""
+    machine = machines(case)[0]
+    powers = [power_limits(side, guide, case, machine) for side, guide in machine.guides.both]
+    return replace(
+        ratings_of(case),
+        held_radius=case.cam.held_radius,
+        normal_force=force_limits(case)["bore_pressure"],
+        pressure=pressure_allowables(machine, greatest_cycles(case))["contact_pressure"],
+        cam_torque=torque_limits(machine)["key_pressure"],
+        tooth_torque=tooth_torque_limits(machine)["gear_bending"],
+        guide_power=tuple(
+            each[f"guide_temperature_{side}"] for each, side in zip(powers, "AB", strict=True)
+        ),
+    )
+
+
+def test_each_constraint_is_its_check_on_a_solved_cam(drawn):
+    """A random cam in guides of finite length: the corrections make each one that of its check."""
+    random, theta = np.random.default_rng(5), uniform_turn(720)
+    waves = sum(
+        random.normal() / k**3 * np.cos(k * theta + random.uniform(0, 6)) for k in range(1, 5)
+    )
+    lift = Lift(theta, 0.002 + 0.006 * (waves - waves.min()) / np.ptp(waves))
+    solved = solution(drawn, drawn.contour(lift), Tier.PREVIEW, positions=240)
+    checks = {check.id: check for check in checks_of(solved)}
+    problem, corrections = problem_of(drawn, engine_torques(drawn)), corrections_of(solved)
+    pitch, ratings, variables = solved.contour.pitch, own_limits(drawn), problem.variables
+    ambient = drawn.guides.ambient_temperature - 273.15
+    for name in sorted(OF_FACE.difference(APART)):
+        check = checks[name]
+        shaped = name in SHAPE_LIMITS and check.cam_angle is not None
+        angles = uniform_turn(720 if name in SWEPT else 240)
+        angles = np.array([check.cam_angle]) if shaped else angles
+        jet, top = Jet(*pitch.lift.derivatives(angles, 3)), pitch.lift.highest.value
+        uses = dict(shape_utilisations(jet, variables, ratings, {name}))
+        if not shaped and name not in uses:
+            made = [
+                load_utilisations(
+                    jet, top, variables, ratings,
+                    replace(item, correction=corrections[item.name].at(angles)), {name},
+                )[name]
+                for item in problem.scenarios
+            ]  # fmt: skip
+            uses[name] = np.stack([
+                each.value if isinstance(each, Mean) else np.broadcast_to(each, angles.shape)
+                for each in made
+            ])  # fmt: skip
+        if name in PRESSURES:  # bend + (1 - bend) (p0/p)^2
+            bend = motion(jet, variables, ratings).bend
+            uses[name] = (uses[name] - bend) / (1.0 - bend)
+        # The sweep interpolates friction over axial force; the wall of the keyway is at the
+        # minimum lift, and at the least radius.
+        tolerance = 1e-4 if name in SWEPT else 1e-6 if name == "keyway_root" else 1e-8
+        seen = float(np.max(uses[name]))
+        assert seen == pytest.approx(strain(check, ambient), rel=tolerance), name
+
+
+@pytest.mark.slow
+def test_trials_settle_on_a_cam_within_all_limits(drawn):
+    """Synthesis and previews in turn: no check of the last cam that a lift can help fails."""
+    trial = preview_case(drawn)
+    assert trial.synthesis["feasible"] and trial.synthesis["converged"]
+    failing = [
+        each.id for each in trial.checks
+        if each.must_have and each.status == "fail" and depends_on_lift(each)
+    ]  # fmt: skip
+    assert failing == []
