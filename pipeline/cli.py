@@ -22,6 +22,7 @@ from camwright.pipeline.commands import (
     inspect_command,
     redesign_command,
     run_command,
+    signature_commands,
     study_command,
 )
 from camwright.pipeline.commands.terminal import ERROR, INTERRUPTED, PASSED, say, stdout
@@ -43,6 +44,8 @@ for _command in (
     run_command.run,
     check_command.check,
     check_command.schema,
+    signature_commands.keygen,
+    signature_commands.sign,
     explain_command.explain,
     run_command.report,
     run_command.init,

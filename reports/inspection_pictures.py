@@ -17,14 +17,13 @@ _EXAGGERATED = 0.12
 """Maximum deviation as drawn on the contour, as a share of the mean radius."""
 
 
-def draw(run: Path, tolerance_um: float) -> Path:
-    """Write ``inspection/deviation.png``.
+def draw(run: Path, tolerance_um: float, folder: Path) -> Path:
+    """Write ``deviation.png`` into the folder of an inspection.
 
     Returns
     -------
     Path   the picture
     """
-    folder = run / "inspection"
     deviation, real = read_table(folder / "deviation.csv"), read_table(folder / "cycle.csv")
     nominal = read_run(run).final
     figure = Figure(figsize=(10, 8), layout="constrained")

@@ -11,7 +11,12 @@ import numpy as np
 
 from camwright.pipeline.base.files import Json
 from camwright.pipeline.results.model_limits import MODEL_LIMITS
-from camwright.pipeline.results.run_reader import CERTIFIED, TrialRecord, load_end_words
+from camwright.pipeline.results.run_reader import (
+    CERTIFIED,
+    TrialRecord,
+    load_end_words,
+    results_sha256,
+)
 from camwright.reports import report_tables, verification_tables
 from camwright.reports.figure_svg import Drawn, drawn_groups
 from camwright.reports.report_data import Material
@@ -407,8 +412,9 @@ def _evidence(material: Material) -> Section:
 def _versions(material: Material) -> Section:
     summary = material.run.summary
     kept = (
-        f" run.json lists the SHA-256 of {len(summary['files'])} files of this run, signoff.json "
-        "of all files; camwright check --verify-record compares them."
+        f" run.json lists the SHA-256 of {len(summary['files'])} results, whose hash stands above, "
+        "signoff.json of all files of this run; camwright check compares them, with "
+        "--verify-record the signatures, with --recompute the checks."
     )
     versions = [(str(k), str(v)) for k, v in summary["versions"].items()]
     return Section(
@@ -422,10 +428,11 @@ def _versions(material: Material) -> Section:
 
 
 def _hashes(material: Material) -> list[tuple[str, str]]:
-    """SHA-256 of input, source and meshes."""
+    """SHA-256 of input, results, source and meshes."""
     summary, mesh = material.run.summary, material.run.final.record["mesh"] or {}
     meshes = mesh.get("sha256")
     digests: dict[str, Json] = {"input": summary["input_sha256"]}
+    digests["results"] = results_sha256(summary["files"])
     digests["source"] = summary["versions"].get("source")
     if isinstance(meshes, Mapping):
         digests |= {f"mesh of the {body}": digest for body, digest in meshes.items()}

@@ -10,6 +10,7 @@ from pathlib import Path
 from camwright.geometry.errors import InputError, ResultError
 from camwright.pipeline.base.progress import SILENT, Progress
 from camwright.pipeline.base.worker_processes import Crew, Task
+from camwright.pipeline.results import signoff
 from camwright.reports import figure_svg, page, pdf, picture_list, scene_page
 from camwright.reports.report_data import FIGURES, Material, read_material
 
@@ -112,18 +113,19 @@ def report(
     Raises
     ------
     ResultError
-        If the folder does not hold a finished run, or a file cannot be written.
+        If the folder does not hold a finished run, or a signed one, or a file cannot be written.
     """
     material = read_material(Path(folder), ahead)
+    written: dict[str, Sequence[Path]] = {}
     try:
         selected = chosen() if parts is None else tuple(parts)
-        if any(part.as_png for part in selected):
-            (material.folder / FIGURES).mkdir(exist_ok=True)
-        written = {}
-        progress.stage("report")
-        for k, part in enumerate(selected, 1):
-            written[part.name] = part.write(material)
-            progress.advance(k, len(selected))
+        with signoff.amended(material.folder):
+            if any(part.as_png for part in selected):
+                (material.folder / FIGURES).mkdir(exist_ok=True)
+            progress.stage("report")
+            for k, part in enumerate(selected, 1):
+                written[part.name] = part.write(material)
+                progress.advance(k, len(selected))
         return written
     except OSError as error:
         raise ResultError(f"{folder}: {error.strerror or error}") from None

@@ -5,6 +5,7 @@
 | `terminal`            | exit codes, output streams, progress, text of a verdict |
 | `run_command`         | `run`, `report`, `init`                                 |
 | `check_command`       | `check` of a run or the preview of a case; `schema`     |
+| `signature_commands`  | `keygen`, `sign`: signatures of the record of a run     |
 | `explain_command`     | `explain`: a key of the case file, or a check           |
 | `comparison_commands` | `compare`, `validate`, `papers`, `compare-mechanisms`   |
 | `contact_command`     | `contact`, `deck`                                       |

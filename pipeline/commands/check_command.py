@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
 
@@ -11,6 +11,7 @@ import typer
 
 from camwright.geometry.errors import CamError, InputError, ResultError
 from camwright.pipeline.commands.terminal import (
+    ALTERED,
     ERROR,
     EXIT_CODE,
     FAILED,
@@ -30,8 +31,10 @@ if TYPE_CHECKING:
 
     from camwright.pipeline.results.junit_report import Clock
     from camwright.pipeline.results.run_reader import CheckRecord
+    from camwright.pipeline.results.signatures import Signature
+    from camwright.pipeline.results.signing_keys import TrustedKey
 
-SEVERITY = (PASSED, INCOMPLETE, FAILED, ERROR)
+SEVERITY = (PASSED, INCOMPLETE, FAILED, ALTERED, ERROR)
 """Exit codes, from the best to the worst."""
 
 
@@ -77,27 +80,48 @@ def check(
     ] = False,
     verify_record: Annotated[
         bool,
-        typer.Option("--verify-record", help="Compare the files of the run with signoff.json."),
+        typer.Option(
+            "--verify-record", help="Verify the signatures of the run; every file must be signed."
+        ),
     ] = False,
+    trusted: Annotated[
+        Path | None,
+        typer.Option(
+            "--trusted",
+            metavar="FILE",
+            help="Public keys whose signatures are valid; default: those of this user.",
+        ),
+    ] = None,
 ) -> int:
     """Print failures, missing data and verdict of a run, or of a preview of a case.
 
     Of several runs and cases a table. A preview has a screen, no verdict.
     Exit code 0: PASS, 1: FAIL, 2: error, 3: INCOMPLETE (data are missing) or OPEN: a preview, or a
-    run below the certified depth, never passes. Of several the worst: error, FAIL, INCOMPLETE.
+    run below the certified depth, never passes; 4: the run is not as recorded in signoff.json, with
+    --verify-record also unsigned or signed by an untrusted key. Of several the worst: error, 4,
+    FAIL, INCOMPLETE.
     """
     from camwright.pipeline.results.check_report import FAIL_ON
 
     if fail_on not in FAIL_ON:
         raise InputError("--fail-on", fail_on, f"one of: {', '.join(FAIL_ON)}")
     patterns, alone = only or [], len(targets) == 1
+    if trusted is not None and not verify_record:
+        raise InputError("--trusted", str(trusted), "stated with --verify-record")
+    keys = None
+    if verify_record:
+        from camwright.pipeline.results.signing_keys import read_trusted
+
+        keys = read_trusted(trusted)
     if alone:
-        if verify_record and not _as_signed(targets[0]):
-            return FAILED
+        record = _recorded(targets[0], keys)
+        if record.faults:
+            return ALTERED
         judged = [_judged(targets[0], patterns, fail_on, baseline, remedies=remedies)]
+        judged[0].document.update(record.entries)
     else:
         _refuse_for_several(len(targets), remedies, baseline, missing)
-        judged = [_of_several(each, patterns, fail_on, verify_record) for each in targets]
+        judged = [_of_several(each, patterns, fail_on, keys) for each in targets]
     if junit is not None:
         from camwright.pipeline.base.files import write_atomic
         from camwright.pipeline.results.junit_report import junit as junit_text
@@ -114,6 +138,8 @@ def check(
         target = targets[0]
         places = Places(str(target), str(_case_of(target)), page_of(target))
         (show_all if whole else show_failures)(documents[0], places)
+        for each in record.signatures or ():
+            stdout.print(f"signed: {each.words}", markup=False)
     else:
         from camwright.pipeline.results.check_report import overview
 
@@ -219,17 +245,20 @@ def _judged(
     )
 
 
-def _of_several(target: Path, only: Sequence[str], fail_on: str, verify_record: bool) -> _Judged:
+def _of_several(
+    target: Path, only: Sequence[str], fail_on: str, keys: Mapping[str, TrustedKey] | None
+) -> _Judged:
     """One of several runs and cases; one that cannot be judged does not hide the others."""
     from camwright.pipeline.results.junit_report import unread_suite
 
     name = str(target)
     try:
-        if verify_record and not _as_signed(target):
-            message, code, word = "not what was signed", FAILED, "CHANGED"
+        record = _recorded(target, keys)
+        if record.faults:
+            message, code, word = "; ".join(record.faults), ALTERED, "ALTERED"
         else:
             judged = _judged(target, only, fail_on, None, name)
-            return judged._replace(document={"target": name, **judged.document})
+            return judged._replace(document={"target": name, **judged.document, **record.entries})
     except CamError as error:
         message, code, word = str(error), ERROR, "ERROR"
         say(message)
@@ -246,14 +275,48 @@ def _comparable(folder: Path, only: Iterable[str]) -> list[CheckRecord]:
     return [record for record in checks if fits(record, only)]
 
 
-def _as_signed(folder: Path) -> bool:
-    """Whether the files of a run are those of its sign-off; prints each changed file."""
+class _Record(NamedTuple):
+    """Faults of the record of a run, one line each; valid signatures, None: not verified."""
+
+    faults: Sequence[str]
+    signatures: Sequence[Signature] | None
+
+    @property
+    def entries(self) -> dict[str, Any]:
+        """Entries of the JSON document."""
+        signed = self.signatures
+        return {} if signed is None else {"signatures": [each.as_record() for each in signed]}
+
+
+def _recorded(target: Path, keys: Mapping[str, TrustedKey] | None) -> _Record:
+    """Record of a run folder, compared with its files; prints each fault. Nothing of a case file.
+
+    Parameters
+    ----------
+    keys : mapping   trusted keys, by which its signatures are verified as well; None: not verified
+    """
+    if not target.is_dir():
+        if keys is not None and target.exists():
+            raise InputError("--verify-record", str(target), "stated with run folders")
+        return _Record((), None)
     from camwright.pipeline.results import signoff
 
-    changed = signoff.changes(folder)
-    for line in changed:
-        say(f"{folder / line}")
-    return not changed
+    differences = signoff.changes(target)
+    lines, signed = [str(each) for each in differences], None
+    # A file that was added is in no result; only a signature is on the whole folder.
+    faults = [str(each) for each in differences if each.words != signoff.ADDED]
+    if keys is not None:
+        from camwright.pipeline.results.signatures import verified
+
+        signed, refused = verified(target, keys)
+        faults = lines = lines + refused
+        if not keys:
+            say("no key is trusted: state --trusted FILE")
+    for line in lines:
+        say(f"{target / line}")
+    for one in signed or () if faults else ():
+        say(f"{target}: signed: {one.words}")
+    return _Record(faults, signed)
 
 
 def _checked_run(folder: Path) -> tuple[dict[str, Any], Clock]:

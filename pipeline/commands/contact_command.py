@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from contextlib import nullcontext
 from pathlib import Path
 from typing import Annotated
 
@@ -86,6 +87,7 @@ def deck(
     """
     from camwright.pipeline.base import units
     from camwright.pipeline.results import contact_deck as decks
+    from camwright.pipeline.results import signoff
 
     text = angle if any(c.isalpha() or c == "°" for c in angle) else f"{angle} deg"
     theta = units.parse(text, "deg", "--angle")
@@ -96,8 +98,9 @@ def deck(
         if out is None
         else out
     )
-    path.parent.mkdir(parents=True, exist_ok=True)
-    solved = decks.deck(folder, theta, path, load_case)
+    with signoff.amended(folder) if out is None else nullcontext():
+        path.parent.mkdir(parents=True, exist_ok=True)
+        solved = decks.deck(folder, theta, path, load_case)
     p0 = units.shown(solved.solution.p0, "MPa", 5)
     stdout.print(f"deck: {path} (peak pressure {p0})", markup=False)
     return PASSED

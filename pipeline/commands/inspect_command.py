@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import nullcontext
 from pathlib import Path
 from typing import Annotated
 
@@ -32,6 +33,10 @@ def inspect(
     jobs: Annotated[
         int | None, typer.Option(help="Number of processes of the certificate.")
     ] = None,
+    out: Annotated[
+        Path | None,
+        typer.Option("--out", metavar="DIR", help="Folder to write; default: inspection/ of DIR."),
+    ] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print the record as JSON.")] = False,
 ) -> int:
     """Check a measured cam against its drawing.
@@ -40,6 +45,7 @@ def inspect(
     PASS, 1: FAIL, 2: error, 3: INCOMPLETE (data are missing).
     """
     from camwright.pipeline.base import units
+    from camwright.pipeline.results import signoff
     from camwright.pipeline.results.run_folder import drawn_cam
     from camwright.pipeline.studies import cam_inspection
     from camwright.reports.inspection_pictures import draw
@@ -50,13 +56,14 @@ def inspect(
     points = cam_inspection.read_measured(measured)
     case, contour = drawn_cam(folder)
     band = case.workshop_order.tolerance if width is None else width
-    with progress_shown() as progress:
+    target = folder / cam_inspection.FOLDER if out is None else out
+    with progress_shown() as progress, signoff.amended(folder) if out is None else nullcontext():
         part = cam_inspection.inspect_part(
             case, contour, points, keep_phase=keep_phase, jobs=jobs, progress=progress
         )
         progress.stage("pictures")
-        record = cam_inspection.write_inspection(folder, part, band)
-        picture = draw(folder, units.in_unit(band, "um"))
+        record = cam_inspection.write_inspection(folder, part, band, target)
+        picture = draw(folder, units.in_unit(band, "um"), target)
     if as_json:
         show_json(record)
     else:

@@ -18,7 +18,7 @@ from camwright.pipeline.base.progress import Bars, Lines, Progress
 if TYPE_CHECKING:
     from camwright.pipeline.results.verdict_summary import Places
 
-PASSED, FAILED, ERROR, INCOMPLETE, INTERRUPTED = 0, 1, 2, 3, 130
+PASSED, FAILED, ERROR, INCOMPLETE, ALTERED, INTERRUPTED = 0, 1, 2, 3, 4, 130
 EXIT_CODE = {"pass": PASSED, "incomplete": INCOMPLETE, "fail": FAILED}
 """Exit code by verdict."""
 

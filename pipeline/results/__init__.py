@@ -8,6 +8,8 @@ In the order of a run:
 | `run_reader`           | a finished run read from its folder; schema of the records            |
 | `model_limits`         | limits of the model, for report, sign-off record and documentation    |
 | `signoff`              | sign-off record: figures, evidence, validity limits, hashes of files  |
+| `signing_keys`         | Ed25519 keys: new, read, trusted                                      |
+| `signatures`           | signatures of the sign-off record: in-toto statements, DSSE envelopes |
 | `record_schemas`       | JSON Schemas of summary, checks and sign-off record                   |
 | `run_folder`           | the folder of a run while it is written; resumption                   |
 | `run_records`          | columns of the tables, key figures, records of trial and crank speed  |
@@ -29,6 +31,7 @@ In the order of a run:
 | -------------------------- | ---------------------------------------------------- |
 | ``run.json``               | summary: versions, verdict, key figures, hashes      |
 | ``signoff.json``           | sign-off record                                      |
+| ``signoff.intoto.jsonl``   | signatures of that record                            |
 | ``1_torque.csv``           | engine torque and its components                     |
 | ``1_speed.csv``            | crank speed with and without the cam                 |
 | ``trial_N/2_spline.csv``   | knots and coefficients of the lift                   |

@@ -444,6 +444,8 @@ def _refuse_strangers(out: Path, case: Case) -> None:
     entries = sorted(entry.name for entry in out.iterdir())
     if not entries:
         return
+    if signoff.SIGNATURES in entries:
+        raise ResultError(f"{out}: holds a signed run; choose another folder or remove it")
     strange = [name for name in entries if not _OURS.fullmatch(name)]
     if strange or "run.json" not in entries:
         name = (strange or entries)[0]

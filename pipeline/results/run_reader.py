@@ -5,6 +5,7 @@ Reading needs no solver and no case parser.
 
 from __future__ import annotations
 
+import hashlib
 import math
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
@@ -334,6 +335,8 @@ def read_summary(path: Path) -> Summary:
     _require(file, summary, SummaryOfAnyRun.__annotations__)
     if not isinstance(summary["trials"], int) or summary["trials"] < 1:
         raise ResultError(f"{file}: trials = {summary['trials']}, must be a count >= 1")
+    if not isinstance(summary["files"], dict):
+        raise ResultError(f"{file}: files must be hashes by name")
     final = summary["final_trial"]
     if not isinstance(final, int) or not 1 <= final <= summary["trials"]:
         limit = f"must be from 1 to {summary['trials']}"
@@ -356,6 +359,15 @@ def input_sha256(path: Path) -> str:
         for file in (sorted(inputs.iterdir()) if inputs.is_dir() else ())
     }
     return hash_inputs(read_text(path / "case.toml"), kept)
+
+
+def results_sha256(files: Mapping[str, str]) -> str:
+    """Hash of the results of a run: of the lines `HASH  NAME`, by name, of its `files`.
+
+    These are the lines that sha256sum prints.
+    """
+    lines = (f"{digest}  {name}\n" for name, digest in sorted(files.items()))
+    return hashlib.sha256("".join(lines).encode()).hexdigest()
 
 
 def is_result(name: str) -> bool:

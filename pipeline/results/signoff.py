@@ -1,18 +1,22 @@
 """Sign-off record of a run: figures with error bars, verdict, evidence, hash of every file.
 
-It follows from the files of the run alone and can be reproduced from them.
+It follows from the files of the run alone and can be reproduced from them. Itself it is signed, see
+`signatures`.
 """
 
 from __future__ import annotations
 
 import platform
-from collections.abc import Mapping, Sequence
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from pathlib import Path
+from typing import NamedTuple
 
+from camwright.geometry.errors import ResultError
 from camwright.pipeline.base.files import (
     Json,
     file_hashes,
-    files_in,
     json_text,
     read_json,
     write_atomic,
@@ -22,9 +26,9 @@ from camwright.pipeline.results.model_limits import MODEL_LIMITS, limitations
 from camwright.pipeline.results.run_reader import CheckRecord, to_be_confirmed
 
 NAME = "signoff.json"
-PRESENTATION = ("figures", "exports", "inspection")
-"""Folders of files that are drawn from the results or measured later; they are not signed."""
-PRESENTATION_SUFFIXES = (".html", ".png", ".svg", ".pdf")
+SIGNATURES = "signoff.intoto.jsonl"
+ADDED = "was added since the sign-off"
+_SHA256 = re.compile(r"[0-9a-f]{64}")
 
 
 def record(path: Path) -> dict[str, Json]:
@@ -35,6 +39,11 @@ def record(path: Path) -> dict[str, Json]:
     ResultError
         If a file of the run is missing or unreadable.
     """
+    return _record(path, hashes(path))
+
+
+def _record(path: Path, files: Mapping[str, str]) -> dict[str, Json]:
+    """The record with these hashes of files."""
     summary = run_reader.read_summary(path)
     trial = path / f"trial_{summary['final_trial']}"
     made, checks = run_reader.read_trial_record(trial), run_reader.read_checks(trial)
@@ -43,6 +52,7 @@ def record(path: Path) -> dict[str, Json]:
         "schema": run_reader.SCHEMA,
         "case": summary["case"],
         "case_sha256": run_reader.input_sha256(path),
+        "results_sha256": run_reader.results_sha256(summary["files"]),
         "code": {name: summary["versions"].get(name) for name in ("camwright", "source")},
         "environment": {
             "platform": summary["platform"],
@@ -82,8 +92,7 @@ def record(path: Path) -> dict[str, Json]:
             "statements": _statements(checks),
         },
         **limitations(),
-        "files": hashes(path),
-        "presentation": [name for name, _ in files_in(path) if is_presentation(name)],
+        "files": files,
     }
 
 
@@ -102,40 +111,107 @@ def write(path: Path) -> None:
     write_atomic(path / NAME, json_text(record(path)) + "\n")
 
 
-def changes(path: Path) -> list[str]:
-    """Differences from the sign-off record, one line a file; empty without any.
+@contextmanager
+def amended(path: Path) -> Iterator[None]:
+    """Put files that are written into a finished run into its record.
+
+    A record that differs from the files before is left as it is; a folder without a record is none
+    of a finished run.
 
     Raises
     ------
     ResultError
-        If the record is missing, unreadable or of another schema.
+        If the run is signed.
     """
-    signed = read_json(path / NAME)
-    run_reader.require_schema(path / NAME, signed)
-    known = signed.get("files") if isinstance(signed, dict) else None
-    if not isinstance(known, Mapping):
-        return [f"{NAME}: holds no hashes"]
+    if (path / SIGNATURES).exists():
+        raise ResultError(f"{path}: is signed, nothing more is written into it; use a copy")
+    as_recorded = (path / NAME).is_file() and not changes(path)
+    try:
+        yield
+    finally:
+        if as_recorded:
+            write(path)
+
+
+class Difference(NamedTuple):
+    """Difference of a run from its record: relative name of the file, and what it is in words."""
+
+    name: str
+    words: str
+
+    def __str__(self) -> str:
+        return f"{self.name}: {self.words}"
+
+
+def changes(path: Path) -> list[Difference]:
+    """Differences of a run from its record, by name; empty without any.
+
+    The signatures are not among the files, see `signatures.verified`.
+
+    Raises
+    ------
+    ResultError
+        If the folder holds no run that can be read.
+    """
+    try:
+        known = _recorded_hashes(path, recorded := read_json(path / NAME))
+    except ResultError as error:
+        run_reader.read_summary(path)  # raises where the folder holds no run at all
+        return [Difference(NAME, str(error).removeprefix(f"{path / NAME}: "))]
     now = hashes(path)
-    differences = [f"{name}: is missing since the sign-off" for name in known if name not in now]
-    differences += [f"{name}: was added since the sign-off" for name in now if name not in known]
-    differences += [
-        f"{name}: was changed since the sign-off"
-        for name in known
-        if name in now and now[name] != known[name]
+    differences = [
+        Difference(name, f"{'was changed' if name in now else 'is missing'} since the sign-off")
+        for name, digest in known.items()
+        if now.get(name) != digest
     ]
-    return sorted(differences) or _disagreements(signed, record(path))
+    unknown = [name for name in now if name not in known]
+    own = _of_every_run(path) if unknown else ()
+    differences += (
+        Difference(NAME, f"holds no hash of {name}") if name in own else Difference(name, ADDED)
+        for name in unknown
+    )
+    differences += (Difference(name, ADDED) for name in _unhashed(path))
+    return sorted(differences) or _disagreements(recorded, _record(path, now))
+
+
+def _recorded_hashes(path: Path, recorded: Json) -> dict[str, str]:
+    """Hashes by file of a record; ResultError if it is none of this form."""
+    run_reader.require_schema(path / NAME, recorded)
+    known = recorded.get("files") if isinstance(recorded, dict) else None
+    if not isinstance(known, dict) or not all(_is_sha256(each) for each in known.values()):
+        raise ResultError(f"{path / NAME}: holds no hashes")
+    return known
 
 
 def hashes(path: Path) -> dict[str, str]:
-    """SHA-256 of every input, result and field file, without the record and presentation."""
-    return file_hashes(path, lambda name: name != NAME and not is_presentation(name))
+    """SHA-256 of every file of a run, without those of the record and its signatures."""
+    return file_hashes(path, lambda name: name not in (NAME, SIGNATURES))
 
 
-def is_presentation(name: str) -> bool:
-    """Whether a file is drawn from the results and can be drawn again."""
-    return name.startswith(tuple(f"{f}/" for f in PRESENTATION)) or name.endswith(
-        PRESENTATION_SUFFIXES
-    )
+def _of_every_run(path: Path) -> tuple[str, ...]:
+    """Case, summary and the results that the summary lists."""
+    try:
+        results = run_reader.read_summary(path)["files"]
+    except ResultError:
+        results = {}
+    return ("case.toml", "run.json", *results)
+
+
+def _unhashed(path: Path) -> Iterator[str]:
+    """What no run writes: hidden files, linked folders, and what is neither file nor folder."""
+    for entry in sorted(path.rglob("*")):
+        parts = entry.relative_to(path).parts
+        hidden = any(part.startswith(".") for part in parts) and entry.is_file()
+        if (
+            hidden
+            or (entry.is_symlink() and entry.is_dir())
+            or not (entry.is_file() or entry.is_dir())
+        ):
+            yield "/".join(parts)
+
+
+def _is_sha256(value: Json) -> bool:
+    return isinstance(value, str) and _SHA256.fullmatch(value) is not None
 
 
 def environment() -> str:
@@ -143,26 +219,19 @@ def environment() -> str:
     return f"{platform.system()} {platform.machine()}"
 
 
-def _disagreements(signed: Mapping[str, Json], drawn: Mapping[str, Json]) -> list[str]:
+def _disagreements(recorded: Mapping[str, Json], drawn: Mapping[str, Json]) -> list[Difference]:
     """Entries of the record that differ from the files of the run.
 
-    The limitations are those of the version that signed; they follow from no file of the run.
+    The limitations are those of the version that wrote them; they follow from no file of the run.
     """
-    left_out = ("presentation", "files", "limitations", "singularities")
-    words = [
-        name for name in drawn if name not in left_out and not _agree(signed.get(name), drawn[name])
+    left_out = tuple(limitations())
+    names = [*drawn, *(name for name in recorded if name not in drawn)]
+    return [
+        Difference(NAME, f"{name} is not what the files of the run say")
+        for name in names
+        if (name not in left_out and recorded.get(name) != drawn.get(name))
+        or (name in recorded) != (name in drawn)
     ]
-    return [f"{NAME}: {name} is not what the files of the run say" for name in words]
-
-
-def _agree(signed: Json, drawn: Json) -> bool:
-    """Whether all signed values agree; a later version may add entries."""
-    if isinstance(signed, Mapping) and isinstance(drawn, Mapping):
-        return all(key in drawn and _agree(value, drawn[key]) for key, value in signed.items())
-    if isinstance(signed, list) and isinstance(drawn, list):
-        same = len(signed) == len(drawn)
-        return same and all(_agree(a, b) for a, b in zip(signed, drawn, strict=True))
-    return signed == drawn
 
 
 def _figure(check: CheckRecord) -> dict[str, Json]:

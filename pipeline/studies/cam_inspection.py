@@ -100,14 +100,14 @@ def inspect_part(
     return RealPart(fit, real, replace(trial, why="measured contour"))
 
 
-def write_inspection(run: Path, part: RealPart, tolerance: float) -> Record:
-    """Write ``inspection/`` of a run folder: deviations, cycle, checks and record.
+def write_inspection(run: Path, part: RealPart, tolerance: float, folder: Path) -> Record:
+    """Write the files of an inspection into a folder: deviations, cycle, checks and record.
 
     Returns
     -------
     dict    the contents of ``inspection.json``
     """
-    folder, fit = run / FOLDER, part.fit
+    fit = part.fit
     order = np.argsort(fit.theta)
     deviation = {
         CAM_ANGLE: fit.theta[order],

@@ -57,7 +57,7 @@ def shell(command: str, folder: Path) -> subprocess.CompletedProcess[str]:
     return subprocess.run(
         ["bash", "-c", command],
         cwd=folder,
-        env={**os.environ, "PATH": path},
+        env={**os.environ, "PATH": path, "XDG_CONFIG_HOME": str(folder / "config")},
         capture_output=True,
         text=True,
         check=False,

@@ -207,24 +207,57 @@ def test_several_runs_give_one_table_one_file_and_the_worst_code(
 
 def test_several_runs_and_their_records(run: Path, tmp_path: Path, command: Command) -> None:
     good, other = write_run(tmp_path / "good"), write_run(tmp_path / "other")
-    assert command("check", good, other, "--verify-record")[0] == 0
+    assert command("check", good, other)[0] == 0
     (other / "trial_1" / "5_cycle.csv").write_text("")
-    code, out, err = command("check", good, other, "--verify-record")
-    assert code == 1
-    assert "CHANGED" in out and "5_cycle.csv: was changed" in err
+    code, out, err = command("check", good, other)
+    assert code == 4
+    assert "ALTERED" in out and "5_cycle.csv: was changed" in err
+    assert command("check", good, tmp_path / "none")[0] == 2
     code, _, err = command("check", good, run, "--baseline", good)
     assert code == 2 and "--baseline" in err
 
 
 def test_a_changed_byte_fails_the_record_and_is_named(run: Path, command: Command) -> None:
-    assert command("check", run, "--verify-record", "--fail-on", "never")[0] == 0
+    assert command("check", run, "--fail-on", "never")[0] == 0
     file = run / "trial_1" / "5_cycle.csv"
     content = bytearray(file.read_bytes())
     content[-3] ^= 1
     file.write_bytes(bytes(content))
-    code, _, err = command("check", run, "--verify-record", "--fail-on", "never")
-    assert code == 1
+    code, _, err = command("check", run, "--fail-on", "never")
+    assert code == 4
     assert "5_cycle.csv: was changed" in err
+
+
+@pytest.mark.parametrize(
+    ("content", "words"),
+    [
+        (None, "No such file or directory"),
+        ("", "not JSON"),
+        ("[]", "holds no hashes"),
+        ("{}", "holds no hashes"),
+        ('{"schema": 1, "files": {}}', "schema = 1, must be"),
+        ('{"files": {"case.toml": -1}}', "holds no hashes"),
+        ({"verdict": "fail"}, "verdict is not what the files of the run say"),
+        ({"scope": {}}, "scope is not what the files of the run say"),
+        ({"figures": 1e99}, "figures is not what the files of the run say"),
+        ({"approved": True}, "approved is not what the files of the run say"),
+        ({"files": {}}, "holds no hash of trial_1/6_checks.json"),
+    ],
+)
+def test_a_record_that_is_missing_empty_or_absurd_is_named(
+    tmp_path: Path, command: Command, content: object, words: str
+) -> None:
+    out = write_run(tmp_path / "good")
+    file = out / "signoff.json"
+    if content is None:
+        file.unlink()
+    elif isinstance(content, str):
+        file.write_text(content)
+    else:
+        file.write_text(json.dumps(json.loads(file.read_text()) | content))
+    code, _, err = command("check", out)
+    assert words in err
+    assert code == 4
 
 
 def test_a_case_file_is_previewed_and_never_passes(tmp_path: Path, command: Command) -> None:
@@ -248,7 +281,10 @@ def test_a_case_file_is_previewed_and_never_passes(tmp_path: Path, command: Comm
 
 def test_a_finished_run_is_checked_from_its_folder(tmp_path: Path, command: Command) -> None:
     out = write_run(tmp_path / "good")
-    assert command("check", out, "--verify-record")[0] == 0
+    assert command("check", out)[0] == 0
+    (out / "notes.txt").write_text("mine")
+    code, _, err = command("check", out)
+    assert (code, err) == (0, f"camwright: {out}/notes.txt: was added since the sign-off\n")
 
 
 SCOPE = {"not_covered": ["key", "gear"], "reason": "<b>rig</b> & 'key' [red]\n\t{0} %s $(id) עברית"}
@@ -282,7 +318,7 @@ def test_the_scope_is_stated_in_every_record(tmp_path: Path, command: Command) -
     edited = json.loads((out / "run.json").read_text())
     edited["scope"]["not_covered"] = ["key"]
     (out / "run.json").write_text(json.dumps(edited))
-    assert command("check", out)[0] == 2
+    assert command("check", out)[0] == 4
 
 
 def test_a_run_without_data_is_incomplete_and_without_checks_fails(

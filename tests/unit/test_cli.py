@@ -216,9 +216,9 @@ def test_check_judges_from_the_folder_alone(
 def test_check_of_what_is_no_run(tmp_path: Path, command: Command) -> None:
     out = write_run(tmp_path / "run")
     (out / "trial_1" / "5_cycle.csv").write_text("load_case\n")
-    for folder in (tmp_path / "none", tmp_path, out):
+    for folder, expected in ((tmp_path / "none", 2), (tmp_path, 2), (out, 4)):
         code, text, err = command("check", folder, "--json")
-        assert (code, text) == (2, "")
+        assert (code, text) == (expected, "")
         assert is_one_line(err)
 
 

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import hashlib
 import json
+import os
 from pathlib import Path
 
 import pytest
@@ -18,9 +20,10 @@ from camwright.pipeline.results.run_folder import RunFolder
 @pytest.fixture
 def run(tmp_path: Path) -> Path:
     out = write_run(tmp_path / "run")
-    for name in ("8_report.html", "figures/a.png", "exports/cam.dxf"):
-        (out / name).parent.mkdir(exist_ok=True)
-        (out / name).write_text("drawn")
+    with signoff.amended(out):
+        for name in ("8_report.html", "figures/a.png", "exports/cam.dxf"):
+            (out / name).parent.mkdir(exist_ok=True)
+            (out / name).write_text("drawn")
     return out
 
 
@@ -55,9 +58,21 @@ def test_the_record_is_whole(tmp_path: Path) -> None:
     ]
     assert all(one["check"] for one in record["evidence"]["statements"])
     assert {"case.toml", "run.json", "fields/a.vtu", "trial_1/5_cycle.csv"} <= set(record["files"])
-    assert record["presentation"] == ["8_report.html"]
+    assert "8_report.html" in record["files"]
     assert "signoff.json" not in record["files"]
+    lines = (f"{digest}  {name}\n" for name, digest in sorted(run_files(out).items()))
+    expected = hashlib.sha256("".join(lines).encode()).hexdigest()
+    assert record["results_sha256"] == expected
     assert all(len(digest) == 64 for digest in record["files"].values())
+
+
+def run_files(out: Path) -> dict[str, str]:
+    files: dict[str, str] = json.loads((out / "run.json").read_text())["files"]
+    return files
+
+
+def said(run: Path) -> list[str]:
+    return [str(each) for each in signoff.changes(run)]
 
 
 def test_untouched_nothing_differs(run: Path) -> None:
@@ -72,35 +87,64 @@ def test_one_byte_is_seen_and_named(run: Path, name: str) -> None:
     content = bytearray((run / name).read_bytes())
     content[len(content) // 2] ^= 1
     (run / name).write_bytes(bytes(content))
-    assert signoff.changes(run) == [f"{name}: was changed since the sign-off"]
+    assert said(run) == [f"{name}: was changed since the sign-off"]
 
 
 def test_missing_and_added_files_are_named(run: Path) -> None:
     (run / "trial_1" / "3_contour.csv").unlink()
     (run / "fields").mkdir()
     (run / "fields" / "b.vtu").write_text("new")
-    assert signoff.changes(run) == [
+    assert said(run) == [
         "fields/b.vtu: was added since the sign-off",
         "trial_1/3_contour.csv: is missing since the sign-off",
     ]
 
 
-def test_presentation_may_be_drawn_again(run: Path) -> None:
-    (run / "8_report.html").write_text("drawn again")
-    (run / "figures" / "b.png").write_text("one more")
-    assert signoff.changes(run) == []
+def test_presentation_is_recorded_when_it_is_drawn_again(run: Path) -> None:
+    (run / "8_report.html").write_text("edited")
+    assert said(run) == ["8_report.html: was changed since the sign-off"]
+    with signoff.amended(run):  # an edited folder is not recorded by drawing more
+        (run / "figures" / "b.png").write_text("one more")
+    assert said(run) == [
+        "8_report.html: was changed since the sign-off",
+        "figures/b.png: was added since the sign-off",
+    ]
+    signoff.write(run)
+    with signoff.amended(run):
+        (run / "8_report.html").write_text("drawn again")
+    assert said(run) == []
+
+
+def test_a_folder_that_is_no_run_is_not_recorded(tmp_path: Path) -> None:
+    with signoff.amended(tmp_path):
+        (tmp_path / "a").write_text("")
+    assert [path.name for path in tmp_path.iterdir()] == ["a"]
+
+
+@pytest.mark.parametrize("made", ["link", "hidden", "pipe"])
+def test_what_no_run_writes_is_named(run: Path, made: str) -> None:
+    if made == "link":
+        (run / "trial_2").symlink_to(run / "trial_1")
+    elif made == "hidden":
+        (run / "trial_1" / ".x").write_text("")
+    else:
+        os.mkfifo(run / "pipe")
+    name = {"link": "trial_2", "hidden": "trial_1/.x", "pipe": "pipe"}[made]
+    assert said(run) == [f"{name}: was added since the sign-off"]
 
 
 def test_a_forged_verdict_is_seen(run: Path) -> None:
     file = run / "signoff.json"
     record = json.loads(file.read_text())
     file.write_text(json.dumps(record | {"verdict": "fail"}))
-    assert signoff.changes(run) == ["signoff.json: verdict is not what the files of the run say"]
+    assert said(run) == ["signoff.json: verdict is not what the files of the run say"]
 
 
 def test_without_a_record_nothing_is_verified(run: Path) -> None:
     (run / "signoff.json").unlink()
-    with pytest.raises(ResultError, match=r"signoff\.json"):
-        signoff.changes(run)
+    assert said(run) == ["signoff.json: No such file or directory"]
     (run / "signoff.json").write_text("[]")
-    assert signoff.changes(run) == ["signoff.json: holds no hashes"]
+    assert said(run) == ["signoff.json: holds no hashes"]
+    (run / "run.json").unlink()
+    with pytest.raises(ResultError, match=r"run\.json is missing"):
+        signoff.changes(run)
