@@ -16,7 +16,7 @@ from camwright.pipeline.case.case_values import refused_as_written
 from camwright.pipeline.case.load_case_torque import (
     engine_torques,
     measurement_record,
-    pressure_words,
+    measurement_words,
 )
 from camwright.pipeline.case.plausibility import implausible
 from camwright.pipeline.checks.tolerance_corners import corners_record
@@ -111,7 +111,7 @@ def _solved(
     torques = engine_torques(case)
     for finding in implausible(case, torques):
         watch.note(f"warning: {finding.how}")
-    for line in pressure_words(case):
+    for line in measurement_words(case):
         watch.note(line)
     if torques:
         folder.write_torque(torque_columns(torques[case.load_cases[0].name]))

@@ -58,6 +58,11 @@ MEASUREMENT = {
     "bandwidth_Hz": ("bandwidth", "Hz"),
     "torque_error_bar_max_Nm": ("torque, greatest 95 % error bar", "N m"),
     "torque_error_bar_percent": ("the same, of peak to peak", "%"),
+    "torque_wheel_bar_max_Nm": ("its part due to the trigger wheel", "N m"),
+    "pitch_tolerance_deg": ("pitch tolerance of the wheel", "deg"),
+    "pitch_errors_rms_deg": ("pitch errors of the wheel, rms, corrected", "deg"),
+    "pitch_errors_left_deg": ("pitch errors that remain, rms", "deg"),
+    "half_orders_percent": ("half orders in the variance of the speed", "%"),
 }
 STATES = {
     "before": "engine alone",

@@ -24,6 +24,7 @@ In the order of the calculation:
 | `added_tables`         | tables that complete a case; missing keys    |                  |
 | `case_file`            | reading of a case file                       |                  |
 | `case_values`          | values by dotted key; the case with others   |                  |
+| `speed_notes`          | a measured speed: its wheel and cycle        |                  |
 | `load_case_torque`     | engine torque of each load case              | T, N m           |
 | `template`             | first case of each kind of source            |                  |
 | `plausibility`         | values beyond their usual ranges             |                  |

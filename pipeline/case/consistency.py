@@ -16,7 +16,7 @@ from camwright.pipeline.case.value_sources import require_known
 from camwright.pipeline.contact.cam_body import CamBody
 from camwright.pipeline.engine.cylinder import CylinderEngine
 from camwright.pipeline.engine.pickup_voltage import VoltageTable
-from camwright.pipeline.engine.speed_trace import SpeedTable
+from camwright.pipeline.engine.speed_file import SpeedTable
 from camwright.pipeline.follower.roller import Roller
 from camwright.pipeline.follower.spring import Spring
 

@@ -11,7 +11,7 @@ from camwright.pipeline.case.section import Table
 from camwright.pipeline.engine.cylinder import CylinderEngine
 from camwright.pipeline.engine.pickup_voltage import VoltageTable
 from camwright.pipeline.engine.pressure_trace import PressureTable
-from camwright.pipeline.engine.speed_trace import SpeedTable
+from camwright.pipeline.engine.speed_file import SpeedTable
 from camwright.pipeline.engine.torque import TorqueTable
 
 Engine = Annotated[
@@ -32,5 +32,5 @@ def engine_files(engine: Engine | None) -> Iterator[tuple[str, str]]:
     yield "engine.file", engine.file
     if isinstance(engine, PressureTable) and engine.motored_file is not None:
         yield "engine.motored_file", engine.motored_file
-    if isinstance(engine, SpeedTable) and engine.reference_file is not None:
-        yield "engine.reference_file", engine.reference_file
+    if isinstance(engine, (SpeedTable, VoltageTable)) and engine.reference is not None:
+        yield "engine.reference.file", engine.reference.file

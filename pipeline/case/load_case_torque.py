@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
@@ -12,6 +13,7 @@ from camwright.geometry.errors import InputError
 from camwright.pipeline.base import disk_cache
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.requirements_section import LoadCase
+from camwright.pipeline.case.speed_notes import calibration_record, speed_notes
 from camwright.pipeline.engine import (
     combustion,
     cylinder,
@@ -34,7 +36,8 @@ from camwright.pipeline.engine.pressure_trace import (
     pressure_from_csv,
     torque_from_pressure,
 )
-from camwright.pipeline.engine.speed_trace import SpeedTable, SpeedTrace, speed_from_csv
+from camwright.pipeline.engine.speed_file import SpeedTable, speed_from_csv
+from camwright.pipeline.engine.speed_trace import SpeedTrace
 from camwright.pipeline.engine.torque import (
     Torque,
     TorqueTable,
@@ -160,18 +163,14 @@ def pressure(case: Case, engine: PressureTable) -> tuple[BrakeBalance, PressureT
     return balance.guarded(field), trace
 
 
-def pressure_words(case: Case) -> Iterator[str]:
-    """A line on the indicated torque of a measured pressure; none for another engine."""
-    if isinstance(case.engine, PressureTable):
-        yield pressure(case, case.engine)[0].words()
-
-
 def crank_speed(case: Case, engine: SpeedTable | VoltageTable) -> SpeedTrace:
     """Measured crank speed of a case."""
+    if case.crankshaft is None:
+        raise InputError("crankshaft.inertia", "missing", "given")
+    calibrator = engine.calibrator(case.crankshaft.inertia, case.path)
     if isinstance(engine, VoltageTable):
         path = case.path(engine.file)
-        return speed_from_voltage(path, engine.wheel, engine.band, engine.threshold)
-    reference = engine.reference_file
+        return speed_from_voltage(path, engine.wheel, engine.band, engine.threshold, calibrator)
     return speed_from_csv(
         case.path(engine.file),
         engine.wheel,
@@ -180,11 +179,11 @@ def crank_speed(case: Case, engine: SpeedTable | VoltageTable) -> SpeedTrace:
         column=engine.column,
         unit=engine.speed_unit,
         averaged_over=engine.averaged_over,
-        reference=None if reference is None else case.path(reference),
+        calibrator=calibrator,
     )
 
 
-def measurement_record(case: Case) -> Mapping[str, str | float] | None:
+def measurement_record(case: Case) -> Mapping[str, Any] | None:
     """Statistics of a measurement for ``run.json``; None for a model."""
     engine = case.engine
     if isinstance(engine, PressureTable):
@@ -221,5 +220,20 @@ def measurement_record(case: Case) -> Mapping[str, str | float] | None:
             "torque_noise_floor_Nm": speed.noise_floor(inertia),
             "torque_error_bar_max_Nm": bar,
             "torque_error_bar_percent": 100.0 * bar / speed.torque(inertia).peak_to_peak,
+            "torque_wheel_bar_max_Nm": float(speed.wheel_bar(inertia).max()),
+            "half_orders_percent": 100.0 * speed.half_order_share,
+            **calibration_record(speed.calibration),
+            "notes": list(speed_notes(speed, inertia, engine.running_gear)),
         }
     return None
+
+
+def measurement_words(case: Case) -> Iterator[str]:
+    """Lines on the indicated torque of a measured pressure, on wheel and cycle of a measured speed;
+    none for another engine."""
+    engine = case.engine
+    if isinstance(engine, PressureTable):
+        yield pressure(case, engine)[0].words()
+    if isinstance(engine, (SpeedTable, VoltageTable)) and case.crankshaft is not None:
+        trace = crank_speed(case, engine)
+        yield from speed_notes(trace, case.crankshaft.inertia, engine.running_gear)

@@ -23,7 +23,7 @@ from camwright.pipeline.engine.modelled_trace import (
     torque_text,
     voltage_text,
 )
-from camwright.pipeline.engine.speed_trace import WheelTable
+from camwright.pipeline.engine.speed_file import WheelTable
 
 Kind = Literal["cylinder", "table", "pressure", "speed", "voltage", "lift", "eccentric"]
 KINDS: tuple[Kind, ...] = get_args(Kind)

@@ -333,7 +333,7 @@ def _checked_case(path: Path, remedies: bool) -> tuple[dict[str, Any], Clock]:
     """Checks of the preview of a case, with the clock of the preview."""
     from camwright.pipeline.base.progress import utc
     from camwright.pipeline.case.case_file import read_case
-    from camwright.pipeline.case.load_case_torque import engine_torques, pressure_words
+    from camwright.pipeline.case.load_case_torque import engine_torques, measurement_words
     from camwright.pipeline.case.plausibility import implausible
     from camwright.pipeline.preview import preview_case
     from camwright.pipeline.results.junit_report import Clock
@@ -343,7 +343,7 @@ def _checked_case(path: Path, remedies: bool) -> tuple[dict[str, Any], Clock]:
     case = read_case(path)
     for finding in implausible(case, engine_torques(case)):
         say(f"warning: {finding.how}")
-    for line in pressure_words(case):
+    for line in measurement_words(case):
         say(line)
     with progress_shown() as progress:
         progress.stage(f"preview of {case.name}")

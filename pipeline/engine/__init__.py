@@ -20,7 +20,11 @@ In the order of the calculation:
 | `crankshaft`             | crank speed from torques, energy swing      | J, kg m2; omega, rad/s  |
 | `torque_error_bar`       | noise of a speed record to torque           | T, N m                  |
 | `band_fit`               | band-limited series through a cycle         | omega, rad/s            |
+| `passing_times`          | passing times of edges, mean over cycles    | t, s                    |
+| `pitch_errors`           | places of the edges from several speeds     | theta, rad              |
+| `wheel_calibration`      | pitch errors or tolerance of a wheel        | theta, rad              |
 | `speed_trace`            | measured crank speed, its torque            | omega, rad/s; T, N m    |
+| `speed_file`             | crank speed from a file                     | t, s; omega, rad/s      |
 | `pickup_voltage`         | edges from the voltage of a pick-up         | U, V; t, s              |
 | `torque_consistency`     | torque, speed, inertia and work compared    | J, kg m2; E, J          |
 | `modelled_trace`         | trace files of a modelled engine            | T, N m; p, Pa; t, s; V  |

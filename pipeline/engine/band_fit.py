@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from math import pi
 
 import numpy as np
 
 from camwright.geometry.arrays import Array, readonly
 from camwright.pipeline.engine.cylinder import CYCLE_ANGLE
+from camwright.pipeline.engine.pitch_errors import PitchErrors
 from camwright.pipeline.engine.torque import SAMPLES, uniform_cycle
 from camwright.pipeline.engine.torque_error_bar import SlopeNoise
 
@@ -37,6 +39,40 @@ def fitted(matrix: Array, weights: Array, noise: Array, unit: float) -> tuple[Ar
     spread = left.T @ left
     freedom = float(np.trace(spread) ** 2 / (spread**2).sum())
     return readonly(points(theta, last) @ solve), SlopeNoise.of(slope, freedom)
+
+
+def remaining_band(matrix: Array, weights: Array, late: Array, errors: PitchErrors) -> Array:
+    """Half-width (720,) of the 95 % band about the slope domega/dtheta that pitch errors leave.
+
+    It comes beside that of the noise: the covariance of both, which stems from the same record, is
+    in it.
+
+    Parameters
+    ----------
+    matrix, weights : array   as in `fitted`
+    late : array (n, 2 e)     rad/s, from the angles by which edges are seen too late, in the first
+                              turn and the second, to the observations, over their mean slowness
+    errors : PitchErrors
+    """
+
+    def gain(noise: Array) -> SlopeNoise:
+        return fitted(matrix, weights, late @ noise, 1.0)[1]
+
+    twice = np.tile(errors.covariance, (2, 2))
+    if not twice.any():
+        return np.zeros(SAMPLES)
+    of_pitch = gain(_root(twice))
+    if not errors.shared.size:
+        return of_pitch.band
+    together = gain(_root(errors.of_edges)).gain ** 2
+    alone = gain(errors.noise * np.eye(twice.shape[0])).gain ** 2
+    return replace(of_pitch, gain=np.sqrt(np.maximum(together - alone, 0.0))).band
+
+
+def _root(covariance: Array) -> Array:
+    """Map (n, n) from independent values of unit variance to values of a covariance."""
+    values, vectors = np.linalg.eigh(covariance)
+    return np.asarray(vectors * np.sqrt(np.maximum(values, 0.0)))
 
 
 def observation_noise(values: Array, matrix: Array, noise: Array) -> float:

@@ -46,8 +46,8 @@ class LiftPoint(Part):
 
 
 @dataclass(frozen=True, kw_only=True)
-class CrankDrive(Part):
-    """Piston, connecting rod and crank of equal cylinders, and their firing order.
+class RunningGear(Part):
+    """Crank, connecting rods and pistons of equal cylinders, and their firing order.
 
     The piston mass includes rings and pin. The pin offset is that of the cylinder axis from the
     crank axis, positive on the side to which the crank pin moves from angle 0; the big-end share
@@ -60,13 +60,10 @@ class CrankDrive(Part):
         If a value is out of its bounds, the crank cannot rotate fully, or no cylinder fires.
     """
 
-    table: ClassVar[str] = "engine"
+    table: ClassVar[str] = "engine.running_gear"
 
-    kind: str
-    bore: Length
     crank_radius: Length
     rod_length: Length
-    compression_ratio: Annotated[float, In(above=1, at_most=40)]
     piston_mass: Mass
     rod_mass: Mass
     pin_offset: Annotated[float, In("mm", above=-1000, below=1000)] = 0.0
@@ -79,14 +76,48 @@ class CrankDrive(Part):
             limit = f"> crank_radius = {shown(self.crank_radius, 'mm')}"
             if self.pin_offset:
                 limit += f" plus pin_offset = {shown(abs(self.pin_offset), 'mm')}"
-            raise InputError("engine.rod_length", shown(self.rod_length, "mm"), limit)
+            raise InputError(f"{self.table}.rod_length", shown(self.rod_length, "mm"), limit)
         if not self.firing_offsets or not all(isfinite(angle) for angle in self.firing_offsets):
             stated = self.firing_offsets or "empty"
-            raise InputError("engine.firing_offsets", stated, "one angle per cylinder")
+            raise InputError(f"{self.table}.firing_offsets", stated, "one angle per cylinder")
 
     @property
     def linkage(self) -> SliderCrank:
         return SliderCrank(self.crank_radius, self.rod_length, self.pin_offset)
+
+    @property
+    def reciprocating_mass(self) -> float:
+        """Mass of piston and small end of the rod, kg."""
+        return self.piston_mass + (1.0 - self.rod_big_end_share) * self.rod_mass
+
+    def inertia_torque(self, theta: ArrayLike, crank_speed: float) -> Array:
+        """Torque of one reciprocating mass on the crank at constant speed, exact, N m."""
+        acceleration = crank_speed**2 * self.linkage.travel_acceleration(theta)
+        force = -self.reciprocating_mass * acceleration
+        return np.asarray(force * self.linkage.travel_rate(theta))
+
+    def reciprocating_inertia(self, theta: ArrayLike) -> Array:
+        """m x'^2 of all reciprocating masses, their part of the inertia at the crank, kg m2."""
+        at = np.asarray(theta, dtype=float)
+        rates = [self.linkage.travel_rate(at - offset) for offset in self.firing_offsets]
+        return np.asarray(self.reciprocating_mass * sum(rate**2 for rate in rates))
+
+
+@dataclass(frozen=True, kw_only=True)
+class CrankDrive(RunningGear):
+    """Running gear with the gas volume of its cylinders.
+
+    Raises
+    ------
+    InputError
+        As `RunningGear`.
+    """
+
+    table: ClassVar[str] = "engine"
+
+    kind: str
+    bore: Length
+    compression_ratio: Annotated[float, In(above=1, at_most=40)]
 
     @property
     def stroke(self) -> float:
@@ -108,11 +139,6 @@ class CrankDrive(Part):
         """Height of the gas above the piston at its top dead centre, m."""
         return self.stroke / (self.compression_ratio - 1.0)
 
-    @property
-    def reciprocating_mass(self) -> float:
-        """Mass of piston and small end of the rod, kg."""
-        return self.piston_mass + (1.0 - self.rod_big_end_share) * self.rod_mass
-
     def volume(self, theta: ArrayLike) -> Array:
         """Gas volume of the cylinder at crank angles (rad), any shape, m3."""
         return np.asarray(self.piston_area * (self.clearance + self.linkage.travel(theta)))
@@ -120,18 +146,6 @@ class CrankDrive(Part):
     def volume_rate(self, theta: ArrayLike) -> Array:
         """Derivative of the gas volume by the crank angle, m3/rad."""
         return np.asarray(self.piston_area * self.linkage.travel_rate(theta))
-
-    def inertia_torque(self, theta: ArrayLike, crank_speed: float) -> Array:
-        """Torque of one reciprocating mass on the crank at constant speed, exact, N m."""
-        acceleration = crank_speed**2 * self.linkage.travel_acceleration(theta)
-        force = -self.reciprocating_mass * acceleration
-        return np.asarray(force * self.linkage.travel_rate(theta))
-
-    def reciprocating_inertia(self, theta: ArrayLike) -> Array:
-        """m x'^2 of all reciprocating masses, their part of the inertia at the crank, kg m2."""
-        at = np.asarray(theta, dtype=float)
-        rates = [self.linkage.travel_rate(at - offset) for offset in self.firing_offsets]
-        return np.asarray(self.reciprocating_mass * sum(rate**2 for rate in rates))
 
     def friction_torque(self, pressure: float | None, driving: float) -> float:
         """Mean friction torque of one cylinder on the crank, N m, <= 0.

@@ -12,9 +12,11 @@ from numpy.typing import ArrayLike, NDArray
 from camwright.geometry.arrays import Array, finite
 from camwright.geometry.errors import InputError
 from camwright.pipeline.base.quantities import In
-from camwright.pipeline.engine.speed_trace import Filter, SpeedTrace, WheelTable, speed_from_edges
+from camwright.pipeline.engine.speed_file import WheelTable, speed_of_record
+from camwright.pipeline.engine.speed_trace import Filter, SpeedTrace
 from camwright.pipeline.engine.trace_file import columns_of, trace_text
 from camwright.pipeline.engine.trigger_wheel import Edges, TriggerWheel, tooth_places
+from camwright.pipeline.engine.wheel_calibration import Calibrator, EdgeRecord
 
 THRESHOLD = 0.25  # of the usual peak, exceeded on both sides of a crossing
 SAMPLES_PER_TOOTH_MIN = 6.0
@@ -132,13 +134,35 @@ def speed_from_voltage(
     wheel: TriggerWheel,
     band: Filter,
     threshold: float = THRESHOLD,
+    calibrator: Calibrator | None = None,
 ) -> SpeedTrace:
     """Crank speed from a CSV file of time and voltage; every voltage column is a run.
+
+    Parameters
+    ----------
+    calibrator : Calibrator   None: a wheel without pitch errors
 
     Raises
     ------
     InputError
-        As `read_trace`, `edges_from_voltage` and `speed_from_edges`.
+        As `edges_from_voltages` and `speed_of_record`.
+    """
+
+    def read(file: str | Path) -> EdgeRecord:
+        return edges_from_voltages(file, wheel, threshold)
+
+    return speed_of_record(read(path), band, calibrator, read)
+
+
+def edges_from_voltages(
+    path: str | Path, wheel: TriggerWheel, threshold: float = THRESHOLD
+) -> EdgeRecord:
+    """Edges from a CSV file of time and voltage; every voltage column is a run.
+
+    Raises
+    ------
+    InputError
+        As `read_trace` and `edges_from_voltage`.
     """
     text = trace_text(Path(path))
     times, volts = columns_of(text.header, "time"), columns_of(text.header, "voltage")
@@ -151,4 +175,4 @@ def speed_from_voltage(
     for k, (column, factor) in enumerate(volts.items(), start=1):
         field = f"{text.name} {text.header[column]}"
         runs.append(edges_from_voltage(field, at, factor * table[:, k], wheel, threshold))
-    return speed_from_edges(text.name, runs, wheel, band).with_firing()
+    return EdgeRecord(text.name, runs, wheel)

@@ -5,45 +5,34 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from math import pi
-from pathlib import Path
-from typing import Annotated, ClassVar, Literal
+from typing import Annotated, ClassVar
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
-from camwright.geometry.arrays import Array, finite, freeze, positive
+from camwright.geometry.arrays import FULL_TURN, Array, finite, freeze, median, positive
 from camwright.geometry.errors import InputError
-from camwright.pipeline.base.quantities import Angle, Count, FileName, In, Part, Share
-from camwright.pipeline.engine.angle_trace import guard_order, guard_span, without_end
+from camwright.pipeline.base.quantities import Count, Part, Share
 from camwright.pipeline.engine.band_fit import (
     SHARE_MAX,
     fitted,
     integrals,
     observation_noise,
     points,
+    remaining_band,
     shared_edges,
 )
 from camwright.pipeline.engine.crankshaft import SpeedStatistics, speed_statistics, torque_of_motion
 from camwright.pipeline.engine.cylinder import CYCLE_ANGLE
+from camwright.pipeline.engine.pitch_errors import PitchErrors
 from camwright.pipeline.engine.torque import SAMPLES, Torque, uniform_cycle
 from camwright.pipeline.engine.torque_error_bar import SlopeNoise
-from camwright.pipeline.engine.trace_file import (
-    QUANTITY_UNITS,
-    HeaderText,
-    TraceText,
-    angle_column,
-    columns_of,
-    has_angle,
-    trace_text,
-)
 from camwright.pipeline.engine.trigger_wheel import (
     Edges,
-    MissingTeeth,
-    Teeth,
-    ToothShare,
     TriggerWheel,
-    counted,
-    learned_wheel,
+)
+from camwright.pipeline.engine.wheel_calibration import (
+    Calibration,
 )
 
 HARMONICS = 20  # of the cycle, 10 per crank turn: least error at a noise of 0.2 rad/s
@@ -93,56 +82,6 @@ class Filter(Part):
         return self.harmonics * mean_speed / CYCLE_ANGLE
 
 
-@dataclass(frozen=True, kw_only=True)
-class WheelTable(Part):
-    """A measurement at a trigger wheel from a file: the wheel and the filter of the speed.
-
-    Raises
-    ------
-    InputError
-        As `TriggerWheel`.
-    """
-
-    table: ClassVar[str] = "engine"
-
-    file: FileName
-    teeth: Teeth = 36
-    missing_teeth: MissingTeeth = 0
-    reference_angle: Angle = 0.0
-    harmonics: Harmonics = HARMONICS
-    taper: Share = TAPER
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        _ = self.wheel  # refuses too many missing teeth
-
-    @property
-    def wheel(self) -> TriggerWheel:
-        return TriggerWheel(self.teeth, self.missing_teeth, self.reference_angle)
-
-    @property
-    def band(self) -> Filter:
-        """Filter of the speed."""
-        return Filter(self.harmonics, self.taper)
-
-
-@dataclass(frozen=True, kw_only=True)
-class SpeedTable(WheelTable):
-    """Crank speed from a file: tooth times, or speed per tooth against crank angle."""
-
-    kind: Literal["speed"] = "speed"
-    column: HeaderText = ""
-    speed_unit: HeaderText = ""
-    edges: Annotated[int, Count(1, 2)] = 2
-    tooth_share: ToothShare = 0.5
-    averaged_over: Annotated[float, In("deg", at_least=0, at_most=60)] = 0.0
-    reference_file: FileName | None = None
-
-    @property
-    def wheel(self) -> TriggerWheel:
-        return replace(super().wheel, tooth_share=self.tooth_share)
-
-
 @dataclass(frozen=True, eq=False)
 class SpeedTrace:
     """Band-limited crank speed over a cycle, of several cycles or runs.
@@ -154,6 +93,9 @@ class SpeedTrace:
     filter : Filter
     noise : float              rad/s, standard deviation of one tooth's speed about the curve
     slope_noise : SlopeNoise   what `noise` makes of domega/dtheta
+    wheel_band : array (720,)  rad/s per rad, half-width of the 95 % band about domega/dtheta that
+                               the pitch errors of the wheel leave, noise apart; None: no wheel
+    calibration : Calibration  None: pitch errors not considered
     """
 
     source: str
@@ -161,6 +103,8 @@ class SpeedTrace:
     filter: Filter
     noise: float
     slope_noise: SlopeNoise
+    wheel_band: Array | None = None
+    calibration: Calibration | None = None
 
     def __post_init__(self) -> None:
         speeds = finite(f"{self.source} speed", self.speeds)
@@ -170,6 +114,8 @@ class SpeedTrace:
             limit = f"from {low:g} to {high:g} rad/s; check unit, teeth and edges"
             raise InputError(f"{self.source} speed", f"{worst:.4g} rad/s", limit)
         freeze(self, speeds=speeds)
+        if self.wheel_band is not None:
+            freeze(self, wheel_band=self.wheel_band)
 
     @property
     def theta(self) -> Array:
@@ -212,11 +158,27 @@ class SpeedTrace:
     def error_bar(self, inertia: float) -> Array:
         """Half-width (n,) of the band that holds the torque at all angles at once, N m, 95 %.
 
-        It is that of noise and scatter of the cycles within the bandwidth; the inertia (kg m2) is
-        taken as exact.
+        It is that of noise and scatter of the cycles within the bandwidth, and of the pitch errors
+        of the wheel; the inertia (kg m2) is taken as exact.
         """
         slopes = np.array([torque_of_motion(speed, 1.0) / speed for speed in self.speeds])
-        return inertia * self.mean * self.slope_noise.half_width(slopes, self.noise)
+        noise = inertia * self.mean * self.slope_noise.half_width(slopes, self.noise)
+        return np.asarray(np.hypot(noise, self.wheel_bar(inertia)))
+
+    def wheel_bar(self, inertia: float) -> Array:
+        """The part of the pitch errors of the wheel in `error_bar` (n,), N m."""
+        if self.wheel_band is None:
+            return np.zeros(self.speeds.shape[1])
+        return np.asarray(inertia * self.mean * self.wheel_band)
+
+    @property
+    def half_order_share(self) -> float:
+        """Share of the half orders, unlike in the two turns of a cycle, in the variance of the
+        speed; with r the correlation of the two turns it is (1 - r) / 2."""
+        ripple = self.mean - self.mean.mean()
+        unlike = 0.5 * (ripple - np.roll(ripple, ripple.size // 2))
+        whole = float(ripple.var())
+        return float(unlike.var()) / whole if whole > 0.0 else 0.0
 
     def torque(self, inertia: float) -> Torque:
         """J omega domega/dtheta of the mean speed, its one component `measured`.
@@ -248,7 +210,11 @@ class SpeedTrace:
 
 
 def speed_from_edges(
-    source: str, runs: Sequence[Sequence[Edges]], wheel: TriggerWheel, band: Filter
+    source: str,
+    runs: Sequence[Sequence[Edges]],
+    wheel: TriggerWheel,
+    band: Filter,
+    errors: PitchErrors | None = None,
 ) -> SpeedTrace:
     """Speed from the times of edges.
 
@@ -261,13 +227,17 @@ def speed_from_edges(
     runs : sequence of runs    each the edges of `counted`
     wheel : TriggerWheel
     band : Filter
+    errors : PitchErrors       corrected; what remains of them is in the error bar; None: a wheel
+                               without errors
 
     Raises
     ------
     InputError
         If no run holds a whole cycle, or the teeth are too few for the filter.
     """
-    starts, ends, times = _cycles_of(source, runs, wheel)
+    if errors is not None:
+        wheel = errors.corrected(wheel)
+    starts, ends, bounds, times = _cycles_of(source, runs, wheel)
     width = ends - starts
     matrix = integrals(starts, ends, band.last)
     jitter = shared_edges(starts, ends) / np.sqrt(2.0)
@@ -278,11 +248,22 @@ def speed_from_edges(
         raise InputError(f"{source} speed", "below zero", "edges in order; check teeth and edges")
     mean_speed = float(width.sum() / times.sum(axis=1).mean())
     noise = observation_noise(times, matrix, jitter) / width.mean() * mean_speed**2
-    return SpeedTrace(source, 1.0 / slowness, band, noise, slope_noise)
+    remaining = None
+    if errors is not None:
+        late = np.zeros((width.size, 2 * errors.errors.size))
+        late[np.arange(width.size), bounds[1]] += mean_speed
+        late[np.arange(width.size), bounds[0]] -= mean_speed
+        remaining = remaining_band(matrix, band.weights, late, errors)
+    return SpeedTrace(source, 1.0 / slowness, band, noise, slope_noise, remaining)
 
 
 def speed_from_teeth(
-    source: str, angle: ArrayLike, speeds: ArrayLike, band: Filter, width: float = 0.0
+    source: str,
+    angle: ArrayLike,
+    speeds: ArrayLike,
+    band: Filter,
+    width: float = 0.0,
+    tolerance: float = 0.0,
 ) -> SpeedTrace:
     """Speed from its values at crank angles.
 
@@ -292,6 +273,8 @@ def speed_from_teeth(
     speeds : array (m, n)     rad/s, a row per cycle or run
     band : Filter
     width : float             rad, over which each value is a mean; 0: a point
+    tolerance : float         rad, standard deviation of the place of an edge, if each value is a
+                              pitch over its time
 
     Raises
     ------
@@ -309,7 +292,16 @@ def speed_from_teeth(
     _guard_unknowns(source, matrix, band)
     fit, slope_noise = fitted(matrix, band.weights, single, 1.0)
     noise = observation_noise(values, matrix, single)
-    return SpeedTrace(source, values @ fit.T, band, noise, slope_noise)
+    pitch = median(np.diff(at))
+    teeth = max(round(FULL_TURN / pitch), 1)
+    tooth = np.mod(np.round((at - at[0]) / pitch), teeth).astype(int)
+    late = np.zeros((at.size, 2 * teeth))
+    late[np.arange(at.size), np.mod(tooth + 1, teeth)] += values.mean() / pitch
+    late[np.arange(at.size), tooth] -= values.mean() / pitch
+    errors = PitchErrors.unknown(teeth, tolerance)
+    remaining = remaining_band(matrix, band.weights, late, errors)
+    return SpeedTrace(source, values @ fit.T, band, noise, slope_noise, remaining,
+                      Calibration(errors))  # fmt: skip
 
 
 def _guard_unknowns(source: str, matrix: Array, band: Filter) -> None:
@@ -322,27 +314,32 @@ def _guard_unknowns(source: str, matrix: Array, band: Filter) -> None:
 
 def _cycles_of(
     source: str, runs: Sequence[Sequence[Edges]], wheel: TriggerWheel
-) -> tuple[Array, Array, Array]:
-    """Intervals of the cycle, rad, (n,) and (n,), and their durations in each cycle, s, (m, n)."""
+) -> tuple[Array, Array, NDArray[np.intp], Array]:
+    """Intervals of the cycle, rad, (n,) and (n,), numbers of the edges of both turns between which
+    they lie (2, n), and their durations in each cycle, s, (m, n)."""
     durations: list[Array] = []
     spans: tuple[Array, Array] | None = None
+    edges = len(runs[0]) * wheel.present
     for run in runs:
         first = float(run[0].places[0])
         from_ = np.concatenate([wheel.angle(e.places[:-1], e.falling) for e in run])
         to = np.concatenate([wheel.angle(e.places[1:], e.falling) for e in run])
-        times = np.concatenate([np.diff(edges.times) for edges in run])
-        start = np.concatenate([edges.places[:-1] for edges in run])
+        times = np.concatenate([np.diff(e.times) for e in run])
+        start = np.concatenate([e.places[:-1] for e in run])
+        turn = [np.mod(e.places // wheel.teeth, 2.0).astype(np.intp) for e in run]
+        each = [e.numbers(wheel) + edges * t for e, t in zip(run, turn, strict=True)]
+        passed = np.hstack([np.stack([one[:-1], one[1:]]) for one in each])
         cycle = np.floor((start - first) / (2 * wheel.teeth))
         for k in range(int(cycle.max()) + 1):
             inside = cycle == k
             covered = float((to - from_)[inside].sum())
             if not np.isclose(covered, len(run) * CYCLE_ANGLE, rtol=0.0, atol=1e-6):
                 continue  # the run begins or ends within the cycle
-            begin = np.mod(from_[inside], CYCLE_ANGLE)
+            begin = np.mod(from_[inside] + 1e-6, CYCLE_ANGLE) - 1e-6  # round-off at the origin
             order = np.argsort(begin, kind="stable")
             span = begin[order], begin[order] + (to - from_)[inside][order]
             if spans is None:
-                spans = span
+                spans, bounds = span, passed[:, inside][:, order]
             elif span[0].shape != spans[0].shape or not np.allclose(span, spans, atol=1e-6):
                 continue  # other edges, or a run with another start on the wheel
             durations.append(times[inside][order])
@@ -350,89 +347,4 @@ def _cycles_of(
         held = max(sum(edges.times.size for edges in run) for run in runs)
         limit = f"a whole cycle, {len(runs[0]) * (2 * wheel.present + 1)} edges or more"
         raise InputError(source, f"{held} edges", limit)
-    return spans[0], spans[1], np.array(durations)
-
-
-def tooth_times(path: str | Path, column: str = "") -> tuple[str, Array]:
-    """Times of edges from a CSV file, a column per run: array (runs, edges), s.
-
-    Raises
-    ------
-    InputError
-        As `read_trace`.
-    """
-    text = trace_text(Path(path), one_column=True)
-    wanted = columns_of(text.header, "time", column)
-    if not wanted:
-        limit = f"a column of time with its unit ({', '.join(QUANTITY_UNITS['time'])})"
-        raise InputError(f"{text.name} header", ", ".join(text.header), limit)
-    table = text.numbers(tuple(wanted))
-    return text.name, np.asarray((table * np.array(list(wanted.values()))).T)
-
-
-def speed_from_csv(
-    path: str | Path,
-    wheel: TriggerWheel,
-    band: Filter,
-    *,
-    both_edges: bool = True,
-    column: str = "",
-    unit: str = "",
-    averaged_over: float = 0.0,
-    reference: str | Path | None = None,
-) -> SpeedTrace:
-    """Crank speed from a CSV file: tooth times, or speed per tooth against crank angle.
-
-    A file with a column of crank angle has speeds, a column per run; any other has the times of
-    edges, a column per run. Without a gap the cycle begins with the record; the turn with the
-    expansion follows from the speed.
-
-    Parameters
-    ----------
-    wheel : TriggerWheel
-    band : Filter
-    both_edges : bool         times: every second edge is a falling one
-    column : str              beginning of the headers of the columns to read
-    unit : str                speeds: the unit of columns without one
-    averaged_over : float     speeds: rad over which each is a mean
-    reference : path          times: turns at steady speed, to learn the angles of the edges
-
-    Raises
-    ------
-    InputError
-        As `read_trace`, `counted` and `speed_from_edges`.
-    """
-    text = trace_text(Path(path), one_column=True)
-    if has_angle(text.header):
-        angle, speeds = _speed_table(text, column, unit)
-        return speed_from_teeth(text.name, angle, speeds, band, averaged_over)
-    if reference is not None:
-        label, steady = tooth_times(reference)
-        known = [counted(f"{label} run {k + 1}", run, wheel, both_edges)
-                 for k, run in enumerate(steady)]  # fmt: skip
-        wheel = learned_wheel(wheel, known)
-    name, runs = tooth_times(path, column)
-    edges = [counted(f"{name} run {k + 1}", run, wheel, both_edges) for k, run in enumerate(runs)]
-    return speed_from_edges(name, edges, wheel, band).with_firing()
-
-
-def _speed_table(text: TraceText, column: str, unit: str) -> tuple[Array, Array]:
-    """Angles (n,), rad, and speeds (m, n), rad/s, of one cycle."""
-    name, header = text.name, text.header
-    at, factor = angle_column(name, header)
-    wanted = columns_of(header, "speed", column)
-    known = ", ".join(QUANTITY_UNITS["speed"])
-    if unit:
-        if unit not in QUANTITY_UNITS["speed"]:
-            raise InputError("engine.speed_unit", unit, f"one of {known}")
-        bare = [k for k, head in enumerate(header) if head.lower().startswith(column.lower())]
-        wanted = {k: QUANTITY_UNITS["speed"][unit] for k in bare if k != at} | wanted
-    if not wanted:
-        limit = f"a column of speed with its unit ({known}), or of time"
-        raise InputError(f"{name} header", ", ".join(header), limit)
-    table = text.numbers((at, *wanted))
-    guard_order(name, text.line_numbers, table[:, 0], header[at])
-    angle, values = table[:, 0] * factor, table[:, 1:] * np.array(list(wanted.values()))
-    guard_span(name, angle, factor, CYCLE_ANGLE)
-    angle, values = without_end(angle, values, CYCLE_ANGLE)
-    return angle, np.asarray(values.T)
+    return spans[0], spans[1], bounds, np.array(durations)

@@ -49,6 +49,11 @@ class SlopeNoise:
         """Root mean square of the gain over the cycle, 1/rad."""
         return float(np.sqrt((self.gain**2).mean()))
 
+    @property
+    def band(self) -> Array:
+        """Half-width (n,) of the band that holds the true slope if the noise is known to be 1."""
+        return np.asarray(self._factor(np.inf) * self.gain)
+
     def half_width(self, slopes: Array, noise: float) -> Array:
         """Half-width (n,) of the band about the mean slope that holds the true one, rad/s per rad.
 
@@ -76,4 +81,6 @@ class SlopeNoise:
         curve is closed, so the term of its ends is absent.
         """
         share = pi * (1.0 - CONFIDENCE) / self.path
+        if np.isinf(freedom):
+            return float(np.sqrt(-2.0 * np.log(min(share, 1.0))))
         return float(np.sqrt(freedom * (min(share, 1.0) ** (-2.0 / freedom) - 1.0)))

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from math import pi
 from typing import Annotated, ClassVar
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from camwright.geometry.arrays import Array, finite, freeze, readonly
 from camwright.geometry.errors import InputError
@@ -71,6 +70,23 @@ class TriggerWheel(Part):
     def present(self) -> int:
         return self.teeth - self.missing_teeth
 
+    @property
+    def regular(self) -> TriggerWheel:
+        """The wheel with equal pitches."""
+        return replace(self, rising=None, falling=None)
+
+    def displaced(self, errors: Array) -> TriggerWheel:
+        """The wheel of equal pitches with its edges later by angles (rad): rising edges (n - m,)
+        first, then falling ones."""
+        at = np.arange(self.present) * self.pitch
+        rising, falling = errors[: self.present], errors[self.present :]
+        between = at[: falling.size] + self.tooth_share * self.pitch
+        return replace(
+            self,
+            rising=readonly(at + rising),
+            falling=readonly(between + falling) if falling.size else None,
+        )
+
     def angle(self, place: Array, falling: bool) -> Array:
         """Crank angle (rad) of edges at places of teeth, counted from the reference."""
         turn, tooth = np.divmod(place, self.teeth)
@@ -92,6 +108,11 @@ class Edges:
 
     def __post_init__(self) -> None:
         freeze(self, times=self.times, places=self.places)
+
+    def numbers(self, wheel: TriggerWheel) -> NDArray[np.intp]:
+        """Numbers (n,) of the edges on the wheel: rising ones first, then falling ones."""
+        tooth = np.mod(self.places, wheel.teeth).astype(np.intp)
+        return np.asarray(tooth + (wheel.present if self.falling else 0))
 
 
 def counted(field: str, times: ArrayLike, wheel: TriggerWheel, both: bool) -> tuple[Edges, ...]:
@@ -171,55 +192,3 @@ def _guard_gaps(field: str, times: Array, gaps: list[int], wheel: TriggerWheel) 
         number = int(ends[k]) if wrong.size else int(max(first, last))
         where = f"{field} between gaps from {times[gaps[k]]:.6g} s"
         raise InputError(where, f"{number} teeth", f"{wheel.present} of {wheel.teeth} places")
-
-
-def learned_wheel(
-    wheel: TriggerWheel, runs: Sequence[Sequence[Edges]], turns_min: int = 3
-) -> TriggerWheel:
-    """The wheel with edge angles learned from reference turns at steady speed.
-
-    The angle of an edge is the share of the time of its turn, corrected for a speed that drifts
-    linearly from turn to turn, and averaged over all turns.
-
-    Parameters
-    ----------
-    runs : sequence of runs     each the edges of `counted`, motored or coasting without firing
-    turns_min : int             least number of whole turns
-
-    Raises
-    ------
-    InputError
-        If there are fewer whole turns.
-
-    References
-    ----------
-    Kiencke and Nielsen, Automotive Control Systems (2005), ch. on crankshaft speed: adaptation
-    of the sensor wheel, cited from memory: verify.
-    """
-    shares: dict[bool, list[Array]] = {False: [], True: []}
-    for run in runs:
-        rising = next(edges for edges in run if not edges.falling)
-        starts = rising.times[np.mod(rising.places, wheel.teeth) == 0.0]
-        for edges in run:
-            shares[edges.falling] += _shares(edges, starts, wheel)
-    if len(shares[False]) < turns_min:
-        raise InputError(
-            "engine.reference_file", f"{len(shares[False])} whole turns", f">= {turns_min}"
-        )
-    rising = FULL_TURN * np.mean(shares[False], axis=0)
-    falling = FULL_TURN * np.mean(shares[True], axis=0) if shares[True] else None
-    return replace(wheel, rising=readonly(rising), falling=falling)
-
-
-def _shares(edges: Edges, starts: Array, wheel: TriggerWheel) -> list[Array]:
-    """Shares of the time of a turn at its edges, for each turn between two others."""
-    lengths = np.diff(starts)
-    shares = []
-    for k in range(1, lengths.size - 1):
-        inside = (edges.times >= starts[k]) & (edges.times < starts[k + 1])
-        if np.count_nonzero(inside) != wheel.present:
-            continue
-        drift = (lengths[k + 1] - lengths[k - 1]) / (4.0 * lengths[k])
-        share = (edges.times[inside] - starts[k]) / lengths[k]
-        shares.append(share + drift * share * (1.0 - share))
-    return shares

@@ -12,7 +12,7 @@ from camwright.pipeline.case.case_file import parse_case, read_case
 from camwright.pipeline.case.load_case_torque import (
     engine_torques,
     measurement_record,
-    pressure_words,
+    measurement_words,
 )
 from camwright.pipeline.case.plausibility import implausible
 from camwright.pipeline.engine.brake_balance import brake_balance
@@ -118,7 +118,7 @@ def test_a_case_states_what_its_pressure_indicates(tmp_path):
     shown = dict(verification_tables.measurement(record))
     assert shown["brake torque"].split() == ["0.5", "N", "m"]
     assert shown["indicated torque"].split() == [f"{indicated:.4g}", "N", "m"]
-    (line,) = pressure_words(case)
+    (line,) = measurement_words(case)
     assert line.startswith(f"indicated torque of p.csv: {indicated:.4g} N m, +")
     assert "with the dead centre 1 deg earlier; brake torque 0.5 N m" in line
     speed = case.load_cases[0].speed

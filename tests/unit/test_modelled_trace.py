@@ -12,7 +12,8 @@ from camwright.pipeline.engine.modelled_trace import (
     voltage_text,
 )
 from camwright.pipeline.engine.pickup_voltage import speed_from_voltage
-from camwright.pipeline.engine.speed_trace import Filter, speed_from_csv
+from camwright.pipeline.engine.speed_file import speed_from_csv
+from camwright.pipeline.engine.speed_trace import Filter
 from camwright.pipeline.engine.torque import Torque, torque_from_csv, uniform_cycle
 from camwright.pipeline.engine.trigger_wheel import TriggerWheel
 

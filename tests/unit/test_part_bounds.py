@@ -24,9 +24,11 @@ from camwright.pipeline.engine.crankshaft import Crankshaft
 from camwright.pipeline.engine.cylinder import CylinderEngine, LiftPoint
 from camwright.pipeline.engine.pickup_voltage import VoltageTable
 from camwright.pipeline.engine.pressure_trace import PressureTable
-from camwright.pipeline.engine.speed_trace import Filter, SpeedTable
+from camwright.pipeline.engine.speed_file import SpeedTable
+from camwright.pipeline.engine.speed_trace import Filter
 from camwright.pipeline.engine.torque import TorqueTable
 from camwright.pipeline.engine.trigger_wheel import TriggerWheel
+from camwright.pipeline.engine.wheel_calibration import WheelReference
 from camwright.pipeline.follower.camshaft_loads import Counterweight, ShaftSection
 from camwright.pipeline.follower.flat_face import FlatFace
 from camwright.pipeline.follower.spring import Spring
@@ -80,6 +82,7 @@ def every_part() -> dict[type[Part], Part]:
         TorqueTable(file="torque.csv"),
         SpeedTable(file="speed.csv"),
         VoltageTable(file="voltage.csv"),
+        WheelReference(file="fast.csv", kind="second_speed"),
         LiftPoint(angle=0.0, lift=0.0),
         TriggerWheel(),
         Filter(),

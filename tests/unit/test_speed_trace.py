@@ -2,21 +2,21 @@
 
 import numpy as np
 import pytest
-from crank_traces import CYCLE, noisy_times, time_at, tooth_angles
+from crank_traces import CYCLE, noisy_times, tooth_angles
 
 from camwright.geometry.errors import InputError
 from camwright.pipeline.engine.crankshaft import torque_of_motion
 from camwright.pipeline.engine.pickup_voltage import VoltageTable
+from camwright.pipeline.engine.speed_file import SpeedTable, speed_from_csv
 from camwright.pipeline.engine.speed_trace import (
     Filter,
-    SpeedTable,
     SpeedTrace,
-    speed_from_csv,
     speed_from_edges,
     speed_from_teeth,
 )
 from camwright.pipeline.engine.torque_error_bar import SlopeNoise
-from camwright.pipeline.engine.trigger_wheel import TriggerWheel, counted, learned_wheel
+from camwright.pipeline.engine.trigger_wheel import TriggerWheel, counted
+from camwright.pipeline.engine.wheel_calibration import Calibrator
 
 THETA = np.arange(720) * CYCLE / 720
 SPEED = 150.0 + 4.0 * np.sin(THETA / 2) + 3.0 * np.cos(THETA) - 1.5 * np.sin(2.5 * THETA)
@@ -117,23 +117,6 @@ def test_a_mean_over_the_tooth_is_undone():
     np.testing.assert_allclose(sharp.mean, 150.0 + np.sin(order * THETA), atol=1e-9)
 
 
-def test_teeth_out_of_place_are_learned_from_steady_turns():
-    """Teeth up to 0.4 deg out of place; the reference turns slow down by 2 % a turn."""
-    rng = np.random.default_rng(7)
-    error = np.radians(rng.uniform(-0.4, 0.4, 36))
-    error -= error[0]
-    turns = 2 * np.pi * np.arange(12)[:, None] + np.arange(36) * WHEEL.pitch + error
-    angle = turns.ravel()
-    slowing = angle / 150.0 * (1.0 + 0.01 * angle / (4 * np.pi))
-    learned = learned_wheel(WHEEL, [counted("reference", slowing, WHEEL, False)])
-    np.testing.assert_allclose(learned.rising, np.arange(36) * WHEEL.pitch + error, atol=2e-5)
-    run = [counted("run", time_at(SPEED, angle), WHEEL, False)]
-    blind = speed_from_edges("run", run, WHEEL, BAND)
-    seeing = speed_from_edges("run", run, learned, BAND)
-    assert np.abs(blind.mean - SPEED).max() > 1.0
-    assert np.abs(seeing.mean - SPEED).max() < 0.05
-
-
 def test_the_firing_turn_is_found():
     strong = (
         150.0
@@ -200,15 +183,25 @@ def test_speeds_per_tooth_are_read_with_and_without_units(tmp_path):
     np.testing.assert_allclose(again.mean, SPEED, atol=1e-2)
 
 
-def test_a_reference_file_is_learned_from(tmp_path):
+def test_a_reference_without_pitch_errors_changes_nothing(tmp_path):
     angles = tooth_angles(36, 2, 2, 4)
     steady = tmp_path / "steady.csv"
     steady.write_text("time_s\n" + "\n".join(map(repr, (angles / 150.0).tolist())) + "\n")
     path = times_file(tmp_path, some_times(missing=2, cycles=2))
     wheel = TriggerWheel(36, 2)
-    found = speed_from_csv(path, wheel, BAND, reference=steady)
+    calibrator = Calibrator(np.radians(0.05), 0.0139, None, steady, "no_torque")
+    found = speed_from_csv(path, wheel, BAND, calibrator=calibrator)
     plain = speed_from_csv(path, wheel, BAND)
-    np.testing.assert_allclose(found.mean, plain.mean, rtol=1e-9)
+    np.testing.assert_allclose(found.mean, plain.mean, rtol=1e-6)
+    assert found.calibration.errors.residual < np.radians(1e-3)
+
+
+def test_a_reference_is_refused_with_speeds_against_crank_angle(tmp_path):
+    angle = np.arange(0.0, 720.0, 10.0)
+    path = write(tmp_path, "deg,rpm\n" + "".join(f"{a},1500\n" for a in angle))
+    calibrator = Calibrator(np.radians(0.05), 0.0139, None, path, "no_torque")
+    with pytest.raises(InputError, match=r"engine\.reference = a table, must be left out"):
+        speed_from_csv(path, WHEEL, BAND, calibrator=calibrator)
 
 
 def without(index):
@@ -264,8 +257,6 @@ def test_a_filter_beyond_the_teeth_is_refused():
         TriggerWheel(36, 12)
     with pytest.raises(InputError, match="tooth_share"):
         TriggerWheel(36, 2, tooth_share=1.0)
-    with pytest.raises(InputError, match="whole turns"):
-        learned_wheel(WHEEL, [counted("run", some_times(1)[0], WHEEL, True)])
 
 
 def test_the_wheel_of_a_case_has_its_tooth_share():

@@ -14,7 +14,8 @@ from camwright.pipeline.engine.pressure_trace import (
     pressure_from_csv,
     torque_from_pressure,
 )
-from camwright.pipeline.engine.speed_trace import Filter, speed_from_csv, speed_from_edges
+from camwright.pipeline.engine.speed_file import speed_from_csv
+from camwright.pipeline.engine.speed_trace import Filter, speed_from_edges
 from camwright.pipeline.engine.torque import torque_from_cylinder
 from camwright.pipeline.engine.torque_consistency import implied_inertia
 from camwright.pipeline.engine.trigger_wheel import TriggerWheel, counted

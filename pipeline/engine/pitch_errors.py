@@ -1,0 +1,353 @@
+"""Pitch errors of a trigger wheel from its passing times at several speeds.
+
+The place of an edge and the torque on the crank both move the time at which the edge passes. In
+share of the speed, the part of a torque falls with the square of the speed; that of a pitch error
+and of an inertia that varies with crank angle does not. Passing times at several speeds separate
+pitch errors from torque only if the inertia of the crank mechanism is known and the gas torque is
+the same at all of them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+import scipy
+from numpy.typing import NDArray
+
+from camwright.geometry.arrays import FULL_TURN, Array, freeze
+from camwright.geometry.errors import CamError
+from camwright.geometry.periodic_spline import periodic_cubic
+from camwright.pipeline.engine.crankshaft import Inertia
+from camwright.pipeline.engine.cylinder import CYCLE_ANGLE
+from camwright.pipeline.engine.passing_times import Passage, Passages
+from camwright.pipeline.engine.trigger_wheel import TriggerWheel
+
+_NODES = 8  # of the Gauss-Legendre rule between two edges; a gap is half a wave at most
+_STEPS_MAX = 40
+_STEP_END = 1e-9  # rad, largest change of a passing time in the last step
+_ENERGY_MIN = 0.05  # least kinetic energy of an iterate, of that at mean speed
+
+
+@dataclass(frozen=True, eq=False)
+class PitchErrors:
+    """Pitch errors: angles by which the edges of a wheel pass later than equal pitches say.
+
+    Parameters
+    ----------
+    errors : array (e,)           rad, most probable values; rising edges first, then falling ones
+    covariance : array (e, e)     rad2, of what remains
+    tolerance : float             rad, standard deviation assumed before
+    torque_change : float         change of the torque over the range of speed, as a share of it
+    misfit : float                rms of what the fit leaves, over the noise; 1: noise alone
+    noise : float                 rad, standard deviation of the angle at which an edge is seen in
+                                  the mean of the measured cycles, its pitch error apart
+    shared : array (2 e, e)       rad2, covariance of that noise, in the first turn and the second,
+                                  with what is too large in `errors`
+    """
+
+    errors: Array
+    covariance: Array
+    tolerance: float
+    torque_change: float = 0.0
+    misfit: float = 1.0
+    noise: float = 0.0
+    shared: Array = field(default_factory=lambda: np.empty((0, 0)))
+
+    def __post_init__(self) -> None:
+        freeze(self, errors=self.errors, covariance=self.covariance, shared=self.shared)
+
+    @property
+    def residual(self) -> float:
+        """Standard deviation of the place of an edge about the mean of all, after correction, rad.
+
+        The mean is the angle of the reference, of which the torque has only its phase.
+        """
+        left = np.diag(self.covariance).mean() - self.covariance.mean()
+        return float(np.sqrt(max(left, 0.0)))
+
+    @property
+    def rms(self) -> float:
+        """Root mean square of the errors about their mean, rad."""
+        return float(self.errors.std())
+
+    @classmethod
+    def unknown(cls, edges: int, tolerance: float) -> PitchErrors:
+        """Those of a wheel of which only the tolerance (rad) of its edges is known."""
+        return cls(np.zeros(edges), tolerance**2 * np.eye(edges), tolerance)
+
+    def corrected(self, wheel: TriggerWheel) -> TriggerWheel:
+        """The wheel with its edges at their most probable places."""
+        return wheel.displaced(self.errors)
+
+    @property
+    def of_edges(self) -> Array:
+        """Covariance (2 e, 2 e) of the angles by which edges are seen too late in the mean of the
+        measured cycles, in the first turn and the second, noise and pitch errors together, rad2."""
+        twice = np.tile(self.covariance, (2, 2))
+        twice[np.diag_indices_from(twice)] += self.noise**2
+        if not self.shared.size:
+            return twice
+        both = np.tile(self.shared, (1, 2))
+        return np.asarray(twice - both - both.T)
+
+
+def pitch_errors(
+    records: Sequence[Passages],
+    inertia: Inertia,
+    tolerance: float,
+    harmonics: int,
+) -> PitchErrors:
+    r"""Most probable pitch errors, given passing times of one torque at several speeds.
+
+    An edge at nominal angle theta_j with pitch error e_j passes at
+
+        t_j = t_0 + \int_{theta_0}^{theta_j} dtheta / omega + e_j / omega(theta_j),
+
+    where I(theta) omega^2 / 2 = E + m (theta - theta_0) + W(theta), work and kinetic energy of
+    the crank. The periodic work W, a series of `harmonics`, is that of the torque and the same in
+    every passage; it may change in proportion to the logarithm of the speed, by as much in the
+    integer orders as the half orders show, which pitch errors do not touch. t_0, E and the mean
+    torque m are those of each passage. Errors are a priori independent with standard deviation
+    `tolerance`, so that what the records cannot separate from the torque keeps it.
+
+    Parameters
+    ----------
+    records : sequence     the measured record first, if its torque is that of the others
+    inertia : Inertia      of crank and mechanism, over the crank angle
+    tolerance : float      rad, standard deviation of the place of an edge, > 0
+    harmonics : int        of the cycle, of the work; 0: no torque acts
+
+    Raises
+    ------
+    CamError
+        If the fit does not converge.
+
+    References
+    ----------
+    Kiencke and Nielsen, Automotive Control Systems (2005), ch. on crankshaft speed: adaptation of
+    the sensor wheel, cited from memory: verify. Tarantola, Inverse Problem Theory (2005), sec. 3.2:
+    most probable values and covariance of a nonlinear least-squares problem.
+    """
+    every = np.concatenate([np.log(record.speeds) for record in records])
+    middle, span = 0.5 * (every.max() + every.min()), float(np.ptp(every))
+    parts = [
+        _Times.of(one, record.noise, (np.log(one.mean_speed) - middle) / span if span else 0.0,
+                  record is records[0], inertia, harmonics)
+        for record in records for one in record.passages
+    ]  # fmt: skip
+    half_orders = np.tile(np.arange(1, harmonics + 1) % 2 == 1, 2)
+    free = np.where(half_orders, np.inf, 0.0) if span else np.zeros(2 * harmonics)
+    edges = 1 + max(int(part.passage.edge.max()) for part in parts)
+    state = _solved(parts, _State.steady(parts, edges, harmonics), tolerance, free)
+    ratio = state.change_ratio(half_orders)
+    if ratio > 0.0:
+        power = np.hypot(*state.work.reshape(2, -1)) / np.sqrt(2.0)
+        state = _solved(
+            parts, state, tolerance, np.where(half_orders, np.inf, ratio * np.tile(power, 2))
+        )
+    covariance = state.covariance[4 * harmonics :, 4 * harmonics :]
+    total = sum(part.passage.count for part in parts if part.measured)
+    shared = np.zeros((2 * edges, edges))
+    for part, each in zip(parts, state.shared, strict=True):
+        if part.measured:
+            turn = np.mod((part.passage.angle[:-1] + 1e-6) // FULL_TURN, 2.0).astype(int)
+            rows = turn * edges + part.passage.edge[:-1]
+            shared[rows] += part.passage.count / total * part.noise * each[:-1, 4 * harmonics :]
+    noise = records[0].noise / float(np.sqrt(total))
+    return PitchErrors(state.errors, covariance, tolerance, ratio, state.misfit, noise, shared)
+
+
+@dataclass(frozen=True, eq=False)
+class _Times:
+    """Passing times of one passage as a function of the unknowns."""
+
+    passage: Passage
+    noise: float  # rad, of the mean times
+    lean: float  # place in the range of the logarithm of the speed, about its middle
+    measured: bool  # belongs to the first record
+    offset: Array  # rad (n - 1, q), of the nodes between two edges from the first edge
+    weight: Array  # rad (n - 1, q)
+    inertia: Array  # kg m2 (n - 1, q)
+    waves: Array  # (n - 1, q, 2 h)
+    inertia_at: Array  # kg m2 (n,), at the edges
+    waves_at: Array  # (n, 2 h)
+
+    @classmethod
+    def of(
+        cls,
+        passage: Passage,
+        noise: float,
+        lean: float,
+        measured: bool,
+        inertia: Inertia,
+        harmonics: int,
+    ) -> _Times:
+        nodes, weights = np.polynomial.legendre.leggauss(_NODES)
+        half = 0.5 * np.diff(passage.angle)[:, None]
+        at = passage.angle[:-1, None] + half * (nodes + 1.0)
+        varying, turns = periodic_cubic(inertia.varying), CYCLE_ANGLE / FULL_TURN
+        return cls(
+            passage,
+            noise / float(np.sqrt(passage.count)),
+            lean,
+            measured,
+            at - passage.angle[0],
+            half * weights,
+            inertia.constant + varying(at / turns),
+            _waves(at, harmonics),
+            inertia.constant + varying(passage.angle / turns),
+            _waves(passage.angle, harmonics),
+        )
+
+    @property
+    def seen(self) -> Array:
+        """Times of the edges, in noises."""
+        return np.asarray(self.passage.times * (self.passage.mean_speed / self.noise))
+
+    def predicted(self, state: _State, k: int) -> tuple[Array, Array, Array] | None:
+        """Times of the edges (n,), in noises, and their derivatives: by what belongs to the passage
+        (n, 3), and by the rest (n, 4 h + e); None where the crank would nearly stand still."""
+        passage, work = self.passage, state.work + self.lean * state.change
+        span = passage.angle - passage.angle[0]
+        start, mean_energy, mean_torque = state.own[k]
+        energy = mean_energy + mean_torque * self.offset + self.waves @ work
+        energy_at = mean_energy + mean_torque * span + self.waves_at @ work
+        if not min(energy.min(), energy_at.min()) > _ENERGY_MIN * mean_energy:
+            return None
+        scale = passage.mean_speed / self.noise
+        slowness = scale * np.sqrt(0.5 * self.inertia / energy)
+        slowness_at = scale * np.sqrt(0.5 * self.inertia_at / energy_at)
+        slope = -0.5 * self.weight * slowness / energy
+        by_work = _summed(np.einsum("nq,nqh->nh", slope, self.waves))
+        by_error = np.zeros((span.size, state.errors.size))
+        by_error[np.arange(span.size), passage.edge] = slowness_at
+        own = (slope.sum(axis=1), (slope * self.offset).sum(axis=1))
+        times = start * scale + _summed((self.weight * slowness).sum(axis=1))
+        return (
+            times + slowness_at * state.errors[passage.edge],
+            np.column_stack([np.full(span.size, scale), *(_summed(each) for each in own)]),
+            np.hstack([by_work, self.lean * by_work, by_error]),
+        )
+
+
+def _summed(parts: Array) -> Array:
+    """Sums of the first 0, 1, ... of the parts."""
+    return np.concatenate([np.zeros((1, *parts.shape[1:])), np.cumsum(parts, axis=0)])
+
+
+def _waves(angle: Array, harmonics: int) -> Array:
+    """Cosines, then sines, of the harmonics of the cycle, (..., 2 h)."""
+    phase = angle[..., None] * (0.5 * np.arange(1, harmonics + 1))
+    return np.concatenate([np.cos(phase), np.sin(phase)], axis=-1)
+
+
+@dataclass(frozen=True, eq=False)
+class _State:
+    """Unknowns of the fit, and what is known of their errors."""
+
+    work: Array  # J (2 h), at the middle of the range of speed
+    change: Array  # J (2 h), over the range of speed
+    errors: Array  # rad (e)
+    own: Array  # (k, 3): t_0, s, E, J, and m, N m, of each passage
+    covariance: Array  # of work, change and errors
+    misfit: float = np.inf
+    shared: tuple[Array, ...] = ()  # noises (n, 4 h + e) of each passage: see `PitchErrors`
+
+    @classmethod
+    def steady(cls, parts: Sequence[_Times], edges: int, harmonics: int) -> _State:
+        """Steady speed and no errors, the start of the iteration."""
+        own = [(0.0, 0.5 * part.inertia.mean() * part.passage.mean_speed**2, 0.0) for part in parts]
+        none = np.zeros(2 * harmonics)
+        return cls(none, none, np.zeros(edges), np.array(own), np.empty((0, 0)))
+
+    def stepped(self, whole: Array, own: Array, share: float) -> _State:
+        """The state after a share of a step: `whole` (4 h + e), `own` (k, 3)."""
+        size = self.work.size
+        return replace(
+            self,
+            work=self.work + share * whole[:size],
+            change=self.change + share * whole[size : 2 * size],
+            errors=self.errors + share * whole[2 * size :],
+            own=self.own + share * own,
+        )
+
+    def change_ratio(self, marks: NDArray[np.bool_]) -> float:
+        """Change over the work itself, rms of the marked waves, noise deducted."""
+        size = self.work.size
+        noise = np.diag(self.covariance)[size : 2 * size][marks].sum()
+        square, of = (self.change[marks] ** 2).sum() - noise, (self.work[marks] ** 2).sum()
+        return float(np.sqrt(square / of)) if square > 0.0 < of else 0.0
+
+
+def _solved(parts: Sequence[_Times], state: _State, tolerance: float, change: Array) -> _State:
+    """Most probable state, by Gauss-Newton steps.
+
+    Parameters
+    ----------
+    change : array (2 h,)   J, standard deviation of the change of each wave; 0: none
+    """
+    unit = float(np.mean(state.own[:, 1]))  # J: columns of like size
+    size = state.work.size
+    scale = np.concatenate([np.full(2 * size, unit), np.full(state.errors.size, tolerance)])
+    kept = np.concatenate([np.ones(size, bool), change > 0.0, np.ones(state.errors.size, bool)])
+    prior = np.concatenate(
+        [np.zeros(size), unit / change[change > 0.0], np.ones_like(state.errors)]
+    )
+    precision, scale = prior**2, scale[kept]
+    for _ in range(_STEPS_MAX):
+        linear = [part.predicted(state, k) for k, part in enumerate(parts)]
+        stack = [one for one in linear if one is not None]
+        normal = np.diag(precision)
+        unknown = np.concatenate([state.work, state.change, state.errors])[kept] / scale
+        right, square, reduced = -precision * unknown, 0.0, []
+        for part, (times, own, rest) in zip(parts, stack, strict=True):
+            left = part.seen - times
+            # What belongs to one passage is eliminated: its columns span a space left out.
+            basis, triangle = np.linalg.qr(own)
+            columns = rest[:, kept] * scale
+            free = columns - basis @ (basis.T @ columns)
+            normal += free.T @ free
+            right += free.T @ left
+            square += float(((left - basis @ (basis.T @ left)) ** 2).sum())
+            reduced.append((basis, triangle, columns, free, left))
+        factor = scipy.linalg.cho_factor(normal)
+        step = scipy.linalg.cho_solve(factor, right)
+        owns = np.array([
+            np.linalg.solve(triangle, basis.T @ (left - columns @ step))
+            for basis, triangle, columns, _, left in reduced
+        ])  # fmt: skip
+        whole = np.zeros(kept.size)
+        whole[kept] = scale * step
+        share = 1.0
+        while any(p.predicted(state.stepped(whole, owns, share), k) is None
+                  for k, p in enumerate(parts)):  # fmt: skip
+            share *= 0.5
+            if share < 1e-6:
+                raise CamError("the pitch errors of the wheel cannot be estimated: "
+                               "the torque would stop the crank")  # fmt: skip
+        state = state.stepped(whole, owns, share)
+        largest = max(
+            float(np.abs(columns @ step + basis @ (triangle @ own)).max()) * part.noise
+            for part, own, (basis, triangle, columns, _, _) in zip(
+                parts, owns, reduced, strict=True
+            )
+        )
+        if share == 1.0 and largest < _STEP_END:
+            break
+    else:
+        text = f"the pitch errors of the wheel did not converge within {_STEPS_MAX} steps"
+        raise CamError(f"{text}: passing times still change by {largest:.1e} rad")
+    inverse = scipy.linalg.cho_solve(factor, np.eye(step.size))
+    covariance = np.zeros((kept.size, kept.size))
+    covariance[np.ix_(kept, kept)] = scale[:, None] * inverse * scale
+    shared = []
+    for *_, free, _ in reduced:
+        each = np.zeros((free.shape[0], kept.size))
+        each[:, kept] = free @ inverse * scale
+        shared.append(each)
+    freedom = sum(part.passage.angle.size - 3 for part in parts) - step.size
+    freedom += float(precision @ np.diag(inverse))  # an unknown that stays at its prior is none
+    misfit = float(np.sqrt(square / max(freedom, 1.0)))
+    return replace(state, covariance=covariance, misfit=misfit, shared=tuple(shared))

@@ -1,0 +1,258 @@
+"""Crank speed from a file: its table of a case, times of edges, speeds per tooth."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Annotated, ClassVar, Literal
+
+import numpy as np
+
+from camwright.geometry.arrays import Array
+from camwright.geometry.errors import InputError
+from camwright.pipeline.base.quantities import Angle, Count, FileName, In, Part, Share
+from camwright.pipeline.engine.angle_trace import guard_order, guard_span, without_end
+from camwright.pipeline.engine.cylinder import CYCLE_ANGLE, RunningGear
+from camwright.pipeline.engine.speed_trace import (
+    HARMONICS,
+    TAPER,
+    Filter,
+    Harmonics,
+    SpeedTrace,
+    speed_from_edges,
+    speed_from_teeth,
+)
+from camwright.pipeline.engine.trace_file import (
+    QUANTITY_UNITS,
+    HeaderText,
+    TraceText,
+    angle_column,
+    columns_of,
+    has_angle,
+    trace_text,
+)
+from camwright.pipeline.engine.trigger_wheel import (
+    MissingTeeth,
+    Teeth,
+    ToothShare,
+    TriggerWheel,
+    counted,
+)
+from camwright.pipeline.engine.wheel_calibration import (
+    PITCH_TOLERANCES,
+    Calibrator,
+    EdgeRecord,
+    PitchTolerance,
+    WheelClass,
+    WheelReference,
+)
+
+
+@dataclass(frozen=True, kw_only=True)
+class WheelTable(Part):
+    """A measurement at a trigger wheel from a file: the wheel and the filter of the speed.
+
+    Raises
+    ------
+    InputError
+        As `TriggerWheel`.
+    """
+
+    table: ClassVar[str] = "engine"
+    defaults: ClassVar[Mapping[str, str]] = {"pitch_tolerance": "that of wheel_class"}
+
+    file: FileName
+    teeth: Teeth = 36
+    missing_teeth: MissingTeeth = 0
+    reference_angle: Angle = 0.0
+    harmonics: Harmonics = HARMONICS
+    taper: Share = TAPER
+    wheel_class: WheelClass = "stamped"
+    pitch_tolerance: PitchTolerance | None = None
+    reference: WheelReference | None = None
+    running_gear: RunningGear | None = None
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        _ = self.wheel  # refuses too many missing teeth
+        reference = self.reference
+        if reference is None:
+            return
+        if self.running_gear is None and reference.kind != "no_torque":
+            limit = f'given with engine.reference.kind = "{reference.kind}", for its inertia'
+            raise InputError("engine.running_gear", "missing", limit)
+        if not self.edge_tolerance > 0.0:
+            raise InputError("engine.pitch_tolerance", "0 deg", "> 0 deg with engine.reference")
+
+    @property
+    def edge_tolerance(self) -> float:
+        """Standard deviation of the place of an edge, rad: as stated, else of the wheel's class."""
+        stated = self.pitch_tolerance
+        return PITCH_TOLERANCES[self.wheel_class] if stated is None else stated
+
+    def calibrator(self, inertia: float, path: Callable[[str], Path]) -> Calibrator:
+        """Calibrator of the wheel.
+
+        Parameters
+        ----------
+        inertia : float   kg m2, of the crankshaft
+        path : function   of a file in the case
+        """
+        known, kind = self.reference, "" if self.reference is None else self.reference.kind
+        file = None if known is None else path(known.file)
+        return Calibrator(self.edge_tolerance, inertia, self.running_gear, file, kind)
+
+    @property
+    def wheel(self) -> TriggerWheel:
+        return TriggerWheel(self.teeth, self.missing_teeth, self.reference_angle)
+
+    @property
+    def band(self) -> Filter:
+        """Filter of the speed."""
+        return Filter(self.harmonics, self.taper)
+
+
+@dataclass(frozen=True, kw_only=True)
+class SpeedTable(WheelTable):
+    """Crank speed from a file: tooth times, or speed per tooth against crank angle."""
+
+    kind: Literal["speed"] = "speed"
+    column: HeaderText = ""
+    speed_unit: HeaderText = ""
+    edges: Annotated[int, Count(1, 2)] = 2
+    tooth_share: ToothShare = 0.5
+    averaged_over: Annotated[float, In("deg", at_least=0, at_most=60)] = 0.0
+
+    @property
+    def wheel(self) -> TriggerWheel:
+        return replace(super().wheel, tooth_share=self.tooth_share)
+
+
+def tooth_times(path: str | Path, column: str = "") -> tuple[str, Array]:
+    """Times of edges from a CSV file, a column per run: array (runs, edges), s.
+
+    Raises
+    ------
+    InputError
+        As `read_trace`.
+    """
+    text = trace_text(Path(path), one_column=True)
+    wanted = columns_of(text.header, "time", column)
+    if not wanted:
+        limit = f"a column of time with its unit ({', '.join(QUANTITY_UNITS['time'])})"
+        raise InputError(f"{text.name} header", ", ".join(text.header), limit)
+    table = text.numbers(tuple(wanted))
+    return text.name, np.asarray((table * np.array(list(wanted.values()))).T)
+
+
+def edges_from_csv(
+    path: str | Path, wheel: TriggerWheel, both_edges: bool = True, column: str = ""
+) -> EdgeRecord:
+    """Edges from a CSV file of their times, a column per run.
+
+    Raises
+    ------
+    InputError
+        As `read_trace` and `counted`.
+    """
+    name, runs = tooth_times(path, column)
+    edges = [counted(f"{name} run {k + 1}", run, wheel, both_edges) for k, run in enumerate(runs)]
+    return EdgeRecord(name, edges, wheel)
+
+
+def speed_from_csv(
+    path: str | Path,
+    wheel: TriggerWheel,
+    band: Filter,
+    *,
+    both_edges: bool = True,
+    column: str = "",
+    unit: str = "",
+    averaged_over: float = 0.0,
+    calibrator: Calibrator | None = None,
+) -> SpeedTrace:
+    """Crank speed from a CSV file: tooth times, or speed per tooth against crank angle.
+
+    A file with a column of crank angle has speeds, a column per run; any other has the times of
+    edges, a column per run. Without a gap the cycle begins with the record; the turn with the
+    expansion follows from the speed.
+
+    Parameters
+    ----------
+    wheel : TriggerWheel
+    band : Filter
+    both_edges : bool         times: every second edge is a falling one
+    column : str              beginning of the headers of the columns to read
+    unit : str                speeds: the unit of columns without one
+    averaged_over : float     speeds: rad over which each is a mean
+    calibrator : Calibrator   None: a wheel without pitch errors
+
+    Raises
+    ------
+    InputError
+        As `read_trace`, `counted`, `speed_from_edges` and `Calibrator`; if speeds have a reference.
+    """
+    text = trace_text(Path(path), one_column=True)
+    if has_angle(text.header):
+        angle, speeds = _speed_table(text, column, unit)
+        if calibrator is None:
+            return speed_from_teeth(text.name, angle, speeds, band, averaged_over)
+        if calibrator.reference is not None:
+            limit = "left out with speeds against crank angle: pitch errors need times of edges"
+            raise InputError("engine.reference", "a table", limit)
+        return speed_from_teeth(text.name, angle, speeds, band, averaged_over, calibrator.tolerance)
+    record = edges_from_csv(path, wheel, both_edges, column)
+
+    def read(reference: Path) -> EdgeRecord:
+        return edges_from_csv(reference, wheel, both_edges)
+
+    return speed_of_record(record, band, calibrator, read)
+
+
+def speed_of_record(
+    record: EdgeRecord,
+    band: Filter,
+    calibrator: Calibrator | None,
+    read: Callable[[Path], EdgeRecord],
+) -> SpeedTrace:
+    """Speed from the edges of a record, with the expansion in the second turn of each cycle.
+
+    Parameters
+    ----------
+    calibrator : Calibrator   None: a wheel without pitch errors
+    read : function           edges of a second record in a file of the same form
+
+    Raises
+    ------
+    InputError
+        As `speed_from_edges` and `Calibrator`.
+    """
+    source, runs, wheel = record
+    if calibrator is None:
+        return speed_from_edges(source, runs, wheel, band).with_firing()
+    calibration = calibrator(record, read, band.last)
+    trace = speed_from_edges(source, runs, wheel, band, calibration.errors)
+    return replace(trace.with_firing(), calibration=calibration)
+
+
+def _speed_table(text: TraceText, column: str, unit: str) -> tuple[Array, Array]:
+    """Angles (n,), rad, and speeds (m, n), rad/s, of one cycle."""
+    name, header = text.name, text.header
+    at, factor = angle_column(name, header)
+    wanted = columns_of(header, "speed", column)
+    known = ", ".join(QUANTITY_UNITS["speed"])
+    if unit:
+        if unit not in QUANTITY_UNITS["speed"]:
+            raise InputError("engine.speed_unit", unit, f"one of {known}")
+        bare = [k for k, head in enumerate(header) if head.lower().startswith(column.lower())]
+        wanted = {k: QUANTITY_UNITS["speed"][unit] for k in bare if k != at} | wanted
+    if not wanted:
+        limit = f"a column of speed with its unit ({known}), or of time"
+        raise InputError(f"{name} header", ", ".join(header), limit)
+    table = text.numbers((at, *wanted))
+    guard_order(name, text.line_numbers, table[:, 0], header[at])
+    angle, values = table[:, 0] * factor, table[:, 1:] * np.array(list(wanted.values()))
+    guard_span(name, angle, factor, CYCLE_ANGLE)
+    angle, values = without_end(angle, values, CYCLE_ANGLE)
+    return angle, np.asarray(values.T)
