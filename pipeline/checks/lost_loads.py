@@ -1,4 +1,4 @@
-"""Checks of load cases in which the follower leaves the cam or locks.
+"""Checks of load cases in which the follower leaves the cam or locks, or the crank stalls.
 
 After it the loads of the cam are not those of the follower: it lands with an impact, or does not
 move. A check that rests on them is made in the other load cases alone. It fails where they exceed
@@ -15,12 +15,16 @@ from typing import NamedTuple
 
 from camwright.pipeline.base.units import shown
 from camwright.pipeline.checks.check import Check
+from camwright.pipeline.cycle.cycle import Cycle
 from camwright.pipeline.cycle.solution import Solution
-from camwright.pipeline.follower.follower_forces import LEAVES
+from camwright.pipeline.follower.follower_forces import LOCKS
+
+STALLS = "drives a crank that stalls"
+"""End of the loads at a constant speed: the torque swings more energy than turns in the crank."""
 
 
 class LoadEnd(NamedTuple):
-    """Load case, cam angle, rad, at which its loads end, and why: leaves the cam, or locks."""
+    """Load case, cam angle, rad, at which its loads end, and why, of the follower."""
 
     load_case: str
     cam_angle: float
@@ -34,8 +38,13 @@ class LoadEnd(NamedTuple):
 
 def load_ends(solution: Solution) -> tuple[LoadEnd, ...]:
     """End of the loads of each load case that has one."""
-    ends = ((cycle.load_case, cycle.loads.end) for cycle in solution.cycles)
+    ends = ((cycle.load_case, _end(cycle)) for cycle in solution.cycles)
     return tuple(LoadEnd(name, *end) for name, end in ends if end is not None)
+
+
+def _end(cycle: Cycle) -> tuple[float, str] | None:
+    stall = cycle.turn.driven.stall
+    return cycle.loads.end or (None if stall is None else (stall, STALLS))
 
 
 def without_lost_loads(checks: Iterable[Check], solution: Solution) -> tuple[Check, ...]:
@@ -43,7 +52,7 @@ def without_lost_loads(checks: Iterable[Check], solution: Solution) -> tuple[Che
     ends = load_ends(solution)
     if not ends:
         return tuple(checks)
-    left = tuple(end for end in ends if end.why == LEAVES)
+    left = tuple(end for end in ends if end.why != LOCKS)
     parts = {"loads": _Parts.of(solution, ends), "contact": _Parts.of(solution, left)}
     return tuple(_bound(one, parts.get(one.declaration.rests_on)) for one in checks)
 

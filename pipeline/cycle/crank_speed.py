@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from math import pi
+from typing import NamedTuple
 
 import numpy as np
 
-from camwright.geometry.arrays import Array, uniform_turn
+from camwright.geometry.arrays import FULL_TURN, Array, readonly, uniform_turn
 from camwright.geometry.errors import CamError, InputError
 from camwright.geometry.follower_path import FollowerPath
 from camwright.geometry.periodic_spline import periodic_quintic
@@ -20,6 +21,7 @@ from camwright.pipeline.engine.crankshaft import (
     Inertia,
     Load,
     MechanismTorque,
+    StallError,
     crank_motion,
     equivalent_inertia,
 )
@@ -184,22 +186,31 @@ def _driving(torque: Torque, constant: float) -> tuple[Array, Inertia]:
     return without, Inertia(constant, torque.varying_inertia)
 
 
-def driven_cam_speed(
-    machine: Machine, torque: Torque | None, pitch: FollowerPath, rubbing: Rubbing
-) -> Array:
-    """Cam speed at the angles of `rubbing`, equal parts of a turn, rad/s.
+class DrivenCam(NamedTuple):
+    """Speed of the cam (n,), rad/s; cam angle at which its crank stalls, rad, None: it turns."""
 
-    With a torque and a crankshaft that of the crank with the cam; constant without them, or where
-    the engine stalls with its inertia.
+    speed: Array
+    stall: float | None = None
+
+
+def driven_cam(
+    machine: Machine, torque: Torque | None, pitch: FollowerPath, rubbing: Rubbing
+) -> DrivenCam:
+    """Cam at the angles of `rubbing`, equal parts of a turn.
+
+    With a torque and a crankshaft the speed is that of the crank with the cam; constant without
+    them, and where the crank stalls, whose loads no check may rest on.
     """
-    steady = np.full(rubbing.theta.size, machine.cam_speed)
+    steady = readonly(np.full(rubbing.theta.size, machine.cam_speed))
     if torque is None or machine.crankshaft is None or not machine.speed > 0:
-        return steady
+        return DrivenCam(steady)
     try:
         _, after = _motions(machine, machine.crankshaft, torque, pitch, rubbing)
-    except CamError:
-        return steady
-    return periodic_quintic(after.speed)(rubbing.theta) / machine.gear_ratio
+    except StallError as stall:
+        return DrivenCam(steady, stall.crank_angle / machine.gear_ratio % FULL_TURN)
+    except InputError:  # an engine torque that does not vary
+        return DrivenCam(steady)
+    return DrivenCam(readonly(periodic_quintic(after.speed)(rubbing.theta) / machine.gear_ratio))
 
 
 def speed_ripple(

@@ -238,7 +238,7 @@ class Cycle:
             Column(
                 "jam_index_statics", "", "Jam index with point supports as guides"
             ): loads.jam_index_statics,
-            Column("cam_speed", "rad/s", "Angular speed of the cam"): turn.cam_speed,
+            Column("cam_speed", "rad/s", "Angular speed of the cam"): turn.driven.speed,
             Column("follower_velocity", "m/s", "Velocity of the follower"): loads.velocity,
             Column("cam_torque", "N m", "Torque that drives the cam"): loads.cam_torque,
             contact_column(

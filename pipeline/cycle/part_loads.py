@@ -159,7 +159,7 @@ def part_loads(
         friction=friction,
         viscous_force=loads.viscous_force,
         elastic=elastic_history(
-            machine, contour.pitch.lift, loads.lift, turn.cam_speed, flights=flights
+            machine, contour.pitch.lift, loads.lift, turn.driven.speed, flights=flights
         ),
         reversals=torque_reversals(
             loads.theta,

@@ -9,7 +9,7 @@ from typing import NamedTuple
 from camwright.geometry.arrays import Array, freeze, uniform_turn
 from camwright.geometry.contour import Contour
 from camwright.pipeline.case.machine import Machine
-from camwright.pipeline.cycle.crank_speed import driven_cam_speed
+from camwright.pipeline.cycle.crank_speed import DrivenCam, driven_cam
 from camwright.pipeline.engine.torque import Torque
 from camwright.pipeline.follower.follower_forces import FollowerSystem, Loads
 from camwright.pipeline.follower.friction_coupling import Guided, Stroke, guided_strokes
@@ -26,9 +26,9 @@ class Turn:
 
     Arrays (n,) at equal cam angles theta, rad. The loads are in equilibrium with the guides,
     friction included, up to the relative friction_residual; friction holds the loads at the bounds
-    of the friction. cam_speed, rad/s, varies with the crank if the machine has a crankshaft; the
-    loads are those of the constant mean speed. torque_before and torque_after are crank torques
-    without and with the cam less their means, N m; None without an engine.
+    of the friction. The speed of the driven cam varies with the crank if the machine has a
+    crankshaft; the loads are those of the constant mean speed. torque_before and torque_after are
+    crank torques without and with the cam less their means, N m; None without an engine.
     """
 
     machine: Machine
@@ -37,17 +37,12 @@ class Turn:
     friction: FrictionBounds
     guides: GuideReactions
     friction_residual: Array
-    cam_speed: Array
+    driven: DrivenCam
     torque_before: Array | None
     torque_after: Array | None
 
     def __post_init__(self) -> None:
-        freeze(
-            self,
-            theta=self.theta,
-            friction_residual=self.friction_residual,
-            cam_speed=self.cam_speed,
-        )
+        freeze(self, theta=self.theta, friction_residual=self.friction_residual)
         if self.torque_before is not None and self.torque_after is not None:
             freeze(self, torque_before=self.torque_before, torque_after=self.torque_after)
 
@@ -146,7 +141,7 @@ def _turn(
         ),
         guides=nominal.reactions,
         friction_residual=nominal.residual,
-        cam_speed=driven_cam_speed(machine, driving, pitch, loads.rubbing),
+        driven=driven_cam(machine, driving, pitch, loads.rubbing),
         torque_before=before,
         torque_after=after,
     )

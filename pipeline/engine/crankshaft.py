@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike
 from camwright.geometry.arrays import Array, finite, freeze, positive, readonly
 from camwright.geometry.errors import CamError, InputError
 from camwright.pipeline.base.quantities import In, Part
+from camwright.pipeline.base.units import shown
 from camwright.pipeline.engine.cylinder import CYCLE_ANGLE
 
 SETTLED = 1e-13  # change of the speed between two passes over its mean
@@ -24,6 +25,14 @@ _STEPS_MAX = 60
 # Crank torque (n,) of a mechanism without the inertia of its moving parts, N m, from crank
 # speed (n,), rad/s, and crank acceleration (n,), rad/s2.
 MechanismTorque = Callable[[Array, Array], Array]
+
+
+class StallError(CamError):
+    """Crank whose torque swings more energy than turns in it; crank angle of the stall, rad."""
+
+    def __init__(self, words: str, crank_angle: float) -> None:
+        super().__init__(words)
+        self.crank_angle = crank_angle
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -312,9 +321,13 @@ def _speed(energy: Array, inertia: Array, mean_speed: float) -> Array:
     low = least + float((0.5 * inertia).max()) * (0.01 * mean_speed) ** 2
     if _time_mean(speed(low)) > mean_speed:
         swing = float(np.ptp(energy))
-        text = f"the engine would stall within the cycle: its torque swings {swing:.3g} J"
         stored = 0.5 * float(inertia.mean()) * mean_speed**2
-        raise CamError(f"{text} of the {stored:.3g} J that turn at {mean_speed:.4g} rad/s")
+        angle = CYCLE_ANGLE * int(np.argmin(energy / inertia)) / energy.size
+        raise StallError(
+            f"the crank stalls at {shown(angle, 'deg')} of its cycle: its torque swings"
+            f" {swing:.3g} J of the {stored:.3g} J that turn at {shown(mean_speed, 'rpm')}",
+            angle,
+        )
     # The mean is a concave rising function of the constant: Newton's steps approach it from below.
     floor = max(low, 0.5 * float(inertia.mean()) * mean_speed**2)
     for _ in range(_STEPS_MAX):

@@ -23,6 +23,7 @@ from camwright.pipeline.case.case_file import parse_case, with_values
 from camwright.pipeline.case.case_values import value_of
 from camwright.pipeline.case.load_case_torque import engine_torques
 from camwright.pipeline.checks.check import Check
+from camwright.pipeline.checks.lost_loads import STALLS
 from camwright.pipeline.follower.follower_forces import LEAVES, LOCKS
 from camwright.pipeline.remedies.case_judge import Judge, Preview, effects, newly_failing, used
 from camwright.pipeline.remedies.lever_steps import Step, Workbench, without_exponent
@@ -47,6 +48,7 @@ _FROM = 0.3  # size of a change from which it is extrapolated
 _FIRST = {
     LEAVES: "first keep the follower on the cam",
     LOCKS: "first keep the follower from locking",
+    STALLS: "first keep the crank from stalling",
 }
 """Until then no change is judged in every load case."""
 _LEAST_USED = 1e-3  # utilisation of an interpolation

@@ -1,4 +1,4 @@
-"""Checks where the follower leaves the cam or locks: the contact and the jam are the results."""
+"""Checks where the follower leaves the cam or locks, or the crank stalls: what is judged."""
 
 from __future__ import annotations
 
@@ -14,12 +14,15 @@ from made_check import made_check
 
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_file import parse_case
+from camwright.pipeline.case.load_case_torque import engine_torque
 from camwright.pipeline.case.machine import Corner
 from camwright.pipeline.checks.check import Check
 from camwright.pipeline.checks.lost_loads import load_ends
 from camwright.pipeline.checks.tolerance_corners import NOMINAL, Outcome, governed
 from camwright.pipeline.contact.tiers import Tier
+from camwright.pipeline.cycle.crank_speed import study_of
 from camwright.pipeline.cycle.cycle import Cycle
+from camwright.pipeline.engine.crankshaft import StallError
 from camwright.pipeline.preview import preview_case
 from camwright.pipeline.results.field_output import hardest
 from camwright.pipeline.results.run_reader import status_of
@@ -108,6 +111,29 @@ def test_a_follower_that_locks_is_judged_by_its_jam_alone() -> None:
     assert made["jam_index"].status == "fail" and float(made["jam_index"].demand or 0.0) >= 1.0
     for name in ("guide_pressure_A", "contact_pressure", "torque_reduction"):
         assert made[name].demand is None and made[name].status == "not_evaluated"
+
+
+def test_loads_on_a_crank_that_stalls_are_no_results() -> None:
+    light = trial(
+        (OVERSPEED, ""),
+        ('inertia = "0.0139 kg m^2"', 'inertia = "1e-4 kg m^2"'),
+        ('mechanism_inertia = "0.0006 kg m^2"', 'mechanism_inertia = "1e-5 kg m^2"'),
+    )
+    (end,) = load_ends(light.solution)
+    assert (end.load_case, end.why) == ("idle", "drives a crank that stalls")
+    # the torque of compression takes the energy: before the firing top dead centre, 180 deg
+    assert math.radians(150.0) < end.cam_angle < math.radians(185.0)
+    made = checks(light)
+    for name in ("guide_pressure_A", "contact_pressure", "jam_index"):
+        assert made[name].without == f"the follower {end.words}"
+        assert made[name].status != "pass" and made[name].load_case != "idle"
+    assert made["pressure_angle"].evaluated
+    machine, state = light.cycles[0].machine, light.case.load_cases[0]
+    with pytest.raises(
+        StallError, match=r"the crank stalls at \d+\.?\d* deg of its cycle"
+    ) as stall:
+        study_of(machine, engine_torque(light.case, state), light.contour.pitch)
+    assert stall.value.crank_angle == pytest.approx(2.0 * end.cam_angle)
 
 
 def test_the_headline_has_the_loads_of_the_others() -> None:
