@@ -17,6 +17,7 @@ from camwright.pipeline.contact.cam_body import CamBody
 from camwright.pipeline.engine.cylinder import CylinderEngine
 from camwright.pipeline.engine.pickup_voltage import VoltageTable
 from camwright.pipeline.engine.speed_file import SpeedTable
+from camwright.pipeline.follower.guide_friction import friction_limits
 from camwright.pipeline.follower.roller import Roller
 from camwright.pipeline.follower.spring import Spring
 
@@ -127,7 +128,7 @@ def tightened_tolerances(case: Case) -> dict[str, tuple[str, str]]:
     }
     share = usual.friction * (1.0 - _ROUND_OFF)
     for side, guide in (("a", case.guides.a), ("b", case.guides.b)):
-        low, high = guide.friction * (1.0 - share), guide.friction * (1.0 + share)
+        low, high = map(float, friction_limits(guide.friction, None, None, share))
         if guide.friction_min is not None and guide.friction_min > low:
             bounds = shown(guide.friction_min, ""), f"<= {shown(low, '')}"
             tight[f"guides.{side}.friction_min"] = bounds

@@ -23,6 +23,27 @@ NYLON_PV = {
 }
 
 
+def friction_limits(
+    friction: ArrayLike, low: ArrayLike | None, high: ArrayLike | None, tolerance: float
+) -> tuple[Array, Array]:
+    """Minimum and maximum coefficient of a guide, or of many (...).
+
+    Parameters
+    ----------
+    friction : float or array (...)    nominal
+    low, high : float or array (...)   as stated; None or NaN: by the tolerance
+    tolerance : float                  share of the nominal coefficient
+    """
+    nominal = np.asarray(friction, dtype=float)
+    stated = (np.asarray(np.nan if one is None else one, dtype=float) for one in (low, high))
+    usual = (1.0 - tolerance) * nominal, (1.0 + tolerance) * nominal
+    least, greatest = (
+        np.where(np.isnan(one), scattered, one)
+        for one, scattered in zip(stated, usual, strict=True)
+    )
+    return least, greatest
+
+
 @dataclass(frozen=True)
 class FrictionRange:
     """Friction coefficients of guides A and B: nominal, minimum and maximum.
@@ -48,19 +69,14 @@ class FrictionRange:
     @classmethod
     def of(cls, guides: GuidePair, tolerance: float) -> FrictionRange:
         """From the bounds of the guides; a relative tolerance where a guide has none."""
-        both = (guides.a, guides.b)
-        low = [
-            g.friction * (1.0 - tolerance) if g.friction_min is None else g.friction_min
-            for g in both
-        ]
-        high = [
-            g.friction * (1.0 + tolerance) if g.friction_max is None else g.friction_max
-            for g in both
-        ]
+        a, b = (
+            friction_limits(each.friction, each.friction_min, each.friction_max, tolerance)
+            for each in (guides.a, guides.b)
+        )
         return cls(
             nominal=(guides.a.friction, guides.b.friction),
-            least=(low[0], low[1]),
-            greatest=(high[0], high[1]),
+            least=(float(a[0]), float(b[0])),
+            greatest=(float(a[1]), float(b[1])),
         )
 
     def factors(self, side: int) -> tuple[float, float]:

@@ -335,9 +335,10 @@ def spring_force(preload: float | Array, rate: float | Array, lift: Array) -> Ar
     return np.asarray(preload + rate * lift)
 
 
-def spring_energy(preload: float, rate: float, lift: Array) -> Array:
+def spring_energy(preload: float, rate: float, lift: ArrayLike) -> Array:
     """Energy P s + k s^2 / 2 (...) of a linear spring at a lift (...), m, in J."""
-    return np.asarray(preload * lift + 0.5 * rate * lift**2)
+    at = np.asarray(lift, dtype=float)
+    return np.asarray(preload * at + 0.5 * rate * at**2)
 
 
 def surge_harmonics(

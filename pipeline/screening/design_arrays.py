@@ -34,6 +34,7 @@ from camwright.pipeline.follower.follower_forces import (
     loads_of,
     share_left,
 )
+from camwright.pipeline.follower.guide_friction import friction_limits
 from camwright.pipeline.follower.guide_table import GuideRatios, GuideTable, Place, guide_table
 from camwright.pipeline.follower.spring import spring_force
 from camwright.pipeline.screening.design_factors import WoundSprings, wound_spring
@@ -401,11 +402,10 @@ class Designs:
         return demands.jam_outward(self.motion.slope, index * self._side_factor)
 
     def greatest_friction(self, side: Literal["a", "b"]) -> Array:
-        """Maximum friction coefficient of a guide (m, 1); see `FrictionRange`."""
-        stated = self.value(f"guides.{side}.friction_max")
+        """Maximum friction coefficient of a guide (m, 1)."""
         nominal = self.value(f"guides.{side}.friction")
-        scattered = nominal * (1.0 + self.case.tolerances.friction)
-        return np.where(np.isnan(stated), scattered, stated)
+        stated = self.value(f"guides.{side}.friction_max")
+        return friction_limits(nominal, None, stated, self.case.tolerances.friction)[1]
 
     @cached_property
     def contact_width(self) -> Array:

@@ -22,6 +22,7 @@ from camwright.pipeline.case.limits import LIMITS
 from camwright.pipeline.case.machine import machine
 from camwright.pipeline.case.requirements_section import Tolerances
 from camwright.pipeline.case.toml_text import TomlValue
+from camwright.pipeline.follower.guide_friction import friction_limits
 from camwright.pipeline.follower.guide_reactions import require_fit
 from camwright.pipeline.follower.spring import INDEX_MAX, INDEX_MIN, Treatment, WoundWire
 
@@ -280,7 +281,7 @@ def _suspects(case: Case, values: Mapping[str, Array], highest: Array) -> NDArra
             friction = at(f"guides.{side}.friction")
             wrong |= at(f"guides.{side}.friction_min") > friction
             wrong |= at(f"guides.{side}.friction_max") < friction
-            usual = (1.0 + Tolerances().friction) * friction
+            usual = friction_limits(friction, None, None, Tolerances().friction)[1]
             if not case.tolerances.source.strip():
                 wrong |= at(f"guides.{side}.friction_max") < usual
         mouth = at("follower.overhang_at_max_lift")

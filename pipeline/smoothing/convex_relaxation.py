@@ -19,6 +19,7 @@ import scipy
 
 from camwright.geometry.arrays import Array, readonly, uniform_turn
 from camwright.pipeline.case.limits import PRESSURE_ANGLE
+from camwright.pipeline.follower.spring import spring_energy
 from camwright.pipeline.smoothing.cone_program import Cones
 from camwright.pipeline.smoothing.energy_spline import basis_matrix
 from camwright.pipeline.smoothing.sampled_problem import Search
@@ -89,7 +90,7 @@ def _program(search: Search) -> Cones:
         program.at_most(energy[[k]], problem.energy[1])
     if ratings.travel is not None:
         top = ratings.travel * (1.0 - RESERVE)
-        program.at_most(energy, variables.preload * top + 0.5 * variables.rate * top**2)
+        program.at_most(energy, spring_energy(variables.preload, variables.rate, top))
     # q / P^2 = 1 + growth, and sigma / P is the unknown
     growth = (2.0 * variables.rate / variables.preload**2) * energy
     sigma = program.columns(scipy.sparse.csr_array(np.eye(points)), count + 1)

@@ -20,6 +20,7 @@ from camwright.pipeline.cycle.solution import Solution
 from camwright.pipeline.cycle.speed_sweep import SpeedSweep, SweptForces, swept_forces
 from camwright.pipeline.follower.follower_forces import Loads, levers
 from camwright.pipeline.follower.roller_motion import rolling_share
+from camwright.pipeline.follower.spring import spring_energy
 from camwright.pipeline.smoothing.allowables import corrected_ratings, softening
 from camwright.pipeline.smoothing.infeasibility import ConflictRecord
 from camwright.pipeline.smoothing.multistart import (
@@ -427,13 +428,12 @@ def design_record(
     """
     least = float(design.lift().lowest.value)
     variables = design.variables
-    energy = variables.preload * least + 0.5 * variables.rate * least**2
     return {
         "feasible": design.feasible,
         "converged": design.converged,
         "steps": design.steps,
         "ripple_left": design.ripple,
-        "initial_energy_J": energy,
+        "initial_energy_J": float(spring_energy(variables.preload, variables.rate, least)),
         "spring_rate_N_per_mm": in_unit(variables.rate, "N/mm"),
         "preload_N": variables.preload,
         "prime_radius_mm": in_unit(variables.prime_radius, "mm"),

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from camwright.geometry.arrays import Array, uniform_turn
 from camwright.pipeline.case.limits import PRESSURE_ANGLE, TORQUE_REDUCTION
+from camwright.pipeline.follower.spring import spring_energy
 from camwright.pipeline.smoothing.cam_state import Jet, Mean, lift_jet
 from camwright.pipeline.smoothing.cone_program import Linear, Norm
 from camwright.pipeline.smoothing.constraints import (
@@ -104,7 +105,7 @@ class Search:
             prime_radius=variables.prime_radius,
             pressure_angle=ratings.limits.get(PRESSURE_ANGLE, np.pi / 3),
             slope_max=ratings.slope_max,
-            energy_max=variables.preload * travel + 0.5 * variables.rate * travel**2,
+            energy_max=float(spring_energy(variables.preload, variables.rate, travel)),
         )
         rise = float(np.clip(0.0, problem.energy[0] - 1e-12, problem.energy[1]))
         least = float(self.turn.energy(exact)[0].min())

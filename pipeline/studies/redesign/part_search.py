@@ -19,7 +19,7 @@ from camwright.pipeline.case.cards.catalogue import (
 from camwright.pipeline.case.cards.substitution import AS_GIVEN, Choice, travel_of
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.limits import JUMP, TORQUE_REDUCTION
-from camwright.pipeline.follower.spring import HelicalSpring
+from camwright.pipeline.follower.spring import HelicalSpring, spring_energy
 from camwright.pipeline.smoothing.scenario import Scenario
 from camwright.pipeline.smoothing.synthesis_problem import Problem
 from camwright.pipeline.studies.redesign import ripple_bounds
@@ -174,7 +174,7 @@ class _Least:
         relief = ripple_bounds.relief_of(problem.scenarios, problem.ratings.limits.get(JUMP))
         preload, bounds = case.spring.preload, {}
         for name, (spring, travel) in self.springs.items():
-            held = preload * travel + 0.5 * spring.rate * travel**2
+            held = float(spring_energy(preload, spring.rate, travel))
             borne = ripple_bounds.bearable_energy(force, spring.rate, preload, relief)
             bounds[name] = max(0.0, bound(min(held, borne)) - ripple_bounds.RESERVE)
         return bounds
