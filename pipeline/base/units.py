@@ -32,7 +32,6 @@ _ANGLES = (  # endings, since prefixes go before them
     *("revolutions_per_minute", "revolutions_per_second"),
 )
 _LONGEST = 80
-_LEAST, _GREATEST = 1e-100, 1e100  # SI: squares and cubes are still finite
 
 
 class _Common(NamedTuple):
@@ -187,8 +186,7 @@ def parse(text: object, unit: str, field: str) -> float:
     Raises
     ------
     InputError
-        If the unit is missing, unknown or of another dimension, or the number is not finite, or
-        too small or too large to be squared and cubed.
+        If the unit is missing, unknown or of another dimension, or the number is not finite.
     """
     example = f'a number with a unit, such as "1 {unit}"'
     if not isinstance(text, str):
@@ -209,9 +207,6 @@ def parse(text: object, unit: str, field: str) -> float:
         value = float("nan")
     if not isfinite(value):
         raise InputError(field, text, "finite")
-    if value and not _LEAST <= abs(value) <= _GREATEST:
-        limit = f"0, or between {_LEAST:g} and {_GREATEST:g} in size"
-        raise InputError(field, text, limit)
     return value
 
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from math import degrees, radians
 
 import numpy as np
-from scipy.optimize import brentq
+import scipy
 
 from camwright.geometry.errors import InputError
 from camwright.pipeline.engine.cylinder import CYCLE_ANGLE
@@ -155,7 +155,9 @@ def brake_balance(
     if brake is not None:
         ends = [indicated(sign * SHIFT_MAX) - brake for sign in (-1.0, 1.0)]
         if ends[0] * ends[1] < 0.0:
-            root = brentq(lambda angle: indicated(angle) - brake, -SHIFT_MAX, SHIFT_MAX, xtol=1e-9)
+            root = scipy.optimize.brentq(
+                lambda angle: indicated(angle) - brake, -SHIFT_MAX, SHIFT_MAX, xtol=1e-9
+            )
             shift = float(root)
     return BrakeBalance(
         trace.source,
