@@ -10,11 +10,12 @@ from camwright.reports.papers.paper_chart import Chart
 from camwright.reports.report_tables import DASH, Cell, Record, Table, number
 
 NO_BREAK = "\N{NON-BREAKING HYPHEN}"
-HEAD = ("quantity", "unit", "published", "computed", "difference")
+HEAD = ("quantity", "unit", "published", "computed", "difference", "basis")
 INTRODUCTION = (
     "Each figure is drawn from data computed by this version, with the values that the paper "
-    "prints beside them; diamonds are printed values. The rows are those of camwright validate, "
-    "which tells what was tuned or imposed, and judges."
+    "prints beside them; diamonds are printed values. Rows such as C25-03 are those of camwright "
+    "validate, which judges them. Basis: what the computed value rests on; tuned, fitted and "
+    "imposed values prove nothing by their agreement."
 )
 
 
@@ -59,11 +60,11 @@ def _row(value: Record) -> list[Cell]:
     difference, share = value["difference"], value["difference_percent"]
     text = DASH if difference is None else _signed(difference, 1e-4 * abs(value["published"]))
     if share is not None:
-        text = f"{text} ({_signed(share, 0.05)} %)"
+        text = f"{text} ({_signed(share, 0.05)}\N{NO-BREAK SPACE}%)"
     row = f" ({value['row']})".replace("-", NO_BREAK) if value["row"] else ""
     return [
         f"{value['quantity']}{row}", _unit(value["unit"]), _text(value["published"]),
-        _text(value["computed"]), text,
+        _text(value["computed"]), text, value["basis"],
     ]  # fmt: skip
 
 

@@ -131,13 +131,15 @@ def test_computed_values_are_those_of_validate(document):
 
 
 def test_differences_are_told_in_the_unit_and_of_ripples_in_percent():
-    ripple = Beside("std", 2.0, 1.5, "N m").record()
+    ripple = Beside("std", 2.0, 1.5, "N m", "tuned").record()
     assert (ripple["difference"], ripple["difference_percent"]) == (-0.5, -25.0)
-    speed = Beside("minimum", 145.0, 144.0, "rad/s", ratio_scale=False).record()
+    speed = Beside("minimum", 145.0, 144.0, "rad/s", "tuned", ratio_scale=False).record()
     assert (speed["difference"], speed["difference_percent"]) == (-1.0, None)
-    order = Beside("order", "a < b", "b < a", "").record()
+    order = Beside("order", "a < b", "b < a", "", "tuned").record()
     assert order["difference"] is None
-    assert beside(targets("C25"), "C25-28", 0.2, place=1).published == 1.13
+    amplitude = beside(targets("C25"), "C25-28", 0.2, place=1, basis="imposed")
+    assert (amplitude.published, amplitude.basis) == (1.13, "imposed")
+    assert beside(targets("C25"), "C25-01", 50.0).basis == targets("C25")["C25-01"].basis
 
 
 def test_a_curve_without_numbers_is_refused():

@@ -71,7 +71,7 @@ def figures(targets: Mapping[str, Target]) -> tuple[PaperFigure, ...]:
         _forces(targets, named),
         _energy(targets, rod, cams),
         _workspaces(space),
-        _differences(space),
+        _differences(targets, space),
         _run_down(named),
         _inertia(targets, named),
         _friction(targets),
@@ -149,7 +149,8 @@ def _forces(targets: Mapping[str, Target], named: Mapping[str, Drive]) -> PaperF
         (
             beside(targets, "E24-08", means["big roller"]),
             beside(targets, "E24-09", means["small roller"]),
-            Beside("highest reactions in all pairs", "small roller", highest, "", "E24-18"),
+            Beside("highest reactions in all pairs", "small roller", highest, "",
+                   targets["E24-18"].basis, "E24-18"),
         ),
     )  # fmt: skip
 
@@ -234,7 +235,7 @@ def _workspaces(space: Workspace) -> PaperFigure:
     )  # fmt: skip
 
 
-def _differences(space: Workspace) -> PaperFigure:
+def _differences(targets: Mapping[str, Target], space: Workspace) -> PaperFigure:
     rivals = {
         "slider_crank": "slider-crank", "small": "small roller",
         "slider_crank_offset": "slider-crank, offset", "big_offset": "big roller, offset",
@@ -267,7 +268,7 @@ def _differences(space: Workspace) -> PaperFigure:
         ),
         (
             Beside("combinations with the big roller without offset best", "all", best, "",
-                   "E24-14"),
+                   targets["E24-14"].basis, "E24-14"),
         ),
     )  # fmt: skip
 
@@ -361,7 +362,8 @@ def _friction(targets: Mapping[str, Target]) -> PaperFigure:
             )),
         ),
         (
-            beside(targets, "E24-19", mean(downs), place=0, note="shaft"),
-            beside(targets, "E24-19", mean(swings), place=1, note="pins, mean of five records"),
+            beside(targets, "E24-19", mean(downs), place=0, note="shaft", basis="imposed"),
+            beside(targets, "E24-19", mean(swings), place=1, note="pins, mean of five records",
+                   basis="imposed"),
         ),
     )  # fmt: skip

@@ -111,7 +111,7 @@ def _outlines(cams: Cams) -> PaperFigure:
         radius = np.hypot(*pitch.points(uniform_turn(POSITIONS)))
         values.append(
             Beside(f"minimum radius of the pitch curve, cam {words}", 50.0,
-                   1e3 * float(radius.min()), "mm")
+                   1e3 * float(radius.min()), "mm", "imposed")
         )  # fmt: skip
     needed = [1e3 * face_base_radius(cams[name, DESIGN].pitch.lift) for name in CUT_FOR]
     return PaperFigure(
@@ -185,7 +185,7 @@ def _balance(targets: Mapping[str, Target], torque: Array, cam: Balanced) -> Pap
             )),
         ),
         (
-            beside(targets, "C25-11", float(about.std())),
+            beside(targets, "C25-11", float(about.std()), basis="imposed"),
             beside(targets, "C25-13", float(cam.residual.std())),
         ),
     )  # fmt: skip
@@ -254,6 +254,7 @@ def _with_and_without(targets: Mapping[str, Target], torque: Array, cams: Cams) 
                     targets[row].value,
                     value,
                     targets[row].unit,
+                    targets[row].basis,
                     row,
                 )
                 for row in rows

@@ -45,7 +45,7 @@ from camwright.pipeline.studies.papers.paper_figure import (
     closed,
     closed_angle,
 )
-from camwright.pipeline.studies.papers.published_figures import Target
+from camwright.pipeline.studies.papers.published_figures import Basis, Target
 
 CRANK, SPEED, TORQUE = "crank angle, deg", "crank speed, rad/s", "crank torque, N m"
 CYCLE = closed_angle(POSITIONS, 720.0)
@@ -127,22 +127,25 @@ def _engine(
             beside(targets, "C25-03", tuned.peak),
             beside(targets, "C25-11", tuned.std),
             beside(targets, "C25-12", tuned.peak_to_peak),
-            *_stock_speeds(targets, slow),
+            *_stock_speeds(targets, slow, "tuned"),
             beside(targets, "C25-31", float(slow_motion.speed[POSITIONS // 4]), ratio_scale=False),
             beside(targets, "C25-32", settled, ratio_scale=False),
         ),
     )  # fmt: skip
 
 
-def _stock_speeds(targets: Mapping[str, Target], ripple: SpeedStatistics) -> list[Beside]:
+def _stock_speeds(
+    targets: Mapping[str, Target], ripple: SpeedStatistics, basis: Basis
+) -> list[Beside]:
     """Extremes of the speed of the stock engine with their angles, and its std."""
     angle = np.degrees(ripple.maximum_angle)
     return [
-        beside(targets, "C25-06", ripple.minimum, ratio_scale=False),
-        beside(targets, "C25-07", ripple.maximum, ratio_scale=False),
+        beside(targets, "C25-06", ripple.minimum, ratio_scale=False, basis=basis),
+        beside(targets, "C25-07", ripple.maximum, ratio_scale=False, basis=basis),
         Beside("crank angle of the maximum speed, stock", 450.0, float(angle), "deg",
+               basis,
                ratio_scale=False),
-        beside(targets, "C25-08", ripple.std),
+        beside(targets, "C25-08", ripple.std, basis=basis),
     ]  # fmt: skip
 
 
@@ -154,7 +157,7 @@ def _voltage(rig: TenRuns) -> PaperFigure:
         "16 V, as the printed settings of the oscilloscope give. The voltage falls through zero "
         "over the middle of a tooth and rises through zero between teeth; both edges are read.",
         (panel,),
-        (Beside("peak of the voltage", VOLTAGE_PEAK, peak, "V"),),
+        (Beside("peak of the voltage", VOLTAGE_PEAK, peak, "V", "imposed"),),
     )  # fmt: skip
 
 
@@ -188,8 +191,12 @@ def _rig(targets: Mapping[str, Target], rig: TenRuns) -> PaperFigure:
             Panel(CRANK, SPEED, (*thin, Curve("mean", rig.tooth_angle, mean, 1), reference)),
         ),
         (
-            beside(targets, "C25-28", float(mean.std()), place=0, note="standard deviation"),
-            beside(targets, "C25-28", float(np.ptp(mean)), place=1, note="amplitude"),
+            *(
+                beside(targets, "C25-28", value, place=k, note=name, basis="imposed")
+                for k, (name, value) in enumerate(
+                    (("standard deviation", float(mean.std())), ("amplitude", float(np.ptp(mean))))
+                )
+            ),
         ),
     )  # fmt: skip
 
@@ -206,6 +213,7 @@ class _State:
     speeds: Sequence[Array]
     model: Array
     rows: tuple[str, ...]
+    basis: Basis
 
 
 def _states(torque: Array, inertia: float) -> tuple[_State, ...]:
@@ -235,28 +243,28 @@ def _states(torque: Array, inertia: float) -> tuple[_State, ...]:
 
     def state(
         name: str, numbers: str, title: str, caption: str, rows: tuple[str, ...],
-        speed: Callable[[Array, float], Array], total: float,
+        speed: Callable[[Array, float], Array], total: float, basis: Basis,
     ) -> _State:  # fmt: skip
         runs = [speed(driving - driving.mean(), inertia) for driving in scattered(torque)]
         return _State(
             name, numbers, title, caption, total * inertia, runs, speed(idle, EFFECTIVE_INERTIA),
-            rows,
+            rows, basis,
         )  # fmt: skip
 
     heavier = 1.0 + MOUNTED
     return (
-        state("stock", "6, 7 and 8", "the stock engine", "", (), free(1.0), 1.0),
+        state("stock", "6, 7 and 8", "the stock engine", "", (), free(1.0), 1.0, "imposed"),
         state(
             "disengaged", "20 and 21", "mechanism mounted, follower disengaged",
             f"The mechanism adds {100 * MOUNTED:.1f} % of inertia, by the ratio of the printed "
             "standard deviations.",
-            ("C25-09", "C25-10"), free(heavier), heavier,
+            ("C25-09", "C25-10"), free(heavier), heavier, "fitted",
         ),
         state(
             "engaged", "22, 23 and 26", "mechanism engaged, preload of 242 N",
             "The cam is that of the printed equations, which deliver half of the engine torque: "
             "with a ratio of 2 the cam torque would have to be twice the crank torque.",
-            ("C25-18", "C25-19"), engaged, heavier,
+            ("C25-18", "C25-19"), engaged, heavier, "independent",
         ),
     )  # fmt: skip
 
@@ -274,10 +282,10 @@ def _runs(targets: Mapping[str, Target], state: _State, rig: TenRuns) -> PaperFi
     band = Curve("one standard deviation of the runs", CYCLE, low, 1, "band", high)
     stock = state.name == "stock"
     values = (
-        _stock_speeds(targets, ripple)
+        _stock_speeds(targets, ripple, state.basis)
         if stock
         else [
-            beside(targets, row, value)
+            beside(targets, row, value, basis=state.basis)
             for row, value in zip(state.rows, (ripple.std, ripple.peak_to_peak), strict=True)
         ]
     )

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 
 from camwright.geometry.arrays import Array
 from camwright.geometry.errors import InputError
-from camwright.pipeline.studies.papers.published_figures import Target
+from camwright.pipeline.studies.papers.published_figures import Basis, Target
 
 Look = Literal["line", "dashed", "dotted", "thin", "points", "band", "fill", "bar"]
 Kind = Literal["lines", "outline", "bars"]
@@ -87,7 +87,8 @@ class Panel:
 class Beside:
     """A published value beside the computed one.
 
-    `row` is the row of ``camwright validate``, empty for a value that is none. Numbers have their
+    `row` is the row of ``camwright validate``, empty for a value that is none; `basis` what the
+    computed value rests on. Numbers have their
     difference; a share of the published value is meaningful for a `ratio_scale` alone, such as a
     ripple, not for a speed of which the ripple is a few percent.
     """
@@ -96,6 +97,7 @@ class Beside:
     published: float | str
     computed: float | str
     unit: str
+    basis: Basis
     row: str = ""
     ratio_scale: bool = True
 
@@ -106,7 +108,7 @@ class Beside:
             if self.ratio_scale and self.published:
                 share = 100.0 * difference / abs(float(self.published))
         return {
-            "row": self.row, "quantity": self.quantity, "unit": self.unit,
+            "row": self.row, "basis": self.basis, "quantity": self.quantity, "unit": self.unit,
             "published": self.published, "computed": self.computed, "difference": difference,
             "difference_percent": share,
         }  # fmt: skip
@@ -151,14 +153,19 @@ def beside(
     ratio_scale: bool = True,
     place: int | None = None,
     note: str = "",
+    basis: Basis | None = None,
 ) -> Beside:
-    """A published value by its row, beside the computed one; `place`: of a row of several."""
+    """A published value by its row, beside the computed one; `place`: of a row of several.
+
+    `basis` is that of the row unless the value is computed in another way.
+    """
     target = targets[row]
     published = target.value if place is None else target.value[place]
     words = ", ".join(filter(None, (target.quantity, target.condition, note)))
     units = target.unit.split(", ")
     unit = units[place] if place is not None and len(units) > 1 else target.unit
-    return Beside(words, published, computed, unit, row, ratio_scale)
+    rests = basis or target.basis
+    return Beside(words, published, computed, unit, rests, row, ratio_scale)
 
 
 def closed(values: Array) -> Array:
