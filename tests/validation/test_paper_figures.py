@@ -250,6 +250,12 @@ def test_friction_takes_energy_and_grows_with_the_preload(by_name, name):
     assert (np.diff(work) > 0.0).all()
 
 
+def test_the_full_torque_alone_has_the_printed_order_of_preloads(by_name):
+    printed = targets()["C25-26"].value
+    assert computed(by_name["c25-preloads-full"], "C25-26") == printed == "242 < 121 < 363"
+    assert computed(by_name["c25-preloads-half"], "C25-26") == "363 < 242 < 121"
+
+
 @pytest.mark.parametrize("name", ["full", "half"])
 def test_speed_follows_from_the_torque_left(by_name, name):
     """J omega^2 / 2 by the torque at constant speed against the solved motion: 12 % of the swing.

@@ -285,9 +285,9 @@ def _run_down(named: Mapping[str, Drive]) -> PaperFigure:
         "e24-run-down", "E24", "13 and 15", "Run-down, and energy lost in each turn",
         f"Run-down from {SPEED:.4g} rad/s by viscous friction with {SHAFT_INERTIA:g} kg m² in "
         "common (assumed), rollers without slip. Below: change of the square of the speed over a "
-        "turn, as the paper evaluates its tests. Its tests have the same order; with the small "
-        "roller the motor ran at 36 instead of 37.5 rad/s, which is less than rolling without "
-        "slip explains.",
+        "turn, as the paper evaluates its tests. They have the same order; the motor ran at 36 "
+        "rad/s with the small roller and at 37.5 with the others. Its characteristic is not "
+        "printed.",
         (
             Panel("time, s", "shaft speed, rad/s", tuple(down)),
             Panel("shaft speed, rad/s", "change of ω², rad²/s²", tuple(fall)),

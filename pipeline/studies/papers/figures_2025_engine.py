@@ -23,6 +23,7 @@ from camwright.pipeline.studies.papers.modelled_runs import (
     RIG_SPEED,
     RUNS,
     TenRuns,
+    pitch_errors,
     scattered,
     ten_runs,
 )
@@ -186,7 +187,7 @@ def _rig(targets: Mapping[str, Target], rig: TenRuns) -> PaperFigure:
         "c25-rig", "C25", "3 and 4", "Noise floor: ten runs at constant speed on the motor rig",
         "Speed from tooth to tooth of ten runs, and their mean. What is left in the mean repeats "
         "every turn: errors of the wheel. Their size is imposed by the printed standard deviation "
-        "(0.009 deg of each tooth); the amplitude follows.",
+        f"({np.degrees(pitch_errors().std()):.3f} deg of each tooth); the amplitude follows.",
         (
             Panel(CRANK, SPEED, (*thin, Curve("mean", rig.tooth_angle, mean, 1), reference)),
         ),
