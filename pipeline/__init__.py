@@ -30,7 +30,7 @@ verdict; a failed trial is smoothed again. `results` writes the run folder, `rep
 | `studies.papers`     | published values, recomputed                         |                    |
 | `reports`            | report and pictures from a run folder                |                    |
 | `reports.study`      | page of a study                                      |                    |
-| `reports.papers`     | page of the figures of the papers                    |                    |
+| `reports.papers`     | pages of the papers: figures, verdicts               |                    |
 | `studies.batch`      | studies of many designs                              |                    |
 | `commands`           | one function per command                             |                    |
 | `cli`                | command line                                         |                    |

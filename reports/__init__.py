@@ -26,7 +26,6 @@ scene_page             ``scene.html``: interactive 3-D view over the turn
 sections               parts of a report by name; `report` writes them
 smoother_page          comparison of smoothers
 redesign_page          Pareto front of a redesign
-validation_page        published and computed values of the papers
 mechanism_figures      slider-crank and eccentric cams: friction energy, torque, workspaces
 inspection_pictures    deviation of a measured cam, normal force and contact pressure
 ====================== ===========================================================================

@@ -77,7 +77,7 @@ def validate(
     from camwright.pipeline.base.files import json_text, write_atomic
     from camwright.pipeline.studies.papers import validate as studies
     from camwright.pipeline.studies.papers.published_figures import count_lines
-    from camwright.reports.validation_page import page
+    from camwright.reports.papers.validation_page import page
 
     with progress_shown() as progress:
         document = studies(progress)

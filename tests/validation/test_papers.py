@@ -22,7 +22,7 @@ from camwright.pipeline.studies.papers.published_figures import (
     row_record,
     targets,
 )
-from camwright.reports.validation_page import page
+from camwright.reports.papers.validation_page import page
 
 
 @pytest.fixture(scope="module")
@@ -206,6 +206,77 @@ def test_a_cam_without_friction_leaves_what_smoothing_took():
     assert np.ptp(cam.ideal) < 0.05 * np.ptp(torque)  # 60 deg of 720 hardly bend one harmonic
 
 
+# --- figures behind the rows
+
+
+def drawn(document, group):
+    return next(figure for figure in document["figures"] if figure["title"] == group)
+
+
+def curve(figure, panel, label):
+    return next(one for one in figure["panels"][panel]["curves"] if one["label"] == label)
+
+
+def test_every_group_has_its_figure(document):
+    groups = {(row["paper"], row["group"]) for row in document["rows"]}
+    assert {(one["paper"], one["title"]) for one in document["figures"]} == groups
+    assert len(document["figures"]) == len(groups) == 9
+    for figure in document["figures"]:
+        assert figure["caption"].endswith((".", "legend."))
+        for panel in figure["panels"]:
+            assert panel["x"]
+            assert all(len(one["x"]) == len(one["y"]) for one in panel["curves"])
+
+
+@pytest.mark.parametrize(
+    ("group", "panel", "points"),
+    [
+        ("engine simulation", 1, {(360.0, 142.0), (450.0, 156.5)}),
+        ("stock engine", 1, {(0.0, 153.0), (180.0, 147.0), (355.0, 145.0), (450.0, 155.0),
+                             (585.0, 153.0)}),
+        ("engaged mechanism", 1, {(121.0, 2.08), (242.0, 2.07), (363.0, 2.35)}),
+        ("yields", 1, {(1.0, 0.39), (2.0, 0.428), (3.0, 0.538), (4.0, 0.6)}),
+        ("energies", 0, {(47.4, 0.0), (44.3, 1.0), (122.5, 2.0)}),
+    ],
+)  # fmt: skip
+def test_published_values_stand_on_the_figure(document, group, panel, points):
+    printed = curve(drawn(document, group), panel, "printed")
+    assert set(zip(printed["x"], printed["y"], strict=True)) == points
+
+
+def test_curves_of_the_figures_are_those_of_the_rows(document):
+    """Every fourth of 720 angles, six digits of the record: 1e-3 of a swing by the samples."""
+    stock, mounted = drawn(document, "stock engine"), row(document, "C25-10")["obtained"]
+    model = curve(stock, 1, "cylinder model")["y"]
+    assert max(model) == pytest.approx(row(document, "C25-07")["obtained"], abs=0.01)
+    assert np.ptp(curve(stock, 1, "with the mechanism mounted")["y"]) == pytest.approx(
+        mounted, rel=1e-3
+    )
+    assert np.std(curve(stock, 0, "reconstruction")["y"][:-1]) == pytest.approx(6.25, rel=1e-3)
+    engaged = drawn(document, "engaged mechanism")
+    residual = curve(engaged, 0, "cut for the full torque")["y"][:-1]
+    assert np.std(residual) == pytest.approx(row(document, "C25-14")["obtained"], rel=2e-3)
+    stds = curve(engaged, 1, "cut for the full torque")["y"]
+    assert stds[1] == pytest.approx(row(document, "C25-18")["obtained"], rel=1e-5)
+    energies = drawn(document, "energies")["panels"][0]["curves"]
+    ends = np.max([one["upper"] for one in energies if one["look"] == "bar"], axis=0)
+    totals = [row(document, f"E24-{number:02d}")["obtained"] for number in (1, 2, 3)]
+    assert ends == pytest.approx(totals, rel=1e-5)
+    forces = drawn(document, "forces and inertia")
+    assert np.mean(curve(forces, 0, "big roller")["y"][:-1]) == pytest.approx(
+        row(document, "E24-08")["obtained"], rel=1e-3
+    )
+    index = curve(drawn(document, "yields"), 0, "B1")["y"]
+    assert np.mean(index) == pytest.approx(row(document, "P15-01")["obtained"], abs=1e-4)
+    left = curve(drawn(document, "cam without losses"), 0, "with the cam")["y"]
+    assert np.std(left) < 1e-3
+    strokes = curve(drawn(document, "engine at 800 rpm"), 1, "mean of the stroke")["y"][:-1]
+    means = np.reshape(strokes, (4, -1)).mean(axis=1)
+    assert means[2] / np.abs(means[[0, 1, 3]]).mean() == pytest.approx(
+        row(document, "C24-01")["obtained"], rel=1e-5
+    )
+
+
 # --- rows and page
 
 
@@ -274,10 +345,11 @@ def test_the_page_shows_every_row_and_escapes_text(document):
     assert text.count("Study: ") == sum(len(s) for s in document["studies"].values())
     for basis in get_args(Basis):
         assert f"<bdi>{basis}" in text
+    assert text.count("data:image/png;base64,") == len(document["figures"])
     rows = [row_record(TARGET, Outcome(2.5, "reproduced", "x < y"))]
     small = {
         "papers": {"X": {"citation": "A & B", "doi": None}}, "counts": counts(rows), "rows": rows,
-        "studies": {},
+        "studies": {}, "figures": [],
     }  # fmt: skip
     assert "a &lt;b&gt; &amp; c" in page(small)
     assert "x &lt; y" in page(small)

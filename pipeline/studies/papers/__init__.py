@@ -5,10 +5,12 @@ In the order of the calculation:
 | module                    | responsibility                                 | symbol, unit   |
 | ------------------------- | ---------------------------------------------- | -------------- |
 | `published_figures`       | targets, outcomes, verdicts                    |                |
+| `paper_figure`            | figure of a paper: curves, caption, values     |                |
 | `paper_engines`           | engines of the papers in the cylinder model    | N m            |
 | `balancing_cam`           | balancing cam under an engine torque           | N m; rad/s     |
 | `follower_contours`       | roller and flat faces for the same torque      | m; N; Pa       |
 | `speed_reconstruction`    | crank speed from published statistics          | rad/s          |
+| `validation_figures`      | curves behind the rows of `validate`           |                |
 | `cardoso_2024`            | engine at 800 rpm, cam without losses          |                |
 | `cardoso_2025`            | engine at idle and its balancing cam           |                |
 | `petrescu_2015`           | valve cams of modules B and C                  |                |
@@ -17,7 +19,6 @@ In the order of the calculation:
 | `slider_crank_2024`       | slider-crank and eccentric cam                 |                |
 | `friction_identification` | friction from measured decays                  | N m; N m s/rad |
 | `mechanism_comparison`    | command `compare-mechanisms`                   |                |
-| `paper_figure`            | figure of a paper: curves, caption, values     |                |
 | `modelled_runs`           | ten runs at a pick-up, from voltage to speed   | V; rad/s       |
 | `figures_2025_engine`     | engine, pick-up and ten runs of three states   | N m; rad/s     |
 | `figures_2025_cam`        | smoothing, outlines, friction, preloads        | N m; rad/s; mm |
@@ -104,5 +105,6 @@ def validate(progress: Progress = SILENT) -> dict[str, Any]:
         "papers": citations(),
         "counts": counts(rows),
         "rows": rows,
+        "figures": [dict(one) for result in results.values() for one in result.figures],
         "studies": {paper: dict(result.studies) for paper, result in results.items()},
     }

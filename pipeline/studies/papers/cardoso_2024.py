@@ -13,8 +13,10 @@ from camwright.pipeline.engine.torque import torque_from_cylinder
 from camwright.pipeline.follower.follower_forces import FollowerSystem
 from camwright.pipeline.follower.spring import Spring
 from camwright.pipeline.smoothing.smoothers import Smoother
+from camwright.pipeline.studies.papers import validation_figures
 from camwright.pipeline.studies.papers.balancing_cam import PRIME_RADIUS, RATIO, designed_pitch
 from camwright.pipeline.studies.papers.paper_engines import ENGINE_800, FULL_LOAD_800, SLOW_IDLE
+from camwright.pipeline.studies.papers.paper_figure import records
 from camwright.pipeline.studies.papers.published_figures import Outcome, PaperResult, Target, judged
 
 PRINTED_VALVE_SPRING = 588_000.0  # N/m, table 1
@@ -31,8 +33,9 @@ def study(targets: Mapping[str, Target]) -> PaperResult:
         name: designed_pitch(torque.total, multiplier, UNSMOOTHED, FOLLOWER)
         for name, multiplier in (("full", 2.0), ("half", 1.0))
     }
+    full_load = torque_from_cylinder(FULL_LOAD_800, SLOW_IDLE).total
     outcomes = {
-        "C24-01": _expansion(targets["C24-01"]),
+        "C24-01": _expansion(targets["C24-01"], full_load),
         "C24-02": _magnitudes(targets["C24-02"]),
         **_cam_rows(targets, torque.total, cams["full"]),
     }
@@ -48,11 +51,18 @@ def study(targets: Mapping[str, Target]) -> PaperResult:
         }
         for name, pitch in cams.items()
     ]
-    return PaperResult(outcomes, {"cam of the 800 rpm engine": rows})
+    left = _left(torque.total, cams["full"])
+    lift = cams["full"].lift.derivatives(uniform_turn(torque.total.size), 0)[0]
+    drawn = (
+        validation_figures.engine_at_800(targets, torque, full_load),
+        validation_figures.cam_without_losses(
+            targets, torque.total, left, 1e3 * (PRIME_RADIUS + lift)
+        ),
+    )
+    return PaperResult(outcomes, {"cam of the 800 rpm engine": rows}, records(drawn))
 
 
-def _expansion(target: Target) -> Outcome:
-    torque = torque_from_cylinder(FULL_LOAD_800, SLOW_IDLE).total
+def _expansion(target: Target, torque: Array) -> Outcome:
     strokes = torque.reshape(4, -1).mean(axis=1)
     share = float(strokes[2] / np.abs(np.delete(strokes, 2)).mean())
     return judged(target, share, "mean torque of the strokes at full load, 98 kPa")
@@ -76,12 +86,16 @@ def _magnitudes(target: Target) -> Outcome:
     )
 
 
+def _left(torque: Array, pitch: PitchCurve) -> Array:
+    """Torque about its mean (n,) that a cam leaves without losses, N m."""
+    lift, slope = pitch.lift.derivatives(uniform_turn(torque.size), 1)
+    return np.asarray(torque - torque.mean() - SPRING.force(lift) * slope / RATIO)
+
+
 def _cam_rows(
     targets: Mapping[str, Target], torque: Array, pitch: PitchCurve
 ) -> dict[str, Outcome]:
-    lift, slope = pitch.lift.derivatives(uniform_turn(torque.size), 1)
-    delivered = SPRING.force(lift) * slope / RATIO
-    left = float(np.std(torque - torque.mean() - delivered))
+    left = float(np.std(_left(torque, pitch)))
     radius = 1e3 * (PRIME_RADIUS + pitch.lift.highest.value)
     return {
         "C24-03": judged(

@@ -14,9 +14,10 @@ import numpy as np
 
 from camwright.geometry.arrays import Array
 from camwright.pipeline.engine.crankshaft import CrankMotion, Inertia, crank_motion
+from camwright.pipeline.engine.cylinder import CylinderEngine
 from camwright.pipeline.engine.torque import Torque, torque_from_cylinder
 from camwright.pipeline.engine.torque_consistency import implied_inertia
-from camwright.pipeline.studies.papers import speed_reconstruction
+from camwright.pipeline.studies.papers import speed_reconstruction, validation_figures
 from camwright.pipeline.studies.papers.balancing_cam import (
     POSITIONS,
     RATIO,
@@ -34,6 +35,7 @@ from camwright.pipeline.studies.papers.paper_engines import (
     TUNED,
     with_peak_torque,
 )
+from camwright.pipeline.studies.papers.paper_figure import PaperFigure, records
 from camwright.pipeline.studies.papers.published_figures import Outcome, PaperResult, Target, judged
 
 PRELOADS = (121.0, 242.0, 363.0)
@@ -45,20 +47,37 @@ SPRING_RATE = 24_200.0
 
 
 def study(targets: Mapping[str, Target]) -> PaperResult:
-    """Outcome of each value of the paper that can be computed, and the studies."""
+    """Outcome of each value of the paper that can be computed, the studies and figures."""
     idle = torque_from_cylinder(GX120, IDLE_SPEED).without_mean()
     rebuilt = speed_reconstruction.load()
-    stock = crank_motion(idle.total, _constant(EFFECTIVE_INERTIA), speed_reconstruction.SPEED_MEAN)
+    stock = _motion(idle.total)
+    mounted = _motion(idle.total, 1.0 + MOUNTED)
+    engine = with_peak_torque(targets["C25-02"].value)
+    fast = torque_from_cylinder(engine, IDLE_SPEED).without_mean()
+    fast_motion = _motion(fast.total)
     cams, windows = _cams(rebuilt.torque_at(POSITIONS), rebuilt.inertia), _windows(rebuilt)
     outcomes = {
         **_stock(targets, idle, stock),
-        **_fast_burn(targets),
-        **_mounted(targets, stock, idle.total),
+        **_fast_burn(targets, engine, fast, fast_motion),
+        **_mounted(targets, stock, mounted),
         **_engaged(targets, cams, windows),
         **_arithmetic(targets),
         "C25-29": _inertia(targets["C25-29"], rebuilt, idle, stock),
     }
-    return PaperResult(outcomes, _studies(idle.total, cams, windows, rebuilt, stock))
+    drawn = (
+        validation_figures.engine_simulation(targets, fast, fast_motion),
+        validation_figures.stock_engine(targets, rebuilt, idle, stock, mounted.speed),
+        _engaged_figure(targets, rebuilt, cams),
+    )
+    return PaperResult(outcomes, _studies(idle.total, cams, windows, rebuilt, stock),
+                       records(drawn))  # fmt: skip
+
+
+def _motion(torque: Array, times: float = 1.0) -> CrankMotion:
+    """Crank motion under a torque (n,), N m, with a multiple of the effective inertia."""
+    return crank_motion(
+        torque, _constant(times * EFFECTIVE_INERTIA), speed_reconstruction.SPEED_MEAN
+    )
 
 
 def _constant(value: float) -> Inertia:
@@ -124,13 +143,10 @@ def _pumping(target: Target, torque: Torque) -> Outcome:
     return judged(target, sign, f"mean torque from 40 to 140 deg of {pumping:.3g} N m")
 
 
-def _fast_burn(targets: Mapping[str, Target]) -> dict[str, Outcome]:
+def _fast_burn(
+    targets: Mapping[str, Target], engine: CylinderEngine, torque: Torque, motion: CrankMotion
+) -> dict[str, Outcome]:
     """Values of the engine simulation of the paper, by the model at its peak torque."""
-    engine = with_peak_torque(targets["C25-02"].value)
-    torque = torque_from_cylinder(engine, IDLE_SPEED).without_mean()
-    motion = crank_motion(
-        torque.total, _constant(EFFECTIVE_INERTIA), speed_reconstruction.SPEED_MEAN
-    )
     ripple = motion.statistics
     least, most = (
         float(np.degrees(angle)) for angle in (ripple.minimum_angle, ripple.maximum_angle)
@@ -151,11 +167,10 @@ def _fast_burn(targets: Mapping[str, Target]) -> dict[str, Outcome]:
 
 
 def _mounted(
-    targets: Mapping[str, Target], stock: CrankMotion, torque: Array
+    targets: Mapping[str, Target], stock: CrankMotion, mounted: CrankMotion
 ) -> dict[str, Outcome]:
     """Values with the mechanism mounted and disengaged: its inertia alone."""
-    heavier = _constant(EFFECTIVE_INERTIA * (1.0 + MOUNTED))
-    ripple = crank_motion(torque, heavier, speed_reconstruction.SPEED_MEAN).statistics
+    ripple = mounted.statistics
     why = f"{100 * MOUNTED:.2g} % more inertia"
     return {
         "C25-09": judged(targets["C25-09"], ripple.std, why),
@@ -204,6 +219,26 @@ def _engaged(
         f"speed std with the full torque; half the torque gives {_order(halves)}",
     )
     return outcomes
+
+
+def _engaged_figure(
+    targets: Mapping[str, Target], rebuilt: speed_reconstruction.Reconstruction, cams: Cams
+) -> PaperFigure:
+    stds = {
+        name: {p: cams[name, p].study.after.statistics.std for p in PRELOADS}
+        for name in MULTIPLIERS
+    }
+    printed = {
+        preload: float(targets[row].value)
+        for preload, row in zip(PRELOADS, ("C25-22", "C25-18", "C25-24"), strict=True)
+    }
+    return validation_figures.engaged_mechanism(
+        targets,
+        rebuilt.torque_at(POSITIONS),
+        {name: cams[name, PRELOADS[1]] for name in MULTIPLIERS},
+        stds,
+        printed,
+    )
 
 
 def _order(stds: Mapping[float, float]) -> str:

@@ -18,14 +18,22 @@ from camwright.pipeline.studies.papers.figures_2025_cam import (
     Y,
     roller_outlines,
 )
-from camwright.pipeline.studies.papers.figures_2025_engine import CRANK, SPEED, TORQUE, on_cycle
+from camwright.pipeline.studies.papers.figures_2025_engine import on_cycle
 from camwright.pipeline.studies.papers.paper_engines import (
     EFFECTIVE_INERTIA,
     ENGINE_800,
     FULL_LOAD_800,
     SLOW_IDLE,
 )
-from camwright.pipeline.studies.papers.paper_figure import MUTED, Panel, PaperFigure, beside
+from camwright.pipeline.studies.papers.paper_figure import (
+    CRANK,
+    MUTED,
+    SPEED,
+    TORQUE,
+    Panel,
+    PaperFigure,
+    beside,
+)
 from camwright.pipeline.studies.papers.published_figures import Target
 
 PRELOAD_ENERGY = 0.5 * SPRING.preload**2 / SPRING.rate

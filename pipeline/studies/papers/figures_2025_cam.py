@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
 
 import numpy as np
 
@@ -18,14 +17,18 @@ from camwright.pipeline.studies.papers.balancing_cam import (
     POSITIONS,
     PRIME_RADIUS,
     TWELVE_DEGREES,
+    TWELVE_TEETH,
     TWELVE_VALUES,
     Balanced,
     balanced,
 )
 from camwright.pipeline.studies.papers.cardoso_2025 import MOUNTED, MULTIPLIERS, PRELOADS
-from camwright.pipeline.studies.papers.figures_2025_engine import CRANK, SPEED, TORQUE, on_cycle
+from camwright.pipeline.studies.papers.figures_2025_engine import on_cycle
 from camwright.pipeline.studies.papers.paper_figure import (
+    CRANK,
     MUTED,
+    SPEED,
+    TORQUE,
     Beside,
     Curve,
     Look,
@@ -40,7 +43,7 @@ X, Y = "x, mm", "y, mm"
 ROLLER_RADIUS = 0.008
 DESIGN = 242.0
 WINDOWS = {
-    "120 deg": replace(TWELVE_VALUES, spacing=float(np.radians(10.0))),
+    "120 deg": TWELVE_TEETH,
     "60 deg": TWELVE_VALUES,
     "12 deg": TWELVE_DEGREES,
 }

@@ -35,8 +35,11 @@ from camwright.pipeline.studies.papers.paper_engines import (
     with_peak_torque,
 )
 from camwright.pipeline.studies.papers.paper_figure import (
+    CRANK,
     MUTED,
     PUBLISHED,
+    SPEED,
+    TORQUE,
     Beside,
     Curve,
     Look,
@@ -48,7 +51,6 @@ from camwright.pipeline.studies.papers.paper_figure import (
 )
 from camwright.pipeline.studies.papers.published_figures import Basis, Target
 
-CRANK, SPEED, TORQUE = "crank angle, deg", "crank speed, rad/s", "crank torque, N m"
 CYCLE = closed_angle(POSITIONS, 720.0)
 STOCK_POINTS = ((0.0, 153.0), (180.0, 147.0), (355.0, 145.0), (450.0, 155.0), (585.0, 153.0))
 """Crank angle, deg, and speed, rad/s, that the text prints of the stock engine."""

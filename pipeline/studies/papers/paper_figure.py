@@ -16,6 +16,8 @@ from camwright.pipeline.studies.papers.published_figures import Basis, Target
 
 Look = Literal["line", "dashed", "dotted", "thin", "points", "band", "fill", "bar"]
 Kind = Literal["lines", "outline", "bars"]
+CRANK, SPEED, TORQUE = "crank angle, deg", "crank speed, rad/s", "crank torque, N m"
+"""Axes of most figures."""
 MUTED = -1
 """Series of a curve in the background."""
 PUBLISHED = -2

@@ -17,7 +17,9 @@ from camwright.geometry.motion_laws import Motion, Segment
 from camwright.geometry.pitch_curve import PitchCurve
 from camwright.pipeline.follower.follower_forces import FollowerSystem, follower_loads
 from camwright.pipeline.follower.spring import Spring
+from camwright.pipeline.studies.papers.paper_figure import records
 from camwright.pipeline.studies.papers.published_figures import PaperResult, Target, judged
+from camwright.pipeline.studies.papers.validation_figures import SHOWN, yields
 from camwright.pipeline.studies.valve_cam import (
     ElasticValve,
     ValveCam,
@@ -96,7 +98,9 @@ def study(targets: Mapping[str, Target]) -> PaperResult:
         "order of the means of eq. 6.18; that of sin^2 is the printed one",
         published=" < ".join(SETS),
     )
-    return PaperResult(outcomes, _studies(rows))
+    indices = {name: one.cam.shape_index(one.cam.rise(SHOWN)) for name, one in SETS.items()}
+    drawn = (yields(targets, indices, rows),)
+    return PaperResult(outcomes, _studies(rows), records(drawn))
 
 
 def _figures(name: str, cam_set: CamSet) -> dict[str, Any]:

@@ -91,10 +91,11 @@ class Outcome:
 
 @dataclass(frozen=True)
 class PaperResult:
-    """Outcomes of one paper by target id, and further studies."""
+    """Outcomes of one paper by target id, further studies, and records of a figure a group."""
 
     outcomes: Mapping[str, Outcome]
     studies: Mapping[str, Any] = field(default_factory=dict)
+    figures: Sequence[Mapping[str, Any]] = ()
 
 
 def judged(

@@ -14,7 +14,9 @@ import numpy as np
 
 from camwright.geometry.arrays import uniform_turn
 from camwright.geometry.eccentric import Eccentric
+from camwright.pipeline.studies.papers import validation_figures
 from camwright.pipeline.studies.papers.mechanism_sizes import Workspace, workspace
+from camwright.pipeline.studies.papers.paper_figure import PaperFigure, records
 from camwright.pipeline.studies.papers.published_figures import (
     Outcome,
     PaperResult,
@@ -78,7 +80,12 @@ def study(targets: Mapping[str, Target]) -> PaperResult:
         "E24-12": Outcome(None, "not decidable", "the motor's characteristic is not printed"),
         "E24-19": Outcome(None, "not decidable", "bench results, inputs here"),
     }
-    return PaperResult(outcomes, _studies(rod, cams, space))
+    drawn = (
+        _energy_figure(targets, rod, cams),
+        _force_figure(targets, rod, cams),
+        validation_figures.sizes(targets, space),
+    )
+    return PaperResult(outcomes, _studies(rod, cams, space), records(drawn))
 
 
 def _energies(
@@ -143,6 +150,33 @@ def _inertia(
             "masses are not printed; with assumed ones and 0.075 kg m2 in common",
         ),
     }
+
+
+def _energy_figure(
+    targets: Mapping[str, Target], rod: SliderCrankDrive, cams: Mapping[str, EccentricDrive]
+) -> PaperFigure:
+    losses = {"slider-crank": rod.losses(SPEED)}
+    losses |= {f"{name} roller": cam.losses(SPEED) for name, cam in cams.items()}
+    return validation_figures.energies(targets, losses)
+
+
+def _force_figure(
+    targets: Mapping[str, Target], rod: SliderCrankDrive, cams: Mapping[str, EccentricDrive]
+) -> PaperFigure:
+    phi = uniform_turn(720)
+    drives: dict[str, SliderCrankDrive | EccentricDrive] = {
+        "slider-crank": rod,
+        "big roller": cams["big"],
+        "small roller": cams["small"],
+    }
+    return validation_figures.forces_and_inertia(
+        targets,
+        {name: cam.reactions(phi, SPEED).normal for name, cam in cams.items()},
+        {
+            name: 100.0 * (drive.reduced_inertia(phi) / drive.masses.common - 1.0)
+            for name, drive in drives.items()
+        },
+    )
 
 
 def _trends(targets: Mapping[str, Target], space: Workspace) -> dict[str, Outcome]:

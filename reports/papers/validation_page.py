@@ -5,8 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from camwright.pipeline.base.files import Json
+from camwright.reports.figure_svg import png, style
 from camwright.reports.page import study_page
-from camwright.reports.report_content import Block, Section, Tabular
+from camwright.reports.papers.paper_chart import Chart, drawn
+from camwright.reports.picture_list import Picture
+from camwright.reports.report_content import Block, Pictures, Section, Tabular
 from camwright.reports.report_tables import DASH, Cell, Record, Status, Table, words
 
 HEAD = (
@@ -52,9 +55,23 @@ def _paper(document: Record, key: str) -> Section:
         cells = [_row(row) for row in rows if row["group"] == group]
         table = Table(f"Figures of {key}: {group}", HEAD, cells, 2, 2)
         blocks.append(Block(Tabular(table), f"{key}: {group}"))
+        pictures = [
+            _picture(figure)
+            for figure in document["figures"]
+            if (figure["paper"], figure["title"]) == (key, group)
+        ]
+        blocks.append(Block(Pictures(pictures)))
     for name, study in document["studies"].get(key, {}).items():
         blocks.append(Block(Tabular(_study(name, study)), f"Study: {name}"))
     return Section(key, key, blocks, f"{paper['citation']}{doi}")
+
+
+def _picture(figure: Record) -> Picture:
+    """Curves behind a group of rows."""
+    chart = Chart(figure)
+    with style(chart.id):
+        picture = png(drawn(figure))
+    return Picture(chart.title, figure["caption"], chart.alt, png=picture)
 
 
 def _row(row: Record) -> list[Cell]:
