@@ -71,7 +71,7 @@ def _picture(figure: Record) -> Picture:
     chart = Chart(figure)
     with style(chart.id):
         picture = png(drawn(figure))
-    return Picture(chart.title, figure["caption"], chart.alt, png=picture)
+    return Picture(chart.title, chart.caption, chart.alt, png=picture)
 
 
 def _row(row: Record) -> list[Cell]:

@@ -346,6 +346,7 @@ def test_the_page_shows_every_row_and_escapes_text(document):
     for basis in get_args(Basis):
         assert f"<bdi>{basis}" in text
     assert text.count("data:image/png;base64,") == len(document["figures"])
+    assert "C25, Figures 8 and 9. The reconstruction is" in text
     rows = [row_record(TARGET, Outcome(2.5, "reproduced", "x < y"))]
     small = {
         "papers": {"X": {"citation": "A & B", "doi": None}}, "counts": counts(rows), "rows": rows,

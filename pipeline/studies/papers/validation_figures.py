@@ -36,12 +36,12 @@ Targets = Mapping[str, Target]
 
 
 def _figure(
-    targets: Targets, row: str, caption: str, *panels: Panel, columns: int = 1
+    targets: Targets, row: str, numbers: str, caption: str, *panels: Panel, columns: int = 1
 ) -> PaperFigure:
-    """Figure of the group of a row."""
+    """Figure of the group of a row, beside the figures of the paper of these numbers."""
     target = targets[row]
     name = f"{target.paper} {target.group}".lower().replace(" ", "-")
-    return PaperFigure(name, target.paper, "", target.group, caption, panels, columns=columns)
+    return PaperFigure(name, target.paper, numbers, target.group, caption, panels, columns=columns)
 
 
 def _over(
@@ -74,6 +74,7 @@ def engine_simulation(targets: Targets, torque: Torque, motion: CrankMotion) -> 
     return _figure(
         targets,
         "C25-01",
+        "1",
         "Cylinder model with the printed peak torque and the effective inertia, beside the values "
         "that the paper prints of its own simulation. The swing of the speed is too large: the "
         "paper's torque is not that of an unloaded idle.",
@@ -100,6 +101,7 @@ def stock_engine(
     return _figure(
         targets,
         "C25-03",
+        "8 and 9",
         "The reconstruction is the smoothest speed with the printed statistics; its torque has "
         "them by the effective inertia. The cylinder model is tuned to the same idle: it has the "
         "swing, but its speed still rises at 450 deg, where the measured one has its maximum.",
@@ -141,6 +143,7 @@ def engaged_mechanism(
     return _figure(
         targets,
         "C25-13",
+        "15 and 24",
         "Above: engine torque and what each cam leaves of it at 242 N and constant speed. Below: "
         "ripple of the speed over the preload. The cam for the full torque has the printed order "
         "of the preloads, but a fraction of the measured ripple; the cam for half of it is 5 and "
@@ -169,6 +172,7 @@ def engine_at_800(targets: Targets, torque: Torque, full: Array) -> PaperFigure:
     return _figure(
         targets,
         "C24-01",
+        "4, 6, 8 and 15",
         "Above: torques at idle, 800 rpm, by component. Below: full load, with the mean of each "
         f"stroke; the point is the printed {ratio:g} times the mean magnitude of the other three.",
         Panel(CRANK, TORQUE, tuple(
@@ -192,6 +196,7 @@ def cam_without_losses(targets: Targets, torque: Array, left: Array, radius: Arr
     return _figure(
         targets,
         "C24-03",
+        "16 and 20",
         "Above: engine torque about its mean, and what the cam without losses leaves. Below: "
         "radius of the pitch curve. The printed wish of at most 50 mm is the radius from which it "
         "has to grow.",
@@ -220,6 +225,7 @@ def yields(
     return _figure(
         targets,
         "P15-01",
+        "6 to 17",
         "Above: eq. 6.18 over the rise; no mean of it reaches a printed yield. Below: its mean, "
         "the printed yields of the sets B1 to B4, and the mean of the squared sine of the pressure "
         "angle, which is near them.",
@@ -255,6 +261,7 @@ def energies(targets: Targets, losses: Mapping[str, Losses]) -> PaperFigure:
     return _figure(
         targets,
         "E24-01",
+        "8",
         "Friction energy of a turn with the five fitted dimensions, rolling without slip, beside "
         "the printed energies to which they were fitted.",
         Panel("friction energy of a turn, J", "", (*bars, _points(printed, list(places))),
@@ -278,6 +285,7 @@ def forces_and_inertia(
     return _figure(
         targets,
         "E24-08",
+        "7 and 14",
         "Above: normal force between roller and cam; the points are the printed means, of the big "
         "roller at 90 and the small one at 270 deg. Below: rise of the reduced inertia over its "
         "common part with assumed masses; the points are the printed means in the order of the "
@@ -304,6 +312,7 @@ def sizes(targets: Targets, space: Workspace) -> PaperFigure:
     return _figure(
         targets,
         "E24-14",
+        "9 and 10",
         "Friction energy of a turn above that of the big roller without offset, which is the best "
         f"in {space.big_is_best} of {space.combinations} combinations. Left: slider-crank; right: "
         "small roller. The differences are largest at small cranks and short rods, as printed.",
