@@ -130,7 +130,7 @@ def _loaded(engine: CylinderEngine, state: LoadCase) -> CylinderEngine:
 def pressure(case: Case, engine: PressureTable) -> tuple[BrakeBalance, PressureTrace]:
     """Measured cycles of a case at their dead centre, pegged and checked, with their balance.
 
-    A brake power is that at the speed of the first load case that runs.
+    A brake power is that at the speed of the first load case.
 
     Raises
     ------
@@ -157,8 +157,8 @@ def pressure(case: Case, engine: PressureTable) -> tuple[BrakeBalance, PressureT
     else:
         trace = trace.pegged(engine.intake_pressure).guarded()
         trace.guard_scale(engine, engine.intake_pressure)
-    speed = next(state.speed for state in case.load_cases if state.speed > 0.0)
-    balance = brake_balance(trace, engine, engine.brake(speed), motored)
+    brake = engine.brake(case.load_cases[0].speed)
+    balance = brake_balance(trace, engine, brake, motored)
     field = "engine.brake_torque" if engine.brake_power is None else "engine.brake_power"
     return balance.guarded(field), trace
 

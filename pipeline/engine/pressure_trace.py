@@ -101,8 +101,18 @@ class PressureTable(CrankDrive, _PressureFile):
         return (self.angle_unit, self.pressure_unit) if self.angle_unit else None
 
     def brake(self, crank_speed: float) -> float | None:
-        """Measured brake torque at a crank speed (rad/s, > 0), N m; None: not measured."""
-        return self.brake_torque if self.brake_power is None else self.brake_power / crank_speed
+        """Measured brake torque at a crank speed (rad/s), N m; None: not measured.
+
+        Raises
+        ------
+        InputError
+            For a power at standstill.
+        """
+        if self.brake_power is None:
+            return self.brake_torque
+        if not crank_speed > 0.0:
+            raise InputError("load_case.speed", "0 rpm", "> 0 rpm in one for engine.brake_power")
+        return self.brake_power / crank_speed
 
 
 @dataclass(frozen=True, eq=False)

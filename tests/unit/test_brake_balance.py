@@ -144,6 +144,14 @@ def test_both_torque_and_power_are_refused(tmp_path):
         parse_case(case_text(f'{engine}brake_power = "2 kW"\n'), tmp_path)
 
 
+def test_a_brake_power_needs_a_speed():
+    engine = replace(RIG, brake_power=100.0)
+    assert engine.brake(50.0) == 2.0
+    with pytest.raises(InputError, match=r"load_case\.speed = 0 rpm, must be > 0 rpm"):
+        engine.brake(0.0)
+    assert replace(RIG, brake_torque=1.0).brake(0.0) == 1.0
+
+
 def test_the_dead_centre_is_checked_by_the_motored_peak(tmp_path):
     """The motored peak leads the dead centre of the file by 2.6 deg, and by 0.6 deg once set."""
     motored = 'motored_file = "m.csv"\n'
