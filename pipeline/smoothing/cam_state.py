@@ -234,8 +234,8 @@ def motion(jet: Jet, variables: DesignVariables, ratings: Ratings) -> Motion:
 class Forces(NamedTuple):
     """Forces of one scenario, N; loads of guides A and B over the axial force.
 
-    share: axial force without friction over axial force; surged: normal force with the surge of the
-    spring, >= 0.
+    rubbing: normal loads of the friction in the guides, corrected; share: axial force without
+    friction over axial force; surged: normal force with the surge of the spring, >= 0.
     """
 
     spring: Array
@@ -244,6 +244,7 @@ class Forces(NamedTuple):
     normal: Array
     jam: Array
     guides: tuple[Reaction, Reaction]
+    rubbing: tuple[Array, Array]
     share: Array
     surged: Array
 
@@ -268,18 +269,19 @@ def forces(
     viscous = scenario.viscous_damping * scenario.cam_speed * jet.slope
     lever = levers(scenario.overhang + highest - jet.lift, scenario.guide_spacing)
     fix, guides = scenario.correction, path.reactions(lever, scenario.guide_spacing)
-    jam = scenario.friction_a * guides[0].corrected(fix.rubbing_a)
-    jam = jam + scenario.friction_b * guides[1].corrected(fix.rubbing_b)
+    rubbing = (guides[0].corrected(fix.rubbing_a), guides[1].corrected(fix.rubbing_b))
+    jam = scenario.friction_a * rubbing[0] + scenario.friction_b * rubbing[1]
     share = 1.0 - np.sign(np.real(jet.slope)) * jam
-    axial = (spring + inertia + viscous) / share
-    surged = (axial + fix.surge / share) * path.gain
+    axial, gain = (spring + inertia + viscous) / share, path.gain
+    surged = (axial + fix.surge / share) * gain
     return Forces(
         spring=spring,
         inertia=inertia,
         axial=axial,
-        normal=axial * path.gain,
+        normal=axial * gain,
         jam=jam,
         guides=guides,
+        rubbing=rubbing,
         share=share,
         surged=np.where(np.real(surged) > 0.0, surged, 0.0 * surged),
     )

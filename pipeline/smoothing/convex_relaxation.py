@@ -8,6 +8,9 @@ q = P^2 + 2 k E the limit of the travel is linear in them, and that of the press
 with a concave right side where r0 >= P/k: with sigma <= sqrt(q) in place of the root it is a
 second-order cone, exact where it is active. A normal force of at most N follows from
 q + (E'/r0)^2 <= N^2, conservative as the radius is at least r0.
+
+Under a flat face of width w its edge takes the place of the pressure angle,
+|E'| <= (w/2 - |e|) sqrt(q), and the normal force is sqrt(q).
 """
 
 from __future__ import annotations
@@ -43,6 +46,8 @@ class Core:
 
 def convex_start(problem: Problem) -> Core | None:
     """Energy of least friction-free ripple within travel, pressure angle and normal force.
+
+    Of a face, within its width in place of the pressure angle.
 
     Parameters
     ----------
@@ -110,7 +115,8 @@ def _program(search: Search) -> Cones:
     if ratings.normal_force is not None:
         share = (ratings.normal_force * (1.0 - RESERVE) / variables.preload) ** 2
         sideways = torque / (variables.prime_radius * variables.preload)
-        sideways = 0.0 * sideways if ratings.face is not None else sideways
+        if ratings.face is not None:
+            sideways = 0.0 * sideways
         program.square_at_most(sideways, -growth, share - 1.0)
     return program
 

@@ -91,8 +91,7 @@ def _guide_gap(at: Loads, limit: float) -> Array:
 
 def rubbing_load(at: Loads, place: int) -> Array:
     """Normal load of the friction in guide A (0) or B (1), N."""
-    fix = at.scenario.correction
-    return at.force.axial * at.force.guides[place].corrected((fix.rubbing_a, fix.rubbing_b)[place])
+    return at.force.axial * at.force.rubbing[place]
 
 
 def _guide_edge_pressure(side: Side) -> Constraint[Loads]:

@@ -38,6 +38,7 @@ from camwright.pipeline.smoothing.constraints import (
     load_utilisations,
     shape_utilisations,
 )
+from camwright.pipeline.smoothing.convex_relaxation import convex_start
 from camwright.pipeline.smoothing.energy_spline import basis_matrix
 from camwright.pipeline.smoothing.fe_correction import corrections_of
 from camwright.pipeline.smoothing.problem_setup import problem_of
@@ -245,6 +246,30 @@ def test_optimum_is_better_than_the_cams_of_motion_laws(seed):
         other = synthesise(replace(problem, seed=start))
         assert other.feasible, law
         assert other.ripple < 0.8 * best, law
+
+
+def test_convex_start_is_the_optimum_where_width_force_and_travel_limit_alone():
+    """Without friction, mass and curvature limits the problem is convex: no cam is better."""
+    theta = uniform_turn(240)
+    torque = 6.0 * np.sin(2 * theta) + 3.0 * np.cos(3 * theta + 0.4)
+    item = replace(
+        scenario(torque), mass=0.0, spring_mass=0.0, friction_a=0.0, friction_b=0.0,
+        viscous_damping=0.0, friction_worst=None,
+    )  # fmt: skip
+    rigid = rated(  # no half-width of the contact
+        roller_radius=0.0, face=Face(0.026, 0.0), travel=0.012, normal_force=1050.0,
+        contact_modulus=1e20,
+    )  # fmt: skip
+    given = Problem(
+        (item,), rigid, DesignVariables(60e3, 500.0, 0.045), coefficients=36, points=240
+    )
+    core, design = convex_start(given), synthesise(given)
+    assert core is not None
+    assert design.feasible
+    assert design.ripple > 0.05
+    assert {"face_width", "bore_pressure"} <= design.multipliers.keys()
+    # the weight of the jerk, 1e-5, is of the energy there and of the lift here
+    assert core.ripple == pytest.approx(design.ripple, rel=1e-3)
 
 
 @pytest.fixture(scope="module")
