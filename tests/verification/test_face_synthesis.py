@@ -31,6 +31,7 @@ from camwright.pipeline.smoothing.allowables import (
     power_limits,
     ratings_of,
 )
+from camwright.pipeline.smoothing.bounds import bounds_of
 from camwright.pipeline.smoothing.cam_state import Jet, Mean, motion
 from camwright.pipeline.smoothing.constrained_synthesis import synthesise
 from camwright.pipeline.smoothing.constraints import (
@@ -44,6 +45,7 @@ from camwright.pipeline.smoothing.fe_correction import corrections_of
 from camwright.pipeline.smoothing.problem_setup import problem_of
 from camwright.pipeline.smoothing.sampled_problem import SHAPE_LIMITS, Search
 from camwright.pipeline.smoothing.scenario import Correction, DesignVariables, Face, Scenario
+from camwright.pipeline.smoothing.shadow_prices import prices
 from camwright.pipeline.smoothing.synthesis_problem import Problem
 
 CASES = Path(__file__).parents[2] / "cases"
@@ -247,6 +249,25 @@ def test_optimum_is_better_than_the_cams_of_motion_laws(seed):
         other = synthesise(replace(problem, seed=start))
         assert other.feasible, law
         assert other.ripple < 0.8 * best, law
+
+
+@pytest.mark.parametrize("name", ["face_width", "face_pv"])
+def test_price_of_the_face_foresees_a_wider_and_a_better_one(name):
+    """First order over 0.1 % of the bound; the PV value enters by its square."""
+    problem = seeded(0)
+    design, face = synthesise(problem), problem.ratings.face
+    record = next(each for each in prices(design, problem) if each["limit"] == name)
+    step, field = 1e-3, name.removeprefix("face_")
+    better = face._replace(**{field: (1.0 + step) * getattr(face, field)})
+    other = synthesise(replace(problem, ratings=replace(problem.ratings, face=better)))
+    gained = (design.ripple - other.ripple) * np.std(problem.scenarios[0].torque)
+    assert gained > 0.0
+    assert step * record["value"] * record["ripple_per_unit_Nm"] == pytest.approx(gained, rel=2e-2)
+    relaxed = bounds_of(problem.ratings)[name].relaxed(problem.ratings, 1.0 + step)
+    assert relaxed.face == better
+    assert record["value"] * (1e-3 if field == "width" else 1e6) == pytest.approx(
+        getattr(face, field), rel=1e-12
+    )
 
 
 def test_convex_start_is_the_optimum_where_width_force_and_travel_limit_alone():
