@@ -82,6 +82,8 @@ def searched(request):
         EVERY, DesignVariables(60e3, 500.0, 0.045), freed=FREED, coefficients=24, points=180,
     )  # fmt: skip
     given = with_corrections(given, request.param)
+    # Without a duty each load case is kept to the whole life.
+    given = replace(given, scenarios=tuple(replace(s, duty=None) for s in given.scenarios))
     search = Search(given, extra=np.array([0.31, 2.17]))
     return search, search.state(search.start + 1.0, given.variables)
 
