@@ -31,7 +31,8 @@ In the order of the calculation:
 | `follower_stiffness`    | bearing, pin, fork, stem, shaft in series  | m/N; N/m              |
 
 A further kind of follower is a class with the attributes of `follower_kind.FollowerKind`, a contour
-in `geometry`, a contact body in `contact` and a section in `case`.
+in `geometry`, a contact body in `contact` and a section in `case`; for the constrained synthesis a
+motion in `smoothing.cam_state`.
 
 Imports `geometry`, `base` and `contact`.
 """
