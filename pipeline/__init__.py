@@ -24,6 +24,7 @@ verdict; a failed trial is smoothed again. `results` writes the run folder, `rep
 | `preview`            | synthesis and preview of a case                      |                    |
 | `iteration`          | trials with smoothing between them                   |                    |
 | `run`                | trials and certificate of a case, run folder         |                    |
+| `recomputation`      | finished run computed again from case and lift       |                    |
 | `screening`          | closed-form checks of thousands of designs as arrays | p0, Pa; F_n, N     |
 | `studies`            | inspection, comparisons, valve cam                   |                    |
 | `studies.redesign`   | Pareto front over the catalogues                     |                    |

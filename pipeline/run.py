@@ -119,7 +119,7 @@ def _solved(
     final, statement, points = trials_of(case, torques, tier=depth, sink=writer, progress=watch)
     if final.corners:
         folder.write_corners(corners_record(final.case, final.corners))
-    summary = _summary(folder, torques, final, points) | dict(also(final))
+    summary = summary_of(folder, torques, final, points) | dict(also(final))
 
     def rest() -> None:
         """Files that need no certificate."""
@@ -131,12 +131,12 @@ def _solved(
             write_workshop(folder.path / WORKSHOP, final.case, final.contour, note=watch.note)
         if depth is Tier.CERTIFIED and ahead is not None:
             watch.stage("report")
-            folder.write_summary(summary | _judged(final, statement) | watch.record())
+            folder.write_summary(summary | judged_of(final, statement) | watch.record())
             ahead(folder.path, workers)
 
     if depth < Tier.CERTIFIED:
         rest()
-        return summary | _judged(final, statement)
+        return summary | judged_of(final, statement)
     sought = _remedies_begun(final, workers, folder.path)
     failing = _failing(final)
     certified = certify_trial(final, workers, progress=watch, meanwhile=rest)
@@ -145,7 +145,7 @@ def _solved(
         texts = sought.result()
         certified = replace(certified, checks=with_remedies(certified.checks, texts))
     writer.judge(certified)
-    return summary | _judged(certified, restated(statement, failing, _failing(certified)))
+    return summary | judged_of(certified, restated(statement, failing, _failing(certified)))
 
 
 def _remedies_begun(final: Trial, workers: Crew, folder: Path) -> Task | None:
@@ -171,7 +171,7 @@ def _failing(trial: Trial) -> list[str]:
     return [one.id for one in trial.checks if one.must_have and one.status == "fail"]
 
 
-def _summary(
+def summary_of(
     folder: RunFolder,
     torques: Mapping[str, Torque],
     final: Trial,
@@ -210,7 +210,7 @@ def _ripple_map_record(torques: Mapping[str, Torque], final: Trial) -> Mapping[s
     return None if mapped is None else mapped.as_record()
 
 
-def _judged(final: Trial, statement: str) -> dict[str, Any]:
+def judged_of(final: Trial, statement: str) -> dict[str, Any]:
     """Contents of ``run.json`` that follow from the checks and the certificate."""
     benchmarks = final.solution.benchmarks
     return {

@@ -37,6 +37,8 @@ from camwright.reports.verdict_text import Verdict, governing_load_case, verdict
 if TYPE_CHECKING:
     from camwright.reports.picture_list import Picture
 
+_RUNNING = ("report", "total")
+"""Times that are not known yet when the page is written: a page follows from the other files."""
 SHORT = 140
 """Maximum number of characters of a title or name on one line."""
 TRIALS_HEAD = (
@@ -349,7 +351,11 @@ def _evidence(material: Material) -> Section:
     consistency, contradicted = verification_tables.consistency(summary["consistency"])
     benchmarks = verification_tables.benchmarks(summary["benchmarks"])
     mesh = {k: v for k, v in (final.record["mesh"] or {}).items() if k != "sha256"}
-    times = [(k, report_tables.quantity(v, "s", 3)) for k, v in summary["timings_s"].items()]
+    times = [
+        (k, report_tables.quantity(v, "s", 3))
+        for k, v in summary["timings_s"].items()
+        if k not in _RUNNING
+    ]
     blocks = [
         Block(
             Tabular(certificate), "Certificate points",

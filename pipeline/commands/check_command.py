@@ -92,14 +92,32 @@ def check(
             help="Public keys whose signatures are valid; default: those of this user.",
         ),
     ] = None,
+    recompute: Annotated[
+        bool,
+        typer.Option(
+            "--recompute",
+            help="Compute a run again from its case and lift, and compare every number and file.",
+        ),
+    ] = False,
+    angles: Annotated[
+        int | None,
+        typer.Option(
+            "--angles",
+            help="Cam angles, drawn at random, at which --recompute solves "
+            "both bodies in full; default: 8.",
+        ),
+    ] = None,
+    seed: Annotated[
+        int | None, typer.Option("--seed", help="Of these angles; default: drawn anew.")
+    ] = None,
 ) -> int:
     """Print failures, missing data and verdict of a run, or of a preview of a case.
 
     Of several runs and cases a table. A preview has a screen, no verdict.
     Exit code 0: PASS, 1: FAIL, 2: error, 3: INCOMPLETE (data are missing) or OPEN: a preview, or a
     run below the certified depth, never passes; 4: the run is not as recorded in signoff.json, with
-    --verify-record also unsigned or signed by an untrusted key. Of several the worst: error, 4,
-    FAIL, INCOMPLETE.
+    --verify-record also unsigned or signed by an untrusted key, with --recompute not what its case
+    gives. Of several the worst: error, 4, FAIL, INCOMPLETE.
     """
     from camwright.pipeline.results.check_report import FAIL_ON
 
@@ -108,6 +126,9 @@ def check(
     patterns, alone = only or [], len(targets) == 1
     if trusted is not None and not verify_record:
         raise InputError("--trusted", str(trusted), "stated with --verify-record")
+    if not recompute and (angles is not None or seed is not None):
+        option, value = ("--seed", seed) if angles is None else ("--angles", angles)
+        raise InputError(option, value, "stated with --recompute")
     keys = None
     if verify_record:
         from camwright.pipeline.results.signing_keys import read_trusted
@@ -117,10 +138,12 @@ def check(
         record = _recorded(targets[0], keys)
         if record.faults:
             return ALTERED
+        if recompute and not _recomputed(targets[0], angles, seed):
+            return ALTERED
         judged = [_judged(targets[0], patterns, fail_on, baseline, remedies=remedies)]
         judged[0].document.update(record.entries)
     else:
-        _refuse_for_several(len(targets), remedies, baseline, missing)
+        _refuse_for_several(len(targets), remedies, baseline, missing, recompute)
         judged = [_of_several(each, patterns, fail_on, keys) for each in targets]
     if junit is not None:
         from camwright.pipeline.base.files import write_atomic
@@ -147,9 +170,16 @@ def check(
     return max((each.code for each in judged), key=SEVERITY.index)
 
 
-def _refuse_for_several(count: int, remedies: bool, baseline: Path | None, missing: bool) -> None:
+def _refuse_for_several(
+    count: int, remedies: bool, baseline: Path | None, missing: bool, recompute: bool
+) -> None:
     """Refuse the options that serve one run or case."""
-    options = {"--remedies": remedies, "--baseline": baseline, "--missing": missing}
+    options = {
+        "--remedies": remedies,
+        "--baseline": baseline,
+        "--missing": missing,
+        "--recompute": recompute,
+    }
     for option, value in options.items():
         if value:
             raise InputError(option, f"{count} targets", "stated with one run or case alone")
@@ -317,6 +347,41 @@ def _recorded(target: Path, keys: Mapping[str, TrustedKey] | None) -> _Record:
     for one in signed or () if faults else ():
         say(f"{target}: signed: {one.words}")
     return _Record(faults, signed)
+
+
+def _recomputed(target: Path, angles: int | None, seed: int | None) -> bool:
+    """Whether a run is what its case gives; prints seed, drawn angles and each difference."""
+    import secrets
+
+    from camwright.pipeline.recomputation import ANGLES, recompute
+    from camwright.pipeline.studies.valve_train import valve_record
+    from camwright.reports.sections import report
+
+    if not target.is_dir():
+        raise InputError("--recompute", str(target), "stated with a run folder")
+    drawn = secrets.randbelow(2**32) if seed is None else seed
+    say(f"recomputation with --seed {drawn}")
+    with progress_shown() as progress:
+        try:
+            made = recompute(
+                target,
+                angles=ANGLES if angles is None else angles,
+                seed=drawn,
+                progress=progress,
+                also=valve_record,
+                present=report,
+            )
+        except ResultError as error:
+            say(str(error))
+            return False
+    for angle in made.angles:
+        say(f"drawn angle: {angle.words}")
+    say(f"recomputed: {made.judged['verdict_line']}")
+    for line in made.differences:
+        say(f"{target / line}")
+    if made.unseen:
+        say(f"not compared: {', '.join(made.unseen)}")
+    return not made.differences
 
 
 def _checked_run(folder: Path) -> tuple[dict[str, Any], Clock]:

@@ -79,12 +79,14 @@ class BegunCertificate:
     chosen : sequence   (load case, position) of each angle
     finest : sequence   those with the finest mesh; their orders hold for the others
     tasks : mapping     figures of a mesh by angle and edges per half-width
+    observed : sequence   points on three meshes whose orders hold, where none is chosen
     """
 
     cycles: Sequence[Cycle]
     chosen: Sequence[tuple[int, int]]
     finest: Sequence[tuple[int, int]]
     tasks: Mapping[tuple[tuple[int, int], float], Task]
+    observed: tuple[CertificatePoint, ...] = ()
 
     def points(self, advance: Callable[[int, int], None]) -> tuple[CertificatePoint, ...]:
         """Certificate points at the chosen angles, when all meshes are solved."""
@@ -100,17 +102,24 @@ class BegunCertificate:
             return certificate_point(self.cycles[case].contact, index, theta, meshes, worst)
 
         worst = {at: point(at) for at in self.finest}
-        return tuple(worst.get(at) or point(at, tuple(worst.values())) for at in self.chosen)
+        observed = self.observed or tuple(worst.values())
+        return tuple(worst.get(at) or point(at, observed) for at in self.chosen)
 
 
 def begun(
-    pair: ContactPair, cycles: Sequence[Cycle], chosen: Sequence[tuple[int, int]], workers: Crew
+    pair: ContactPair,
+    cycles: Sequence[Cycle],
+    chosen: Sequence[tuple[int, int]],
+    workers: Crew,
+    observed: tuple[CertificatePoint, ...] = (),
 ) -> BegunCertificate:
     """Certificate at chosen (load case, position), its meshes handed to worker processes.
 
-    The finest mesh is solved at `finest_positions` alone.
+    The finest mesh is solved at `finest_positions` alone; nowhere with the points `observed` on
+    three meshes, whose orders then hold.
     """
-    finest, tasks = finest_positions(cycles, chosen), {}
+    finest = () if observed else finest_positions(cycles, chosen)
+    tasks = {}
     for edges in reversed(EDGES):  # the longest first
         for at in chosen:
             if edges == EDGES[-1] and at not in finest:
@@ -119,4 +128,4 @@ def begun(
             force = float(cycle.contact.line_load[index]) * pair.width
             theta = float(cycle.theta[index])
             tasks[at, edges] = workers.submit(mesh_figures, pair, theta, force, edges)
-    return BegunCertificate(cycles, chosen, finest, tasks)
+    return BegunCertificate(cycles, chosen, finest, tasks, observed)

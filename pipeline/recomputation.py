@@ -1,0 +1,385 @@
+"""Recomputation of a finished run: what follows from its case and the lift of its final trial.
+
+Loads, contact, certificate, tolerance corners, checks, limits and files are computed again and
+compared with the folder. Further cam angles, drawn at random, are solved with both bodies in full
+and compared with the stored cycle.
+"""
+
+from __future__ import annotations
+
+import shutil
+import tempfile
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any, cast
+
+import numpy as np
+
+from camwright.geometry.contour import Contour
+from camwright.geometry.errors import InputError, ResultError
+from camwright.pipeline.base.files import Json, files_in, read_json
+from camwright.pipeline.base.progress import SILENT, Progress
+from camwright.pipeline.base.units import in_unit
+from camwright.pipeline.base.worker_processes import crew
+from camwright.pipeline.case.case import Case
+from camwright.pipeline.case.case_file import read_case
+from camwright.pipeline.case.given_lift import given_lift
+from camwright.pipeline.case.load_case_torque import engine_torques
+from camwright.pipeline.checks.error_bars import contact_error
+from camwright.pipeline.checks.solution_verification import synthesis_converged
+from camwright.pipeline.checks.tolerance_corners import corners_record
+from camwright.pipeline.contact.contact_history import CertificatePoint
+from camwright.pipeline.contact.tiers import Tier
+from camwright.pipeline.cycle.certificate_angles import begun
+from camwright.pipeline.engine.torque import Torque
+from camwright.pipeline.results import run_reader, signoff
+from camwright.pipeline.results.field_file import read_series
+from camwright.pipeline.results.field_output import STRESS, Shown, write_fields
+from camwright.pipeline.results.file_differences import (
+    SAME,
+    file_differences,
+    record_differences,
+)
+from camwright.pipeline.results.model_limits import limitations
+from camwright.pipeline.results.run_folder import RunFolder, drawn_cam, versions
+from camwright.pipeline.results.run_reader import AnyCheck, Run, TrialRecord, read_run
+from camwright.pipeline.results.run_records import torque_columns, trial_record
+from camwright.pipeline.results.trial import SmoothingRecord, Trial, TrialPoint
+from camwright.pipeline.results.trial_writer import TrialWriter
+from camwright.pipeline.results.workshop_files import WORKSHOP, write_workshop
+from camwright.pipeline.run import judged_of, summary_of
+from camwright.pipeline.smoothing.required_lift import cam_lift
+from camwright.pipeline.smoothing.smoothers import Smoother
+from camwright.pipeline.solver import solve
+
+ANGLES = 8
+"""Cam angles drawn, if none are stated."""
+MOST_ANGLES = 360
+LARGEST_SEED = 2**32 - 1
+_OTHER_VERSION = 0.02
+"""Relative difference by other versions of the libraries, where no certificate states one."""
+_BY_THE_SEARCH = ("prices", "machine_prices", "trial_points", "trials", "statement")
+"""Entries of the summary that rest on the search for the lift, which is not repeated."""
+_LAST = ("run.json", signoff.NAME, signoff.SIGNATURES)
+_BY_ENTRY = ("6_checks.json", "trial.json")
+"""Files of a trial that are compared entry by entry."""
+PAGES = ("8_report.html", "scene.html")
+"""Pages that are drawn again and compared."""
+_OF_A_CHECK = ("demand", "corner_demand", "error", "utilisation", "margin")
+"""Numbers of a check that have its error bar."""
+
+
+@dataclass(frozen=True)
+class Angle:
+    """A drawn cam angle: load case, rad, and the greatest difference of the stored cycle, relative.
+
+    figure : str     that differs most, of p0, half_width, tau_max and von_mises
+    allowed : float  error bar of that figure
+    """
+
+    load_case: str
+    theta: float
+    figure: str
+    difference: float
+    allowed: float
+
+    @property
+    def words(self) -> str:
+        """Such as ``running, 123 deg: p0 differs by 0.02 %, error bar 0.4 %``."""
+        return (
+            f"{self.load_case}, {in_unit(self.theta, 'deg'):.4g} deg: {self.figure} differs by"
+            f" {100 * self.difference:.2g} %, error bar {100 * self.allowed:.2g} %"
+        )
+
+
+@dataclass(frozen=True)
+class Recomputation:
+    """Result of a recomputation.
+
+    Parameters
+    ----------
+    checks : tuple        records of the checks, computed again
+    judged : mapping      their verdict, see `run_reader.judgement`
+    differences : tuple   of the folder, one line each, with the file
+    angles : tuple        drawn angles; empty below the certified depth
+    unseen : tuple        files that do not follow from case and lift, and were not compared
+    """
+
+    checks: tuple[AnyCheck, ...]
+    judged: Mapping[str, str | None]
+    differences: tuple[str, ...]
+    angles: tuple[Angle, ...]
+    unseen: tuple[str, ...]
+
+
+def recompute(
+    folder: Path,
+    *,
+    angles: int = ANGLES,
+    seed: int = 0,
+    jobs: int | None = None,
+    progress: Progress = SILENT,
+    also: Callable[[Trial], Mapping[str, Any]] = lambda _: {},
+    present: Callable[[Path], object] | None = None,
+) -> Recomputation:
+    """Compute a finished run again from its case and the lift of its final trial, and compare it.
+
+    Of the folder are believed: the case; the lift, where a synthesis chose it; whether that
+    synthesis converged; reason and number of the trial. A check may differ by its error bar, as
+    computed again.
+
+    Parameters
+    ----------
+    angles : int      cam angles at which both bodies are solved in full
+    seed : int        of their choice
+    jobs : int        processes for the certificate; None: number of processors, at most 4
+    also : callable   final trial -> further entries of ``run.json``
+    present : callable   writes the pages into a run folder; None: they are not compared
+
+    Raises
+    ------
+    CamError
+        If the run cannot be read, or the case not be solved.
+    """
+    if not 0 <= angles <= MOST_ANGLES:
+        raise InputError("--angles", angles, f">= 0 and <= {MOST_ANGLES}")
+    if not 0 <= seed <= LARGEST_SEED:
+        raise InputError("--seed", seed, f">= 0 and <= {LARGEST_SEED}")
+    run = read_run(folder)
+    case, contour = drawn_cam(folder)
+    torques = engine_torques(case)
+    record = run.final.record
+    trial = solve(
+        case,
+        contour,
+        tier=Tier.of(run.summary["depth"], "depth"),
+        torques=torques,
+        synthesis_gain=_recorded_gain(run.final),
+        jobs=jobs,
+        progress=progress,
+    )
+    trial = replace(
+        trial, number=record["number"], why=record["why"], smoothing=_smoothing(run.final),
+        synthesis=record["synthesis"],
+    )  # fmt: skip
+    drawn = _drawn_angles(run, trial, angles, seed, jobs, progress)
+    differences = [
+        f"{_cycle_file(run)}: {each.words}" for each in drawn if not each.difference <= each.allowed
+    ]
+    differences += _lift_differences(run, case, torques, contour)
+    checks = tuple(one.as_record() for one in trial.checks)
+    differences += _check_differences(run.final, checks)
+    progress.stage("files")
+    of_files, unseen = _of_files(run, trial, torques, also, present)
+    differences += of_files
+    return Recomputation(
+        cast("tuple[AnyCheck, ...]", checks),
+        run_reader.judgement(checks, trial.depth.word),
+        tuple(differences),
+        drawn,
+        unseen,
+    )
+
+
+def _cycle_file(run: Run) -> str:
+    return f"{run.final.path.name}/5_cycle.csv"
+
+
+def _recorded_gain(final: TrialRecord) -> float | None:
+    """Gain that another step of the synthesis foresees, as recorded; None without a synthesis."""
+    name = synthesis_converged.id
+    stated = [check["demand"] for check in final.checks if check["id"] == name]
+    return None if not stated or stated[0] is None else float(stated[0])
+
+
+def _smoothing(final: TrialRecord) -> SmoothingRecord:
+    record = final.record
+    width = record["smoothing_width_deg"]
+    return SmoothingRecord(
+        record["smoothing_kind"],
+        record["smoothing_description"],
+        record["smoothing_strength"],
+        None if width is None else float(np.radians(width)),
+    )
+
+
+def _lift_differences(
+    run: Run, case: Case, torques: Mapping[str, Torque], contour: Contour
+) -> Iterator[str]:
+    """Difference of the stored lift from that of the case; a synthesis chooses its lift freely."""
+    record, lift = run.final.record, contour.pitch.lift
+    if case.smoothing.kind == "constrained":
+        return
+    if case.engine is None:
+        expected = given_lift(case)
+    else:
+        strength = record["smoothing_strength"]
+        smoother = Smoother.from_case(case.smoothing)
+        if strength is not None:
+            smoother = smoother.stretched(strength)
+        expected = cam_lift(case, torques, smoother)
+    apart = float(np.max(np.abs(lift(lift.theta) - expected(lift.theta))))
+    if not apart <= SAME * expected.highest.value:
+        words = f"the lift differs by {in_unit(apart, 'um'):.3g} um from that of the case"
+        yield f"{run.final.path.name}/{run_reader.SPLINE_FILE}: {words}"
+
+
+def _check_differences(final: TrialRecord, checks: Sequence[Mapping[str, Any]]) -> Iterator[str]:
+    """Differences of the recorded checks from those computed again, beyond their error bars."""
+    file = f"{final.path.name}/6_checks.json"
+    stored = {record["id"]: record for record in final.checks}
+    again = {str(record["id"]): record for record in checks}
+    for name in {**again, **stored}:
+        if name not in stored or name not in again:
+            what = "is missing" if name not in stored else "is none of the case"
+            yield f"{file}: {name} {what}"
+            continue
+        one, two = dict(stored[name]), dict(again[name])
+        share = SAME
+        if two["demand"] and two["error"]:
+            share = max(SAME, abs(two["error"] / two["demand"]))
+        bars = [{key: each.pop(key, None) for key in _OF_A_CHECK} for each in (one, two)]
+        for each in (one, two):
+            each.pop("remedy", None)
+        words = (
+            *record_differences(cast("Json", one), cast("Json", two), SAME),
+            *record_differences(cast("Json", bars[0]), cast("Json", bars[1]), share),
+        )
+        yield from (f"{file}: {name}: {each}" for each in words)
+
+
+# --- drawn angles
+
+
+def _drawn_angles(
+    run: Run, trial: Trial, count: int, seed: int, jobs: int | None, progress: Progress
+) -> tuple[Angle, ...]:
+    """Stored cycle against both bodies in full at loaded positions drawn at random."""
+    worst = tuple(point for point in trial.certificate if not point.order_from)
+    if not worst:
+        return ()
+    loaded = [
+        (number, int(k))
+        for number, cycle in enumerate(trial.cycles)
+        for k in np.flatnonzero(np.nan_to_num(cycle.contact.p0) > 0)
+    ]
+    order = np.random.default_rng(seed).permutation(len(loaded))[:count]
+    chosen = [loaded[k] for k in sorted(order)]
+    progress.stage("drawn angles")
+    pair = trial.cycles[0].pair
+    with crew(jobs) as workers:
+        points = begun(pair, trial.cycles, chosen, workers, worst).points(progress.advance)
+    return tuple(
+        _angle(run, trial, number, k, point)
+        for (number, k), point in zip(chosen, points, strict=True)
+    )
+
+
+def _angle(run: Run, trial: Trial, number: int, k: int, point: CertificatePoint) -> Angle:
+    """Figure of the stored cycle that differs most from a point, over its error bar."""
+    cycle = trial.cycles[number]
+    table = run.final.cycle.of_load_case(cycle.load_case)
+    columns = {
+        "p0": ("p0_fe_MPa", "MPa"),
+        "half_width": ("half_width_fe_mm", "mm"),
+        "tau_max": ("tau_max_MPa", "MPa"),
+        "von_mises": ("von_mises_MPa", "MPa"),
+    }
+    figures: list[Angle] = []
+    for name, (convergence, _) in point.figures.items():
+        header, unit = columns[name]
+        values = table[header]
+        stored = float(values[k]) if k < values.size else np.nan
+        apart = abs(stored / in_unit(convergence.extrapolated, unit) - 1.0)
+        allowed = (contact_error(trial.solution, name) or 0.0) + convergence.gci
+        figures.append(Angle(cycle.load_case, point.theta, name, apart, allowed))
+    return max(figures, key=lambda each: np.nan_to_num(each.difference / each.allowed, nan=np.inf))
+
+
+# --- files
+
+
+def _of_files(
+    run: Run,
+    trial: Trial,
+    torques: Mapping[str, Torque],
+    also: Callable[[Trial], Mapping[str, Any]],
+    present: Callable[[Path], object] | None,
+) -> tuple[list[str], tuple[str, ...]]:
+    """Differences of the files of a run, and those that were not compared."""
+    exact = run.summary["versions"] == versions()
+    bar = contact_error(trial.solution)
+    share = SAME if exact else max(SAME, _OTHER_VERSION if bar is None else bar)
+    with tempfile.TemporaryDirectory(prefix="camwright-") as home:
+        case = read_case(run.path / "case.toml")
+        with RunFolder(Path(home) / "run", case, depth=trial.depth) as again:
+            summary = _written(again, run, trial, torques) | dict(also(trial))
+            compared = [name for name, _ in files_in(again.path) if not name.endswith(_BY_ENTRY)]
+            differences = list(file_differences(run.path, again.path, compared, share, exact))
+            again.discard()
+        pages = [name for name in PAGES if (run.path / name).is_file()]
+        if exact and present is not None and pages:
+            drawn = _drawn_again(run.path, Path(home) / "drawn", present)
+            pages = [name for name in PAGES if (drawn / name).is_file()]
+            differences += file_differences(run.path, drawn, pages, share, exact)
+            compared += pages
+    left_out = () if exact else ("sha256",)
+    of_trial = record_differences(
+        cast("Json", run.final.record), trial_record(trial), share, left_out=left_out
+    )
+    differences += (f"{run.final.path.name}/trial.json: {each}" for each in of_trial)
+    stored = {key: run.summary.get(key) for key in summary if key not in _BY_THE_SEARCH}
+    expected = {key: summary[key] for key in stored}
+    of_summary = record_differences(cast("Json", stored), expected, share)
+    differences += (f"run.json: {each}" for each in of_summary)
+    differences += _recorded_limits(run) if exact else ()
+    known = {*compared, *_LAST, *(f"{run.final.path.name}/{name}" for name in _BY_ENTRY)}
+    return differences, tuple(name for name, _ in files_in(run.path) if name not in known)
+
+
+def _written(
+    again: RunFolder, run: Run, trial: Trial, torques: Mapping[str, Torque]
+) -> dict[str, Any]:
+    """Write the files that follow from a trial as a run does; the contents of ``run.json``."""
+    if torques:
+        again.write_torque(torque_columns(torques[trial.case.load_cases[0].name]))
+    TrialWriter(again).keep(trial)
+    if trial.corners:
+        again.write_corners(corners_record(trial.case, trial.corners))
+    summary = summary_of(again, torques, trial, (TrialPoint.of(trial),))
+    if trial.mesh is not None:
+        write_workshop(again.path / WORKSHOP, trial.case, trial.contour)
+    if trial.depth >= Tier.CYCLE:
+        write_fields(again.fields, trial, _shown_fields(run.path, trial))
+    return summary | judged_of(trial, run.summary["statement"])
+
+
+def _shown_fields(folder: Path, trial: Trial) -> Shown:
+    """Angles of the stored stress field, by their number."""
+    file = folder / "fields" / STRESS
+    if not file.is_file():
+        return Shown.NONE
+    try:
+        count = len(read_series(file).times)
+    except ResultError:
+        return Shown.DEFAULT
+    if count == trial.cycles[0].theta.size:
+        return Shown.ALL
+    return Shown.WORST if count == 1 else Shown.DEFAULT
+
+
+def _drawn_again(folder: Path, copy: Path, present: Callable[[Path], object]) -> Path:
+    """Copy of a run with its pages drawn again."""
+    left_out = (*PAGES, *_LAST[1:])
+    shutil.copytree(folder, copy, ignore=lambda _, names: [n for n in names if n in left_out])
+    present(copy)
+    return copy
+
+
+def _recorded_limits(run: Run) -> Iterator[str]:
+    """Limits of the model in the record that are not those of this version."""
+    recorded = read_json(run.path / signoff.NAME)
+    for key, words in limitations().items():
+        if recorded.get(key) != list(words):
+            yield f"{signoff.NAME}: {key} are not those of this version"

@@ -1,0 +1,302 @@
+"""`check --recompute`: a run follows from its case and lift; what was forged is named."""
+
+from __future__ import annotations
+
+import json
+import re
+import shutil
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from test_run import small
+
+from camwright.geometry.errors import InputError
+from camwright.pipeline.base.files import npz_bytes, sha256_of
+from camwright.pipeline.case.case_file import read_case
+from camwright.pipeline.contact.tiers import Tier
+from camwright.pipeline.recomputation import MOST_ANGLES, Recomputation, recompute
+from camwright.pipeline.results import run_reader, signoff
+from camwright.pipeline.run import run_case
+from camwright.reports.sections import report
+
+Command = Callable[..., tuple[int, str, str]]
+TRIAL = "trial_1"
+ROOT = Path(__file__).resolve().parents[2]
+
+
+def signed_anew(run: Path) -> None:
+    """Every hash of a forged folder written anew, as the product writes it."""
+    file = run / "run.json"
+    said = json.loads(file.read_text())
+    said["files"] = {name: sha256_of(run / name) for name in said["files"] if (run / name).exists()}
+    said["input_sha256"] = run_reader.input_sha256(run)
+    file.write_text(json.dumps(said))
+    signoff.write(run)
+
+
+def column_scaled(name: str, header: str, factor: float) -> Callable[[Path], None]:
+    """All values of a column of a table changed, the others to the byte as before."""
+
+    def forge(run: Path) -> None:
+        rows = (run / name).read_text().splitlines()
+        k = rows[0].split(",").index(header)
+        for number, row in enumerate(rows[1:], start=1):
+            cells = row.split(",")
+            cells[k] = repr(float(cells[k]) * factor) if cells[k] else ""
+            rows[number] = ",".join(cells)
+        (run / name).write_text("\n".join(rows) + "\n")
+
+    return forge
+
+
+def check_changed(
+    which: Callable[[dict[str, Any]], bool], **changes: Any
+) -> Callable[[Path], None]:
+    def forge(run: Path) -> None:
+        file = run / TRIAL / "6_checks.json"
+        records = json.loads(file.read_text())
+        one = next(record for record in records if which(record))
+        one |= {key: value(one) if callable(value) else value for key, value in changes.items()}
+        file.write_text(json.dumps(records))
+        judged_anew(run, records)
+
+    return forge
+
+
+def judged_anew(run: Path, records: Any) -> None:
+    file = run / "run.json"
+    said = json.loads(file.read_text())
+    judged = run_reader.judgement(records, said["depth"])
+    said |= {"verdict": judged["verdict"], "screen": judged["screen"]}
+    said["binding"] = list(run_reader.binding_of(records))
+    said["governing"] = run_reader.governing_id(records)
+    file.write_text(json.dumps(said))
+
+
+def all_limits_raised(run: Path) -> None:
+    """Every failed check turned into a pass: the ten-line script."""
+    file = run / TRIAL / "6_checks.json"
+    records = json.loads(file.read_text())
+    for one in records:
+        if one["status"] == "fail" and one["demand"] is not None:
+            worst = one["demand"] if one["corner_demand"] is None else one["corner_demand"]
+            far = 10.0 * abs(worst) + 1.0
+            limit = worst - far if one["sense"] == "at_least" else worst + far
+            one |= {"limit": limit, "status": "pass", "utilisation": 0.1, "not_proven": False}
+    file.write_text(json.dumps(records))
+    judged_anew(run, records)
+
+
+def entry_changed(name: str, *path: str | int, value: Any) -> Callable[[Path], None]:
+    def forge(run: Path) -> None:
+        document = inside = json.loads((run / name).read_text())
+        for key in path[:-1]:
+            inside = inside[key]
+        inside[path[-1]] = value
+        (run / name).write_text(json.dumps(document))
+
+    return forge
+
+
+def array_scaled(name: str, key: str) -> Callable[[Path], None]:
+    def forge(run: Path) -> None:
+        with np.load(run / name) as stored:
+            arrays = {each: stored[each] for each in stored.files}
+        arrays[key] = 0.9 * arrays[key]
+        (run / name).write_bytes(npz_bytes(arrays))
+
+    return forge
+
+
+def byte_changed(name: str, place: float = 0.5) -> Callable[[Path], None]:
+    def forge(run: Path) -> None:
+        content = bytearray((run / name).read_bytes())
+        content[int(place * len(content))] ^= 1
+        (run / name).write_bytes(bytes(content))
+
+    return forge
+
+
+def case_replaced(old: str, new: str) -> Callable[[Path], None]:
+    """Another case under the old results."""
+
+    def forge(run: Path) -> None:
+        text = (run / "case.toml").read_text()
+        assert text.count(old) >= 1, old
+        (run / "case.toml").write_text(text.replace(old, new, 1))
+
+    return forge
+
+
+def page_edited(run: Path) -> None:
+    page = run / "8_report.html"
+    page.write_text(page.read_text().replace("FAIL", "PASS"))
+
+
+def recomputed(run: Path, **options: Any) -> Recomputation:
+    return recompute(run, jobs=1, present=report, **({"angles": 0} | options))
+
+
+# --- a screening: a second each
+
+
+@pytest.fixture(scope="module")
+def quick(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A screening of the shortest shipped case."""
+    out = tmp_path_factory.mktemp("quick") / "run"
+    case = read_case(ROOT / "cases" / "papers" / "eccentric.toml").with_positions(36)
+    run_case(case, out, depth=Tier.SCREENING, jobs=1)
+    return out
+
+
+def test_a_screen_is_what_its_case_gives(quick: Path) -> None:
+    made = recomputed(quick)
+    assert made.differences == made.angles == ()
+    assert made.judged["screen"] == json.loads((quick / "run.json").read_text())["screen"]
+
+
+def test_forged_numbers_of_a_screen_are_named(
+    quick: Path, tmp_path: Path, command: Command
+) -> None:
+    """Several forgeries at once, each found by its file."""
+    run = Path(shutil.copytree(quick, tmp_path / "run"))
+    all_limits_raised(run)
+    column_scaled(f"{TRIAL}/5_cycle.csv", "normal_force_N", 0.99)(run)
+    column_scaled(f"{TRIAL}/3_contour.csv", "contour_x_mm", 1.0001)(run)
+    entry_changed("run.json", "headline", "lift_max_mm", value=1.0)(run)
+    signed_anew(run)
+    assert signoff.changes(run) == []  # hashes say nothing
+    code, out, err = command("check", run, "--recompute", "--angles", "2", "--seed", "7")
+    assert (code, out) == (4, "")
+    assert "recomputation with --seed 7" in err
+    for name in (
+        f"{TRIAL}/6_checks.json: ", f"{TRIAL}/5_cycle.csv: normal_force_N at ",
+        f"{TRIAL}/3_contour.csv: contour_x_mm at ", "run.json: headline.lift_max_mm = 1, not ",
+    ):  # fmt: skip
+        assert f"camwright: {run}/{name}" in err
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({"angles": -1}, "--angles = -1, must be >= 0 and <= 360"),
+        ({"angles": MOST_ANGLES + 1}, "--angles = 361"),
+        ({"seed": -1}, "--seed = -1, must be >= 0"),
+    ],
+)
+def test_options_out_of_bounds_are_refused(
+    quick: Path, options: dict[str, int], message: str
+) -> None:
+    with pytest.raises(InputError, match=message):
+        recomputed(quick, **options)
+
+
+def test_options_without_recomputation_are_refused(quick: Path, command: Command) -> None:
+    for arguments in (("--seed", "1"), ("--angles", "2")):
+        code, _, err = command("check", quick, *arguments)
+        assert code == 2 and "must be stated with --recompute" in err
+    code, _, err = command("check", quick, quick, "--recompute")
+    assert code == 2 and "stated with one run" in err
+
+
+# --- a certified run, every attack
+
+
+@pytest.fixture(scope="module")
+def certified(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("certified")
+    run_case(small(folder), folder / "run", jobs=1, report=report)
+    return folder / "run"
+
+
+@pytest.mark.slow
+def test_a_certified_run_is_what_its_case_gives(certified: Path, command: Command) -> None:
+    made = [recomputed(certified, angles=3, seed=seed) for seed in (1, 2)]
+    assert [each.differences for each in made] == [(), ()]
+    assert [len(each.angles) for each in made] == [3, 3]
+    assert made[0].angles != made[1].angles
+    for angle in (*made[0].angles, *made[1].angles):
+        assert 0.0 < angle.difference < angle.allowed < 0.02
+    assert set(made[0].unseen) <= {f"{TRIAL}/2_limits.csv"}
+    code, out, err = command("check", certified, "--recompute", "--angles", "0")
+    assert code == command("check", certified)[0]
+    assert "recomputation with --seed " in err and "verdict: " in out
+
+
+def first_check_deleted(run: Path) -> None:
+    file = run / TRIAL / "6_checks.json"
+    records = json.loads(file.read_text())
+    del records[-1]
+    file.write_text(json.dumps(records))
+
+
+def deleted(run: Path) -> None:
+    (run / TRIAL / "5_guides.npz").unlink()
+
+
+FORGED: tuple[tuple[Callable[[Path], None], str], ...] = (
+    (all_limits_raised, r"6_checks\.json: [a-z_]+: limit = "),
+    (check_changed(lambda c: c["id"] == "contact_pressure", demand=lambda c: 0.5 * c["demand"]),
+     r"6_checks\.json: contact_pressure: demand = "),
+    (first_check_deleted, r"6_checks\.json: [a-z_0-9]+ is missing"),
+    (column_scaled(f"{TRIAL}/5_cycle.csv", "p0_fe_MPa", 1.03), r"5_cycle\.csv: p0_fe_MPa at "),
+    (column_scaled("1_torque.csv", "total_Nm", 0.99), r"1_torque\.csv: total_Nm "),
+    (column_scaled(f"{TRIAL}/5_speed_sweep.csv", "torque_max_Nm", 0.99),
+     r"5_speed_sweep\.csv: torque_max_Nm in row"),
+    (column_scaled(f"{TRIAL}/2_lift.csv", "lift_mm", 0.999), r"2_lift\.csv: lift_mm at "),
+    (array_scaled(f"{TRIAL}/5_pressure.npz", "pressure_MPa"), r"5_pressure\.npz: pressure_MPa"),
+    (entry_changed(f"{TRIAL}/trial.json", "certificate", 0, "gci_percent", value=0.0),
+     r"trial\.json: certificate\[0\]\.gci_percent = 0, not "),
+    (entry_changed("run.json", "headline", "p0_max_MPa", value=1.0),
+     r"run\.json: headline\.p0_max_MPa = 1, not "),
+    (byte_changed(f"{TRIAL}/4_mesh.msh"), r"4_mesh\.msh: is not the file"),
+    (byte_changed("workshop/cam.step"), r"workshop/cam\.step: is not the file"),
+    (byte_changed("workshop/contour.dxf"), r"workshop/contour\.dxf: is not the file"),
+    (column_scaled("workshop/contour.csv", "x_mm", 1.001), r"workshop/contour\.csv: is not the"),
+    (byte_changed("fields/stress.vtkhdf", 0.9), r"fields/stress\.vtkhdf: is not the file"),
+    (page_edited, r"8_report\.html: is not the file"),
+    (deleted, r"5_guides\.npz: is missing"),
+)  # fmt: skip
+
+
+@pytest.mark.slow
+def test_forged_files_are_named_though_their_hashes_agree(
+    certified: Path, tmp_path: Path, command: Command
+) -> None:
+    run = Path(shutil.copytree(certified, tmp_path / "run"))
+    for forge, _ in FORGED:
+        forge(run)
+    signed_anew(run)
+    code, _, err = command("check", run, "--recompute", "--angles", "2", "--seed", "3")
+    assert code == 4
+    for _, message in FORGED:
+        assert re.search(message, err), f"{message}: {err}"
+    for words in re.findall(r"drawn angle: .*", err):
+        assert "p0 differs by 3" in words or "p0 differs by 2.9" in words
+    assert len(re.findall(r"5_cycle\.csv: .* deg: p0 differs by", err)) == 2
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("forge", "message"),
+    [
+        (column_scaled(f"{TRIAL}/2_spline.csv", "spline_c0_m", 0.99), r"2_spline\.csv: "),
+        (case_replaced('overspeed = "2400 rpm"', 'overspeed = "1900 rpm"'), "6_checks"),
+    ],
+)
+def test_another_cam_or_case_under_the_old_results_is_named(
+    certified: Path,
+    tmp_path: Path,
+    command: Command,
+    forge: Callable[[Path], None],
+    message: str,
+) -> None:
+    run = Path(shutil.copytree(certified, tmp_path / "run"))
+    forge(run)
+    signed_anew(run)
+    code, _, err = command("check", run, "--recompute", "--angles", "0")
+    assert code == 4
+    assert re.search(message, err), err
