@@ -66,6 +66,8 @@ _BY_ENTRY = ("6_checks.json", "trial.json")
 """Files of a trial that are compared entry by entry."""
 PAGES = ("8_report.html", "scene.html")
 """Pages that are drawn again and compared."""
+_LISTED = 5
+"""Differences of a record that are listed."""
 _OF_A_CHECK = ("demand", "corner_demand", "error", "utilisation", "margin")
 """Numbers of a check that have its error bar."""
 
@@ -207,9 +209,19 @@ def _smoothing(final: TrialRecord) -> SmoothingRecord:
 def _lift_differences(
     run: Run, case: Case, torques: Mapping[str, Torque], contour: Contour
 ) -> Iterator[str]:
-    """Difference of the stored lift from that of the case; a synthesis chooses its lift freely."""
+    """Difference of the stored lift from that of the case; a synthesis chooses its lift freely.
+
+    Spring and prime radius are within their ranges where they are free, else those of the case.
+    """
     record, lift = run.final.record, contour.pitch.lift
     if case.smoothing.kind == "constrained":
+        stated = _chosen(read_case(run.path / "case.toml"))
+        for name, value in _chosen(case).items():
+            free = name in case.smoothing.free
+            bounds = getattr(case.smoothing, f"{name}_range") if free else 2 * (stated[name],)
+            if not bounds[0] * (1.0 - SAME) <= value <= bounds[1] * (1.0 + SAME):
+                what = f"within smoothing.{name}_range" if free else "that"
+                yield f"{run.final.path.name}/trial.json: {name} is not {what} of the case"
         return
     if case.engine is None:
         expected = given_lift(case)
@@ -223,6 +235,15 @@ def _lift_differences(
     if not apart <= SAME * expected.highest.value:
         words = f"the lift differs by {in_unit(apart, 'um'):.3g} um from that of the case"
         yield f"{run.final.path.name}/{run_reader.SPLINE_FILE}: {words}"
+
+
+def _chosen(case: Case) -> dict[str, float]:
+    """Variables of a synthesis besides the lift, by their name in `smoothing.free`, SI."""
+    return {
+        "spring_rate": case.spring.rate,
+        "preload": case.spring.preload,
+        "prime_radius": case.cam.prime_radius,
+    }
 
 
 def _check_differences(final: TrialRecord, checks: Sequence[Mapping[str, Any]]) -> Iterator[str]:
@@ -328,14 +349,22 @@ def _of_files(
     of_trial = record_differences(
         cast("Json", run.final.record), trial_record(trial), share, left_out=left_out
     )
-    differences += (f"{run.final.path.name}/trial.json: {each}" for each in of_trial)
+    differences += _few(f"{run.final.path.name}/trial.json", of_trial)
     stored = {key: run.summary.get(key) for key in summary if key not in _BY_THE_SEARCH}
     expected = {key: summary[key] for key in stored}
     of_summary = record_differences(cast("Json", stored), expected, share)
-    differences += (f"run.json: {each}" for each in of_summary)
+    differences += _few("run.json", of_summary)
     differences += _recorded_limits(run) if exact else ()
     known = {*compared, *_LAST, *(f"{run.final.path.name}/{name}" for name in _BY_ENTRY)}
     return differences, tuple(name for name, _ in files_in(run.path) if name not in known)
+
+
+def _few(file: str, words: Iterator[str]) -> Iterator[str]:
+    """Lines of the first differences of a record, and the number of the others."""
+    lines = list(words)
+    yield from (f"{file}: {line}" for line in lines[:_LISTED])
+    if len(lines) > _LISTED:
+        yield f"{file}: {len(lines) - _LISTED} more entries differ"
 
 
 def _written(

@@ -67,7 +67,8 @@ def _tables(file: Path, other: Path, share: float) -> str:
     for header, values in two.columns.items():
         k = _worst(one[header], values, _RESIDUAL in header, share)
         if k is not None:
-            return f"{header}{_place(two, k)} = {_shown(one[header][k])}, not {_shown(values[k])}"
+            at = f"{header}{_place(two, k)}"
+            return f"{at} = {_shown(one[header][k])}, recomputed {_shown(values[k])}"
     return ""
 
 
@@ -91,7 +92,7 @@ def _arrays(file: Path, other: Path, share: float) -> str:
             values, others = one[name].ravel().astype(float), two[name].ravel().astype(float)
             k = _worst(values, others, _RESIDUAL in name, share)
             if k is not None:
-                return f"{name}[{k}] = {_shown(values[k])}, not {_shown(others[k])}"
+                return f"{name}[{k}] = {_shown(values[k])}, recomputed {_shown(others[k])}"
     return ""
 
 
@@ -129,15 +130,15 @@ def record_differences(
                 yield from record_differences(one[key], two[key], share, inside, left_out)
     elif isinstance(one, list | tuple) and isinstance(two, list | tuple):
         if len(one) != len(two):
-            yield f"{place} has {len(one)} entries, not {len(two)}"
+            yield f"{place} has {len(one)} entries, recomputed {len(two)}"
             return
         for k, (a, b) in enumerate(zip(one, two, strict=True)):
             yield from record_differences(a, b, share, f"{place}[{k}]", left_out)
     elif isinstance(one, float) and isinstance(two, int | float) and not isinstance(two, bool):
         if not abs(one - two) <= _allowed(abs(two), _RESIDUAL in place, share):
-            yield f"{place} = {_shown(one)}, not {_shown(two)}"
+            yield f"{place} = {_shown(one)}, recomputed {_shown(two)}"
     elif one != two:
-        yield f"{place} = {_shown(one)}, not {_shown(two)}"
+        yield f"{place} = {_shown(one)}, recomputed {_shown(two)}"
 
 
 def _allowed(greatest: float, residual: bool, share: float) -> float:

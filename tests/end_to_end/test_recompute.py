@@ -4,7 +4,10 @@ from __future__ import annotations
 
 import json
 import re
+import resource
 import shutil
+import subprocess
+import sys
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -174,7 +177,8 @@ def test_forged_numbers_of_a_screen_are_named(
     assert "recomputation with --seed 7" in err
     for name in (
         f"{TRIAL}/6_checks.json: ", f"{TRIAL}/5_cycle.csv: normal_force_N at ",
-        f"{TRIAL}/3_contour.csv: contour_x_mm at ", "run.json: headline.lift_max_mm = 1, not ",
+        f"{TRIAL}/3_contour.csv: contour_x_mm at ",
+        "run.json: headline.lift_max_mm = 1, recomputed ",
     ):  # fmt: skip
         assert f"camwright: {run}/{name}" in err
 
@@ -249,9 +253,9 @@ FORGED: tuple[tuple[Callable[[Path], None], str], ...] = (
     (column_scaled(f"{TRIAL}/2_lift.csv", "lift_mm", 0.999), r"2_lift\.csv: lift_mm at "),
     (array_scaled(f"{TRIAL}/5_pressure.npz", "pressure_MPa"), r"5_pressure\.npz: pressure_MPa"),
     (entry_changed(f"{TRIAL}/trial.json", "certificate", 0, "gci_percent", value=0.0),
-     r"trial\.json: certificate\[0\]\.gci_percent = 0, not "),
+     r"trial\.json: certificate\[0\]\.gci_percent = 0, recomputed "),
     (entry_changed("run.json", "headline", "p0_max_MPa", value=1.0),
-     r"run\.json: headline\.p0_max_MPa = 1, not "),
+     r"run\.json: headline\.p0_max_MPa = 1, recomputed "),
     (byte_changed(f"{TRIAL}/4_mesh.msh"), r"4_mesh\.msh: is not the file"),
     (byte_changed("workshop/cam.step"), r"workshop/cam\.step: is not the file"),
     (byte_changed("workshop/contour.dxf"), r"workshop/contour\.dxf: is not the file"),
@@ -260,6 +264,16 @@ FORGED: tuple[tuple[Callable[[Path], None], str], ...] = (
     (page_edited, r"8_report\.html: is not the file"),
     (deleted, r"5_guides\.npz: is missing"),
 )  # fmt: skip
+
+
+@pytest.mark.slow
+def test_checking_a_run_takes_little_time(certified: Path) -> None:
+    """At most 1.5 s of processor time, start of the program and imports included."""
+    before = resource.getrusage(resource.RUSAGE_CHILDREN)
+    result = subprocess.run([sys.executable, "-m", "camwright", "check", certified], check=False)
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    assert result.returncode in (0, 1, 3)
+    assert after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime <= 1.5
 
 
 @pytest.mark.slow
