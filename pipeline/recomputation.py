@@ -162,8 +162,8 @@ def recompute(
         progress=progress,
     )
     trial = replace(
-        trial, number=record["number"], why=record["why"], smoothing=_smoothing(run.final),
-        synthesis=record["synthesis"],
+        trial, number=run.summary["final_trial"], why=record["why"],
+        smoothing=_smoothing(run.final), synthesis=record["synthesis"],
     )  # fmt: skip
     drawn = _drawn_angles(run, trial, angles, seed, jobs, progress)
     differences = [
@@ -192,18 +192,25 @@ def _recorded_gain(final: TrialRecord) -> float | None:
     """Gain that another step of the synthesis foresees, as recorded; None without a synthesis."""
     name = synthesis_converged.id
     stated = [check["demand"] for check in final.checks if check["id"] == name]
-    return None if not stated or stated[0] is None else float(stated[0])
+    return _number(final, f"demand of {name}", stated[0]) if stated else None
 
 
 def _smoothing(final: TrialRecord) -> SmoothingRecord:
     record = final.record
-    width = record["smoothing_width_deg"]
+    width = _number(final, "smoothing_width_deg", record["smoothing_width_deg"])
     return SmoothingRecord(
         record["smoothing_kind"],
         record["smoothing_description"],
-        record["smoothing_strength"],
+        _number(final, "smoothing_strength", record["smoothing_strength"]),
         None if width is None else float(np.radians(width)),
     )
+
+
+def _number(final: TrialRecord, name: str, value: object) -> float | None:
+    """A number of a record, or none; ResultError for anything else."""
+    if value is None or (isinstance(value, int | float) and not isinstance(value, bool)):
+        return None if value is None else float(value)
+    raise ResultError(f"{final.path}: {name} must be a number")
 
 
 def _lift_differences(
@@ -226,8 +233,8 @@ def _lift_differences(
     if case.engine is None:
         expected = given_lift(case)
     else:
-        strength = record["smoothing_strength"]
         smoother = Smoother.from_case(case.smoothing)
+        strength = _number(run.final, "smoothing_strength", record["smoothing_strength"])
         if strength is not None:
             smoother = smoother.stretched(strength)
         expected = cam_lift(case, torques, smoother)

@@ -386,8 +386,11 @@ def drawn_cam(run: Path) -> tuple[Case, Contour]:
     case, final = read_case(run / "case.toml"), run_reader.read_run(run).final
     design = final.record["synthesis"]
     if design is not None and case.smoothing.free:
-        rate, radius = design["spring_rate_N_per_mm"], design["prime_radius_mm"]
-        case = redrawn(case, DesignVariables(1e3 * rate, design["preload_N"], 1e-3 * radius))
+        try:
+            rate, radius = design["spring_rate_N_per_mm"], design["prime_radius_mm"]
+            case = redrawn(case, DesignVariables(1e3 * rate, design["preload_N"], 1e-3 * radius))
+        except (KeyError, TypeError) as error:
+            raise ResultError(f"{final.path / 'trial.json'}: synthesis: {error}") from None
     return case, case.contour(_drawn_lift(final))
 
 
@@ -399,7 +402,7 @@ def _drawn_lift(trial: run_reader.TrialRecord) -> Lift:
         values, *others = (columns[column.header] for column in SPLINE)
         closure, step = record["closure_mm"], record["table_step_deg"]
         lift = Lift(uniform_turn(len(values)), values, 1e-3 * closure, float(np.radians(step)))
-    except (InputError, KeyError) as error:
+    except (InputError, KeyError, TypeError) as error:
         raise ResultError(f"{file}: {error}") from None
     for stated, exact in zip(others, lift.spline.coefficients[1:], strict=True):
         if np.abs(stated - exact).max() > _SPLINE_ROUNDING * np.abs(exact).max():

@@ -140,7 +140,8 @@ class Difference(NamedTuple):
     words: str
 
     def __str__(self) -> str:
-        return f"{self.name}: {self.words}"
+        name = self.name if self.name.isprintable() else ascii(self.name)
+        return f"{name}: {self.words}"
 
 
 def changes(path: Path) -> list[Difference]:

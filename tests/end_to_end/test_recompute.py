@@ -198,6 +198,27 @@ def test_options_out_of_bounds_are_refused(
         recomputed(quick, **options)
 
 
+@pytest.mark.parametrize(
+    ("key", "value", "message"),
+    [
+        ("number", "../../../escaped", "trial.json: number = ../../../escaped, recomputed 1"),
+        ("smoothing_strength", "x", "smoothing_strength must be a number"),
+        ("closure_mm", None, "2_spline.csv|trial.json"),
+        ("synthesis", 3, "trial.json|synthesis"),
+    ],
+)
+def test_a_hostile_record_is_named(
+    quick: Path, tmp_path: Path, command: Command, key: str, value: object, message: str
+) -> None:
+    run = Path(shutil.copytree(quick, tmp_path / "run"))
+    entry_changed(f"{TRIAL}/trial.json", key, value=value)(run)
+    signed_anew(run)
+    code, _, err = command("check", run, "--recompute", "--angles", "0")
+    assert code == 4
+    assert re.search(message, err), err
+    assert not list(tmp_path.rglob("escaped*"))
+
+
 def test_options_without_recomputation_are_refused(quick: Path, command: Command) -> None:
     for arguments in (("--seed", "1"), ("--angles", "2")):
         code, _, err = command("check", quick, *arguments)

@@ -115,6 +115,11 @@ def test_presentation_is_recorded_when_it_is_drawn_again(run: Path) -> None:
     assert said(run) == []
 
 
+def test_a_hostile_name_is_written_out(run: Path) -> None:
+    (run / "\x1b[2J").write_text("")
+    assert said(run) == ["'\\x1b[2J': was added since the sign-off"]
+
+
 def test_a_folder_that_is_no_run_is_not_recorded(tmp_path: Path) -> None:
     with signoff.amended(tmp_path):
         (tmp_path / "a").write_text("")
