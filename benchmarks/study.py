@@ -2,13 +2,13 @@
 
 Screening of 10,000 designs all in (cluster, Parquet, dataset) as a ratio to the arrays alone;
 memory against 1,000 designs; previews by two processes against one. Each is a ratio of two figures
-of this run; the wall time is that of a machine with nothing else to do, whose load is printed.
+of this run; wall times are those of a machine with nothing else to do, and what other processes
+took of it is printed beside them.
 """
 
 from __future__ import annotations
 
 import contextlib
-import os
 import resource
 import subprocess
 import sys
@@ -49,13 +49,14 @@ def main() -> None:
         alone = arrays(DESIGNS)
         few = studied(folder, "screening", DESIGNS // 10, jobs=2)
         many = studied(folder, "screening", DESIGNS, jobs=2)
-        print(f"{'others waiting':>24} {max(os.getloadavg()[0] - 2, 0):8.1f} processes")
         told(f"{DESIGNS} designs, wall", many.wall, "s", SECONDS)
         told("computing over arrays", many.cpu / alone, "", ALL_IN)
         told("memory over a tenth", many.memory / few.memory, "", MEMORY)
         one, two = (studied(folder, "preview", 120, jobs=jobs) for jobs in (1, 2))
         share = one.wall / (2.0 * two.wall)
         print(f"{'efficiency of two':>24} {share:8.2f}      at least {EFFICIENCY:g}")
+        others = [f"{each.others:.1f}" for each in (few, many, one, two)]
+        print(f"{'CPU of others':>24} {', '.join(others)} s; walls hold below 1 s")
 
 
 def arrays(count: int) -> float:
@@ -72,10 +73,10 @@ def arrays(count: int) -> float:
 
 
 class Cost:
-    """Wall and CPU time, s, and sum of the greatest memory of each process, bytes."""
+    """Wall and CPU time, s; greatest memory of each process, summed, bytes; CPU of others, s."""
 
-    def __init__(self, wall: float, cpu: float, memory: float) -> None:
-        self.wall, self.cpu, self.memory = wall, cpu, memory
+    def __init__(self, wall: float, cpu: float, memory: float, others: float) -> None:
+        self.wall, self.cpu, self.memory, self.others = wall, cpu, memory, others
 
 
 def studied(folder: Path, depth: str, count: int, jobs: int) -> Cost:
@@ -84,8 +85,8 @@ def studied(folder: Path, depth: str, count: int, jobs: int) -> Cost:
     (folder / f"{name}.toml").write_text(STUDY.format(depth=depth, count=count))
     arguments = ["study", f"{name}.toml", "--out", name, "--jobs", str(jobs)]
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
-    start = time.perf_counter()
-    peaks: dict[int, int] = {}
+    start, busy = time.perf_counter(), cpu_of_all()
+    peaks: dict[int, float] = {}
     with subprocess.Popen(
         [sys.executable, "-m", "camwright", *arguments],
         cwd=folder, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
@@ -93,19 +94,26 @@ def studied(folder: Path, depth: str, count: int, jobs: int) -> Cost:
         watched = psutil.Process(process.pid)
         while process.poll() is None:
             note_memory(watched, peaks)
-            time.sleep(0.02)
+            time.sleep(0.5)  # a look takes milliseconds of a core that the study needs
     wall = time.perf_counter() - start
     after = resource.getrusage(resource.RUSAGE_CHILDREN)
     assert process.returncode == 0
     cpu = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
-    return Cost(wall, cpu, sum(peaks.values()))
+    return Cost(wall, cpu, sum(peaks.values()), cpu_of_all() - busy - cpu)
 
 
-def note_memory(process: psutil.Process, peaks: dict[int, int]) -> None:
+def cpu_of_all() -> float:
+    """CPU time of all processes of the machine since its start, s."""
+    times = psutil.cpu_times()
+    return float(sum(times) - times.idle - getattr(times, "iowait", 0.0))
+
+
+def note_memory(process: psutil.Process, peaks: dict[int, float]) -> None:
     """Greatest memory so far of a process and those below it, bytes by number."""
-    with contextlib.suppress(psutil.Error):
+    with contextlib.suppress(psutil.Error, OSError):
         for each in (process, *process.children(recursive=True)):
-            peaks[each.pid] = max(peaks.get(each.pid, 0), each.memory_info().rss)
+            status = Path(f"/proc/{each.pid}/status").read_text().split("VmHWM:")
+            peaks[each.pid] = 1024.0 * float(status[1].split()[0]) if len(status) == 2 else 0.0
 
 
 def told(name: str, value: float, unit: str, budget: float) -> None:

@@ -11,8 +11,8 @@ import sys
 import threading
 import time
 from collections.abc import Iterable, Iterator
-from contextlib import nullcontext
 from pathlib import Path
+from typing import Self
 
 import numpy as np
 import psutil
@@ -91,7 +91,7 @@ def processes_of(parent: psutil.Process) -> list[psutil.Process]:
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A study of five shards, solved in one process into ``one``."""
+    """A study of eleven shards, solved in one process into ``one``."""
     folder = tmp_path_factory.mktemp("study")
     written(folder, 21)
     made = run(folder, "study.toml", "--out", "one", "--jobs", "1")
@@ -106,8 +106,8 @@ def test_the_dataset_has_a_row_for_each_design(folder: Path) -> None:
     assert data.units["factor.spring.preload"] == "N"
     assert data["factor.spring.preload"].min() >= 40.0
     assert data["message"].tolist() == [""] * 21
-    assert len(list((folder / "one" / "shards").iterdir())) == 5
-    assert len(list((folder / "one" / "timings").iterdir())) == 5
+    assert len(list((folder / "one" / "shards").iterdir())) == 11
+    assert len(list((folder / "one" / "timings").iterdir())) == 11
 
 
 def test_killed_damaged_and_resumed_it_is_the_same(folder: Path) -> None:
@@ -325,6 +325,15 @@ class EveryThirdRefused:
     def __init__(self, *_: object) -> None:
         self.solved = 0
 
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None: ...
+
+    def begin(self) -> None: ...
+
+    def release(self) -> None: ...
+
     def shards(self, tasks: Iterable[Task]) -> Iterator[tuple[Task, tuple[bytes, bytes]]]:
         for task in tasks:
             count = len(task.ids)
@@ -341,7 +350,6 @@ def test_the_stop_rule_counts_as_the_answers(
     """Interval of the yield of the rows written: at most that of the rule, wider a shard before."""
     path = written(tmp_path, 500)
     path.write_text(path.read_text() + "[stop]\ninterval = 0.25\n")
-    monkeypatch.setattr(study_run, "cluster", lambda *_: nullcontext())
     monkeypatch.setattr(study_run, "TaskScheduler", EveryThirdRefused)
     record = study_run.run_study(read_study(path), path.read_text(), tmp_path, tmp_path / "out")
     data = read_dataset(tmp_path / "out")
@@ -370,12 +378,14 @@ def test_an_address_without_scheduler_is_refused(
 ) -> None:
     from camwright.pipeline.studies.batch import task_scheduler
 
+    path = written(tmp_path, 2)
     monkeypatch.setattr(task_scheduler, "_CONNECT_S", 1)
-    with (
-        pytest.raises(InputError, match=r"--scheduler = tcp://127\.0\.0\.1:1 "),
-        task_scheduler.cluster(1, "tcp://127.0.0.1:1"),
-    ):
-        pass
+    address = "tcp://127.0.0.1:1"
+    with pytest.raises(InputError, match=r"--scheduler = tcp://127\.0\.0\.1:1 "):
+        study_run.run_study(
+            read_study(path), path.read_text(), tmp_path, tmp_path / "out", scheduler=address
+        )
+    assert not (tmp_path / "out").exists()
 
 
 @pytest.mark.slow

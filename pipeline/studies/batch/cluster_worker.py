@@ -29,6 +29,7 @@ class StudyPlugin(WorkerPlugin):
     def setup(self, worker: Any) -> None:  # noqa: ARG002 - signature of Dask
         """Start of the worker."""
         self.process = SolverProcess(self.templates, self.settings)
+        self.process.begin()
 
     def teardown(self, worker: Any) -> None:  # noqa: ARG002
         """End of the worker."""

@@ -20,7 +20,10 @@ from camwright.pipeline.studies.batch.sampling import Designs
 SHARD_OF: Mapping[Tier, int] = {
     Tier.SCREENING: 500, Tier.PREVIEW: 5, Tier.CYCLE: 5, Tier.CERTIFIED: 1,
 }  # fmt: skip
-"""Designs of a shard: a second or more of work, so that the scheduler's milliseconds are few."""
+"""Most designs of a shard: a second or so of work, so that the milliseconds of the scheduler and of
+the main process are few."""
+_TAIL, _LEAST = 6, 5
+"""A shard holds at most a sixth of the designs left, and at least a fifth of a full shard."""
 _ID = 24  # hex digits: 96 bits
 CASE = "case"
 """Factor that names the case, in a study of several."""
@@ -148,9 +151,13 @@ class Plan:
         blocks: dict[int, list[int]] = {}
         for unique in places:
             blocks.setdefault(int(self._first[unique]) // count, []).append(unique)
+        left = len(places)
         for block, members in blocks.items():
-            for start in range(0, len(members), SHARD_OF[tier]):
-                yield self._task(tier, block, members[start : start + SHARD_OF[tier]])
+            start = 0
+            while start < len(members):
+                part = members[start : start + shard_size(left, SHARD_OF[tier])]
+                yield self._task(tier, block, part)
+                start, left = start + len(part), left - len(part)
 
     def _task(self, tier: Tier, block: int, members: Sequence[int]) -> Task:
         case, units = self.cases[block], self.units
@@ -167,6 +174,23 @@ class Plan:
         text = "\0".join((self.settings.sha256, tier.word, *units, *ids))
         name = hashlib.sha256(text.encode()).hexdigest()[:32]
         return Task(name, case, tier, ids, values, shown, units)
+
+
+def shard_size(left: int, most: int) -> int:
+    """Designs of the next shard: fewer towards the end, so that all processes end together.
+
+    It does not depend on the number of processes, nor do the bytes of a study.
+
+    Parameters
+    ----------
+    left : int   designs of the stage in no shard yet
+    most : int   of a full shard
+
+    References
+    ----------
+    Polychronopoulos and Kuck, Guided self-scheduling, IEEE Trans. Comput. C-36 (1987) 1425.
+    """
+    return min(most, max(-(-left // _TAIL), -(-most // _LEAST)))
 
 
 def study_versions() -> dict[str, str]:

@@ -31,6 +31,8 @@ DEATHS_MAX = 3
 """Deaths of the process after which a design is a row."""
 _LOOK_EVERY_S = 0.05
 _START_S = 120.0
+_TRIMMED = "MALLOC_TRIM_THRESHOLD_"
+"""Set by Dask in its workers; memory returned at each release costs a sixth in page faults."""
 _PAGE = os.sysconf("SC_PAGE_SIZE") if hasattr(os, "sysconf") else 4096
 
 
@@ -60,7 +62,28 @@ class SolverProcess:
     settings: Settings
     _process: subprocess.Popen[bytes] | None = None
     _pipe: Connection | None = None
+    _ready: bool = False
     _lock: threading.Lock = field(default_factory=threading.Lock)
+
+    def begin(self) -> tuple[Connection, subprocess.Popen[bytes]]:
+        """Start the process, unless it runs; it imports while others work."""
+        if self._process is not None and self._pipe is not None and self._process.poll() is None:
+            return self._pipe, self._process
+        self.close()
+        ours, theirs = Pipe()
+        environment = os.environ | dict.fromkeys(THREADS, "1")
+        environment.pop(_TRIMMED, None)
+        with theirs:
+            process = subprocess.Popen(  # noqa: S603 - this interpreter, this module
+                [sys.executable, "-m", __name__, str(theirs.fileno())],
+                pass_fds=[theirs.fileno()],
+                stdin=subprocess.DEVNULL,
+                stdout=subprocess.DEVNULL,
+                stderr=subprocess.DEVNULL,
+                env=environment,
+            )
+        self._pipe, self._process = ours, process
+        return ours, process
 
     def rows(self, task: Task) -> tuple[dict[str, Any], list[float]]:
         """Columns of a task, and the wall time of each design, s."""
@@ -96,6 +119,7 @@ class SolverProcess:
             self._process.kill()
             self._process.wait()
         self._process = self._pipe = None
+        self._ready = False
 
     def _row(self, task: Task, row: int) -> Row:
         for _ in range(DEATHS_MAX):
@@ -130,30 +154,20 @@ class SolverProcess:
             raise
 
     def _started(self) -> tuple[Connection, subprocess.Popen[bytes]]:
-        if self._process is not None and self._pipe is not None and self._process.poll() is None:
-            return self._pipe, self._process
-        self.close()
-        ours, theirs = Pipe()
-        environment = os.environ | dict.fromkeys(THREADS, "1")
-        with theirs:
-            self._process = subprocess.Popen(  # noqa: S603 - this interpreter, this module
-                [sys.executable, "-m", __name__, str(theirs.fileno())],
-                pass_fds=[theirs.fileno()],
-                stdin=subprocess.DEVNULL,
-                stdout=subprocess.DEVNULL,
-                stderr=subprocess.DEVNULL,
-                env=environment,
-            )
-        self._pipe = ours
+        """The process, with templates and settings, and its pipe."""
+        pipe, process = self.begin()
+        if self._ready:
+            return pipe, process
         try:
-            ours.send((self.templates, self.settings))
-            if not ours.poll(_START_S):
+            pipe.send((self.templates, self.settings))
+            if not pipe.poll(_START_S):
                 raise EOFError
-            self._require(ours.recv())
+            self._require(pipe.recv())
         except (EOFError, OSError):
             self.close()
             raise _DiedError from None
-        return ours, self._process
+        self._ready = True
+        return pipe, process
 
     def _require(self, here: Mapping[str, str]) -> None:
         """Refuse a worker of other versions, whose rows would differ."""

@@ -73,7 +73,8 @@ class StudyFolder:
         self.path, self._resume = out, resume
         self._lock: IO[str] | None = None
 
-    def __enter__(self) -> StudyFolder:
+    def require_free(self) -> None:
+        """Refuse a folder that holds anything but a study, or one without `resume`; ResultError."""
         if self.path.is_symlink() or (self.path.exists() and not self.path.is_dir()):
             raise ResultError(f"{self.path}: in the way, and not a folder")
         present = [each.name for each in self.path.iterdir()] if self.path.is_dir() else []
@@ -87,6 +88,9 @@ class StudyFolder:
             raise ResultError(f"{self.path}: holds {inside[0]} and no {SHARDS}: not a study")
         if inside and not self._resume:
             raise ResultError(f"{self.path}: holds a study; --resume completes it")
+
+    def __enter__(self) -> StudyFolder:
+        self.require_free()
         try:
             self.path.mkdir(parents=True, exist_ok=True)
             busy = f"{self.path}: another study is writing to it"

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import time
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from contextlib import ExitStack
 from dataclasses import dataclass, field
 from itertools import chain
 from pathlib import Path
@@ -33,12 +32,12 @@ from camwright.pipeline.studies.batch.dataset import (
     table_from,
 )
 from camwright.pipeline.studies.batch.design_plan import Plan, Settings, Task, study_versions
-from camwright.pipeline.studies.batch.factor_axes import axis_of
+from camwright.pipeline.studies.batch.factor_axes import Axis, axis_of
 from camwright.pipeline.studies.batch.row_selection import Figures, states_in
 from camwright.pipeline.studies.batch.sampling import Designs, designs_of
 from camwright.pipeline.studies.batch.study_file import Stop, Study
 from camwright.pipeline.studies.batch.study_folder import Shard, StudyFolder
-from camwright.pipeline.studies.batch.task_scheduler import TaskScheduler, cluster
+from camwright.pipeline.studies.batch.task_scheduler import TaskScheduler
 from camwright.reports.report_tables import HEADLINES
 
 if TYPE_CHECKING:
@@ -80,12 +79,16 @@ def run_study(
     """
     progress.stage("designs")
     templates = read_templates(folder, study.cases)
-    plan = planned(study, templates)
-    with StudyFolder(out, resume=resume) as home:
-        home.write_inputs(text, templates)
-        with ExitStack() as stack:
-            run = _Run(study, plan, templates, home, jobs, scheduler, stack, progress)
-            return run.finish()
+    axes, settings = _axes(study, templates), _settings(study, templates)
+    home = StudyFolder(out, resume=resume)
+    home.require_free()
+    with TaskScheduler(jobs, scheduler, templates, settings) as workers:
+        if not resume:  # else all shards may be there
+            workers.begin()
+        plan = _plan(study, templates, axes, settings)
+        with home:
+            home.write_inputs(text, templates)
+            return _Run(study, plan, home, workers, progress).finish()
 
 
 def planned(study: Study, templates: Sequence[Template]) -> Plan:
@@ -97,15 +100,25 @@ def planned(study: Study, templates: Sequence[Template]) -> Plan:
         If a factor does not fit the first case, the sampling does not fit the factors, an
         objective is no column of numbers, or the follower of a screened case has no roller.
     """
-    designs: Designs | None = None
+    return _plan(study, templates, _axes(study, templates), _settings(study, templates))
+
+
+def _axes(study: Study, templates: Sequence[Template]) -> list[Axis]:
+    """Axes of the factors; InputError as `planned` where no sample is needed to see it."""
+    axes: list[Axis] = []
     if study.sampling is not None:
         cases = UnpackedTemplates(templates)
         base = cases[templates[0].name]
         axes = [axis_of(factor, base) for factor in study.factors]
         _require_screened(study, cases)
-        designs = designs_of(axes, study.sampling, study.correlations)
+    for each in study.objectives:
+        _require_numbers(each.column, {axis.key: axis.unit for axis in axes})
+    return axes
+
+
+def _settings(study: Study, templates: Sequence[Template]) -> Settings:
     wanted = [each.column for each in study.objectives]
-    settings = Settings(
+    return Settings(
         templates={each.name: each.sha256 for each in templates},
         versions=study_versions(),
         cam=study.cam,
@@ -115,10 +128,15 @@ def planned(study: Study, templates: Sequence[Template]) -> Plan:
         seconds=study.limits.time,
         bytes=study.limits.bytes,
     )
-    plan = Plan.of([each.name for each in templates], designs, settings)
-    for name in wanted:
-        _require_numbers(name, plan.units)
-    return plan
+
+
+def _plan(
+    study: Study, templates: Sequence[Template], axes: Sequence[Axis], settings: Settings
+) -> Plan:
+    designs: Designs | None = None
+    if study.sampling is not None:
+        designs = designs_of(axes, study.sampling, study.correlations)
+    return Plan.of([each.name for each in templates], designs, settings)
 
 
 def _require_screened(study: Study, cases: UnpackedTemplates) -> None:
@@ -147,20 +165,16 @@ def _require_numbers(name: str, units: Mapping[str, str | None]) -> None:
 
 @dataclass(eq=False)
 class _Run:
-    """A study while it is solved; the cluster starts with the first task that is not solved."""
+    """A study while it is solved."""
 
     study: Study
     plan: Plan
-    templates: Sequence[Template]
     home: StudyFolder
-    jobs: int
-    address: str | None
-    stack: ExitStack
+    scheduler: TaskScheduler
     progress: Progress
     stopped: str | None = None
     solved: int = 0
     figures: Figures = field(init=False)
-    _scheduler: TaskScheduler | None = None
 
     def __post_init__(self) -> None:
         self.figures = Figures(self.study.objectives)
@@ -179,10 +193,12 @@ class _Run:
             )
             tasks = self._tasks_of(self._second, chosen)
             deeper = self._stage(self._second, tasks, len(chosen), stop=False)
+        kept = sorted(self.figures.kept(*study.kept))
+        if not kept:
+            self.scheduler.release()
         self.progress.stage("dataset")
         self.solved = sum(len(shard.ids) for shard in first)
         home.write_dataset(plan.place[: plan.whole(self.solved)], first, deeper, plan.ids)
-        kept = sorted(self.figures.kept(*study.kept))
         home.forget_others([*first, *deeper], kept)
         self._keep(kept, {name for shard in deeper for name in shard.ids})
         record = self._record(kept)
@@ -213,7 +229,7 @@ class _Run:
         pending = missing()
         start = next(pending, None)
         if start is not None:
-            for task, (rows, clock) in self._cluster().shards(chain([start], pending)):
+            for task, (rows, clock) in self.scheduler.shards(chain([start], pending)):
                 self.home.write_shard(task.name, rows, clock)
                 watch.take(Shard(task.name, task.ids), table_from(rows))
                 if watch.stopped:
@@ -223,12 +239,6 @@ class _Run:
             self.stopped = watch.stopped
             self.figures.keep({name for shard in shards for name in shard.ids})
         return shards
-
-    def _cluster(self) -> TaskScheduler:
-        if self._scheduler is None:
-            client = self.stack.enter_context(cluster(self.jobs, self.address))
-            self._scheduler = TaskScheduler(client, self.templates, self.plan.settings)
-        return self._scheduler
 
     def _keep(self, kept: Sequence[str], deeper: set[str]) -> None:
         """Write the run folders of the designs kept, at the depth of their rows."""
@@ -247,7 +257,7 @@ class _Run:
         if not missing:
             return
         self.progress.stage(f"runs: {len(missing)} designs")
-        for k, (task, files) in enumerate(self._cluster().runs(missing), start=1):
+        for k, (task, files) in enumerate(self.scheduler.runs(missing), start=1):
             self.home.write_run(task.ids[0], files)
             self.progress.advance(k, len(missing))
 

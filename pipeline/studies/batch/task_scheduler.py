@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import functools
 import logging
 import re
 import tempfile
@@ -25,7 +26,7 @@ from camwright.pipeline.studies.batch.design_rows import columns_of, completed, 
 from camwright.pipeline.studies.batch.solver_process import DEATHS_MAX
 
 if TYPE_CHECKING:
-    from distributed import Client
+    from distributed import Client, LocalCluster
 
     from camwright.pipeline.studies.batch.cluster_worker import Shard
 
@@ -45,74 +46,116 @@ def require_address(address: str) -> None:
         raise InputError("--scheduler", repr(address)[:80], "tcp://HOST:PORT or tls://HOST:PORT")
 
 
-@contextlib.contextmanager
-def cluster(jobs: int, address: str | None) -> Iterator[Client]:
-    """Client of a cluster: of `jobs` local processes, or of that at an address.
+def _options() -> dict[str, object]:
+    """Configuration of Dask."""
+    return {
+        "distributed.scheduler.allowed-failures": DEATHS_MAX - 1,
+        "distributed.scheduler.worker-saturation": 1.0,  # at the end no task waits at a busy worker
+        "distributed.comm.timeouts.connect": f"{_CONNECT_S}s",
+        "distributed.worker.memory.spill": False,
+        # What Dask watches by default every 10 to 100 ms takes 3 % of each core.
+        "distributed.worker.profile.enabled": False,
+        "distributed.worker.memory.monitor-interval": "1s",
+        "distributed.admin.system-monitor.interval": "5s",
+        "distributed.admin.tick.interval": "200ms",
+        "distributed.admin.log-format": "%(message)s",
+    }
+
+
+def _client_at(address: str) -> Client:
+    """Client of a running cluster; InputError if no scheduler answers."""
+    from distributed import Client
+
+    try:
+        return Client(address, timeout=_CONNECT_S)
+    except (OSError, ValueError, TypeError) as error:  # TypeError: tls without certificates
+        words = " ".join(str(error).split())[:200]
+        raise InputError("--scheduler", f"{address} ({words})", "a running scheduler") from None
+
+
+class TaskScheduler:
+    """Runs the tasks of a study on a cluster, begun with the first; a context manager.
+
+    Parameters
+    ----------
+    jobs : int             local processes
+    address : str          of a running cluster; None: local processes
+    templates : sequence   sent once to each worker
+    settings : Settings
 
     Raises
     ------
     ResultError
-        If Dask is not installed.
+        On `begin`, if Dask is not installed.
     InputError
-        If no scheduler answers at the address.
+        On `begin`, if no scheduler answers at the address.
     """
-    try:
-        import dask
-        import distributed
-        import pyarrow as pa  # noqa: F401 - needed by the workers and for the dataset
-    except ImportError:
-        raise ResultError(MISSING) from None
-    options = {
-        "distributed.scheduler.allowed-failures": DEATHS_MAX - 1,
-        "distributed.comm.timeouts.connect": f"{_CONNECT_S}s",
-        "distributed.worker.memory.spill": False,
-        "distributed.worker.profile.enabled": False,  # a sample every 10 ms in each process
-        "distributed.admin.log-format": "%(message)s",
-    }
-    with contextlib.ExitStack() as stack:
-        stack.enter_context(dask.config.set(options))
-        stack.callback(logging.disable, logging.root.manager.disable)
-        logging.disable(logging.CRITICAL)  # Dask logs what is one line here
-        if address is None:
-            scratch = stack.enter_context(tempfile.TemporaryDirectory(prefix="camwright-dask-"))
-            local = distributed.LocalCluster(
-                n_workers=jobs,
-                threads_per_worker=1,
-                processes=True,
-                host="127.0.0.1",
-                dashboard_address=None,
-                memory_limit=_WORKER_MEMORY,
-                local_directory=scratch,
-                silence_logs=logging.CRITICAL,
-                env=dict.fromkeys(THREADS, "1"),
-            )
-            stack.enter_context(local)
-            yield stack.enter_context(distributed.Client(local))
+
+    def __init__(
+        self, jobs: int, address: str | None, templates: Sequence[Template], settings: Settings
+    ) -> None:
+        self._jobs, self._address = jobs, address
+        self._templates, self._settings = templates, settings
+        self._plugin = f"camwright-{settings.sha256[:16]}"
+        self._stack = contextlib.ExitStack()
+        self._local: LocalCluster | None = None
+        self._connected: Client | None = None
+
+    def __enter__(self) -> TaskScheduler:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._stack.close()
+
+    def begin(self) -> None:
+        """Reach the cluster, or start the local processes and do not wait for them."""
+        if self._local is not None or self._connected is not None:
             return
         try:
-            client = distributed.Client(address, timeout=_CONNECT_S)
-        except (OSError, ValueError, TypeError) as error:  # TypeError: tls without certificates
-            words = " ".join(str(error).split())[:200]
-            raise InputError("--scheduler", f"{address} ({words})", "a running scheduler") from None
-        yield stack.enter_context(client)
+            import dask
+            import distributed
+            import pyarrow as pa  # noqa: F401 - needed by the workers and for the dataset
+        except ImportError:
+            raise ResultError(MISSING) from None
+        with contextlib.ExitStack() as stack:
+            stack.enter_context(dask.config.set(_options()))
+            stack.callback(logging.disable, logging.root.manager.disable)
+            logging.disable(logging.CRITICAL)  # Dask logs what is one line here
+            if self._address is None:
+                folder = tempfile.TemporaryDirectory(prefix="camwright-dask-")
+                self._local = distributed.LocalCluster(
+                    n_workers=0,
+                    threads_per_worker=1,
+                    processes=True,
+                    host="127.0.0.1",
+                    dashboard_address=None,
+                    memory_limit=_WORKER_MEMORY,
+                    local_directory=stack.enter_context(folder),
+                    silence_logs=logging.CRITICAL,
+                    env=dict.fromkeys(THREADS, "1"),
+                )
+                stack.enter_context(self._local)
+                self._local.scale(self._jobs)
+            else:
+                self._connected = stack.enter_context(_client_at(self._address))
+            self._stack = stack.pop_all()
 
+    def release(self) -> None:
+        """End the local processes while the caller goes on; no task follows."""
+        if self._local is not None:
+            self._local.scale(0)
 
-class TaskScheduler:
-    """Runs the tasks of a study on a cluster.
+    @functools.cached_property
+    def _client(self) -> Client:
+        """Client whose workers know the templates; waits for the local processes."""
+        from distributed import Client
 
-    Parameters
-    ----------
-    client : Client        of the cluster
-    templates : sequence   sent once to each worker
-    settings : Settings
-    """
-
-    def __init__(self, client: Client, templates: Sequence[Template], settings: Settings) -> None:
         from camwright.pipeline.studies.batch.cluster_worker import StudyPlugin
 
-        self._client, self._settings = client, settings
-        self._plugin = f"camwright-{settings.sha256[:16]}"
-        client.register_plugin(StudyPlugin(self._plugin, templates, settings))
+        self.begin()
+        client = self._connected or self._stack.enter_context(Client(self._local))
+        client.register_plugin(StudyPlugin(self._plugin, self._templates, self._settings))
+        return client
 
     def shards(self, tasks: Iterable[Task]) -> Iterator[tuple[Task, Shard]]:
         """Tasks with their shards, as they complete."""
@@ -138,7 +181,7 @@ class TaskScheduler:
 
         waiting = iter(tasks)
         running: dict[Any, Task] = {}
-        finished = as_completed()
+        finished = as_completed(loop=self._client.loop)
 
         def submit() -> bool:
             task = next(waiting, None)
