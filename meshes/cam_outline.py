@@ -139,7 +139,8 @@ def cam_size(
     kappa = np.maximum(np.abs(path.contour.curvature(path.theta)), 1e-12)
     limits = np.maximum(FULL_TURN / EDGES_PER_TURN / kappa, floor)
     # An element longer than its wall is a sliver, wherever along the contour the wall is thin.
-    limits = np.minimum(limits, wall_at(path.points, bore_radius, keyway))
+    across = wall_at(path.points, bore_radius, keyway) / sizing.wall_edges
+    limits = np.minimum(limits, across)
     return size.below(path.points, limits)
 
 

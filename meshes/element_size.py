@@ -31,6 +31,7 @@ class Sizing:
     contact_point : (2,) or None    centre of the zone, m; set by the mesh of a roller or half disc
     growth : float                  increase of size per distance, m/m
     phase : float                   shift of the facet ends in the contact, in facets, 0..1
+    wall_edges : float              minimum number of elements across a wall of the cam
 
     Raises
     ------
@@ -44,9 +45,11 @@ class Sizing:
     contact_point: Array | None = None
     growth: float = 0.15
     phase: float = 0.0
+    wall_edges: float = 1.0
 
     def __post_init__(self) -> None:
         positive("sizing.far_size", self.far_size, "m")
+        positive("sizing.wall_edges", self.wall_edges)
         positive("sizing.growth", self.growth)
         if self.contact_size is not None:
             positive("sizing.contact_size", self.contact_size, "m")

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from camwright.geometry.arrays import Array
-from camwright.geometry.errors import GeometryError, MeshError
+from camwright.geometry.errors import GeometryError, MeshError, in_millimetres
 from camwright.meshes.element_size import MILLIMETRE, SizeField
 from camwright.meshes.outline import Facets, crossing
 
@@ -43,6 +43,8 @@ _OPTIONS = {
     "Mesh.Smoothing": 1,
 }
 
+TRIANGLES_MAX = 60_000
+"""Maximum number of triangles of a body; twice as many need more than 6 GB to be solved."""
 _GRID_BITS = 12  # of the shortest edge of the outline, whose coordinates are rounded for gmsh
 
 
@@ -104,9 +106,10 @@ def triangulate(
     GeometryError
         If the outline crosses itself.
     MeshError
-        If gmsh cannot fill the region.
+        If the sizes make more than `TRIANGLES_MAX`, or gmsh cannot fill the region.
     """
     corners, rings = _ring_nodes(loops)
+    _require_few(corners, rings, size.far_size)
     following = np.hstack([np.roll(ring, -1) for ring in rings])
     crossed = crossing(corners, corners[:, following])
     if crossed is not None:  # gmsh would not terminate
@@ -127,6 +130,20 @@ def triangulate(
         raise MeshError(f"gmsh failed on the outline: {_one_line(error)}") from error
     named = _named_edges(loops, rings)
     return _quadratic(points, triangles, named)
+
+
+def _require_few(corners: Array, rings: Sequence[Index], edge: float) -> None:
+    """Refuse a region of more equilateral triangles of an edge, m, than can be solved."""
+    x, y = corners
+    area = sum(0.5 * float(x[r] @ np.roll(y[r], -1) - y[r] @ np.roll(x[r], -1)) for r in rings)
+    count = area / (0.25 * np.sqrt(3.0) * edge**2)
+    if count > TRIANGLES_MAX:
+        shown, most = in_millimetres(edge, np.sqrt(count / TRIANGLES_MAX) * edge)
+        about = float(f"{count:.2g}")
+        raise MeshError(
+            f"mesh = about {about:.0f} triangles of {shown}, which its thinnest wall or sharpest "
+            f"curve needs, must be <= {TRIANGLES_MAX}, of {most} each"
+        )
 
 
 def _ring_nodes(loops: Sequence[Sequence[Facets]]) -> tuple[Array, list[Index]]:

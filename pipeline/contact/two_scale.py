@@ -61,8 +61,11 @@ def loaded_cam(pair: ContactPair, refinement: float = 1.0) -> LoadedBody:
             f"{shown(float(least.value), 'mm')} at {shown(float(least.theta), 'deg')}{less}"
         )
         raise InputError("cam.bore_radius", shown(pair.bore_radius, "mm"), limit)
-    size = min(outline / _GRID_OF_CYCLE_MESH, wall / EDGES_ACROSS_WALL) / refinement
-    sizing = Sizing(far_size=size)
+    edge = outline / _GRID_OF_CYCLE_MESH
+    sizing = Sizing(far_size=min(edge, wall / EDGES_ACROSS_WALL) / refinement)
+    if wall < edge:  # fine everywhere it would be a million triangles: fine where the wall is thin
+        edges = EDGES_ACROSS_WALL * refinement
+        sizing = Sizing(far_size=edge / refinement, wall_edges=edges)
     cam = cam_mesh(pair.contour, pair.bore_radius, pair.keyway, sizing, pair.counter_hole)
     cut = tuple(name for name in ("keyway", "counter_hole") if name in cam.boundaries)
     return LoadedBody(elastic_body(cam, pair.cam, "bore"), "contour", cut)

@@ -16,13 +16,16 @@ import pytest
 
 from camwright.geometry.arrays import uniform_turn
 from camwright.geometry.contour import RollerContour
-from camwright.geometry.errors import ContactError, InputError
+from camwright.geometry.errors import ContactError, InputError, MeshError
 from camwright.geometry.lift import Lift
 from camwright.geometry.pitch_curve import PitchCurve
+from camwright.meshes.body_mesh import cam_mesh
+from camwright.meshes.element_size import Sizing
 from camwright.pipeline.base.units import rounded
 from camwright.pipeline.case.case_file import case_of, parse_case, with_values
 from camwright.pipeline.case.case_values import replaced, text_of
 from camwright.pipeline.case.consistency import check_numbers
+from camwright.pipeline.contact.cam_body import Keyway
 from camwright.pipeline.contact.contact_pair import ContactPair
 from camwright.pipeline.contact.elasticity.elastic_body import Elastic
 from camwright.pipeline.contact.follower_body import RollerBody
@@ -158,6 +161,26 @@ def test_a_bore_larger_than_the_contour_is_named() -> None:
         loaded_cam(replace(pair(1e-3, 8e-3), bore_radius=43.2e-3))
     text = "cam.bore_radius = 43.2 mm, must be < 42 mm, the least radius of the contour, 42 mm at"
     assert str(error.value).startswith(text)
+
+
+def test_a_thin_wall_is_meshed_finely_where_it_is_thin() -> None:
+    """1.5 mm of wall behind the keyway: uniform elements would be 32,000 triangles.
+
+    The stress by bending of the wall is within 3 % of that on elements of half the size.
+    """
+    keyway = Keyway(width=6e-3, depth=5.5e-3, angle=np.pi)
+    thin = replace(pair(1e-3, 8e-3), bore_radius=35e-3, keyway=keyway)
+    theta = np.radians([100.0, 180.0])
+    at = thin.contour.points(theta), thin.contour.normal(theta)
+    coarse, fine = loaded_cam(thin), loaded_cam(thin, refinement=2.0)
+    assert coarse.body.mesh.triangles.shape[1] < 2000
+    np.testing.assert_allclose(coarse.correction(*at).along, fine.correction(*at).along, rtol=0.03)
+
+
+def test_a_mesh_too_large_to_solve_is_refused() -> None:
+    cam = pair(1e-3, 8e-3)
+    with pytest.raises(MeshError, match=r"^mesh = about 560000 triangles of 0\.15 mm, which"):
+        cam_mesh(cam.contour, cam.bore_radius, None, Sizing(far_size=0.15e-3))
 
 
 def test_an_undercut_is_called_so() -> None:
