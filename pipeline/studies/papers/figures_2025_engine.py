@@ -9,7 +9,12 @@ import numpy as np
 
 from camwright.geometry.arrays import Array
 from camwright.pipeline.cycle.crank_speed import speed_study
-from camwright.pipeline.engine.crankshaft import Inertia, SpeedStatistics, crank_motion
+from camwright.pipeline.engine.crankshaft import (
+    Inertia,
+    SpeedStatistics,
+    crank_motion,
+    torque_of_motion,
+)
 from camwright.pipeline.studies.papers import speed_reconstruction
 from camwright.pipeline.studies.papers.balancing_cam import (
     FOLLOWER_2025,
@@ -65,7 +70,7 @@ NO_DATA = (
 
 
 def figures(targets: Mapping[str, Target]) -> tuple[PaperFigure, ...]:
-    """Figures 1 to 9, 20 to 23 and 26 of the paper."""
+    """Figures 1 to 9, 20 to 23, 26 and 27 of the paper."""
     rebuilt = speed_reconstruction.load()
     states = _states(rebuilt.torque_at(POSITIONS), rebuilt.inertia)
     rig = ten_runs([np.full(POSITIONS, RIG_SPEED)] * RUNS)
@@ -256,7 +261,9 @@ def _states(torque: Array, inertia: float) -> tuple[_State, ...]:
 
     heavier = 1.0 + MOUNTED
     return (
-        state("stock", "6, 7 and 8", "the stock engine", "", (), free(1.0), 1.0, "imposed"),
+        state("stock", "6 to 9", "the stock engine", "", ("C25-03", "C25-11", "C25-12"),
+            free(1.0), 1.0, "imposed",
+       ),
         state(
             "disengaged", "20 and 21", "mechanism mounted, follower disengaged",
             f"The mechanism adds {100 * MOUNTED:.1f} % of inertia, by the ratio of the printed "
@@ -264,10 +271,10 @@ def _states(torque: Array, inertia: float) -> tuple[_State, ...]:
             ("C25-09", "C25-10"), free(heavier), heavier, "fitted",
         ),
         state(
-            "engaged", "22, 23 and 26", "mechanism engaged, preload of 242 N",
+            "engaged", "22, 23, 26 and 27", "mechanism engaged, preload of 242 N",
             "The cam is that of the printed equations, which deliver half of the engine torque: "
             "with a ratio of 2 the cam torque would have to be twice the crank torque.",
-            ("C25-18", "C25-19"), engaged, heavier, "independent",
+            ("C25-18", "C25-19", "C25-14", "C25-15"), engaged, heavier, "independent",
         ),
     )  # fmt: skip
 
@@ -284,19 +291,25 @@ def _runs(targets: Mapping[str, Target], state: _State, rig: TenRuns) -> PaperFi
     low, high = closed(mean - scatter), closed(mean + scatter)
     band = Curve("one standard deviation of the runs", CYCLE, low, 1, "band", high)
     stock = state.name == "stock"
-    values = (
-        _stock_speeds(targets, ripple, state.basis)
-        if stock
-        else [
-            beside(targets, row, value, basis=state.basis)
-            for row, value in zip(state.rows, (ripple.std, ripple.peak_to_peak), strict=True)
-        ]
-    )
+    read = trace.torque(state.inertia)
+    bar = trace.error_bar(state.inertia)
+    put_in = np.mean([torque_of_motion(speed, state.inertia) for speed in state.speeds], axis=0)
+    obtained = {
+        "speed std": ripple.std, "speed amplitude": ripple.peak_to_peak, "torque peak": read.peak,
+        "torque std": read.std, "torque amplitude": read.peak_to_peak,
+    }  # fmt: skip
+    values = _stock_speeds(targets, ripple, state.basis) if stock else []
+    values += [
+        beside(targets, row, obtained[targets[row].quantity], basis=state.basis)
+        for row in state.rows
+    ]
     return PaperFigure(
         f"c25-runs-{state.name}", "C25", state.numbers, f"Ten runs: {state.title}",
         " ".join(filter(None, (
-            "Above: voltage of the first run with its edges. Middle: band-limited speed of all "
-            "runs and their mean. Below: mean and scatter, the cylinder model over them.",
+            "From above: voltage of the first run with its edges; band-limited speed of all runs "
+            "and their mean; mean and scatter, the cylinder model over them; torque of the mean "
+            "speed beside the one that was put in. The 95 % error bar is that of noise and scatter "
+            "of the runs; errors of the wheel repeat and are not in it.",
             state.caption, NO_DATA,
         ))),
         (
@@ -311,6 +324,12 @@ def _runs(targets: Mapping[str, Target], state: _State, rig: TenRuns) -> PaperFi
                 f"{trace.noise_amplification(state.inertia) * floor:.1f} N m; bandwidth "
                 f"{trace.bandwidth:.0f} Hz, {trace.filter.harmonics} harmonics of the cycle",
             ),
+            Panel(CRANK, TORQUE, (
+                Curve("95 % error bar", CYCLE, closed(read.total - bar), 1, "band",
+                      closed(read.total + bar)),
+                on_cycle("of the mean speed", read.total, 1),
+                on_cycle("put in", put_in, 0, "dashed"),
+            )),
         ),
         tuple(values),
     )  # fmt: skip
