@@ -188,10 +188,13 @@ def read_json(path: Path) -> Any:
         raise ResultError(f"{path}: not JSON ({' '.join(str(error).split())})") from None
 
 
-def json_text(value: Json) -> str:
-    """JSON of a record, numpy numbers included; ResultError for NaN and infinity."""
+def json_text(value: Json, indent: int | None = 2) -> str:
+    """JSON of a record, numpy numbers included; ResultError for NaN and infinity.
+
+    `indent` None: on one line, for long lists of numbers.
+    """
     try:
-        return json.dumps(value, indent=2, ensure_ascii=False, allow_nan=False, default=_plain)
+        return json.dumps(value, indent=indent, ensure_ascii=False, allow_nan=False, default=_plain)
     except (TypeError, ValueError) as error:
         raise ResultError(f"a record cannot be written: {error}") from None
 

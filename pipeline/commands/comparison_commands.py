@@ -113,7 +113,7 @@ def papers(
         document = figures(name, progress)
         progress.stage("page")
         text = page(document)
-    write_atomic(out / "papers.json", json_text(document) + "\n")
+    write_atomic(out / "papers.json", json_text(document, indent=None) + "\n")
     write_atomic(out / "papers.html", text)
     names = ", ".join(one["name"] for one in document["figures"])
     stdout.print(f"figures: {names}", markup=False)

@@ -211,9 +211,9 @@ def test_runs_show_band_mean_model_noise_and_bandwidth(by_name):
         band = curve(figure, 2, "one standard deviation of the runs")
         mean = values(figure, 2, "mean of the runs")
         every = np.array([c["y"] for c in cycles["curves"] if c["look"] == "thin"])
-        np.testing.assert_allclose(mean, every.mean(axis=0), atol=1e-4)
+        np.testing.assert_allclose(mean[::2], every.mean(axis=0), atol=1e-4)
         half = 0.5 * (np.array(band["upper"]) - np.array(band["y"]))
-        np.testing.assert_allclose(half, every.std(axis=0, ddof=1), atol=1e-4)
+        np.testing.assert_allclose(half[::2], every.std(axis=0, ddof=1), atol=1e-4)
         assert curve(figure, 2, "cylinder model")
 
 

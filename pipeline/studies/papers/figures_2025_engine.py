@@ -285,7 +285,13 @@ def _runs(targets: Mapping[str, Target], state: _State, rig: TenRuns) -> PaperFi
     mean, scatter, ripple = trace.mean, trace.scatter, trace.statistics
     floor = float(rig.tooth_mean.std())
     thin = [
-        on_cycle(f"{trace.count} cycles of {RUNS} runs" if k == 0 else "", cycle, MUTED, "thin")
+        Curve(
+            f"{trace.count} cycles of {RUNS} runs" if k == 0 else "",
+            CYCLE[::2],
+            closed(cycle)[::2],
+            MUTED,
+            "thin",
+        )
         for k, cycle in enumerate(trace.speeds)
     ]
     low, high = closed(mean - scatter), closed(mean + scatter)
