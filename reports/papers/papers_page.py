@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from camwright.reports.page import environment
 from camwright.reports.papers.paper_chart import Chart
-from camwright.reports.report_tables import DASH, Cell, Record, Table, number
+from camwright.reports.report_tables import DASH, Cell, Record, Table, number, words
 
+UNITS = {unit: unit for unit in ("mm", "deg", "MPa", "N", "J")} | {"Nm": "N m"}
 NO_BREAK = "\N{NON-BREAKING HYPHEN}"
 HEAD = ("quantity", "unit", "published", "computed", "difference", "basis")
 INTRODUCTION = (
@@ -21,10 +23,10 @@ INTRODUCTION = (
 
 @dataclass(frozen=True, eq=False)
 class Entry:
-    """A figure with the table of its values."""
+    """A figure with its values beside the published ones, and a table of further ones."""
 
     chart: Chart
-    table: Table | None
+    tables: tuple[Table, ...]
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,8 +54,26 @@ def page(document: Record) -> str:
 
 def _entry(record: Record) -> Entry:
     rows = [_row(value) for value in record["values"]]
-    table = Table(f"Values of {record['name']}", HEAD, rows, 2, 3, wide=True) if rows else None
-    return Entry(Chart(record), table)
+    tables = [Table(f"Values of {record['name']}", HEAD, rows, 2, 3, wide=True)] if rows else []
+    if record["table"]:
+        tables.append(_columns(f"Table of {record['name']}", record["table"]))
+    return Entry(Chart(record), tuple(tables))
+
+
+def _columns(label: str, rows: Sequence[Record]) -> Table:
+    """Rows of a table as columns, the first value of each as its heading."""
+    first, *names = rows[0]
+    cells: list[list[Cell]] = [
+        [_quantity(name), *(DASH if row[name] is None else _text(row[name]) for row in rows)]
+        for name in names
+    ]
+    return Table(label, [first, *(str(row[first]) for row in rows)], cells, wide=True)
+
+
+def _quantity(name: str) -> str:
+    """Words of a name whose last part is a unit."""
+    quantity, _, unit = name.rpartition("_")
+    return f"{words(quantity)}, {UNITS[unit]}" if unit in UNITS else words(name)
 
 
 def _row(value: Record) -> list[Cell]:

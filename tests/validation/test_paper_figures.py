@@ -63,7 +63,7 @@ def of_cycle(figure, panel, label):
 def test_the_figures_of_the_papers_are_there(by_name):
     assert [name for name in by_name if name.startswith("c25")] == [
         "c25-engine", "c25-voltage", "c25-rig", "c25-runs-stock", "c25-runs-disengaged",
-        "c25-runs-engaged", "c25-smoothing", "c25-cam", "c25-mechanism", "c25-balance",
+        "c25-runs-engaged", "c25-smoothing", "c25-cam", "c25-faces", "c25-mechanism", "c25-balance",
         "c25-preloads-full", "c25-preloads-half", "c25-with-and-without",
     ]  # fmt: skip
     assert [name for name in by_name if not name.startswith("c25")] == [
@@ -290,21 +290,25 @@ def test_speed_follows_from_the_torque_left(by_name, name):
 
 
 def test_outlines_keep_the_roller_and_the_face(by_name):
-    """Roller contour 8 mm from the roller centre; the face's envelope has the support r + s."""
+    """Roller contour 8 mm from the roller centre; the faces' envelopes have the support r + s."""
     for panel in (0, 1):
         shapes = {c["label"]: c for c in by_name["c25-cam"]["panels"][panel]["curves"]}
-        cam, centre, face = (
+        cam, centre = (
             np.array([shapes[name]["x"], shapes[name]["y"]])[:, :-1]
-            for name in ("cam with the roller", "cam without a roller, as printed",
-                         "envelope of a flat face")
-        )  # fmt: skip
+            for name in ("cam with the roller", "cam without a roller, as printed")
+        )
         np.testing.assert_allclose(np.hypot(*(cam - centre)), 8.0, atol=1e-4)
         radius = np.hypot(*centre)
         assert radius.min() == pytest.approx(50.0, abs=0.01)
-        angle = np.arange(radius.size) * (2.0 * np.pi / radius.size)
-        support = face[0] * np.cos(angle) + face[1] * np.sin(angle)
-        np.testing.assert_allclose(support, radius, atol=1e-4)
-    assert "base radius of 93 mm, or 63 mm" in by_name["c25-cam"]["caption"]
+        if panel == 0:
+            lift = radius - 50.0
+    faces = by_name["c25-faces"]
+    for one, row in zip(faces["panels"][0]["curves"][1:], faces["table"][1:], strict=True):
+        points = np.array([one["x"], one["y"]])[:, :-1][:, ::2]
+        angle = np.arange(lift.size) * (2.0 * np.pi / lift.size)
+        support = points[0] * np.cos(angle) + points[1] * np.sin(angle)
+        np.testing.assert_allclose(support, row["base_radius_mm"] + lift, atol=1e-3)
+    assert faces["table"][1]["undercut_factor_min"] < 0.0 < faces["table"][2]["undercut_factor_min"]
 
 
 def test_smoothing_lowers_the_peak_with_the_window(by_name):
@@ -496,10 +500,18 @@ def test_the_page_is_whole_and_follows_the_theme(document):
     assert text == page({**document, "figures": some})
 
 
+def test_a_table_of_followers_has_a_column_each(by_name):
+    faces = by_name["c25-faces"]
+    text = page({"papers": {"C25": {"citation": "A", "doi": None}}, "figures": [faces]})
+    for row in faces["table"]:
+        assert f">{row['follower']}</th>" in text
+    assert "friction loss, J" in text and "undercut factor min<" in text
+
+
 def test_text_of_a_figure_is_escaped_and_told_aloud():
     record = {
         "name": "x-1", "paper": "C24", "numbers": "1 and 2", "title": "a <b> & c", "caption": "<i>",
-        "columns": 1, "values": [],
+        "columns": 1, "values": [], "table": [],
         "panels": [{
             "title": "<t>", "x": "x, m", "y": "y, N", "kind": "lines", "note": "", "rows": [],
             "window": [],

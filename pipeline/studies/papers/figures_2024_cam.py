@@ -13,12 +13,12 @@ from camwright.pipeline.engine.torque import torque_from_cylinder
 from camwright.pipeline.studies.papers.balancing_cam import PRIME_RADIUS, RATIO, designed_pitch
 from camwright.pipeline.studies.papers.cardoso_2024 import FOLLOWER, SPRING, UNSMOOTHED
 from camwright.pipeline.studies.papers.figures_2025_cam import (
-    ROLLER_RADIUS,
     X,
     Y,
     roller_outlines,
 )
 from camwright.pipeline.studies.papers.figures_2025_engine import on_cycle
+from camwright.pipeline.studies.papers.follower_contours import ROLLER_RADIUS
 from camwright.pipeline.studies.papers.paper_engines import (
     EFFECTIVE_INERTIA,
     ENGINE_800,

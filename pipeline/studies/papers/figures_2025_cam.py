@@ -8,14 +8,13 @@ import numpy as np
 
 from camwright.geometry.arrays import Array, uniform_turn
 from camwright.geometry.contour import RollerContour
-from camwright.geometry.flat_face_contour import FacePath, FlatFaceContour
-from camwright.geometry.lift import Lift
 from camwright.geometry.pitch_curve import PitchCurve
+from camwright.pipeline.case.limits import UNDERCUT_FACTOR
 from camwright.pipeline.smoothing.smoothers import smoothed
 from camwright.pipeline.studies.papers import speed_reconstruction
 from camwright.pipeline.studies.papers.balancing_cam import (
     POSITIONS,
-    PRIME_RADIUS,
+    RATIO,
     TWELVE_DEGREES,
     TWELVE_TEETH,
     TWELVE_VALUES,
@@ -24,6 +23,11 @@ from camwright.pipeline.studies.papers.balancing_cam import (
 )
 from camwright.pipeline.studies.papers.cardoso_2025 import MOUNTED, MULTIPLIERS, PRELOADS
 from camwright.pipeline.studies.papers.figures_2025_engine import on_cycle
+from camwright.pipeline.studies.papers.follower_contours import (
+    FACE_FRICTION,
+    ROLLER_RADIUS,
+    follower_contours,
+)
 from camwright.pipeline.studies.papers.paper_figure import (
     CRANK,
     MUTED,
@@ -40,7 +44,6 @@ from camwright.pipeline.studies.papers.paper_figure import (
 from camwright.pipeline.studies.papers.published_figures import Target
 
 X, Y = "x, mm", "y, mm"
-ROLLER_RADIUS = 0.008
 DESIGN = 242.0
 WINDOWS = {
     "120 deg": TWELVE_TEETH,
@@ -69,6 +72,7 @@ def figures(targets: Mapping[str, Target]) -> tuple[PaperFigure, ...]:
     return (
         _smoothing(targets, torque, rebuilt.inertia),
         _outlines(cams),
+        _faces(cams["full", DESIGN]),
         _mechanism(cams["full", DESIGN]),
         _balance(targets, torque, cams["full", DESIGN]),
         *(_preloads(targets, torque, cams, name) for name in MULTIPLIERS),
@@ -107,24 +111,18 @@ def _outlines(cams: Cams) -> PaperFigure:
     panels, values = [], []
     for name, words in CUT_FOR.items():
         pitch = cams[name, DESIGN].pitch
-        panels.append(
-            Panel(X, Y, (*roller_outlines(pitch, ROLLER_RADIUS), face_outline(pitch.lift)),
-                  title=TITLES[name], kind="outline")
-        )  # fmt: skip
+        outlines = roller_outlines(pitch, ROLLER_RADIUS)
+        panels.append(Panel(X, Y, outlines, title=TITLES[name], kind="outline"))
         radius = np.hypot(*pitch.points(uniform_turn(POSITIONS)))
         values.append(
             Beside(f"minimum radius of the pitch curve, cam {words}", 50.0,
                    1e3 * float(radius.min()), "mm", "imposed")
         )  # fmt: skip
-    needed = [1e3 * face_base_radius(cams[name, DESIGN].pitch.lift) for name in CUT_FOR]
     return PaperFigure(
-        "c25-cam", "C25", "12", "Cam with a roller and with a flat follower",
+        "c25-cam", "C25", "12", "Cam with and without a roller",
         "The curve printed as the cam of a flat follower is the path of the roller centre, "
-        "(r cos, r sin) of equations 7 and 8; the cam with the 8 mm roller lies inside it. A flat "
-        "face with the same lift, and so the same torque, touches a third curve, the envelope of "
-        "its positions. With the base radius of 50 mm it has cusps where r + s + s'' < 0: the "
-        f"face needs a base radius of {needed[0]:.0f} mm, or {needed[1]:.0f} mm for half the "
-        "torque.",
+        "(r cos, r sin) of equations 7 and 8; the cam with the 8 mm roller lies inside it. Under a "
+        "flat face neither gives the torque: see the next figure.",
         tuple(panels),
         tuple(values),
         columns=2,
@@ -143,24 +141,32 @@ def roller_outlines(pitch: PitchCurve, roller_radius: float) -> tuple[Curve, ...
     )
 
 
-def face_outline(lift: Lift) -> Curve:
-    """Contour under a flat face with a lift, on the same base radius."""
-    contour = FlatFaceContour(FacePath(lift, PRIME_RADIUS))
-    points = contour.points(uniform_turn(OUTLINE_POINTS))
-    return Curve("envelope of a flat face", *outline(points), 2, "dashed")
-
-
-def face_base_radius(lift: Lift) -> float:
-    """Minimum base radius of a flat face, the maximum of -(s + s''), m."""
-    s, _, s2 = lift.derivatives(uniform_turn(10 * POSITIONS), 2)
-    return float(-(s + s2).min())
+def _faces(cam: Balanced) -> PaperFigure:
+    """Roller and flat faces for the same torque, at the design preload."""
+    contours = follower_contours(cam.pitch.lift, speed_reconstruction.SPEED_MEAN / RATIO)
+    looks: tuple[Look, ...] = ("fill", "dashed", "line")
+    curves = tuple(
+        Curve(contour.follower, *outline(contour.points), k, look)
+        for k, (contour, look) in enumerate(zip(contours, looks, strict=True))
+    )
+    return PaperFigure(
+        "c25-faces", "C25", "12", "Roller and flat faces for the same torque",
+        "Cam cut for the full torque. The torque of the spring, F s', follows from the lift alone "
+        "and is the same under each follower; the contour is not. On the radius of the roller's "
+        "path a flat face has cusps where r + s + s'' < 0, and cannot follow the lift. The least "
+        f"base radius with an undercut factor of {UNDERCUT_FACTOR.default:g} makes a much larger "
+        f"cam, with more friction on the face (coefficient {FACE_FRICTION:g}, assumed) and less "
+        "load on the guides.",
+        (Panel(X, Y, curves, kind="outline"),),
+        table=tuple(contour.row for contour in contours),
+    )  # fmt: skip
 
 
 def _mechanism(cam: Balanced) -> PaperFigure:
     loads = cam.loads
     parts: tuple[tuple[str, Array, int, Look], ...] = (
         ("spring alone", -cam.spring_torque, 0, "dashed"),
-        ("with friction and inertia", -loads.cam_torque / 2.0, 1, "line"),
+        ("with friction and inertia", -loads.cam_torque / RATIO, 1, "line"),
         ("friction", -cam.friction_torque, 2, "line"),
         ("inertia of the follower", -cam.inertia_torque, 3, "line"),
     )
@@ -182,7 +188,7 @@ def _balance(targets: Mapping[str, Target], torque: Array, cam: Balanced) -> Pap
         (
             Panel(CRANK, TORQUE, (
                 on_cycle("engine", about, 0),
-                on_cycle("mechanism", -cam.loads.cam_torque / 2.0, 3),
+                on_cycle("mechanism", -cam.loads.cam_torque / RATIO, 3),
                 on_cycle("friction", -cam.friction_torque, 2),
                 on_cycle("engine and mechanism", cam.residual, 1),
             )),

@@ -126,6 +126,7 @@ class PaperFigure:
     numbers : str     of the figures in the paper
     caption : str     what is shown, and from which data
     columns : int     panels side by side
+    table : sequence of mapping   one row each, names with units: of computed values alone
     """
 
     name: str
@@ -136,6 +137,7 @@ class PaperFigure:
     panels: tuple[Panel, ...]
     values: tuple[Beside, ...] = ()
     columns: int = 1
+    table: tuple[Mapping[str, float | str | None], ...] = ()
 
     def record(self) -> dict[str, Any]:
         """The figure as an entry of ``papers.json``."""
@@ -144,6 +146,7 @@ class PaperFigure:
             "caption": self.caption, "columns": self.columns,
             "panels": [panel.record() for panel in self.panels],
             "values": [value.record() for value in self.values],
+            "table": [dict(row) for row in self.table],
         }  # fmt: skip
 
 
