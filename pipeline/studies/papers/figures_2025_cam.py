@@ -122,7 +122,7 @@ def _outlines(cams: Cams) -> PaperFigure:
         "c25-cam", "C25", "12", "Cam with and without a roller",
         "The curve printed as the cam of a flat follower is the path of the roller centre, "
         "(r cos, r sin) of equations 7 and 8; the cam with the 8 mm roller lies inside it. Under a "
-        "flat face neither gives the torque: see the next figure.",
+        "flat face neither gives the torque: c25-faces has the one that does.",
         tuple(panels),
         tuple(values),
         columns=2,
