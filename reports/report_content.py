@@ -392,7 +392,8 @@ def _evidence(material: Material) -> Section:
     if measured:
         words = (
             "The error bar holds the torque at all crank angles at once with 95 % probability; it "
-            "is that of noise and scatter of the cycles, with the inertia taken as exact."
+            "is that of noise and scatter of the cycles, of pitch errors of the wheel and of what "
+            "the filter cuts off, with the inertia taken as exact."
         )
         barred = any("error bar" in title for title, _ in measured)
         blocks.append(Block(

@@ -43,7 +43,10 @@ BENCHMARKS = {
     "hertz_half_width": "roller on a block, half-width to Hertz",
 }
 MEASUREMENT = {
+    "runs": ("runs", ""),
     "cycles": ("cycles", ""),
+    "wheel": ("trigger wheel", ""),
+    "sampling_rate_Hz": ("sampling rate", "Hz"),
     "imep_mean_kPa": ("indicated mean effective pressure, mean", "kPa"),
     "imep_cov_percent": ("indicated mean effective pressure, coefficient of variation", "%"),
     "peak_mean_MPa": ("peak pressure, mean", "MPa"),
@@ -153,9 +156,9 @@ def measurement(record: Json) -> list[tuple[str, str]]:
     """(name, value) of a measurement on the engine; empty for a model."""
     known = record if isinstance(record, Mapping) else {}
     return [
-        (title, quantity(value, unit))
+        (title, value if isinstance(value, str) else quantity(value, unit))
         for name, (title, unit) in MEASUREMENT.items()
-        if isinstance(value := known.get(name), int | float)
+        if isinstance(value := known.get(name), int | float | str)
     ]
 
 

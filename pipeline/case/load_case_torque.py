@@ -169,8 +169,7 @@ def crank_speed(case: Case, engine: SpeedTable | VoltageTable) -> SpeedTrace:
         raise InputError("crankshaft.inertia", "missing", "given")
     calibrator = engine.calibrator(case.crankshaft.inertia, case.path)
     if isinstance(engine, VoltageTable):
-        path = case.path(engine.file)
-        return speed_from_voltage(path, engine.wheel, engine.band, engine.threshold, calibrator)
+        return speed_from_voltage(case.path(engine.file), engine, calibrator)
     return speed_from_csv(
         case.path(engine.file),
         engine.wheel,
@@ -209,6 +208,7 @@ def measurement_record(case: Case) -> Mapping[str, Any] | None:
         return {
             "kind": engine.kind,
             "cycles": speed.count,
+            **_recording(speed),
             "mean_rad_per_s": speed.statistics.mean,
             "std_rad_per_s": speed.statistics.std,
             "p2p_rad_per_s": speed.statistics.peak_to_peak,
@@ -237,3 +237,14 @@ def measurement_words(case: Case) -> Iterator[str]:
     if isinstance(engine, (SpeedTable, VoltageTable)) and case.crankshaft is not None:
         trace = crank_speed(case, engine)
         yield from speed_notes(trace, case.crankshaft.inertia, engine.running_gear)
+
+
+def _recording(speed: SpeedTrace) -> Mapping[str, str | float]:
+    """What the record of a trigger wheel shows of itself."""
+    recording = speed.recording
+    if recording is None:
+        return {}
+    known: dict[str, str | float] = {"runs": recording.runs, "wheel": recording.pattern.words}
+    if recording.sampling_rate is not None:
+        known["sampling_rate_Hz"] = recording.sampling_rate
+    return known

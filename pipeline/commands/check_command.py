@@ -398,7 +398,11 @@ def _checked_case(path: Path, remedies: bool) -> tuple[dict[str, Any], Clock]:
     """Checks of the preview of a case, with the clock of the preview."""
     from camwright.pipeline.base.progress import utc
     from camwright.pipeline.case.case_file import read_case
-    from camwright.pipeline.case.load_case_torque import engine_torques, measurement_words
+    from camwright.pipeline.case.load_case_torque import (
+        engine_torques,
+        measurement_record,
+        measurement_words,
+    )
     from camwright.pipeline.case.plausibility import implausible
     from camwright.pipeline.preview import preview_case
     from camwright.pipeline.results.junit_report import Clock
@@ -430,6 +434,7 @@ def _checked_case(path: Path, remedies: bool) -> tuple[dict[str, Any], Clock]:
         "governing": governing_id(checks),
         "load_ends": trial.load_ends,
         "scope": case.scope.as_record(),
+        "measurement": measurement_record(case),
         "checks": checks,
     }
     return document, Clock(utc(seconds), seconds)

@@ -114,6 +114,7 @@ def show_failures(document: dict[str, Any], places: Places) -> None:
         (
             verdict_summary.verdict_words(document),
             *verdict_summary.headline_line(document),
+            *verdict_summary.measured_line(document),
             *verdict_summary.governing_line(checks),
             *filter(None, (document["scope"]["statement"],)),
             *verdict_summary.place_line(document, places),
@@ -131,7 +132,12 @@ def show_all(document: dict[str, Any], places: Places) -> None:
         table,
     )
     from camwright.pipeline.results.run_reader import within_depth
-    from camwright.pipeline.results.verdict_summary import load_end_line, place_line, verdict_words
+    from camwright.pipeline.results.verdict_summary import (
+        load_end_line,
+        measured_line,
+        place_line,
+        verdict_words,
+    )
 
     checks = within_depth(document["checks"])
     _print_all(load_end_line(document))
@@ -150,6 +156,7 @@ def show_all(document: dict[str, Any], places: Places) -> None:
         stdout.print(f"values to be confirmed: {values}", markup=False)
     if document["scope"]["statement"]:
         stdout.print(document["scope"]["statement"], markup=False)
+    _print_all(measured_line(document))
     _print_all(binding_lines(document["checks"], document["binding"]))
     _print_all(consistency_line(finding) for finding in document.get("consistency", ()))
     _print_all(place_line(document, places))

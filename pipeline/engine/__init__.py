@@ -17,6 +17,7 @@ In the order of the calculation:
 | `pressure_trace`         | measured cylinder pressure, its torque      | p, Pa; T, N m           |
 | `brake_balance`          | indicated torque against the brake's        | T, N m; p, Pa           |
 | `trigger_wheel`          | teeth of the wheel, places of the edges     | t, s; theta, rad        |
+| `tooth_pattern`          | missing and additional teeth, runs          | t, s                    |
 | `crankshaft`             | crank speed from torques, energy swing      | J, kg m2; omega, rad/s  |
 | `torque_error_bar`       | noise of a speed record to torque           | T, N m                  |
 | `band_fit`               | band-limited series through a cycle         | omega, rad/s            |

@@ -23,6 +23,7 @@ from camwright.pipeline.engine.speed_trace import (
     speed_from_edges,
     speed_from_teeth,
 )
+from camwright.pipeline.engine.tooth_pattern import Recording, ToothPattern
 from camwright.pipeline.engine.trace_file import (
     QUANTITY_UNITS,
     HeaderText,
@@ -48,6 +49,8 @@ from camwright.pipeline.engine.wheel_calibration import (
     WheelReference,
 )
 
+TEETH = 36  # where neither case nor signal states another number
+
 
 @dataclass(frozen=True, kw_only=True)
 class WheelTable(Part):
@@ -63,8 +66,8 @@ class WheelTable(Part):
     defaults: ClassVar[Mapping[str, str]] = {"pitch_tolerance": "that of wheel_class"}
 
     file: FileName
-    teeth: Teeth = 36
-    missing_teeth: MissingTeeth = 0
+    teeth: Teeth | None = None
+    missing_teeth: MissingTeeth | None = None
     reference_angle: Angle = 0.0
     harmonics: Harmonics = HARMONICS
     taper: Share = TAPER
@@ -105,7 +108,7 @@ class WheelTable(Part):
 
     @property
     def wheel(self) -> TriggerWheel:
-        return TriggerWheel(self.teeth, self.missing_teeth, self.reference_angle)
+        return TriggerWheel(self.teeth or TEETH, self.missing_teeth or 0, self.reference_angle)
 
     @property
     def band(self) -> Filter:
@@ -118,6 +121,8 @@ class SpeedTable(WheelTable):
     """Crank speed from a file: tooth times, or speed per tooth against crank angle."""
 
     kind: Literal["speed"] = "speed"
+    teeth: Teeth = TEETH
+    missing_teeth: MissingTeeth = 0
     column: HeaderText = ""
     speed_unit: HeaderText = ""
     edges: Annotated[int, Count(1, 2)] = 2
@@ -207,7 +212,9 @@ def speed_from_csv(
     def read(reference: Path) -> EdgeRecord:
         return edges_from_csv(reference, wheel, both_edges)
 
-    return speed_of_record(record, band, calibrator, read)
+    trace = speed_of_record(record, band, calibrator, read)
+    pattern = ToothPattern(wheel.teeth, wheel.missing_teeth)
+    return replace(trace, recording=Recording(len(record.runs), pattern))
 
 
 def speed_of_record(

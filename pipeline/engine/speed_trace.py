@@ -25,8 +25,9 @@ from camwright.pipeline.engine.band_fit import (
 from camwright.pipeline.engine.crankshaft import SpeedStatistics, speed_statistics, torque_of_motion
 from camwright.pipeline.engine.cylinder import CYCLE_ANGLE
 from camwright.pipeline.engine.pitch_errors import PitchErrors
+from camwright.pipeline.engine.tooth_pattern import Recording
 from camwright.pipeline.engine.torque import SAMPLES, Torque, uniform_cycle
-from camwright.pipeline.engine.torque_error_bar import SlopeNoise
+from camwright.pipeline.engine.torque_error_bar import SlopeNoise, cut_off
 from camwright.pipeline.engine.trigger_wheel import (
     Edges,
     TriggerWheel,
@@ -96,6 +97,7 @@ class SpeedTrace:
     wheel_band : array (720,)  rad/s per rad, half-width of the 95 % band about domega/dtheta that
                                the pitch errors of the wheel leave, noise apart; None: no wheel
     calibration : Calibration  None: pitch errors not considered
+    recording : Recording      None: speeds against crank angle
     """
 
     source: str
@@ -105,6 +107,7 @@ class SpeedTrace:
     slope_noise: SlopeNoise
     wheel_band: Array | None = None
     calibration: Calibration | None = None
+    recording: Recording | None = None
 
     def __post_init__(self) -> None:
         speeds = finite(f"{self.source} speed", self.speeds)
@@ -158,12 +161,19 @@ class SpeedTrace:
     def error_bar(self, inertia: float) -> Array:
         """Half-width (n,) of the band that holds the torque at all angles at once, N m, 95 %.
 
-        It is that of noise and scatter of the cycles within the bandwidth, and of the pitch errors
-        of the wheel; the inertia (kg m2) is taken as exact.
+        It adds what the filter cuts off to the root of the squares of noise and scatter of the
+        cycles within the bandwidth and of the pitch errors of the wheel; the inertia (kg m2) is
+        taken as exact.
         """
         slopes = np.array([torque_of_motion(speed, 1.0) / speed for speed in self.speeds])
         noise = inertia * self.mean * self.slope_noise.half_width(slopes, self.noise)
-        return np.asarray(np.hypot(noise, self.wheel_bar(inertia)))
+        random = np.hypot(noise, self.wheel_bar(inertia))
+        return np.asarray(random + self.cut_off(inertia))
+
+    def cut_off(self, inertia: float) -> float:
+        """Greatest torque of the harmonics that the filter lets not pass, estimated, N m."""
+        floor = self.noise_floor(inertia)
+        return cut_off(self.speeds, self.filter.weights, inertia, floor)
 
     def wheel_bar(self, inertia: float) -> Array:
         """The part of the pitch errors of the wheel in `error_bar` (n,), N m."""
@@ -199,14 +209,22 @@ class SpeedTrace:
         """The trace with the expansion of each cycle in its second crank turn.
 
         A trigger wheel on the crank does not distinguish the two turns of a cycle: the one in which
-        the speed rises more after its middle has the expansion.
+        the speed rises more after its middle has the expansion. All cycles are first brought to
+        the turn in which they resemble the others.
         """
-        energy = self.speeds**2
-        quarter = self.speeds.shape[1] // 4
-        fired = energy[:, 3 * quarter] - energy[:, 2 * quarter]
-        turned = np.roll(self.speeds, 2 * quarter, axis=1)
-        right = fired >= energy[:, quarter] - energy[:, 0]
-        return replace(self, speeds=np.where(right[:, None], self.speeds, turned))
+        half = self.speeds.shape[1] // 2
+        means = self.speeds.mean(axis=1, keepdims=True)
+        ripple = self.speeds - means
+        alike = ripple[0]
+        for _ in range(2):
+            turned = np.roll(ripple, half, axis=1)
+            ripple = np.where((ripple @ alike >= turned @ alike)[:, None], ripple, turned)
+            alike = ripple.mean(axis=0)
+        speeds = ripple + means
+        energy = (speeds**2).mean(axis=0)
+        quarter = half // 2
+        fired = energy[3 * quarter] - energy[half] >= energy[quarter] - energy[0]
+        return replace(self, speeds=speeds if fired else np.roll(speeds, half, axis=1))
 
 
 def speed_from_edges(

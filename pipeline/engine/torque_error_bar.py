@@ -9,6 +9,10 @@ import numpy as np
 
 from camwright.geometry.arrays import Array, freeze
 
+SIGNIFICANT = 6.0  # squared amplitude of a harmonic over its variance by noise
+WEIGHT_MIN = 0.01  # of a harmonic whose amplitude without the filter is inferred
+CUT_MARGIN = 1.3  # on what a filter cuts off: amplitudes beyond the last are extrapolated
+FADING = (0.1, 0.85)  # bounds of the ratio of successive harmonics
 CONFIDENCE = 0.95
 """Probability that the torque lies within its error bar at all crank angles at once."""
 
@@ -84,3 +88,61 @@ class SlopeNoise:
         if np.isinf(freedom):
             return float(np.sqrt(-2.0 * np.log(min(share, 1.0))))
         return float(np.sqrt(freedom * (min(share, 1.0) ** (-2.0 / freedom) - 1.0)))
+
+
+def cut_off(speeds: Array, weights: Array, inertia: float, noise_floor: float) -> float:
+    """Greatest torque that the filter of a speed cuts off, estimated, N m.
+
+    Parameters
+    ----------
+    speeds : array (m, n)       rad/s at equal crank angles, filtered, of each cycle
+    weights : array (last + 1,) factors of the filter on harmonics from 0
+    inertia : float             kg m2
+    noise_floor : float         N m, standard deviation of the mean torque; used for one cycle
+    """
+    orders = np.flatnonzero(weights > WEIGHT_MIN)[1:]
+    slowness = 2.0 / speeds.shape[1] * np.fft.rfft(1.0 / speeds, axis=1)[:, orders]
+    # J omega domega/dtheta for a small ripple; the cycle is two turns.
+    waves = inertia * speeds.mean() ** 3 * 0.5 * orders * slowness / weights[orders]
+    # The noise of a slope rises with the order: that of all orders shows in few cycles.
+    if speeds.shape[0] > 1:
+        scatter = (waves / orders).var(axis=0, ddof=1).mean() / speeds.shape[0]
+    else:
+        scatter = 2.0 * noise_floor**2 / (orders**2 * weights[orders] ** 2).sum()
+    return _beyond(np.abs(waves.mean(axis=0)), weights[orders], scatter * orders**2)
+
+
+def _beyond(spectra: Array, weights: Array, noise: Array) -> float:
+    """Greatest amplitude of what a filter cuts off a curve over the cycle.
+
+    Harmonics that stand out of the noise are known. Beyond the last of them, amplitudes are taken
+    to fall by the ratio by which they fall from the greatest one on, at least so fast
+    that the noise hides the next.
+
+    Parameters
+    ----------
+    spectra : array (last,)      amplitudes of harmonics 1 to `last` without the filter
+    weights : array (last,)      factors of the filter on them
+    noise : array (last,)        variance of the amplitudes
+    """
+    order = np.arange(1, spectra.size + 1)
+    clear = spectra**2 > SIGNIFICANT * noise
+    hidden = ~(clear | np.append(clear[1:], False))
+    highest = int(hidden.argmax()) if hidden.any() else spectra.size  # the next two are hidden
+    if highest == 0:
+        return 0.0
+    unseen = np.sqrt(SIGNIFICANT * noise)
+    seen = np.where(clear & (order <= highest), spectra, 0.0)
+    falling = order[(seen > 0.0) & (order > seen.argmax())]
+    ratio = FADING[1]
+    if falling.size > 1:
+        ratio = float(np.exp(np.polyfit(falling, np.log(spectra[falling - 1]), 1)[0]))
+    centre = float(np.log(spectra[falling - 1]).mean())
+    level = float(np.exp(centre + (highest - falling.mean()) * np.log(ratio)))
+    if highest + 1 < spectra.size:
+        ratio = min(ratio, float(np.sqrt(unseen[highest + 1] / level)))  # the second is hidden
+    ratio = float(np.clip(ratio, *FADING))
+    tail = level * ratio ** (order - highest)
+    cut = np.where(order > highest, np.minimum(tail, unseen), np.where(clear, spectra, 0.0))
+    beyond = tail[-1] * ratio / (1.0 - ratio)
+    return float(CUT_MARGIN * (((1.0 - weights) * cut).sum() + beyond))

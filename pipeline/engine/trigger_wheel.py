@@ -154,7 +154,7 @@ def tooth_places(field: str, times: Array, wheel: TriggerWheel) -> Array:
         As `counted`.
     """
     intervals = np.diff(times)
-    share = intervals / _local_median(intervals)
+    share = intervals / local_median(intervals)
     expected = np.ones_like(share)
     if wheel.missing_teeth:
         expected[share > 1.0 + 0.5 * wheel.missing_teeth] = 1.0 + wheel.missing_teeth
@@ -173,10 +173,13 @@ def tooth_places(field: str, times: Array, wheel: TriggerWheel) -> Array:
     return np.asarray(steps - origin)
 
 
-def _local_median(intervals: Array) -> Array:
-    reach = NEIGHBOURS // 2
-    padded = np.pad(intervals, reach, mode="reflect" if intervals.size > reach else "edge")
-    return np.asarray(np.median(np.lib.stride_tricks.sliding_window_view(padded, NEIGHBOURS), 1))
+def local_median(intervals: Array) -> Array:
+    """Median (n,) of `NEIGHBOURS` intervals around each one or, near an end, next to it, s."""
+    if intervals.size <= NEIGHBOURS:
+        return np.full(intervals.size, float(np.median(intervals)))
+    medians = np.median(np.lib.stride_tricks.sliding_window_view(intervals, NEIGHBOURS), axis=1)
+    first = np.arange(intervals.size) - NEIGHBOURS // 2
+    return np.asarray(medians[np.clip(first, 0, medians.size - 1)])
 
 
 def _guard_gaps(field: str, times: Array, gaps: list[int], wheel: TriggerWheel) -> None:

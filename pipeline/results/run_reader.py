@@ -307,6 +307,7 @@ def read_verdict(path: Path) -> dict[str, Any]:
         "statement": summary["statement"],
         "headline": summary["headline"],
         "consistency": summary["consistency"],
+        "measurement": summary.get("measurement"),
         "checks": list(checks),
     }
 

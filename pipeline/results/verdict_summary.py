@@ -51,8 +51,8 @@ def summary_lines(document: Mapping[str, Any], places: Places) -> list[str]:
     """Verdict of a run in at most `LINES` lines of `WIDTH` columns.
 
     Verdict or screen; where the follower leaves the cam or locks; the worst `WORST` failures with
-    demand, limit and remedy; number of missing keys; headline; governing check, unless it is the
-    first failure; scope; page, trials and time.
+    demand, limit and remedy; number of missing keys; headline; record of a measured speed;
+    governing check, unless it is the first failure; scope; page, trials and time.
     Only a path makes a line longer.
     """
     checks: Sequence[CheckRecord] = within_depth(document["checks"])
@@ -67,6 +67,8 @@ def summary_lines(document: Mapping[str, Any], places: Places) -> list[str]:
         lines.append(f"  {len(failed) - WORST} more: camwright check {places.target}")
     lines += missing_count(checks, places.case)
     for line in headline_line(document):
+        lines += folded(line)
+    for line in measured_line(document):
         lines += folded(line)
     if not governs_first(checks):
         lines += [shortened(line) for line in governing_line(checks)]
@@ -203,6 +205,22 @@ def governing_line(checks: Iterable[CheckRecord]) -> list[str]:
     where = place(first)  # type: ignore[arg-type]
     words = f"{first['title']}, {used(utilisation_of(first))} used"
     return [f"governing: {words}" + (f", {where}" if where else "")]
+
+
+def measured_line(document: Mapping[str, Any]) -> list[str]:
+    """Line on the record of a measured crank speed: runs, wheel, sampling rate, error bar."""
+    record: Mapping[str, Any] = document.get("measurement") or {}
+    if "torque_error_bar_max_Nm" not in record:
+        return []
+    counts = {noun: record[f"{noun}s"] for noun in ("run", "cycle") if f"{noun}s" in record}
+    parts = [f"{n} {noun}{'' if n == 1 else 's'}" for noun, n in counts.items()]
+    if "wheel" in record:
+        parts.append(f"trigger wheel {record['wheel']}")
+    if "sampling_rate_Hz" in record:
+        parts.append(f"sampled at {number(1e-3 * record['sampling_rate_Hz'])} kHz")
+    bar, share = record["torque_error_bar_max_Nm"], record["torque_error_bar_percent"]
+    error = f"95 % error bar of the torque {number(bar)} N m, {share:.2g} % of peak to peak"
+    return [f"measured: {', '.join(parts)}; {error}"]
 
 
 def place_line(document: Mapping[str, Any], places: Places) -> list[str]:

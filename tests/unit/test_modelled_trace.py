@@ -11,7 +11,7 @@ from camwright.pipeline.engine.modelled_trace import (
     torque_text,
     voltage_text,
 )
-from camwright.pipeline.engine.pickup_voltage import speed_from_voltage
+from camwright.pipeline.engine.pickup_voltage import VoltageTable, speed_from_voltage
 from camwright.pipeline.engine.speed_file import speed_from_csv
 from camwright.pipeline.engine.speed_trace import Filter
 from camwright.pipeline.engine.torque import Torque, torque_from_csv, uniform_cycle
@@ -20,6 +20,7 @@ from camwright.pipeline.engine.trigger_wheel import TriggerWheel
 THETA = uniform_cycle(720)
 SPEED = 151.0 - 5.0 * np.cos(THETA / 2 - 3.0) + 2.0 * np.sin(THETA)
 WHEEL = TriggerWheel(teeth=36, missing_teeth=2)
+VOLTAGE = VoltageTable(file="s.csv", harmonics=12)
 
 
 def test_times_are_those_of_the_fourier_series_of_the_slowness():
@@ -39,14 +40,14 @@ def test_a_torque_is_read_back(tmp_path):
 @pytest.mark.parametrize(
     ("text", "read"),
     [
-        (tooth_times_text, speed_from_csv),
-        (voltage_text, speed_from_voltage),
+        (tooth_times_text, lambda path: speed_from_csv(path, WHEEL, Filter(12))),
+        (voltage_text, lambda path: speed_from_voltage(path, VOLTAGE)),
     ],
 )
 def test_a_speed_is_read_back(tmp_path, text, read):
     """Within 0.1 % of its swing: the voltage is sampled at 20 kHz, 22 times a tooth."""
     (tmp_path / "s.csv").write_text(text(SPEED, WHEEL), encoding="utf-8")
-    trace = read(tmp_path / "s.csv", WHEEL, Filter(12, 0.25))
+    trace = read(tmp_path / "s.csv")
     assert trace.count == 1
     either = min(np.abs(trace.mean - np.roll(SPEED, k)).max() for k in (0, 360))
     assert either < 1e-3 * np.ptp(SPEED)

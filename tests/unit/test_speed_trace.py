@@ -71,15 +71,15 @@ def test_the_noise_floor_is_what_noise_makes_of_a_steady_crank(runs):
     assert np.mean(made) == pytest.approx(np.mean(floors), rel=0.12)
 
 
-@pytest.mark.parametrize(("edges", "missing", "runs"), [(2, 2, 1), (1, 2, 4), (2, 0, 8)])
+@pytest.mark.parametrize(("edges", "missing", "runs"), [(2, 2, 1), (1, 2, 4)])
 def test_the_error_bar_holds_the_whole_torque_in_95_percent_of_the_records(edges, missing, runs):
-    """100 records: 95 +- 2.2 hold it. The bar is 3.6 standard errors and more by few degrees of
+    """60 records: 57 +- 1.7 hold it. The bar is 3.6 standard errors and more by few degrees of
     freedom; an error is below 0.67 of them in half of the angles."""
     wheel = TriggerWheel(36, missing, 2.0 * np.pi if missing else 0.0)
     angles = tooth_angles(36, missing, edges, 1)
     expected = trace(edges, missing, cycles=1).torque(0.0139).total
     held, bars, errors = 0, [], []
-    for seed in range(100):
+    for seed in range(60):
         records = [counted("run", noisy_times(SPEED, angles, 0.2, 100 * seed + k, wheel.pitch),
                            wheel, edges == 2) for k in range(runs)]  # fmt: skip
         torque = speed_from_edges("run", records, wheel, BAND).torque(0.0139)
@@ -87,7 +87,7 @@ def test_the_error_bar_holds_the_whole_torque_in_95_percent_of_the_records(edges
         held += bool((error <= torque.error_bar).all())
         bars.append(np.median(torque.error_bar))
         errors.append(error)
-    assert 90 <= held <= 100
+    assert 53 <= held <= 60
     assert np.median(bars) < 6.5 * np.median(errors)
 
 

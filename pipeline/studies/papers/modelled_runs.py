@@ -13,7 +13,7 @@ import numpy as np
 
 from camwright.geometry.arrays import Array, freeze
 from camwright.pipeline.engine.modelled_trace import pickup_voltage
-from camwright.pipeline.engine.pickup_voltage import edges_from_voltage
+from camwright.pipeline.engine.pickup_voltage import VoltageTable, edges_of_signals
 from camwright.pipeline.engine.speed_trace import Filter, SpeedTrace, speed_from_edges
 from camwright.pipeline.engine.trigger_wheel import Edges, TriggerWheel
 
@@ -23,6 +23,7 @@ SAMPLE = 2e-5  # s, 10 000 points in 200 ms
 RESOLUTION = 16.0 / 256.0  # V, 8 divisions of 2 V by 8 bit
 VOLTAGE_NOISE = 0.5 * RESOLUTION  # std, assumed
 WHEEL = TriggerWheel(teeth=36)
+TABLE = VoltageTable(file="modelled.csv", teeth=WHEEL.teeth)
 RIG_SPEED = 157.08  # rad/s, 1500 rpm
 SENSOR_STD = 0.22  # rad/s, of the mean of ten runs at constant speed, printed
 COMBUSTION_SCATTER = 0.05  # std of the expansion torque from run to run, assumed
@@ -96,7 +97,8 @@ def ten_runs(speeds: Sequence[Array]) -> TenRuns:
         )
         noisy = clean + VOLTAGE_NOISE * random.normal(size=clean.size)
         voltage = RESOLUTION * np.round(noisy / RESOLUTION)
-        edges = edges_from_voltage(f"run {k}", time, voltage, WHEEL)
+        record, _ = edges_of_signals(f"run {k}", time, {f"run {k}": voltage}, TABLE)
+        edges = record.runs[0]
         intervals = np.diff(edges[0].times)[: CYCLES * 2 * WHEEL.teeth]
         records.append((time, voltage))
         teeth.append((WHEEL.pitch / intervals).reshape(CYCLES, -1))
