@@ -395,9 +395,11 @@ def _evidence(material: Material) -> Section:
             "is that of noise and scatter of the cycles, of pitch errors of the wheel and of what "
             "the filter cuts off, with the inertia taken as exact."
         )
+        notes = verification_tables.measurement_notes(summary.get("measurement"))
         barred = any("error bar" in title for title, _ in measured)
         blocks.append(Block(
-            Pairs("Measurement", measured), "Measurement", words if barred else "", narrow=True,
+            Pairs("Measurement", measured), "Measurement",
+            " ".join((*((words,) if barred else ()), *notes)), narrow=True,
         ))  # fmt: skip
     if benchmarks:
         blocks.append(Block(

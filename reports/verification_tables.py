@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from camwright.pipeline.base.files import Json
+from camwright.pipeline.results.check_text import sentence
 from camwright.reports.report_tables import (
     DASH,
     Record,
@@ -160,6 +161,13 @@ def measurement(record: Json) -> list[tuple[str, str]]:
         for name, (title, unit) in MEASUREMENT.items()
         if isinstance(value := known.get(name), int | float | str)
     ]
+
+
+def measurement_notes(record: Json) -> list[str]:
+    """Sentences on what a measured speed shows of wheel and cycle."""
+    notes = record.get("notes") if isinstance(record, Mapping) else None
+    listed = notes if isinstance(notes, list) else []
+    return [sentence(note) for note in listed if isinstance(note, str)]
 
 
 def certificate(points: Sequence[Record]) -> Table:

@@ -202,7 +202,7 @@ def keys() -> str:
         )
         table = markdown(("key", "meaning", "accepted", "default"), rows)
         parts.append(f"### `{header}`{about}\n\n{table}")
-    return "\n\n".join(parts)
+    return "\n\n".join(dict.fromkeys(parts))  # a table of two kinds once
 
 
 def study_keys() -> str:

@@ -90,7 +90,7 @@ def _contradictions(calibration: Calibration) -> list[str]:
         texts.append(
             "the gas torque is not the same at the speeds of engine.file and engine.reference: by "
             f"the half orders it changes by {100.0 * errors.torque_change:.2g} %; the error bar "
-            "allows for as much in the integer orders"
+            "allows for twice as much in the integer orders"
         )
     return texts
 

@@ -121,6 +121,8 @@ _WHEEL = """\
 file = "@DATA@"
 teeth = 36                           # pitches of the wheel, with
 missing_teeth = 2                    # a gap
+pitch_tolerance = "0 deg"            # these data are computed; remove the line for a real wheel, or
+                                     # give a second record: [engine.reference]
 """
 
 _CRANKSHAFT = """

@@ -72,7 +72,7 @@ def _of_key(word: str, keys: Sequence[Key]) -> str:
     return _text(
         f"{word}: {key.meaning}",
         (
-            ("table", ", ".join(each.header for each in keys)),
+            ("table", ", ".join(dict.fromkeys(each.header for each in keys))),
             ("accepted", key.accepted.replace("`", '"')),
             ("default", absent if key.default in ("", REQUIRED) else key.default.replace("`", "")),
             ("example", line_of(key)),
@@ -93,7 +93,7 @@ def _of_table(word: str, keys: Sequence[Key]) -> str:
         if each.accepted == TABLE and each.path.rpartition(".")[0] == table
     ]
     rows = [
-        ("table", ", ".join(each.header for each in keys)),
+        ("table", ", ".join(dict.fromkeys(each.header for each in keys))),
         ("used by", keys[0].used),
         ("tables", ", ".join(dict.fromkeys(within))),
     ]

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
+from typing import NamedTuple
 
 import numpy as np
 import scipy
@@ -24,8 +25,10 @@ from camwright.pipeline.engine.cylinder import CYCLE_ANGLE
 from camwright.pipeline.engine.passing_times import Passage, Passages
 from camwright.pipeline.engine.trigger_wheel import TriggerWheel
 
+CHANGE_TIMES = 2.0  # change of the integer orders over that of the half orders, standard deviation
 _NODES = 8  # of the Gauss-Legendre rule between two edges; a gap is half a wave at most
 _STEPS_MAX = 40
+_SHARE_MIN = 1e-6  # of a step
 _STEP_END = 1e-9  # rad, largest change of a passing time in the last step
 _ENERGY_MIN = 0.05  # least kinetic energy of an iterate, of that at mean speed
 
@@ -107,10 +110,10 @@ def pitch_errors(
 
     where I(theta) omega^2 / 2 = E + m (theta - theta_0) + W(theta), work and kinetic energy of
     the crank. The periodic work W, a series of `harmonics`, is that of the torque and the same in
-    every passage; it may change in proportion to the logarithm of the speed, by as much in the
-    integer orders as the half orders show, which pitch errors do not touch. t_0, E and the mean
-    torque m are those of each passage. Errors are a priori independent with standard deviation
-    `tolerance`, so that what the records cannot separate from the torque keeps it.
+    every passage; it may change in proportion to the logarithm of the speed, in the integer orders
+    by `CHANGE_TIMES` the share that the half orders show, which pitch errors do not touch. t_0, E
+    and the mean torque m are those of each passage. Errors are a priori independent with standard
+    deviation `tolerance`, so that what the records cannot separate from the torque keeps it.
 
     Parameters
     ----------
@@ -144,9 +147,8 @@ def pitch_errors(
     ratio = state.change_ratio(half_orders)
     if ratio > 0.0:
         power = np.hypot(*state.work.reshape(2, -1)) / np.sqrt(2.0)
-        state = _solved(
-            parts, state, tolerance, np.where(half_orders, np.inf, ratio * np.tile(power, 2))
-        )
+        change = CHANGE_TIMES * ratio * np.tile(power, 2)
+        state = _solved(parts, state, tolerance, np.where(half_orders, np.inf, change))
     covariance = state.covariance[4 * harmonics :, 4 * harmonics :]
     total = sum(part.passage.count for part in parts if part.measured)
     shared = np.zeros((2 * edges, edges))
@@ -281,6 +283,74 @@ class _State:
         return float(np.sqrt(square / of)) if square > 0.0 < of else 0.0
 
 
+@dataclass(frozen=True, eq=False)
+class _Prior:
+    """What is known of the common unknowns, work, change and errors, before the fit."""
+
+    kept: NDArray[np.bool_]  # of all unknowns, those that are not fixed at zero
+    scale: Array  # unit of each kept one
+    precision: Array  # inverse variance of each kept one, in its unit; 0: nothing is known
+
+    @classmethod
+    def of(cls, state: _State, tolerance: float, change: Array) -> _Prior:
+        """Prior of a state; `change` (2 h,), J, as in `_solved`."""
+        energy = float(np.mean(state.own[:, 1]))
+        size, edges = state.work.size, state.errors.size
+        changing = change > 0.0
+        kept = np.concatenate([np.ones(size, bool), changing, np.ones(edges, bool)])
+        units = np.concatenate([np.full(2 * size, energy), np.full(edges, tolerance)])
+        known = np.concatenate([np.zeros(size), energy / change[changing], np.ones(edges)])
+        return cls(kept, units[kept], known**2)
+
+    def within(self, state: _State) -> Array:
+        """The kept unknowns of a state in their units."""
+        whole = np.concatenate([state.work, state.change, state.errors])
+        return np.asarray(whole[self.kept] / self.scale)
+
+    def whole(self, kept: Array) -> Array:
+        """All unknowns, along the last axis, from the kept ones in their units."""
+        every = np.zeros((*kept.shape[:-1], self.kept.size))
+        every[..., self.kept] = self.scale * kept
+        return every
+
+
+class _Reduced(NamedTuple):
+    """Linear equations of one passage; its own unknowns are eliminated by an orthogonal basis."""
+
+    basis: Array  # (n, 3) of the columns of its own unknowns
+    triangle: Array  # (3, 3)
+    columns: Array  # (n, u) of the common unknowns
+    free: Array  # (n, u), without what its own unknowns make up for
+    left: Array  # (n,) times not yet explained, in noises
+
+    @classmethod
+    def of(cls, part: _Times, state: _State, k: int, prior: _Prior) -> _Reduced | None:
+        predicted = part.predicted(state, k)
+        if predicted is None:
+            return None
+        times, own, common = predicted
+        basis, triangle = np.linalg.qr(own)
+        columns = common[:, prior.kept] * prior.scale
+        return cls(basis, triangle, columns, columns - basis @ (basis.T @ columns),
+                   part.seen - times)  # fmt: skip
+
+    @property
+    def square(self) -> float:
+        """Sum of squares that the own unknowns cannot explain."""
+        return float((self.left**2).sum() - ((self.basis.T @ self.left) ** 2).sum())
+
+    def own(self, step: Array) -> Array:
+        """Step (3,) of the own unknowns with a step of the common ones."""
+        known = self.basis.T @ (self.left - self.columns @ step)
+        return np.asarray(np.linalg.solve(self.triangle, known))
+
+    def moved(self, step: Array) -> float:
+        """Largest change of a time by a step, in noises."""
+        return float(
+            np.abs(self.columns @ step + self.basis @ (self.triangle @ self.own(step))).max()
+        )
+
+
 def _solved(parts: Sequence[_Times], state: _State, tolerance: float, change: Array) -> _State:
     """Most probable state, by Gauss-Newton steps.
 
@@ -288,66 +358,50 @@ def _solved(parts: Sequence[_Times], state: _State, tolerance: float, change: Ar
     ----------
     change : array (2 h,)   J, standard deviation of the change of each wave; 0: none
     """
-    unit = float(np.mean(state.own[:, 1]))  # J: columns of like size
-    size = state.work.size
-    scale = np.concatenate([np.full(2 * size, unit), np.full(state.errors.size, tolerance)])
-    kept = np.concatenate([np.ones(size, bool), change > 0.0, np.ones(state.errors.size, bool)])
-    prior = np.concatenate(
-        [np.zeros(size), unit / change[change > 0.0], np.ones_like(state.errors)]
-    )
-    precision, scale = prior**2, scale[kept]
+    prior = _Prior.of(state, tolerance, change)
+    rows = _reduced(parts, state, prior)
     for _ in range(_STEPS_MAX):
-        linear = [part.predicted(state, k) for k, part in enumerate(parts)]
-        stack = [one for one in linear if one is not None]
-        normal = np.diag(precision)
-        unknown = np.concatenate([state.work, state.change, state.errors])[kept] / scale
-        right, square, reduced = -precision * unknown, 0.0, []
-        for part, (times, own, rest) in zip(parts, stack, strict=True):
-            left = part.seen - times
-            # What belongs to one passage is eliminated: its columns span a space left out.
-            basis, triangle = np.linalg.qr(own)
-            columns = rest[:, kept] * scale
-            free = columns - basis @ (basis.T @ columns)
-            normal += free.T @ free
-            right += free.T @ left
-            square += float(((left - basis @ (basis.T @ left)) ** 2).sum())
-            reduced.append((basis, triangle, columns, free, left))
-        factor = scipy.linalg.cho_factor(normal)
-        step = scipy.linalg.cho_solve(factor, right)
-        owns = np.array([
-            np.linalg.solve(triangle, basis.T @ (left - columns @ step))
-            for basis, triangle, columns, _, left in reduced
-        ])  # fmt: skip
-        whole = np.zeros(kept.size)
-        whole[kept] = scale * step
-        share = 1.0
-        while any(p.predicted(state.stepped(whole, owns, share), k) is None
-                  for k, p in enumerate(parts)):  # fmt: skip
-            share *= 0.5
-            if share < 1e-6:
-                raise CamError("the pitch errors of the wheel cannot be estimated: "
-                               "the torque would stop the crank")  # fmt: skip
-        state = state.stepped(whole, owns, share)
-        largest = max(
-            float(np.abs(columns @ step + basis @ (triangle @ own)).max()) * part.noise
-            for part, own, (basis, triangle, columns, _, _) in zip(
-                parts, owns, reduced, strict=True
-            )
-        )
-        if share == 1.0 and largest < _STEP_END:
+        if rows is None:
             break
-    else:
-        text = f"the pitch errors of the wheel did not converge within {_STEPS_MAX} steps"
-        raise CamError(f"{text}: passing times still change by {largest:.1e} rad")
-    inverse = scipy.linalg.cho_solve(factor, np.eye(step.size))
-    covariance = np.zeros((kept.size, kept.size))
-    covariance[np.ix_(kept, kept)] = scale[:, None] * inverse * scale
-    shared = []
-    for *_, free, _ in reduced:
-        each = np.zeros((free.shape[0], kept.size))
-        each[:, kept] = free @ inverse * scale
-        shared.append(each)
-    freedom = sum(part.passage.angle.size - 3 for part in parts) - step.size
-    freedom += float(precision @ np.diag(inverse))  # an unknown that stays at its prior is none
-    misfit = float(np.sqrt(square / max(freedom, 1.0)))
-    return replace(state, covariance=covariance, misfit=misfit, shared=tuple(shared))
+        normal = np.diag(prior.precision) + sum(row.free.T @ row.free for row in rows)
+        right = sum(row.free.T @ row.left for row in rows) - prior.precision * prior.within(state)
+        try:
+            step = scipy.linalg.solve(normal, right, assume_a="pos")
+        except np.linalg.LinAlgError:  # the edges do not determine the harmonics
+            break
+        largest = max(row.moved(step) * part.noise for row, part in zip(rows, parts, strict=True))
+        own = np.array([row.own(step) for row in rows])
+        share, before = 1.0, state
+        rows = None
+        while rows is None and share > _SHARE_MIN:  # a step that would stop the crank is shortened
+            state = before.stepped(prior.whole(step), own, share)
+            rows = _reduced(parts, state, prior)
+            share *= 0.5
+        if rows is not None and largest < _STEP_END:
+            return _judged(state, parts, rows, prior, scipy.linalg.inv(normal))
+    raise CamError(
+        "engine.reference: the pitch errors of the wheel cannot be estimated; check the inertia of "
+        "crankshaft and running gear, and that both records are of this engine"
+    )
+
+
+def _reduced(parts: Sequence[_Times], state: _State, prior: _Prior) -> list[_Reduced] | None:
+    """Equations of all passages; None where the crank would nearly stand still."""
+    rows = [_Reduced.of(part, state, k, prior) for k, part in enumerate(parts)]
+    known = [row for row in rows if row is not None]
+    return known if len(known) == len(rows) else None
+
+
+def _judged(
+    state: _State, parts: Sequence[_Times], rows: Sequence[_Reduced], prior: _Prior, inverse: Array
+) -> _State:
+    """A solved state with what is known of its errors."""
+    freedom = sum(part.passage.angle.size - 3 for part in parts) - inverse.shape[0]
+    freedom += float(prior.precision @ np.diag(inverse))  # an unknown left at its prior is none
+    square = sum(row.square for row in rows)
+    return replace(
+        state,
+        covariance=prior.whole(prior.whole(inverse).T),
+        misfit=float(np.sqrt(max(square, 0.0) / max(freedom, 1.0))),
+        shared=tuple(prior.whole(row.free @ inverse) for row in rows),
+    )

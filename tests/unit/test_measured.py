@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from crank_traces import CYCLE, noisy_times, tooth_angles, voltage
 from small_run import named
+from wheel_records import edge_times, gas_torque, motion, wheel
 
 from camwright.geometry.errors import InputError
 from camwright.pipeline.case.case_file import parse_case, read_case
@@ -15,11 +16,16 @@ from camwright.pipeline.case.load_case_torque import (
     engine_torque,
     engine_torques,
     measurement_record,
+    measurement_words,
 )
 from camwright.pipeline.case.machine import machines
+from camwright.pipeline.case.speed_notes import HALF_ORDERS
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.crank_speed import consistency, study_of
 from camwright.pipeline.cycle.solution import solution
+from camwright.pipeline.engine.crankshaft import energy_swing
+from camwright.pipeline.engine.cylinder import CylinderEngine
+from camwright.pipeline.engine.torque import torque_from_cylinder
 from camwright.pipeline.results.run_records import crank_speed_record
 from camwright.pipeline.results.trial import GIVEN_LIFT, Trial
 from camwright.pipeline.smoothing.required_lift import cam_lift
@@ -30,6 +36,8 @@ GEAR = (
     'bore = "60 mm"\ncrank_radius = "21 mm"\nrod_length = "73 mm"\ncompression_ratio = 8.5\n'
     'piston_mass = "144 g"\nrod_mass = "123 g"\n'
 )
+DRIVE = {"bore": 0.060, "crank_radius": 0.021, "rod_length": 0.073, "compression_ratio": 8.5,
+         "piston_mass": 0.144, "rod_mass": 0.123}  # fmt: skip
 THETA = np.arange(720) * CYCLE / 720
 SPEED = 151.0 - 5.0 * np.cos(THETA / 2 - 3.0) + 2.0 * np.sin(THETA)
 
@@ -84,6 +92,81 @@ def test_sensor_voltage(tmp_path):
     assert engine_torque(case, case.load_cases[0]).std > 1.0
 
 
+REFERENCE = """kind = "speed"
+file = "t.csv"
+edges = 1
+[engine.reference]
+file = "fast.csv"
+kind = "second_speed"
+[engine.running_gear]
+crank_radius = "21 mm"
+rod_length = "73 mm"
+piston_mass = "144 g"
+rod_mass = "123 g"
+"""
+
+
+def test_a_second_record_corrects_the_wheel(tmp_path):
+    """The errors are 0.05 deg rms, and 10 cycles an edge have 0.01 deg of noise."""
+    made = wheel(36, 0, 1, 1)
+    slow, fast = (
+        edge_times(motion(gas_torque, speed), made, 10, np.radians(0.01), seed)
+        for seed, speed in enumerate((151.0, 302.0))
+    )
+    (tmp_path / "fast.csv").write_text("time_s\n" + "\n".join(map(repr, fast.tolist())) + "\n")
+    case = measured(tmp_path, REFERENCE, "t.csv", [slow], "time_s")
+    record, lines = measurement_record(case), list(measurement_words(case))
+    assert record is not None
+    assert record["notes"] == lines
+    assert record["pitch_errors_rms_deg"] == pytest.approx(np.degrees(made.errors.std()), rel=0.2)
+    assert record["pitch_errors_left_deg"] < 0.03
+    assert 0.0 < record["torque_wheel_bar_max_Nm"] < record["torque_error_bar_max_Nm"]
+    assert f"{record['pitch_errors_left_deg']:.2g} deg rms remain" in lines[0]
+    bare = REFERENCE.partition("[")[0]
+    alone = measured(tmp_path, bare, "t.csv", [slow], "time_s")
+    blind = measurement_record(alone)
+    assert blind is not None
+    assert "pitch_errors_rms_deg" not in blind
+    assert blind["pitch_tolerance_deg"] == pytest.approx(0.05)
+    assert blind["torque_wheel_bar_max_Nm"] > 3.0 * record["torque_wheel_bar_max_Nm"]
+    assert any("cannot be separated" in line for line in measurement_words(alone))
+    again = parse_case(case.to_toml().replace("inputs/", ""), tmp_path)
+    assert again.engine == case.engine
+
+
+def test_half_orders_out_of_proportion_are_stated(tmp_path):
+    """A speed alike in both turns but for half orders of 1 % has no certain cycle phase, unless
+    two cylinders fire evenly; a speed of half orders alone is not that of such an engine."""
+    twin = '[engine.running_gear]\nfiring_offsets = ["0 deg", "360 deg"]\n' + "\n".join(
+        line for line in GEAR.splitlines() if "bore" not in line and "compression" not in line
+    )
+    angle = np.arange(0.0, 720.0, 5.0)
+    phase = np.radians(angle)
+    alike = 150.0 + 5.0 * np.sin(phase) + 0.3 * np.sin(0.5 * phase)
+    unlike = 150.0 + 5.0 * np.sin(0.5 * phase)
+    for speed, gear, text in (
+        (alike, "", "the two turns of the cycle correlate to 0.99"),
+        (alike, twin, None),
+        (unlike, "", None),
+        (unlike, twin, "cylinders that fire evenly correlate to nearly 1"),
+    ):
+        engine = f'kind = "speed"\nfile = "t.csv"\npitch_tolerance = "0 deg"\n{gear}\n'
+        case = measured(tmp_path, engine, "t.csv", [angle, speed], "angle_deg,speed_rad/s")
+        lines = list(measurement_words(case))
+        assert len(lines) == (text is not None)
+        assert text is None or text in lines[0]
+
+
+def test_half_orders_of_one_cylinder_are_most_of_its_speed():
+    low, high = HALF_ORDERS
+    for intake, burnt in ((95e3, 0.0), (30e3, 0.9), (95e3, 0.9)):
+        engine = CylinderEngine(**DRIVE, intake_pressure=intake, combustion_efficiency=burnt,
+                                friction_pressure=0.0 if burnt == 0.0 else None)  # fmt: skip
+        work = energy_swing(torque_from_cylinder(engine, 157.0).total)
+        share = (0.5 * (work - np.roll(work, 360))).var() / work.var()
+        assert low < share < high
+
+
 PRESSURE = f'kind = "pressure"\nfile = "p.csv"\n{GEAR}'
 REFUSED = {
     "unit alone": (f'{PRESSURE}angle_unit = "deg"\n', "pressure_unit"),
@@ -94,6 +177,14 @@ REFUSED = {
     "three edges": ('kind = "speed"\nfile = "p.csv"\nedges = 3', "engine.edges = 3"),
     "out of the folder": ('kind = "voltage"\nfile = "../p.csv"', "engine.file"),
     "a short rod": (PRESSURE.replace("73 mm", "20 mm"), "rod_length"),
+    "a short rod of the wheel": (
+        REFERENCE.replace("73 mm", "20 mm"), r"engine\.running_gear\.rod_length = 20 mm"),
+    "a second speed without masses": (
+        REFERENCE.partition("[engine.running_gear]")[0], r"engine\.running_gear = missing"),
+    "a reference of an exact wheel": (
+        REFERENCE.replace("edges = 1", 'pitch_tolerance = "0 deg"'), r"pitch_tolerance = 0 deg"),
+    "no kind of reference": (REFERENCE.replace('kind = "second_speed"\n', ""), "reference.kind"),
+    "a wheel of wood": ('kind = "speed"\nfile = "t.csv"\nwheel_class = "carved"', "wheel_class"),
 }  # fmt: skip
 
 
