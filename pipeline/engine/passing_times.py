@@ -54,11 +54,13 @@ class Passages:
     noise : float        rad, standard deviation of the crank angle at which an edge of one cycle is
                          seen, its pitch error apart
     half_orders : array  rad, of the differences between the two times of an edge in the first cycle
+    edges : int          number of edges on the wheel, of each kind recorded
     """
 
     passages: tuple[Passage, ...]
     noise: float
     half_orders: Array
+    edges: int
 
     @property
     def speeds(self) -> Array:
@@ -119,7 +121,8 @@ def passages_of(
             inside = times[bins == number]
             passages.append(Passage(angle, edge, inside.mean(axis=0), inside.shape[0]))
     noise = float(np.sqrt(np.concatenate(squares).mean()))
-    return Passages(tuple(passages), max(noise, _NOISE_MIN), like)
+    edges = len(runs[0]) * wheel.present
+    return Passages(tuple(passages), max(noise, _NOISE_MIN), like, edges)
 
 
 def _cycles(run: Sequence[Edges], wheel: TriggerWheel) -> list[tuple[Array, Array, Array]]:

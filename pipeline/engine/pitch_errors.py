@@ -142,7 +142,7 @@ def pitch_errors(
     ]  # fmt: skip
     half_orders = np.tile(np.arange(1, harmonics + 1) % 2 == 1, 2)
     free = np.where(half_orders, np.inf, 0.0) if span else np.zeros(2 * harmonics)
-    edges = 1 + max(int(part.passage.edge.max()) for part in parts)
+    edges = records[0].edges
     state = _solved(parts, _State.steady(parts, edges, harmonics), tolerance, free)
     ratio = state.change_ratio(half_orders)
     if ratio > 0.0:

@@ -239,6 +239,8 @@ def speed_of_record(
     if calibrator is None:
         return speed_from_edges(source, runs, wheel, band).with_firing()
     calibration = calibrator(record, read, band.last)
+    kinds = calibration.errors.errors.size // wheel.present
+    runs = [run[:kinds] for run in runs]
     trace = speed_from_edges(source, runs, wheel, band, calibration.errors)
     return replace(trace.with_firing(), calibration=calibration)
 

@@ -121,8 +121,7 @@ class Calibrator:
         if self.reference is None:
             edges = len(record.runs[0]) * record.wheel.present
             return Calibration(PitchErrors.unknown(edges, self.tolerance))
-        second = read(self.reference)
-        _guard_wheels(record, second)
+        record, second = _alike(record, read(self.reference))
         first = passages_of(*record, harmonics)
         same = self.kind == "second_speed"
         further = passages_of(*second, harmonics, first.half_orders if same else None)
@@ -148,11 +147,15 @@ class Calibrator:
         return Inertia(self.inertia, varying)
 
 
-def _guard_wheels(record: EdgeRecord, second: EdgeRecord) -> None:
-    """Refuse a second record at another wheel."""
+def _alike(record: EdgeRecord, second: EdgeRecord) -> tuple[EdgeRecord, EdgeRecord]:
+    """Two records with the kinds of edges that both have; another wheel is refused."""
     value, limit = (
-        f"{wheel.teeth} teeth, {wheel.missing_teeth} missing, {len(runs[0])} edges a tooth"
-        for _, runs, wheel in (second, record)
+        f"{wheel.teeth} teeth, {wheel.missing_teeth} missing" for _, _, wheel in (second, record)
     )
     if value != limit:
         raise InputError(f"engine.reference.file {second.source}", value, limit)
+    kinds = min(len(one.runs[0]) for one in (record, second))
+    first, further = (
+        one._replace(runs=[run[:kinds] for run in one.runs]) for one in (record, second)
+    )
+    return first, further

@@ -54,17 +54,9 @@ def measured(made, seed=0, second=None, kind="", tolerance=TOLERANCE, gear=GEAR)
     return speed_of_record(first, BAND, calibrator, lambda _: second)
 
 
-@cache
-def in_band(teeth, missing, edges):
-    """Torque within the bandwidth: that of a wheel without errors and noise."""
-    made = wheel(teeth, missing, edges, 0, rms=0.0)
-    exact = record(steady(SPEED), made, 0, cycles=2, noise=0.0)
-    return speed_of_record(exact, BAND, None, lambda _: exact).torque(INERTIA).total
-
-
-def error(trace, made):
-    """Greatest error of the torque: absolute, and over the error bar at its angle."""
-    off = np.abs(trace.torque(INERTIA).total - in_band(*made[:3]))
+def error(trace):
+    """Greatest error of the torque, and greatest error over the error bar at its angle."""
+    off = np.abs(trace.torque(INERTIA).total - true_torque())
     return float(off.max()), float((off / trace.error_bar(INERTIA)).max())
 
 
@@ -81,10 +73,10 @@ def test_two_speeds_correct_the_wheel():
     made, swing = wheel(60, 2, 2, 1), np.ptp(true_torque())
     second = record(steady(2.0 * SPEED), made, 2, first_turn=1)
     blind, seeing = measured(made), measured(made, 0, second, "second_speed")
-    assert error(blind, made)[0] > 0.2 * swing
-    assert np.abs(seeing.torque(INERTIA).total - true_torque()).max() < 0.05 * swing
+    assert error(blind)[0] > 0.2 * swing
+    assert error(seeing)[0] < 0.05 * swing
     for trace in (blind, seeing):
-        assert error(trace, made)[1] < 1.0
+        assert error(trace)[1] < 1.0
     calibration = seeing.calibration
     assert spread(seeing, made) == pytest.approx(1.0, abs=0.4)
     assert calibration.errors.residual < np.radians(0.01)
@@ -103,8 +95,8 @@ def test_a_run_down_corrects_the_wheel():
     made, swing = wheel(36, 0, 2, 1), np.ptp(true_torque())
     second = record(run_down(), made, 2, cycles=39)
     trace = measured(made, 0, second, "run_down")
-    assert np.abs(trace.torque(INERTIA).total - true_torque()).max() < 0.05 * swing
-    assert error(trace, made)[1] < 1.0
+    assert error(trace)[0] < 0.05 * swing
+    assert error(trace)[1] < 1.0
     assert spread(trace, made) == pytest.approx(1.0, abs=0.5)  # of 72 errors, 3 sqrt(2 / 72)
     assert "same gas torque at all speeds" in speed_notes(trace, INERTIA, GEAR)[0]
 
@@ -127,7 +119,7 @@ def test_records_at_one_speed_separate_nothing():
     trace, alone = measured(made, 1, second, "second_speed"), measured(made, 1)
     bars = [one.wheel_bar(INERTIA).max() for one in (trace, alone)]
     assert 0.7 * bars[1] < bars[0] < 1.3 * bars[1]
-    assert error(trace, made)[1] < 1.0
+    assert error(trace)[1] < 1.0
     assert "the pitch errors that remain make the torque uncertain" in speed_notes(
         trace, INERTIA, GEAR
     )[1]  # fmt: skip
@@ -139,7 +131,7 @@ def test_another_gas_torque_is_stated_and_widens_the_error_bar():
     other = measured(made, 2, record(steady(2.0 * SPEED, 3.0, 60e3), made, 7), "second_speed")
     assert same.calibration.errors.torque_change < 0.1 < other.calibration.errors.torque_change
     assert other.wheel_bar(INERTIA).max() > 1.3 * same.wheel_bar(INERTIA).max()
-    assert error(other, made)[1] < 1.0
+    assert error(other)[1] < 1.0
     assert "the gas torque is not the same" in speed_notes(other, INERTIA, GEAR)[1]
 
 
@@ -167,21 +159,17 @@ def test_a_record_of_another_wheel_is_refused():
 @pytest.mark.slow
 @pytest.mark.parametrize("made", [(60, 2, 2), (60, 2, 1), (36, 0, 2), (36, 1, 2)])
 @pytest.mark.parametrize("kind", ["second_speed", "run_down", ""])
-def test_forty_wheels_keep_within_bound_and_error_bar(made, kind):
-    """Within 5 % of the swing with correction; within the 95 % error bar in at least 34 of 40: that
-    is undercut with a probability of 0.3 % if 95 % hold."""
-    swing, within = np.ptp(true_torque()), 0
-    for seed in range(40):
-        one = wheel(*made, seed)
-        second = {
-            "second_speed": lambda one=one, seed=seed: record(
-                steady(2.0 * SPEED), one, 3 * seed + 1, first_turn=seed % 2
-            ),
-            "run_down": lambda one=one, seed=seed: record(run_down(), one, 3 * seed + 2, cycles=39),
-            "": lambda: None,
-        }[kind]()
+def test_many_wheels_keep_within_bound_and_error_bar(made, kind):
+    """Within 5 % of the swing with correction; within the 95 % error bar in at least 85 %: of 40
+    that is undercut with a probability of 0.3 % if 95 % hold, of 20 with 1.6 %."""
+    swing, within, count = np.ptp(true_torque()), 0, 20 if kind == "run_down" else 40
+    for seed in range(count):
+        one, second = wheel(*made, seed), None
+        if kind == "second_speed":
+            second = record(steady(2.0 * SPEED), one, 3 * seed + 1, first_turn=seed % 2)
+        elif kind == "run_down":
+            second = record(run_down(), one, 3 * seed + 2, cycles=39)
         trace = measured(one, seed, second, kind)
-        if kind:
-            assert np.abs(trace.torque(INERTIA).total - true_torque()).max() < 0.05 * swing
-        within += error(trace, one)[1] < 1.0
-    assert within >= 34
+        assert not kind or error(trace)[0] < 0.05 * swing
+        within += error(trace)[1] < 1.0
+    assert within >= 0.85 * count
