@@ -106,7 +106,7 @@ def passages_of(
         known = groups.setdefault(start, [])
         known += [(angle + turn, edge, times) for angle, edge, times in cycles
                   if not known or known[0][0].size == angle.size]  # fmt: skip
-    if like is None:
+    if like is None or not groups:
         held = max(sum(edges.times.size for edges in run) for run in runs)
         limit = f"a whole cycle, {len(runs[0]) * (2 * wheel.present + 1)} edges or more"
         raise InputError(source, f"{held} edges", limit)

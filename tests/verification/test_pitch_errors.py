@@ -4,6 +4,7 @@ Noise: 0.22 rad/s of a pitch of 10 deg at 151 rad/s is 0.0104 deg of an edge, th
 Cardoso et al., Energies 2025, sec. 2.1.2.
 """
 
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 
@@ -17,7 +18,11 @@ from camwright.pipeline.engine.cylinder import RunningGear
 from camwright.pipeline.engine.speed_file import speed_of_record
 from camwright.pipeline.engine.speed_trace import Filter
 from camwright.pipeline.engine.trigger_wheel import TriggerWheel, counted
-from camwright.pipeline.engine.wheel_calibration import Calibrator, EdgeRecord
+from camwright.pipeline.engine.wheel_calibration import (
+    PITCH_TOLERANCES,
+    Calibrator,
+    EdgeRecord,
+)
 
 GEAR = RunningGear(crank_radius=0.021, rod_length=0.073, piston_mass=0.144, rod_mass=0.123)
 NOISE, TOLERANCE = np.radians(0.0104), np.radians(0.05)
@@ -147,6 +152,23 @@ def test_the_inertia_of_the_running_gear_is_needed():
     theta = np.arange(720) * np.pi / 180.0
     inertia = GEAR.inertia_torque(theta, SPEED)
     np.testing.assert_allclose(missing, inertia, atol=0.1 * np.ptp(inertia))
+
+
+@pytest.mark.parametrize(("made", "half"), [("milled", 0.05), ("stamped", 0.1)])
+def test_tolerances_of_the_classes_are_those_of_general_tolerances(made, half):
+    """Equally probable within +- 0.05 or 0.1 mm at a radius of 75 mm; rounded to a digit, 14 %."""
+    spread_ = np.degrees(half / 75.0) / np.sqrt(3.0)
+    assert np.degrees(PITCH_TOLERANCES[made]) == pytest.approx(spread_, rel=0.14)
+
+
+def test_a_reference_shorter_than_a_cycle_is_refused():
+    made = wheel(60, 2, 2, 7)
+    second = record(steady(2.0 * SPEED), made, 9, cycles=1)
+    times = [edges.times[:70] for edges in second.runs[0]]
+    short = [replace(edges, times=at, places=edges.places[:70])
+             for edges, at in zip(second.runs[0], times, strict=True)]  # fmt: skip
+    with pytest.raises(InputError, match="run = 140 edges, must be a whole cycle, 234 edges"):
+        measured(made, 4, second._replace(runs=[short]), "second_speed")
 
 
 def test_a_record_of_another_wheel_is_refused():
