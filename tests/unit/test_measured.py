@@ -28,6 +28,7 @@ from camwright.pipeline.engine.cylinder import CylinderEngine
 from camwright.pipeline.engine.torque import torque_from_cylinder
 from camwright.pipeline.results.run_records import crank_speed_record
 from camwright.pipeline.results.trial import GIVEN_LIFT, Trial
+from camwright.pipeline.results.verdict_summary import measured_line
 from camwright.pipeline.smoothing.required_lift import cam_lift
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -84,12 +85,25 @@ def test_tooth_times(tmp_path):
 
 def test_sensor_voltage(tmp_path):
     time, volts = voltage(SPEED, 36, 2, 2, sample=5e-5)
-    engine = 'kind = "voltage"\nfile = "v.csv"\nmissing_teeth = 2\nharmonics = 12\n'
+    engine = 'kind = "voltage"\nfile = "v.csv"\nharmonics = 12\n'
     case = measured(tmp_path, engine, "v.csv", [time, volts], "time_s,u [V]")
     record = measurement_record(case)
     assert record is not None
     assert record["p2p_rad_per_s"] == pytest.approx(np.ptp(SPEED), rel=1e-3)
     assert engine_torque(case, case.load_cases[0]).std > 1.0
+    assert (record["runs"], record["cycles"], record["wheel"]) == (1, 1, "36-2")
+    assert record["sampling_rate_Hz"] == pytest.approx(2e4)
+    (line,) = measured_line({"measurement": record})
+    assert line.startswith("measured: 1 run, 1 cycle, trigger wheel 36-2, sampled at 20 kHz; 95 %")
+    assert measured_line({"measurement": None}) == []
+
+
+def test_a_stated_wheel_that_the_signal_contradicts_is_refused_by_its_key(tmp_path):
+    time, volts = voltage(SPEED, 36, 2, 2, sample=5e-5)
+    engine = 'kind = "voltage"\nfile = "v.csv"\nteeth = 60\nmissing_teeth = 2\n'
+    case = measured(tmp_path, engine, "v.csv", [time, volts], "time_s,u [V]")
+    with pytest.raises(InputError, match=r"engine\.teeth = 60, must be 36, or left out: v\.csv"):
+        measurement_record(case)
 
 
 REFERENCE = """kind = "speed"
