@@ -10,11 +10,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from crank_traces import voltage
 from wheel_records import INERTIA, edge_times, gas_torque, motion, wheel
 
 from camwright.geometry.errors import InputError
 from camwright.pipeline.case.speed_notes import speed_notes
 from camwright.pipeline.engine.cylinder import RunningGear
+from camwright.pipeline.engine.pickup_voltage import VoltageTable, speed_from_voltage
 from camwright.pipeline.engine.speed_file import speed_of_record
 from camwright.pipeline.engine.speed_trace import Filter
 from camwright.pipeline.engine.trigger_wheel import TriggerWheel, counted
@@ -159,6 +161,21 @@ def test_tolerances_of_the_classes_are_those_of_general_tolerances(made, half):
     """Equally probable within +- 0.05 or 0.1 mm at a radius of 75 mm; rounded to a digit, 14 %."""
     spread_ = np.degrees(half / 75.0) / np.sqrt(3.0)
     assert np.degrees(PITCH_TOLERANCES[made]) == pytest.approx(spread_, rel=0.14)
+
+
+def test_voltages_at_two_speeds_show_a_wheel_without_errors(tmp_path):
+    """Teeth, gap and edges are those of the signal; 2 cycles sampled at 50 kHz."""
+    for name, factor in (("slow", 1.0), ("fast", 2.0)):
+        speed = steady(factor * SPEED)[1][:-1:2]
+        columns = np.column_stack(voltage(speed, 36, 2, 2, sample=2e-5 / factor, noise=0.005))
+        np.savetxt(tmp_path / name, columns, "%.7g", ",", header="time_s,u [V]", comments="")
+    calibrator = Calibrator(TOLERANCE, INERTIA, GEAR, tmp_path / "fast", "second_speed")
+    trace = speed_from_voltage(tmp_path / "slow", VoltageTable(file="slow"), calibrator)
+    calibration = trace.calibration
+    assert calibration.speeds == pytest.approx((SPEED, 2.0 * SPEED), rel=1e-2)
+    assert calibration.errors.residual < 0.5 * TOLERANCE
+    assert calibration.errors.rms < 0.5 * TOLERANCE
+    assert error(trace)[1] < 1.0
 
 
 def test_a_reference_shorter_than_a_cycle_is_refused():
