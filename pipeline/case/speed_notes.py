@@ -70,7 +70,7 @@ def _words(calibration: Calibration) -> str:
     low, high = (shown(speed, "rpm") for speed in calibration.speeds)
     change = ""
     if errors.torque_change:
-        change = f" (by the half orders it changes by {100.0 * errors.torque_change:.2g} %)"
+        change = f" (by the half orders it changes by {100.0 * errors.torque_change:.3g} %)"
     return (
         f"pitch errors of the wheel: {shown(errors.rms, 'deg', 2)} rms, corrected, "
         f"{shown(errors.residual, 'deg', 2)} rms remain; estimated from {low} to {high}, "
@@ -89,7 +89,7 @@ def _contradictions(calibration: Calibration) -> list[str]:
     if errors.torque_change > TORQUE_CHANGE_MAX:
         texts.append(
             "the gas torque is not the same at the speeds of engine.file and engine.reference: by "
-            f"the half orders it changes by {100.0 * errors.torque_change:.2g} %; the error bar "
+            f"the half orders it changes by {100.0 * errors.torque_change:.3g} %; the error bar "
             "allows for twice as much in the integer orders"
         )
     return texts
@@ -121,7 +121,7 @@ def _half_orders(trace: SpeedTrace, running_gear: RunningGear | None) -> list[st
     offsets = (0.0,) if running_gear is None else running_gear.firing_offsets
     alike = abs(np.exp(0.5j * np.array(offsets)).sum()) < 1e-6 * len(offsets)
     text = (
-        f"half orders are {100.0 * share:.2g} % of the variance of the speed, the two turns of the "
+        f"half orders are {100.0 * share:.3g} % of the variance of the speed, the two turns of the "
         f"cycle correlate to {1.0 - 2.0 * share:.3f}"
     )
     if alike and share > HALF_ORDERS_EVEN:
