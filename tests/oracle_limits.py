@@ -82,8 +82,7 @@ def roller_speed(at):
 
 
 def roller_life(at):
-    worn = at.surged**_REVOLUTION_EXPONENT * at.spin
-    return at.scenario.in_operation * worn / at.p.life_force_cubed
+    return at.surged**_REVOLUTION_EXPONENT * at.spin / at.p.life_force_cubed
 
 
 def guide_pressure_a(at):
@@ -140,8 +139,9 @@ LIMITS: tuple[OracleLimit, ...] = (
     OracleLimit("roller_speed", "loads", "roller_spin", roller_speed,
                 "Energy loss comparison between kinematically equivalent mechanisms (2024), "
                 "eqs 35-37: n = w (|P'| - r)/r"),
-    OracleLimit("roller_life", "mean", "life_force_cubed", roller_life,
-                "ISO 281: L10 = (C/P_m)^3, P_m^3 the mean of N^3 |n| over that of |n|", 3),
+    OracleLimit("roller_life", "life", "life_force_cubed", roller_life,
+                "ISO 281: L10 = (C/P_m)^3, P_m^3 the mean of N^3 |n| over that of |n|; "
+                "Palmgren and Miner", 3),
     OracleLimit("guide_pressure_A", "loads", "guide_pressure_a", guide_pressure_a, CARDOSO),
     OracleLimit("guide_pressure_B", "loads", "guide_pressure_b", guide_pressure_b, CARDOSO),
     OracleLimit("guide_pv_A", "mean", "guide_pv_a", guide_pv_a, CARDOSO + "; mean p v"),

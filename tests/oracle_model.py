@@ -43,6 +43,25 @@ def periodic_basis(theta, count, derivative=0):
     return basis
 
 
+_ROOM = 4.0  # log of the greatest room of a life
+
+
+def _sides(use):
+    return use if isinstance(use, tuple) else (use,)
+
+
+def operated(scenarios):
+    """Load cases that one machine runs in turn, (place, duty) each: by tolerance corner.
+
+    Without a duty each load case by itself, all the time.
+    """
+    if any(item.duty is None for item in scenarios):
+        return [[(k, 1.0)] for k in range(len(scenarios))]
+    running = [(k, item) for k, item in enumerate(scenarios) if item.duty > 0.0]
+    corners = dict.fromkeys(item.corner for _, item in running)
+    return [[(k, item.duty) for k, item in running if item.corner == each] for each in corners]
+
+
 class CamModel:
     """Formulas of one problem; `changed`: other values of `NUMBERS`."""
 
@@ -59,6 +78,7 @@ class CamModel:
         self.jerk_weight = problem.jerk_weight
         self.scenarios = problem.scenarios
         self.states = [scenario_numbers(item, self.theta) for item in self.scenarios]
+        self.machines = operated(self.scenarios)
         nominal = numbers_of(problem)
         self.numbers = nominal | changed
         left_out = problem.left_out
@@ -90,17 +110,28 @@ class CamModel:
         at = loads_at(cam, top, scenario, fix)
         self.rows, self._terms, self._at = {}, {}, {}
         inputs = {"shape": [energy, free, symbols]}
-        inputs["loads"] = inputs["mean"] = [energy, top, free, symbols, numbers, ratios]
-        for of, state in (("shape", cam), ("loads", at), ("mean", at)):
+        inputs["loads"] = [energy, top, free, symbols, numbers, ratios]
+        inputs["mean"] = inputs["life"] = inputs["loads"]
+        for of, state in (("shape", cam), ("loads", at)):
             rows, names = [], []
             for each in self.limits:
                 if each.of == of:
-                    use = each.use(state)
-                    use = use if isinstance(use, tuple) else (use,)
+                    use = _sides(each.use(state))
                     rows += use
                     names += [each.check] * len(use)
             self.rows[of], self._terms[of] = names, (inputs[of], rows)
-        self.power = np.array([e.power for e in self.limits if e.of == "mean"])[:, None]
+        means = [(each, each.use) for each in self.limits if each.of == "mean"]
+        means += [(each, each.beside) for each in self.limits if each.beside]
+        self.rows["mean"] = [each.check for each, _ in means]
+        self._terms["mean"] = inputs["mean"], [use(at) for _, use in means]
+        self.power = np.array([each.power for each, _ in means])[:, None]
+        self.lives = [each for each in self.limits if each.of == "life"]
+        terms = [_sides(each.use(at)) for each in self.lives]
+        self.rows["life"] = [each.check for each in self.lives]
+        self._terms["life"] = inputs["life"], [one for each in terms for one in each]
+        self.parts_of_life = np.split(
+            np.arange(sum(map(len, terms))), np.cumsum([len(each) for each in terms])[:-1]
+        )
         self._torque = ca.Function("torque", inputs["loads"], [at.torque])
         self._jerk = ca.Function("jerk", [energy, free], [cam.jerk]).map(
             self.points, [False, True], [False]
@@ -109,7 +140,7 @@ class CamModel:
 
     def _of_rows(self, of, taken=None):
         """Function of the limits of one kind, or of those rows of them."""
-        taken = tuple(range(len(self.rows[of])) if taken is None else (int(r) for r in taken))
+        taken = tuple(range(len(self._terms[of][1])) if taken is None else (int(r) for r in taken))
         if (of, taken) not in self._at:
             inputs, rows = self._terms[of]
             self._at[of, taken] = ca.Function(of, inputs, [ca.vertcat(*(rows[r] for r in taken))])
@@ -201,26 +232,53 @@ class CamModel:
         return ca.sparsify(ca.DM(np.linalg.solve(np.vander(share, increasing=True), there)), 1e-12)
 
     def values(self, coefficients, free, numbers=None):
-        """Utilisations at the points, ripples, jerk: ({of: [(rows, n) of each scenario]}, ...)."""
+        """Utilisations at the points, ripples, jerk: ({of: [(rows, n) of each scenario]}, ...).
+
+        Of a life (rows, 1) of each machine.
+        """
         numbers = numbers or self.numbers
-        p = vector(numbers)
-        own = ca.DM([free.get(name, numbers[name]) for name in FREE])
-        parts = ca.DM(np.stack([basis @ coefficients for basis in self.basis]))
-        summit = periodic_basis(np.array([self._summit(coefficients)]), self.count) @ coefficients
-        top = self._lift(float(summit[0]), own)
+        parts, top, own, p = self._cam(coefficients, free, numbers)
         uses = {"shape": [self._mapped(self._of_rows("shape"), self.points)(parts, own, p).full()]}
         uses |= {"loads": [], "mean": []}
-        ripples = []
+        ripples, worn = [], []
         for k, item in enumerate(self.scenarios):
             inputs = (parts, top, own, p, *self.states[k])
             for of in ("loads", "mean"):
                 uses[of].append(self._mapped(self._of_rows(of), self.points)(*inputs).full())
+            worn.append(self._worn(inputs))
             torque = self._mapped(self._torque, self.points)(*inputs).full().ravel()
             engine = np.asarray(ca.DM(self._engine(k, free.get("phase", 0.0)))).ravel()
             left = engine - torque / numbers["gear_ratio"]
             ripples.append(float(np.std(left) / np.std(item.torque)) if item.weight > 0 else 0.0)
+        uses["life"] = [
+            np.array([[self._life_used(row, worn, machine)] for row in range(len(self.lives))])
+            for machine in self.machines
+        ]
         jerk = self._jerk(parts, own).full().ravel() / self.jerk_norm
         return uses, ripples, 0.5 * self.jerk_weight * float(jerk @ jerk)
+
+    def _cam(self, coefficients, free, numbers):
+        """Energies at the points, maximum lift, free variables, numbers of the machine."""
+        own = ca.DM([free.get(name, numbers[name]) for name in FREE])
+        parts = ca.DM(np.stack([basis @ coefficients for basis in self.basis]))
+        summit = periodic_basis(np.array([self._summit(coefficients)]), self.count) @ coefficients
+        return parts, self._lift(float(summit[0]), own), own, vector(numbers)
+
+    def _worn(self, inputs):
+        """Means of all lives of one scenario."""
+        return self._mapped(self._of_rows("life"), self.points)(*inputs).full().mean(axis=1)
+
+    def _life_used(self, row, worn, machine):
+        """Room of a life at which its shares add to 1; 0 where they never do."""
+        life, part = self.lives[row], self.parts_of_life[row]
+
+        def excess(log_room):
+            room = float(np.exp(log_room))
+            return sum(float(life.spent(worn[k][part], room)) * duty for k, duty in machine) - 1.0
+
+        if not excess(-_ROOM) > 0.0 > excess(_ROOM):
+            return 0.0
+        return float(np.exp(brentq(excess, -_ROOM, _ROOM, xtol=1e-15, rtol=1e-14)))
 
     def utilisation(self, coefficients, free, numbers=None):
         """Greatest utilisation of each limit at the points."""
@@ -234,7 +292,7 @@ class CamModel:
 
     def _greatest(self, uses, ripples, numbers):
         most = dict.fromkeys(self.names, -np.inf)
-        for of in ("shape", "loads"):
+        for of in ("shape", "loads", "life"):
             for table in uses[of]:
                 for name, row in zip(self.rows[of], table, strict=True):
                     most[name] = max(most[name], float(row.max()))

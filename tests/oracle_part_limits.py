@@ -69,12 +69,12 @@ def guide_temperature_b(at):
 
 def guide_wear_a(at):
     worn = at.side * at.velocity * at.at_a * at.fix.rubbing_a / at.p.guide_area_a
-    return at.scenario.in_operation * worn / at.p.guide_wear_pv_a
+    return worn / at.p.guide_wear_pv_a
 
 
 def guide_wear_b(at):
     worn = at.side * at.velocity * at.at_b * at.fix.rubbing_b / at.p.guide_area_b
-    return at.scenario.in_operation * worn / at.p.guide_wear_pv_b
+    return worn / at.p.guide_wear_pv_b
 
 
 def _over_normal(at, needed):
@@ -149,19 +149,34 @@ def _turns(at):
     return _mean_speed(at) >= _AT_REST * _RPM
 
 
-def grease_life(at):
-    """P_m <= P(L) of log10 L = 6.10 - 4.40e-6 n D - 2.50 (P/C - 0.05) - (0.021 - 1.80e-8 n D) T.
+def _greased_load(at):
+    """(P/C)^3 at the mean speed."""
+    mean = ca.fmax(_mean_speed(at), _AT_REST * _RPM)
+    return ca.fmax(at.normal, 0) ** 3 * at.spin / (at.p.grease_rating**3 * mean)
 
-    0.05 <= P/C <= 0.2, n D >= 125e3 mm/min, T >= 50 degC.
-    """
+
+def grease_life(at):
+    """(P/C)^3, log10 of the life over its target at P/C = 0.05, whether the roller turns."""
     p, mean = at.p, ca.fmax(_mean_speed(at), _AT_REST * _RPM)
     size = ca.fmax(mean / _RPM * 1e3 * p.grease_diameter, 125e3)
     warm = ca.fmax(p.grease_temperature - _KELVIN, 50)
     light = 6.10 - 4.40e-6 * size - (0.021 - 1.80e-8 * size) * warm
-    share = 0.05 + (light - ca.log10(p.grease_life / 3600)) / 2.50
-    applies = at.scenario.in_operation * _turns(at) * (share >= 0.05) * (size <= 500e3)
-    force = ca.fmin(ca.fmax(share, 0.05), 0.2) * p.grease_rating
-    return applies * ca.fmax(at.normal, 0) ** 3 * at.spin / (force**3 * mean)
+    applies = _turns(at) * (size <= 500e3)
+    return _greased_load(at), light - ca.log10(p.grease_life / 3600), applies
+
+
+def grease_damage(means, room):
+    """log10 L = 6.10 - 4.40e-6 n D - 2.50 (P/C - 0.05) - (0.021 - 1.80e-8 n D) T.
+
+    0.05 <= P/C <= 0.2, n D >= 125e3 mm/min, T >= 50 degC.
+    """
+    cubed, light, applies = means
+    load = ca.fmax(cubed ** (1 / 3) / room, 0.05)
+    return applies * 10 ** (2.50 * (load - 0.05) - light)
+
+
+def grease_range(at):
+    return at.scenario.in_operation * _turns(at) * _greased_load(at) / 0.2**3
 
 
 def roller_modified_life(at):
@@ -182,7 +197,7 @@ def roller_modified_life(at):
     clean = (2.5671 - film) ** 0.83 * (p.modified_cleanliness_load / force) ** (1 / 3)
     factor = 0.1 * ca.fmax(1 - clean, 500 ** (-1 / 9.3)) ** -9.3
     used = (force / p.modified_rating) ** 3 / factor
-    return at.scenario.in_operation * _turns(at) * used * at.spin / p.modified_rate
+    return _turns(at) * used * at.spin / p.modified_rate
 
 
 def bearing_lubrication(at):
@@ -206,8 +221,8 @@ PART_LIMITS: tuple[OracleLimit, ...] = (
                 guide_temperature_a, CARDOSO + "; T = T_amb + Q R"),
     OracleLimit("guide_temperature_B", "mean", "guide_power_b friction_worst_factor",
                 guide_temperature_b, CARDOSO + "; T = T_amb + Q R"),
-    OracleLimit("guide_wear_A", "mean", "guide_wear_pv_a", guide_wear_a, "Archard: k p v t"),
-    OracleLimit("guide_wear_B", "mean", "guide_wear_pv_b", guide_wear_b, "Archard: k p v t"),
+    OracleLimit("guide_wear_A", "life", "guide_wear_pv_a", guide_wear_a, "Archard: k p v t"),
+    OracleLimit("guide_wear_B", "life", "guide_wear_pv_b", guide_wear_b, "Archard: k p v t"),
     OracleLimit("traction_demand", "loads", "friction drag_inertia", traction_demand,
                 "Rothbart eq. 10.7"),
     OracleLimit("profile_waviness", "loads", "waviness wave_amplitude", profile_waviness,
@@ -220,9 +235,9 @@ PART_LIMITS: tuple[OracleLimit, ...] = (
     OracleLimit("gear_bending", "loads", "tooth_torque", gear_bending, "Lewis"),
     OracleLimit("keyway_root", "loads", "keyway_safety keyway_by_torque", keyway_root,
                 "Goodman, Shigley sec. 6-12"),
-    OracleLimit("grease_life", "mean", "grease_rating", grease_life,
-                "JTEKT, Ball and Roller Bearings, sec. 12", 3),
-    OracleLimit("roller_modified_life", "mean", "modified_rate modified_rating",
+    OracleLimit("grease_life", "life", "grease_rating", grease_life,
+                "JTEKT, Ball and Roller Bearings, sec. 12", 3, grease_damage, grease_range),
+    OracleLimit("roller_modified_life", "life", "modified_rate modified_rating",
                 roller_modified_life, ISO_281, 3),
     OracleLimit("bearing_lubrication", "mean", "roller_spin_least", bearing_lubrication,
                 ISO_281 + ".3: least mean speed of a viscosity ratio", -1),

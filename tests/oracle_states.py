@@ -106,9 +106,14 @@ class OracleLimit:
     """One limit: demand over limit, and where both come from.
 
     `of`: "shape" of the unloaded cam; "loads" of a scenario at each angle; "mean" of a scenario,
-    the terms whose mean over the turn is the utilisation to the power `power`. `needs`: numbers,
-    by space, without which the limit does not apply. Several expressions are the sides of an
-    absolute value.
+    the terms whose mean over the turn is the utilisation to the power `power`; "life" of the load
+    cases of a machine: see `damage`. `needs`: numbers, by space, without which the limit does not
+    apply. Several expressions are the sides of an absolute value, of a life several means.
+
+    `damage`: means of a load case, room -> share of the life spent in the target by that load case
+    alone, the limit times the room; None: the mean over the room to the power `power`. Shares add
+    by the duty, to 1 at most. `beside`: a mean of each load case in operation, to the power
+    `power`, that is limited too.
     """
 
     check: str
@@ -117,3 +122,9 @@ class OracleLimit:
     use: Callable[[SimpleNamespace], ca.SX | tuple[ca.SX, ...]]
     source: str
     power: int = 1
+    damage: Callable[[list, ca.SX], ca.SX] | None = None
+    beside: Callable[[SimpleNamespace], ca.SX] | None = None
+
+    def spent(self, means: list, room: ca.SX) -> ca.SX:
+        """Share of the life spent by a load case alone."""
+        return means[0] / room**self.power if self.damage is None else self.damage(means, room)

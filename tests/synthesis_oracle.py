@@ -141,7 +141,8 @@ class Oracle(CamModel):
         chosen = {}
         for of, tables in uses.items():
             room = np.array([1 - RESERVE + slack.get(name, 0.0) for name in self.rows[of]])[:, None]
-            margin = -_EXCEEDED if near is None else near if of != "mean" else _MEAN_NEAR
+            averaged = of in ("mean", "life")
+            margin = -_EXCEEDED if near is None else _MEAN_NEAR if averaged else near
             worst, leader = np.max(tables, axis=0), np.argmax(tables, axis=0)
             for k, table in enumerate(tables):
                 leads = table > worst - _LEADS
@@ -149,7 +150,7 @@ class Oracle(CamModel):
                 if near is not None:  # everywhere a few, against escape to where no cam is
                     spread = np.arange(table.shape[1]) % _SPREAD == 0
                     taken |= spread & (leader == k)
-                elif of != "mean":  # and their neighbours
+                elif not averaged:  # and their neighbours
                     taken = leads & (table > room - _CLOSE) & taken.any(axis=1, keepdims=True)
                 chosen[of, k] = taken
         weights = np.array([item.weight for item in self.scenarios])
@@ -180,9 +181,11 @@ class Oracle(CamModel):
         violated = [before.slack[name] if before else 0.01 for name in self.names]
         slack = program.unknown("slack", violated, 0.0)
         room = dict(zip(self.names, ca.vertsplit(slack + relief), strict=True))
+        cam = self._cam(c0, free0, self.numbers)
+        worn = [self._worn((*cam, *state)) for state in self.states]
         for (of, k), rows in active.items():
             if of in self.rows and rows.any():
-                self._bounded(program, of, k, rows, parts, shared, room)
+                self._bounded(program, of, k, rows, parts, shared, room, worn)
         known = before.ripple if before else self.objective(c0, free0)[0] + 1e-3
         ripple = program.unknown("ripple", known, 0.0)
         for k, item in enumerate(self.scenarios):
@@ -252,9 +255,30 @@ class Oracle(CamModel):
         program.zero(ca.mtimes([steepness.T, powers[1:, :], c]), ("level summit",))
         return ca.horzcat(*levels).T, peak, lambda end: part * (span + end.values["summit"][0])
 
-    def _bounded(self, program, of, k, rows, parts, shared, room):
-        """Rows of the limits of one scenario, or of the shape; rows (names, n) that are taken."""
+    def _life_left(self, program, row, machine, parts, shared, room, known):
+        """Shares of a life that the load cases of a machine spend, less 1; known: means by them.
+
+        The means are unknowns: shares that are not linear in them keep sparse second derivatives.
+        """
+        life, part = self.lives[row], self.parts_of_life[row]
+        function = self._mapped(self._of_rows("life", part), self.points)
+        allowed, total = 1 - RESERVE + room[life.check], -1
+        for k, duty in self.machines[machine]:
+            level = known[k][part]
+            unit = np.where(level != 0.0, np.abs(level), 1.0)
+            mean = program.unknown(f"{life.check} {k}", level / unit)
+            terms = ca.sum2(function(parts, *shared, *self.states[k])) / self.points
+            program.zero(terms / unit - mean, ("mean", life.check, k))
+            total += duty * life.spent(ca.vertsplit(mean * unit), allowed)
+        return total
+
+    def _bounded(self, program, of, k, rows, parts, shared, room, known):
+        """Rows of the limits of one scenario or machine, or of the shape; rows (names, n) taken."""
         taken, where = np.flatnonzero(rows.any(axis=1)), np.flatnonzero(rows.any(axis=0))
+        if of == "life":
+            over = [self._life_left(program, row, k, parts, shared, room, known) for row in taken]
+            program.negative(ca.vertcat(*over), (of, k, rows.shape), (taken, np.zeros_like(taken)))
+            return
         function = self._of_rows(of, taken)
         room = [1 - RESERVE + room[self.rows[of][r]] for r in taken]
         if of == "mean":

@@ -120,7 +120,7 @@ def described(problem):
 
 
 def with_corrections(problem, seed):
-    """The problem with smooth corrections of every kind, damping, and two load cases in operation.
+    """The problem with smooth corrections of every kind, damping, and two load cases by their duty.
 
     The speeds of the least force and the mean spin are of the order of the signed case.
     """
@@ -140,8 +140,15 @@ def with_corrections(problem, seed):
         **{name: np.full(turn.size, value) for name, value in single.items()},
     )
     scenarios = tuple(
-        replace(item, correction=correction, viscous_damping=3.0, duty=0.5 * (item.name[0] in "ig"))
-        for item in problem.scenarios
+        replace(item, correction=correction, viscous_damping=3.0) for item in problem.scenarios
+    )
+    return of_duty(replace(problem, scenarios=scenarios), idle=0.3, governed=0.7)
+
+
+def of_duty(problem, **shares):
+    """The problem with shares of its load cases in the operation; the others take no time."""
+    scenarios = tuple(
+        replace(item, duty=shares.get(item.name.split(",")[0], 0.0)) for item in problem.scenarios
     )
     return replace(problem, scenarios=scenarios)
 

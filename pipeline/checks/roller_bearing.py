@@ -455,13 +455,10 @@ class Grease(NamedTuple):
     diameter: float
     temperature: float
 
-    def load(self, speed: Values) -> Values:
-        """Greatest equivalent load (...), N, at a mean speed of the roller, rad/s.
-
-        NaN where no load reaches the life, or outside the range of the estimate.
-        """
-        return self.rating * bearing_life.grease_load_share(
-            self.life, speed / factor("rpm"), self.diameter, self.temperature
+    def load_share(self, speed: Values, *, unbounded: bool = False) -> Values:
+        """Greatest P/C (...) at a mean speed of the roller, rad/s; see `grease_load_share`."""
+        return bearing_life.grease_load_share(
+            self.life, speed / factor("rpm"), self.diameter, self.temperature, unbounded=unbounded
         )
 
 

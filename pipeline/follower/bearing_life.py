@@ -186,13 +186,16 @@ def grease_life(
     - (0.021 - 1.80e-8 d n) T; SKF for the outer ring: n D. Both recalled: verify.
     """
     share = max(load_share, _LIGHT)
-    if not share <= _HEAVY:
+    if not share <= HEAVY_GREASE:
         return np.nan
     light = float(_light_grease(np.asarray(speed), outer_diameter, temperature))
     return 3600.0 * exp(log(10.0) * (light - _LOSS * (share - _LIGHT)))
 
 
-_LIGHT, _HEAVY, _LOSS = 0.05, 0.2, 2.50  # range of P/C, and loss of log10 of the life per P/C
+HEAVY_GREASE = 0.2
+"""Greatest P/C of the estimate of the life of the grease."""
+_LIGHT, _LOSS = 0.05, 2.50  # least P/C that shortens the life, loss of log10 of the life per P/C
+_NEWTON_STEPS = 60
 
 
 def _light_grease(speed: Values, outer_diameter: float, temperature: float) -> Values:
@@ -207,7 +210,12 @@ def _light_grease(speed: Values, outer_diameter: float, temperature: float) -> V
 
 
 def grease_load_share(
-    life: float, speed: Values, outer_diameter: float, temperature: float
+    life: float,
+    speed: Values,
+    outer_diameter: float,
+    temperature: float,
+    *,
+    unbounded: bool = False,
 ) -> Values:
     """Greatest P/C (...) at which the grease lasts, up to the range of the estimate.
 
@@ -218,8 +226,56 @@ def grease_load_share(
     ----------
     life : float   s, > 0
     speed : array (...)   rpm, > 0
+    unbounded : bool      of any load; NaN where speed or temperature is outside the range
     """
     light = _light_grease(speed, outer_diameter, temperature)
     share = _LIGHT + (light - log(life / 3600.0) / log(10.0)) / _LOSS
-    lasts: Values = np.where(np.real(share) < _HEAVY, share, _HEAVY)
+    if unbounded:
+        return share
+    lasts: Values = np.where(np.real(share) < HEAVY_GREASE, share, HEAVY_GREASE)
     return np.where(np.real(share) >= _LIGHT, lasts, np.nan)
+
+
+def grease_load_factor(load_share: Array, allowed_share: Array, duty: Array) -> Array:
+    """Factor (...) on the dynamic rating at which the grease lasts with the load cases of a duty.
+
+    The root f of sum q_i t/L_i = 1 with t/L_i = 10^(2.50 (max(P_i/(C f), 0.05) - x_i)); zero
+    without load, and where the life is not reached without load.
+
+    Parameters
+    ----------
+    load_share : array (..., s)      P_i/C, which a complex step may have changed
+    allowed_share : array (..., s)   x_i, P/C at which the grease lasts in the load case alone; see
+                                     `grease_load_share`, unbounded
+    duty : array (s,)                q_i
+
+    References
+    ----------
+    Palmgren (1924), Miner (1945): shares of life add up; JTEKT as in `grease_life`.
+    """
+    running, steep = duty > 0.0, _LOSS * log(10.0)
+    share, load = duty[running], load_share[..., running]
+    # P/C at which a load case alone takes the whole life
+    room = allowed_share[..., running] - np.log(share) / steep
+    sizes, least = np.real(load), np.exp(steep * (_LIGHT - np.real(room))).sum(axis=-1)
+    solvable = (sizes > 0.0).any(axis=-1) & (least < 1.0)
+    if not solvable.any():
+        return np.zeros(load.shape[:-1], dtype=load.dtype)
+    ends = np.full(load.shape, np.inf)
+    np.divide(np.real(room), sizes, out=ends, where=sizes > 0.0)
+    inverse = np.where(solvable, ends.min(axis=-1), 1.0)
+
+    def next_inverse(load: Array, room: Array) -> Array:
+        """Newton's step for the logarithm of the sum, convex and rising in 1/f."""
+        heavy = np.real(load) * inverse[..., None] > _LIGHT
+        used = np.where(heavy, load * inverse[..., None], _LIGHT)
+        parts: Array = np.exp(steep * (used - room))
+        total, slope = parts.sum(axis=-1), steep * (parts * np.where(heavy, load, 0.0)).sum(axis=-1)
+        step: Array = np.log(total) * total / np.where(solvable, slope, 1.0)
+        return inverse - step
+
+    for _ in range(_NEWTON_STEPS):
+        before, inverse = inverse, next_inverse(sizes, np.real(room))
+        if np.all(before - inverse <= 1e-15 * before, where=solvable):
+            break
+    return np.where(solvable, 1.0 / np.where(solvable, next_inverse(load, room), 1.0), 0.0)

@@ -11,6 +11,7 @@ from math import inf
 from typing import Generic, Literal, NamedTuple, TypeVar
 
 import numpy as np
+from numpy.typing import NDArray
 
 from camwright.geometry.arrays import Array
 from camwright.geometry.errors import GeometryError
@@ -283,21 +284,109 @@ def forces(
         guides=guides,
         rubbing=rubbing,
         share=share,
-        surged=np.where(np.real(surged) > 0.0, surged, 0.0 * surged),
+        surged=positive(surged),
     )
 
 
+class Total(NamedTuple):
+    """Utilisations over several scenarios.
+
+    Parameters
+    ----------
+    of : callable       means over the turn (..., m), complex -> utilisations (..., r)
+    members : array (r, s)   whether a scenario counts in a utilisation
+    """
+
+    of: Callable[[Array], Array]
+    members: NDArray[np.bool_]
+
+
 class Mean(NamedTuple):
-    """Power of a mean over the turn; terms (..., n) at equally spaced angles."""
+    """Utilisations from means over the turn; terms (..., n) at equally spaced angles.
+
+    Of each scenario the power of its mean, or of several scenarios the total.
+    """
 
     terms: Array
     power: float = 1.0
+    total: Total | None = None
+
+    @property
+    def means(self) -> Array:
+        """(m,)"""
+        return np.atleast_1d(np.mean(np.real(self.terms), axis=-1))
+
+    @property
+    def members(self) -> NDArray[np.bool_]:
+        """Whether a scenario counts in a utilisation, (r, s)."""
+        return np.eye(self.means.size, dtype=bool) if self.total is None else self.total.members
 
     @property
     def value(self) -> Array:
-        """(..., 1)"""
-        mean = np.mean(self.terms, axis=-1, keepdims=True)
-        return np.asarray(np.maximum(np.real(mean), 0.0) ** self.power)
+        """Utilisations (r,)."""
+        return self._of(self.means)
+
+    @property
+    def slopes(self) -> Array:
+        """Derivatives (r, m) of the utilisations by the means."""
+        return self._slopes(self.means).T
+
+    def bend(self, weights: Array) -> Array:
+        """Second derivatives (m, m) of the utilisations by the means, weighted by (r,)."""
+        means = self.means
+        steps = np.diag(_SHARE * np.maximum(np.abs(means), np.finfo(float).tiny / _SHARE))
+        up, down = (self._slopes(means + side * steps) @ weights for side in (1.0, -1.0))
+        bend = (up - down) / (2.0 * np.diag(steps)[:, None])
+        return np.asarray(0.5 * (bend + bend.T))
+
+    def _slopes(self, means: Array) -> Array:
+        """Derivatives (..., m, r) at means (..., m), by complex steps."""
+        steps = 1j * _STEP * np.eye(means.shape[-1])
+        return np.imag(self._of(means[..., None, :] + steps)) / _STEP
+
+    def _of(self, means: Array) -> Array:
+        if self.total is None:
+            return positive(means) ** self.power
+        return self.total.of(means)
+
+
+_STEP = 1e-30  # complex step of a mean
+_SHARE = 1e-5  # of a mean: step of the second derivatives
+
+
+def positive(values: Array) -> Array:
+    """Values, and zero where they are negative; complex."""
+    return np.where(np.real(values) > 0.0, values, 0.0 * values)
+
+
+def duty_shares(scenario: Scenario) -> Array | None:
+    """Shares (r, s) of stacked scenarios in the operation at each tolerance corner.
+
+    None without a duty: each scenario counts for the whole life.
+    """
+    if scenario.duty is None:
+        return None
+    duty, corner = np.broadcast_arrays(np.ravel(scenario.duty), np.ravel(scenario.corner))
+    return np.where(corner == np.unique(corner[duty > 0.0])[:, None], duty, 0.0)
+
+
+def by_duty(terms: Array, scenario: Scenario, power: float = 1.0) -> Mean:
+    """Power of the sum of damage or wear of the load cases by their duty.
+
+    Parameters
+    ----------
+    terms : array (..., n)   whose mean over the turn is the damage of a load case that runs all of
+                             the life, over the limit
+    scenario : Scenario      stacked
+
+    References
+    ----------
+    Palmgren (1924), Miner (1945): shares of life add up.
+    """
+    shares = duty_shares(scenario)
+    if shares is None:
+        return Mean(terms, power)
+    return Mean(terms, power, Total(lambda means: positive(means @ shares.T) ** power, shares > 0))
 
 
 def roller_of(path: Motion) -> RollerMotion:

@@ -21,8 +21,9 @@ _ACCEPTED = ("Solved", "AlmostSolved")
 class Linear:
     """Rows of one limit: level + entries @ x[columns] <= slack; level (m,), entries (m, w).
 
-    scenario, point (m,): of each row, -1 for a mean over the turn; power: of that mean. A cost has
-    its greatest row in the objective, a row that is not elastic has no slack.
+    scenario, point (m,): of each row. mean: from means over the turn; the scenario is the number of
+    the utilisation, the point -1. A cost has its greatest row in the objective, a row that is not
+    elastic has no slack.
     """
 
     name: str
@@ -31,7 +32,7 @@ class Linear:
     columns: NDArray[np.intp]
     scenario: NDArray[np.intp]
     point: NDArray[np.intp]
-    power: float | None = None
+    mean: bool = False
     elastic: bool = True
     cost: bool = False
 

@@ -42,6 +42,7 @@ from camwright.pipeline.smoothing.cam_state import (
     Mean,
     Shape,
     State,
+    by_duty,
     loaded,
     motion,
     roller_of,
@@ -164,14 +165,9 @@ def _jam_index_friction_max(at: Loads, limit: float) -> Array | None:
 
 
 def _roller_life(at: Loads, limit: float) -> Mean:
-    """Of L10 = (C / P_m)^3 1e6 turns / mean spin, where P_m^3 mean spin is the mean of N^3 |n|.
-
-    With a duty each load case in operation is kept to the whole life, an upper bound of the damage
-    of all by their shares.
-    """
-    running = 1.0 if at.scenario.duty is None else np.sign(at.scenario.duty)
-    terms: Array = running * wear(at.force.surged, at.spin)
-    return Mean(terms / limit, 1.0 / BALL_LIFE_EXPONENT)
+    """Of L10 = (C / P_m)^3 1e6 turns / mean spin, where P_m^3 mean spin is the mean of N^3 |n|."""
+    terms = wear(at.force.surged, at.spin) / limit
+    return by_duty(terms, at.scenario, 1.0 / BALL_LIFE_EXPONENT)
 
 
 def _guide_pressure(side: Literal["A", "B"]) -> Constraint[Loads]:

@@ -22,13 +22,13 @@ class Gradient(NamedTuple):
     """Terms (...) of a value, and their partial derivatives.
 
     local (4, ...): by E, E', E'', E''' of each point; shared (1 or 4, ...): by the maximum lift
-    and, where they are free, k, P, r0. power: of the mean of the terms; None: they are the value.
+    and, where they are free, k, P, r0. mean: of the terms (m, n); None: they are the value.
     """
 
     terms: Array
     local: Array
     shared: Array
-    power: float | None = None
+    mean: Mean | None = None
 
 
 class Point(NamedTuple):
@@ -59,15 +59,15 @@ def differentiated(function: Function, at: Point, freed: bool) -> dict[str, Grad
         sides = [
             np.broadcast_to(np.imag(_terms(slope[name])) / _STEP, terms.shape) for slope in slopes
         ]
-        power = value.power if isinstance(value, Mean) else None
-        gradients[name] = Gradient(terms, np.stack(sides[:orders]), np.stack(sides[orders:]), power)
+        mean = value if isinstance(value, Mean) else None
+        gradients[name] = Gradient(terms, np.stack(sides[:orders]), np.stack(sides[orders:]), mean)
     return gradients
 
 
 def second_derivatives(
     function: Function, at: Point, freed: bool, weights: Mapping[str, Array]
 ) -> Array:
-    """Second derivatives (q, q, ...) of a weighted sum of terms.
+    """Second derivatives (q, q, n) of a weighted sum of terms (..., n).
 
     By E, E', E'', E''', the maximum lift and, where they are free, k, P, r0: q is 5 or 8. Central
     differences of complex steps.
@@ -78,12 +78,14 @@ def second_derivatives(
     """
 
     def slopes(point: Point, places: Sequence[int]) -> Array:
-        """Derivatives (len(places), ...) in some of the q directions."""
+        """Derivatives (len(places), n) in some of the q directions."""
         sides = []
         for place in places:
             values = _values(function, _step(point, place, 1j * _STEP))
-            parts = [weight * np.imag(_terms(values[name])) for name, weight in weights.items()]
-            sides.append(np.sum(np.broadcast_arrays(*parts), axis=0) / _STEP)
+            parts = (weight * np.imag(_terms(values[name])) for name, weight in weights.items())
+            sides.append(
+                sum(np.sum(each, axis=tuple(range(each.ndim - 1))) for each in parts) / _STEP
+            )
         return np.stack(sides)
 
     sizes = [float(np.abs(part).max()) or 1.0 for part in at.energy]

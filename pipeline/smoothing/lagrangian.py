@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from camwright.geometry.arrays import Array
 from camwright.pipeline.smoothing.cone_program import ConeSolution, Linear
-from camwright.pipeline.smoothing.gradients import second_derivatives
+from camwright.pipeline.smoothing.gradients import differentiated, second_derivatives
 from camwright.pipeline.smoothing.linear_model import Model, State, Summit
 from camwright.pipeline.smoothing.objective import torque_ripple
 from camwright.pipeline.smoothing.sampled_problem import Search
@@ -82,10 +82,10 @@ class Lagrangian:
         state = search.state(self.coefficients, variables)
         total = 0.0
         for limit, prices in self.limits:
-            if limit.power is None:
-                uses = state.pointwise[limit.name][limit.scenario, limit.point]
-            else:
+            if limit.mean:
                 uses = state.means[limit.name][limit.scenario]
+            else:
+                uses = state.pointwise[limit.name][limit.scenario, limit.point]
             total += float(prices @ uses)
         left = search.residual_torque(self.coefficients, variables)
         for number, objective, ceiling in self.ripples:
@@ -117,8 +117,8 @@ def lagrangian_curvature(
         for limit, price in zip(model.limits, program.rows, strict=True)
         if (price > _PRICE_LEAST).any()
     ]
-    pointwise = [pair for pair in priced if pair[0].power is None and (pair[0].scenario >= 0).all()]
-    means = [pair for pair in priced if pair[0].power is not None]
+    pointwise = [pair for pair in priced if not pair[0].mean and (pair[0].scenario >= 0).all()]
+    means = [pair for pair in priced if pair[0].mean]
     total += _of_rows(search, state, summit, pointwise)
     total += _of_means(search, state, summit, means)
     return total + _of_ripples(search, state, summit, model, program)
@@ -148,24 +148,25 @@ def _of_rows(
 def _of_means(
     search: Search, state: State, summit: Summit, priced: Sequence[tuple[Linear, Array]]
 ) -> Array:
-    """Of limits and costs that are powers of means over the turn."""
+    """Of limits and costs from means over the turn."""
     total = np.zeros((search.size, search.size))
+    by_name = {name: np.zeros(rows.size) for name, rows in state.means.items()}
+    for limit, price in priced:
+        by_name[limit.name][limit.scenario] += price
     for names in search.families(limit.name for limit, _ in priced):
-        own = [pair for pair in priced if pair[0].name in names]
-        rows = np.unique([int(limit.scenario[0]) for limit, _ in own]).astype(np.intp)
-        weights = {name: np.zeros((rows.size, 1)) for name in names}
-        for limit, prices in own:
-            row, price, power = int(limit.scenario[0]), float(prices[0]), limit.power or 1.0
-            use = float(state.means[limit.name][row])
-            if use > 0.0:
-                front = price * power * use ** (1.0 - 1.0 / power) / search.every.size
-                weights[limit.name][np.searchsorted(rows, row)] = front
-                bend = price * (power - 1.0) / (power * use)
-                total += bend * np.outer(limit.entries[0], limit.entries[0])
-        function = search.function(names, state.variables, search.turns(rows))
-        at = search.point(state, summit.lift, search.every)
+        rows = {name: by_name[name] > 0.0 for name in names}
+        function, at, places = search.of_means(state, summit, rows)
+        weights = {}
+        for name, gradient in differentiated(function, at, search.freed).items():
+            mean = gradient.mean
+            if mean is None:
+                continue
+            price = by_name[name][places[name]]
+            slopes = search.means_slopes(gradient, state, summit)
+            total += slopes.T @ mean.bend(price) @ slopes
+            weights[name] = (price @ mean.slopes / search.every.size)[:, None]
         second = second_derivatives(function, at, search.freed, weights)
-        total += _assembled(search, state, summit, second.sum(axis=2), search.every)
+        total += _assembled(search, state, summit, second, search.every)
     return total
 
 
@@ -193,7 +194,7 @@ def _of_ripples(
         search.freed,
         {"torque": -slope[priced] / problem.gear_ratio},
     )
-    total = _assembled(search, state, summit, second.sum(axis=2), points)
+    total = _assembled(search, state, summit, second, points)
     if "phase" in problem.freed:
         place = problem.coefficients + list(problem.freed).index("phase")
         for k in priced:

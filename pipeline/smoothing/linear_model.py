@@ -30,7 +30,8 @@ class State:
     jerk : float
     utilisation : mapping   greatest of each limit
     pointwise : mapping     of limits and costs, by scenario and angle, (s, n); (1, n) of the shape
-    means : mapping         of limits and costs that are means over the turn, by scenario, (s,)
+    means : mapping         of limits and costs from means over the turn, (r,)
+    members : mapping       whether a scenario counts in each of those, (r, s)
     """
 
     coefficients: Array
@@ -43,6 +44,7 @@ class State:
     utilisation: Mapping[str, float]
     pointwise: Mapping[str, Array]
     means: Mapping[str, Array]
+    members: Mapping[str, NDArray[np.bool_]]
 
     def merit(self, penalty: float, ripple_weight: float) -> float:
         """Merit function: ripple, costs, jerk and penalised violations."""

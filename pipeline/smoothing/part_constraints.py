@@ -37,7 +37,11 @@ from camwright.pipeline.smoothing.cam_state import (
     Loads,
     Mean,
     Shape,
+    Total,
+    by_duty,
+    duty_shares,
     face_of,
+    positive,
     roller_of,
 )
 from camwright.pipeline.smoothing.scenario import Value
@@ -74,11 +78,6 @@ def _guide_speed(side: Side) -> Constraint[Shape]:
 def _where(applies: Value, use: Array) -> Array:
     """Utilisation in the scenarios to which a limit applies, far from it in the others."""
     return np.where(np.asarray(applies) != 0.0, use, _FAR + 0.0 * use)
-
-
-def _running(at: Loads) -> Value:
-    """1 in a load case that counts for a life, 0 in one without a share of the duty."""
-    return 1.0 if at.scenario.duty is None else np.sign(at.scenario.duty)
 
 
 def _guide_gap(at: Loads, limit: float) -> Array:
@@ -135,7 +134,7 @@ def _guide_wear(side: Side) -> Constraint[Loads]:
     def utilisation(at: Loads, limit: float) -> Mean:
         load = rubbing_load(at, place)
         pv = demands.guide_pv(load, at.velocity, at.ratings.guide_area[place])
-        return Mean(_running(at) * pv / limit)
+        return by_duty(pv / limit, at.scenario)
 
     return Constraint(
         f"guide_wear_{side}", lambda ratings: ratings.guide_wear_pv[place], utilisation
@@ -149,7 +148,7 @@ def _traction_demand(at: Loads, friction: float) -> Array | None:
     radius = path.size
     rate = path_speed_slope(path.along, path.across, jet.slope, jet.bend, path.speed)
     acceleration = at.scenario.cam_speed**2 * rate / radius
-    force = np.where(np.real(at.force.normal) > 0.0, at.force.normal, 0.0 * at.force.normal)
+    force = positive(at.force.normal)
     demand = rolling_demand(at.ratings.drag, force, at.spin, acceleration, radius)
     return _over_normal_force(at, magnitude(demand) / friction)
 
@@ -222,22 +221,42 @@ def _modified_life(at: Loads, limit: float) -> Mean | None:
     kappa, least = bearing.viscosity / rated, bearing_life.LEAST_VISCOSITY_RATIO
     kappa = np.where(np.real(kappa) > least, kappa, least)
     used = bearing_life.life_used(force, bearing.rating, bearing.cleanliness_load, kappa)
-    terms = _running(at) * turns * used * magnitude(at.spin)
-    return Mean(terms / limit, 1.0 / BALL_LIFE_EXPONENT)
+    terms = turns * used * magnitude(at.spin) / limit
+    return by_duty(terms, at.scenario, 1.0 / BALL_LIFE_EXPONENT)
 
 
 def _grease_life(at: Loads, limit: float) -> Mean | None:
-    """Equivalent load over that at the life of the grease, both at the mean speed."""
+    """Equivalent load over that at the life of the grease, both at the mean speed.
+
+    With a duty the factor on the rating at which the grease lasts, and in each load case the load
+    over the greatest one of the estimate.
+    """
     grease = at.ratings.grease
     if grease is None:
         return None
     speed, turns = _mean_spin(at)
-    load = grease.load(speed) * limit / grease.rating
-    lasts = turns & np.isfinite(load)
-    allowed = np.where(lasts, load, 1.0) ** BALL_LIFE_EXPONENT * speed
-    force = np.where(np.real(at.force.normal) > 0.0, at.force.normal, 0.0 * at.force.normal)
-    terms = _running(at) * lasts * wear(force, at.spin) / allowed
-    return Mean(terms, 1.0 / BALL_LIFE_EXPONENT)
+    worn = wear(positive(at.force.normal), at.spin) / (limit**BALL_LIFE_EXPONENT * speed)
+    shares, root = duty_shares(at.scenario), 1.0 / BALL_LIFE_EXPONENT
+    if shares is None:
+        share = grease.load_share(speed)
+        lasts = turns & np.isfinite(share)
+        return Mean(lasts * worn / np.where(lasts, share, 1.0) ** BALL_LIFE_EXPONENT, root)
+    share = grease.load_share(speed, unbounded=True)
+    known = turns & np.isfinite(share)
+    left = np.broadcast_to(np.where(known, share, 1.0), worn.shape)
+    count, running = shares.shape[1], shares.any(axis=0)
+    counted = shares * np.ravel(known)
+
+    def of(means: Array) -> Array:
+        load, allowed = positive(means[..., :count]) ** root, means[..., count:]
+        factors = [bearing_life.grease_load_factor(load, allowed, each) for each in counted]
+        return np.concatenate(
+            [np.stack(factors, axis=-1), load[..., running] / bearing_life.HEAVY_GREASE], axis=-1
+        )
+
+    members = np.concatenate([shares > 0.0, np.eye(count, dtype=bool)[running]])
+    terms = np.concatenate([np.atleast_2d(known * worn), np.atleast_2d(left)])
+    return Mean(terms, total=Total(of, members))
 
 
 def _lubrication(at: Loads, limit: float) -> Mean:

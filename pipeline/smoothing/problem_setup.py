@@ -192,25 +192,26 @@ def _corners(case: Case, nominal: Scenario, friction: FrictionRange) -> list[Sce
     spring, tolerances = case.spring, case.tolerances
     # Both guides share their lubrication.
     frictions = dict.fromkeys((friction.least, friction.greatest))
-    ends = product(_ends(spring.rate_tolerance), _ends(spring.preload_tolerance), frictions)
+    ends = list(product(_ends(spring.rate_tolerance), _ends(spring.preload_tolerance), frictions))
     corners = [
         replace(
             nominal,
+            corner=number,
             name=f"{nominal.name}, k x {rate:g}, P x {preload:g}, mu {mu[0]:g} and {mu[1]:g}",
             rate_factor=rate,
             preload_factor=preload * nominal.preload_factor,
             friction_a=mu[0],
             friction_b=mu[1],
         )
-        for rate, preload, mu in ends
+        for number, (rate, preload, mu) in enumerate(ends, 1)
         if (rate, preload, mu) != (1.0, 1.0, (nominal.friction_a, nominal.friction_b))
     ]
-    corners += [
+    single = [
         replace(nominal, name=f"{nominal.name}, m x {share:g}", mass=share * nominal.mass)
         for share in _ends(tolerances.mass)
     ]
     late = tolerances.phase / case.mechanism.gear_ratio
-    corners += [
+    single += [
         replace(
             nominal,
             name=f"{nominal.name}, phase {np.degrees(shift):+.3g} deg of cam",
@@ -218,6 +219,7 @@ def _corners(case: Case, nominal: Scenario, friction: FrictionRange) -> list[Sce
         )
         for shift in (-late, late)
     ]
+    corners += [replace(each, corner=number) for number, each in enumerate(single, len(ends) + 1)]
     return [replace(each, nominal=False) for each in corners]
 
 

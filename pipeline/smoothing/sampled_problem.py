@@ -69,6 +69,11 @@ class Search:
             if item.weight > 0 or problem.ceiling_of(item) is not None
         ]
         self._weights = np.array([[item.weight] for item in problem.scenarios])
+        # Lives add over the load cases at a tolerance corner, without a duty in none.
+        apart = any(item.duty is None for item in problem.scenarios)
+        self._corners = np.array(
+            [k if apart else item.corner for k, item in enumerate(problem.scenarios)]
+        )
         self._scale = problem.scale
         self.costs = frozenset(
             each.term.key for each in problem.objective if isinstance(each.term, Cost)
@@ -223,7 +228,7 @@ class Search:
         """Greatest of the scenarios at the angles of a uniform grid, (n,); (1,) for means."""
         pointwise, means = self._uses(coefficients, variables, grid, grid.theta.size)
         worst = {name: value.max(axis=0) for name, value in pointwise.items()}
-        return worst | {name: value.max(keepdims=True) for name, value in means.items()}
+        return worst | {name: each.value.max(keepdims=True) for name, each in means.items()}
 
     def pointwise(
         self, coefficients: Array, variables: DesignVariables, grid: Grid
@@ -235,8 +240,8 @@ class Search:
 
     def _uses(
         self, coefficients: Array, variables: DesignVariables, grid: Grid, points: int
-    ) -> tuple[dict[str, Array], dict[str, Array]]:
-        """Utilisations (s, n) at the angles of a grid; (s,) of means over its first points."""
+    ) -> tuple[dict[str, Array], dict[str, Mean]]:
+        """Utilisations (s, n) at the angles of a grid; means over its first points."""
         highest = self.highest(coefficients, variables)
         jet = lift_jet(grid.energy(coefficients), variables)
         shape = self.shape()(jet, highest, variables)
@@ -248,14 +253,13 @@ class Search:
             else {}
         )
         pointwise: dict[str, Array] = {}
-        means: dict[str, Array] = {}
+        means: dict[str, Mean] = {}
         for name, value in (*shape.items(), *loads.items(), *charged.items()):
             if name in self.problem.left_out:
                 continue
             if isinstance(value, Mean):
-                if points:
-                    terms = np.atleast_2d(value.terms)[:, :points]
-                    means[name] = Mean(terms, value.power).value[:, 0]
+                if points and value.members.size:
+                    means[name] = value._replace(terms=value.terms[:, :points])
             else:
                 pointwise[name] = np.atleast_2d(value)
         return pointwise, means
@@ -263,7 +267,8 @@ class Search:
     def state(self, coefficients: Array, variables: DesignVariables) -> State:
         """State at coefficients, J, and variables."""
         problem = self.problem
-        pointwise, means = self._uses(coefficients, variables, self.grid, problem.points)
+        pointwise, totals = self._uses(coefficients, variables, self.grid, problem.points)
+        means = {name: each.value for name, each in totals.items()}
         greatest = {name: float(value.max()) for name, value in (pointwise | means).items()}
         most = {name: value for name, value in greatest.items() if name not in self.costs}
         energy = self.turn.energy(coefficients)
@@ -301,6 +306,7 @@ class Search:
             utilisation=most,
             pointwise=pointwise,
             means=means,
+            members={name: each.members for name, each in totals.items()},
         )
 
     def residual_torque(self, coefficients: Array, variables: DesignVariables) -> Array:
@@ -330,7 +336,7 @@ class Search:
         return rows
 
     def near_means(self, state: State) -> dict[str, NDArray[np.bool_]]:
-        """Scenarios of each limit on a mean that are near it."""
+        """Utilisations from means that are near their limit."""
         rows = {}
         for name, value in state.means.items():
             level = self.level(name, value)
@@ -465,49 +471,60 @@ class Search:
     def means(
         self, state: State, summit: Summit, wanted: Mapping[str, NDArray[np.bool_]]
     ) -> list[Linear]:
-        """Linear models of the wanted limits on means, (s,) by limit."""
+        """Linear models of the wanted utilisations from means, (r,) by limit."""
         models: list[Linear] = []
         for names in self.families(name for name, rows in wanted.items() if rows.any()):
-            rows = np.flatnonzero(np.any([wanted[name] for name in names], axis=0))
-            function = self.function(names, state.variables, self.turns(rows))
-            at = self.point(state, summit.lift, self.every)
+            rows = {name: wanted[name] for name in names}
+            function, at, places = self.of_means(state, summit, rows)
             for name, gradient in differentiated(function, at, self.freed).items():
-                models += [
-                    self._mean(name, gradient, int(k), state, summit, rows[[k]])
-                    for k in np.flatnonzero(wanted[name][rows])
-                ]
+                if gradient.mean is None:
+                    continue
+                entries = gradient.mean.slopes @ self.means_slopes(gradient, state, summit)
+                for place, k in enumerate(places[name]):
+                    if wanted[name][k]:
+                        models.append(
+                            self._mean(name, state, entries[[place]], places[name][[place]])
+                        )
         return models
+
+    def of_means(
+        self, state: State, summit: Summit, rows: Mapping[str, NDArray[np.bool_]]
+    ) -> tuple[Function, Point, Mapping[str, NDArray[np.intp]]]:
+        """Limits whose utilisations (r,) are wanted, in the scenarios they need, at the points.
+
+        Returns
+        -------
+        function, point   of the limits, and its arguments
+        places : mapping  numbers of the utilisations that the function gives, by limit
+        """
+        needed = [state.members[name][chosen].any(axis=0) for name, chosen in rows.items()]
+        taken = np.flatnonzero(np.isin(self._corners, self._corners[np.any(needed, axis=0)]))
+        function = self.function(frozenset(rows), state.variables, self.turns(taken))
+        places = {name: np.flatnonzero(state.members[name][:, taken].any(axis=1)) for name in rows}
+        return function, self.point(state, summit.lift, self.every), places
+
+    def means_slopes(self, gradient: Gradient, state: State, summit: Summit) -> Array:
+        """Derivatives (m, size) of means over the turn by the scaled unknowns."""
+        slopes = np.zeros((gradient.terms.shape[0], self.size))
+        for each, local in zip(slopes, np.moveaxis(gradient.local, 1, 0), strict=True):
+            np.add.at(each, self.turn.columns, self.scale * self.turn.chained(local))
+        slopes += gradient.shared.sum(axis=2).T @ self.shared_columns(state, summit)
+        return slopes / self.every.size
 
     def turns(self, rows: NDArray[np.intp]) -> Callable[[Array], Array]:
         """Values of scenarios (m,) at the points of the turn."""
         return lambda each: each[rows, : self.problem.points]
 
-    def _mean(
-        self,
-        name: str,
-        gradient: Gradient,
-        place: int,
-        state: State,
-        summit: Summit,
-        scenario: NDArray[np.intp],
-    ) -> Linear:
-        """Linear model of a power of a mean over the turn."""
-        power, terms = gradient.power or 1.0, gradient.terms[place]
-        mean = float(terms.mean())
-        front = power * mean ** (power - 1.0) / terms.size if mean > 0.0 else 0.0
-        entries = np.zeros(self.size)
-        own = front * self.scale * self.turn.chained(gradient.local[:, place])
-        np.add.at(entries, self.turn.columns, own)
-        shared = front * gradient.shared[:, place].sum(axis=1)
-        entries += shared @ self.shared_columns(state, summit)
+    def _mean(self, name: str, state: State, entries: Array, number: NDArray[np.intp]) -> Linear:
+        """Linear model of one utilisation from means over the turn."""
         return Linear(
             name,
-            self.level(name, state.means[name][scenario]),
-            entries[None],
+            self.level(name, state.means[name][number]),
+            entries,
             np.arange(self.size, dtype=np.intp)[None],
-            scenario,
+            number,
             np.array([-1]),
-            power,
+            mean=True,
             cost=name in self.costs,
         )
 

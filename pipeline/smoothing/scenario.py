@@ -243,6 +243,8 @@ class Scenario:
     weight : float           of its ripple in the objective; 0: limits only
     torque_reduction : float   required of its torque ripple; None: none is required
     duty : float             share of the operating time; None: not known
+    corner : int             number of its tolerance corner; 0: none. Lives and wear add over the
+                             load cases at a corner
     mass, viscous_damping, guide_spacing, overhang : float   of the follower, SI; spring_mass: of
                              the mass, that of the spring
     friction_a, friction_b : float
@@ -268,6 +270,7 @@ class Scenario:
     weight: float = 1.0
     torque_reduction: float | None = None
     duty: Value | None = None
+    corner: Value = 0
     friction_worst: tuple[Value, Value] | None = None
     spring_mass: Value = 0.0
     nominal: Value = True
@@ -313,6 +316,7 @@ def stacked(scenarios: Sequence[Scenario], theta: Array) -> Scenario:
         nominal=_column(each.nominal for each in scenarios),
         swept=_column(each.swept for each in scenarios),
         duty=None if None in duties else _column(each for each in duties if each is not None),
+        corner=_column(each.corner for each in scenarios),
         friction_worst=greatest,
         correction=Correction(
             *(
@@ -345,6 +349,7 @@ def taken(stack: Scenario, take: Callable[[Array], Array]) -> Scenario:
         nominal=of(stack.nominal),
         swept=of(stack.swept),
         duty=None if stack.duty is None else of(stack.duty),
+        corner=of(stack.corner),
         friction_worst=None if worst is None else (of(worst[0]), of(worst[1])),
         correction=Correction(
             *(of(getattr(stack.correction, item.name)) for item in fields(Correction))

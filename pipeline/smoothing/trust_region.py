@@ -115,7 +115,7 @@ def _corrected(search: Search, model: Model, program: ConeSolution, there: State
     """The model with levels that its rows have after the step: a second-order correction."""
     limits = []
     for each in model.limits:
-        if each.power is not None:
+        if each.mean:
             value = there.means[each.name][each.scenario]
         elif each.name in there.pointwise:
             value = there.pointwise[each.name][each.scenario, each.point]
@@ -177,7 +177,7 @@ def _missing(
             continue
         own = np.zeros(level.shape, dtype=bool)
         for each in model.limits:
-            if each.name == name and each.power is None:
+            if each.name == name and not each.mean:
                 own[each.scenario, each.point] = True
         worst = max(allowed, float(level[own].max(initial=-np.inf)) + _VIOLATED)
         rows = ~own & (level > worst)

@@ -12,6 +12,7 @@ from camwright.pipeline.case.case_file import parse_case
 from camwright.pipeline.case.machine import machines
 from camwright.pipeline.checks import camshaft_strength, contact_strength, roller_bearing
 from camwright.pipeline.checks.guide_wear import guide_wear_a
+from camwright.pipeline.follower import bearing_life
 
 TEXT = made.CASE_FILE.read_text(encoding="utf-8")
 SHARES = {"idle": 0.8, "rated": 0.2}
@@ -142,3 +143,28 @@ def test_a_duty_that_cannot_be_is_refused(idle, rated, words):
     text = TEXT.replace('name = "idle"\n', f'name = "idle"\n{idle}\n', 1)
     with pytest.raises(InputError, match=words):
         parse_case(text + RATED.format(rated))
+
+
+def test_grease_of_a_duty_lasts_at_the_rating_times_its_factor():
+    """Target 1000 h; lives by JTEKT at 70 degC and a speed below the range, 10^4.2375 h at light
+    load: a load case alone lasts at P/C = 0.05 + (4.2375 - 3)/2.5 = 0.545.
+    """
+    allowed = bearing_life.grease_load_share(3.6e6, 1000.0, 30.0e-3, 343.15, unbounded=True)
+    light = 6.10 - 4.40e-6 * 125e3 - (0.021 - 1.80e-8 * 125e3) * 70.0
+    assert allowed == pytest.approx(0.05 + (light - 3.0) / 2.50, rel=1e-12)
+    loads, duty = np.array([0.3, 0.1]), np.array([0.25, 0.75])
+    factor = bearing_life.grease_load_factor(loads, np.full(2, allowed), duty)
+    lives = 10.0 ** (light - 2.50 * (np.maximum(loads / factor, 0.05) - 0.05))
+    assert np.sum(duty * 1000.0 / lives) == pytest.approx(1.0, rel=1e-12)
+    alone = bearing_life.grease_load_factor(loads, np.full(2, allowed), np.array([1.0, 0.0]))
+    assert alone == pytest.approx(0.3 / allowed, rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("loads", "allowed", "duty"),
+    [((0.0, 0.0), 0.4, (0.5, 0.5)), ((0.3, 0.1), 0.04, (0.5, 0.5)), ((0.3, 0.1), 0.4, (0.0, 0.0))],
+    ids=["no load", "light load is too much", "at rest"],
+)
+def test_no_factor_on_the_rating_where_no_load_takes_the_grease_to_its_life(loads, allowed, duty):
+    factor = bearing_life.grease_load_factor(np.array(loads), np.full(2, allowed), np.array(duty))
+    assert factor == 0.0

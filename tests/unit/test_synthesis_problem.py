@@ -9,11 +9,8 @@ import pytest
 from camwright.geometry.errors import InputError
 from camwright.pipeline.case.case_file import parse_case, read_case
 from camwright.pipeline.case.load_case_torque import engine_torques
-from camwright.pipeline.smoothing.cam_state import lift_jet
-from camwright.pipeline.smoothing.constraints import load_utilisations
 from camwright.pipeline.smoothing.problem_setup import problem_of
 from camwright.pipeline.smoothing.sampled_problem import Search
-from camwright.pipeline.smoothing.scenario import Correction
 
 DATA = Path(__file__).parents[1] / "data"
 
@@ -61,25 +58,43 @@ def test_weight_and_required_reduction_of_a_load_case_are_apart(case, torques):
     assert left_out.ceiling_of(own.scenarios[1]) is None and left_out.ceiling is None
 
 
-def test_life_of_the_roller_is_kept_in_the_load_cases_of_the_duty(case, torques):
+def test_damage_of_the_roller_adds_over_the_load_cases_of_the_duty(case, torques):
     idle, over = case.load_cases
-    states = section(idle, duty=1.0), section(over, duty=0.0)
-    problem = problem_of(section(case, load_cases=states), torques)
-    assert [item.duty for item in problem.scenarios] == [1.0, 0.0, 0.0, 0.0]
 
-    def kept(given):
-        search = Search(given)
-        energy = search.turn.energy(search.exact)
-        jet, top = lift_jet(energy, given.variables), search.highest(search.exact, given.variables)
-        names = []
-        for item in given.scenarios:
-            at = replace(item, correction=Correction.none(given.points))
-            uses = load_utilisations(jet, top, given.variables, given.ratings, at)
-            names += [item.name] if uses["roller_life"].value > 0.0 else []
-        return names
+    def used(*duty):
+        """Cube of the utilisations of the rating life, and the scenarios that count in each."""
+        shares = zip((idle, over), duty, strict=True)
+        states = tuple(section(each, duty=share) for each, share in shares)
+        problem = problem_of(section(case, load_cases=states), torques)
+        search = Search(problem)
+        state = search.state(search.exact, problem.variables)
+        return state.means["roller_life"] ** 3, state.members["roller_life"].tolist()
 
-    assert kept(problem) == ["idle"]
-    assert kept(problem_of(case, torques)) == ["idle", "overspeed", "standstill", "over-speed"]
+    whole, each_alone = used(None, None)
+    assert np.all(whole[:2] > 0.0)
+    assert each_alone == np.eye(4, dtype=bool).tolist()
+    both, together = used(0.3, 0.7)
+    assert both == pytest.approx([0.3 * whole[0] + 0.7 * whole[1]], rel=1e-12)
+    assert together == [[True, True, False, False]]
+    one, without = used(1.0, 0.0)
+    assert one == pytest.approx(whole[:1], rel=1e-12)
+    assert without == [[True, False, False, False]]
+
+
+def test_damage_adds_at_each_corner_by_itself(case, torques):
+    idle, over = case.load_cases
+    wide = section(
+        case,
+        load_cases=(section(idle, duty=0.5), section(over, duty=0.5)),
+        spring=replace(case.spring, rate_tolerance=0.05, preload_tolerance=0.1),
+        smoothing=section(case.smoothing, corners=True),
+    )
+    problem = problem_of(wide, torques)
+    names = [item.name.partition(", ") for item in problem.scenarios]
+    search = Search(problem)
+    for members in search.state(search.exact, problem.variables).members["roller_life"]:
+        (first, *_, corner), (second, *_, same) = (names[k] for k in np.flatnonzero(members))
+        assert (first, second, same) == ("idle", "overspeed", corner)
 
 
 def test_corners_are_all_of_spring_and_friction_and_each_of_mass_and_phase(case, torques):

@@ -286,11 +286,20 @@ def scenario(count=180):
     )  # fmt: skip
 
 
-@pytest.mark.parametrize("crown", [None, 0.1])
+def sharing(scenarios, duty):
+    """The scenarios as load cases of a duty, nominal and at a corner; without one as they are."""
+    if duty is None:
+        return scenarios
+    running = tuple(replace(one, duty=q) for one, q in zip(scenarios, duty, strict=True))
+    return *running, *(replace(one, corner=1, preload_factor=1.2) for one in running)
+
+
+@pytest.mark.parametrize(("crown", "duty"), [(None, None), (0.1, None), (None, (0.3, 0.7))])
 @pytest.mark.parametrize("free", [(), tuple(RANGES)])
-def test_gradients_match_differences(free, crown):
+def test_gradients_match_differences(free, crown, duty):
+    both = scenario(), replace(scenario(), rate_factor=1.1, cam_speed=150.0, weight=0.0)
     given = Problem(
-        (scenario(), replace(scenario(), rate_factor=1.1, cam_speed=150.0, weight=0.0)),
+        sharing(both, duty),
         replace(EVERY, crown_radius=crown),
         DesignVariables(24.2e3, 242.0, 0.05), freed={name: RANGES[name] for name in free},
         energy=(0.0, 0.0), coefficients=24, points=180, jerk_weight=1e-2,
@@ -309,11 +318,11 @@ def test_gradients_match_differences(free, crown):
     seen = set()
     for limit in (*search.rows(state, summit, every), *search.means(state, summit, means)):
         exact = limit.change(step)
-        if limit.power is None:
+        if limit.mean:
+            one, other = (each.means[limit.name][limit.scenario] for each in (up, down))
+        else:
             one, other = (each.pointwise[limit.name][limit.scenario, limit.point]
                           for each in (up, down))  # fmt: skip
-        else:
-            one, other = (each.means[limit.name][limit.scenario] for each in (up, down))
         size = max(np.abs(exact).max(), 1e-3)
         smooth = np.abs((one - other) / (2 * h) - exact) < 1e-6 * size
         # |s'|, |alpha| and the sign of the motion turn at a few points
@@ -355,17 +364,17 @@ def test_gradient_of_each_term_of_the_objective(free, term):
     assert slope == pytest.approx(differences, rel=1e-6)
 
 
+@pytest.mark.parametrize("duty", [None, (0.3, 0.7)])
 @pytest.mark.parametrize("free", [(), tuple(RANGES)])
-def test_second_derivatives_of_the_lagrangian_match_its_differences(free, monkeypatch):
+def test_second_derivatives_of_the_lagrangian_match_its_differences(free, duty, monkeypatch):
     """Of every limit and ripple at once; the norms' own part of the curvature added.
 
     The second derivative of the maximum lift is left out: the differences take it as linear.
     """
+    fast = replace(scenario(), rate_factor=1.1, cam_speed=150.0, weight=0.7)
+    both = replace(scenario(), torque_reduction=0.5), replace(fast, torque_reduction=0.4)
     given = Problem(
-        (
-            replace(scenario(), torque_reduction=0.5),
-            replace(scenario(), rate_factor=1.1, cam_speed=150.0, weight=0.7, torque_reduction=0.4),
-        ),
+        sharing(both, duty),
         EVERY, DesignVariables(24.2e3, 242.0, 0.05), freed={name: RANGES[name] for name in free},
         coefficients=24, points=180,
         objective=objective_of(dict.fromkeys(KEYS, 0.5), (3, 5)),

@@ -222,7 +222,7 @@ def test_gradient_of_each_cost_matches_differences():
     for name, gradient in exact.items():
         local = np.sum(gradient.local * np.stack(change), axis=0)
         shared = np.array([top, *shift.values()]) @ gradient.shared
-        if gradient.power is not None:
+        if gradient.mean is not None:
             ours, differences = np.mean(local + shared), up[name].value - down[name].value
         else:
             ours, differences = local + shared, up[name] - down[name]

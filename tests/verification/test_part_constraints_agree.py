@@ -24,6 +24,7 @@ from camwright.pipeline.cycle.part_loads import edge_pressure_of
 from camwright.pipeline.cycle.solution import solution
 from camwright.pipeline.cycle.speed_sweep import ANGLES
 from camwright.pipeline.follower.bearing_life import rated_viscosity
+from camwright.pipeline.preview import preview_case
 from camwright.pipeline.smoothing.allowables import (
     corrected_ratings,
     edge_load,
@@ -42,9 +43,10 @@ from camwright.pipeline.smoothing.constraints import (
     load_utilisations,
     shape_utilisations,
 )
-from camwright.pipeline.smoothing.fe_correction import corrections_of
+from camwright.pipeline.smoothing.fe_correction import SETTLED, corrections_of
 from camwright.pipeline.smoothing.problem_setup import problem_of
-from camwright.pipeline.smoothing.scenario import DesignVariables
+from camwright.pipeline.smoothing.scenario import DesignVariables, stacked
+from camwright.pipeline.smoothing.synthesis_problem import RESERVE
 
 CASE = Path(__file__).parents[2] / "cases" / "gx120-redesign.toml"
 POSITIONS = 120
@@ -91,18 +93,21 @@ def case():
     return drawn.model_copy(update=parts)
 
 
-@pytest.fixture(scope="module", params=range(2))
-def solved(case, request):
-    """A random cam in every load case."""
-    random, theta = np.random.default_rng(request.param), uniform_turn(720)
+def random_cam(case, seed):
+    random, theta = np.random.default_rng(seed), uniform_turn(720)
     waves = sum(
         random.normal() / k**3 * np.cos(k * theta + random.uniform(0, 6)) for k in range(1, 7)
     )
     lift = Lift(theta, 0.002 + 0.009 * (waves - waves.min()) / np.ptp(waves))
-    contour = RollerContour(
+    return RollerContour(
         PitchCurve(lift, case.cam.prime_radius, case.cam.offset), case.roller.radius
     )
-    return solution(case, contour, Tier.PREVIEW, positions=POSITIONS)
+
+
+@pytest.fixture(scope="module", params=range(2))
+def solved(case, request):
+    """A random cam in every load case."""
+    return solution(case, random_cam(case, request.param), Tier.PREVIEW, positions=POSITIONS)
 
 
 @pytest.fixture(scope="module")
@@ -179,10 +184,7 @@ def in_check(case, checks, solved, name, use):
         # the worst load case: log10 of the life falls by 2.5 per P/C, at no less than 0.05
         bearing, solved_lives = machine.roller.bearing, []
         for cycle in solved.cycles:
-            force, turning = cycle.loads.normal_force, np.abs(spin(cycle))
-            load = (np.sum(force**3 * turning) / np.sum(turning)) ** (1.0 / 3.0)
-            speed = float(turning.mean()) * 30.0 / np.pi
-            size = (speed, 1e3 * ring_of(machine).outer_diameter, bearing.temperature - KELVIN)
+            load, size = greased_load(machine, cycle)
             solved_lives.append((greased(*size, max(load / bearing.C, 0.05)), load, size))
         worst, load, size = min(solved_lives)
         assert check.demand == pytest.approx(3600.0 * worst, rel=1e-9)
@@ -219,8 +221,87 @@ def in_check(case, checks, solved, name, use):
     return use, check.utilisation
 
 
+DUTY = (0.3, 0.7)
+
+
+@pytest.fixture(scope="module")
+def sharing(case):
+    """Solution, checks and stacked scenarios of a random cam whose load cases have a duty."""
+    states = tuple(
+        each.model_copy(update={"duty": share})
+        for each, share in zip(case.load_cases, DUTY, strict=True)
+    )
+    shared = case.model_copy(update={"load_cases": states})
+    solved = solution(shared, random_cam(shared, 0), Tier.PREVIEW, positions=POSITIONS)
+    corrections = corrections_of(solved)
+    scenarios = [
+        replace(each, correction=corrections[each.name])
+        for each in problem_of(shared, engine_torques(shared)).scenarios
+    ]
+    return solved, {each.id: each for each in checks_of(solved)}, scenarios
+
+
+@pytest.mark.parametrize(
+    "name",
+    ["roller_life", "roller_modified_life", "grease_life", "guide_wear_A", "guide_wear_B"],
+)
+def test_a_life_by_the_duty_is_that_of_its_check(sharing, name):
+    solved, checks, scenarios = sharing
+    theta, case, check = uniform_turn(POSITIONS), solved.case, checks[name]
+    pitch = solved.contour.pitch
+    jet, top = Jet(*pitch.lift.derivatives(theta, 3)), pitch.lift.highest.value
+    variables = DesignVariables(case.spring.rate, case.spring.preload, case.cam.prime_radius)
+    stack = stacked(scenarios, theta)
+    use, *others = load_utilisations(jet, top, variables, ratings_of(case), stack)[name].value
+    if name == "grease_life":
+        # the factor on the rating at which the shares of the life add to 1
+        bearing, lives, heavy = solved.machine.roller.bearing, [], []
+        for cycle in solved.cycles[:2]:
+            load, size = greased_load(solved.machine, cycle)
+            shares = load / bearing.C, load / use / bearing.C
+            lives.append([greased(*size, max(share, 0.05)) for share in shares])
+            heavy.append(load / (0.2 * bearing.C))
+        assert others == pytest.approx(heavy, rel=1e-8)
+        spent, at_limit = (np.dot(DUTY, 1.0 / np.array(each)) for each in zip(*lives, strict=True))
+        assert 3600.0 / spent == pytest.approx(check.demand, rel=1e-8)
+        assert at_limit * check.limit / 3600.0 == pytest.approx(1.0, rel=1e-8)
+        return
+    assert not others
+    power = 1.0 if name.startswith("guide_wear") else 3.0
+    assert use**power == pytest.approx(check.utilisation, rel=1e-8)
+
+
+@pytest.mark.slow
+def test_a_synthesised_cam_spends_the_life_of_the_roller_by_the_duty():
+    """Its check, in both load cases, is at the utilisation of the constraint, which binds."""
+    case = read_case(CASE)
+    states = tuple(
+        each.model_copy(update={"duty": share})
+        for each, share in zip(case.load_cases, (0.6, 0.4), strict=True)
+    )
+    smoothing = case.smoothing.model_copy(update={"corners": False, "coefficients": 48})
+    shared = case.model_copy(update={"load_cases": states, "smoothing": smoothing})
+    trial = preview_case(shared, corners=False)
+    check = next(each for each in trial.checks if each.id == "roller_life")
+    use = trial.synthesis["utilisation"]["roller_life"]
+    assert trial.synthesis["feasible"]
+    assert use == pytest.approx(1.0 - RESERVE, abs=1e-5)
+    # that of the solved surge and lift, at 0.5 % of which the trials settle
+    assert check.utilisation == pytest.approx(use**3, rel=SETTLED)
+    assert "39% idle, 61% governed" in check.note
+    assert any(price["limit"] == "roller_life" for price in trial.synthesis["prices"])
+
+
 def ring_of(machine):
     return machine.roller.bearing.ring
+
+
+def greased_load(machine, cycle):
+    """Equivalent load, N; mean speed, rpm, outer diameter, mm, and temperature, degC."""
+    force, turning = cycle.loads.normal_force, np.abs(spin(cycle))
+    load = (np.sum(force**3 * turning) / np.sum(turning)) ** (1.0 / 3.0)
+    warm = machine.roller.bearing.temperature - KELVIN
+    return load, (float(turning.mean()) * 30.0 / np.pi, 1e3 * ring_of(machine).outer_diameter, warm)
 
 
 def greased(speed, diameter, celsius, share):
