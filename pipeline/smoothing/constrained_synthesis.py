@@ -18,7 +18,7 @@ from camwright.pipeline.smoothing.convex_relaxation import convex_start
 from camwright.pipeline.smoothing.energy_spline import Grid, lowest
 from camwright.pipeline.smoothing.lagrangian import Lagrangian
 from camwright.pipeline.smoothing.linear_model import State
-from camwright.pipeline.smoothing.sampled_problem import LEAST_ENERGY, Search
+from camwright.pipeline.smoothing.sampled_problem import Search
 from camwright.pipeline.smoothing.synthesis_problem import FINEST, RESERVE, Design, Problem
 from camwright.pipeline.smoothing.trust_region import PENALTY, Descent, descended
 
@@ -27,13 +27,14 @@ _MULTIPLIER_LEAST = 1e-6
 _REFINED = 0.01  # of a limit: peaks this near to it, or the greatest, are refined between points
 
 
-def synthesise(problem: Problem, ripple_weight: float = 1.0) -> Design:
+def synthesise(problem: Problem, ripple_weight: float = 1.0, enough: float | None = None) -> Design:
     """Cam of least residual ripple within all limits.
 
     Parameters
     ----------
     problem : Problem
     ripple_weight : float   0: any cam within the limits
+    enough : float          ripple at which the search may end, see `descended`
 
     Returns
     -------
@@ -41,14 +42,14 @@ def synthesise(problem: Problem, ripple_weight: float = 1.0) -> Design:
     """
     seeded = replace(problem, seed=started(problem, ripple_weight))
     search = Search(seeded)
-    descent = descended(search, ripple_weight)
+    descent = descended(search, ripple_weight, enough=enough)
     steps, fine = descent.steps, _peaks(search, descent.state)
     for _ in range(_ROUNDS - 1):
         between = _between(search, descent.state, fine)
         if not between.size:
             break
         search = Search(seeded, np.concatenate([search.extra, between]))
-        descent = descended(search, ripple_weight, descent)
+        descent = descended(search, ripple_weight, descent, enough)
         steps, fine = steps + descent.steps, _peaks(search, descent.state)
     return _design(search, descent, steps, fine)
 
@@ -127,7 +128,7 @@ def _multipliers(descent: Descent) -> dict[str, float]:
         return {}
     totals: dict[str, float] = {}
     for limit, prices in zip(model.limits, program.rows, strict=True):
-        if limit.cost or limit.name == LEAST_ENERGY:
+        if limit.cost or not limit.elastic:
             continue
         totals[limit.name] = totals.get(limit.name, 0.0) + float(prices.sum())
     return {name: total for name, total in totals.items() if total > _MULTIPLIER_LEAST}

@@ -91,9 +91,9 @@ def infeasibility(problem: Problem, rollers: Iterable[tuple[str, Problem]] = ())
     """Smallest set of conflicting limits, and feasible relaxations.
 
     A deletion filter determines the set: each limit in turn is dropped, and stays out where the
-    rest still conflict. The factor of each relaxation is the least feasible one, by bisection.
-    Where a limit of the roller is in the set, the first feasible roller of a catalogue is one of
-    the relaxations.
+    rest still conflict; groups of limits are dropped at once, and halved where they may not. The
+    factor of each relaxation is the least feasible one, by bisection. Where a limit of the roller
+    is in the set, the first feasible roller of a catalogue is one of the relaxations.
 
     Parameters
     ----------
@@ -107,13 +107,7 @@ def infeasibility(problem: Problem, rollers: Iterable[tuple[str, Problem]] = ())
     coarse = coarsened(problem)
     nearest = synthesise(coarse, ripple_weight=0.0)
     least_used_first = sorted(nearest.utilisation, key=lambda name: nearest.utilisation[name])
-    left_out = coarse.left_out
-    conflict = []
-    for name in least_used_first:
-        if _feasible(replace(coarse, left_out=left_out | {name})):
-            conflict.append(name)
-        else:
-            left_out = left_out | {name}
+    conflict, _ = _conflicting(coarse, least_used_first)
     conflict.reverse()
     tried = [_smallest(coarse, each) for each in _candidates(problem, conflict)]
     relaxations = [item for item in tried if item is not None]
@@ -124,6 +118,30 @@ def infeasibility(problem: Problem, rollers: Iterable[tuple[str, Problem]] = ())
     return Infeasibility(tuple(conflict), tuple(sorted(relaxations, key=lambda item: item.factor)))
 
 
+def _conflicting(
+    problem: Problem, names: list[str], *, needed: bool = False
+) -> tuple[list[str], Problem]:
+    """Names of a group of limits that conflict with the rest, and the problem without the others.
+
+    Parameters
+    ----------
+    needed : bool   whether a cam is known to exist without the group
+
+    References
+    ----------
+    Junker, AAAI (2004) 167: conflicts by divide and conquer.
+    """
+    without = replace(problem, left_out=problem.left_out | set(names))
+    if not needed and not _feasible(without):
+        return [], without
+    if len(names) == 1:
+        return names, problem
+    middle = len(names) // 2
+    first, problem = _conflicting(problem, names[:middle])
+    second, problem = _conflicting(problem, names[middle:], needed=not first)
+    return first + second, problem
+
+
 def _feasible(problem: Problem) -> bool:
     """Whether a cam keeps all limits.
 
@@ -132,8 +150,8 @@ def _feasible(problem: Problem) -> bool:
     """
     ripple = _ripple_over_ceilings(problem)
     if ripple is None:
-        return synthesise(problem, ripple_weight=0.0).feasible
-    best = synthesise(ripple)
+        return synthesise(problem, ripple_weight=0.0, enough=np.inf).feasible
+    best = synthesise(ripple, enough=1.0)
     return best.feasible and best.ripple <= 1.0
 
 

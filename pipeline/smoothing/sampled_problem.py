@@ -40,10 +40,12 @@ from camwright.pipeline.smoothing.synthesis_problem import (
 
 INITIAL_ENERGY = "initial_energy"
 LEAST_ENERGY = "least_energy"
+HIGHEST_PEAK = "highest_peak"
 SHAPE_LIMITS = frozenset(each.check for each in SHAPE)
 # Distance from a limit within which a row is in the model; from another scenario at that angle.
 _NEAR, _BEHIND = 0.05, 0.01
 _RIPPLE_BEHIND = 0.005  # of the engine's ripple: the same for the ripples of the scenarios
+_PEAKS = 0.1  # of the range of the energy, below its maximum, of peaks that may become the highest
 _FARTHEST = 1.0  # greatest step of a coefficient, of the scale
 
 
@@ -116,41 +118,67 @@ class Search:
         least = float(self.turn.energy(exact)[0].min())
         return exact if least <= problem.energy[1] else exact - least + rise
 
-    def _summit_angle(self, coefficients: Array) -> float:
-        """Cam angle of maximum lift, refined between the points, rad."""
-        theta = self.turn.theta
-        energy = self.turn.energy(coefficients)[0]
-        k = int(np.argmax(energy))
-        step = theta[1]
-        before, here, after = energy[k - 1], energy[k], energy[(k + 1) % energy.size]
-        curve = before - 2.0 * here + after
-        shift = 0.0 if curve >= 0 else 0.5 * (before - after) / curve
-        angle = float(theta[k] + step * np.clip(shift, -1.0, 1.0))
-        for _ in range(2):  # Newton on E' = 0
-            _, slope, bend, _ = Grid.at(np.array([angle]), coefficients.size).energy(coefficients)
-            if bend[0] < 0:
-                angle -= float(np.clip(slope[0] / bend[0], -step, step))
-        return angle
-
     def highest(self, coefficients: Array, variables: DesignVariables) -> float:
         """Maximum lift, refined between the points, m."""
-        return float(lift_jet(self._peak(coefficients).energy(coefficients), variables).lift[0])
+        return float(lift_jet(self._peaks(coefficients).energy(coefficients), variables).lift[0])
 
-    def _peak(self, coefficients: Array) -> Grid:
-        """Splines at the cam angle of maximum lift."""
-        if self._last is None or self._last[0] is not coefficients:
-            angle = np.array([self._summit_angle(coefficients)])
-            self._last = coefficients, Grid.at(angle, coefficients.size)
+    def _peaks(self, coefficients: Array) -> Grid:
+        """Splines at the cam angles of the peaks of the lift near its maximum, the highest first.
+
+        Refined between the points.
+        """
+        if self._last is not None and self._last[0] is coefficients:
+            return self._last[1]
+        energy, step = self.turn.energy(coefficients)[0], self.turn.theta[1]
+        before, after = np.roll(energy, 1), np.roll(energy, -1)
+        high = energy >= energy.max() - _PEAKS * np.ptp(energy)
+        k = np.flatnonzero(high & (energy >= before) & (energy > after))
+        k = k if k.size else np.array([int(np.argmax(energy))])
+        curve = before[k] - 2.0 * energy[k] + after[k]
+        shift = np.divide(
+            0.5 * (before[k] - after[k]), curve, out=np.zeros(k.size), where=curve < 0.0
+        )
+        angle = self.turn.theta[k] + step * np.clip(shift, -1.0, 1.0)
+        for _ in range(2):  # Newton on E' = 0
+            _, slope, bend, _ = Grid.at(angle, coefficients.size).energy(coefficients)
+            newton = np.divide(slope, bend, out=np.zeros(k.size), where=bend < 0.0)
+            angle = angle - np.clip(newton, -step, step)
+        peaks = Grid.at(angle, coefficients.size)
+        order = np.argsort(-peaks.energy(coefficients)[0], kind="stable")
+        self._last = coefficients, Grid.at(angle[order], coefficients.size)
         return self._last[1]
 
     def summit(self, state: State) -> Summit:
         """Maximum lift at a state, and its derivatives."""
-        peak = self._peak(state.coefficients)
-        at = Point(peak.energy(state.coefficients), 0.0, state.variables)
+        peaks = self._peaks(state.coefficients)
+        at = Point(peaks.energy(state.coefficients), 0.0, state.variables)
         lift = differentiated(_lift, at, self.freed)["lift"]
         return Summit(
-            float(lift.terms[0]), peak.chained(lift.local)[0], peak.columns[0], lift.shared[:, 0]
+            float(lift.terms[0]), peaks.chained(lift.local)[0], peaks.columns[0], lift.shared[:, 0]
         )
+
+    def _lower_peaks(self, state: State) -> list[Linear]:
+        """Other peaks, no higher than that of the maximum lift, whose slope the models have."""
+        peaks = self._peaks(state.coefficients)
+        energy = peaks.energy(state.coefficients)[0][1:] - peaks.energy(state.coefficients)[0][0]
+        count = energy.size
+        if not count:
+            return []
+        entries, columns = peaks.entries[0], peaks.columns
+        first = np.broadcast_to(entries[0], (count, entries.shape[1]))
+        places = np.broadcast_to(columns[0], first.shape)
+        none = np.full(count, -1)
+        return [
+            Linear(
+                HIGHEST_PEAK,
+                energy / self.scale,
+                np.hstack([entries[1:], -first]),
+                np.hstack([columns[1:], places]),
+                none,
+                none,
+                elastic=False,
+            )
+        ]
 
     @property
     def freed(self) -> bool:
@@ -356,7 +384,7 @@ class Search:
         return Model(
             summit=summit,
             norms=self.norms(state, summit, self._near_ripples(state)),
-            limits=[*limits, *self._least_energy(state)],
+            limits=[*limits, *self._least_energy(state), *self._lower_peaks(state)],
             curvature=jerk.T @ jerk,
             slope=jerk.T @ (self._jerk_scale * gradient.terms),
         )

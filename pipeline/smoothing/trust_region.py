@@ -18,6 +18,10 @@ from camwright.pipeline.smoothing.sampled_problem import Search
 from camwright.pipeline.smoothing.synthesis_problem import CONVERGED, FEASIBLE, RESERVE
 
 PENALTY, _PENALTY_MAX = 20.0, 2e3
+_HOPELESS = 0.01  # foreseen gain over the excess, where a cam within the limits is not reached
+_INSIDE = 0.9  # of the trust region
+_RISE = 10.0  # of the penalty outside a limit
+_RAISED = 1e-4  # foreseen gain at `PENALTY`, outside a limit, at which the penalty is raised
 _STEPS_MAX = 60
 _TRUST, _TRUST_LEAST = 0.3, 1e-7
 _PROOF = 0.03  # least trust region in which a foreseen gain proves convergence
@@ -29,7 +33,7 @@ _VIOLATED = 1e-6
 class Descent(NamedTuple):
     """End of a descent: state, last model and its program, number of steps.
 
-    gain: decrease of the merit that another step foresees.
+    gain: decrease of the merit that another step foresees; penalty: of a unit of violation.
     """
 
     state: State
@@ -37,15 +41,23 @@ class Descent(NamedTuple):
     program: ConeSolution | None
     steps: int
     gain: float
+    penalty: float
 
 
-def descended(search: Search, ripple_weight: float, earlier: Descent | None = None) -> Descent:
+def descended(
+    search: Search,
+    ripple_weight: float,
+    earlier: Descent | None = None,
+    enough: float | None = None,
+) -> Descent:
     """Local optimum of a search from its start.
 
     Parameters
     ----------
     ripple_weight : float   0: any cam within the limits
     earlier : Descent       end of a search with fewer extra angles, to go on from
+    enough : float          ripple at which any cam within the limits is an end, as is one far from
+                            both at which little gain is foreseen; None: the least is wanted
 
     References
     ----------
@@ -58,9 +70,12 @@ def descended(search: Search, ripple_weight: float, earlier: Descent | None = No
     if earlier is not None:
         start = earlier.state.coefficients, earlier.state.variables
         model, program = earlier.model, earlier.program
-    state, trust, penalty = search.state(*start), _TRUST, PENALTY
+    state, trust = search.state(*start), _TRUST
+    penalty = PENALTY if earlier is None else earlier.penalty
     for step in range(1, _STEPS_MAX + 1):
         before, priced = model, program
+        if enough is not None and state.ripple <= enough and _within(state):
+            return Descent(state, before, priced, step, np.inf, penalty)
         model = search.model(state)
         if before is not None and priced is not None:
             bend = lagrangian_curvature(search, state, model.summit, before, priced)
@@ -71,14 +86,24 @@ def descended(search: Search, ripple_weight: float, earlier: Descent | None = No
             if program is None:
                 trust *= 0.3
                 if trust < _TRUST_LEAST:
-                    return Descent(state, before, priced, step, gain)
+                    return Descent(state, before, priced, step, gain, penalty)
                 continue
             now = state.merit(penalty, ripple_weight)
             predicted = now - program.objective - state.jerk
+            # Outside a limit the merit is next to the penalty alone.
+            outside = not _within(state)
+            scale = penalty / PENALTY if outside else 1.0
+            raised = outside and penalty < _PENALTY_MAX
+            least = (_RAISED if raised else CONVERGED) * scale
             if trust >= _PROOF or gain == np.inf:
-                gain = predicted
+                gain = predicted / scale
+            if enough is not None and _inside(search, program.step, trust):
+                missing = penalty * state.violation
+                missing += ripple_weight * max(0.0, state.ripple - enough)
+                if predicted <= _HOPELESS * missing:
+                    return Descent(state, model, program, step, gain, penalty)
             actual = now - there.merit(penalty, ripple_weight)
-            if predicted > CONVERGED and actual < _CORRECTED * predicted:
+            if predicted > least and actual < _CORRECTED * predicted:
                 other = _program(
                     search,
                     state,
@@ -91,15 +116,18 @@ def descended(search: Search, ripple_weight: float, earlier: Descent | None = No
                     gain = now - other[1].merit(penalty, ripple_weight)
                     if gain > actual:
                         (_, there, _), actual = other, gain
-            if predicted <= CONVERGED:
+                    gain /= scale
+            if predicted <= least:
                 if trust < _PROOF and not proven:
                     trust, proven = _PROOF, True
                     continue
-                if penalty < _PENALTY_MAX and not _within(state):
-                    penalty *= 10.0
+                if raised:
+                    penalty *= _RISE
                     trust = max(trust, 0.1)
+                    model = model._replace(curvature=_RISE * model.curvature)  # as the multipliers
                     continue
-                return Descent(there if actual > 0 else state, model, program, step, gain)
+                end = there if actual > 0 else state
+                return Descent(end, model, program, step, gain, penalty)
             share = actual / predicted
             if share > 0.05:
                 state = there
@@ -107,8 +135,8 @@ def descended(search: Search, ripple_weight: float, earlier: Descent | None = No
                 break
             trust *= 0.35
             if trust < _TRUST_LEAST:
-                return Descent(state, model, program, step, gain)
-    return Descent(state, model, program, _STEPS_MAX, gain)
+                return Descent(state, model, program, step, gain, penalty)
+    return Descent(state, model, program, _STEPS_MAX, gain, penalty)
 
 
 def _corrected(search: Search, model: Model, program: ConeSolution, there: State) -> Model:
@@ -125,6 +153,14 @@ def _corrected(search: Search, model: Model, program: ConeSolution, there: State
         level = search.level(each.name, value) - each.change(program.step)
         limits.append(replace(each, level=level))
     return model._replace(limits=limits)
+
+
+def _inside(search: Search, step: Array, trust: float) -> bool:
+    """Whether a step ends inside a wide trust region, which then does not limit its gain."""
+    size = max(
+        float(np.abs(step).max()), float(np.linalg.norm(search.bend @ step[: len(search.bend)]))
+    )
+    return trust >= _TRUST and size < _INSIDE * trust
 
 
 def _within(state: State) -> bool:
@@ -146,7 +182,7 @@ def _program(
     """
     # The box alone does not bound short waves, which a speed ripple does not contain.
     reach, box = Reach(search.bend, trust), search.box(state, trust)
-    for _ in range(_ADDITIONS):
+    for left in reversed(range(_ADDITIONS)):
         program = solved(
             model.norms, model.limits,
             model.curvature, model.slope, box, penalty, ripple_weight, reach,
@@ -156,7 +192,7 @@ def _program(
         there = search.state(*search.after(state, program.step))
         rows = _missing(search, model, program, there)
         ripples = _missing_ripples(model, program, there)
-        if not rows and not ripples.size:
+        if not left or (not rows and not ripples.size):
             break
         model = model._replace(
             limits=[*model.limits, *search.rows(state, model.summit, rows)],
