@@ -51,6 +51,8 @@ STRESS_REACH = 1.6
 ELEMENTS_PER_HALF_WIDTH = 16
 # Piecewise-linear functions times the ellipse across a contact; more of them would overshoot.
 _ELLIPTIC = 17
+# Residual of an elliptic pressure above which the linear one is kept; as in `active_set`.
+_COMPLEMENTARITY = 1e-9
 # Modules whose source enters the cache key.
 MESH_RECIPE = (body_mesh, gmsh_mesher, element_size, outline)
 RECIPE = (
@@ -176,7 +178,7 @@ class PatchContacts:
     """Contact at `count` positions, over the Hertz p0 and half-width of each position.
 
     pressure (count, n) at the knots, elliptic at the edges where the contact is one ellipse; p0,
-    half_width, centre (count,); residuals (count,).
+    half_width, centre (count,) of the fitted ellipse; residuals (count,) of `pressure`.
     """
 
     pressure: Array
@@ -222,15 +224,16 @@ def solve_patches(
             "the surfaces are not locally cylindrical"
         )
     ellipses = fitted_ellipses(shapes, solution.pressure)
-    elliptic = _elliptic_pressure(shapes, compliance, weighted_gap, ellipses)
-    one = _one_ellipse(shapes, solution.pressure, ellipses) & (elliptic.min(axis=1) >= 0)
+    elliptic, violation = _elliptic_pressure(shapes, compliance, weighted_gap, ellipses)
+    one = _one_ellipse(shapes, solution.pressure, ellipses) & (violation <= _COMPLEMENTARITY)
+    pressure = np.where(one[:, None], elliptic, solution.pressure)
     return PatchContacts(
-        pressure=np.where(one[:, None], elliptic, solution.pressure),
+        pressure=pressure,
         p0=ellipses.p0,
         half_width=ellipses.half_width,
         centre=ellipses.centre,
-        residual_equilibrium=solution.equilibrium,
-        residual_complementarity=solution.complementarity,
+        residual_equilibrium=np.abs(pressure @ shapes.integrals / (np.pi / 2) - 1),
+        residual_complementarity=np.where(one, violation, solution.complementarity),
     )
 
 
@@ -246,11 +249,12 @@ def _one_ellipse(shapes: PressureShapes, pressure: Array, ellipses: Ellipses) ->
 
 def _elliptic_pressure(
     shapes: PressureShapes, compliance: Array, weighted_gap: Array, ellipses: Ellipses
-) -> Array:
-    """Pressures (count, n) at the knots as linear functions times the fitted ellipse.
+) -> tuple[Array, Array]:
+    """Pressures (count, n) at the knots as linear functions times the fitted ellipse; residuals.
 
     Linear pressures overshoot by 9 % at their last knot. The elliptic ones have zero gap in the
-    mean over each function, under the same force.
+    mean over each function, under the same force. Residual (count,): tension over the greatest
+    pressure, mean gap over a function, and overlap beside the ellipse, over the greatest gap.
     """
     count, few = weighted_gap.shape[0], _ELLIPTIC
     at = (shapes.centres - ellipses.centre[:, None]) / ellipses.half_width[:, None]
@@ -264,4 +268,13 @@ def _elliptic_pressure(
     system[:, :few, few], system[:, few, :few] = -force, force
     right = np.full((count, few + 1, 1), np.pi / 2)
     right[:, :few] = -turned @ weighted_gap[:, :, None]
-    return (basis @ np.linalg.solve(system, right)[:, :few])[:, :, 0]
+    pressure = (basis @ np.linalg.solve(system, right)[:, :few])[:, :, 0]
+    gap = pressure @ compliance + weighted_gap
+    gap -= np.outer((pressure * gap).sum(axis=1) / (np.pi / 2), shapes.integrals)
+    under = (turned @ gap[:, :, None])[:, :, 0] / force
+    gap /= shapes.integrals
+    low, high = (ellipses.centre + side * ellipses.half_width for side in (-1, 1))
+    beside = (shapes.knots[2:] <= low[:, None]) | (shapes.knots[:-2] >= high[:, None])
+    violation = np.maximum(np.abs(under).max(axis=1), np.where(beside, -gap, 0.0).max(axis=1))
+    violation /= np.abs(gap).max(axis=1)
+    return pressure, np.maximum(violation, -pressure.min(axis=1) / pressure.max(axis=1))

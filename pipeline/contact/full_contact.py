@@ -70,8 +70,9 @@ class ContactSolution:
 
     xi (k,) m and pressure (k,) Pa at the knots; p0, centre and half_width of the fitted ellipse;
     tau_max, von_mises and their depths in body 1 (Pa, m); displacements (2, nodes) m of both
-    bodies; residuals of equilibrium and complementarity, relative. `linear_because` is the reason
-    for a pressure without elliptic edges, empty for an elliptic one.
+    bodies; residuals of equilibrium and complementarity of that pressure, relative, its overlap
+    beside the contact included. `linear_because` is the reason for a pressure without elliptic
+    edges, empty for an elliptic one.
     """
 
     xi: Array
@@ -136,7 +137,7 @@ def solve_contact(
     linear_pressure = linear.solution.pressure[0]
     if not shapes.open_ends and (linear_pressure[0] > 0 or linear_pressure[-1] > 0):
         raise ContactError("contact wider than the window of its pressure knots")
-    pressed, linear_because = _with_elliptic_edges(linear, gap, line_load)
+    pressed, overlap, linear_because = _with_elliptic_edges(linear, gap, line_load)
     seen, solution = pressed.seen, pressed.solution
     pressure = solution.pressure[0]
     displacements = (seen[0].displacement(-pressure), seen[1].displacement(pressure))
@@ -160,7 +161,7 @@ def solve_contact(
         approach=float(solution.approach[0]),
         displacements=displacements,
         residual_equilibrium=equilibrium,
-        residual_complementarity=float(solution.complementarity[0]),
+        residual_complementarity=max(float(solution.complementarity[0]), overlap),
         dofs=sum(side.body.dof_count for side in sides),
         linear_because=linear_because,
     )
@@ -239,27 +240,28 @@ def _pressed(
 
 def _with_elliptic_edges(
     linear: _Pressed, gap: Callable[[Array], Array], line_load: float
-) -> tuple[_Pressed, str]:
-    """Contact with elliptic edges; the linear one and the reason where it has none.
+) -> tuple[_Pressed, float, str]:
+    """Contact with elliptic edges and its overlap; the linear one and the reason without them.
 
     On every second knot, the resolution of the displacements.
     """
     shapes = linear.shapes
     if not isinstance(shapes, PressureShapes) or shapes.open_ends:
-        return linear, "the pressure does not end within the surface"
+        return linear, 0.0, "the pressure does not end within the surface"
     step = float(np.diff(shapes.knots).max())
     carrying = np.flatnonzero(linear.solution.pressure[0] > 0)
     ends = shapes.centres[carrying[[0, -1]]]
     if np.diff(carrying).max() > 1 or np.abs(ends - linear.edges).max() > 2 * step:
-        return linear, "the contact is not a single ellipse"
+        return linear, 0.0, "the contact is not a single ellipse"
     elliptic = linear
     for _ in range(_EDGE_UPDATES):
         cut = EllipticShapes.within(shapes.knots[::2], elliptic.edges)
         seen = (linear.seen[0].under(cut), linear.seen[1].under(cut))
         elliptic = _pressed(seen, cut, gap, line_load)
-    if not _overlap(linear, elliptic, gap) <= _OVERLAP:
-        return linear, "the surfaces would overlap beside the ellipse"
-    return elliptic, ""
+    overlap = _overlap(linear, elliptic, gap)
+    if not overlap <= _OVERLAP:
+        return linear, 0.0, "the surfaces would overlap beside the ellipse"
+    return elliptic, overlap, ""
 
 
 def _overlap(linear: _Pressed, elliptic: _Pressed, gap: Callable[[Array], Array]) -> float:
@@ -273,7 +275,7 @@ def _overlap(linear: _Pressed, elliptic: _Pressed, gap: Callable[[Array], Array]
     apart -= elliptic.solution.approach[0] * shapes.integrals
     low, high = elliptic.edges
     beside = (shapes.knots[2:] <= low) | (shapes.knots[:-2] >= high)
-    return float(-apart[beside].min() / apart.max())
+    return max(0.0, float(-apart[beside].min() / apart.max()))
 
 
 def _peak_stress(

@@ -1,9 +1,12 @@
 """The contact patch against the half-plane: compliance, Hertz, stress, every Poisson ratio."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from camwright.geometry.errors import ContactError
+from camwright.pipeline.contact import contact_patch as module
 from camwright.pipeline.contact import hertz
 from camwright.pipeline.contact.contact_patch import contact_patch, solve_patches
 from camwright.pipeline.contact.elasticity.halfplane import settlement
@@ -97,6 +100,43 @@ def test_pressure_does_not_oscillate(width):
         np.testing.assert_allclose(
             found.pressure[0] @ patch.shapes.integrals, np.pi / 2, rtol=1e-10
         )
+
+
+@pytest.mark.parametrize("shape", [np.square, lambda x: x**2 + 0.05 * x**4, lambda x: 0.97 * x**2])
+def test_residuals_are_those_of_the_stored_pressure(shape):
+    # Force by the trapezoidal rule; gap by the compliance of the template and Simpson's rule.
+    patch = contact_patch(0.3)
+    knots, step = patch.knots, patch.knots[1] - patch.knots[0]
+    found = pressed((patch, patch), (0.5, 0.5), shape)
+    stored = found.pressure[0]
+    force = np.trapezoid(np.concatenate([[0.0], stored, [0.0]]), knots)
+    assert abs(force / (np.pi / 2) - 1) == pytest.approx(found.residual_equilibrium[0], abs=1e-14)
+    middles = (knots[1:] + knots[:-1]) / 2
+    mean = (shape(knots[1:-1]) + shape(middles[1:]) + shape(middles[:-1])) / 3
+    gap = patch.compliance @ stored / step + mean
+    gap -= stored @ gap / stored.sum()
+    size, loaded = gap.max(), np.abs(knots[1:-1]) < found.half_width[0] - step
+    assert found.residual_complementarity[0] < 1e-13
+    # No gap in the mean over a function of the ellipse, four knots wide; at single knots there is.
+    assert gap.min() > -3e-3 * size
+    assert 1e-5 * size < np.abs(gap[loaded]).max() < 3e-3 * size
+
+
+def test_a_pressure_that_would_overlap_is_not_stored(monkeypatch):
+    patch = contact_patch(0.3)
+    linear = pressed((patch, patch), (0.5, 0.5), np.square)
+    fitted = module.fitted_ellipses
+
+    def narrow(*args):
+        ellipses = fitted(*args)
+        return replace(ellipses, half_width=0.96 * ellipses.half_width)
+
+    monkeypatch.setattr(module, "fitted_ellipses", narrow)
+    found = pressed((patch, patch), (0.5, 0.5), np.square)
+    assert found.residual_complementarity[0] < 1e-9
+    assert np.abs(found.pressure - linear.pressure).max() > 0.01
+    beyond = np.abs(patch.shapes.centres) > 0.961  # the ellipse ends at 0.96
+    assert found.pressure[0, beyond].max() > 0
 
 
 def test_a_contact_that_is_no_ellipse_keeps_its_own_edges():
