@@ -13,6 +13,8 @@ from camwright.pipeline.contact.elasticity.mesh_convergence import Convergence
 from camwright.pipeline.contact.tiers import Tier
 
 TWO_SCALE = "two-scale finite elements: contact patch and bodies"
+GAP_ROUND_OFF_MAX = 1e-3
+"""Relative round-off of the gap beyond which the contact is that of Hertz: p0 has four digits."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -22,8 +24,10 @@ class ContactHistory:
     line_load N/m; relative_radius m; p0_hertz, p0 Pa; half_width_hertz, half_width m; tau_max
     (maximum in-plane shear) and von_mises in the cam, Pa, with their depths, m; tau_any_plane, the
     maximum shear on any plane, larger than tau_max for nu below about 0.25; residual_equilibrium,
-    residual_complementarity, relative; pressure (n, k) Pa at pressure_xi (n, k) m along the
-    tangent, piecewise linear. tier is None, and every quantity NaN, where the contour does not
+    residual_complementarity, relative; bending_cam, bending_follower, relative change of p0 by the
+    bending of either body; gap_round_off, round-off of the coordinates over the gap at the Hertz
+    half-width; pressure (n, k) Pa at pressure_xi (n, k) m along the tangent, piecewise linear.
+    tier is None, and every quantity NaN, where the contour does not
     bound a body.
     """
 
@@ -40,6 +44,9 @@ class ContactHistory:
     von_mises_depth: Array
     residual_equilibrium: Array
     residual_complementarity: Array
+    bending_cam: Array
+    bending_follower: Array
+    gap_round_off: Array
     pressure: Array
     pressure_xi: Array
     tier: Tier | None
@@ -58,18 +65,29 @@ class ContactHistory:
         return np.asarray(np.isnan(self.p0))
 
     @property
+    def below_round_off(self) -> NDArray[np.bool_]:
+        """Where a vanishing load leaves a gap within round-off (n,), bool: contact of Hertz."""
+        return np.asarray(self.gap_round_off > GAP_ROUND_OFF_MAX)
+
+    @property
     def method(self) -> str:
         """Method of the solution, in words."""
         if self.tier is None:
             return "none: the contour does not bound a body"
         if self.tier is Tier.PREVIEW:
             return "closed form: Hertz line contact"
-        count = int(self.unsolved.sum())
-        note = (
-            f"; not solved at {count} angles, where the half-width exceeds a tenth of the relative "
-            "radius and the surfaces are not locally flat"
-        )
-        return TWO_SCALE + (note if count else "")
+        words = TWO_SCALE
+        if count := int(self.unsolved.sum()):
+            words += (
+                f"; not solved at {count} angles, where the half-width exceeds a tenth of the "
+                "relative radius and the surfaces are not locally flat"
+            )
+        if count := int(self.below_round_off.sum()):
+            words += (
+                f"; Hertz at {count} angles of vanishing load, where the gap is within "
+                f"{1 / GAP_ROUND_OFF_MAX:.0f} times the round-off of the coordinates"
+            )
+        return words
 
     @classmethod
     def unknown(cls, count: int) -> ContactHistory:

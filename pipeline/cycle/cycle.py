@@ -247,6 +247,9 @@ class Cycle:
             contact_column(
                 "residual_complementarity", "", "Contact pressure times gap, relative"
             ): by_elements(contact.residual_complementarity),
+            contact_column(
+                "gap_round_off", "", "Round-off of the gap, relative; above 1e-3 Hertz holds"
+            ): by_elements(contact.gap_round_off),
             Column(
                 "residual_guide_force", "", "Transverse forces on the follower, relative"
             ): guides.force_residual,

@@ -107,6 +107,43 @@ def test_pressure_grows_as_the_root_of_the_load_over_six_decades():
     assert found.residual_complementarity.max() < 1e-9
 
 
+@pytest.mark.parametrize(
+    ("of", "mostly"),
+    [(pair(hub=9e-3), "bending_follower"), (pair(bore=18.5e-3), "bending_cam")],
+)
+def test_difference_from_hertz_is_the_bending_of_the_thin_body(of, mostly):
+    # Of a round cam: both bodies on the mesh of the certificate against Hertz, 1e-4 of p0 by mesh.
+    cycle, full = history(of, 0.0, 2e3), solve_pair(of, 0.0, 2e3).solution
+    off = full.p0 / cycle.p0_hertz[0] - 1
+    assert off > 2e-3
+    np.testing.assert_allclose(cycle.bending_cam + cycle.bending_follower, off, atol=1.5e-4)
+    assert getattr(cycle, mostly)[0] > 0.9 * off
+
+
+def test_vanishing_load_is_told_by_the_round_off_of_its_gap():
+    # The scatter of p0 over the contour at one load, against the round-off that is stated.
+    of = pair(lift=4e-3)
+    bodies, angles = CycleBodies.meshed(of), np.linspace(0.1, 6.0, 24)
+    shape = two_scale_history(of, bodies, angles, np.full(24, 0.1)).p0_difference
+    for force in (1e-3, 1e-4, 1e-5):
+        found = two_scale_history(of, bodies, angles, np.full(24, force))
+        scatter = np.abs(found.p0_difference - shape).max()
+        assert 0.05 < scatter / found.gap_round_off.max() < 1.0
+        assert not found.below_round_off.any()
+    force = np.geomspace(1e-320, 1e-6, 24)
+    found = two_scale_history(of, bodies, angles, force)
+    assert found.below_round_off.all()
+    np.testing.assert_array_equal(found.p0, found.p0_hertz)
+    assert "Hertz at 24 angles of vanishing load" in found.method
+    # The stored pressure carries the load; the least forces have no normal numbers.
+    carried = np.trapezoid(found.pressure, found.pressure_xi, axis=1)
+    normal = force > 1e-200
+    np.testing.assert_allclose(carried[normal], force[normal] / WIDTH, rtol=1e-9)
+    rest = two_scale_history(of, bodies, angles, np.zeros(24))
+    assert not rest.below_round_off.any()
+    assert "vanishing" not in rest.method
+
+
 def test_superposed_field_is_that_of_the_load_itself():
     # Half-plane plus correction against the same mesh under the nodal loads of the pressure.
     radius, half_width, load = 0.01, 2e-4, 1e6
