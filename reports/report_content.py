@@ -362,9 +362,9 @@ def _evidence(material: Material) -> Section:
             "The contact is solved again at these cam angles, with both bodies meshed: at the two "
             "of the greatest pressure on three successively finer meshes, at the others on the two "
             "coarser ones, with the least order observed there. Edges are counted across the "
-            "half-width a. Order: of convergence, omitted if the values do not converge. GCI: grid "
-            "convergence index of the finest mesh. Deviation: pressure of the cycle relative to "
-            "the extrapolated one.",
+            "half-width a. Each row has order, GCI and deviation of its own quantity. Order: of "
+            "convergence; scatter where none is observed. GCI: grid convergence index of the "
+            "finest mesh. Deviation: of the cycle from the extrapolated value.",
         ) if certificate.rows else Block(
             None, "Certificate points", "The final trial has no certificate points."
         ),

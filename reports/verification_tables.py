@@ -31,6 +31,7 @@ CERTIFICATE_HEAD = (
 )  # fmt: skip
 CERTIFIED_HEAD = (
     "Cam angle, deg", "Quantity", "Per mesh", "Extrapolated", "Order", "GCI, %", "Of the cycle",
+    "Deviation, %",
 )  # fmt: skip
 CERTIFIED = {
     "half_width_mm": "half-width a, mm",
@@ -178,9 +179,9 @@ def certificate(points: Sequence[Record]) -> Table:
         rows.append([
             number(point.get("cam_angle_deg")), _several(point.get("edges_across_half_width"), 3),
             _several(point.get("dofs")), _several(pressure.get("meshes"), 5),
-            number(pressure.get("extrapolated"), 5), number(pressure.get("order"), 3),
+            number(pressure.get("extrapolated"), 5), _order(pressure),
             number(pressure.get("gci_percent"), 2), number(point.get("p0_hertz_MPa"), 5),
-            number(pressure.get("cycle"), 5), number(point.get("spread_percent"), 2),
+            number(pressure.get("cycle"), 5), _deviation(pressure),
             number(point.get("residual_equilibrium"), 2),
         ])  # fmt: skip
     return Table("Certificate points", CERTIFICATE_HEAD, rows, wide=True)
@@ -191,8 +192,9 @@ def certified(points: Sequence[Record]) -> Table:
     rows = [
         [
             number(point.get("cam_angle_deg")), title, _several(figure.get("meshes"), 5),
-            number(figure.get("extrapolated"), 5), number(figure.get("order"), 3),
+            number(figure.get("extrapolated"), 5), _order(figure),
             number(figure.get("gci_percent"), 2), number(figure.get("cycle"), 5),
+            _deviation(figure),
         ]
         for point in points
         for name, title in CERTIFIED.items()
@@ -215,6 +217,20 @@ def corners(checks: Sequence[Record]) -> Table:
 def _figure(point: Record, name: str) -> Record:
     figure = point.get(name)
     return figure if isinstance(figure, Mapping) else {}
+
+
+def _order(figure: Record) -> str:
+    """Order of convergence of a quantity on its meshes."""
+    order = figure.get("order")
+    return "scatter" if figure and order is None else number(order, 3)
+
+
+def _deviation(figure: Record) -> str:
+    """Deviation of the cycle from the extrapolated value of the same quantity, %."""
+    cycle, zero = figure.get("cycle"), figure.get("extrapolated")
+    if not isinstance(cycle, int | float) or not isinstance(zero, int | float) or not zero:
+        return DASH
+    return number(100.0 * abs(cycle / zero - 1.0), 2)
 
 
 def _several(values: Json, digits: int = 4) -> str:

@@ -311,7 +311,8 @@ def certificate(p0: float) -> list[dict[str, Any]]:
             "tau_max_MPa": figure(0.3 * level, 8e-4, 2e-4, 5e-5),
             "von_mises_MPa": figure(0.56 * level, 8e-4, 2e-4, 5e-5),
             "p0_hertz_MPa": level * 0.999, "edges_across_half_width": [6.1, 9.2, 13.8],
-            "dofs": [18233, 43120, 120411], "spread_percent": 0.06, "gci_percent": 0.0071,
+            "dofs": [18233, 43120, 120411], "spread_percent": 0.06, "spread_of": "p0",
+            "gci_percent": 0.0071, "gci_of": "p0",
             "residual_equilibrium": 3e-13, "residual_complementarity": 1e-13,
         })  # fmt: skip
     return points

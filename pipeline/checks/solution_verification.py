@@ -16,7 +16,7 @@ from camwright.meshes.mesh_quality import (
 from camwright.pipeline.case.limits import COMPLEMENTARITY, EQUILIBRIUM, MESH_UNCERTAINTY
 from camwright.pipeline.checks.check import Declaration, Demand, check
 from camwright.pipeline.checks.extremes import Extreme, greatest
-from camwright.pipeline.contact.contact_history import CertificatePoint
+from camwright.pipeline.contact.contact_history import QUANTITIES, CertificatePoint
 from camwright.pipeline.contact.elasticity.mesh_convergence import Convergence, converged
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.cycle import Cycle
@@ -144,32 +144,45 @@ def synthesis_converged(solution: Solution) -> Demand | None:
 
 
 def _certified(
-    solution: Solution, share: Callable[[CertificatePoint], float], allowed: float
+    solution: Solution,
+    share: Callable[[CertificatePoint], float],
+    allowed: float,
+    method: Callable[[CertificatePoint], str],
 ) -> Demand:
-    """Greatest value over the certified cam angles."""
+    """Greatest value over the certified cam angles; the method names its quantity."""
     points = solution.certificate
     if not points:
         return Demand(None, allowed, note=NO_CERTIFICATE)
     values = np.array([share(point) for point in points])
-    worst = int(np.argmax(values))
-    return Demand(float(values[worst]), allowed, Extreme(values[worst], "", points[worst].theta))
+    k = int(np.argmax(values))
+    worst = points[k]
+    at = Extreme(values[k], "", worst.theta)
+    return Demand(float(values[k]), allowed, at, method=method(worst))
 
 
 @check(
-    title="Peak pressure, cycle vs. certificate",
+    title="Greatest deviation of the cycle from the certificate",
     formula="max |f_c/f - 1| <= 0.01 over p0, half-width, von Mises and maximum shear stress;"
     " f_c: of the cycle, f: of both bodies by finite elements, extrapolated to zero"
     " element size",
     reason="The pressures of the cycle rest on a two-scale model.",
     unit="%",
     source=CERTIFIED,
-    method="p0 of the cycle against the finite-element solution of both bodies at certified angles",
+    method="greatest of p0, half-width, von Mises and maximum shear stress: cycle against the"
+    " finite-element solution of both bodies at certified angles",
     evidence=True,
     tier=Tier.CERTIFIED,
 )
 def certificate_spread(solution: Solution) -> Demand:
     """Difference of the contact between cycle and certificate, relative."""
-    return _certified(solution, lambda point: point.spread, SPREAD)
+
+    def method(point: CertificatePoint) -> str:
+        return (
+            f"{QUANTITIES[point.spread_of]}, the greatest of the certified quantities: cycle"
+            " against the finite-element solution of both bodies"
+        )
+
+    return _certified(solution, lambda point: point.spread, SPREAD, method)
 
 
 @check(
@@ -189,7 +202,15 @@ def certificate_spread(solution: Solution) -> Demand:
 def certificate_gci(solution: Solution) -> Demand:
     """Grid convergence index of the certificate, relative."""
     allowed = solution.machine.limits[MESH_UNCERTAINTY]
-    return _certified(solution, lambda point: point.gci, allowed)
+
+    def method(point: CertificatePoint) -> str:
+        figure = point.figures[point.gci_of][0]
+        return (
+            f"{QUANTITIES[point.gci_of]}, the greatest of the certified quantities, on"
+            f" {len(figure.values)} meshes; {_order(figure)}"
+        )
+
+    return _certified(solution, lambda point: point.gci, allowed, method)
 
 
 def _mesh(
@@ -252,10 +273,9 @@ mesh_edges = _mesh(
 )
 
 
-def _uncertainty(
-    name: str, words: str, figure: Callable[[CertificatePoint], Convergence]
-) -> Declaration:
+def _uncertainty(name: str, figure: Callable[[CertificatePoint], Convergence]) -> Declaration:
     """Check of the discretisation uncertainty of a certified quantity."""
+    words = QUANTITIES[name]
     meshes = "three meshes of both bodies at the two worst certified angles, two at the others"
 
     @check(
@@ -277,17 +297,16 @@ def _uncertainty(
             return Demand(None, allowed, note=NO_CERTIFICATE)
         worst = max(points, key=lambda point: _gci(figure(point)))
         gci = figure(worst).gci
-        how = "assumed" if worst.order_from else "observed"
-        method = f"{meshes}; {_order(figure(worst), how)}"
+        method = f"{meshes}; {_order(figure(worst))}"
         return Demand(gci, allowed, Extreme(gci, "", worst.theta), method=method)
 
     return uncertainty
 
 
-mesh_p0 = _uncertainty("p0", "peak pressure", lambda point: point.p0)
-mesh_half_width = _uncertainty("half_width", "half-width", lambda point: point.half_width)
-mesh_von_mises = _uncertainty("von_mises", "von Mises stress", lambda point: point.von_mises)
-mesh_tau_max = _uncertainty("tau_max", "maximum shear stress", lambda point: point.tau_max)
+mesh_p0 = _uncertainty("p0", lambda point: point.p0)
+mesh_half_width = _uncertainty("half_width", lambda point: point.half_width)
+mesh_von_mises = _uncertainty("von_mises", lambda point: point.von_mises)
+mesh_tau_max = _uncertainty("tau_max", lambda point: point.tau_max)
 
 
 @check(
@@ -367,8 +386,10 @@ def _gci(figure: Convergence) -> float:
     return np.inf if np.isnan(figure.gci) else figure.gci
 
 
-def _order(figure: Convergence, how: str = "observed") -> str:
+def _order(figure: Convergence) -> str:
+    """Order of convergence in words; on two meshes it is assumed."""
+    assumed = len(figure.values) == 2
     if figure.order is None:
-        return "no order observed: spread of the meshes times 3"
-    factor = "" if figure.order >= 1.0 else ", safety factor 3"
-    return f"{how} order {figure.order:.2f}{factor}"
+        return f"scatter, no order observed{' at the worst angles' if assumed else ''}"
+    factor = ", safety factor 3" if assumed or figure.order < 1.0 else ""
+    return f"{'assumed' if assumed else 'observed'} order {figure.order:.2f}{factor}"

@@ -17,6 +17,15 @@ GAP_ROUND_OFF_MAX = 1e-3
 """Relative round-off of the gap beyond which the contact is that of Hertz: p0 has four digits."""
 
 
+QUANTITIES = {
+    "p0": "peak pressure",
+    "half_width": "half-width",
+    "tau_max": "maximum shear stress",
+    "von_mises": "von Mises stress",
+}
+"""Certified quantities in words."""
+
+
 @dataclass(frozen=True, eq=False)
 class ContactHistory:
     """Contact quantities at n cam angles, SI; zero where the surfaces carry no load.
@@ -145,7 +154,13 @@ class CertificatePoint:
     @property
     def spread(self) -> float:
         """Largest relative difference of cycle and certificate in any figure; NaN if one is."""
-        return float(np.max([self.difference(name) for name in self.figures]))
+        return self.difference(self.spread_of)
+
+    @property
+    def spread_of(self) -> str:
+        """Name of the figure with the largest difference, or without a number."""
+        names = list(self.figures)
+        return names[int(np.argmax([self.difference(name) for name in names]))]
 
     def difference(self, name: str) -> float:
         """Relative difference of cycle and certificate in one figure."""
@@ -155,4 +170,10 @@ class CertificatePoint:
     @property
     def gci(self) -> float:
         """Largest grid convergence index of the figures, relative; NaN if one is."""
-        return float(np.max([figure.gci for figure, _ in self.figures.values()]))
+        return self.figures[self.gci_of][0].gci
+
+    @property
+    def gci_of(self) -> str:
+        """Name of the figure with the largest index, or without a number."""
+        names = list(self.figures)
+        return names[int(np.argmax([self.figures[name][0].gci for name in names]))]

@@ -371,7 +371,9 @@ def certificate_record(point: CertificatePoint) -> dict[str, Json]:
         "dofs": list(point.dofs),
         "order_observed_at_deg": [float(np.degrees(theta)) for theta in point.order_from],
         "spread_percent": 100 * point.spread,
+        "spread_of": point.spread_of,
         "gci_percent": 100 * point.gci,
+        "gci_of": point.gci_of,
         "residual_equilibrium": point.residual_equilibrium,
         "residual_complementarity": point.residual_complementarity,
     }

@@ -16,12 +16,14 @@ from camwright.pipeline.checks import solution_verification as verification
 from camwright.pipeline.checks.contact_strength import contact_pressure
 from camwright.pipeline.checks.error_bars import with_error_bars
 from camwright.pipeline.contact import contact_benchmarks
-from camwright.pipeline.contact.elasticity.mesh_convergence import converged
+from camwright.pipeline.contact.elasticity.mesh_convergence import converged, converged_on_two
+from camwright.pipeline.results.run_records import certificate_record
 from camwright.pipeline.smoothing import trust_region
 from camwright.pipeline.smoothing.constrained_synthesis import synthesise
 from camwright.pipeline.smoothing.sampled_problem import Search
 from camwright.pipeline.smoothing.scenario import DesignVariables, Scenario
 from camwright.pipeline.smoothing.synthesis_problem import Problem
+from camwright.reports import verification_tables
 
 MESHED = {
     "p0": verification.mesh_p0,
@@ -40,6 +42,71 @@ def test_each_figure_has_its_own_error_bar(field, gci, status):
     assert check.status == status
     assert check.must_have
     assert check.cam_angle == pytest.approx(1.5)
+
+
+SCATTER = [1.0, 1.002, 0.999]
+SETTLING = [1.16, 1.04, 1.01]
+
+
+@pytest.mark.parametrize(
+    ("field", "words"),
+    [("p0", "peak pressure"), ("half_width", "half-width"), ("von_mises", "von Mises stress"),
+     ("tau_max", "maximum shear stress")],
+)  # fmt: skip
+def test_the_greatest_index_and_deviation_name_their_quantity(field, words):
+    point = {field: made.converged(0.02), f"{field}_cycle": 1.03}
+    solution = with_certificate(**({"p0_cycle": 1.0} | point))
+    for check, demand in (
+        (verification.certificate_gci, 0.02), (verification.certificate_spread, 0.03),
+    ):  # fmt: skip
+        judged = check(solution)
+        assert judged.demand == pytest.approx(demand)
+        assert judged.method.startswith(f"{words}, the greatest of the certified quantities")
+        assert "pressure" not in judged.title.lower()
+    record = certificate_record(solution.certificate[1])
+    assert (record["spread_of"], record["gci_of"]) == (field, field)
+    assert record["gci_percent"] == pytest.approx(2.0)
+    unknown = with_certificate(**{field: made.converged(np.nan), f"{field}_cycle": np.nan})
+    assert verification.certificate_gci(unknown).status == "not_evaluated"
+    assert verification.certificate_spread(unknown).status == "not_evaluated"
+
+
+def test_a_scatter_is_called_a_scatter():
+    settled, scattered = converged(SETTLING, 2.0), converged(SCATTER, 2.0)
+    cases = (
+        (scattered, "scatter, no order observed"),
+        (settled, "observed order 2.00"),
+        (converged([1.4, 1.2, 1.06], 2.0), "observed order 0.51, safety factor 3"),
+        (converged_on_two([1.04, 1.01], 2.0, [settled]), "assumed order 2.00, safety factor 3"),
+        (
+            converged_on_two([1.04, 1.01], 2.0, [settled, scattered]),
+            "scatter, no order observed at the worst angles",
+        ),
+    )
+    for figure, words in cases:
+        solution = with_certificate(tau_max=replace(figure, gci=0.02))
+        assert verification.mesh_tau_max(solution).method.endswith(f"; {words}")
+        assert verification.certificate_gci(solution).method.endswith(f"; {words}")
+
+
+def test_rows_of_the_page_have_deviation_and_order_of_their_own_quantity():
+    first, second = made.CERTIFICATE
+    point = replace(second, p0=converged(SETTLING, 2.0), p0_cycle=1.003, tau_max_cycle=1.007,
+                    tau_max=converged(SCATTER, 2.0))  # fmt: skip
+    records = [certificate_record(first), certificate_record(point)]
+    pressure = verification_tables.certificate(records)
+    of_pressure = dict(zip(pressure.head, pressure.rows[1], strict=True))
+    # 1.0 at zero size by hand: 1.01 - 0.03/3.
+    assert (of_pressure["Deviation, %"], of_pressure["Order"]) == ("0.3", "2")
+    others = verification_tables.certified(records)
+    rows = [dict(zip(others.head, row, strict=True)) for row in others.rows]
+    assert [row["Quantity"].split(",")[0] for row in rows[3:]] == [
+        "half-width a", "maximum shear stress", "maximum von Mises stress",
+    ]  # fmt: skip
+    # Scatter is not extrapolated: of the finest value, three times the spread over it.
+    shear = rows[4]
+    assert (shear["Order"], shear["Deviation, %"], shear["GCI, %"]) == ("scatter", "0.80", "0.90")
+    assert (rows[3]["Order"], rows[3]["Deviation, %"]) == ("2", "0")
 
 
 @pytest.mark.parametrize("field", MESHED)
