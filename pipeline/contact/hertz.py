@@ -50,6 +50,25 @@ def contact_modulus(
     return 1 / compliance
 
 
+def dundurs_beta(modulus_1: float, poisson_1: float, modulus_2: float, poisson_2: float) -> float:
+    """Dundurs' constant beta of two elastic bodies in plane strain, in (-0.5, 0.5).
+
+    Zero: both surfaces strain alike under a pressure, which is then that of a frictionless contact
+    for any friction. Positive where body 1 strains more.
+
+    References
+    ----------
+    Johnson, Contact Mechanics (1985), eq. 5.3.
+    """
+    shear, bulk = 0.0, 0.0
+    bodies = ((modulus_1, poisson_1, 1.0), (modulus_2, poisson_2, -1.0))
+    for modulus, poisson, sign in bodies:
+        softness = 2.0 * (1.0 + poisson) / modulus  # 1/G
+        shear += sign * (1.0 - 2.0 * poisson) * softness
+        bulk += (1.0 - poisson) * softness
+    return 0.5 * shear / bulk
+
+
 def line_contact(
     line_load: ArrayLike, relative_radius: ArrayLike, modulus: float
 ) -> tuple[Array, Array]:

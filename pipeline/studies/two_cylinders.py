@@ -93,6 +93,11 @@ class TwoCylinders:
         return hertz.contact_modulus(*_elastic(self.body_1), *_elastic(self.body_2))
 
     @property
+    def dundurs_beta(self) -> float:
+        """Dundurs' constant beta; 0 for like materials."""
+        return hertz.dundurs_beta(*_elastic(self.body_1), *_elastic(self.body_2))
+
+    @property
     def smaller_radius(self) -> float:
         """Smaller of both radii, m."""
         return min(abs(self.radius_1), abs(self.radius_2))

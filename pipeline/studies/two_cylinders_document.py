@@ -34,6 +34,8 @@ from camwright.pipeline.studies.two_cylinders import (
 
 # Relative excess of the shear on another plane above which it is listed.
 _WORTH = 1e-3
+# Dundurs' constant of like materials: round-off.
+_ALIKE = 1e-12
 Document = dict[str, Any]
 
 _OPTIONS = {"radius_1": "--r1", "radius_2": "--r2", "friction": "--friction"}
@@ -132,6 +134,7 @@ def solved(options: Options, *, with_approach: bool = False, field: Path | None 
     document: Document = {
         "line_load_N_per_mm": in_unit(pair.line_load, "N/mm"),
         "contact_modulus_MPa": in_unit(pair.contact_modulus, "MPa"),
+        "dundurs_beta": pair.dundurs_beta,
         "relative_radius_mm": in_unit(1.0 / pair.curvature, "mm"),
         "hertz": _figures(closed_form(pair)),
     }
@@ -181,6 +184,8 @@ def lines(document: Document) -> Iterator[str]:
                     f"{title}: peak pressure {solution['p0_MPa']:.6g} MPa, "
                     f"half contact angle {solution['half_angle_deg']:.4g} deg"
                 )
+    if abs(beta := document["dundurs_beta"]) > _ALIKE:
+        yield f"unlike materials, Dundurs' beta {beta:.4g}: pressure of a frictionless contact"
     if "approach_mm" in document:
         yield f"approach {document['approach_mm']:.6g} mm"
     yield f"{document['seconds']:.2f} s"

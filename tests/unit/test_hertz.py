@@ -37,6 +37,23 @@ def test_bad_line_contacts_are_refused(load, radius, modulus):
         hertz.line_contact(load, radius, modulus)
 
 
+def test_dundurs_constant():
+    # By shear moduli and Kolosov's constants, Dundurs (1969); rigid partner, Johnson sec. 5.1.
+    def by_kolosov(e1, nu1, e2, nu2):
+        ratio = (e1 / (1 + nu1)) / (e2 / (1 + nu2))
+        first, second = 3 - 4 * nu1, 3 - 4 * nu2
+        return (ratio * (second - 1) - (first - 1)) / (ratio * (second + 1) + first + 1)
+
+    steel, others = (206e9, 0.3), [(70e9, 0.33), (3e9, 0.4), (600e9, 0.22), (1e6, 0.49)]
+    for other in others:
+        beta = hertz.dundurs_beta(*other, *steel)
+        # Dundurs counts it negative where body 1 strains more.
+        assert beta == pytest.approx(-by_kolosov(*other, *steel), rel=1e-12)
+        assert hertz.dundurs_beta(*steel, *other) == pytest.approx(-beta, rel=1e-12)
+    assert hertz.dundurs_beta(206e9, 0.3, 1e30, 0.0) == pytest.approx(0.4 / (2 * 0.7), rel=1e-12)
+    assert hertz.dundurs_beta(*steel, *steel) == 0.0
+
+
 def test_contact_modulus_of_a_rigid_partner_is_the_plane_strain_modulus():
     np.testing.assert_allclose(
         hertz.contact_modulus(210e9, 0.3, 1e30, 0.0), 210e9 / 0.91, rtol=1e-12

@@ -117,6 +117,29 @@ def test_beyond_fifteen_degrees_it_says_so_and_gives_the_conforming_solution():
     assert "no Hertz contact" in run(r2="-10.1", line_load="1000").stdout
 
 
+@pytest.mark.parametrize(
+    ("changes", "beta"),
+    [
+        # (1 - 2 nu)/(2 (1 - nu)) of the softer body on one of a billion times its modulus.
+        ({"e2": "210000e9"}, 0.4 / 1.4),
+        ({"e2": "210000e-9"}, -0.4 / 1.4),
+        ({"e2": "210000e9", "r2": "-10.1", "line_load": "1000"}, 0.4 / 1.4),
+    ],
+)
+def test_unlike_materials_have_the_pressure_of_a_frictionless_contact(changes, beta):
+    if changes["e2"].endswith("e-9"):
+        changes = changes | {"line_load": "1e-8"}
+    assert figures(**changes)["dundurs_beta"] == pytest.approx(beta, rel=1e-6)
+    line = f"unlike materials, Dundurs' beta {beta:.4g}: pressure of a frictionless contact"
+    assert line in run(**changes).stdout.splitlines()
+
+
+def test_like_materials_have_no_line_on_friction():
+    for changes in ({}, {"e2": "210 GPa"}):
+        assert abs(figures(**changes)["dundurs_beta"]) < 1e-12
+        assert "Dundurs" not in run(**changes).stdout
+
+
 def test_unlike_bodies_have_no_persson():
     document = figures(r2="-10.1", line_load="1000", e2="100000")
     assert document["conforming"]["persson"] is None
