@@ -272,7 +272,13 @@ def _numbers(material: Material) -> Section:
     blocks = [Block(Pairs("Key figures", headline, 2))]
     speed = verification_tables.crank_speed(summary["speed"])
     blocks += _tables((speed, "Crank speed", ""))
-    return Section("numbers", "Key figures", blocks, "Over one turn of the final trial.")
+    lead = f"Over one turn of the final trial. {_beyond_hertz(material)}".rstrip()
+    return Section("numbers", "Key figures", blocks, lead)
+
+
+def _beyond_hertz(material: Material) -> str:
+    """What finite elements add to Hertz theory in the final trial, one sentence."""
+    return verification_tables.hertz_difference(material.run.final.record["hertz_difference"])
 
 
 def _governing_load_case(material: Material) -> str:
@@ -291,7 +297,7 @@ def _sheet(material: Material) -> Section:
         "sheet", "Cam analysis sheet",
         [Block(Figures(drawn), title) for title, drawn in drawn_groups(material)],
         f"Load case {isolated(turn.load_case)}{others}. Dotted line: cam angle of the maximum "
-        "contact pressure. Red dashed lines: limits.",
+        f"contact pressure. Red dashed lines: limits. {_beyond_hertz(material)}".rstrip(),
     )  # fmt: skip
 
 
@@ -414,7 +420,7 @@ def _evidence(material: Material) -> Section:
         Block(None, "Mesh", "No mesh quality is recorded.", narrow=True),
         Block(Pairs("Solver time", times), "Solver time", narrow=True),
     ]  # fmt: skip
-    lead = f"Contact model: {method}." if method else ""
+    lead = f"Contact model: {method}. {_beyond_hertz(material)}".rstrip() if method else ""
     return Section("evidence", "Evidence", blocks, lead)
 
 

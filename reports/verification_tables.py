@@ -8,6 +8,7 @@ from camwright.pipeline.base.files import Json
 from camwright.pipeline.results.check_text import sentence
 from camwright.reports.report_tables import (
     DASH,
+    MINUS,
     Record,
     Table,
     number,
@@ -202,6 +203,31 @@ def certified(points: Sequence[Record]) -> Table:
     ]  # fmt: skip
     return Table("Half-width and stresses at the certificate points", CERTIFIED_HEAD, rows, 2,
                  wide=True)  # fmt: skip
+
+
+def hertz_difference(record: Json) -> str:
+    """One sentence on what finite elements add to p0 of Hertz here; "" without them."""
+    if not isinstance(record, Mapping):
+        return ""
+    ranges = {
+        name: span
+        for name, span in record.items()
+        if isinstance(span, list) and all(isinstance(end, int | float) for end in span)
+    }
+    whole, rest = ranges.pop("p0"), ranges.pop("rest")
+    bending = sorted(ranges, key=lambda name: -max(abs(end) for end in ranges[name]))
+    shares = [f"bending of the {name} {_span(ranges[name])}" for name in bending]
+    shares.append(f"mesh and change of curvature along the contact {_span(rest)}")
+    return (
+        "Over the loaded angles of the evaluated load cases finite elements change p0 of Hertz "
+        f"theory by {_span(whole)}: {', '.join(shares)}."
+    )
+
+
+def _span(ends: Sequence[float]) -> str:
+    """A range in percent to a hundredth; one value where both ends are the same."""
+    low, high = (f"{end + 0.0:.2f}".replace("-0.00", "0.00").replace("-", MINUS) for end in ends)
+    return f"{low}\N{NO-BREAK SPACE}%" if low == high else f"{low} to {high}\N{NO-BREAK SPACE}%"
 
 
 def corners(checks: Sequence[Record]) -> Table:

@@ -506,6 +506,10 @@ def write_run(
             "prices": None,
             "depth": "certified" if number == 2 else "cycle",
             "contact_method": "finite elements joined to the half-plane",
+            "hertz_difference": {
+                "p0": [0.05, 0.17], "cam": [0.01, 0.02], "ring of the roller": [0.02, 0.14],
+                "rest": [0.01, 0.03],
+            },
             "balance": {
                 "mass_g": 280.0, "unbalance_g_mm": 900.0, "unbalance_angle_deg": 40.0,
                 "residual_unbalance_g_mm": 1e-9, "hole_diameter_mm": 14.0, "hole_x_mm": 26.0,

@@ -23,15 +23,17 @@ _EDGES_ALONG_FACE = 60
 class FollowerBody(Protocol):
     """Second body of the contact.
 
-    `name` names the body in files; `surface` is the boundary of its mesh in contact with the cam,
-    `held` the held one, `free` are the unloaded ones. Where `held` is empty, `springs` support the
-    body.
+    `name` names the body in files, `part` what bends under the contact; `surface` is the boundary
+    of its mesh in contact with the cam, `held` the held one, `free` are the unloaded ones. Where
+    `held` is empty, `springs` support the body.
     """
 
     @property
     def material(self) -> Elastic: ...
     @property
     def name(self) -> str: ...
+    @property
+    def part(self) -> str: ...
     @property
     def surface(self) -> str: ...
     @property
@@ -68,6 +70,7 @@ class RollerBody:
     hub_radius: float
     material: Elastic
     name: str = "roller"
+    part: str = "roller"
     surface: str = "rim"
     held: str = "hub"
     free: tuple[str, ...] = ()
@@ -108,6 +111,7 @@ class FaceBody:
     stem_diameter: float
     material: Elastic
     name: str = "face"
+    part: str = "flat face"
     surface: str = "top"
     held: str = "stem"
 

@@ -71,6 +71,7 @@ class RingBody:
     width: float
     material: Elastic
     name: str = "roller"
+    part: str = "ring of the roller"
     surface: str = "rim"
     held: str = ""
     free: tuple[str, ...] = ("hub",)

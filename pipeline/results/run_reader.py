@@ -70,6 +70,7 @@ class TrialContents(TypedDict):
     table_step_deg: float
     depth: str
     contact_method: str
+    hertz_difference: dict[str, Json] | None
     balance: dict[str, Json]
     mesh: dict[str, Json] | None
     certificate: list[dict[str, Json]]

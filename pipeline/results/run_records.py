@@ -268,6 +268,7 @@ def trial_record(trial: Trial) -> dict[str, Json]:
         "depth": trial.depth.word,
         "contact_method": "; ".join(filter(None, (contact.method, machine.follower.body_model))),
         "line_contact_width_mm": _MM * machine.contact_width,
+        "hertz_difference": hertz_difference(trial.cycles),
         "balance": balance(machine.cam, trial.contour).record(),
         "mesh": None
         if mesh is None
@@ -280,6 +281,37 @@ def trial_record(trial: Trial) -> dict[str, Json]:
         "certificate": [certificate_record(point) for point in trial.certificate],
         "rolling": rolling_record({cycle.load_case: cycle.rolling for cycle in trial.cycles}),
     }
+
+
+def hertz_difference(cycles: Sequence[Cycle]) -> dict[str, Json] | None:
+    """Change of p0 by finite elements over Hertz, least and greatest of the loaded angles, percent.
+
+    p0; bending of the cam and of the part of the follower, to first order; rest: mesh and change of
+    curvature along the contact. None for closed forms, and without a loaded angle.
+    """
+    parts: dict[str, list[Array]] = {
+        "p0": [],
+        "cam": [],
+        cycles[0].pair.follower.part: [],
+        "rest": [],
+    }
+    for cycle in cycles:
+        contact = cycle.contact
+        if contact.tier not in (Tier.CYCLE, Tier.CERTIFIED) or cycle.loads.end is not None:
+            continue
+        on = (contact.p0_hertz > 0) & ~contact.unsolved & ~contact.below_round_off
+        whole, cam, other = (
+            values[on]
+            for values in (contact.p0_difference, contact.bending_cam, contact.bending_follower)
+        )
+        for values, part in zip(
+            parts.values(), (whole, cam, other, whole - cam - other), strict=True
+        ):
+            values.append(part)
+    if not any(part.size for part in parts["p0"]):
+        return None
+    joined = {name: 100.0 * np.concatenate(values) for name, values in parts.items()}
+    return {name: [float(part.min()), float(part.max())] for name, part in joined.items()}
 
 
 def crank_speed_record(

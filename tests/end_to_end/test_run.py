@@ -108,6 +108,26 @@ def test_resumed_run_equals_a_straight_one_to_the_byte(
     assert summary | clocks | {"files": files} == again | clocks
 
 
+def test_page_says_what_finite_elements_add_to_hertz(
+    finished: tuple[Case, Path, dict[str, Any]],
+) -> None:
+    """The range of the columns of the cycle, by the bending of the ring to 0.02 % of p0."""
+    _, out, summary = finished
+    files = RunFiles(out)
+    assert not summary["load_ends"]
+    columns = files.columns("5_cycle.csv")
+    hertz, elements = (columns[f"p0_{name}_MPa"] for name in ("hertz", "fe"))
+    change = 100.0 * (elements / hertz - 1.0)[hertz > 0]
+    record = json.loads((out / "trial_1" / "trial.json").read_text())["hertz_difference"]
+    np.testing.assert_allclose(record["p0"], [change.min(), change.max()], atol=1e-6)
+    np.testing.assert_allclose(record["ring of the roller"], record["p0"], atol=0.02)
+    assert max(np.abs(record["cam"] + record["rest"])) < 0.02
+    low, high = (f"{value:.2f}".replace("-", "\N{MINUS SIGN}") for value in record["p0"])
+    page = (out / "8_report.html").read_text(encoding="utf-8").replace("\xa0", " ")
+    words = f"finite elements change p0 of Hertz theory by {low} to {high} %: bending of the ring"
+    assert page.count(words) == 3
+
+
 def test_records_keep_their_schemas(finished: tuple[Case, Path, dict[str, Any]]) -> None:
     _, out, _ = finished
     for name, file in (

@@ -29,7 +29,8 @@ TRIAL = {
     "number": 1, "why": "", "smoothing_kind": "none", "smoothing_strength": 1.0,
     "smoothing_width_deg": None, "smoothing_description": "none", "prices": None,
     "synthesis": None, "closure_mm": 0.0, "table_step_deg": 0.0,
-    "depth": "certified", "contact_method": "", "balance": {}, "mesh": None, "certificate": [],
+    "depth": "certified", "contact_method": "", "hertz_difference": None, "balance": {},
+    "mesh": None, "certificate": [],
     "widths": np.arange(2.0),
 }  # fmt: skip
 VERDICT_OF = {
