@@ -224,12 +224,12 @@ def test_certificate_rows_follow_their_heads():
               "gci_percent": 0.031, "cycle": 1002.0}  # fmt: skip
     point = {"p0_MPa": figure, "half_width_mm": figure, "cam_angle_deg": 30.0, "dofs": [10, 20, 40],
              "edges_across_half_width": [6.0, 9.0, 13.5], "p0_hertz_MPa": 999.0,
-             "spread_percent": 0.05, "residual_equilibrium": 1e-13}  # fmt: skip
+             "spread_percent": 0.7, "residual_equilibrium": 1e-13}  # fmt: skip
     table = verification_tables.certificate([point])
     (row,) = table.rows
     assert row == [
-        "30", "6, 9, 13.5", "10, 20, 40", "1000, 1001, 1001.2", "1001.5", "–", "0.031", "999",
-        "1002", "0.05", "1×10⁻¹³",
+        "30", "6, 9, 13.5", "10, 20, 40", "1000, 1001, 1001.2", "1001.5", "scatter", "0.031",
+        "999", "1002", "0.050", "1×10⁻¹³",
     ]  # fmt: skip
     assert len(row) == len(table.head)
     table = verification_tables.certified([point])
