@@ -61,6 +61,7 @@ for _command in (
 ):
     app.command()(_command)
 
+_SIGNAL = 128  # plus the number of a signal: the exit code after it
 _COLLECT_AFTER = 50_000  # new objects
 _RESUMED_BY = {
     "run": "; run the command again with --resume to resume",
@@ -72,7 +73,13 @@ _RESUMED_BY = {
 def main() -> NoReturn:
     """Entry point: an error becomes one line and exit code 2."""
     arguments = [argument for argument in sys.argv[1:] if argument != "--debug"]
-    signal.signal(signal.SIGTERM, _as_interrupt)
+    received: list[int] = []
+
+    def interrupt(number: int, _: object) -> None:
+        received.append(number)
+        raise KeyboardInterrupt
+
+    signal.signal(signal.SIGTERM, interrupt)
     # Arrays go by their counts of references; the search for cycles costs 6 % of a short command.
     gc.set_threshold(_COLLECT_AFTER)
     try:
@@ -84,10 +91,11 @@ def main() -> NoReturn:
     except Exception as error:
         if "--debug" in sys.argv:
             raise
-        say(_describe(error))
+        say("; ".join((_describe(error), *getattr(error, "__notes__", ()))))
         code = ERROR
     if code == INTERRUPTED:  # returned or raised by the parser
         say("interrupted" + _RESUMED_BY.get(arguments[0] if arguments else "", ""))
+        code = _SIGNAL + received[0] if received else INTERRUPTED
     gc.freeze()  # the interpreter would search all objects for cycles once more as it ends
     sys.exit(code if isinstance(code, int) else PASSED)
 
@@ -109,10 +117,6 @@ def _describe(error: Exception) -> str:
 
 def _one_line(text: str) -> str:
     return " ".join(text.split())
-
-
-def _as_interrupt(*_: object) -> None:
-    raise KeyboardInterrupt
 
 
 def _version(wanted: bool) -> None:

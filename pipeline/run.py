@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import asdict, replace
+from dataclasses import asdict
+from dataclasses import replace as with_changes
 from pathlib import Path
 from typing import Any
 
@@ -48,6 +49,7 @@ def run_case(
     positions: int | None = None,
     jobs: int | None = None,
     resume: bool = False,
+    replace: bool = False,
     fields: Shown = Shown.DEFAULT,
     progress: Progress = SILENT,
     began: float | None = None,
@@ -63,6 +65,7 @@ def run_case(
     positions : int      per cam turn; None: those of the case
     jobs : int           processes for the certificate; None: number of processors, at most 4
     resume : bool        continue an interrupted run
+    replace : bool       take the place of a run of an earlier version of the case
     fields : Shown       cam angles of the stress field
     began : float        `time.perf_counter` at the start of the program, for the times of the
                          stages; None: now
@@ -83,7 +86,7 @@ def run_case(
     case = case if positions is None else case.with_positions(positions)
     with (
         refused_as_written(case),
-        RunFolder(out, case, depth=depth, resume=resume) as folder,
+        RunFolder(out, case, depth=depth, resume=resume, replace=replace) as folder,
         crew(jobs) as workers,
     ):
         watch = Stopwatch(progress, began)
@@ -143,7 +146,7 @@ def _solved(
     if sought is not None:
         watch.stage("remedies")
         texts = sought.result()
-        certified = replace(certified, checks=with_remedies(certified.checks, texts))
+        certified = with_changes(certified, checks=with_remedies(certified.checks, texts))
     writer.judge(certified)
     return summary | judged_of(certified, restated(statement, failing, _failing(certified)))
 

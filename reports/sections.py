@@ -11,6 +11,7 @@ from camwright.geometry.errors import InputError, ResultError
 from camwright.pipeline.base.progress import SILENT, Progress
 from camwright.pipeline.base.worker_processes import Crew, Task
 from camwright.pipeline.results import signoff
+from camwright.pipeline.results.run_reader import require_own_case
 from camwright.reports import figure_svg, page, pdf, picture_list, scene_page
 from camwright.reports.report_data import FIGURES, Material, read_material
 
@@ -113,8 +114,10 @@ def report(
     Raises
     ------
     ResultError
-        If the folder does not hold a finished run, or a signed one, or a file cannot be written.
+        If the folder does not hold a finished run, or a signed one, if its case is not that of the
+        run, or if a file cannot be written.
     """
+    require_own_case(Path(folder))
     material = read_material(Path(folder), ahead)
     written: dict[str, Sequence[Path]] = {}
     try:

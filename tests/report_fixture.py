@@ -17,7 +17,7 @@ from scipy.spatial import Delaunay
 from camwright.geometry.periodic_spline import periodic_quintic
 from camwright.pipeline.case.scope_section import Scope
 from camwright.pipeline.results.field_file import Block, field_file
-from camwright.pipeline.results.run_reader import SCHEMA, binding_of, verdict_of
+from camwright.pipeline.results.run_reader import SCHEMA, binding_of, input_sha256, verdict_of
 from camwright.pipeline.results.run_records import SPLINE
 
 RATE, PRELOAD, PRIME_RADIUS, ROLLER, WIDTH = 24.2e3, 242.0, 0.050, 0.008, 0.0044
@@ -524,7 +524,7 @@ def write_run(
         }))  # fmt: skip
     before, after = cycle["torque_before_Nm"], cycle["torque_after_Nm"]
     (folder / "run.json").write_text(json.dumps({
-        "schema": SCHEMA, "case": "gx120", "input_sha256": "5f" * 32,
+        "schema": SCHEMA, "case": "gx120", "input_sha256": input_sha256(folder),
         "versions": {"camwright": "0.1.0", "python": "3.11.9", "numpy": np.__version__},
         "timings_s": {"torque": 0.4, "lift": 0.1, "contour": 0.6, "mesh": 12.0, "cycle": 231.0,
                       "checks": 0.1, "report": 11.0, "total": 288.0},

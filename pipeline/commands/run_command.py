@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 from collections.abc import Sequence
-from contextlib import nullcontext
 from pathlib import Path
 from typing import Annotated
 
@@ -80,14 +79,12 @@ def run(
         design = design.with_positions(positions)
     if not (resume and _finished(out, design.sha256, depth)):
         from camwright.pipeline.results.field_output import Shown
-        from camwright.pipeline.results.run_folder import set_aside
         from camwright.pipeline.run import run_case
         from camwright.pipeline.studies.valve_train import valve_record
         from camwright.reports import sections
 
         drawings = sections.Ahead(sections.chosen(png=png))
-        old = set_aside(out, design) if replace else nullcontext()
-        with old, progress_shown() as progress:
+        with progress_shown() as progress:
             run_case(
                 design,
                 out,
@@ -95,6 +92,7 @@ def run(
                 positions=positions,
                 jobs=jobs,
                 resume=resume,
+                replace=replace,
                 fields=Shown(fields),
                 progress=progress,
                 began=process_began(),
@@ -112,9 +110,11 @@ def run(
 
 def _finished(out: Path, sha256: str, depth: str) -> bool:
     """Whether a folder holds the finished run of this case, depth and these versions."""
+    from camwright.pipeline.results.folder_exchange import complete_exchange
     from camwright.pipeline.results.run_folder import versions
     from camwright.pipeline.results.run_reader import read_summary
 
+    complete_exchange(out)
     if not (out / "run.json").is_file():
         return False
     summary = read_summary(out)

@@ -1,4 +1,4 @@
-"""Run folder: written in ``.DIR.partial`` beside its final path, renamed when it is complete."""
+"""Run folder while it is written."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ import platform
 import re
 import shutil
 import zipfile
-from collections.abc import Iterable, Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Iterable, Mapping
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from types import TracebackType
@@ -29,7 +29,6 @@ from camwright.pipeline.base.files import (
     Json,
     file_hashes,
     json_text,
-    locked,
     npz_bytes,
     read_json,
     write_atomic,
@@ -39,16 +38,25 @@ from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_file import read_case
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.results import run_reader, signoff
+from camwright.pipeline.results.folder_exchange import (
+    CHUNKS,
+    KEPT,
+    OURS,
+    STATE,
+    absolute,
+    exchange,
+    is_complete,
+    lock_of,
+    partial_of,
+    settle,
+    unlock,
+)
 from camwright.pipeline.results.run_records import SPLINE
 from camwright.pipeline.smoothing.fe_correction import redrawn
 from camwright.pipeline.smoothing.scenario import DesignVariables
 
 _SPLINE_ROUNDING = 1e-9  # of coefficients computed by another machine
-_STATE, _CHUNKS, _LOCK = ".state.json", ".chunks", ".lock"
-_OURS = re.compile(
-    r"case\.toml|(run|signoff|corners)\.json|inputs|fields|figures|exports|workshop|inspection|trial_\d+"
-    r"|scene\.html|\d+_\w+\.(csv|html|json|pdf)"
-)
+_TEMPORARY = re.compile(r"\.\w+\.tmp")
 _LIBRARIES = (
     "numpy",
     "scipy",
@@ -72,8 +80,8 @@ def versions() -> dict[str, str]:
 class RunFolder:
     """The folder of a run while it is written; a context manager.
 
-    An interruption or an unexpected exception before `finish` leaves the files for ``resume``; a
-    `CamError` deletes them.
+    An interruption leaves the files for ``resume``, and so does a full disk or an unexpected
+    exception once contact is solved. An error of the case deletes them: it would occur again.
 
     Parameters
     ----------
@@ -81,12 +89,13 @@ class RunFolder:
     case : Case     as computed, positions included
     depth : Tier    of the run
     resume : bool   continue an interrupted run
+    replace : bool  take the place of a run of an earlier version of the case as well
 
     Raises
     ------
     ResultError
-        If `out` holds anything but a run of this case, if another process writes to it, or if the
-        interrupted run has another input or other versions.
+        If `out` holds anything but a run of this case or a signed one, if another process
+        writes to it, or if the interrupted run has another input or other versions.
     """
 
     def __init__(
@@ -96,17 +105,17 @@ class RunFolder:
         *,
         depth: Tier = Tier.CERTIFIED,
         resume: bool = False,
+        replace: bool = False,
     ) -> None:
-        self.out = _absolute(out)
-        self.path = self.out.with_name(f".{self.out.name}.partial")
+        self.out = absolute(out)
+        self.path = partial_of(self.out)
         self.case = case
         self.depth = depth
         self.versions = versions()
         self.resumed = False
         self._created: list[Path] = []
         self._lock: IO[str] | None = None
-        _refuse_strangers(self.out, case)
-        self._open(resume)
+        self._open(resume, replace)
 
     def __enter__(self) -> Self:
         return self
@@ -117,12 +126,16 @@ class RunFolder:
         error: BaseException | None,
         trace: TracebackType | None,
     ) -> None:
-        # A `CamError` would occur again. After any other exception the solved pieces are kept.
-        ours = kind is not None and issubclass(kind, CamError)
-        bare = not any((self.path / _CHUNKS).rglob("*.npz"))
-        if ours or (bare and kind is not None and issubclass(kind, Exception)):
-            self.discard()
+        if isinstance(error, Exception):
+            again = isinstance(error, CamError) and not isinstance(error, ResultError)
+            if again or not (is_complete(self.path) or self._holds_pieces()):
+                self.discard()
+            else:
+                error.add_note(KEPT)
         self._unlock()
+
+    def _holds_pieces(self) -> bool:
+        return any((self.path / CHUNKS).rglob("*.npz"))
 
     # --- files, in the order of the calculation
 
@@ -222,32 +235,33 @@ class RunFolder:
 
     def finish(self, summary: Mapping[str, Json]) -> None:
         """Write summary and sign-off record, and move the folder to its final path."""
-        shutil.rmtree(self.path / _CHUNKS, ignore_errors=True)
         self.write_summary(summary)
-        (self.path / _STATE).unlink(missing_ok=True)
         signoff.write(self.path)
-        old = self.out.with_name(f".{self.out.name}.old")
         try:
-            shutil.rmtree(old, ignore_errors=True)
-            if self.out.exists():
-                self.out.rename(old)
-            try:
-                self.path.rename(self.out)
-            except OSError:
-                if old.exists():
-                    old.rename(self.out)
-                raise
+            (self.path / STATE).unlink()
+            exchange(self.out)
         except OSError as error:
             raise ResultError(f"{self.out}: {error.strerror or error}") from None
-        shutil.rmtree(old, ignore_errors=True)
         self._unlock()
-        (self.out / _LOCK).unlink(missing_ok=True)
 
     def discard(self) -> None:
         """Delete the unfinished run, and the folders created for it."""
         if self._lock is not None:
-            shutil.rmtree(self.path, ignore_errors=True)
+            with suppress(OSError):
+                self._clear()
+                (self.path / STATE).unlink(missing_ok=True)
+                self.path.rmdir()
             self._unlock()
+        self._remove_parents()
+
+    def _clear(self, kept: str = "") -> None:
+        """Delete the files but `kept` and the state, which marks the folder as that of a run."""
+        for entry in list(self.path.iterdir()):
+            if entry.name not in (STATE, kept):
+                is_folder = entry.is_dir() and not entry.is_symlink()
+                shutil.rmtree(entry) if is_folder else entry.unlink()
+
+    def _remove_parents(self) -> None:
         for folder in self._created:
             if folder.is_dir() and not any(folder.iterdir()):
                 folder.rmdir()
@@ -256,36 +270,41 @@ class RunFolder:
 
     def contact_store(self, trial: int) -> ContactFiles:
         """Pieces of the contact of a trial."""
-        return ContactFiles(self.path / _CHUNKS / f"trial_{trial}")
+        return ContactFiles(self.path / CHUNKS / f"trial_{trial}")
 
     # --- opening
 
-    def _open(self, resume: bool) -> None:
+    def _open(self, resume: bool, replace: bool) -> None:
         self._created = _make_parents(self.out)
+        opened = False
         try:
-            if self.path.is_symlink() or self.path.exists():
-                self._take_over(resume)
-            self.path.mkdir(exist_ok=True)
-            self._take_lock()
-            if not self.resumed:
-                self._begin()
-        except OSError as error:
-            self.discard()
-            raise ResultError(f"{self.out}: {error.strerror or error}") from None
-        except ResultError:
-            if self._lock is not None and not resume:
+            self._lock = lock_of(self.out)
+            settle(self.out)
+            _refuse_strangers(self.out, self.case, replace=replace)
+            self._take_over(resume)
+            opened = True
+            self._begin()
+        except (OSError, ResultError) as error:
+            refused = error
+            if isinstance(error, OSError):
+                refused = ResultError(f"{self.out}: {error.strerror or error}")
+            if opened and self._holds_pieces():
+                refused.add_note(KEPT)
+            elif opened:
                 self.discard()
             self._unlock()
-            raise
+            self._remove_parents()
+            raise refused from None
 
     def _take_over(self, resume: bool) -> None:
-        """Continue an interrupted run, or delete it."""
-        state = self.path / _STATE
-        if self.path.is_symlink() or not self.path.is_dir():
+        """Make the folder; continue an interrupted run, or delete it."""
+        state = self.path / STATE
+        if self.path.is_symlink() or (self.path.exists() and not self.path.is_dir()):
             raise ResultError(f"{self.path}: in the way, and not the start of a run")
-        if not state.is_file() and any(entry.name != _LOCK for entry in self.path.iterdir()):
+        self.path.mkdir(exist_ok=True)
+        names = [entry.name for entry in self.path.iterdir()]
+        if not state.is_file() and not all(_TEMPORARY.fullmatch(name) for name in names):
             raise ResultError(f"{self.path}: in the way, and not the start of a run")
-        self._take_lock()
         if resume and state.is_file():
             differ = _differing(read_json(state), self._identity())
             if differ:
@@ -293,13 +312,11 @@ class RunFolder:
                     f"{self.path}: cannot be resumed: {differ} differ; run without --resume"
                 )
             self.resumed = True
-            return
-        for entry in self.path.iterdir():
-            if entry.name != _LOCK:
-                shutil.rmtree(entry) if entry.is_dir() else entry.unlink()
+        # What an interrupted run wrote is written again, with the options of this one.
+        self._clear(kept=CHUNKS if self.resumed else "")
 
     def _begin(self) -> None:
-        write_atomic(self.path / _STATE, json.dumps(self._identity(), indent=2) + "\n")
+        write_atomic(self.path / STATE, json.dumps(self._identity(), indent=2) + "\n")
         write_atomic(self.path / "case.toml", self.case.to_toml())
         for name, content in self.case.included.items():
             write_atomic(self.path / name, content)
@@ -311,15 +328,9 @@ class RunFolder:
             "versions": self.versions,
         }
 
-    def _take_lock(self) -> None:
-        """Lock the folder for this process."""
-        if self._lock is None:
-            busy = f"{self.out}: another run is writing to it"
-            self._lock = locked(self.path / _LOCK, busy)
-
     def _unlock(self) -> None:
         if self._lock is not None:
-            self._lock.close()
+            unlock(self.out, self._lock)
             self._lock = None
 
     def _file(self, name: str) -> Path:
@@ -410,36 +421,8 @@ def _drawn_lift(trial: run_reader.TrialRecord) -> Lift:
     return lift
 
 
-@contextmanager
-def set_aside(out: Path, case: Case) -> Iterator[None]:
-    """Set a run of a case of the same name aside; put it back on failure.
-
-    A run of a case of another name, or a folder that is no run, stays: `RunFolder` refuses it.
-    """
-    out = _absolute(out)
-    aside = out.with_name(f".{out.name}.replaced")
-    if aside.exists() and not out.exists():
-        aside.rename(out)  # left by a process that was killed
-    replaced = _holds_only_a_run(out) and run_reader.read_summary(out)["case"] == case.name
-    if replaced:
-        shutil.rmtree(aside, ignore_errors=True)
-        out.rename(aside)
-    try:
-        yield
-    finally:
-        if replaced and not out.exists():
-            aside.rename(out)
-        shutil.rmtree(aside, ignore_errors=True)
-
-
-def _holds_only_a_run(out: Path) -> bool:
-    if not (out / "run.json").is_file():
-        return False
-    return all(_OURS.fullmatch(entry.name) for entry in out.iterdir())
-
-
-def _refuse_strangers(out: Path, case: Case) -> None:
-    """Refuse to overwrite a folder that holds anything but a run of the same input."""
+def _refuse_strangers(out: Path, case: Case, *, replace: bool) -> None:
+    """Refuse to overwrite anything but a run of the same input, or name if it is replaced."""
     if not os.path.lexists(out):
         return
     if not out.is_dir():
@@ -449,10 +432,12 @@ def _refuse_strangers(out: Path, case: Case) -> None:
         return
     if signoff.SIGNATURES in entries:
         raise ResultError(f"{out}: holds a signed run; choose another folder or remove it")
-    strange = [name for name in entries if not _OURS.fullmatch(name)]
+    strange = [name for name in entries if not OURS.fullmatch(name)]
     if strange or "run.json" not in entries:
         name = (strange or entries)[0]
         raise ResultError(f"{out}: holds {name}, which is not of a run; choose another folder")
+    if replace and _name_of(out) == case.name:
+        return
     summary = run_reader.read_summary(out)
     if summary["input_sha256"] != case.sha256:
         other = summary["case"]
@@ -460,14 +445,10 @@ def _refuse_strangers(out: Path, case: Case) -> None:
         raise ResultError(f"{out}: holds the run of {what}; choose another folder or remove it")
 
 
-def _absolute(out: Path) -> Path:
-    try:
-        resolved = out.resolve()
-    except (OSError, RuntimeError, ValueError) as error:
-        raise ResultError(f"{out}: {error}") from None
-    if not resolved.name:
-        raise ResultError(f"{out}: is not a folder to write a run to")
-    return resolved
+def _name_of(out: Path) -> Json:
+    """Name of the case of a run, of another schema too."""
+    summary = read_json(out / "run.json")
+    return summary.get("case") if isinstance(summary, dict) else None
 
 
 def _make_parents(out: Path) -> list[Path]:

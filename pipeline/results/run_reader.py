@@ -315,14 +315,20 @@ def read_verdict(path: Path) -> dict[str, Any]:
 
 def verify_run(path: Path) -> None:
     """Compare the files of a run with the hashes in ``run.json``; ResultError for a difference."""
+    require_own_case(path)
     summary = read_summary(path)
-    if input_sha256(path) != summary["input_sha256"]:
-        raise ResultError(f"{path}: case.toml or inputs/ are not those of the run")
     for name, digest in summary["files"].items():
         file = path / name
         if not file.is_file() or sha256_of(file) != digest:
             state = "was changed" if file.is_file() else "is missing"
             raise ResultError(f"{file}: {state} since the run")
+
+
+def require_own_case(path: Path) -> None:
+    """Refuse a run whose case file or measured data were edited since."""
+    summary = read_summary(path)
+    if summary["input_sha256"] != input_sha256(path):
+        raise ResultError(f"{path}: case.toml or inputs/ are not those of the run: run it again")
 
 
 def read_summary(path: Path) -> Summary:

@@ -11,7 +11,7 @@ from camwright.geometry.arrays import Array
 from camwright.geometry.cad_drawing import Outline, write_dxf
 from camwright.geometry.contour import Contour
 from camwright.geometry.cutter_path import cutter_path
-from camwright.geometry.errors import CamError
+from camwright.geometry.errors import CamError, ResultError
 from camwright.meshes.step_solid import write_step
 from camwright.pipeline.base.files import write_atomic
 from camwright.pipeline.base.tables import CAM_ANGLE, Column, table
@@ -60,6 +60,8 @@ def write_workshop(
     for name, write in jobs.items():
         try:
             write(folder / name)
+        except ResultError:  # such as on a full disk
+            raise
         except CamError as error:
             (folder / name).unlink(missing_ok=True)
             note(f"{WORKSHOP}/{name} is left out: {error}")

@@ -64,6 +64,15 @@ def digests(folder: Path) -> dict[str, str]:
     }
 
 
+def test_a_run_whose_case_was_edited_is_not_drawn_again(run: Path) -> None:
+    case = run / "case.toml"
+    case.write_text(case.read_text(encoding="utf-8") + "# edited\n", encoding="utf-8")
+    before = digests(run)
+    with pytest.raises(ResultError, match=r"case\.toml or inputs/ are not those of the run"):
+        sections.report(run)
+    assert digests(run) == before
+
+
 def report(*arguments: object) -> object:
     return app(args=["report", *map(str, arguments)], standalone_mode=False)
 

@@ -164,7 +164,7 @@ def test_a_signal_ends_in_one_line(folder: Path, number: signal.Signals) -> None
         children = processes_of(psutil.Process(main.pid))
     main.send_signal(number)
     _, errors = main.communicate(timeout=60)
-    assert main.returncode == 130
+    assert main.returncode == 128 + number
     assert "interrupted; run the command again with --resume" in errors
     assert "Traceback" not in errors
     psutil.wait_procs(children, timeout=10)

@@ -6,6 +6,7 @@ import errno
 import json
 import os
 import re
+import signal
 import subprocess
 import sys
 from collections.abc import Callable
@@ -18,7 +19,7 @@ import pytest
 from small_machine import small_machine
 from small_run import check, small_case, summary, write_run, write_trial
 
-from camwright.geometry.errors import ContactError
+from camwright.geometry.errors import ContactError, ResultError
 from camwright.pipeline.case.case_file import read_case
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.results.run_folder import RunFolder
@@ -55,6 +56,7 @@ def short_run(
     positions: int | None,
     jobs: int | None,
     resume: bool,
+    replace: bool,
     fields: str,
     progress: Any,
     began: float,
@@ -65,7 +67,7 @@ def short_run(
 ) -> None:
     progress.stage("cycle")
     progress.advance(1, 2)
-    with RunFolder(out, case, depth=depth, resume=resume) as folder:
+    with RunFolder(out, case, depth=depth, resume=resume, replace=replace) as folder:
         write_trial(folder, [check("fail"), check("not_evaluated", id="x", must_have=False)])
         if report is not None:
             (folder.path / "8_report.html").write_text("")
@@ -172,6 +174,22 @@ def test_errors_of_the_run(
     assert sorted(entry.name for entry in case_file.parent.iterdir()) == ["small.toml"]
 
 
+def test_a_full_disk_says_that_the_run_can_be_resumed(
+    case_file: Path, command: Command, runner: Any
+) -> None:
+    def fails(case: Any, out: Path, **_: Any) -> None:
+        with RunFolder(out, case) as folder:
+            folder.contact_store(1).save("idle", 0, {"p0": np.array([1.0])}, key="a")
+            raise ResultError(f"{out}: No space left on device")
+
+    runner(fails)
+    code, _, err = command("run", case_file, "--out", "run")
+    assert code == 2
+    assert is_one_line(err)
+    assert "run: No space left on device; what is solved is kept; run the command again" in err
+    assert Path(".run.partial").is_dir()
+
+
 def test_debug_shows_where(case_file: Path, command: Command, runner: Any) -> None:
     def fails(*_: Any, **__: Any) -> None:
         raise ZeroDivisionError
@@ -181,15 +199,18 @@ def test_debug_shows_where(case_file: Path, command: Command, runner: Any) -> No
         command("run", case_file, "--out", "run", "--debug")
 
 
-def test_interrupt_says_how_to_go_on(case_file: Path, command: Command, runner: Any) -> None:
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_a_signal_says_how_to_go_on(
+    case_file: Path, command: Command, runner: Any, number: signal.Signals
+) -> None:
     def stopped(case: Any, out: Path, **_: Any) -> None:
         with RunFolder(out, case) as folder:
             folder.contact_store(1).save("idle", 0, {"p0": np.array([1.0])}, key="a")
-            raise KeyboardInterrupt
+            os.kill(os.getpid(), number)
 
     runner(stopped)
     code, _, err = command("run", case_file, "--out", "run")
-    assert code == 130
+    assert code == 128 + number
     assert is_one_line(err)
     assert "--resume" in err
     assert Path(".run.partial").is_dir()

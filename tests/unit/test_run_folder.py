@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import errno
+import json
 import os
 from pathlib import Path
 from typing import Any
@@ -16,7 +17,7 @@ from camwright.geometry.errors import ResultError
 from camwright.pipeline.base.files import write_atomic
 from camwright.pipeline.case.case_file import parse_case
 from camwright.pipeline.results import run_folder, run_reader
-from camwright.pipeline.results.run_folder import RunFolder, set_aside
+from camwright.pipeline.results.run_folder import RunFolder
 
 
 def entries(folder: Path) -> list[str]:
@@ -67,7 +68,7 @@ def test_what_nobody_expected_leaves_solved_trials_to_resume(tmp_path: Path) -> 
         raise ZeroDivisionError
     with RunFolder(tmp_path / "run", case, resume=True) as folder:
         assert folder.resumed
-        assert (folder.path / "trial_1" / "5_cycle.csv").is_file()
+        assert not (folder.path / "trial_1").exists(), "written again, with the options of this run"
         assert list(folder.contact_store(1).load("idle", "a")) == [0]
 
 
@@ -239,17 +240,30 @@ def test_headline_is_whole(tmp_path: Path) -> None:
         folder.write_summary(given)
 
 
-def test_set_aside_makes_room_and_puts_back(tmp_path: Path) -> None:
+def test_replace_puts_an_earlier_version_aside_when_the_new_one_is_complete(tmp_path: Path) -> None:
     out = write_run(tmp_path / "run")
-    with set_aside(out, other_case()):
-        write_run(out, other_case(), status="fail")
-    assert run_reader.read_run(out).verdict == "fail"
-    with pytest.raises(ZeroDivisionError), set_aside(out, small_case()):
+    with pytest.raises(ZeroDivisionError), RunFolder(out, other_case(), replace=True):
         raise ZeroDivisionError
+    with RunFolder(out, other_case(), replace=True) as folder:
+        write_trial(folder, [check("fail")])
+        assert run_reader.read_run(out).verdict == "pass"
+        folder.finish(summary("fail"))
     assert run_reader.read_run(out).verdict == "fail"
-    with set_aside(out, small_case("large")), pytest.raises(ResultError):
-        RunFolder(out, small_case("large"))
+    with pytest.raises(ResultError, match="holds the run of another case"):
+        RunFolder(out, small_case("large"), replace=True)
     assert entries(tmp_path) == ["run"]
+
+
+def test_replace_takes_a_run_of_an_earlier_schema(tmp_path: Path) -> None:
+    out = write_run(tmp_path / "run")
+    record = json.loads((out / "run.json").read_text())
+    (out / "run.json").write_text(json.dumps(record | {"schema": 1}))
+    with pytest.raises(ResultError, match="schema = 1"):
+        RunFolder(out, small_case())
+    with RunFolder(out, small_case(), replace=True) as folder:
+        write_trial(folder, [check()])
+        folder.finish(summary())
+    run_reader.verify_run(out)
 
 
 def test_included_files_are_kept(tmp_path: Path) -> None:
