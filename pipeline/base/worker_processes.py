@@ -11,6 +11,7 @@ from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass, field
 from functools import partial
+from multiprocessing import active_children
 from multiprocessing.context import SpawnContext, SpawnProcess
 from multiprocessing.popen_spawn_posix import Popen
 from multiprocessing.process import BaseProcess
@@ -56,6 +57,8 @@ class _Context(SpawnContext):
 def pool(workers: int) -> Iterator[ProcessPoolExecutor]:
     """A pool of spawned processes; an error cancels the tasks that have not started.
 
+    An interrupt ends the processes at once: of what they solve nothing is read any more.
+
     The number of threads is set before the processes load a BLAS: many processes of one thread are
     faster than few of many. Workers ignore the keyboard interrupt, which the parent handles, and
     end by themselves where the parent is killed.
@@ -69,7 +72,10 @@ def pool(workers: int) -> Iterator[ProcessPoolExecutor]:
     )
     try:
         yield workers_pool
-    except BaseException:
+    except BaseException as error:
+        if isinstance(error, KeyboardInterrupt):
+            for process in active_children():
+                process.terminate()
         workers_pool.shutdown(cancel_futures=True)
         raise
     finally:

@@ -3,6 +3,7 @@
 import os
 import subprocess
 import sys
+import time
 
 import pytest
 
@@ -57,3 +58,12 @@ def test_a_crew_shares_its_processes_and_ends_them():
         first, second = workers.submit(os.getpid), workers.submit(os.getpid)
         assert os.getpid() not in (first.result(), second.result())
         assert workers.workers == 2
+
+
+def test_an_interrupt_does_not_wait_for_what_runs():
+    """A task of five minutes would be waited for."""
+    with pytest.raises(KeyboardInterrupt), pool(1) as fresh:
+        assert fresh.submit(os.getpid).result() != os.getpid()
+        waiting = fresh.submit(time.sleep, 300)
+        raise KeyboardInterrupt
+    assert waiting.done()
