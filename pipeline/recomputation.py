@@ -34,6 +34,7 @@ from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.certificate_angles import begun
 from camwright.pipeline.engine.torque import Torque
 from camwright.pipeline.results import run_reader, signoff
+from camwright.pipeline.results.drawn_cam import drawn_cam
 from camwright.pipeline.results.field_file import read_series
 from camwright.pipeline.results.field_output import STRESS, Shown, write_fields
 from camwright.pipeline.results.file_differences import (
@@ -42,7 +43,7 @@ from camwright.pipeline.results.file_differences import (
     record_differences,
 )
 from camwright.pipeline.results.model_limits import limitations
-from camwright.pipeline.results.run_folder import RunFolder, drawn_cam, versions
+from camwright.pipeline.results.run_folder import RunFolder, versions
 from camwright.pipeline.results.run_reader import AnyCheck, Run, TrialRecord, read_run
 from camwright.pipeline.results.run_records import torque_columns, trial_record
 from camwright.pipeline.results.trial import SmoothingRecord, Trial, TrialPoint

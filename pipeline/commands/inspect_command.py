@@ -46,7 +46,7 @@ def inspect(
     """
     from camwright.pipeline.base import units
     from camwright.pipeline.results import signoff
-    from camwright.pipeline.results.run_folder import drawn_cam
+    from camwright.pipeline.results.drawn_cam import drawn_cam
     from camwright.pipeline.studies import cam_inspection
     from camwright.reports.inspection_pictures import draw
 

@@ -21,6 +21,7 @@ In the order of a run:
 | `recorded_turn`        | outlines and poses of cam and follower for the scene                  |
 | `field_output`         | files of ``fields/``                                                  |
 | `workshop_files`       | contour table, DXF drawing, STEP solid, cutter path, inspection sheet |
+| `drawn_cam`            | cam of a finished run as it was certified                             |
 | `contact_deck`         | contact at one cam angle as an input deck                             |
 | `check_text`           | declaration of a check in words: formula, limit, calculation          |
 | `check_report`         | checks of a run as table and lines                                    |

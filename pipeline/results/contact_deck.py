@@ -16,7 +16,7 @@ from camwright.pipeline.contact.contact_pair import ContactPair
 from camwright.pipeline.contact.elasticity.elastic_body import ElasticBody
 from camwright.pipeline.cycle.contact_setup import contact_pair
 from camwright.pipeline.results import run_reader
-from camwright.pipeline.results.run_folder import drawn_cam
+from camwright.pipeline.results.drawn_cam import drawn_cam
 
 
 def force_at(cycle: Table, load_case: str, theta: float) -> float:

@@ -21,10 +21,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 import camwright
-from camwright.geometry.arrays import Array, readonly, uniform_turn
-from camwright.geometry.contour import Contour
-from camwright.geometry.errors import CamError, InputError, ResultError
-from camwright.geometry.lift import Lift
+from camwright.geometry.arrays import Array, readonly
+from camwright.geometry.errors import CamError, ResultError
 from camwright.pipeline.base.files import (
     Json,
     file_hashes,
@@ -33,9 +31,8 @@ from camwright.pipeline.base.files import (
     read_json,
     write_atomic,
 )
-from camwright.pipeline.base.tables import Values, read_table, table
+from camwright.pipeline.base.tables import Values, table
 from camwright.pipeline.case.case import Case
-from camwright.pipeline.case.case_file import read_case
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.results import run_reader, signoff
 from camwright.pipeline.results.folder_exchange import (
@@ -51,11 +48,7 @@ from camwright.pipeline.results.folder_exchange import (
     settle,
     unlock,
 )
-from camwright.pipeline.results.run_records import SPLINE
-from camwright.pipeline.smoothing.fe_correction import redrawn
-from camwright.pipeline.smoothing.scenario import DesignVariables
 
-_SPLINE_ROUNDING = 1e-9  # of coefficients computed by another machine
 _TEMPORARY = re.compile(r"\.\w+\.tmp")
 _LIBRARIES = (
     "numpy",
@@ -382,43 +375,6 @@ def _differing(state: Json, now: Mapping[str, Json]) -> str:
     )
     names = [name for name in {**then, **running} if then.get(name) != running.get(name)]
     return f"its versions ({', '.join(names)})" if names else ""
-
-
-def drawn_cam(run: Path) -> tuple[Case, Contour]:
-    """The case of a run with the spring and prime radius of its final trial, and its contour.
-
-    The contour is the one that was solved, drawn and certified, whatever the number of positions.
-
-    Raises
-    ------
-    ResultError
-        If the run is unreadable, or the coefficients of its lift are not those of a C4 spline.
-    """
-    case, final = read_case(run / "case.toml"), run_reader.read_run(run).final
-    design = final.record["synthesis"]
-    if design is not None and case.smoothing.free:
-        try:
-            rate, radius = design["spring_rate_N_per_mm"], design["prime_radius_mm"]
-            case = redrawn(case, DesignVariables(1e3 * rate, design["preload_N"], 1e-3 * radius))
-        except (KeyError, TypeError) as error:
-            raise ResultError(f"{final.path / 'trial.json'}: synthesis: {error}") from None
-    return case, case.contour(_drawn_lift(final))
-
-
-def _drawn_lift(trial: run_reader.TrialRecord) -> Lift:
-    """Lift of a trial from its knots and coefficients; ResultError if these disagree."""
-    file, record = trial.path / run_reader.SPLINE_FILE, trial.record
-    columns = read_table(file)
-    try:
-        values, *others = (columns[column.header] for column in SPLINE)
-        closure, step = record["closure_mm"], record["table_step_deg"]
-        lift = Lift(uniform_turn(len(values)), values, 1e-3 * closure, float(np.radians(step)))
-    except (InputError, KeyError, TypeError) as error:
-        raise ResultError(f"{file}: {error}") from None
-    for stated, exact in zip(others, lift.spline.coefficients[1:], strict=True):
-        if np.abs(stated - exact).max() > _SPLINE_ROUNDING * np.abs(exact).max():
-            raise ResultError(f"{file}: the coefficients are not those of a C4 spline")
-    return lift
 
 
 def _refuse_strangers(out: Path, case: Case, *, replace: bool) -> None:

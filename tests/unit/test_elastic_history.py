@@ -41,11 +41,11 @@ def test_the_cam_turns_with_the_crank_that_it_drives(gx120):
     case, torque, contour = gx120
     machine, speed = idle(case), case.load_cases[0].speed
     given = turn(machine, contour, torque, POSITIONS)
-    assert np.ptp(given.cam_speed) > 0.005 * 0.5 * speed
+    assert np.ptp(given.driven.speed) > 0.005 * 0.5 * speed
     study = study_of(machine, torque, contour.pitch, given.loads.rubbing)
-    np.testing.assert_allclose(given.cam_speed, 0.5 * study.after.speed[::10], rtol=1e-12)
+    np.testing.assert_allclose(given.driven.speed, 0.5 * study.after.speed[::10], rtol=1e-12)
     # over the time of the turn it is the speed of the load case; 72 samples of it
-    assert 1.0 / np.mean(1.0 / given.cam_speed) == pytest.approx(0.5 * speed, rel=1e-5)
+    assert 1.0 / np.mean(1.0 / given.driven.speed) == pytest.approx(0.5 * speed, rel=1e-5)
 
 
 def test_the_stem_rides_on_that_speed_and_says_so(gx120):
@@ -57,7 +57,7 @@ def test_the_stem_rides_on_that_speed_and_says_so(gx120):
     elastic = cycle.parts.elastic
     assert "varies by" in elastic.method
     columns = named(cycle.columns())
-    np.testing.assert_array_equal(columns["cam_speed"], given.cam_speed)
+    np.testing.assert_array_equal(columns["cam_speed"], given.driven.speed)
     np.testing.assert_array_equal(
         columns["contact_force_elastic_stem"], elastic.response.contact_force
     )
@@ -77,9 +77,9 @@ def test_the_speed_is_constant_where_it_is_not_known(gx120, known):
         machine = replace(machine, crankshaft=light)
     driving = None if known == "no engine" else torque
     given = turn(machine, contour, driving, POSITIONS, coarse=known == "coarse")
-    np.testing.assert_array_equal(given.cam_speed, 0.5 * case.load_cases[0].speed)
+    np.testing.assert_array_equal(given.driven.speed, 0.5 * case.load_cases[0].speed)
     lift = contour.pitch.lift
-    found = elastic_history(machine, lift, given.loads.lift, given.cam_speed)
+    found = elastic_history(machine, lift, given.loads.lift, given.driven.speed)
     assert found.method == "harmonic balance at constant speed"
     assert not found.flights
 

@@ -28,7 +28,8 @@ from camwright.pipeline.base.files import json_text
 from camwright.pipeline.base.tables import CAM_ANGLE, LOAD_CASE, Column, read_table, table
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.results import run_reader, signoff
-from camwright.pipeline.results.run_folder import RunFolder, drawn_cam
+from camwright.pipeline.results.drawn_cam import drawn_cam
+from camwright.pipeline.results.run_folder import RunFolder
 from camwright.pipeline.results.run_records import column_table
 from camwright.pipeline.solver import solve
 

@@ -29,7 +29,8 @@ from camwright.pipeline.contact.closed_form import closed_form_history
 from camwright.pipeline.cycle.contact_setup import contact_pair
 from camwright.pipeline.cycle.solution import turns_of
 from camwright.pipeline.results import run_reader
-from camwright.pipeline.results.run_folder import RunFolder, drawn_cam
+from camwright.pipeline.results.drawn_cam import drawn_cam
+from camwright.pipeline.results.run_folder import RunFolder
 from camwright.pipeline.results.run_records import contour_columns, lift_columns, spline_columns
 from camwright.pipeline.results.workshop_files import contour_table, inspection_sheet
 from camwright.pipeline.studies.cam_inspection import FOLDER, lines, read_measured
