@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from camwright.pipeline.base.files import Json
-from camwright.pipeline.results.check_text import sentence
+from camwright.pipeline.results.check_report import sentence
 from camwright.reports.report_tables import (
     DASH,
     MINUS,

@@ -279,3 +279,10 @@ def consistency_line(finding: Finding) -> str:
     unit = unit_text(finding["unit"])
     mark = "; MORE THAN 10 % APART" if finding["flagged"] else ""
     return f"consistency, {finding['load_case']}: {words}{unit} ({off}){mark}"
+
+
+def sentence(text: str) -> str:
+    """Text with a full stop; a word at its start, unlike a symbol, with a capital letter."""
+    is_word = re.match(r"(a|[a-z]{2,})(?=$|[,:;.]|-[a-z]| (?![-=<>/+]))", text) is not None
+    start = text[:1].upper() if is_word else text[:1]
+    return f"{start}{text[1:].rstrip('.')}."

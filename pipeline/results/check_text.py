@@ -12,6 +12,7 @@ from camwright.pipeline.case.limits import AnyLimit
 from camwright.pipeline.checks.check import Declaration
 from camwright.pipeline.checks.confirmation import RESTS_ON
 from camwright.pipeline.checks.registry import DECLARED
+from camwright.pipeline.results.check_report import sentence
 
 
 class CheckText(NamedTuple):
@@ -64,13 +65,6 @@ def check_text(one: Declaration) -> CheckText:
         depth=depth,
         rests_on=RESTS_ON.get(one.id, ()),
     )
-
-
-def sentence(text: str) -> str:
-    """Text with a full stop; a word at its start, unlike a symbol, with a capital letter."""
-    is_word = re.match(r"(a|[a-z]{2,})(?=$|[,:;.]|-[a-z]| (?![-=<>/+]))", text) is not None
-    start = text[:1].upper() if is_word else text[:1]
-    return f"{start}{text[1:].rstrip('.')}."
 
 
 def default_of(row: AnyLimit) -> str:

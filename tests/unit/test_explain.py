@@ -8,7 +8,8 @@ from check_tools import BY_ID
 from camwright.geometry.errors import InputError
 from camwright.pipeline.case.keys import case_keys, keys_at
 from camwright.pipeline.commands.explain_command import WIDTH, explain
-from camwright.pipeline.results.check_text import checks_with, sentence
+from camwright.pipeline.results.check_report import sentence
+from camwright.pipeline.results.check_text import checks_with
 
 
 def explained(capsys: pytest.CaptureFixture[str], *words: str) -> str:
