@@ -118,6 +118,27 @@ def test_two_steel_cylinders_at_every_mesh_position(k):
     assert found.residual_equilibrium < 1e-10 and found.residual_complementarity < 1e-10
 
 
+def test_deformed_surfaces_neither_overlap_nor_gape():
+    # Circles plus displacements of the nodes, which coincide along the surface by symmetry; no
+    # integrals. A quadratic edge of a/8 follows the contact to 2e-4 of the gap at 1.9 half-widths.
+    a, _, _ = hertz_of_the_discs()
+    found, shifts = two_discs(8), []
+    for facing, field in zip((0.5, -0.5), found.displacements, strict=True):
+        mesh = disc(RADIUS, facing * np.pi, a, 8, 0.0)
+        nodes = np.unique(mesh.boundaries["rim"])
+        at = mesh.points[:, nodes]
+        near = np.flatnonzero((np.abs(at[0]) < 1.9 * a) & (np.abs(at[1]) < a))
+        near = near[np.argsort(at[0, near])]
+        shifts.append((at[0, near], field[1, nodes[near]]))
+    (xi, below), (other, above) = shifts
+    np.testing.assert_allclose(xi, other, atol=1e-9 * a)
+    apart = twice_the_circle(xi) + above - below - found.approach
+    size, off = apart.max(), np.abs(xi / a)
+    assert np.abs(apart[off < 0.97]).max() < 3e-4 * size
+    assert apart[off > 1.03].min() > 1e-3 * size
+    assert found.residual_complementarity < 1e-10
+
+
 def test_three_meshes_settle_with_an_order_near_two():
     a, p0, load = hertz_of_the_discs()
     solved = [two_discs(edges) for edges in (4, 8, 16)]
