@@ -77,13 +77,17 @@ def deck(
     load_case: Annotated[
         str | None, typer.Option("--load-case", help="Name of the load case; default: the first.")
     ] = None,
+    contact: Annotated[
+        bool, typer.Option("--contact", help="Write a contact pair, which CalculiX solves itself.")
+    ] = False,
     out: Annotated[
         Path | None, typer.Option("--out", metavar="FILE.inp", help="File of the deck.")
     ] = None,
 ) -> int:
-    """Write the contact at one cam angle as an input deck.
+    """Write both bodies at one cam angle as an input deck.
 
-    For CalculiX and Abaqus.
+    With the contact pressure of the run as nodal forces, for CalculiX and Abaqus; with --contact
+    as a contact pair of which CalculiX finds the pressure.
     """
     from camwright.pipeline.base import units
     from camwright.pipeline.results import contact_deck as decks
@@ -94,13 +98,15 @@ def deck(
     if not 0.0 <= theta <= math.tau:
         raise InputError("--angle", units.rounded(text), ">= 0 and <= 360 deg, one cam turn")
     path = (
-        folder / "exports" / f"contact_{units.in_unit(theta, 'deg'):07.3f}.inp"
+        folder
+        / "exports"
+        / f"{'contact' if contact else 'loads'}_{units.in_unit(theta, 'deg'):07.3f}.inp"
         if out is None
         else out
     )
     with signoff.amended(folder) if out is None else nullcontext():
         path.parent.mkdir(parents=True, exist_ok=True)
-        solved = decks.deck(folder, theta, path, load_case)
+        solved = decks.deck(folder, theta, path, load_case, contact=contact)
     p0 = units.shown(solved.solution.p0, "MPa", 5)
     stdout.print(f"deck: {path} (peak pressure {p0})", markup=False)
     return PASSED

@@ -1,4 +1,8 @@
-"""Contact at one cam angle as an input deck for another finite-element program."""
+"""Contact at one cam angle as an input deck for another finite-element program.
+
+Either with the contact pressure of this program as nodal forces, which another program can confirm
+as far as elasticity goes, or with a contact pair that it solves by itself.
+"""
 
 from __future__ import annotations
 
@@ -8,15 +12,29 @@ import numpy as np
 
 from camwright.geometry.arrays import FULL_TURN, Array
 from camwright.geometry.errors import InputError
-from camwright.meshes.calculix_deck import DeckBody, write_deck
+from camwright.meshes.calculix_deck import (
+    DeckBody,
+    Pressing,
+    TouchingBody,
+    write_contact_pair,
+    write_deck,
+)
 from camwright.pipeline.base.tables import Table
+from camwright.pipeline.base.units import in_unit
 from camwright.pipeline.case.machine import machines
 from camwright.pipeline.contact.certificate import SolvedPair, solve_pair
 from camwright.pipeline.contact.contact_pair import ContactPair
 from camwright.pipeline.contact.elasticity.elastic_body import ElasticBody
+from camwright.pipeline.contact.elasticity.surface_integrals import ContactFrame
+from camwright.pipeline.contact.full_contact import ContactSide
 from camwright.pipeline.cycle.contact_setup import contact_pair
 from camwright.pipeline.results import run_reader
 from camwright.pipeline.results.drawn_cam import drawn_cam
+
+PENALTY = 250.0
+"""Penalty of a deck over E*/a: takes some 0.1 % off the pressure."""
+_FIRST_OVERLAP = 0.3  # over that of a rigid indenter of half the Hertz half-width and its radius
+_NEAR = 3.0  # Hertz half-widths from the contact within which the surfaces may touch
 
 
 def force_at(cycle: Table, load_case: str, theta: float) -> float:
@@ -52,7 +70,7 @@ def write_contact_deck(path: Path, pair: ContactPair, solved: SolvedPair) -> Non
     A body on springs, such as a ring on balls, is loaded by the spring forces instead.
     """
     other, forces = pair.follower, nodal_forces(pair, solved)
-    load = float(np.abs(forces[1].sum(axis=1) @ solved.frame.normal))
+    load = force_of(pair, solved)
     bodies = {
         name: _deck_body(side.body, held, force, displacement, pair.width)
         for name, side, held, force, displacement in zip(
@@ -95,8 +113,83 @@ def _deck_body(
     return DeckBody(body.mesh, body.modulus, body.poisson, "", whole, placed)
 
 
-def deck(run: Path, theta: float, path: Path, load_case: str | None = None) -> SolvedPair:
+def write_pair_deck(
+    path: Path, pair: ContactPair, solved: SolvedPair, penalty: float = PENALTY
+) -> None:
+    """Write both bodies at one angle in contact, for CalculiX; our results as comments alone.
+
+    Parameters
+    ----------
+    penalty : float   pressure per overlap of the surfaces over E*/a of the Hertz contact; the
+                      pressure it takes away is inverse to it
+    """
+    other, solution, half = pair.follower, solved.solution, solved.half_width_hertz
+    force = force_of(pair, solved)
+    radius = float(pair.relative_radius(solved.theta))
+    cam, follower = (
+        _touching(side, solved.frame, held, half, pair.width)
+        for side, held in zip(solved.sides, ("bore", other.held), strict=True)
+    )
+    figures = (
+        ("peak pressure", solution.p0, "MPa"),
+        ("half-width", solution.half_width, "um"),
+        ("von Mises in the cam", solution.von_mises, "MPa"),
+        ("at the depth", solution.von_mises_depth, "um"),
+    )
+    stated = ", ".join(
+        f"{words} {in_unit(value, unit):.6g} {unit}" for words, value, unit in figures
+    )
+    write_contact_pair(
+        path,
+        ("cam", cam),
+        (other.name, follower),
+        Pressing(
+            (float(solved.frame.normal[0]), float(solved.frame.normal[1])),
+            force,
+            _FIRST_OVERLAP * half**2 / (2.0 * radius),
+            penalty * pair.contact_modulus / half,
+        ),
+        pair.width,
+        (
+            f"contact at cam angle {np.degrees(solved.theta):.6f} deg, normal force {force:.6f} N",
+            "CalculiX finds the contact pressure: surface to surface, without friction",
+            f"for comparison, of Camwright: {stated}",
+        ),
+    )
+
+
+def force_of(pair: ContactPair, solved: SolvedPair) -> float:
+    """Normal force of a solved contact, N."""
+    return float(np.abs(nodal_forces(pair, solved)[1].sum(axis=1) @ solved.frame.normal))
+
+
+def _touching(
+    side: ContactSide, frame: ContactFrame, held: str, half_width: float, width: float
+) -> TouchingBody:
+    body, mesh = side.body, side.body.mesh
+    middles = mesh.points[:, mesh.facet_triples(side.surface)[2]]
+    near = np.hypot(frame.along(middles), frame.above(middles)) <= _NEAR * half_width
+    springs = body.springs
+    return TouchingBody(
+        mesh,
+        body.modulus,
+        body.poisson,
+        surface=side.surface,
+        facets=np.flatnonzero(near),
+        held=held,
+        ways=np.zeros((0, *mesh.points.shape)) if springs is None else springs.ways,
+        stiffness=np.zeros(0) if springs is None else width * springs.stiffness,
+    )
+
+
+def deck(
+    run: Path, theta: float, path: Path, load_case: str | None = None, *, contact: bool = False
+) -> SolvedPair:
     """Solve the contact of a run at a cam angle, rad, and write it as a deck.
+
+    Parameters
+    ----------
+    contact : bool   whether the deck has a contact pair; without, the pressure as nodal forces
 
     Raises
     ------
@@ -109,5 +202,5 @@ def deck(run: Path, theta: float, path: Path, load_case: str | None = None) -> S
     force = force_at(cycle, name, theta)
     pair = contact_pair(machines(case)[0], contour)
     solved = solve_pair(pair, theta % FULL_TURN, force)
-    write_contact_deck(path, pair, solved)
+    (write_pair_deck if contact else write_contact_deck)(path, pair, solved)
     return solved
