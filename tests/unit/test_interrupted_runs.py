@@ -107,11 +107,11 @@ def undisturbed(tmp_path_factory: pytest.TempPathFactory) -> tuple[dict[str, str
 
 
 @pytest.mark.filterwarnings("ignore:This process:DeprecationWarning")
-@pytest.mark.parametrize("step", [12, pytest.param(1, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("step", [24, pytest.param(1, marks=pytest.mark.slow)])
 def test_a_run_resumes_from_a_kill_before_every_change(
     undisturbed: tuple[dict[str, str], int], tmp_path: Path, step: int
 ) -> None:
-    """Every change or each twelfth, and each of the last 14, when the run takes its place.
+    """Every change or each 24th, and each of the last 14, when the run takes its place.
 
     The earlier run or the new one is there, whole, and after a resumption nothing is left over.
     """
