@@ -18,7 +18,8 @@ from camwright.pipeline.case.load_case_torque import engine_torques
 from camwright.pipeline.checks.check import Check, Verdict, verdict, within_depth
 from camwright.pipeline.checks.registry import FORECAST, checks_of
 from camwright.pipeline.contact.tiers import Tier
-from camwright.pipeline.cycle.solution import NOT_STORED, ContactStore, is_body, solution
+from camwright.pipeline.cycle.contact_store import NOT_STORED, ContactStore
+from camwright.pipeline.cycle.solution import is_body, solution
 from camwright.pipeline.engine.torque import Torque
 from camwright.pipeline.preview import preview_case, smoothing_record
 from camwright.pipeline.results.trial import (

@@ -142,7 +142,8 @@ def _solved(
         return summary | judged_of(final, statement)
     sought = _remedies_begun(final, workers, folder.path)
     failing = _failing(final)
-    certified = certify_trial(final, workers, progress=watch, meanwhile=rest)
+    store = writer.store(final.number)
+    certified = certify_trial(final, workers, store=store, progress=watch, meanwhile=rest)
     if sought is not None:
         watch.stage("remedies")
         texts = sought.result()

@@ -14,9 +14,8 @@ from camwright.pipeline.checks.check import Check, in_order
 from camwright.pipeline.checks.registry import all_checks
 from camwright.pipeline.checks.tolerance_corners import Outcome, governed, outcomes, unsolved
 from camwright.pipeline.contact.tiers import Tier
+from camwright.pipeline.cycle.contact_store import NOT_STORED, ContactStore
 from camwright.pipeline.cycle.solution import (
-    NOT_STORED,
-    ContactStore,
     Solution,
     certified_solution,
     solution,
@@ -99,11 +98,14 @@ def certify_trial(
     trial: Trial,
     workers: Crew,
     *,
+    store: ContactStore = NOT_STORED,
     progress: Progress = SILENT,
     meanwhile: Callable[[], object] = lambda: None,
 ) -> Trial:
     """Trial with its certificate, checked again; see `certified_solution`."""
-    solved = certified_solution(trial.solution, workers, progress=progress, meanwhile=meanwhile)
+    solved = certified_solution(
+        trial.solution, workers, store=store, progress=progress, meanwhile=meanwhile
+    )
     return replace(
         trial, solution=solved, checks=_judged(all_checks(solved), solved, trial.corners)
     )

@@ -16,6 +16,7 @@ In the order of the calculation:
 | `speed_sweep`        | surge, contact force, torque over the speed     | F_n, N; T, N m         |
 | `ripple_map`         | torque ripple by speed and engine load          | std ratio, -           |
 | `guide_pressure`     | line load of the guides, pressure in the bores  | P', N/m; p, Pa         |
+| `contact_store`      | store of solved pieces of the contact           |                        |
 | `certificate_angles` | angles of the certificate, their solution       | theta, rad             |
 | `solution`           | all load cases of a cam, by one tier            |                        |
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 
 import numpy as np
 
@@ -17,8 +17,10 @@ from camwright.pipeline.contact.certificate import (
 )
 from camwright.pipeline.contact.contact_history import CertificatePoint, ContactHistory
 from camwright.pipeline.contact.contact_pair import ContactPair
+from camwright.pipeline.cycle.contact_store import NOT_STORED, ContactStore, piece_key
 from camwright.pipeline.cycle.cycle import Cycle
 
+_STORED_AS = ".certificate"  # no name of a load case
 FINEST = 2
 """Cam angles at which the finest mesh is solved."""
 
@@ -112,14 +114,16 @@ def begun(
     chosen: Sequence[tuple[int, int]],
     workers: Crew,
     observed: tuple[CertificatePoint, ...] = (),
+    store: ContactStore = NOT_STORED,
 ) -> BegunCertificate:
     """Certificate at chosen (load case, position), its meshes handed to worker processes.
 
     The finest mesh is solved at `finest_positions` alone; nowhere with the points `observed` on
-    three meshes, whose orders then hold.
+    three meshes, whose orders then hold. Figures that the store has are not
+    solved again.
     """
     finest = () if observed else finest_positions(cycles, chosen)
-    tasks = {}
+    tasks: dict[tuple[tuple[int, int], float], Task] = {}
     for edges in reversed(EDGES):  # the longest first
         for at in chosen:
             if edges == EDGES[-1] and at not in finest:
@@ -127,5 +131,21 @@ def begun(
             cycle, index = cycles[at[0]], at[1]
             force = float(cycle.contact.line_load[index]) * pair.width
             theta = float(cycle.theta[index])
-            tasks[at, edges] = workers.submit(mesh_figures, pair, theta, force, edges)
+            index = len(tasks)
+            tasks[at, edges] = workers.submit(_figures, store, index, pair, theta, force, edges)
     return BegunCertificate(cycles, chosen, finest, tasks, observed)
+
+
+def _figures(
+    store: ContactStore, index: int, pair: ContactPair, theta: float, force: float, edges: float
+) -> MeshFigures:
+    """Figures of a mesh, from the store if it has them."""
+    key = piece_key(pair, np.array(force), theta, edges)
+    known = store.load(_STORED_AS, key)
+    if index in known:
+        values = {name: float(value) for name, value in known[index].items()}
+        return MeshFigures(dofs=int(values.pop("dofs")), **values)
+    figures = mesh_figures(pair, theta, force, edges)
+    named = {name: np.array(value) for name, value in asdict(figures).items()}
+    store.save(_STORED_AS, index, named, key)
+    return figures

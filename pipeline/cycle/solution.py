@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import hashlib
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Protocol
 
 import numpy as np
 
@@ -29,6 +27,7 @@ from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.contact.two_scale import CycleBodies, loaded_cam, two_scale_history
 from camwright.pipeline.cycle.certificate_angles import begun, positions_to_certify
 from camwright.pipeline.cycle.contact_setup import contact_pair
+from camwright.pipeline.cycle.contact_store import NOT_STORED, ContactStore, piece_key
 from camwright.pipeline.cycle.crank_speed import speed_ripple
 from camwright.pipeline.cycle.cycle import Cycle
 from camwright.pipeline.cycle.speed_sweep import (
@@ -151,30 +150,6 @@ def _least_damped(machine: Machine) -> Machine:
     return replace(machine, spring=replace(spring, design=design))
 
 
-class ContactStore(Protocol):
-    """Pieces of a contact solution, kept over an interruption."""
-
-    def load(self, load_case: str, key: str) -> Mapping[int, Mapping[str, Array]]:
-        """Pieces of a load case and a key, by index."""
-        ...
-
-    def save(self, load_case: str, index: int, arrays: Mapping[str, Array], key: str) -> None:
-        """Store a piece."""
-        ...
-
-
-class NotStored:
-    """A store without effect."""
-
-    def load(self, load_case: str, key: str) -> Mapping[int, Mapping[str, Array]]:  # noqa: ARG002
-        return {}
-
-    def save(self, load_case: str, index: int, arrays: Mapping[str, Array], key: str) -> None: ...
-
-
-NOT_STORED = NotStored()
-
-
 def solution(
     case: Case,
     contour: Contour,
@@ -288,6 +263,7 @@ def certified_solution(
     solved: Solution,
     workers: Crew,
     *,
+    store: ContactStore = NOT_STORED,
     progress: Progress = SILENT,
     meanwhile: Callable[[], object] = lambda: None,
 ) -> Solution:
@@ -296,6 +272,7 @@ def certified_solution(
     Parameters
     ----------
     workers : Crew         processes that solve the meshes
+    store : ContactStore   of the figures of the meshes, to resume an interrupted certificate
     meanwhile : callable   other work of this process while they do
     """
     final = replace(solved, tier=Tier.CERTIFIED)
@@ -304,7 +281,7 @@ def certified_solution(
         meanwhile()
         return final
     pair = solved.cycles[0].pair
-    certificate = begun(pair, solved.cycles, chosen, workers)
+    certificate = begun(pair, solved.cycles, chosen, workers, store=store)
     progress.stage(BENCHMARKS)
     known = benchmarks(solved.case.contact_radius)
     error = bore_error(pair, solved.cycles)
@@ -404,7 +381,7 @@ def _pieces(
     pair: ContactPair, bodies: CycleBodies, each: Turn, store: ContactStore, progress: Progress
 ) -> Iterator[tuple[int, Mapping[str, Array]]]:
     """Pieces of the contact of a turn by index, from the store if it has them."""
-    name, key = each.machine.load_case, _fingerprint(pair, each)
+    name, key = each.machine.load_case, piece_key(pair, each.loads.normal_force, CHUNK)
     known, total = store.load(name, key), -(-each.theta.size // CHUNK)
     for index, start in enumerate(range(0, each.theta.size, CHUNK)):
         if index in known:
@@ -416,14 +393,3 @@ def _pieces(
             store.save(name, index, arrays, key)
             yield index, arrays
         progress.advance(index + 1, total)
-
-
-def _fingerprint(pair: ContactPair, each: Turn) -> str:
-    """SHA-256 of the inputs of the contact of a turn."""
-    digest = hashlib.sha256(pair.contour.pitch.lift.values.tobytes())
-    digest.update(each.loads.normal_force.tobytes())
-    size = pair.width, pair.bore_radius
-    digest.update(repr((*size, pair.cam, pair.follower, CHUNK)).encode())
-    if pair.counter_hole is not None:
-        digest.update(np.array([*pair.counter_hole.centre, pair.counter_hole.radius]).tobytes())
-    return digest.hexdigest()

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from camwright.meshes.mesh_files import write_msh
+from camwright.pipeline.cycle.contact_store import ContactStore
 from camwright.pipeline.cycle.guide_pressure import guide_arrays
 from camwright.pipeline.cycle.rolling_history import envelope_arrays
-from camwright.pipeline.cycle.solution import ContactStore
 from camwright.pipeline.results.run_folder import RunFolder
 from camwright.pipeline.results.run_records import (
     contour_columns,

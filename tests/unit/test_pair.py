@@ -14,6 +14,8 @@ from camwright.pipeline.contact.contact_pair import ContactPair
 from camwright.pipeline.contact.elasticity.elastic_body import Elastic
 from camwright.pipeline.contact.follower_body import RollerBody
 from camwright.pipeline.contact.two_scale import CycleBodies, two_scale_history
+from camwright.pipeline.cycle import certificate_angles
+from camwright.pipeline.results.run_folder import ContactFiles
 
 STEEL = Elastic(210e9, 0.3)
 
@@ -75,3 +77,14 @@ def test_shear_on_any_plane_is_told_where_it_is_larger(nu: float) -> None:
     by_hertz = hertz.shear_any_plane_peak(nu) * found.p0_hertz
     np.testing.assert_allclose(found.tau_any_plane, by_hertz, rtol=1e-2)  # the disc adds 0.7 %
     assert (found.tau_any_plane > 1.01 * found.tau_max).all() == (nu < 0.25)
+
+
+def test_figures_of_a_mesh_are_kept_to_the_bit(tmp_path, monkeypatch):
+    """Only a mesh of another load is solved again."""
+    store, pair = ContactFiles(tmp_path), round_cam()
+    solved = certificate_angles._figures(store, 0, pair, 0.5, 800.0, 4.0)
+    monkeypatch.setattr(certificate_angles, "mesh_figures", lambda *_: pytest.fail("solved again"))
+    assert certificate_angles._figures(store, 0, pair, 0.5, 800.0, 4.0) == solved
+    assert solved.edges == 4.0 and isinstance(solved.dofs, int)
+    with pytest.raises(pytest.fail.Exception):
+        certificate_angles._figures(store, 0, pair, 0.5, 801.0, 4.0)
