@@ -113,7 +113,8 @@ def note_memory(process: psutil.Process, peaks: dict[int, float]) -> None:
     with contextlib.suppress(psutil.Error, OSError):
         for each in (process, *process.children(recursive=True)):
             status = Path(f"/proc/{each.pid}/status").read_text().split("VmHWM:")
-            peaks[each.pid] = 1024.0 * float(status[1].split()[0]) if len(status) == 2 else 0.0
+            if len(status) == 2:  # a process that has ended states none
+                peaks[each.pid] = 1024.0 * float(status[1].split()[0])
 
 
 def told(name: str, value: float, unit: str, budget: float) -> None:

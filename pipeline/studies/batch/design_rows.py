@@ -49,6 +49,8 @@ DIED = "the process of the solution died {times} times"
 CLOCK = "timings.json"
 UNEXPECTED = "unexpected {kind}: {text}"
 
+_AT_ONCE = 125  # screened designs: their arrays bound the memory of a process
+
 
 def lost(message: str) -> Row:
     """Cells of a design without a result: refused, or not solved."""
@@ -118,14 +120,19 @@ class DesignSolver:
         from camwright.pipeline.screening.design_screening import screen_designs
 
         case = self._cases[task.case]
-        if task.values:
-            return dict(screen_designs(case, task.values, positions=self._positions(case)))
-        name = "spring.preload"  # a case that is itself the design
-        return dict(
+        # a case that is itself the design
+        values = task.values or {"spring.preload": np.array([case.spring.preload])}
+        count = len(next(iter(values.values())))
+        pieces = [
             screen_designs(
-                case, {name: np.array([case.spring.preload])}, positions=self._positions(case)
+                case,
+                {name: column[start : start + _AT_ONCE] for name, column in values.items()},
+                positions=self._positions(case),
             )
-        )
+            for start in range(0, count, _AT_ONCE)
+        ]
+        names = dict.fromkeys(name for piece in pieces for name in piece)
+        return {name: np.concatenate([piece[name] for piece in pieces]) for name in names}
 
     def _positions(self, case: Case) -> int:
         return self.settings.positions or case.solver.positions
