@@ -38,10 +38,11 @@ run: .venv/installed
 	@$(BIN)/camwright run $(CASE) --out $(OUT) --replace
 
 # Bytecode is kept, since the tests start many processes; files go out in their order, the longest,
-# those of tests/end_to_end, first.
+# those of tests/end_to_end, first. A process that dies ends the run: with another in its place the
+# run would wait for tests that nobody runs.
 test: lint
 	PYTHONDONTWRITEBYTECODE= $(BIN)/python -m pytest -q -m "not slow" -n 2 --dist loadfile \
-		--no-loadscope-reorder
+		--no-loadscope-reorder --max-worker-restart=0
 
 verify: .venv/developing
 	$(BIN)/python -m pytest -q -m slow
