@@ -20,7 +20,6 @@ from camwright.pipeline.checks.registry import FORECAST, checks_of
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.contact_store import NOT_STORED, ContactStore
 from camwright.pipeline.cycle.solution import is_body, solution
-from camwright.pipeline.engine.torque import Torque
 from camwright.pipeline.preview import preview_case, smoothing_record
 from camwright.pipeline.results.trial import (
     CONSTRAINED,
@@ -51,6 +50,7 @@ from camwright.pipeline.smoothing.smoothing_feedback import Stop, next_smoother
 from camwright.pipeline.smoothing.smoothing_forecast import Attempt
 from camwright.pipeline.smoothing.synthesis_problem import Design, Problem
 from camwright.pipeline.solver import solve
+from camwright.pipeline.torque.torque import Torque
 
 FORECAST_POSITIONS = 360
 _RESULT: Mapping[Verdict, str] = {

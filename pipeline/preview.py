@@ -10,11 +10,11 @@ from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_values import refused_as_written
 from camwright.pipeline.case.load_case_torque import engine_torques
 from camwright.pipeline.contact.tiers import Tier
-from camwright.pipeline.engine.torque import Torque
 from camwright.pipeline.results.trial import CONSTRAINED, GIVEN_LIFT, SmoothingRecord, Trial
 from camwright.pipeline.smoothing.required_lift import cam_lift
 from camwright.pipeline.smoothing.smoothers import Smoother
 from camwright.pipeline.solver import judged_at_corners, solve
+from camwright.pipeline.torque.torque import Torque
 
 _ROUNDS = 4  # of synthesis and correction
 

@@ -32,7 +32,6 @@ from camwright.pipeline.checks.tolerance_corners import corners_record
 from camwright.pipeline.contact.contact_history import CertificatePoint
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.certificate_angles import begun
-from camwright.pipeline.engine.torque import Torque
 from camwright.pipeline.results import run_reader, signoff
 from camwright.pipeline.results.drawn_cam import drawn_cam
 from camwright.pipeline.results.field_file import read_series
@@ -53,6 +52,7 @@ from camwright.pipeline.run import judged_of, summary_of
 from camwright.pipeline.smoothing.required_lift import cam_lift
 from camwright.pipeline.smoothing.smoothers import Smoother
 from camwright.pipeline.solver import solve
+from camwright.pipeline.torque.torque import Torque
 
 ANGLES = 8
 """Cam angles drawn, if none are stated."""

@@ -23,7 +23,6 @@ from camwright.pipeline.case.plausibility import implausible
 from camwright.pipeline.checks.tolerance_corners import corners_record
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.ripple_map import ripple_map
-from camwright.pipeline.engine.torque import Torque
 from camwright.pipeline.iteration import trials_of
 from camwright.pipeline.remedies.remedy_search import order_of, texts_of, with_remedies
 from camwright.pipeline.results.field_output import Shown, write_fields
@@ -36,6 +35,7 @@ from camwright.pipeline.results.workshop_files import WORKSHOP, write_workshop
 from camwright.pipeline.smoothing.required_lift import required_torque
 from camwright.pipeline.smoothing.smoothers import Smoother
 from camwright.pipeline.solver import certify_trial
+from camwright.pipeline.torque.torque import Torque
 
 START = "start"
 """Stage before the first: start of the program, imports, case file."""

@@ -20,8 +20,8 @@ from camwright.pipeline.cycle.solution import (
     certified_solution,
     solution,
 )
-from camwright.pipeline.engine.torque import Torque
 from camwright.pipeline.results.trial import GIVEN_LIFT, Trial
+from camwright.pipeline.torque.torque import Torque
 
 CHECKS = "checks"
 

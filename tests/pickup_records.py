@@ -166,6 +166,6 @@ def error_and_bar(record, trace):
     """Error of the torque and its bar, N m, at equal crank angles from the first tooth after the
     mark; a wheel on the crank leaves the turn of the cycle open where both are much alike."""
     torque = trace.torque(record.inertia)
-    both = [np.abs(torque.total - record.torque_at(torque.theta_crank + record.reference + turn))
+    both = [np.abs(torque.total - record.torque_at(torque.theta + record.reference + turn))
             for turn in (0.0, TURN)]  # fmt: skip
     return min(both, key=np.max), torque.error_bar

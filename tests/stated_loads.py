@@ -11,7 +11,7 @@ from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.machine import machines
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.solution import Solution, solved_turns, turns_of
-from camwright.pipeline.engine.torque import Torque
+from camwright.pipeline.torque.torque import Torque
 
 
 def stated_loads(

@@ -9,10 +9,10 @@ from pydantic import Field
 
 from camwright.pipeline.case.section import Table
 from camwright.pipeline.engine.cylinder import CylinderEngine
+from camwright.pipeline.engine.engine_torque import TorqueTable
 from camwright.pipeline.engine.pickup_voltage import VoltageTable
 from camwright.pipeline.engine.pressure_trace import PressureTable
 from camwright.pipeline.engine.speed_file import SpeedTable
-from camwright.pipeline.engine.torque import TorqueTable
 
 Engine = Annotated[
     Table[TorqueTable]

@@ -23,9 +23,14 @@ from camwright.pipeline.engine import (
     valves,
     working_gas,
 )
-from camwright.pipeline.engine import torque as torque_module
+from camwright.pipeline.engine import engine_torque as engine_torque_module
 from camwright.pipeline.engine.brake_balance import BrakeBalance, brake_balance
 from camwright.pipeline.engine.cylinder import CylinderEngine
+from camwright.pipeline.engine.engine_torque import (
+    TorqueTable,
+    torque_from_csv,
+    torque_from_cylinder,
+)
 from camwright.pipeline.engine.indicated_cycle_solver import SPEED_RANGE
 from camwright.pipeline.engine.pickup_voltage import VoltageTable, speed_from_voltage
 from camwright.pipeline.engine.pressure_trace import (
@@ -38,17 +43,13 @@ from camwright.pipeline.engine.pressure_trace import (
 )
 from camwright.pipeline.engine.speed_file import SpeedTable, speed_from_csv
 from camwright.pipeline.engine.speed_trace import SpeedTrace
-from camwright.pipeline.engine.torque import (
-    Torque,
-    TorqueTable,
-    torque_from_csv,
-    torque_from_cylinder,
-)
+from camwright.pipeline.torque import torque as torque_module
+from camwright.pipeline.torque.torque import Torque
 
 _COMPONENT = "component."
 _MODULES = (
     *(cylinder, working_gas, valves, combustion, heat_loss),
-    *(indicated_cycle, indicated_cycle_solver, torque_module),
+    *(indicated_cycle, indicated_cycle_solver, engine_torque_module, torque_module),
 )
 CRANKING = SPEED_RANGE[0]
 """Cranking speed of an engine at rest, rad/s."""
@@ -99,7 +100,7 @@ def _cylinder_torque(engine: CylinderEngine, speed: float) -> Torque:
         arrays = {_COMPONENT + name: part for name, part in torque.components.items()}
         if torque.varying_inertia is not None:
             arrays["varying_inertia"] = torque.varying_inertia
-        return arrays | {"theta_crank": torque.theta_crank}
+        return arrays | {"theta": torque.theta}
 
     kept = disk_cache.kept("torque", (engine, speed), compute, _MODULES)
     parts = {
@@ -107,7 +108,7 @@ def _cylinder_torque(engine: CylinderEngine, speed: float) -> Torque:
         for name, part in kept.items()
         if name.startswith(_COMPONENT)
     }
-    return Torque(kept["theta_crank"], parts, kept.get("varying_inertia"))
+    return Torque(kept["theta"], parts, kept.get("varying_inertia"))
 
 
 def has_torque(case: Case, state: LoadCase) -> bool:

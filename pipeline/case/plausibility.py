@@ -21,8 +21,8 @@ from camwright.pipeline.case.case_values import text_of, value_of
 from camwright.pipeline.case.load_case_torque import pressure
 from camwright.pipeline.engine.crankshaft import energy_swing
 from camwright.pipeline.engine.pressure_trace import PressureTable
-from camwright.pipeline.engine.torque import Torque
 from camwright.pipeline.engine.torque_consistency import Finding
+from camwright.pipeline.torque.torque import Torque
 
 PLAUSIBILITY = "plausibility"
 """Id of a finding on a value beyond its usual range."""

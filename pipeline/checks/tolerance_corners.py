@@ -25,8 +25,8 @@ from camwright.pipeline.checks.registry import TOLERANCE_CORNERS, TOLERANCED, ch
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.solution import solved_turns
 from camwright.pipeline.cycle.turn import Turn, TurnInput, turns
-from camwright.pipeline.engine.torque import Torque
 from camwright.pipeline.follower.guide_friction import FrictionRange
+from camwright.pipeline.torque.torque import Torque
 
 NOMINAL = Corner("nominal")
 POSITIONS = 90

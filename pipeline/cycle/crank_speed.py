@@ -25,7 +25,6 @@ from camwright.pipeline.engine.crankshaft import (
     crank_motion,
     equivalent_inertia,
 )
-from camwright.pipeline.engine.torque import Torque
 from camwright.pipeline.engine.torque_consistency import (
     Finding,
     energy_finding,
@@ -39,6 +38,7 @@ from camwright.pipeline.follower.follower_forces import (
     follower_loads,
     torque_on_cam,
 )
+from camwright.pipeline.torque.torque import Torque
 
 POSITIONS = 720
 
@@ -181,7 +181,7 @@ def study_of(
 def _driving(torque: Torque, constant: float) -> tuple[Array, Inertia]:
     """Engine torque (n,), N m, without that of the inertia, and the inertia of the engine."""
     if torque.varying_inertia is None:
-        return torque.total, Inertia(constant, np.zeros(torque.theta_crank.size))
+        return torque.total, Inertia(constant, np.zeros(torque.theta.size))
     without = torque.total - torque.components["inertia"]
     return without, Inertia(constant, torque.varying_inertia)
 
@@ -284,7 +284,7 @@ def consistency(
     """
     ratio, shaft = machine.gear_ratio, machine.crankshaft
     system = replace(machine.system, rubbing=rubbing)
-    theta = uniform_turn(torque.theta_crank.size)
+    theta = uniform_turn(torque.theta.size)
     loads = follower_loads(pitch, system, machine.speed / ratio, theta)
     findings = []
     if demand is not None and demand.any():

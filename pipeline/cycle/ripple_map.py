@@ -17,8 +17,8 @@ from camwright.pipeline.case.machine import Machine, machines
 from camwright.pipeline.case.requirements_section import LoadCase
 from camwright.pipeline.cycle.speed_sweep import highest_speed
 from camwright.pipeline.engine.cylinder import CylinderEngine
-from camwright.pipeline.engine.torque import Torque
 from camwright.pipeline.follower.follower_forces import Rubbing, follower_loads
+from camwright.pipeline.torque.torque import Torque
 
 ANGLES = 360
 _SPEEDS, _LOADS = 25, 4

@@ -38,8 +38,8 @@ from camwright.pipeline.cycle.speed_sweep import (
     spring_sweep,
 )
 from camwright.pipeline.cycle.turn import Turn, TurnInput, turns
-from camwright.pipeline.engine.torque import Torque
 from camwright.pipeline.follower.spring import LEAST_DAMPING
+from camwright.pipeline.torque.torque import Torque
 
 # Positions solved and stored together; an interruption loses at most one such piece.
 CHUNK = 180
@@ -255,7 +255,7 @@ def solved_turns(
     solved = replace(solved, crank_speed=speed_ripple(states, known, pitch, rubbing))
     if not error_bars:
         return solved
-    halved = {name: each.resampled(each.theta_crank.size // 2) for name, each in known.items()}
+    halved = {name: each.resampled(each.theta.size // 2) for name, each in known.items()}
     return replace(solved, crank_speed_halved=speed_ripple(states, halved, pitch, rubbing))
 
 

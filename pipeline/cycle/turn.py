@@ -10,12 +10,12 @@ from camwright.geometry.arrays import Array, freeze, uniform_turn
 from camwright.geometry.contour import Contour
 from camwright.pipeline.case.machine import Machine
 from camwright.pipeline.cycle.crank_speed import DrivenCam, driven_cam
-from camwright.pipeline.engine.torque import Torque
 from camwright.pipeline.follower.follower_forces import FollowerSystem, Loads
 from camwright.pipeline.follower.friction_coupling import Guided, Stroke, guided_strokes
 from camwright.pipeline.follower.guide_friction import FrictionBounds, friction_bounds
 from camwright.pipeline.follower.guide_reactions import KNOTS, GuidePair, GuideReactions
 from camwright.pipeline.follower.stem_beam import Stem
+from camwright.pipeline.torque.torque import Torque
 
 COARSE_KNOTS = 5  # of a guide, for ratios of demands
 

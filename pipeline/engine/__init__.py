@@ -13,7 +13,7 @@ In the order of the calculation:
 | `indicated_cycle_solver` | first law until the cycle is periodic       | p, Pa; T, K; m, kg      |
 | `trace_file`             | text of a trace file, units of its header   |                         |
 | `angle_trace`            | one quantity against crank angle            | theta, rad; SI          |
-| `torque`                 | engine torque as a sum of components        | T, N m                  |
+| `engine_torque`          | engine torque of a model or from a table    | T, N m                  |
 | `pressure_trace`         | measured cylinder pressure, its torque      | p, Pa; T, N m           |
 | `brake_balance`          | indicated torque against the brake's        | T, N m; p, Pa           |
 | `trigger_wheel`          | teeth of the wheel, places of the edges     | t, s; theta, rad        |
@@ -30,5 +30,5 @@ In the order of the calculation:
 | `torque_consistency`     | torque, speed, inertia and work compared    | J, kg m2; E, J          |
 | `modelled_trace`         | trace files of a modelled engine            | T, N m; p, Pa; t, s; V  |
 
-Imports `geometry` and `pipeline.base`.
+Imports `geometry`, `pipeline.base` and `pipeline.torque`.
 """

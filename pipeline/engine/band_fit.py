@@ -10,8 +10,8 @@ import numpy as np
 from camwright.geometry.arrays import Array, readonly
 from camwright.pipeline.engine.cylinder import CYCLE_ANGLE
 from camwright.pipeline.engine.pitch_errors import PitchErrors
-from camwright.pipeline.engine.torque import SAMPLES, uniform_cycle
 from camwright.pipeline.engine.torque_error_bar import SlopeNoise
+from camwright.pipeline.torque.torque import SAMPLES, uniform_cycle
 
 SHARE_MAX = 0.95
 """Unknowns of the series per observation, at most."""

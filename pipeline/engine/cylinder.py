@@ -28,8 +28,9 @@ from camwright.pipeline.base.quantities import (
     Temperature,
 )
 from camwright.pipeline.base.units import shown
+from camwright.pipeline.torque.period import FOUR_STROKE
 
-CYCLE_ANGLE = 4.0 * pi
+CYCLE_ANGLE = FOUR_STROKE.angle
 LIFT_ROWS = (4, 720)  # least and most rows of a lift table
 
 FrictionPressure = Annotated[float, In("kPa", at_least=0, at_most=1e4)]

@@ -8,8 +8,8 @@ from camwright.geometry.arrays import FULL_TURN, Array
 from camwright.geometry.periodic_spline import periodic_cubic
 from camwright.pipeline.engine.cylinder import CYCLE_ANGLE
 from camwright.pipeline.engine.indicated_cycle import CylinderCycle
-from camwright.pipeline.engine.torque import Torque
 from camwright.pipeline.engine.trigger_wheel import TriggerWheel
+from camwright.pipeline.torque.torque import Torque
 
 ANGLE_STEP = 2  # deg, of torque and pressure
 SAMPLE = 5e-5  # s, of the voltage: 20 kHz

@@ -23,7 +23,6 @@ from camwright.pipeline.engine.angle_trace import (
     one_period,
 )
 from camwright.pipeline.engine.cylinder import CYCLE_ANGLE, CrankDrive, FrictionPressure
-from camwright.pipeline.engine.torque import SAMPLES, Torque, all_cylinders, uniform_cycle
 from camwright.pipeline.engine.trace_file import (
     ANGLE_UNITS,
     QUANTITY_UNITS,
@@ -32,6 +31,7 @@ from camwright.pipeline.engine.trace_file import (
     columns_of,
     trace_text,
 )
+from camwright.pipeline.torque.torque import SAMPLES, Torque, all_cylinders, uniform_cycle
 
 DeadCentre = Literal["given", "symmetry", "loss_angle"]
 

@@ -26,7 +26,6 @@ from camwright.pipeline.engine.crankshaft import SpeedStatistics, speed_statisti
 from camwright.pipeline.engine.cylinder import CYCLE_ANGLE
 from camwright.pipeline.engine.pitch_errors import PitchErrors
 from camwright.pipeline.engine.tooth_pattern import Recording
-from camwright.pipeline.engine.torque import SAMPLES, Torque, uniform_cycle
 from camwright.pipeline.engine.torque_error_bar import SlopeNoise, cut_off
 from camwright.pipeline.engine.trigger_wheel import (
     Edges,
@@ -35,6 +34,7 @@ from camwright.pipeline.engine.trigger_wheel import (
 from camwright.pipeline.engine.wheel_calibration import (
     Calibration,
 )
+from camwright.pipeline.torque.torque import SAMPLES, Torque, uniform_cycle
 
 HARMONICS = 20  # of the cycle, 10 per crank turn: least error at a noise of 0.2 rad/s
 TAPER = 0.25

@@ -16,8 +16,8 @@ from camwright.pipeline.engine.crankshaft import Inertia
 from camwright.pipeline.engine.cylinder import RunningGear
 from camwright.pipeline.engine.passing_times import passages_of
 from camwright.pipeline.engine.pitch_errors import PitchErrors, pitch_errors
-from camwright.pipeline.engine.torque import SAMPLES, uniform_cycle
 from camwright.pipeline.engine.trigger_wheel import Edges, TriggerWheel
+from camwright.pipeline.torque.torque import SAMPLES, uniform_cycle
 
 WheelClass = Literal["milled", "stamped"]
 PITCH_TOLERANCES: Mapping[WheelClass, float] = MappingProxyType(

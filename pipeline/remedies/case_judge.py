@@ -25,10 +25,10 @@ from camwright.pipeline.checks.tolerance_corners import (
 )
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.solution import Solution, is_body, solution
-from camwright.pipeline.engine.torque import Torque
 from camwright.pipeline.follower.camshaft_loads import unbalance
 from camwright.pipeline.remedies.lever_steps import without_exponent
 from camwright.pipeline.smoothing.required_lift import cam_lift
+from camwright.pipeline.torque.torque import Torque
 
 _DECIDING = tuple(each for each in CHECKS if each.must_have and not each.evidence)
 _SLIGHT = 0.01  # relative change of a figure up to which the remedy leaves it out

@@ -32,8 +32,8 @@ from camwright.pipeline.cycle.cycle import (
 from camwright.pipeline.cycle.rolling_history import rolling_record
 from camwright.pipeline.cycle.speed_sweep import SpeedSweep
 from camwright.pipeline.engine.crankshaft import CrankMotion
-from camwright.pipeline.engine.torque import Torque
 from camwright.pipeline.results.trial import Trial
+from camwright.pipeline.torque.torque import Torque
 
 SPLINE = (
     Column("spline_c0", "m", "Lift at the knot"),
@@ -55,7 +55,7 @@ def torque_columns(torque: Torque) -> dict[Column, Array]:
         Column(name, "N m", f"Engine torque at the crank, {name.replace('_', ' ')}"): values
         for name, values in torque.components.items()
     }
-    columns = {CRANK_ANGLE: torque.theta_crank, total: torque.total, **parts}
+    columns = {CRANK_ANGLE: torque.theta, total: torque.total, **parts}
     if torque.error_bar is not None:
         bar = Column("error_bar", "N m", "Half-width of the 95 % band about the total torque")
         columns[bar] = torque.error_bar

@@ -18,12 +18,12 @@ from camwright.pipeline.case.load_case_torque import engine_torque
 from camwright.pipeline.case.machine import Machine, machines
 from camwright.pipeline.case.requirements_section import LoadCase
 from camwright.pipeline.engine.cylinder import CylinderEngine
-from camwright.pipeline.engine.torque import Torque
 from camwright.pipeline.follower.guide_friction import FrictionRange
 from camwright.pipeline.smoothing.allowables import ratings_of
 from camwright.pipeline.smoothing.objective import KEYS, Objective, objective_of
 from camwright.pipeline.smoothing.scenario import Correction, DesignVariables, Scenario
 from camwright.pipeline.smoothing.synthesis_problem import COEFFICIENTS, Problem
+from camwright.pipeline.torque.torque import Torque
 
 POINTS = 720
 

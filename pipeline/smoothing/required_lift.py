@@ -11,8 +11,8 @@ from camwright.geometry.energy import lift_from_torque
 from camwright.geometry.lift import Lift
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.given_lift import given_lift
-from camwright.pipeline.engine.torque import Torque
 from camwright.pipeline.smoothing.smoothers import Smoother, smoothed
+from camwright.pipeline.torque.torque import Torque
 
 _ROUND_OFF = 1e-9  # of the torque
 

@@ -14,7 +14,6 @@ from camwright.geometry.errors import InputError
 from camwright.pipeline.base.units import in_unit
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_values import replaced, value_of
-from camwright.pipeline.engine.torque import Torque
 from camwright.pipeline.smoothing.bounds import Bound, bounds_of
 from camwright.pipeline.smoothing.cam_state import lift_jet, motion
 from camwright.pipeline.smoothing.energy_spline import Grid
@@ -22,6 +21,7 @@ from camwright.pipeline.smoothing.problem_setup import problem_of
 from camwright.pipeline.smoothing.sampled_problem import Search
 from camwright.pipeline.smoothing.scenario import Ratings
 from camwright.pipeline.smoothing.synthesis_problem import RESERVE, Design, Problem
+from camwright.pipeline.torque.torque import Torque
 
 BINDING = 2e-3  # of a limit: a constraint this near to its reserve is active
 FLOOR = 1e-4  # of the engine's ripple, by 1 % of a value: the optima are converged to 1e-6

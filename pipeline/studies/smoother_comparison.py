@@ -16,13 +16,13 @@ from camwright.pipeline.base.units import in_unit
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.checks.check import Check, in_order, verdict, within_depth
 from camwright.pipeline.contact.tiers import Tier
-from camwright.pipeline.engine.torque import Torque
 from camwright.pipeline.preview import preview_case
 from camwright.pipeline.results.trial import Trial
 from camwright.pipeline.results.verdict_summary import WIDTH, shortened
 from camwright.pipeline.smoothing.required_lift import cam_lift
 from camwright.pipeline.smoothing.smoothers import Smoother
 from camwright.pipeline.solver import solve
+from camwright.pipeline.torque.torque import Torque
 
 Record = dict[str, float | str | list[str] | None]
 

@@ -19,7 +19,7 @@ from camwright.pipeline.checks.tolerance_corners import (
     unsolved,
 )
 from camwright.pipeline.cycle.turn import turns
-from camwright.pipeline.engine.torque import Torque, uniform_cycle
+from camwright.pipeline.torque.torque import Torque, uniform_cycle
 
 TOLERANCES = """
 [crankshaft]

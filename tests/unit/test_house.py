@@ -20,6 +20,7 @@ ORDER = (
     "geometry",
     "meshes",
     "pipeline.base",
+    "pipeline.torque",
     "pipeline.engine",
     "pipeline.contact.elasticity",
     "pipeline.contact",

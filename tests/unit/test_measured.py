@@ -25,7 +25,7 @@ from camwright.pipeline.cycle.crank_speed import consistency, study_of
 from camwright.pipeline.cycle.solution import solution
 from camwright.pipeline.engine.crankshaft import energy_swing
 from camwright.pipeline.engine.cylinder import CylinderEngine
-from camwright.pipeline.engine.torque import torque_from_cylinder
+from camwright.pipeline.engine.engine_torque import torque_from_cylinder
 from camwright.pipeline.results.run_records import crank_speed_record
 from camwright.pipeline.results.trial import GIVEN_LIFT, Trial
 from camwright.pipeline.results.verdict_summary import measured_line

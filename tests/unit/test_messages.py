@@ -30,8 +30,8 @@ from camwright.pipeline.contact.contact_pair import ContactPair
 from camwright.pipeline.contact.elasticity.elastic_body import Elastic
 from camwright.pipeline.contact.follower_body import RollerBody
 from camwright.pipeline.contact.two_scale import loaded_cam
-from camwright.pipeline.engine.torque import Torque, uniform_cycle
 from camwright.pipeline.smoothing.required_lift import cam_lift
+from camwright.pipeline.torque.torque import Torque, uniform_cycle
 
 CASES = Path(__file__).parents[2] / "cases"
 GX120 = (CASES / "gx120.toml").read_text(encoding="utf-8")

@@ -5,6 +5,7 @@ import pytest
 from crank_traces import CYCLE, time_at
 
 from camwright.pipeline.engine.crankshaft import speed_statistics
+from camwright.pipeline.engine.engine_torque import torque_from_csv
 from camwright.pipeline.engine.modelled_trace import (
     passing_times,
     tooth_times_text,
@@ -14,8 +15,8 @@ from camwright.pipeline.engine.modelled_trace import (
 from camwright.pipeline.engine.pickup_voltage import VoltageTable, speed_from_voltage
 from camwright.pipeline.engine.speed_file import speed_from_csv
 from camwright.pipeline.engine.speed_trace import Filter
-from camwright.pipeline.engine.torque import Torque, torque_from_csv, uniform_cycle
 from camwright.pipeline.engine.trigger_wheel import TriggerWheel
+from camwright.pipeline.torque.torque import Torque, uniform_cycle
 
 THETA = uniform_cycle(720)
 SPEED = 151.0 - 5.0 * np.cos(THETA / 2 - 3.0) + 2.0 * np.sin(THETA)

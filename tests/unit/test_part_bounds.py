@@ -22,11 +22,11 @@ from camwright.pipeline.case.toml_text import tables_of
 from camwright.pipeline.contact.cam_body import BalanceHole
 from camwright.pipeline.engine.crankshaft import Crankshaft
 from camwright.pipeline.engine.cylinder import CylinderEngine, LiftPoint
+from camwright.pipeline.engine.engine_torque import TorqueTable
 from camwright.pipeline.engine.pickup_voltage import VoltageTable
 from camwright.pipeline.engine.pressure_trace import PressureTable
 from camwright.pipeline.engine.speed_file import SpeedTable
 from camwright.pipeline.engine.speed_trace import Filter
-from camwright.pipeline.engine.torque import TorqueTable
 from camwright.pipeline.engine.trigger_wheel import TriggerWheel
 from camwright.pipeline.engine.wheel_calibration import WheelReference
 from camwright.pipeline.follower.camshaft_loads import Counterweight, ShaftSection

@@ -6,6 +6,7 @@ from cycle_pressures import net_imep
 
 from camwright.geometry.errors import InputError
 from camwright.pipeline.engine.cylinder import CylinderEngine
+from camwright.pipeline.engine.engine_torque import torque_from_cycle
 from camwright.pipeline.engine.indicated_cycle_solver import working_cycle
 from camwright.pipeline.engine.pressure_trace import (
     PressureTable,
@@ -15,7 +16,6 @@ from camwright.pipeline.engine.pressure_trace import (
     pressure_from_csv,
     torque_from_pressure,
 )
-from camwright.pipeline.engine.torque import torque_from_cycle
 
 DRIVE = {
     "bore": 0.060,

@@ -14,12 +14,12 @@ from camwright.pipeline.case.case_file import read_case
 from camwright.pipeline.case.load_case_torque import engine_torques
 from camwright.pipeline.engine import indicated_cycle_solver
 from camwright.pipeline.engine.cylinder import CYCLE_ANGLE, CylinderEngine
-from camwright.pipeline.engine.torque import (
-    Torque,
+from camwright.pipeline.engine.engine_torque import (
     torque_from_csv,
     torque_from_cycle,
     torque_from_cylinder,
 )
+from camwright.pipeline.torque.torque import Torque
 
 ENGINE = CylinderEngine(
     bore=0.060,
@@ -50,7 +50,7 @@ def torque(cycle):
 def test_total_is_the_sum_of_the_parts(torque):
     assert list(torque.components) == ["gas", "inertia", "valve_train", "friction"]
     np.testing.assert_array_equal(torque.total, sum(torque.components.values()))
-    assert torque.theta_crank.shape == (720,)
+    assert torque.theta.shape == (720,)
 
 
 def test_arrays_and_components_cannot_be_written_to(torque):
@@ -156,7 +156,7 @@ def test_an_odd_firing_offset_delays_the_torque(cycle, torque):
 
 def test_measured_torque_comes_back_on_whole_degrees(tmp_path, torque):
     path = tmp_path / "torque.csv"
-    table = zip(np.degrees(torque.theta_crank).tolist(), torque.total.tolist(), strict=True)
+    table = zip(np.degrees(torque.theta).tolist(), torque.total.tolist(), strict=True)
     text = "".join(f"{angle!r},{value!r}\n" for angle, value in table)
     path.write_text("crank_angle_deg,torque_Nm\n" + text)
     measured = torque_from_csv(path)
@@ -189,7 +189,7 @@ def test_torque_of_a_case_is_kept_between_runs(tmp_path, monkeypatch):
         assert list(torque.components) == list(computed.components)
         np.testing.assert_array_equal(torque.total, computed.total)
         np.testing.assert_array_equal(torque.varying_inertia, computed.varying_inertia)
-        np.testing.assert_array_equal(torque.theta_crank, computed.theta_crank)
+        np.testing.assert_array_equal(torque.theta, computed.theta)
 
 
 @pytest.mark.parametrize("count", [360, 240, 90, 77])

@@ -15,8 +15,8 @@ import pytest
 from cycle_pressures import fmep, gross_imep
 
 from camwright.pipeline.engine.cylinder import CYCLE_ANGLE, CylinderEngine
+from camwright.pipeline.engine.engine_torque import torque_from_cycle
 from camwright.pipeline.engine.indicated_cycle_solver import working_cycle
-from camwright.pipeline.engine.torque import torque_from_cycle
 
 GX120 = CylinderEngine(
     bore=0.060,

@@ -9,6 +9,7 @@ from camwright.geometry.errors import InputError
 from camwright.pipeline.engine.brake_balance import brake_balance
 from camwright.pipeline.engine.crankshaft import Inertia, crank_motion
 from camwright.pipeline.engine.cylinder import CylinderEngine
+from camwright.pipeline.engine.engine_torque import torque_from_cylinder
 from camwright.pipeline.engine.pressure_trace import (
     PressureTable,
     cycle_statistics,
@@ -17,7 +18,6 @@ from camwright.pipeline.engine.pressure_trace import (
 )
 from camwright.pipeline.engine.speed_file import speed_from_csv
 from camwright.pipeline.engine.speed_trace import Filter, speed_from_edges
-from camwright.pipeline.engine.torque import torque_from_cylinder
 from camwright.pipeline.engine.torque_consistency import implied_inertia
 from camwright.pipeline.engine.trigger_wheel import TriggerWheel, counted
 

@@ -12,8 +12,8 @@ from camwright.geometry.linkage import SliderCrank
 from camwright.pipeline.engine import indicated_cycle_solver, valves
 from camwright.pipeline.engine.combustion import burnt_fraction
 from camwright.pipeline.engine.cylinder import CYCLE_ANGLE, CylinderEngine
+from camwright.pipeline.engine.engine_torque import torque_from_cycle
 from camwright.pipeline.engine.indicated_cycle_solver import working_cycle
-from camwright.pipeline.engine.torque import torque_from_cycle
 from camwright.pipeline.engine.working_gas import AIR_AND_FUEL, Gas
 
 ENGINE = CylinderEngine(

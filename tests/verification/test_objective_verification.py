@@ -103,7 +103,7 @@ def total_cost(of_scenarios):
 def energy_swing(case):
     """Range of the integral of the engine torque over the crank angle, by trapezia, J."""
     torque = engine_torques(case)["idle"].without_mean()
-    work = scipy.integrate.cumulative_trapezoid(torque.total, torque.theta_crank)
+    work = scipy.integrate.cumulative_trapezoid(torque.total, torque.theta)
     return float(np.ptp(work))
 
 

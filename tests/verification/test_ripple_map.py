@@ -10,8 +10,8 @@ from camwright.pipeline.case.case_file import read_case
 from camwright.pipeline.case.load_case_torque import engine_torque, engine_torques
 from camwright.pipeline.cycle.ripple_map import ripple_map
 from camwright.pipeline.cycle.turn import turn
-from camwright.pipeline.engine.torque import Torque, uniform_cycle
 from camwright.pipeline.preview import preview_case
+from camwright.pipeline.torque.torque import Torque, uniform_cycle
 
 CASES = Path(__file__).parents[2] / "cases"
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from camwright.geometry.arrays import Array, uniform_turn
 from camwright.geometry.pitch_curve import PitchCurve
-from camwright.pipeline.engine.torque import torque_from_cylinder
+from camwright.pipeline.engine.engine_torque import torque_from_cylinder
 from camwright.pipeline.follower.follower_forces import FollowerSystem
 from camwright.pipeline.follower.spring import Spring
 from camwright.pipeline.smoothing.smoothers import Smoother

@@ -15,7 +15,7 @@ import numpy as np
 from camwright.geometry.arrays import Array
 from camwright.pipeline.engine.crankshaft import CrankMotion, Inertia, crank_motion
 from camwright.pipeline.engine.cylinder import CylinderEngine
-from camwright.pipeline.engine.torque import Torque, torque_from_cylinder
+from camwright.pipeline.engine.engine_torque import torque_from_cylinder
 from camwright.pipeline.engine.torque_consistency import implied_inertia
 from camwright.pipeline.studies.papers import speed_reconstruction, validation_figures
 from camwright.pipeline.studies.papers.balancing_cam import (
@@ -37,6 +37,7 @@ from camwright.pipeline.studies.papers.paper_engines import (
 )
 from camwright.pipeline.studies.papers.paper_figure import PaperFigure, records
 from camwright.pipeline.studies.papers.published_figures import Outcome, PaperResult, Target, judged
+from camwright.pipeline.torque.torque import Torque
 
 PRELOADS = (121.0, 242.0, 363.0)
 MULTIPLIERS = {"full": 2.0, "half": 1.0}
@@ -137,7 +138,7 @@ def _stock(
 
 def _pumping(target: Target, torque: Torque) -> Outcome:
     """Sign of the torque about 90 deg: pumping against the throttled intake."""
-    at = np.degrees(torque.theta_crank)
+    at = np.degrees(torque.theta)
     pumping = float(torque.total[(at >= 40.0) & (at <= 140.0)].mean())
     sign = "negative" if pumping < 0.0 else "positive"
     return judged(target, sign, f"mean torque from 40 to 140 deg of {pumping:.3g} N m")

@@ -9,7 +9,7 @@ import numpy as np
 from camwright.geometry.arrays import Array, uniform_turn
 from camwright.geometry.pitch_curve import PitchCurve
 from camwright.pipeline.engine.crankshaft import Inertia, crank_motion
-from camwright.pipeline.engine.torque import torque_from_cylinder
+from camwright.pipeline.engine.engine_torque import torque_from_cylinder
 from camwright.pipeline.studies.papers.balancing_cam import PRIME_RADIUS, RATIO, designed_pitch
 from camwright.pipeline.studies.papers.cardoso_2024 import FOLLOWER, SPRING, UNSMOOTHED
 from camwright.pipeline.studies.papers.figures_2025_cam import (

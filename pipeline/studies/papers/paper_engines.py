@@ -9,7 +9,8 @@ from math import degrees, radians
 from scipy.optimize import brentq
 
 from camwright.pipeline.engine.cylinder import CylinderEngine
-from camwright.pipeline.engine.torque import Torque, torque_from_cylinder
+from camwright.pipeline.engine.engine_torque import torque_from_cylinder
+from camwright.pipeline.torque.torque import Torque
 
 IDLE_SPEED = 157.08  # rad/s, 1500 rpm
 SLOW_IDLE = 83.8  # rad/s, 800 rpm

@@ -10,7 +10,6 @@ from numpy.typing import ArrayLike
 
 from camwright.geometry.arrays import Array
 from camwright.pipeline.engine.crankshaft import CrankMotion
-from camwright.pipeline.engine.torque import Torque
 from camwright.pipeline.studies.papers.balancing_cam import Balanced
 from camwright.pipeline.studies.papers.mechanism_sizes import Workspace
 from camwright.pipeline.studies.papers.paper_figure import (
@@ -28,6 +27,7 @@ from camwright.pipeline.studies.papers.paper_figure import (
 from camwright.pipeline.studies.papers.published_figures import Target
 from camwright.pipeline.studies.papers.slider_crank_drive import Losses
 from camwright.pipeline.studies.papers.speed_reconstruction import POINTS, Reconstruction
+from camwright.pipeline.torque.torque import Torque
 
 PRINTED = "printed"
 SHOWN = 180

@@ -18,7 +18,6 @@ from camwright.pipeline.base.units import in_unit
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.limits import TORQUE_REDUCTION
 from camwright.pipeline.checks.check import Check, Verdict, in_order, within_depth
-from camwright.pipeline.engine.torque import Torque
 from camwright.pipeline.follower.camshaft_loads import unbalance
 from camwright.pipeline.preview import preview_case
 from camwright.pipeline.smoothing.constrained_synthesis import approached
@@ -26,6 +25,7 @@ from camwright.pipeline.smoothing.fe_correction import redrawn
 from camwright.pipeline.smoothing.multistart import continued
 from camwright.pipeline.smoothing.problem_setup import problem_of
 from camwright.pipeline.smoothing.synthesis_problem import coarsened
+from camwright.pipeline.torque.torque import Torque
 
 
 @dataclass(frozen=True)

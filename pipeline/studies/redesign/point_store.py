@@ -13,10 +13,10 @@ from camwright.geometry.errors import CamError
 from camwright.pipeline.base.files import json_text, read_json, write_atomic
 from camwright.pipeline.case.case_file import parse_case
 from camwright.pipeline.case.load_case_torque import engine_torques
-from camwright.pipeline.engine.torque import Torque
 from camwright.pipeline.smoothing.infeasibility import infeasibility
 from camwright.pipeline.smoothing.problem_setup import problem_of
 from camwright.pipeline.studies.redesign.design_point import point_of, rough_point
+from camwright.pipeline.torque.torque import Torque
 
 Record = dict[str, Any]
 

@@ -1,0 +1,171 @@
+"""Torque of a machine on its shaft as a sum of components, over a cycle or over a cam turn."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from types import MappingProxyType
+
+import numpy as np
+
+from camwright.geometry.arrays import FULL_TURN, Array, finite, freeze
+from camwright.geometry.errors import InputError
+from camwright.geometry.periodic_spline import periodic_cubic
+from camwright.pipeline.base.units import shown
+from camwright.pipeline.torque.period import FOUR_STROKE, Period
+
+SAMPLES = 720
+"""Angles of a cycle."""
+_SAME = 1e-9  # of an angle
+
+
+@dataclass(frozen=True, eq=False)
+class Torque:
+    """Torque of a machine on its shaft, positive when it drives the shaft.
+
+    Parameters
+    ----------
+    theta : array (n,)                     rad of the shaft, uniform over [0, span); of a
+                                           four-stroke engine 0 is the TDC of intake
+    components : mapping to array (n,)     N m, by name; the total is their sum
+    varying_inertia : array (n,)           kg m2, of the reciprocating masses whose torque at
+                                           constant speed is the component ``inertia``; None: not
+                                           known
+    error_bar : array (n,)                 N m, half-width of the band about a measured total that
+                                           holds it at all angles at once, 95 %; None: not known
+    span : float                           rad of the shaft: one cycle, or after `over_cam_turn` the
+                                           cycles of a cam turn
+
+    Raises
+    ------
+    InputError
+        If the angles are not uniform over the span, or a component is of another length or not
+        finite.
+    """
+
+    theta: Array
+    components: Mapping[str, Array]
+    varying_inertia: Array | None = None
+    error_bar: Array | None = None
+    span: float = FOUR_STROKE.angle
+
+    def __post_init__(self) -> None:
+        theta = finite("torque.theta", self.theta)
+        if theta.ndim != 1 or theta.size < 12:
+            raise InputError("torque.theta", f"{theta.shape} angles", "(12 or more,)")
+        if not np.allclose(theta, uniform_cycle(theta.size, self.span), rtol=0.0, atol=1e-9):
+            limit = f"uniform over [0, {shown(self.span, 'deg')})"
+            raise InputError("torque.theta", "angles", limit)
+        if not self.components:
+            raise InputError("torque.components", "nothing", "one component or more")
+        parts = {name: finite(f"torque.{name}", part) for name, part in self.components.items()}
+        for name, part in parts.items():
+            if part.shape != theta.shape:
+                raise InputError(f"torque.{name}", f"{part.shape} values", f"{theta.shape}")
+        freeze(self, theta=theta)
+        object.__setattr__(self, "components", MappingProxyType(parts))
+
+    @property
+    def total(self) -> Array:
+        """Sum of the components, N m."""
+        return np.asarray(sum(self.components.values()))
+
+    @property
+    def mean(self) -> float:
+        return float(self.total.mean())
+
+    @property
+    def std(self) -> float:
+        """Standard deviation about the mean, N m."""
+        return float(self.total.std())
+
+    @property
+    def peak(self) -> float:
+        return float(self.total.max())
+
+    @property
+    def peak_to_peak(self) -> float:
+        return float(np.ptp(self.total))
+
+    def without_mean(self) -> Torque:
+        """The torque with a steady load, component `load`, that brings its mean to zero."""
+        load = np.full_like(self.theta, -self.mean)
+        known = self.components.get("load", np.zeros_like(load))
+        return replace(self, components={**self.components, "load": known + load})
+
+    def resampled(self, n: int) -> Torque:
+        """The torque at `n` angles: some of its own, or by a periodic cubic spline through each
+        component.
+        """
+        if n == self.theta.size:
+            return self
+        step, rest = divmod(self.theta.size, n)
+        if rest == 0:  # exactly: without the round-off of a spline
+            parts = {name: part[::step] for name, part in self.components.items()}
+            varying, bar = (
+                None if values is None else values[::step]
+                for values in (self.varying_inertia, self.error_bar)
+            )
+            return Torque(self.theta[::step], parts, varying, bar, self.span)
+        theta, span = uniform_cycle(n, self.span), self.span
+        parts = {name: _periodic(part, theta, span) for name, part in self.components.items()}
+        varying, bar = (
+            # The spline of an inertia undershoots at a dead centre.
+            None if values is None else np.maximum(_periodic(values, theta, span), 0.0)
+            for values in (self.varying_inertia, self.error_bar)
+        )
+        return Torque(theta, parts, varying, bar, span)
+
+
+def over_cam_turn(torque: Torque, period: Period) -> Torque:
+    """Torque over a cam turn, at equal cam angles, from that over a cycle of the machine.
+
+    Every module that draws, solves or smooths a cam takes the torque from here.
+
+    Raises
+    ------
+    InputError
+        If the torque is over another angle than the cycle.
+    """
+    if abs(torque.span - period.angle) > _SAME * period.angle:
+        limit = f"{shown(period.angle, 'deg')}, the cycle of the machine"
+        raise InputError("torque.cycle", shown(torque.span, "deg"), limit)
+    if period.cycles == 1:
+        return torque
+    varying, bar = (
+        None if values is None else period.on_cam(values)
+        for values in (torque.varying_inertia, torque.error_bar)
+    )
+    return Torque(
+        uniform_cycle(period.cycles * torque.theta.size, period.cam_turn),
+        {name: period.on_cam(part) for name, part in torque.components.items()},
+        varying,
+        bar,
+        period.cam_turn,
+    )
+
+
+def uniform_cycle(count: int, span: float = FOUR_STROKE.angle) -> Array:
+    """`count` equally spaced shaft angles over a span (rad) from 0, its end excluded, rad."""
+    return np.arange(float(count)) * (span / count)
+
+
+def _periodic(values: Array, theta: Array, span: float) -> Array:
+    """Values at equal angles over a span (rad) at other shaft angles (rad)."""
+    return periodic_cubic(values)(theta * (FULL_TURN / span))
+
+
+def all_cylinders(
+    parts: Mapping[str, Array],
+    theta: Array,
+    offsets: tuple[float, ...],
+    span: float = FOUR_STROKE.angle,
+) -> dict[str, Array]:
+    """Torques (n,) of one cylinder over its cycle, summed over cylinders that lag by offsets."""
+    if offsets == (0.0,):
+        return dict(parts)
+    shifted = [theta - offset for offset in offsets]
+    return {
+        name: np.asarray(sum(_periodic(part, at, span) for at in shifted))
+        for name, part in parts.items()
+    }
