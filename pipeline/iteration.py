@@ -201,7 +201,7 @@ def _smoothed(task: _Task) -> Iteration:
     """Trials of ever wider smoothers."""
     case, torques = task.case, task.torques
     forecast = cache(lambda smoother: forecast_checks(case, torques, smoother))
-    smoother, why = Smoother.from_case(case.smoothing), "smoother of the case"
+    smoother, why = Smoother.from_case(case.smoothing, case.period), "smoother of the case"
     attempts: list[Attempt] = []
     points: list[TrialPoint] = []
     while True:

@@ -49,7 +49,7 @@ def _previewed(case: Case, corners: bool, progress: Progress) -> Trial:
         trial = solve(
             case, contour, tier=Tier.PREVIEW, torques=torques, corners=corners, progress=progress
         )
-        smoother = None if case.engine is None else Smoother.from_case(case.smoothing)
+        smoother = None if case.engine is None else Smoother.from_case(case.smoothing, case.period)
         return replace(trial, smoothing=smoothing_record(smoother))
     trial = _synthesised(case, torques, progress)
     return judged_at_corners(trial, torques) if corners else trial

@@ -234,7 +234,7 @@ def _lift_differences(
     if case.engine is None:
         expected = given_lift(case)
     else:
-        smoother = Smoother.from_case(case.smoothing)
+        smoother = Smoother.from_case(case.smoothing, case.period)
         strength = _number(run.final, "smoothing_strength", record["smoothing_strength"])
         if strength is not None:
             smoother = smoother.stretched(strength)

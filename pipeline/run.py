@@ -184,7 +184,8 @@ def summary_of(
     """Contents of ``run.json`` that no certificate changes; writes ``1_speed.csv``."""
     case, required = final.case, None
     if final.smoothing.strength is not None:
-        smoother = Smoother.from_case(case.smoothing).stretched(final.smoothing.strength)
+        smoother = Smoother.from_case(case.smoothing, case.period)
+        smoother = smoother.stretched(final.smoothing.strength)
         required = required_torque(case, torques[case.load_cases[0].name], smoother)
     crank_speed, columns = crank_speed_record(torques, final, required)
     if columns is not None:

@@ -6,6 +6,7 @@ Python alike.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from functools import cache
@@ -131,6 +132,18 @@ class In:
     def _bounds(self) -> tuple[float, float, float, float]:
         """Above, below, least and greatest in SI."""
         return _bounds_in_si(self)
+
+
+@dataclass(frozen=True)
+class Ratio(In):
+    """As `In`: a pure number, which a case file may state by whole numbers, such as ``"3:2"``."""
+
+    def _number(self, value: object) -> float:
+        match = _RATIO.fullmatch(value) if isinstance(value, str) else None
+        return super()._number(value) if match is None else int(match[1]) / int(match[2])
+
+
+_RATIO = re.compile(r"([1-9][0-9]{0,5}):([1-9][0-9]{0,5})", re.ASCII)
 
 
 @cache

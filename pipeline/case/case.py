@@ -8,6 +8,7 @@ from typing import Annotated, Literal
 
 from pydantic import AfterValidator, Field, PrivateAttr, ValidationError
 
+from camwright.geometry.arrays import FULL_TURN
 from camwright.geometry.contour import Contour
 from camwright.geometry.errors import InputError
 from camwright.geometry.lift import Lift
@@ -39,6 +40,7 @@ from camwright.pipeline.follower.follower_kind import FollowerKind
 from camwright.pipeline.follower.guide_reactions import GuidePair
 from camwright.pipeline.follower.roller import Roller
 from camwright.pipeline.follower.spring import Spring
+from camwright.pipeline.torque.period import FOUR_STROKE, Period
 
 INPUTS = "inputs"
 Materials = Annotated[
@@ -151,6 +153,18 @@ class Case(Section):
                 raise InputError("follower.kind", "flat", '"roller" for a value of the roller')
             raise InputError("roller", "missing", 'given with follower.kind = "roller"')
         return self.roller_given
+
+    @property
+    def period(self) -> Period:
+        """Cycle of the machine and the drive of its cam; a lift is a cycle by itself.
+
+        Raises
+        ------
+        InputError
+            If the cam turn does not hold a whole number of cycles.
+        """
+        ratio = self.mechanism.gear_ratio
+        return Period(FULL_TURN * ratio if self.engine is None else FOUR_STROKE.angle, ratio)
 
     @property
     def spring_mass(self) -> float:

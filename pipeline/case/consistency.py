@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
+from camwright.geometry.arrays import FULL_TURN
 from camwright.geometry.errors import InputError
 from camwright.pipeline.base.quantities import In
 from camwright.pipeline.base.units import shown
@@ -27,7 +28,8 @@ if TYPE_CHECKING:
 
 _KEYWAY_WIDTH = 1.8  # greatest, over the bore radius
 _DIGITS = (4, 8, 17)  # more where a value and its limit would read alike
-_ROUND_OFF = 1e-9  # of a share of the friction
+_ROUND_OFF = 1e-9  # of a share of the friction, and of an angle
+_POSITIONS_MIN = 36  # of the cam per cycle of the machine
 _SHARES = 1e-6  # of the sum of the duty
 
 
@@ -77,9 +79,7 @@ def _check_start(case: Case) -> None:
         _ = case.roller  # refuses a case without roller
     elif case.roller_given is not None:
         raise InputError("roller", "a table", 'left out with follower.kind = "flat"')
-    ratio = case.mechanism.gear_ratio
-    fits = case.engine is None or ratio == 2.0
-    _require(case, "mechanism.gear_ratio", fits, "2 with an engine: a cam turn is 720 deg")
+    _check_period(case)
     engine = case.engine
     if isinstance(engine, (SpeedTable, VoltageTable)) and case.crankshaft is None:
         raise InputError(
@@ -105,6 +105,31 @@ def _check_start(case: Case) -> None:
             name = "fired" if load_case.intake_pressure is None else "intake_pressure"
             limit = 'left out unless engine.kind = "cylinder" without a torque file'
             _require(case, f"load_case[{k}].{name}", False, limit)
+
+
+def _check_period(case: Case) -> None:
+    """A cam turn holds whole cycles, which the smoothing and the positions resolve."""
+    period, smoothing = case.period, case.smoothing
+    cycle = shown(period.angle, "deg")
+    if case.lift is None:
+        fill = period.angle / smoothing.spacing
+        words = f"a cycle of {cycle} over {{smoothing.spacing}}"
+        fits = smoothing.points <= fill * (1.0 + _ROUND_OFF)
+        _require(case, "smoothing.points", fits, f"<= {fill:.4g}, {words}")
+        fits = smoothing.kind != "moving_average" or smoothing.points < fill * (1.0 - _ROUND_OFF)
+        limit = f"< {fill:.4g}, {words}: over all of it the average is zero"
+        _require(case, "smoothing.points", fits, limit)
+        for name in ("width", "cutoff"):
+            fits = getattr(smoothing, name) <= period.angle * (1.0 + _ROUND_OFF)
+            _require(case, f"smoothing.{name}", fits, f"<= {cycle}, a cycle")
+    for order in smoothing.harmonic_orders:
+        waves = order * period.angle / FULL_TURN
+        if abs(waves - round(waves)) > _ROUND_OFF * waves:
+            limit = f"per shaft turn, with whole waves in a cycle of {cycle}"
+            raise InputError("smoothing.harmonic_orders", order, limit)
+    least = _POSITIONS_MIN * period.cycles
+    limit = f">= {least}, {_POSITIONS_MIN} per cycle of {cycle}"
+    _require(case, "solver.positions", case.solver.positions >= least, limit)
 
 
 def tightened_tolerances(case: Case) -> dict[str, tuple[str, str]]:

@@ -44,7 +44,7 @@ from camwright.pipeline.engine.pressure_trace import (
 from camwright.pipeline.engine.speed_file import SpeedTable, speed_from_csv
 from camwright.pipeline.engine.speed_trace import SpeedTrace
 from camwright.pipeline.torque import torque as torque_module
-from camwright.pipeline.torque.torque import Torque
+from camwright.pipeline.torque.torque import Torque, over_cam_turn
 
 _COMPONENT = "component."
 _MODULES = (
@@ -70,13 +70,17 @@ def engine_torques(case: Case) -> dict[str, Torque]:
 
 
 def engine_torque(case: Case, state: LoadCase) -> Torque:
-    """Torque of the engine in one load case.
+    """Torque of the engine in one load case, over a cam turn.
 
     Raises
     ------
     InputError
         If a file cannot be read or has wrong contents; by file and line.
     """
+    return over_cam_turn(_torque_of_cycle(case, state), case.period)
+
+
+def _torque_of_cycle(case: Case, state: LoadCase) -> Torque:
     engine = case.engine
     if state.torque is not None:
         return torque_from_csv(case.path(state.torque))

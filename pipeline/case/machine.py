@@ -38,6 +38,7 @@ from camwright.pipeline.follower.guide_reactions import GuidePair
 from camwright.pipeline.follower.roller import Roller
 from camwright.pipeline.follower.spring import Spring
 from camwright.pipeline.follower.stem_beam import Stem
+from camwright.pipeline.torque.period import Period
 
 _UNLOADED = {
     "torque": None,
@@ -75,7 +76,7 @@ class Machine:
     ----------
     load_case : str
     speed : float              of the crank, rad/s, >= 0; 0: at rest
-    gear_ratio : float         crank turns per cam turn
+    period : Period            cycle of the machine, and shaft turns per cam turn
     ripple_weight : float      weight of its torque ripple in the synthesis
     torque_reduction, speed_reduction : float   required of the ripple; None: none is required
     duty : float               share of the operating time; None: not known
@@ -97,7 +98,7 @@ class Machine:
 
     load_case: str
     speed: float
-    gear_ratio: float
+    period: Period
     ripple_weight: float
     torque_reduction: float | None
     speed_reduction: float | None
@@ -129,6 +130,11 @@ class Machine:
     def crank_speed(self) -> float:
         """rad/s, > 0 also at rest."""
         return max(self.speed, CREEP)
+
+    @property
+    def gear_ratio(self) -> float:
+        """Shaft turns per cam turn."""
+        return self.period.ratio
 
     @property
     def cam_speed(self) -> float:
@@ -288,7 +294,7 @@ def machine(case: Case, state: LoadCase) -> Machine:
     return Machine(
         load_case=state.name,
         speed=state.speed,
-        gear_ratio=case.mechanism.gear_ratio,
+        period=case.period,
         ripple_weight=state.ripple_weight,
         torque_reduction=_required(case, state, TORQUE_REDUCTION),
         speed_reduction=_required(case, state, SPEED_REDUCTION),

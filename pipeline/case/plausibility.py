@@ -117,7 +117,7 @@ def _spring_findings(case: Case, torques: Mapping[str, Torque]) -> Iterator[Find
     chosen = smoothing.kind == "constrained" and {"spring_rate", "preload"} & {*smoothing.free}
     if torque is None or chosen:
         return
-    swing = case.mechanism.compensation * float(np.ptp(energy_swing(torque.total)))
+    swing = case.mechanism.compensation * float(np.ptp(energy_swing(torque.total, torque.span)))
     lift = float(spring_deflection(swing, spring.rate, spring.preload))
     of_rate, of_radius = 0.5 * spring.rate * lift**2 / swing, lift / case.cam.prime_radius
     of_torque = f"of the energy swing of the torque, {shown(swing, 'J')}"

@@ -85,7 +85,7 @@ def _data(kind: Kind, case: Case) -> str:
     if kind == "table" or case.crankshaft is None or not isinstance(case.engine, WheelTable):
         return torque_text(torque)
     inertia = Inertia.constant_only(case.crankshaft.inertia, torque.theta.size)
-    speed = crank_motion(torque.total, inertia, state.speed).speed
+    speed = crank_motion(torque.total, inertia, state.speed, span=torque.span).speed
     write = voltage_text if kind == "voltage" else tooth_times_text
     return write(speed, case.engine.wheel)
 

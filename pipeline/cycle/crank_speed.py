@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
-from math import pi
 from typing import NamedTuple
 
 import numpy as np
@@ -38,6 +37,7 @@ from camwright.pipeline.follower.follower_forces import (
     follower_loads,
     torque_on_cam,
 )
+from camwright.pipeline.torque.period import FOUR_STROKE
 from camwright.pipeline.torque.torque import Torque
 
 POSITIONS = 720
@@ -110,27 +110,30 @@ def speed_study(
     gear_ratio: float = 2.0,
     mechanism_inertia: float = 0.0,
     load: Load = Load(),  # noqa: B008 - frozen
+    span: float = FOUR_STROKE.angle,
 ) -> SpeedStudy:
     """Crank speed without the mechanism, with its inertia alone, and with the cam.
 
     Parameters
     ----------
-    torque : array (n,)          N m at equal crank angles, without the torque of `inertia`
+    torque : array (n,)          N m at equal shaft angles of a cam turn, without the torque of
+                                 `inertia`
     inertia : Inertia            of the engine, at the same angles
     mean_speed : float           rad/s
     mechanism_inertia : float    kg m2, of the rotating parts of the mechanism, at the crank
+    span : float                 rad of the shaft in a cam turn
 
     Raises
     ------
     CamError
         If the engine stalls.
     """
-    before = crank_motion(torque, inertia, mean_speed, load=load)
+    before = crank_motion(torque, inertia, mean_speed, load=load, span=span)
     mounted = inertia.plus(mechanism_inertia)
-    alone = crank_motion(torque, mounted, mean_speed, load=load)
-    after = _motion_with_cam(torque, mounted, mean_speed, pitch, system, gear_ratio, load)
+    alone = crank_motion(torque, mounted, mean_speed, load=load, span=span)
+    after = _motion_with_cam(torque, mounted, mean_speed, pitch, system, gear_ratio, load, span)
     std = after.statistics.std
-    needed = equivalent_inertia(before.net_torque, mean_speed, std) if std > 0 else np.inf
+    needed = equivalent_inertia(before.net_torque, mean_speed, std, span) if std > 0 else np.inf
     return SpeedStudy(before, alone, after, needed - inertia.mean)
 
 
@@ -142,6 +145,7 @@ def _motion_with_cam(
     system: FollowerSystem,
     gear_ratio: float,
     load: Load,
+    span: float,
 ) -> CrankMotion:
     """Motion of the crank with the cam; `mounted` includes the rotating parts of the mechanism."""
     follower = follower_inertia(pitch, system.mass, gear_ratio, torque.size)
@@ -151,6 +155,7 @@ def _motion_with_cam(
         mean_speed,
         load=load,
         mechanism=mechanism_torque(pitch, system, gear_ratio, torque.size),
+        span=span,
     )
 
 
@@ -175,6 +180,7 @@ def study_of(
         gear_ratio=machine.gear_ratio,
         mechanism_inertia=shaft.mechanism_inertia,
         load=Load(shaft.load_exponent),
+        span=torque.span,
     )
 
 
@@ -254,12 +260,13 @@ def _motions(
     """
     values, inertia = _driving(torque, shaft.inertia)
     speed, load = machine.speed, Load(shaft.load_exponent)
-    before = crank_motion(values, inertia, speed, load=load)
+    before = crank_motion(values, inertia, speed, load=load, span=torque.span)
     if not np.ptp(before.net_torque) > 0.0:
         raise InputError("engine_torque", "constant", "a torque that varies over the cycle")
     mounted = inertia.plus(shaft.mechanism_inertia)
     system = replace(machine.system, rubbing=rubbing)
-    after = _motion_with_cam(values, mounted, speed, pitch, system, machine.gear_ratio, load)
+    ratio, span = machine.gear_ratio, torque.span
+    after = _motion_with_cam(values, mounted, speed, pitch, system, ratio, load, span)
     return before, after
 
 
@@ -290,12 +297,13 @@ def consistency(
     if demand is not None and demand.any():
         stored = machine.spring.energy(pitch.lift.stroke)
         findings.append(ratio_finding(demand, loads.spring_force * loads.lift_slope, ratio))
-        findings.append(energy_finding(demand, stored))
+        findings.append(energy_finding(demand, stored, span=torque.span))
     if study is not None:
-        taken = -4.0 * pi * float(study.after.mechanism_torque.mean())
+        taken = -torque.span * float(study.after.mechanism_torque.mean())
         findings.append(work_finding(loads.friction_loss, taken))
     std = None if shaft is None else shaft.measured_speed_std
     if shaft is not None and std is not None and measured:
         balanced = torque.without_mean().total
-        findings.append(inertia_finding(shaft.inertia, balanced, machine.speed, std))
+        finding = inertia_finding(shaft.inertia, balanced, machine.speed, std, torque.span)
+        findings.append(finding)
     return tuple(findings)

@@ -121,7 +121,7 @@ class CrankMotion:
 
     Parameters
     ----------
-    theta : array (n,)          crank angle, rad, uniform over [0, 4 pi)
+    theta : array (n,)          shaft angle, rad, uniform over [0, span)
     speed : array (n,)          rad/s
     acceleration : array (n,)   rad/s2
     load_torque : array (n,)    N m, taken from the crank
@@ -129,6 +129,7 @@ class CrankMotion:
     net_torque : array (n,)     N m, derivative of the kinetic energy by the crank angle
     closure : float             work of the net torque over the cycle at the final speed, over the
                                 mean kinetic energy
+    span : float                rad of the shaft, whole cycles
     """
 
     theta: Array
@@ -138,6 +139,7 @@ class CrankMotion:
     mechanism_torque: Array
     net_torque: Array
     closure: float
+    span: float = CYCLE_ANGLE
 
     def __post_init__(self) -> None:
         names = ("theta", "speed", "acceleration", "load_torque", "mechanism_torque", "net_torque")
@@ -145,7 +147,7 @@ class CrankMotion:
 
     @property
     def statistics(self) -> SpeedStatistics:
-        return speed_statistics(self.speed)
+        return speed_statistics(self.speed, self.span)
 
 
 @dataclass(frozen=True)
@@ -166,10 +168,10 @@ class SpeedStatistics:
         return self.peak_to_peak / self.mean
 
 
-def speed_statistics(speed: ArrayLike) -> SpeedStatistics:
-    """Ripple of a speed (rad/s) at equal crank angles over the cycle."""
+def speed_statistics(speed: ArrayLike, span: float = CYCLE_ANGLE) -> SpeedStatistics:
+    """Ripple of a speed (rad/s) at equal shaft angles over a span (rad) of whole cycles."""
     omega = positive("speed", speed, "rad/s")
-    step = CYCLE_ANGLE / omega.size
+    step = span / omega.size
     return SpeedStatistics(
         mean=_time_mean(omega),
         std=float(omega.std()),
@@ -188,6 +190,7 @@ def crank_motion(
     *,
     load: Load = Load(),
     mechanism: MechanismTorque | None = None,
+    span: float = CYCLE_ANGLE,
 ) -> CrankMotion:
     r"""The periodic solution of J omega domega/dtheta + omega^2 J'/2 = T_engine + T_mech - T_load.
 
@@ -198,12 +201,13 @@ def crank_motion(
 
     Parameters
     ----------
-    engine_torque : array (n,)   N m at equal crank angles over [0, 4 pi); without the inertia of
+    engine_torque : array (n,)   N m at equal shaft angles over [0, span); without the inertia of
                                  parts that `inertia` holds
     inertia : Inertia            at the same angles
     mean_speed : float           rad/s over the time of the cycle
     load : Load
     mechanism : function, optional
+    span : float                 rad of the shaft, whole cycles of the machine
 
     Raises
     ------
@@ -221,14 +225,14 @@ def crank_motion(
         raise InputError("engine_torque", torque.shape, f"{total.shape}, as the inertia")
     if not 0.0 < mean_speed < np.inf:
         raise InputError("mean_speed", mean_speed, "> 0 rad/s")
-    slope = _derivative(total)
+    slope = _derivative(total, span)
     speed, acceleration = np.full_like(torque, mean_speed), np.zeros_like(torque)
     for _ in range(PASSES_MAX):
         mechanical = np.zeros_like(torque) if mechanism is None else mechanism(speed, acceleration)
         driven = torque + mechanical
         loaded = _closing_load(driven, speed, load)
         net = driven - loaded
-        before, speed = speed, _speed(_integral(net), total, mean_speed)
+        before, speed = speed, _speed(_integral(net, span), total, mean_speed, span)
         acceleration = (net - 0.5 * speed**2 * slope) / total
         change = float(np.abs(speed - before).max()) / mean_speed
         if change < SETTLED:
@@ -239,24 +243,27 @@ def crank_motion(
     again = mechanical if mechanism is None else mechanism(speed, acceleration)
     level = float(loaded.mean())
     loaded_again = level * _shape(speed, load)
-    work = CYCLE_ANGLE * float((torque + again - loaded_again).mean())
+    work = span * float((torque + again - loaded_again).mean())
     return CrankMotion(
-        theta=readonly(np.arange(torque.size) * (CYCLE_ANGLE / torque.size)),
+        theta=readonly(np.arange(torque.size) * (span / torque.size)),
         speed=speed,
         acceleration=acceleration,
         load_torque=loaded,
         mechanism_torque=mechanical,
         net_torque=net,
         closure=abs(work) / float((0.5 * total * speed**2).mean()),
+        span=span,
     )
 
 
-def equivalent_inertia(engine_torque: ArrayLike, mean_speed: float, speed_std: float) -> float:
+def equivalent_inertia(
+    engine_torque: ArrayLike, mean_speed: float, speed_std: float, span: float = CYCLE_ANGLE
+) -> float:
     """Constant inertia at which a torque alone causes a speed ripple, kg m2.
 
     Parameters
     ----------
-    engine_torque : array (n,)   N m at equal crank angles over the cycle
+    engine_torque : array (n,)   N m at equal shaft angles over a span (rad) of whole cycles
     mean_speed : float           rad/s
     speed_std : float            rad/s, standard deviation of the ripple, > 0
 
@@ -268,14 +275,14 @@ def equivalent_inertia(engine_torque: ArrayLike, mean_speed: float, speed_std: f
     torque = finite("engine_torque", engine_torque)
     if not 0.0 < speed_std < mean_speed:
         raise InputError("speed_std", speed_std, f"> 0 and < {mean_speed:g} rad/s")
-    energy = _integral(torque - torque.mean())
+    energy = _integral(torque - torque.mean(), span)
     guess = float(energy.std()) / (mean_speed * speed_std)
     if not guess > 0.0:
         raise InputError("engine_torque", "constant", "a torque that varies over the cycle")
 
     def excess(inertia: float) -> float:
         total = np.full_like(torque, inertia)
-        return float(_speed(energy, total, mean_speed).std()) - speed_std
+        return float(_speed(energy, total, mean_speed, span).std()) - speed_std
 
     low = guess
     while excess(low) < 0.0:
@@ -283,20 +290,22 @@ def equivalent_inertia(engine_torque: ArrayLike, mean_speed: float, speed_std: f
     return float(scipy.optimize.brentq(excess, low, 2.0 * guess, xtol=1e-14 * guess, rtol=1e-12))
 
 
-def energy_swing(torque: ArrayLike) -> Array:
-    """Integral of a torque about its mean over the crank angle, J, of zero mean.
+def energy_swing(torque: ArrayLike, span: float = CYCLE_ANGLE) -> Array:
+    """Integral of a torque about its mean over the shaft angle, J, of zero mean.
 
     Parameters
     ----------
-    torque : array (n,)   N m at equal crank angles over the cycle
+    torque : array (n,)   N m at equal shaft angles over the span
+    span : float          rad of the shaft, whole cycles
     """
     values = finite("torque", torque)
-    return readonly(_integral(values - values.mean()))
+    return readonly(_integral(values - values.mean(), span))
 
 
 def torque_of_motion(speed: ArrayLike, inertia: float) -> Array:
     """J omega domega/dtheta of a speed at equal crank angles over the cycle, N m."""
-    return readonly(inertia * _derivative(0.5 * positive("speed", speed, "rad/s") ** 2))
+    energy = 0.5 * positive("speed", speed, "rad/s") ** 2
+    return readonly(inertia * _derivative(energy, CYCLE_ANGLE))
 
 
 def _closing_load(driven: Array, speed: Array, load: Load) -> Array:
@@ -310,7 +319,7 @@ def _shape(speed: Array, load: Load) -> Array:
     return np.asarray(shape / shape.mean())
 
 
-def _speed(energy: Array, inertia: Array, mean_speed: float) -> Array:
+def _speed(energy: Array, inertia: Array, mean_speed: float, span: float) -> Array:
     """Speed of the kinetic energy `energy` + constant; `mean_speed` over time sets the constant."""
 
     def speed(floor: float) -> Array:
@@ -322,7 +331,7 @@ def _speed(energy: Array, inertia: Array, mean_speed: float) -> Array:
     if _time_mean(speed(low)) > mean_speed:
         swing = float(np.ptp(energy))
         stored = 0.5 * float(inertia.mean()) * mean_speed**2
-        angle = CYCLE_ANGLE * int(np.argmin(energy / inertia)) / energy.size
+        angle = span * int(np.argmin(energy / inertia)) / energy.size
         raise StallError(
             f"the crank stalls at {shown(angle, 'deg')} of its cycle: its torque swings"
             f" {swing:.3g} J of the {stored:.3g} J that turn at {shown(mean_speed, 'rpm')}",
@@ -344,22 +353,22 @@ def _time_mean(speed: Array) -> float:
     return float(1.0 / (1.0 / speed).mean())
 
 
-def _orders(count: int) -> Array:
-    """Order of each harmonic per crank radian."""
-    return np.arange(count // 2 + 1, dtype=float) * (2.0 * pi / CYCLE_ANGLE)
+def _orders(count: int, span: float) -> Array:
+    """Order of each harmonic per radian of the shaft."""
+    return np.arange(count // 2 + 1, dtype=float) * (2.0 * pi / span)
 
 
-def _integral(values: Array) -> Array:
-    """Integral over the cycle of values of zero mean, itself of zero mean."""
-    spectrum, order = np.fft.rfft(values), _orders(values.size)
+def _integral(values: Array, span: float) -> Array:
+    """Integral over a span (rad) of values of zero mean, itself of zero mean."""
+    spectrum, order = np.fft.rfft(values), _orders(values.size, span)
     spectrum[0] = 0.0
     spectrum[1:] /= 1j * order[1:]
     return np.asarray(np.fft.irfft(spectrum, n=values.size), dtype=float)
 
 
-def _derivative(values: Array) -> Array:
-    """Derivative by the crank angle of values over the cycle."""
-    spectrum = np.fft.rfft(values) * 1j * _orders(values.size)
+def _derivative(values: Array, span: float) -> Array:
+    """Derivative by the shaft angle of values over a span (rad)."""
+    spectrum = np.fft.rfft(values) * 1j * _orders(values.size, span)
     if values.size % 2 == 0:
         spectrum[-1] = 0.0  # the highest harmonic of an even count has no slope at the samples
     return np.asarray(np.fft.irfft(spectrum, n=values.size), dtype=float)

@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike
 from camwright.geometry.arrays import finite
 from camwright.geometry.errors import InputError
 from camwright.pipeline.engine.crankshaft import energy_swing
+from camwright.pipeline.engine.cylinder import CYCLE_ANGLE
 
 FLAG_ABOVE = 0.10
 
@@ -60,7 +61,9 @@ class Finding:
         }
 
 
-def implied_inertia(torque: ArrayLike, mean_speed: float, speed_std: float) -> float:
+def implied_inertia(
+    torque: ArrayLike, mean_speed: float, speed_std: float, span: float = CYCLE_ANGLE
+) -> float:
     """Inertia implied by a torque and the ripple of the speed that it causes, kg m2.
 
     J = std(integral of T - mean T) / (mean omega std omega), from J omega domega = T dtheta in
@@ -68,7 +71,7 @@ def implied_inertia(torque: ArrayLike, mean_speed: float, speed_std: float) -> f
 
     Parameters
     ----------
-    torque : array (n,)    N m at equal crank angles over the cycle
+    torque : array (n,)    N m at equal shaft angles over a span (rad) of whole cycles
     mean_speed : float     rad/s, > 0
     speed_std : float      rad/s, > 0
     """
@@ -76,18 +79,22 @@ def implied_inertia(torque: ArrayLike, mean_speed: float, speed_std: float) -> f
         raise InputError("mean_speed", mean_speed, "> 0 rad/s")
     if not 0.0 < speed_std < np.inf:
         raise InputError("speed_std", speed_std, "> 0 rad/s")
-    return float(energy_swing(torque).std()) / (mean_speed * speed_std)
+    return float(energy_swing(torque, span).std()) / (mean_speed * speed_std)
 
 
 def inertia_finding(
-    stated: float, torque: ArrayLike, mean_speed: float, speed_std: float
+    stated: float,
+    torque: ArrayLike,
+    mean_speed: float,
+    speed_std: float,
+    span: float = CYCLE_ANGLE,
 ) -> Finding:
     """Stated inertia against that implied by torque and measured speed ripple."""
     return Finding(
         "inertia",
         "inertia at the crank",
         stated,
-        implied_inertia(torque, mean_speed, speed_std),
+        implied_inertia(torque, mean_speed, speed_std, span),
         "kg m^2",
         "std of the torque's integral / (mean speed x std of the measured speed)",
     )
@@ -117,10 +124,13 @@ def ratio_finding(crank_torque: ArrayLike, cam_torque: ArrayLike, gear_ratio: fl
 
 
 def energy_finding(
-    crank_torque: ArrayLike, stored: float, title: str = "energy stored per cycle"
+    crank_torque: ArrayLike,
+    stored: float,
+    title: str = "energy stored per cycle",
+    span: float = CYCLE_ANGLE,
 ) -> Finding:
     """Energy stored by a spring against the energy swing of the torque to balance, J."""
-    swing = float(np.ptp(energy_swing(crank_torque)))
+    swing = float(np.ptp(energy_swing(crank_torque, span)))
     return Finding(
         "energy", title, swing, stored, "J",
         "spring energy at full lift against the swing of the torque's integral",

@@ -220,7 +220,7 @@ def _smoothed(case: Case, values: Mapping[str, Array], torque: Array, count: int
     """Torque (1 or m, N) behind a smoother in each design, crank N m."""
     keys = [key for key in values if key.startswith("smoothing.")]
     if not keys:
-        return smoothed(torque, Smoother.from_case(case.smoothing))
+        return smoothed(torque, Smoother.from_case(case.smoothing, case.period))
     rows = np.broadcast_to(torque, (count, torque.shape[-1]))
     smoothers = np.stack([values[key] for key in keys], axis=1)
     kinds, which = np.unique(smoothers, axis=0, return_inverse=True)
@@ -228,7 +228,7 @@ def _smoothed(case: Case, values: Mapping[str, Array], torque: Array, count: int
     for k, kind in enumerate(kinds):
         own = replaced(case, dict(zip(keys, map(float, kind), strict=True)))
         at = np.flatnonzero(which.ravel() == k)
-        result[at] = smoothed(rows[at], Smoother.from_case(own.smoothing))
+        result[at] = smoothed(rows[at], Smoother.from_case(own.smoothing, own.period))
     return result
 
 

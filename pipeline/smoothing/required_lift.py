@@ -28,7 +28,7 @@ def cam_lift(case: Case, torques: Mapping[str, Torque], smoother: Smoother | Non
     if case.lift is not None:
         return given_lift(case)
     torque = torques[case.load_cases[0].name]
-    return required_lift(case, torque, smoother or Smoother.from_case(case.smoothing))
+    return required_lift(case, torque, smoother or Smoother.from_case(case.smoothing, case.period))
 
 
 def required_torque(case: Case, torque: Torque, smoother: Smoother) -> Array:

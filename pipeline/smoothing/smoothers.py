@@ -1,4 +1,4 @@
-"""Named zero-phase smoothers of one engine cycle of torque."""
+"""Named zero-phase smoothers of the torque of a machine, by the harmonics of its cycle."""
 
 from __future__ import annotations
 
@@ -13,20 +13,19 @@ from numpy.typing import ArrayLike
 from camwright.geometry.arrays import Array, finite, readonly
 from camwright.geometry.errors import InputError
 from camwright.pipeline.base.units import shown
+from camwright.pipeline.torque.period import FOUR_STROKE, Period
 
 if TYPE_CHECKING:
     from camwright.pipeline.case.requirements_section import Smoothing
-
-CYCLE = 4.0 * np.pi  # rad of crank in one engine cycle
 
 KINDS = ("none", "moving_average", "gaussian", "harmonic", "savitzky_golay", "smoothing_spline")
 
 
 @dataclass(frozen=True)
 class Smoother:
-    """Linear zero-phase filter of one engine cycle of torque, with an adjustable strength.
+    """Linear zero-phase filter of a torque over its cycle, with an adjustable strength.
 
-    `strength` stretches the filter along the crank angle: at 2 a moving average of 60 deg
+    `strength` stretches the filter along the shaft angle: at 2 a moving average of 60 deg
     becomes one of 120 deg, a cut-off at harmonic 24 one at harmonic 12. The filter acts on the
     harmonics of the cycle, not on samples, and is continuous in the strength; the moving average
     of an odd count alone has steps, of 1/points, in a harmonic at the spacing of its points.
@@ -35,13 +34,14 @@ class Smoother:
     ----------
     kind : str          one of `KINDS`
     points : int        moving average, Savitzky-Golay: values averaged
-    spacing : float     moving average, Savitzky-Golay: crank angle between values, rad
-    width : float       gaussian: width, rad of crank, of the box of equal variance
+    spacing : float     moving average, Savitzky-Golay: shaft angle between values, rad
+    width : float       gaussian: width, rad of the shaft, of the box of equal variance
     harmonics : float   harmonic: cut-off harmonic of the cycle
     taper : float       harmonic: half-width of the cosine edge over the cut-off; 0: sharp
     degree : int        Savitzky-Golay: degree of the fitted polynomial
-    cutoff : float      smoothing spline: wavelength, rad of crank, of the transfer factor 1/2
+    cutoff : float      smoothing spline: wavelength, rad of the shaft, of the transfer factor 1/2
     strength : float    1: as in the case; above 1 wider
+    period : Period     cycle of the torque, and cycles in a cam turn
 
     Raises
     ------
@@ -64,17 +64,19 @@ class Smoother:
     degree: int = 2
     cutoff: float = float(np.deg2rad(120.0))
     strength: float = 1.0
+    period: Period = FOUR_STROKE
 
     def __post_init__(self) -> None:
+        cycle = self.period.angle
         rules = (
             ("kind", self.kind in KINDS, "one of " + ", ".join(KINDS)),
             ("points", self.points >= 1, ">= 1"),
-            ("spacing", 0 < self.spacing * self.points <= CYCLE, "> 0 rad, within one cycle"),
-            ("width", 0 < self.width <= CYCLE, "> 0 rad, within one cycle"),
+            ("spacing", 0 < self.spacing * self.points <= cycle, "> 0 rad, within one cycle"),
+            ("width", 0 < self.width <= cycle, "> 0 rad, within one cycle"),
             ("harmonics", 1 <= self.harmonics < np.inf, ">= 1"),
             ("taper", 0 <= self.taper < 1, "0 to 1"),
             ("degree", 0 <= self.degree <= 20, "0 to 20"),
-            ("cutoff", 0 < self.cutoff <= CYCLE, "> 0 rad, within one cycle"),
+            ("cutoff", 0 < self.cutoff <= cycle, "> 0 rad, within one cycle"),
             ("strength", 0 < self.strength < np.inf, "> 0"),
         )
         for name, holds, limit in rules:
@@ -82,10 +84,10 @@ class Smoother:
                 raise InputError(f"smoothing.{name}", getattr(self, name), limit)
 
     @classmethod
-    def from_case(cls, smoothing: Smoothing) -> Smoother:
-        """Smoother of a case."""
+    def from_case(cls, smoothing: Smoothing, period: Period) -> Smoother:
+        """Smoother of a case with the period of its machine."""
         names = ("kind", "points", "spacing", "width", "harmonics", "taper", "degree", "cutoff")
-        return cls(**{name: getattr(smoothing, name) for name in names})
+        return cls(**{name: getattr(smoothing, name) for name in names}, period=period)
 
     def stretched(self, strength: float) -> Smoother:
         """Smoother at another strength."""
@@ -93,12 +95,12 @@ class Smoother:
 
     @property
     def angular_width(self) -> float:
-        """Width of the filter, rad of crank; `width_in_words` defines it by kind."""
+        """Width of the filter, rad of the shaft; `width_in_words` defines it by kind."""
         widths = {
             "none": 0.0,
             "moving_average": self.points * self.spacing,
             "gaussian": self.width,
-            "harmonic": CYCLE / self.harmonics,
+            "harmonic": self.period.angle / self.harmonics,
             "savitzky_golay": self.points * self.spacing,
             "smoothing_spline": self.cutoff,
         }
@@ -143,7 +145,7 @@ class Smoother:
 
         Parameters
         ----------
-        harmonic : array (...)   order, 1 is once in two crank turns
+        harmonic : array (...)   order, 1 is once in a cycle
         """
         order = np.abs(np.asarray(harmonic, dtype=float)) * self.strength
         return _TRANSFER[self.kind](self, order)
@@ -154,7 +156,7 @@ def smoothed(torque: ArrayLike, smoother: Smoother) -> Array:
 
     Parameters
     ----------
-    torque : array (..., n)   N m, equally spaced over one engine cycle, the end excluded
+    torque : array (..., n)   N m, equally spaced over a cam turn, the end excluded
     smoother : Smoother
 
     Returns
@@ -171,12 +173,13 @@ def smoothed(torque: ArrayLike, smoother: Smoother) -> Array:
         return values
     count = values.shape[-1]
     spectrum = np.fft.rfft(values, axis=-1)
-    spectrum *= smoother.transfer(np.arange(spectrum.shape[-1]))
+    spectrum *= smoother.transfer(np.arange(spectrum.shape[-1]) / smoother.period.cycles)
     return readonly(np.fft.irfft(spectrum, n=count, axis=-1))
 
 
 def _moving_average(smoother: Smoother, order: Array) -> Array:
-    phase = order * (2.0 * np.pi / CYCLE) * smoother.spacing  # from one point to the next
+    step = 2.0 * np.pi / smoother.period.angle
+    phase = order * step * smoother.spacing  # from one point to the next
     reach = smoother.points // 2
     weights = np.full(reach + 1, 2.0 / smoother.points)
     weights[0] /= 2.0
@@ -189,7 +192,8 @@ def _moving_average(smoother: Smoother, order: Array) -> Array:
 
 def _savitzky_golay(smoother: Smoother, order: Array) -> Array:
     # Fit to a continuous window: a polynomial in the Legendre basis, at the middle.
-    argument = 0.5 * smoother.points * smoother.spacing * order * (2.0 * np.pi / CYCLE)
+    step = 2.0 * np.pi / smoother.period.angle
+    argument = 0.5 * smoother.points * smoother.spacing * order * step
     factor = np.zeros_like(order)
     for even in range(0, smoother.degree + 1, 2):
         middle = float(scipy.special.eval_legendre(even, 0.0)) * (-1.0) ** (even // 2)
@@ -199,7 +203,7 @@ def _savitzky_golay(smoother: Smoother, order: Array) -> Array:
 
 def _gaussian(smoother: Smoother, order: Array) -> Array:
     variance = smoother.width**2 / 12.0  # that of a box of this width
-    return np.exp(-0.5 * variance * (order * 2.0 * np.pi / CYCLE) ** 2)
+    return np.exp(-0.5 * variance * (order * 2.0 * np.pi / smoother.period.angle) ** 2)
 
 
 def _harmonic(smoother: Smoother, order: Array) -> Array:
@@ -211,7 +215,7 @@ def _harmonic(smoother: Smoother, order: Array) -> Array:
 
 
 def _smoothing_spline(smoother: Smoother, order: Array) -> Array:
-    return 1.0 / (1.0 + (order * smoother.cutoff / CYCLE) ** 4)
+    return 1.0 / (1.0 + (order * smoother.cutoff / smoother.period.angle) ** 4)
 
 
 def _none(_smoother: Smoother, order: Array) -> Array:

@@ -9,7 +9,7 @@ from camwright.geometry.errors import InputError
 from camwright.pipeline.base.units import used
 from camwright.pipeline.case.limits import TORQUE_REDUCTION
 from camwright.pipeline.checks.check import Check, binding, verdict
-from camwright.pipeline.smoothing.smoothers import CYCLE, Smoother
+from camwright.pipeline.smoothing.smoothers import Smoother
 from camwright.pipeline.smoothing.smoothing_forecast import (
     Attempt,
     Forecast,
@@ -18,7 +18,7 @@ from camwright.pipeline.smoothing.smoothing_forecast import (
     score,
 )
 
-WIDEST = CYCLE / 2.0  # rad of crank; a wider window leaves no ripple to compensate
+WIDEST = 0.5  # of a cycle; a wider window leaves no ripple to compensate
 
 
 @dataclass(frozen=True)
@@ -78,7 +78,8 @@ def next_smoother(attempts: Sequence[Attempt], max_trials: int, forecast: Foreca
         return _end(attempts, room, "no gentler lift can help")
     if room <= 0:
         return _end(attempts, room, f"the maximum of {max_trials} trials is reached")
-    candidate = best_candidate(attempts, forecast, WIDEST)
+    widest = WIDEST * latest.smoother.period.angle
+    candidate = best_candidate(attempts, forecast, widest)
     if candidate is None:
         return _end(attempts, room, _reached(attempts))
     return Next(candidate, _why(latest, candidate))

@@ -7,9 +7,11 @@ from hypothesis import strategies as st
 
 from camwright.geometry.errors import InputError
 from camwright.pipeline.case.requirements_section import Smoothing
-from camwright.pipeline.smoothing.smoothers import CYCLE, KINDS, Smoother, smoothed
+from camwright.pipeline.smoothing.smoothers import KINDS, Smoother, smoothed
+from camwright.pipeline.torque.period import FOUR_STROKE
 
 COUNT = 720
+CYCLE = FOUR_STROKE.angle
 CRANK = np.arange(COUNT) * CYCLE / COUNT
 ROUND_OFF = 1e-12  # of values of order one, through one FFT there and back
 
@@ -171,14 +173,14 @@ def test_result_is_read_only():
 
 def test_from_case_takes_every_field_of_the_section():
     section = Smoothing(kind="gaussian", width="40 deg", harmonics=9.0, degree=3)
-    smoother = Smoother.from_case(section)
+    smoother = Smoother.from_case(section, FOUR_STROKE)
     assert (smoother.kind, smoother.width) == ("gaussian", np.radians(40.0))
     assert (smoother.harmonics, smoother.degree) == (9.0, 3)
-    assert Smoother.from_case(Smoothing(kind="none")).angular_width == 0.0
+    assert Smoother.from_case(Smoothing(kind="none"), FOUR_STROKE).angular_width == 0.0
 
 
 def test_a_smoother_has_the_defaults_of_its_section():
-    assert Smoother.from_case(Smoothing(kind=Smoother().kind)) == Smoother()
+    assert Smoother.from_case(Smoothing(kind=Smoother().kind), FOUR_STROKE) == Smoother()
 
 
 @pytest.mark.parametrize(

@@ -44,7 +44,7 @@ def test_machine_of_2025(name: str) -> None:
     system = machines(paper)[0].system
     bare = Spring(rate=system.spring.rate, preload=system.spring.preload)
     assert replace(system, spring=bare) == FOLLOWER_2025
-    assert Smoother.from_case(paper.smoothing) == TWELVE_VALUES
+    assert Smoother.from_case(paper.smoothing, paper.period) == TWELVE_VALUES
     assert paper.mechanism.gear_ratio == RATIO
     assert paper.cam.prime_radius == PRIME_RADIUS
     assert paper.crankshaft is not None

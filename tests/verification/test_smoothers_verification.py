@@ -9,9 +9,11 @@ import pytest
 from scipy.interpolate import make_smoothing_spline
 from scipy.signal import savgol_filter
 
-from camwright.pipeline.smoothing.smoothers import CYCLE, KINDS, Smoother, smoothed
+from camwright.pipeline.smoothing.smoothers import KINDS, Smoother, smoothed
+from camwright.pipeline.torque.period import FOUR_STROKE
 
 COUNT = 720
+CYCLE = FOUR_STROKE.angle
 ROOT = Path(__file__).resolve().parents[2]
 SHARED = Path(os.environ.get("CAMWRIGHT_SHARED", ROOT.parent / "shared"))
 
