@@ -55,6 +55,16 @@ class SliderCrank:
         return float(np.sqrt((self.rod_length - self.crank_radius) ** 2 - self.offset**2))
 
     @property
+    def top_angle(self) -> float:
+        """Crank angle of the maximum distance, rad; 0 without an offset."""
+        return float(np.arcsin(self.offset / (self.rod_length + self.crank_radius)))
+
+    @property
+    def bottom_angle(self) -> float:
+        """Crank angle of the minimum distance, rad; pi without an offset."""
+        return float(np.pi + np.arcsin(self.offset / (self.rod_length - self.crank_radius)))
+
+    @property
     def stroke(self) -> float:
         """Maximum less minimum distance of the slider, m."""
         return self.top - self.bottom

@@ -16,7 +16,7 @@ from camwright.pipeline.case.lift_section import (
     LiftTable,
     motion_of,
 )
-from camwright.pipeline.engine.angle_trace import read_trace
+from camwright.pipeline.torque.angle_trace import read_trace
 
 if TYPE_CHECKING:
     from camwright.pipeline.case.case import Case

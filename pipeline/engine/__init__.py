@@ -11,8 +11,6 @@ In the order of the calculation:
 | `heat_loss`              | film coefficient: Hohenberg, Woschni        | W/(m2 K)                |
 | `indicated_cycle`        | working cycle: gas, torques, balance        | p, Pa; T, K; m, kg      |
 | `indicated_cycle_solver` | first law until the cycle is periodic       | p, Pa; T, K; m, kg      |
-| `trace_file`             | text of a trace file, units of its header   |                         |
-| `angle_trace`            | one quantity against crank angle            | theta, rad; SI          |
 | `engine_torque`          | engine torque of a model or from a table    | T, N m                  |
 | `pressure_trace`         | measured cylinder pressure, its torque      | p, Pa; T, N m           |
 | `brake_balance`          | indicated torque against the brake's        | T, N m; p, Pa           |

@@ -7,10 +7,10 @@ from pathlib import Path
 from typing import ClassVar, Literal
 
 from camwright.pipeline.base.quantities import FileName, Part
-from camwright.pipeline.engine.angle_trace import read_trace
 from camwright.pipeline.engine.cylinder import CylinderEngine
 from camwright.pipeline.engine.indicated_cycle import CylinderCycle
 from camwright.pipeline.engine.indicated_cycle_solver import working_cycle
+from camwright.pipeline.torque.angle_trace import read_trace
 from camwright.pipeline.torque.torque import SAMPLES, Torque, all_cylinders, uniform_cycle
 
 

@@ -25,7 +25,6 @@ from camwright.pipeline.engine.tooth_pattern import (
     runs_of,
     tooth_pattern,
 )
-from camwright.pipeline.engine.trace_file import columns_of, trace_text
 from camwright.pipeline.engine.trigger_wheel import (
     Edges,
     TriggerWheel,
@@ -33,6 +32,7 @@ from camwright.pipeline.engine.trigger_wheel import (
     tooth_places,
 )
 from camwright.pipeline.engine.wheel_calibration import Calibrator, EdgeRecord
+from camwright.pipeline.torque.trace_file import columns_of, trace_text
 
 THRESHOLD = 0.25  # of half the swing, exceeded on both sides of a crossing
 NOISE_TIMES = 4.0  # the threshold is at least as many times the noise

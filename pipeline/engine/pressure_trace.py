@@ -15,15 +15,16 @@ from camwright.geometry.arrays import Array, finite, freeze
 from camwright.geometry.errors import InputError
 from camwright.pipeline.base.quantities import Angle, FileName, GasPressure, In, Part
 from camwright.pipeline.base.units import shown
-from camwright.pipeline.engine.angle_trace import (
+from camwright.pipeline.engine.cylinder import CYCLE_ANGLE, CrankDrive, FrictionPressure
+from camwright.pipeline.torque.angle_trace import (
     GAP_MAX,
     Trace,
     guard_order,
     guard_span,
     one_period,
 )
-from camwright.pipeline.engine.cylinder import CYCLE_ANGLE, CrankDrive, FrictionPressure
-from camwright.pipeline.engine.trace_file import (
+from camwright.pipeline.torque.torque import SAMPLES, Torque, all_cylinders, uniform_cycle
+from camwright.pipeline.torque.trace_file import (
     ANGLE_UNITS,
     QUANTITY_UNITS,
     HeaderText,
@@ -31,7 +32,6 @@ from camwright.pipeline.engine.trace_file import (
     columns_of,
     trace_text,
 )
-from camwright.pipeline.torque.torque import SAMPLES, Torque, all_cylinders, uniform_cycle
 
 DeadCentre = Literal["given", "symmetry", "loss_angle"]
 

@@ -12,7 +12,6 @@ import numpy as np
 from camwright.geometry.arrays import Array
 from camwright.geometry.errors import InputError
 from camwright.pipeline.base.quantities import Angle, Count, FileName, In, Part, Share
-from camwright.pipeline.engine.angle_trace import guard_order, guard_span, without_end
 from camwright.pipeline.engine.cylinder import CYCLE_ANGLE, RunningGear
 from camwright.pipeline.engine.speed_trace import (
     HARMONICS,
@@ -24,15 +23,6 @@ from camwright.pipeline.engine.speed_trace import (
     speed_from_teeth,
 )
 from camwright.pipeline.engine.tooth_pattern import Recording, ToothPattern
-from camwright.pipeline.engine.trace_file import (
-    QUANTITY_UNITS,
-    HeaderText,
-    TraceText,
-    angle_column,
-    columns_of,
-    has_angle,
-    trace_text,
-)
 from camwright.pipeline.engine.trigger_wheel import (
     MissingTeeth,
     Teeth,
@@ -47,6 +37,16 @@ from camwright.pipeline.engine.wheel_calibration import (
     PitchTolerance,
     WheelClass,
     WheelReference,
+)
+from camwright.pipeline.torque.angle_trace import guard_order, guard_span, without_end
+from camwright.pipeline.torque.trace_file import (
+    QUANTITY_UNITS,
+    HeaderText,
+    TraceText,
+    angle_column,
+    columns_of,
+    has_angle,
+    trace_text,
 )
 
 TEETH = 36  # where neither case nor signal states another number

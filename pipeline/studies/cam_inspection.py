@@ -20,11 +20,11 @@ from camwright.pipeline.base.progress import SILENT, Progress
 from camwright.pipeline.base.tables import CAM_ANGLE, Column, Table, read_table, table
 from camwright.pipeline.base.units import in_unit
 from camwright.pipeline.case.case import Case
-from camwright.pipeline.engine.trace_file import trace_text
 from camwright.pipeline.results import run_reader
 from camwright.pipeline.results.run_records import cycle_columns
 from camwright.pipeline.results.trial import Trial
 from camwright.pipeline.solver import solve
+from camwright.pipeline.torque.trace_file import trace_text
 
 Record = dict[str, Any]
 

@@ -2,10 +2,18 @@
 
 In the order of the calculation:
 
-| module   | responsibility                                   | symbol, unit   |
-| -------- | ------------------------------------------------ | -------------- |
-| `period` | angle of the cycle, shaft turns per cam turn     | theta, rad     |
-| `torque` | torque as a sum of components; onto the cam turn | T, N m         |
+| module            | responsibility                                   | symbol, unit    |
+| ----------------- | ------------------------------------------------ | --------------- |
+| `period`          | angle of the cycle, shaft turns per cam turn     | theta, rad      |
+| `trace_file`      | text of a trace file, units of its header        |                 |
+| `angle_trace`     | one quantity against shaft angle                 | theta, rad; SI  |
+| `tabled_torque`   | torque from a table, its checks                  | T, N m          |
+| `harmonic_torque` | torque of a mean and harmonics                   | T, N m          |
+| `piston_drive`    | crank drive and areas of a piston                | p, Pa; T, N m   |
+| `pressure_torque` | torque of pressures from a file                  | p, Pa; T, N m   |
+| `valved_cylinder` | compressor and piston pump                       | p, Pa; T, N m   |
+| `press_torque`    | force over the stroke of a ram                   | F, N; T, N m    |
+| `torque`          | torque as a sum of components; onto the cam turn | T, N m          |
 
 Imports `geometry` and `pipeline.base`.
 """

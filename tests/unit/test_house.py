@@ -204,8 +204,8 @@ def test_installing_puts_one_name_into_an_environment() -> None:
 
 
 INSIDE = (
-    "geometry", "meshes", "pipeline.engine", "pipeline.contact", "pipeline.follower",
-    "pipeline.cycle", "pipeline.checks", "pipeline.smoothing", "pipeline",
+    "geometry", "meshes", "pipeline.torque", "pipeline.engine", "pipeline.contact",
+    "pipeline.follower", "pipeline.cycle", "pipeline.checks", "pipeline.smoothing", "pipeline",
 )  # fmt: skip
 UNIT_FACTORS = {1e3, 1e-3, 1e6, 1e-6}
 TO_UNITS = {"degrees", "rad2deg"}
@@ -218,7 +218,7 @@ NO_UNIT = {
     "meshes.mesh_quality": "the quality gates of meshes are angles in degrees",
     "meshes.outline": "a share of a size",
     "pipeline.contact.elasticity.active_set": "a share of a settlement",
-    "pipeline.engine.angle_trace": "whether the angles of a file are in degrees",
+    "pipeline.torque.angle_trace": "whether the angles of a file are in degrees",
     "pipeline.engine.indicated_cycle_solver": "steps at whole degrees",
     "pipeline.follower.bearing_life": "formulas of ISO 281 and of a maker in mm2/s and mm",
     "pipeline.follower.elastic_follower": "a share of a speed",

@@ -11,8 +11,8 @@ sys.path.insert(0, str(Path(__file__).parents[1]))
 from mutated_inputs import sources, tried
 
 from camwright.geometry.errors import CamError
-from camwright.pipeline.engine.angle_trace import read_trace
 from camwright.pipeline.studies.cam_inspection import read_measured
+from camwright.pipeline.torque.angle_trace import read_trace
 
 HEAD = "crank_angle_deg,torque_Nm\n"
 

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from camwright.geometry.errors import InputError
-from camwright.pipeline.engine import trace_file
-from camwright.pipeline.engine.angle_trace import Trace, read_trace
+from camwright.pipeline.torque import trace_file
+from camwright.pipeline.torque.angle_trace import Trace, read_trace
 
 CYCLE = 4.0 * np.pi
 

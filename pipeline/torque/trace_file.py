@@ -46,6 +46,15 @@ ANGLE_UNITS: Mapping[str, float] = MappingProxyType(
 QUANTITY_UNITS: Mapping[str, Mapping[str, float]] = MappingProxyType(
     {
         "lift": {"m": 1.0, "mm": 1e-3, "um": 1e-6, "in": 0.0254},
+        "travel": {"m": 1.0, "mm": 1e-3, "um": 1e-6, "in": 0.0254},
+        "force": {
+            "N": 1.0,
+            "kN": 1e3,
+            "MN": 1e6,
+            "kgf": 9.80665,
+            "tf": 9806.65,
+            "lbf": 4.4482216152605,
+        },
         "torque": {
             "Nm": 1.0,
             "kNm": 1e3,

@@ -1,4 +1,4 @@
-"""A measured trace: one quantity against crank angle over one cycle, from a CSV file."""
+"""One quantity against shaft angle over one cycle, from a CSV file."""
 
 from __future__ import annotations
 
@@ -13,8 +13,8 @@ from numpy.typing import ArrayLike
 
 from camwright.geometry.arrays import Array, finite, freeze, readonly
 from camwright.geometry.errors import InputError
-from camwright.pipeline.engine.cylinder import CYCLE_ANGLE
-from camwright.pipeline.engine.trace_file import (
+from camwright.pipeline.torque.period import FOUR_STROKE
+from camwright.pipeline.torque.trace_file import (
     QUANTITY_UNITS,
     angle_column,
     trace_text,
@@ -40,6 +40,8 @@ class Trace:
     angle : array (n,)         rad, strictly increasing over less than one period, n >= 12
     values : array (n,)        N m, Pa or rad/s
     period : float             rad
+    closure : float            difference of the values at both ends of the period, where the file
+                               has both
     """
 
     source: str
@@ -47,7 +49,8 @@ class Trace:
     column: str
     angle: Array
     values: Array
-    period: float = CYCLE_ANGLE
+    period: float = FOUR_STROKE.angle
+    closure: float = 0.0
 
     def __post_init__(self) -> None:
         freeze(self, angle=self.angle, values=finite(f"{self.source}, {self.column}", self.values))
@@ -104,7 +107,7 @@ def read_trace(
     quantity: str = "torque",
     *,
     column: str | None = None,
-    period: float = CYCLE_ANGLE,
+    period: float = FOUR_STROKE.angle,
 ) -> Trace:
     """One quantity over one period of the crank, from a CSV file.
 
@@ -151,7 +154,7 @@ def one_period(
     lines: Sequence[int],
     angle: Array,
     values: Array,
-    period: float = CYCLE_ANGLE,
+    period: float = FOUR_STROKE.angle,
     gap_max: float = GAP_MAX,
 ) -> Trace:
     """Trace of one column; order and span of its angles are checked before.
@@ -168,8 +171,10 @@ def one_period(
     InputError
         If a gap is wider, or above 5 times the median spacing.
     """
+    written = values
     angle, values = without_end(angle, values, period)
-    trace = Trace(name, quantity, column, angle, values, period)
+    closure = float(abs(written[-1] - written[0])) if values.size < written.size else 0.0
+    trace = Trace(name, quantity, column, angle, values, period, closure)
     _guard_gaps(trace, lines, gap_max)
     return trace
 

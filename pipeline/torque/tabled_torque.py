@@ -1,0 +1,112 @@
+"""Torque against shaft angle from a table."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from math import pi
+from pathlib import Path
+from typing import ClassVar, Literal
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from camwright.geometry.arrays import Array, readonly
+from camwright.geometry.errors import InputError
+from camwright.pipeline.base.quantities import Cycle, FileName, Part
+from camwright.pipeline.torque.angle_trace import Trace, read_trace
+from camwright.pipeline.torque.trace_file import HeaderText
+
+CLOSURE_MAX = 0.02
+"""Greatest difference of the torque at both ends of the cycle over its peak to peak."""
+
+HALVED_MAX = 0.1
+"""Greatest change of the work with every other row left out, over its swing; the work of the whole
+table is then some ten times as near."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class TabledTorqueFile(Part):
+    """Torque over one cycle from a file: a column of shaft angle, one of torque."""
+
+    table: ClassVar[str] = "torque"
+
+    kind: Literal["table"] = "table"
+    cycle: Cycle = 2.0 * pi
+    file: FileName
+    column: HeaderText = ""
+
+
+@dataclass(frozen=True, eq=False)
+class TabledTorque:
+    """Torque through a table, periodic over its cycle.
+
+    Parameters
+    ----------
+    trace : Trace    N m against shaft angle over one cycle
+
+    Raises
+    ------
+    InputError
+        If the torque is constant, differs at the ends of the cycle by more than 2 % of its peak to
+        peak, or has too few rows for its harmonics.
+    """
+
+    trace: Trace
+
+    def __post_init__(self) -> None:
+        trace, name = self.trace, f"{self.trace.source}, {self.trace.column}"
+        peak_to_peak = float(np.ptp(trace.values))
+        if not peak_to_peak > 0.0:
+            text = f"constant, {float(trace.values[0]):.6g} N m"
+            raise InputError(name, text, "a torque that varies over the cycle")
+        if not trace.closure <= CLOSURE_MAX * peak_to_peak:
+            text = f"not closed, {trace.closure:.4g} N m between both ends of the cycle"
+            limit = f"<= {CLOSURE_MAX * peak_to_peak:.4g} N m, {CLOSURE_MAX:.0%} of peak to peak"
+            raise InputError(name, text, limit)
+        if (change := self._change_halved()) > HALVED_MAX:
+            text = f"{trace.angle.size} rows; the work changes by {change:.0%} with half of them"
+            limit = f"so many rows that it changes by {HALVED_MAX:.0%} or less"
+            raise InputError(name, text, limit)
+
+    @property
+    def cycle(self) -> float:
+        """Shaft angle of one cycle, rad."""
+        return self.trace.period
+
+    def torque(self, theta: ArrayLike) -> Array:
+        """Torque at equal shaft angles (n,), rad, of one cycle from 0, N m.
+
+        Where the table is at least twice as dense, the mean over each step.
+        """
+        return readonly(self.trace.uniform(np.size(theta)))
+
+    def _change_halved(self) -> float:
+        """Change of the work about its mean with every other row left out, over its swing."""
+        trace = self.trace
+        count = 4 * trace.angle.size
+        whole = _swing(trace, count)
+        halves = (
+            _swing(replace(trace, angle=trace.angle[k::2], values=trace.values[k::2]), count)
+            for k in (0, 1)
+        )
+        largest = max(float(np.abs(half - whole).max()) for half in halves)
+        return largest / float(np.ptp(whole))
+
+
+def _swing(trace: Trace, count: int) -> Array:
+    """Work of a torque less its mean, at equal angles, of zero mean, any unit."""
+    values = trace(np.arange(count) * (trace.period / count))
+    work = np.cumsum(values - values.mean())
+    return np.asarray(work - work.mean())
+
+
+def tabled_torque(source: TabledTorqueFile, path: str | Path) -> TabledTorque:
+    """Torque of a table from its file.
+
+    Raises
+    ------
+    InputError
+        If the file is not one clean cycle; see `read_trace` and `TabledTorque`.
+    """
+    column = source.column or None
+    return TabledTorque(read_trace(path, "torque", column=column, period=source.cycle))
