@@ -81,7 +81,13 @@ def load_utilisations(
 
     Leading axes are those of stacked scenarios.
     """
-    loads = loaded(jet, highest, variables, ratings, scenario)
+    return utilisations_of(loaded(jet, highest, variables, ratings, scenario), names)
+
+
+def utilisations_of(
+    loads: Loads, names: Container[str] | None = None
+) -> Mapping[str, Array | Mean]:
+    """As `load_utilisations`, of a loaded cam."""
     return _utilisations(LOADS, loads, names)
 
 

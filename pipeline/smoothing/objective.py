@@ -17,8 +17,8 @@ import numpy as np
 from camwright.geometry.arrays import FULL_TURN, Array
 from camwright.geometry.errors import InputError
 from camwright.geometry.pitch_curve import magnitude
-from camwright.pipeline.smoothing.cam_state import Forces, Jet, Mean, Motion, forces, motion
-from camwright.pipeline.smoothing.scenario import DesignVariables, Ratings, Scenario, Value
+from camwright.pipeline.smoothing.cam_state import Loads, Mean
+from camwright.pipeline.smoothing.scenario import DesignVariables, Scenario, Value
 
 
 class Scale(NamedTuple):
@@ -61,12 +61,8 @@ class Residual:
 class Turning(NamedTuple):
     """Cam in one scenario at n cam angles; scale: references of the costs."""
 
-    jet: Jet
-    path: Motion
-    force: Forces
+    loads: Loads
     variables: DesignVariables
-    ratings: Ratings
-    scenario: Scenario
     scale: Scale
 
 
@@ -140,22 +136,23 @@ def torque_integral(values: Array) -> Array:
 
 def _loss(at: Turning) -> Mean:
     """Work of the friction of guides, and of roller bearing or face, over a turn."""
-    ratings, force = at.ratings, at.force
-    guides = (force.axial - force.spring - force.inertia) * at.jet.slope
+    cam = at.loads
+    ratings, force = cam.ratings, cam.force
+    guides = (force.axial - force.spring - force.inertia) * cam.jet.slope
     drag = 0.0 if ratings.drag is None else ratings.drag.bearing_torque(force.normal)
-    contact = drag * magnitude(np.asarray(at.path.rolling)) + force.axial * at.path.sliding
+    contact = drag * magnitude(np.asarray(cam.path.rolling)) + force.axial * cam.path.sliding
     return Mean(FULL_TURN / at.scale.energy * (guides + contact))
 
 
 def _spring_energy(at: Turning) -> Array:
     """F_s^2/(2 k), the preload included."""
-    rate = at.variables.rate * at.scenario.rate_factor
-    return at.force.spring**2 / (2.0 * rate * at.scale.energy)
+    rate = at.variables.rate * at.loads.scenario.rate_factor
+    return at.loads.force.spring**2 / (2.0 * rate * at.scale.energy)
 
 
 def _rest_force(at: Turning) -> Mean:
     """Contact force at standstill without friction; every angle is as likely."""
-    return Mean(at.force.spring * at.path.gain / at.scale.force)
+    return Mean(at.loads.force.spring * at.loads.path.gain / at.scale.force)
 
 
 _ENGINE = "torque ripple of the engine"
@@ -187,7 +184,7 @@ COSTS: tuple[Cost, ...] = (
         "peak_force",
         "greatest contact force",
         _FORCE,
-        lambda at: at.force.normal / at.scale.force,
+        lambda at: at.loads.force.normal / at.scale.force,
         everywhere=True,
     ),
 )
@@ -236,30 +233,22 @@ def residuals(objective: Objective, item: Scenario, values: Array) -> Array:
 def costs(
     objective: Objective,
     scale: Scale,
-    ratings: Ratings,
-    item: Scenario,
     weight: Value,
-    jet: Jet,
-    highest: float,
+    loads: Loads,
     variables: DesignVariables,
 ) -> Mapping[str, Array | Mean]:
     """Weighted costs by key; each (..., n), or a `Mean` of the turn.
 
     Parameters
     ----------
-    item : Scenario   one, or several at once, of the `weight` (..., 1) of their ripples
-    highest : float   maximum lift, m
+    loads : Loads   in one scenario, or in several at once, of the `weight` (..., 1) of their ripples
     """
     terms = [
         (each.term, each.weight * (1.0 if each.term.everywhere else weight))
         for each in objective
         if isinstance(each.term, Cost)
     ]
-    if not terms:
-        return {}
-    path = motion(jet, variables, ratings)
-    force = forces(jet, path, highest, variables, item)
-    at = Turning(jet, path, force, variables, ratings, item, scale)
+    at = Turning(loads, variables, scale)
     return {term.key: _times(term.value(at), weight) for term, weight in terms}
 
 

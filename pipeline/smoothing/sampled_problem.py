@@ -12,13 +12,14 @@ from numpy.typing import NDArray
 from camwright.geometry.arrays import Array, uniform_turn
 from camwright.pipeline.case.limits import PRESSURE_ANGLE, TORQUE_REDUCTION
 from camwright.pipeline.follower.spring import spring_energy
-from camwright.pipeline.smoothing.cam_state import Jet, Mean, lift_jet
+from camwright.pipeline.smoothing.cam_state import Jet, Loads, Mean, lift_jet, loaded
 from camwright.pipeline.smoothing.cone_program import Linear, Norm
 from camwright.pipeline.smoothing.constraints import (
     SHAPE,
     delivered_torque,
     load_utilisations,
     shape_utilisations,
+    utilisations_of,
 )
 from camwright.pipeline.smoothing.energy_spline import Grid, basis_matrix, exact_start
 from camwright.pipeline.smoothing.gradients import (
@@ -218,9 +219,15 @@ class Search:
         variables: DesignVariables,
     ) -> Mapping[str, Array | Mean]:  # fmt: skip
         """Costs of those names, of stacked scenarios of these weights (s, 1)."""
-        problem = self.problem
-        objective = tuple(each for each in problem.objective if each.term.key in names)
-        return costs(objective, self._scale, problem.ratings, stack, weights, jet, top, variables)
+        loads = loaded(jet, top, variables, self.problem.ratings, stack)
+        return self._charged(names, weights, loads, variables)
+
+    def _charged(
+        self, names: frozenset[str], weights: Array, loads: Loads, variables: DesignVariables
+    ) -> Mapping[str, Array | Mean]:
+        """As `_costs`, of a loaded cam."""
+        objective = tuple(each for each in self.problem.objective if each.term.key in names)
+        return costs(objective, self._scale, weights, loads, variables)
 
     def pairs(self, rows: NDArray[np.intp], points: NDArray[np.intp]) -> Callable[[Array], Array]:
         """Values at pairs (m,) of scenario and angle of the grid."""
@@ -254,7 +261,8 @@ class Search:
         self, coefficients: Array, variables: DesignVariables, grid: Grid
     ) -> dict[str, Array]:
         """Greatest of the scenarios at the angles of a uniform grid, (n,); (1,) for means."""
-        pointwise, means = self._uses(coefficients, variables, grid, grid.theta.size)
+        loads = self._loaded(coefficients, variables, grid)
+        pointwise, means = self._uses(loads, variables, grid.theta.size)
         worst = {name: value.max(axis=0) for name, value in pointwise.items()}
         return worst | {name: each.value.max(keepdims=True) for name, each in means.items()}
 
@@ -262,27 +270,29 @@ class Search:
         self, coefficients: Array, variables: DesignVariables, grid: Grid
     ) -> dict[str, Array]:
         """Greatest of the scenarios at any cam angles, (n,), of the limits that are no means."""
-        values, _ = self._uses(coefficients, variables, grid, 0)
+        values, _ = self._uses(self._loaded(coefficients, variables, grid), variables, 0)
         limits = values.keys() - self.costs
         return {name: value.max(axis=0) for name, value in values.items() if name in limits}
 
+    def _loaded(self, coefficients: Array, variables: DesignVariables, grid: Grid) -> Loads:
+        """Cam at the angles of a grid in the stacked scenarios."""
+        return loaded(
+            lift_jet(grid.energy(coefficients), variables),
+            self.highest(coefficients, variables),
+            variables,
+            self.problem.ratings,
+            self.stack(grid, variables),
+        )
+
     def _uses(
-        self, coefficients: Array, variables: DesignVariables, grid: Grid, points: int
+        self, loads: Loads, variables: DesignVariables, points: int
     ) -> tuple[dict[str, Array], dict[str, Mean]]:
         """Utilisations (s, n) at the angles of a grid; means over its first points."""
-        highest = self.highest(coefficients, variables)
-        jet = lift_jet(grid.energy(coefficients), variables)
-        shape = self.shape()(jet, highest, variables)
-        stack = self.stack(grid, variables)
-        loads = self.loads(stack)(jet, highest, variables)
-        charged = (
-            self._costs(self.costs, stack, self._weights, jet, highest, variables)
-            if self.costs
-            else {}
-        )
+        shape = self.shape()(loads.jet, loads.highest, variables)
+        charged = self._charged(self.costs, self._weights, loads, variables)
         pointwise: dict[str, Array] = {}
         means: dict[str, Mean] = {}
-        for name, value in (*shape.items(), *loads.items(), *charged.items()):
+        for name, value in (*shape.items(), *utilisations_of(loads).items(), *charged.items()):
             if name in self.problem.left_out:
                 continue
             if isinstance(value, Mean):
@@ -295,7 +305,8 @@ class Search:
     def state(self, coefficients: Array, variables: DesignVariables) -> State:
         """State at coefficients, J, and variables."""
         problem = self.problem
-        pointwise, totals = self._uses(coefficients, variables, self.grid, problem.points)
+        loads = self._loaded(coefficients, variables, self.grid)
+        pointwise, totals = self._uses(loads, variables, problem.points)
         means = {name: each.value for name, each in totals.items()}
         greatest = {name: float(value.max()) for name, value in (pointwise | means).items()}
         most = {name: value for name, value in greatest.items() if name not in self.costs}
@@ -303,7 +314,8 @@ class Search:
         if np.isfinite(problem.energy[1]):
             over = float(energy[0].min()) - problem.energy[1]
             most[INITIAL_ENERGY] = 1.0 - RESERVE + over / self.scale
-        left = self.residual_torque(coefficients, variables)
+        torque = loads.torque[self.weighted, : problem.points]
+        left = self._engine(variables) - torque / problem.gear_ratio
         items = [problem.scenarios[k] for k in self.weighted]
         ripples = np.array(
             [

@@ -21,7 +21,7 @@ from camwright.pipeline.contact.traction import Drag
 from camwright.pipeline.cycle.solution import solution
 from camwright.pipeline.preview import preview_case
 from camwright.pipeline.results.run_records import headline
-from camwright.pipeline.smoothing.cam_state import Jet, Mean, lift_jet
+from camwright.pipeline.smoothing.cam_state import Jet, Mean, lift_jet, loaded
 from camwright.pipeline.smoothing.constrained_synthesis import synthesise
 from camwright.pipeline.smoothing.gradients import FREED, Point, differentiated
 from camwright.pipeline.smoothing.objective import (
@@ -83,9 +83,12 @@ def cost_by_scenario(case, solved, objective=EVERY_COST):
         )
         scenario = replace(item, correction=correction)
         found[item.name] = costs(
-            objective, problem.scale, problem.ratings, scenario, item.weight, jet,
-            pitch.lift.highest.value, problem.variables,
-        )  # fmt: skip
+            objective,
+            problem.scale,
+            item.weight,
+            loaded(jet, pitch.lift.highest.value, problem.variables, problem.ratings, scenario),
+            problem.variables,
+        )
     return found
 
 
