@@ -101,7 +101,7 @@ class PitchCurve(FollowerPath):
 
 def magnitude(values: Values) -> Values:
     """Value times the sign of its real part: |x|, differentiable by a complex step."""
-    return values * np.sign(np.real(values))
+    return values * np.sign(values.real) if np.iscomplexobj(values) else np.abs(values)
 
 
 def speed_and_curvature(

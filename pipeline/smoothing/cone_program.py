@@ -178,7 +178,7 @@ class Cones:
         )
         quadratic = scipy.sparse.csc_array(np.triu(self._quadratic))
         side = np.concatenate([block.side for block in blocks])
-        # The unknowns are scaled: equilibration costs a third more iterations, but may save a solve.
+        # The unknowns are scaled: equilibration takes a third more iterations.
         for equilibrated in (False, True):
             settings = clarabel.DefaultSettings()
             settings.verbose = False

@@ -9,7 +9,8 @@ is accepted when the merit decreases: ripple plus penalised violations.
 
 from __future__ import annotations
 
-from dataclasses import replace
+from collections.abc import Mapping
+from typing import NamedTuple
 
 import numpy as np
 
@@ -40,40 +41,49 @@ def synthesise(problem: Problem, ripple_weight: float = 1.0, enough: float | Non
     -------
     Design   not `feasible` where the search ends outside a limit
     """
-    seeded = replace(problem, seed=started(problem, ripple_weight))
-    search = Search(seeded)
+    search = started(problem, ripple_weight)
     descent = descended(search, ripple_weight, enough=enough)
-    steps, fine = descent.steps, _peaks(search, descent.state)
+    steps, peaks = descent.steps, _Peaks.of(search, descent.state)
     for _ in range(_ROUNDS - 1):
-        between = _between(search, descent.state, fine)
+        between = _between(descent.state, peaks)
         if not between.size:
             break
-        search = Search(seeded, np.concatenate([search.extra, between]))
+        search = Search(problem, np.concatenate([search.extra, between]))
         descent = descended(search, ripple_weight, descent, enough)
-        steps, fine = steps + descent.steps, _peaks(search, descent.state)
-    return _design(search, descent, steps, fine)
+        steps, peaks = steps + descent.steps, _Peaks.of(search, descent.state)
+    return _design(search, descent, steps, peaks)
 
 
 def approached(problem: Problem) -> State:
     """End of a search at the points alone: a start for more splines."""
-    return descended(Search(replace(problem, seed=started(problem))), 1.0).state
+    return descended(started(problem), 1.0).state
 
 
-def started(problem: Problem, ripple_weight: float = 1.0) -> Array:
-    """Start coefficients, J: the seed, or the better of exact energy and convex optimum."""
-    if problem.seed is not None:
-        return problem.seed
+def started(problem: Problem, ripple_weight: float = 1.0) -> Search:
+    """Search from the seed, or from the better of exact energy and convex optimum."""
     search = Search(problem)
-    starts = [search.exact]
-    core = convex_start(problem)
+    core = convex_start(problem) if problem.seed is None else None
     if core is not None:
-        starts.append(core.coefficients)
-    states = [search.state(start, problem.variables) for start in starts]
-    return min(states, key=lambda state: state.merit(PENALTY, ripple_weight)).coefficients
+        states = [search.state(start, problem.variables) for start in
+                  (search.exact, core.coefficients)]  # fmt: skip
+        best = min(states, key=lambda state: state.merit(PENALTY, ripple_weight))
+        search.start = best.coefficients
+    return search
 
 
-def _peaks(search: Search, state: State) -> Grid:
-    """Cam angles beside the greatest utilisations, finer than the points."""
+class _Peaks(NamedTuple):
+    """Cam angles beside the greatest utilisations, finer than the points, and all limits there."""
+
+    fine: Grid
+    uses: Mapping[str, Array]
+
+    @classmethod
+    def of(cls, search: Search, state: State) -> _Peaks:
+        fine = _beside_peaks(search, state)
+        return cls(fine, search.pointwise(state.coefficients, state.variables, fine))
+
+
+def _beside_peaks(search: Search, state: State) -> Grid:
     points, step = search.problem.points, search.turn.theta[1]
     near = np.zeros(points, dtype=bool)
     for each in state.pointwise.values():
@@ -85,26 +95,30 @@ def _peaks(search: Search, state: State) -> Grid:
     return Grid.at(theta, search.problem.coefficients)
 
 
-def _between(search: Search, state: State, fine: Grid) -> Array:
+def _between(state: State, peaks: _Peaks) -> Array:
     """Cam angles between the points at which a limit is exceeded more than at them."""
     angles: list[Array] = []
-    for name, value in search.pointwise(state.coefficients, state.variables, fine).items():
+    for name, value in peaks.uses.items():
         bound = max(1.0 - 0.5 * RESERVE, state.utilisation[name] + 0.2 * RESERVE)
         peak = (value >= np.roll(value, 1)) & (value > np.roll(value, -1)) & (value > bound)
-        angles.append(fine.theta[peak])
+        angles.append(peaks.fine.theta[peak])
     return np.unique(np.concatenate(angles)) if angles else np.zeros(0)
 
 
-def _design(search: Search, descent: Descent, steps: int, fine: Grid) -> Design:
-    state, theta = descent.state, search.turn.theta
+def _design(search: Search, descent: Descent, steps: int, peaks: _Peaks) -> Design:
+    state, theta, points = descent.state, search.turn.theta, search.problem.points
     # Between the points the energy may dip below its least value by their spacing squared.
     rise = search.problem.energy[0] - lowest(state.coefficients)
     if rise > 0.0:
         state = search.state(state.coefficients + rise, state.variables)
-    on_points = search.utilisations(state.coefficients, state.variables, search.turn)
+        uses = search.pointwise(state.coefficients, state.variables, peaks.fine)
+        peaks = peaks._replace(uses=uses)
+    on_points = {name: use[:, :points].max(axis=0) for name, use in state.pointwise.items()}
+    on_points |= {name: use.max(keepdims=True) for name, use in state.means.items()}
     # The checks refine between points.
-    peaks = search.pointwise(state.coefficients, state.variables, fine)
-    most = {name: max(state.utilisation[name], float(peaks[name].max())) for name in peaks}
+    most = {
+        name: max(state.utilisation[name], float(use.max())) for name, use in peaks.uses.items()
+    }
     return Design(
         coefficients=readonly(state.coefficients),
         variables=state.variables,

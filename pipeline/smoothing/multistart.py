@@ -162,7 +162,8 @@ def explored(problem: Problem, count: int) -> Explored:
     random = np.random.default_rng(_SEED)
     designs, resolution = resolved(problem, approached(coarse))
     fine = replace(problem, coefficients=resolution.coefficients)
-    others = [continued(fine, approached(_random(coarse, random))) for _ in range(count - 1)]
+    size = float(np.abs(Search(coarse).exact).max())
+    others = [continued(fine, approached(_random(coarse, size, random))) for _ in range(count - 1)]
     alike = [designs[-1], *others]
     ripples = tuple(each.ripple if each.feasible else None for each in alike)
     best = _best([*alike, *designs]) or min(alike, key=lambda each: each.violation)
@@ -202,9 +203,8 @@ def _best(designs: Sequence[Design]) -> Design | None:
     return min(kept, key=lambda each: each.objective) if kept else None
 
 
-def _random(problem: Problem, random: np.random.Generator) -> Problem:
-    """The problem with a smooth random energy and random free variables to start from."""
-    size = float(np.abs(Search(problem).exact).max())
+def _random(problem: Problem, size: float, random: np.random.Generator) -> Problem:
+    """The problem with a smooth random energy of a size, J, and random free variables as start."""
     count = problem.coefficients
     order = np.arange(1, count // 4)
     theta = uniform_turn(count)

@@ -241,7 +241,7 @@ def costs(
 
     Parameters
     ----------
-    loads : Loads   in one scenario, or in several at once, of the `weight` (..., 1) of their ripples
+    loads : Loads   in one scenario, or in several, of the `weight` (..., 1) of their ripples
     """
     terms = [
         (each.term, each.weight * (1.0 if each.term.everywhere else weight))

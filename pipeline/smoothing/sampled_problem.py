@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 
@@ -64,7 +64,9 @@ class Search:
         theta = uniform_turn(problem.points)
         self.extra = np.zeros(0) if extra is None else extra
         self.turn = Grid.at(theta, count)
-        self.grid = Grid.at(np.concatenate([theta, self.extra]), count)
+        self.grid = (
+            Grid.at(np.concatenate([theta, self.extra]), count) if self.extra.size else self.turn
+        )
         self.every = np.arange(problem.points, dtype=np.intp)
         self.weighted = [
             k
@@ -146,7 +148,10 @@ class Search:
             angle = angle - np.clip(newton, -step, step)
         peaks = Grid.at(angle, coefficients.size)
         order = np.argsort(-peaks.energy(coefficients)[0], kind="stable")
-        self._last = coefficients, Grid.at(angle[order], coefficients.size)
+        self._last = (
+            coefficients,
+            Grid(angle[order], peaks.columns[order], peaks.entries[:, order]),
+        )
         return self._last[1]
 
     def summit(self, state: State) -> Summit:
@@ -317,21 +322,13 @@ class Search:
         torque = loads.torque[self.weighted, : problem.points]
         left = self._engine(variables) - torque / problem.gear_ratio
         items = [problem.scenarios[k] for k in self.weighted]
-        ripples = np.array(
-            [
-                item.weight * float(np.linalg.norm(ripple_of(problem, item, values)))
-                for item, values in zip(items, left, strict=True)
-            ]
-        )
-        excess = np.array(
-            [
-                -np.inf
-                if ceiling is None
-                else np.linalg.norm(torque_ripple(item, values)) - ceiling
-                for item, values in zip(items, left, strict=True)
-                for ceiling in (problem.ceiling_of(item),)
-            ]
-        )
+        sizes = _norms(partial(ripple_of, problem), items, left)
+        ripples = sizes * [item.weight for item in items]
+        alone = problem.torque_alone
+        ceilings = [problem.ceiling_of(item) for item in items]
+        excess = (sizes if alone else _norms(torque_ripple, items, left)) - [
+            np.inf if each is None else each for each in ceilings
+        ]
         if np.isfinite(excess).any():
             most[TORQUE_REDUCTION.id] = 1.0 - RESERVE + float(excess.max())
         jerk = self._jerk_scale * lift_jet(energy, variables).jerk
@@ -604,6 +601,15 @@ class Search:
             low[count + number] = max((least - now) / unit, -trust)
             high[count + number] = min((greatest - now) / unit, trust)
         return np.stack([low, high])
+
+
+def _norms(
+    columns: Callable[[Scenario, Array], Array], items: Sequence[Scenario], left: Array
+) -> Array:
+    """Norms (w,) of the residuals of each scenario."""
+    return np.array(
+        [np.linalg.norm(columns(item, values)) for item, values in zip(items, left, strict=True)]
+    )
 
 
 def _unit(name: str, variables: DesignVariables) -> float:

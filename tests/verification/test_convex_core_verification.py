@@ -107,9 +107,9 @@ def test_real_synthesis_starts_from_the_convex_part():
     given = problem(**LIMITS["angle"])
     rubbing = replace(given.scenarios[0], cam_speed=78.0, mass=0.2, friction_a=0.15, friction_b=0.1)
     real = replace(given, scenarios=(rubbing,))
-    np.testing.assert_array_equal(started(real), convex_start(real).coefficients)
+    np.testing.assert_array_equal(started(real).start, convex_start(real).coefficients)
     seed = np.full(COUNT, 2.0)
-    np.testing.assert_array_equal(started(replace(real, seed=seed)), seed)
+    np.testing.assert_array_equal(started(replace(real, seed=seed)).start, seed)
 
 
 def test_energy_held_at_zero_leaves_more_ripple():
