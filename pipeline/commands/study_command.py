@@ -124,7 +124,7 @@ def write_study_report(folder: Path) -> Path:
     outputs = {row["name"] for row in record["outputs"]}
     objectives = {each.column for each in study.objectives}
     columns = {
-        name: values for name, values in data.columns.items()
+        name: data[name] for name in data.columns
         if name.startswith(FACTOR) or name in outputs | objectives
     }  # fmt: skip
     state, _ = answers.states(data)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Mapping
 from dataclasses import dataclass
 from fnmatch import fnmatchcase
 from typing import Any, TypeAlias
@@ -57,14 +58,17 @@ def answered(data: Dataset, study: Study) -> Answer:
     sample = Sample.of(study, len(data))
     utilisation = governing_utilisation(data)
     outputs, left_out = _outputs(data, study, state, utilisation)
+    factors = {key: data[FACTOR + key] for key in data.factors}
     return {
         "schema": SCHEMA,
         "sampling": study.sampling.method if study.sampling else None,
         "designs": _counts(data, state, by),
         "yield": _yield(state[sample.rows], by, sample),
         "failures": _failures(data, state),
-        "factors": [_factor(data, key) for key in data.factors],
-        "outputs": [_output(data, name, values, sample) for name, values in outputs.items()],
+        "factors": [_factor(data, key, values) for key, values in factors.items()],
+        "outputs": [
+            _output(data, name, values, sample, factors) for name, values in outputs.items()
+        ],
         "outputs_left_out": left_out,
         "front": _front(data, study, state),
         "worst": _worst(data, utilisation, state),
@@ -136,7 +140,8 @@ def _counts(data: Dataset, state: NDArray[np.uint8], by: str) -> Answer:
     def counted(name: str) -> Answer:
         return {str(value): n for value, n in sorted(Counter(data[name].tolist()).items()) if value}
 
-    messages = Counter(data["message"].tolist())
+    message = data["message"]
+    messages = Counter(message.tolist())
     messages.pop("", None)
     ranked = sorted(messages.items(), key=lambda item: (-item[1], item[0]))
     return {
@@ -149,7 +154,7 @@ def _counts(data: Dataset, state: NDArray[np.uint8], by: str) -> Answer:
         "screen": counted("screen"),
         "verdict": counted("verdict"),
         "messages": [
-            {"message": text, "count": n, "design": _design(data, data["message"] == text)}
+            {"message": text, "count": n, "design": _design(data, message == text)}
             for text, n in ranked[:_MESSAGES]
         ],
         "messages_left_out": max(len(ranked) - _MESSAGES, 0),
@@ -220,10 +225,8 @@ def _number(value: float) -> float | None:
     return float(value) if np.isfinite(value) else None
 
 
-def _factor(data: Dataset, key: str) -> Answer:
-    name = FACTOR + key
-    values = data[name]
-    record: Answer = {"key": key, "unit": data.units.get(name, "")}
+def _factor(data: Dataset, key: str, values: NDArray[Any]) -> Answer:
+    record: Answer = {"key": key, "unit": data.units.get(FACTOR + key, "")}
     if np.issubdtype(values.dtype, np.number):
         known = values[np.isfinite(values)]
         ends = (float(known.min()), float(known.max())) if known.size else (None, None)
@@ -231,8 +234,14 @@ def _factor(data: Dataset, key: str) -> Answer:
     return record | {"values": sorted({str(value) for value in values if value})}
 
 
-def _output(data: Dataset, name: str, values: Array, sample: Sample) -> Answer:
-    """Spread of an output and the effects of the factors on it."""
+def _output(
+    data: Dataset,
+    name: str,
+    values: Array,
+    sample: Sample,
+    factors: Mapping[str, NDArray[Any]],
+) -> Answer:
+    """Spread of an output and the effects of the factors, values (n,) by key, on it."""
     known = np.flatnonzero(np.isfinite(values))
     record: Answer = {
         "name": name, "unit": data.units.get(name, ""), "count": int(known.size),
@@ -241,15 +250,16 @@ def _output(data: Dataset, name: str, values: Array, sample: Sample) -> Answer:
         return record | {"effects": [], "sobol": None}
     own = values[known]
     low, high = known[int(own.argmin())], known[int(own.argmax())]
+    numbers = data["design"]
     record |= {
         "mean": float(own.mean()), "std": float(own.std()),
-        "least": {"value": float(values[low]), "design": int(data["design"][low])},
+        "least": {"value": float(values[low]), "design": int(numbers[low])},
         "median": float(np.median(own)),
-        "greatest": {"value": float(values[high]), "design": int(data["design"][high])},
+        "greatest": {"value": float(values[high]), "design": int(numbers[high])},
     }  # fmt: skip
     effects = {
-        key: sensitivity.main_effect(data[FACTOR + key][sample.rows], values[sample.rows])
-        for key in data.factors
+        key: sensitivity.main_effect(column[sample.rows], values[sample.rows])
+        for key, column in factors.items()
     }  # fmt: skip
     sobol = None
     if sample.blocks:
@@ -259,7 +269,7 @@ def _output(data: Dataset, name: str, values: Array, sample: Sample) -> Answer:
         "sobol": None if sobol is None else [
             {"factor": key, "first": index.first, "first_interval": list(index.first_interval),
              "total": index.total, "total_interval": list(index.total_interval)}
-            for key, index in zip(data.factors, sobol, strict=True)
+            for key, index in zip(factors, sobol, strict=True)
         ],
     }  # fmt: skip
 
@@ -293,20 +303,24 @@ def _front(data: Dataset, study: Study, state: NDArray[np.uint8]) -> Answer | No
             {"column": o.column, "unit": data.units.get(o.column, ""),
              "goal": o.goal} for o in objectives
         ],
-        "designs": [_point(data, int(row)) | {"values": [float(v[row]) for v in values]}
-                    for row in chosen],
+        "designs": [
+            point | {"values": [float(v[row]) for v in values]}
+            for row, point in zip(chosen, _points(data, chosen), strict=True)
+        ],
     }  # fmt: skip
 
 
-def _point(data: Dataset, row: int) -> Answer:
-    """Design of a row: number, id, depth, factors, judgement."""
-    factors = {key: data[FACTOR + key][row].item() for key in data.factors}
-    return {
-        "design": int(data["design"][row]), "id": str(data["id"][row]),
-        "depth": str(data["depth"][row]), "screen": str(data["screen"][row]),
-        "verdict": str(data["verdict"][row]) or None, "governing": str(data["governing"][row]),
-        "factors": factors,
-    }  # fmt: skip
+def _points(data: Dataset, rows: NDArray[np.intp]) -> list[Answer]:
+    """Designs of rows (k,): number, id, depth, factors, judgement."""
+    names = ("design", "id", "depth", "screen", "verdict", "governing")
+    columns = {name: data[name][rows].tolist() for name in names}
+    columns["verdict"] = [word or None for word in columns["verdict"]]
+    factors = {key: data[FACTOR + key][rows].tolist() for key in data.factors}
+    return [
+        {name: values[k] for name, values in columns.items()}
+        | {"factors": {key: values[k] for key, values in factors.items()}}
+        for k in range(len(rows))
+    ]
 
 
 def _worst(data: Dataset, utilisation: Array, state: NDArray[np.uint8]) -> Answer | None:
@@ -315,4 +329,5 @@ def _worst(data: Dataset, utilisation: Array, state: NDArray[np.uint8]) -> Answe
     if np.isnan(size).all():
         return None
     row = int(np.nanargmax(size))
-    return _point(data, row) | {UTILISATION: _number(size[row])}
+    (point,) = _points(data, np.array([row]))
+    return point | {UTILISATION: _number(size[row])}

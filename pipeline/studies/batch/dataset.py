@@ -7,7 +7,7 @@ not have is null.
 from __future__ import annotations
 
 import io
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -21,6 +21,7 @@ from camwright.pipeline.base.tables import Column
 
 if TYPE_CHECKING:
     import pyarrow as pa
+    import pyarrow.parquet as pq
 
 STUDY, SUMMARY, DATASET = "study.toml", "study.json", "dataset.parquet"
 ANSWERS, PAGE = "answers.json", "study.html"
@@ -299,7 +300,8 @@ class Dataset:
 
     Parameters
     ----------
-    columns : mapping   values by column name, in the order of the file
+    columns : mapping   values by column name, in the order of the file; those of a file are read
+                        at each use, so that a dataset is never whole in memory
     units : mapping     unit by column name; "": pure number or text
     meanings : mapping  meaning by column name
     """
@@ -327,6 +329,25 @@ class Dataset:
         return tuple(name.removesuffix(STATUS) for name in self.columns if name.endswith(STATUS))
 
 
+class _StoredColumns(Mapping[str, NDArray[Any]]):
+    """Columns of a Parquet file, each read when it is used."""
+
+    def __init__(self, file: pq.ParquetFile) -> None:
+        self._file, self._names = file, tuple(file.schema_arrow.names)
+
+    def __getitem__(self, name: str) -> NDArray[Any]:
+        return values_of(self._file.read(columns=[name]).column(0))
+
+    def __contains__(self, name: object) -> bool:
+        return name in self._names
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._names)
+
+    def __len__(self) -> int:
+        return len(self._names)
+
+
 def read_dataset(folder: Path) -> Dataset:
     """The dataset of a study folder.
 
@@ -335,19 +356,26 @@ def read_dataset(folder: Path) -> Dataset:
     ResultError
         If the folder has none, or it is damaged, or no dataset of a study.
     """
-    table = read_parquet(folder / DATASET)
-    require_columns(table, FIXED, folder / DATASET)
-    columns: dict[str, NDArray[Any]] = {}
+    import pyarrow as pa
+    import pyarrow.parquet as pq
+
+    path = folder / DATASET
+    try:
+        file = pq.ParquetFile(path, page_checksum_verification=True)
+        require_columns(file.read_row_groups([]), FIXED, path)
+        for group in range(file.num_row_groups):
+            require_columns(file.read_row_group(group), FIXED, path)
+    except (OSError, ValueError, pa.ArrowException) as error:
+        raise ResultError(f"{path}: {' '.join(str(error).split())[:200]}") from None
     units: dict[str, str] = {}
     meanings: dict[str, str] = {}
-    for field in table.schema:
-        columns[field.name] = values_of(table[field.name])
+    for field in file.schema_arrow:
         marks = {
             key.decode("utf-8", "replace"): text.decode("utf-8", "replace")
             for key, text in (field.metadata or {}).items()
         }
         units[field.name], meanings[field.name] = marks.get("unit", ""), marks.get("meaning", "")
-    return Dataset(columns, units, meanings)
+    return Dataset(_StoredColumns(file), units, meanings)
 
 
 def values_of(column: pa.ChunkedArray) -> NDArray[Any]:
