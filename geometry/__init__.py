@@ -12,12 +12,14 @@ In the order of the calculation:
 | `acceleration_jump` | discontinuity of the acceleration           | m/rad^2                      |
 | `lift`              | lift and its derivatives                    | s, m; s', s'', s''', m/rad^k |
 | `motion_laws`       | lift by rise, dwell and return              | s, m                         |
+| `lift_parts`        | lift in smooth parts, extremes              | s, m; s', s'', m/rad^k       |
 | `lift_fit`          | lift through points or noisy tables         | s, m; residual, m            |
 | `eccentric`         | eccentric disc and its slider-crank         | l1, l2, m; phi, rad          |
 | `linkage`           | slider-crank                                | r, l, m                      |
 | `energy`            | lift from cam torque by stored energy       | T, N m; E, J; P, N; k, N/m   |
 | `follower_path`     | path of a follower point in the cam frame   | d, e, m                      |
 | `pitch_curve`       | path of the roller centre, pressure angle   | alpha, rad; kappa, 1/m       |
+| `cam_size`          | smallest radius, best offset, face width    | r, e, m                      |
 | `interference`      | self-intersection, second contact           | theta, rad; gap, m           |
 | `follower_height`   | height of a follower on points of a contour | d, m                         |
 | `contour`           | cam surface; that under a roller            | x, y, m; rho, m              |

@@ -1,0 +1,363 @@
+"""Size of a cam by its lift: smallest radius, best offset, width of a face.
+
+A smallest radius is the one from which on every larger radius keeps the limits as well: curvature
+need not fall steadily as a cam grows.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+
+from camwright.geometry.arrays import FULL_TURN, Array, positive
+from camwright.geometry.eccentric import Eccentric
+from camwright.geometry.errors import InputError
+from camwright.geometry.extrema import Extremum
+from camwright.geometry.lift_parts import LiftPart, LiftParts
+from camwright.geometry.pitch_curve import speed_and_curvature
+
+_GOLDEN = 0.5 * (np.sqrt(5.0) - 1.0)
+_SECTIONS = 50
+"""Golden sections: 4e-11 of the range is left."""
+_BALANCED = 1e-9
+"""Offset over the range of its search, below which rise and return are alike: no offset."""
+_HALVINGS = 60
+_SCANNED = 25
+"""Offsets of a scan where a curvature limits the radius, which need not be convex in the offset."""
+_REAL = 1e-6
+"""Imaginary over real part up to which a computed root is real: a double root within round-off."""
+_CLEAR = 1e-9
+"""Least distance of the prime radius from the offset, over the offset."""
+_OFFSET_SHARE = 0.999
+"""Greatest offset over the prime radius."""
+_SAMPLES = 721
+
+
+@dataclass(frozen=True)
+class PitchLimits:
+    """Limits of the pitch curve.
+
+    Parameters
+    ----------
+    rise, back : float       greatest pressure angle on the rise and on the return, rad
+    convex_radius : float    least convex radius of curvature, m; 0: any
+    concave_radius : float   least concave radius of curvature, m; 0: any
+
+    Raises
+    ------
+    InputError
+        If an angle is not within 0 to 90 deg, or a radius is negative; NaN included.
+    """
+
+    rise: float
+    back: float
+    convex_radius: float = 0.0
+    concave_radius: float = 0.0
+
+    def __post_init__(self) -> None:
+        for name in ("rise", "back"):
+            if not 0.0 < getattr(self, name) < 0.25 * FULL_TURN:
+                raise InputError(f"pressure angle, {name}", getattr(self, name), "> 0 and < 90 deg")
+        for name in ("convex_radius", "concave_radius"):
+            if not 0.0 <= getattr(self, name) < np.inf:
+                raise InputError(name, getattr(self, name), ">= 0 m")
+
+
+class PitchExtremes(NamedTuple):
+    """Extremes of a pitch curve over the continuous turn.
+
+    rise, back : Extremum       greatest magnitude of the pressure angle on rise and return, rad
+    convex_radius : Extremum    least convex radius of curvature, m
+    concave_radius : Extremum   least concave radius of curvature, m; infinite without one
+    """
+
+    rise: Extremum
+    back: Extremum
+    convex_radius: Extremum
+    concave_radius: Extremum
+
+    @property
+    def pressure_angle(self) -> Extremum:
+        """Greatest magnitude of the pressure angle, rad."""
+        return max(self.rise, self.back)
+
+
+class RollerSize(NamedTuple):
+    """Prime radius and offset, m."""
+
+    prime_radius: float
+    offset: float
+
+
+class RollerCam(ABC):
+    """Cam of a translating roller follower whose prime radius and offset are open."""
+
+    @abstractmethod
+    def parts(self, prime_radius: float, offset: float) -> LiftParts:
+        """Lift with a prime radius and an offset, m."""
+
+    @abstractmethod
+    def least_prime_radius(self, limits: PitchLimits, offset: float = 0.0) -> float:
+        """Smallest prime radius, m, with an offset, m."""
+
+    @abstractmethod
+    def _by_angle(self, limits: PitchLimits, offset: float) -> float:
+        """Smallest prime radius by the pressure angle alone, m."""
+
+    def extremes(self, prime_radius: float, offset: float = 0.0) -> PitchExtremes:
+        """Pressure angles and radii of curvature with a prime radius and an offset, m.
+
+        Raises
+        ------
+        InputError
+            If the radius is not positive or the offset not below it; NaN included.
+        """
+        positive("cam.prime_radius", prime_radius, "m")
+        if not abs(offset) < prime_radius:
+            raise InputError("cam.offset", offset, f"below {prime_radius:.6g} m, the prime radius")
+        parts = self.parts(prime_radius, offset)
+        height = float(np.sqrt(prime_radius**2 - offset**2))
+
+        def curvature(s: Array, s1: Array, s2: Array) -> Array:
+            return speed_and_curvature(s1 - offset, height + s, s1, s2)[1]
+
+        convex, concave = parts.greatest(curvature), parts.least(curvature)
+        return PitchExtremes(
+            parts.greatest(lambda s, s1, _: _angle(np.maximum(s1, 0.0), offset, height + s)),
+            parts.greatest(lambda s, s1, _: _angle(np.minimum(s1, 0.0), offset, height + s)),
+            Extremum(1.0 / convex.value, convex.theta),
+            Extremum(-1.0 / concave.value if concave.value < 0.0 else np.inf, concave.theta),
+        )
+
+    def best_offset(self, prime_radius: float, limits: PitchLimits) -> float:
+        """Offset (m) of the least pressure angle over its limit, of rise against return."""
+
+        def use(offset: float) -> float:
+            angles = self.extremes(prime_radius, offset)
+            return max(angles.rise.value / limits.rise, angles.back.value / limits.back)
+
+        most = _OFFSET_SHARE * prime_radius
+        return _balanced(_golden(use, -most, most), most)
+
+    def smallest(self, limits: PitchLimits) -> RollerSize:
+        """Smallest prime radius of any offset, and that offset, m."""
+        most = self.least_prime_radius(limits)
+        by_angle = _golden(lambda each: self._by_angle(limits, each), -most, most)
+        offset = _balanced(by_angle, most)
+        # Convex in the offset by the angle alone: the least of all if the curvature agrees.
+        if not self.least_prime_radius(limits, offset) <= self._by_angle(limits, offset):
+            offset = _least_of_scan(lambda each: self.least_prime_radius(limits, each), most)
+        return RollerSize(self.least_prime_radius(limits, offset), offset)
+
+
+@dataclass(frozen=True, eq=False)
+class GivenLiftCam(RollerCam):
+    """Roller cam of a lift that does not depend on the size of the cam.
+
+    Parameters
+    ----------
+    lift : LiftParts
+    """
+
+    lift: LiftParts
+
+    def parts(self, prime_radius: float, offset: float) -> LiftParts:  # noqa: ARG002
+        return self.lift
+
+    def least_prime_radius(self, limits: PitchLimits, offset: float = 0.0) -> float:
+        """Smallest prime radius, m, with an offset, m.
+
+        Each cam angle needs a height d = d0 + s of |s' - e| / tan(alpha), and the largest root of
+        kappa(d) = 1/rho by the curvature; d0 is the greatest of d - s.
+
+        References
+        ----------
+        Norton, Cam Design and Manufacturing Handbook (2009), ch. 7: pressure angle, curvature.
+        """
+        height = self._height_by_angle(limits, offset)
+        if limits.convex_radius > 0.0:
+            height = max(height, self._height_by_curvature(1.0 / limits.convex_radius, offset))
+        if limits.concave_radius > 0.0:
+            height = max(height, self._height_by_curvature(-1.0 / limits.concave_radius, offset))
+        return float(np.hypot(height, offset))
+
+    def _by_angle(self, limits: PitchLimits, offset: float) -> float:
+        return float(np.hypot(self._height_by_angle(limits, offset), offset))
+
+    def _height_by_angle(self, limits: PitchLimits, offset: float) -> float:
+        # On the other stroke s' counts as zero, which the bottom of the lift has in any case.
+        rise, back = np.tan(limits.rise), np.tan(limits.back)
+        return max(
+            self.lift.greatest(lambda s, s1, _: abs(np.maximum(s1, 0) - offset) / rise - s).value,
+            self.lift.greatest(lambda s, s1, _: abs(np.minimum(s1, 0) - offset) / back - s).value,
+        )
+
+    def _height_by_curvature(self, curvature: float, offset: float) -> float:
+        return self.lift.greatest(
+            lambda s, s1, s2: _height_of_curvature(s1, s2, offset, curvature) - s
+        ).value
+
+
+@dataclass(frozen=True)
+class EccentricCam(RollerCam):
+    """Eccentric disc under a roller: its pitch curve is a circle about the crank pin.
+
+    Parameters
+    ----------
+    eccentricity : float   m, > 0
+    """
+
+    eccentricity: float
+
+    def __post_init__(self) -> None:
+        positive("lift.eccentricity", self.eccentricity, "m")
+
+    def parts(self, prime_radius: float, offset: float) -> LiftParts:
+        disc = Eccentric(self.eccentricity, prime_radius + self.eccentricity, offset)
+
+        def derivatives(x: Array) -> Array:
+            phi = FULL_TURN * (x - 0.25)
+            height = disc.height(phi) - disc.height_base
+            return np.stack([height, disc.height_rate(phi), disc.height_rate_slope(phi)])
+
+        return LiftParts((LiftPart(0.0, FULL_TURN, derivatives, _SAMPLES),))
+
+    def least_prime_radius(self, limits: PitchLimits, offset: float = 0.0) -> float:
+        """Smallest prime radius, m, with an offset, m; the curvature is that of a circle."""
+        by_angle = self._by_angle(limits, offset)
+        return max(by_angle, limits.convex_radius - self.eccentricity)
+
+    def smallest(self, limits: PitchLimits) -> RollerSize:
+        """Smallest prime radius of any offset, and that offset, m, in closed form."""
+        rise, back = np.sin(limits.rise), np.sin(limits.back)
+        offset = float(self.eccentricity * (back - rise) / (back + rise))
+        return RollerSize(self.least_prime_radius(limits, offset), offset)
+
+    def _by_angle(self, limits: PitchLimits, offset: float) -> float:
+        if abs(offset) <= self.eccentricity:
+            # sin(alpha) = (l1 cos(phi) - e) / l2, greatest with the crank square to the travel
+            rise, back = np.sin(limits.rise), np.sin(limits.back)
+            rod = max((self.eccentricity - offset) / rise, (self.eccentricity + offset) / back)
+            return float(max(rod - self.eccentricity, abs(offset) * (1.0 + _CLEAR)))
+        sine = np.sin(min(limits.rise, limits.back))
+        low = abs(offset) * (1.0 + _CLEAR)
+        high = max((self.eccentricity + abs(offset)) / sine - self.eccentricity, low)
+        for _ in range(_HALVINGS):
+            middle = 0.5 * (low + high)
+            if not low < middle < high:
+                break
+            angles = self.extremes(middle, offset)
+            kept = angles.rise.value <= limits.rise and angles.back.value <= limits.back
+            low, high = (low, middle) if kept else (middle, high)
+        return float(high)
+
+
+@dataclass(frozen=True, eq=False)
+class FaceCam:
+    """Cam of a translating flat face whose base radius, offset and face are open.
+
+    Parameters
+    ----------
+    lift : LiftParts
+    """
+
+    lift: LiftParts
+
+    def least_base_radius(self, least_radius: float = 0.0, undercut_factor: float = 0.0) -> float:
+        """Smallest base radius, m: r + s + s'' >= rho and (r + s + s'')/(r + s) >= c.
+
+        Parameters
+        ----------
+        least_radius : float      rho, least radius of curvature, m, >= 0
+        undercut_factor : float   c, 0 <= c < 1
+
+        References
+        ----------
+        Norton, Cam Design and Manufacturing Handbook (2009), ch. 7: flat-faced followers.
+        """
+        share = 1.0 - undercut_factor
+        by_factor = self.lift.greatest(lambda s, _, s2: -s2 / share - s).value
+        return max(least_radius - self.least_radius(0.0).value, by_factor)
+
+    def least_radius(self, base_radius: float) -> Extremum:
+        """Least radius of curvature r + s + s'' with a base radius, m."""
+        return self.lift.least(lambda s, _, s2: base_radius + s + s2)
+
+    @cached_property
+    def contact_travel(self) -> tuple[float, float]:
+        """Least and greatest distance s' of the contact from the cam axis, m."""
+        low, high = self.lift.least(_slope), self.lift.greatest(_slope)
+        return low.value, high.value
+
+    @property
+    def best_offset(self) -> float:
+        """Offset of the narrowest face, m: the middle of the travel of the contact."""
+        return 0.5 * sum(self.contact_travel)
+
+    def face_width(self, offset: float = 0.0) -> float:
+        """Least width 2 max|s' - e| of a face centred on the stem, m, with an offset, m."""
+        low, high = self.contact_travel
+        return 2.0 * max(high - offset, offset - low)
+
+
+def _slope(_: Array, slope: Array, __: Array) -> Array:
+    return slope
+
+
+def _angle(slope: Array, offset: float, height: Array) -> Array:
+    return np.arctan2(np.abs(slope - offset), height)
+
+
+def _height_of_curvature(slope: Array, bend: Array, offset: float, curvature: float) -> Array:
+    """Largest height d (...), m, >= 0, at which a pitch curve has a curvature, 1/m; 0: at none.
+
+    Root of (a^2 + z^2)^3 = (z^2 - b z + c)^2 with lengths over the radius of curvature, by the
+    eigenvalues of its companion matrix; the sign of the curvature excludes the others.
+    """
+    k = abs(curvature)
+    a = ((slope - offset) * k) ** 2
+    b, c = bend * k, (slope - offset) * (2.0 * slope - offset) * k**2
+    companion = np.zeros((*np.shape(slope), 6, 6))
+    companion[..., range(1, 6), range(5)] = 1.0
+    for power, coefficient in enumerate(
+        (a**3 - c**2, 2.0 * b * c, 3.0 * a**2 - b**2 - 2.0 * c, 2.0 * b, 3.0 * a - 1.0)
+    ):
+        companion[..., power, 5] = -coefficient
+    z = np.linalg.eigvals(companion)
+    real = z.real
+    turning = real**2 - b[..., None] * real + c[..., None]
+    fits = (np.abs(z.imag) <= _REAL * (1.0 + np.abs(real))) & (turning * np.sign(curvature) > 0.0)
+    return np.asarray(np.max(np.where(fits & (real > 0.0), real, 0.0), axis=-1) / k)
+
+
+def _balanced(offset: float, most: float) -> float:
+    return 0.0 if abs(offset) <= _BALANCED * most else offset
+
+
+def _golden(function: Callable[[float], float], low: float, high: float) -> float:
+    """Argument of the minimum of a function without other minima between two bounds."""
+    left, right = high - _GOLDEN * (high - low), low + _GOLDEN * (high - low)
+    at_left, at_right = function(left), function(right)
+    for _ in range(_SECTIONS):
+        if at_left <= at_right:
+            high, right, at_right = right, left, at_left
+            left = high - _GOLDEN * (high - low)
+            at_left = function(left)
+        else:
+            low, left, at_left = left, right, at_right
+            right = low + _GOLDEN * (high - low)
+            at_right = function(right)
+    return 0.5 * (low + high)
+
+
+def _least_of_scan(function: Callable[[float], float], most: float) -> float:
+    """Argument of the least value within +- `most`: a scan, then golden sections about it."""
+    offsets = np.linspace(-most, most, _SCANNED)
+    k = int(np.argmin([function(float(each)) for each in offsets]))
+    step = 2.0 * most / (_SCANNED - 1)
+    return _golden(function, float(offsets[k]) - step, float(offsets[k]) + step)
