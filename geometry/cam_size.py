@@ -17,13 +17,10 @@ import numpy as np
 from camwright.geometry.arrays import FULL_TURN, Array, positive
 from camwright.geometry.eccentric import Eccentric
 from camwright.geometry.errors import InputError
-from camwright.geometry.extrema import Extremum
+from camwright.geometry.extrema import Extremum, least_argument
 from camwright.geometry.lift_parts import LiftPart, LiftParts
 from camwright.geometry.pitch_curve import speed_and_curvature
 
-_GOLDEN = 0.5 * (np.sqrt(5.0) - 1.0)
-_SECTIONS = 50
-"""Golden sections: 4e-11 of the range is left."""
 _BALANCED = 1e-9
 """Offset over the range of its search, below which rise and return are alike: no offset."""
 _HALVINGS = 60
@@ -142,12 +139,12 @@ class RollerCam(ABC):
             return max(angles.rise.value / limits.rise, angles.back.value / limits.back)
 
         most = _OFFSET_SHARE * prime_radius
-        return _balanced(_golden(use, -most, most), most)
+        return _balanced(least_argument(use, -most, most), most)
 
     def smallest(self, limits: PitchLimits) -> RollerSize:
         """Smallest prime radius of any offset, and that offset, m."""
         most = self.least_prime_radius(limits)
-        by_angle = _golden(lambda each: self._by_angle(limits, each), -most, most)
+        by_angle = least_argument(lambda each: self._by_angle(limits, each), -most, most)
         offset = _balanced(by_angle, most)
         # Convex in the offset by the angle alone: the least of all if the curvature agrees.
         if not self.least_prime_radius(limits, offset) <= self._by_angle(limits, offset):
@@ -339,25 +336,9 @@ def _balanced(offset: float, most: float) -> float:
     return 0.0 if abs(offset) <= _BALANCED * most else offset
 
 
-def _golden(function: Callable[[float], float], low: float, high: float) -> float:
-    """Argument of the minimum of a function without other minima between two bounds."""
-    left, right = high - _GOLDEN * (high - low), low + _GOLDEN * (high - low)
-    at_left, at_right = function(left), function(right)
-    for _ in range(_SECTIONS):
-        if at_left <= at_right:
-            high, right, at_right = right, left, at_left
-            left = high - _GOLDEN * (high - low)
-            at_left = function(left)
-        else:
-            low, left, at_left = left, right, at_right
-            right = low + _GOLDEN * (high - low)
-            at_right = function(right)
-    return 0.5 * (low + high)
-
-
 def _least_of_scan(function: Callable[[float], float], most: float) -> float:
     """Argument of the least value within +- `most`: a scan, then golden sections about it."""
     offsets = np.linspace(-most, most, _SCANNED)
     k = int(np.argmin([function(float(each)) for each in offsets]))
     step = 2.0 * most / (_SCANNED - 1)
-    return _golden(function, float(offsets[k]) - step, float(offsets[k]) + step)
+    return least_argument(function, float(offsets[k]) - step, float(offsets[k]) + step)

@@ -17,6 +17,9 @@ _ZOOMS = 7
 
 _MINIMA_MAX = 256
 
+_GOLDEN = 0.5 * (np.sqrt(5.0) - 1.0)
+_SECTIONS = 50
+
 
 class Extremum(NamedTuple):
     """Minimum or maximum value and its angle, rad."""
@@ -103,3 +106,22 @@ def sampled_greatest(values: Array) -> Array:
 def sampled_least(values: Array) -> Array:
     """Minima (...) of smooth periodic functions; see `sampled_greatest`."""
     return -sampled_greatest(-values)
+
+
+def least_argument(function: Callable[[float], float], low: float, high: float) -> float:
+    """Argument of the minimum of a function with no other one between two bounds.
+
+    By golden sections; the function may have a kink. 4e-11 of the range is left.
+    """
+    left, right = high - _GOLDEN * (high - low), low + _GOLDEN * (high - low)
+    at_left, at_right = function(left), function(right)
+    for _ in range(_SECTIONS):
+        if at_left <= at_right:
+            high, right, at_right = right, left, at_left
+            left = high - _GOLDEN * (high - low)
+            at_left = function(left)
+        else:
+            low, left, at_left = left, right, at_right
+            right = low + _GOLDEN * (high - low)
+            at_right = function(right)
+    return 0.5 * (low + high)

@@ -1,0 +1,150 @@
+"""Preload and rate of a follower spring that hold the follower on the cam."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import partial
+from typing import NamedTuple
+
+import numpy as np
+
+from camwright.geometry.arrays import Array, positive
+from camwright.geometry.errors import InputError
+from camwright.geometry.extrema import Extremum, least_argument
+from camwright.geometry.lift_parts import LiftParts
+
+PRELOAD_SHARE = 0.25
+"""Least preload over the force at full lift: a spring works from 20 to 80 % of its travel,
+Associated Spring, Engineering Guide to Spring Design; Shigley ch. 10: verify."""
+
+_RANGE = 6.0
+"""Natural logarithm of the greatest rate over the throw per stroke; of the least, its negative."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class HoldingCondition:
+    """The spring holds the follower at a speed: P + k s + F + m w^2 s'' + c w s' >= share P.
+
+    Parameters
+    ----------
+    mass : float             m, that moves with the follower, kg, >= 0
+    cam_speed : float        w, rad/s, >= 0
+    share : float            least contact force over the preload, 0 <= share < 1
+    damping : float          c, viscous, N s/m, >= 0
+    held : float             F, of weight and others, N, towards the cam positive
+    rate_factor : float      least rate over the nominal one, > 0
+    preload_factor : float   least preload over the nominal one, > 0
+
+    Raises
+    ------
+    InputError
+        If a value is out of these bounds; NaN included.
+
+    References
+    ----------
+    Norton, Cam Design and Manufacturing Handbook (2009), ch. 15: follower jump.
+    """
+
+    mass: float
+    cam_speed: float
+    share: float = 0.0
+    damping: float = 0.0
+    held: float = 0.0
+    rate_factor: float = 1.0
+    preload_factor: float = 1.0
+
+    def __post_init__(self) -> None:
+        for name, unit in (("mass", "kg"), ("cam_speed", "rad/s"), ("damping", "N s/m")):
+            if not 0.0 <= getattr(self, name) < np.inf:
+                raise InputError(name, getattr(self, name), f">= 0 {unit}")
+        if not 0.0 <= self.share < 1.0:
+            raise InputError("share", self.share, ">= 0 and < 1")
+        if not abs(self.held) < np.inf:
+            raise InputError("held", self.held, "finite")
+        positive("rate_factor", self.rate_factor)
+        positive("preload_factor", self.preload_factor)
+
+    def preload(self, rate: float, s: Array, s1: Array, s2: Array) -> Array:
+        """Preload (...), N, that a cam angle needs at a rate, N/m."""
+        w = self.cam_speed
+        throw = -self.mass * w**2 * s2 - self.damping * w * s1 - self.held
+        spring = self.rate_factor * rate * s
+        share: Array = (throw - spring) / ((1.0 - self.share) * self.preload_factor)
+        return share
+
+
+class SpringSize(NamedTuple):
+    """Rate, N/m, and preload, N."""
+
+    rate: float
+    preload: float
+
+    def force(self, lift: float) -> float:
+        """Force at a lift, m, in N."""
+        return self.preload + self.rate * lift
+
+    def energy(self, lift: float) -> float:
+        """Energy at a lift (m) beyond the free length, J."""
+        return 0.5 * self.force(lift) ** 2 / self.rate
+
+
+def preload_needed(
+    lift: LiftParts, rate: float, conditions: Sequence[HoldingCondition]
+) -> Extremum:
+    """Least preload that holds the follower in all conditions, N, and its cam angle, rad.
+
+    Negative if the rate alone holds it.
+
+    Parameters
+    ----------
+    rate : float   k, N/m, >= 0
+    """
+    if not 0.0 <= rate < np.inf:
+        raise InputError("spring.rate", rate, ">= 0 N/m")
+    return max(lift.greatest(partial(each.preload, rate)) for each in conditions)
+
+
+def smallest_spring(
+    lift: LiftParts,
+    conditions: Sequence[HoldingCondition],
+    *,
+    preload_share: float = PRELOAD_SHARE,
+    rate: float | None = None,
+) -> SpringSize:
+    """Spring of the least energy at full lift, hence of the least wire at a given stress.
+
+    The energy (P + k h)^2 / (2 k) with the least preload P(k), a convex function, is convex in the
+    rate k: it has one minimum.
+
+    Parameters
+    ----------
+    preload_share : float   least preload over the force at full lift, > 0 and < 1
+    rate : float            N/m, where it is fixed; None: of the least energy
+
+    Raises
+    ------
+    InputError
+        If nothing throws the follower off the cam, so that any spring holds it; if the share is out
+        of bounds.
+    """
+    if not 0.0 < preload_share < 1.0:
+        raise InputError("preload_share", preload_share, "> 0 and < 1")
+    stroke, least = lift.stroke, preload_share / (1.0 - preload_share)
+
+    def spring(each: float) -> SpringSize:
+        needed = preload_needed(lift, each, conditions).value
+        return SpringSize(each, max(needed, least * each * stroke))
+
+    if rate is not None:
+        return spring(rate)
+    throw = preload_needed(lift, 0.0, conditions).value
+    if not throw > 0.0:
+        limit = "> 0 N at the greatest speed, or spring.rate given"
+        raise InputError("force that throws the follower off the cam", throw, limit)
+    scale = np.log(throw / stroke)
+
+    def energy(logarithm: float) -> float:
+        return spring(float(np.exp(logarithm))).energy(stroke)
+
+    return spring(float(np.exp(least_argument(energy, scale - _RANGE, scale + _RANGE))))
