@@ -49,7 +49,7 @@ class Picture:
 @lru_cache(maxsize=1)
 def stress_pictures(material: Material) -> Sequence[Picture]:
     """Stress field below the contact and in both bodies."""
-    turn, path = material.turn, material.folder / FIELD
+    turn, path = material.turn, material.run.path / FIELD
     try:
         field = field_picture.read_field(path)
         point, normal = field_picture.find_contact(field)

@@ -20,7 +20,7 @@ FIGURES = "figures"
 
 @dataclass(frozen=True, eq=False)
 class Material:
-    """A run folder, its contents, and the load case that the sheet draws.
+    """A run, the folder of its report, and the load case that the sheet draws.
 
     Compared by identity, so that drawings can be cached by it. `ahead` are drawings begun before
     the run was complete, by the key of what they show.
@@ -34,7 +34,7 @@ class Material:
 
 
 def read_material(folder: Path, ahead: Mapping[str, Task] | None = None) -> Material:
-    """Data of a run folder.
+    """Data of a run folder, into which its report is written.
 
     Raises
     ------

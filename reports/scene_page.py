@@ -103,7 +103,7 @@ def read_turn_view(folder: Path) -> TurnView:
 def write(material: Material) -> Sequence[Path]:
     """Write ``scene.html``; nothing for a run without a recorded turn."""
     try:
-        view = read_turn_view(material.folder)
+        view = read_turn_view(material.run.path)
     except ResultError:
         return []
     own, hashes = scripts(_SCRIPTS)

@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
 
 from camwright.geometry.errors import InputError, ResultError
 from camwright.pipeline.base.progress import SILENT, Progress
 from camwright.pipeline.base.worker_processes import Crew, Task
-from camwright.pipeline.results import signoff
+from camwright.pipeline.results.folder_exchange import amended
 from camwright.pipeline.results.run_reader import require_own_case
 from camwright.reports import figure_svg, page, pdf, picture_list, scene_page
-from camwright.reports.report_data import FIGURES, Material, read_material
+from camwright.reports.report_data import Material, read_material
 
 
 @dataclass(frozen=True)
@@ -101,7 +101,7 @@ def report(
     ahead: Mapping[str, Task] | None = None,
     progress: Progress = SILENT,
 ) -> dict[str, Sequence[Path]]:
-    """Write parts of the report of a finished run; nothing is solved.
+    """Write parts of the report of a finished run, all or none; nothing is solved.
 
     Parameters
     ----------
@@ -117,17 +117,17 @@ def report(
         If the folder does not hold a finished run, or a signed one, if its case is not that of the
         run, or if a file cannot be written.
     """
-    require_own_case(Path(folder))
-    material = read_material(Path(folder), ahead)
+    folder = Path(folder)
+    require_own_case(folder)
     written: dict[str, Sequence[Path]] = {}
     try:
         selected = chosen() if parts is None else tuple(parts)
-        with signoff.amended(material.folder):
-            if any(part.as_png for part in selected):
-                (material.folder / FIGURES).mkdir(exist_ok=True)
+        with amended(folder) as place:
+            material = replace(read_material(folder, ahead), folder=place)
             progress.stage("report")
             for k, part in enumerate(selected, 1):
-                written[part.name] = part.write(material)
+                files = part.write(material)
+                written[part.name] = [folder / file.relative_to(place) for file in files]
                 progress.advance(k, len(selected))
         return written
     except OSError as error:

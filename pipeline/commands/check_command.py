@@ -334,7 +334,7 @@ def _recorded(target: Path, keys: Mapping[str, TrustedKey] | None) -> _Record:
     differences = signoff.changes(target)
     lines, signed = [str(each) for each in differences], None
     # A file that was added is in no result; only a signature is on the whole folder.
-    faults = [str(each) for each in differences if each.words != signoff.ADDED]
+    faults = [str(each) for each in differences if not each.added]
     if keys is not None:
         from camwright.pipeline.results.signatures import verified
 

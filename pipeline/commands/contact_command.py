@@ -91,22 +91,19 @@ def deck(
     """
     from camwright.pipeline.base import units
     from camwright.pipeline.results import contact_deck as decks
-    from camwright.pipeline.results import signoff
+    from camwright.pipeline.results.folder_exchange import amended
 
     text = angle if any(c.isalpha() or c == "°" for c in angle) else f"{angle} deg"
     theta = units.parse(text, "deg", "--angle")
     if not 0.0 <= theta <= math.tau:
         raise InputError("--angle", units.rounded(text), ">= 0 and <= 360 deg, one cam turn")
-    path = (
-        folder
-        / "exports"
-        / f"{'contact' if contact else 'loads'}_{units.in_unit(theta, 'deg'):07.3f}.inp"
-        if out is None
-        else out
-    )
-    with signoff.amended(folder) if out is None else nullcontext():
+    kind = "contact" if contact else "loads"
+    default = folder / "exports" / f"{kind}_{units.in_unit(theta, 'deg'):07.3f}.inp"
+    target = default if out is None else out
+    with amended(folder) if out is None else nullcontext(folder) as place:
+        path = place / target.relative_to(folder) if out is None else out
         path.parent.mkdir(parents=True, exist_ok=True)
         solved = decks.deck(folder, theta, path, load_case, contact=contact)
     p0 = units.shown(solved.solution.p0, "MPa", 5)
-    stdout.print(f"deck: {path} (peak pressure {p0})", markup=False)
+    stdout.print(f"deck: {target} (peak pressure {p0})", markup=False)
     return PASSED

@@ -45,8 +45,8 @@ def inspect(
     PASS, 1: FAIL, 2: error, 3: INCOMPLETE (data are missing).
     """
     from camwright.pipeline.base import units
-    from camwright.pipeline.results import signoff
     from camwright.pipeline.results.drawn_cam import drawn_cam
+    from camwright.pipeline.results.folder_exchange import amended
     from camwright.pipeline.studies import cam_inspection
     from camwright.reports.inspection_pictures import draw
 
@@ -57,17 +57,19 @@ def inspect(
     case, contour = drawn_cam(folder)
     band = case.workshop_order.tolerance if width is None else width
     target = folder / cam_inspection.FOLDER if out is None else out
-    with progress_shown() as progress, signoff.amended(folder) if out is None else nullcontext():
+    writing = amended(folder) if out is None else nullcontext(folder)
+    with progress_shown() as progress, writing as place:
         part = cam_inspection.inspect_part(
             case, contour, points, keep_phase=keep_phase, jobs=jobs, progress=progress
         )
         progress.stage("pictures")
-        record = cam_inspection.write_inspection(folder, part, band, target)
-        picture = draw(folder, units.in_unit(band, "um"), target)
+        files = place / target.relative_to(folder) if out is None else out
+        record = cam_inspection.write_inspection(folder, part, band, files)
+        picture = draw(folder, units.in_unit(band, "um"), files)
     if as_json:
         show_json(record)
     else:
         for line in cam_inspection.lines(record):
             stdout.print(line, markup=False)
-        stdout.print(f"deviations: {picture}", markup=False)
+        stdout.print(f"deviations: {target / picture.name}", markup=False)
     return EXIT_CODE[record["verdict"]]

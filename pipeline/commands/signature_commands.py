@@ -52,9 +52,11 @@ def sign(
     """
     from camwright.pipeline.base.progress import utc
     from camwright.pipeline.results import signatures, signoff
+    from camwright.pipeline.results.folder_exchange import complete_amendment
     from camwright.pipeline.results.run_reader import read_verdict
 
     name = signatures.checked_name(name)
+    complete_amendment(folder)
     differences = signoff.changes(folder)
     if differences:
         for each in differences:

@@ -11,7 +11,7 @@ In the order of a run:
 | `signing_keys`         | Ed25519 keys: new, read, trusted                                      |
 | `signatures`           | signatures of the sign-off record: in-toto statements, DSSE envelopes |
 | `record_schemas`       | JSON Schemas of summary, checks and sign-off record                   |
-| `folder_exchange`      | a complete run takes the place of an earlier one, at any interruption |
+| `folder_exchange`      | runs and added files take their place, whole at any interruption      |
 | `run_folder`           | the folder of a run while it is written; resumption                   |
 | `run_records`          | columns of the tables, key figures, records of trial and crank speed  |
 | `trial_writer`         | files of a trial                                                      |

@@ -1,8 +1,12 @@
-"""Exchange of run folders: a complete run takes the place of an earlier one.
+"""Exchange of run folders and of files in them, complete at any interruption.
 
 A run is written in ``.DIR.partial`` beside its final path DIR, under a lock. It is complete when
 its sign-off record is written and its state is deleted. The earlier run waits in ``.DIR.replaced``
 until the new one is at its path. What a killed process leaves on the way is settled by the next.
+
+Files that are added to a finished run, such as its page, are written in ``DIR/.amendment/partial``.
+That folder is renamed to ``complete`` when it is whole, and its files are moved into the run, the
+sign-off record last.
 """
 
 from __future__ import annotations
@@ -10,15 +14,19 @@ from __future__ import annotations
 import os
 import re
 import shutil
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import IO
 
 from camwright.geometry.errors import ResultError
-from camwright.pipeline.base.files import locked
+from camwright.pipeline.base.files import files_in, locked
 from camwright.pipeline.results import signoff
 
 STATE, CHUNKS = ".state.json", ".chunks"
 """Input of an interrupted run, and its solved pieces."""
+
+_LOCK = "lock"
 
 KEPT = "what is solved is kept; run the command again with --resume to resume"
 """Note of an exception after which a run can be resumed."""
@@ -26,6 +34,7 @@ KEPT = "what is solved is kept; run the command again with --resume to resume"
 OURS = re.compile(
     r"case\.toml|(run|signoff|corners)\.json|inputs|fields|figures|exports|workshop|inspection|trial_\d+"
     r"|scene\.html|\d+_\w+\.(csv|html|json|pdf)"
+    rf"|{re.escape(signoff.AMENDMENT)}"
 )
 """Names of the files and folders of an unsigned run."""
 
@@ -127,3 +136,99 @@ def _may_be_replaced(out: Path) -> bool:
 
 def _holds_ours(folder: Path) -> bool:
     return all(OURS.fullmatch(entry.name) for entry in folder.iterdir())
+
+
+# --- files added to a finished run
+
+
+@contextmanager
+def amended(path: Path) -> Iterator[Path]:
+    """Folder in which to write files for a finished run; they and its record change together.
+
+    After an exception the run is as before. A record that differs from the files before is left as
+    it is. A folder without a record is none of a finished run; its own path is returned.
+
+    Raises
+    ------
+    ResultError
+        If the run is signed, another process writes into it, or it cannot be written.
+    """
+    if not (path / signoff.NAME).is_file():
+        yield path
+        return
+    complete_amendment(path)
+    if (path / signoff.SIGNATURES).exists():
+        raise ResultError(f"{path}: is signed, nothing more is written into it; use a copy")
+    with staged(path) as place:
+        as_recorded = all(each.added for each in signoff.changes(path))
+        yield place
+        if as_recorded:
+            signoff.write_amended(path, place)
+
+
+def complete_amendment(path: Path) -> None:
+    """Put the files in place that a killed process was moving into a run; delete incomplete ones.
+
+    Raises
+    ------
+    ResultError
+        If another process writes into the run, or it cannot be written.
+    """
+    if os.path.lexists(path / signoff.AMENDMENT):
+        with staged(path):
+            pass
+
+
+@contextmanager
+def staged(path: Path) -> Iterator[Path]:
+    """Folder, not made yet, whose files are moved into a run at the end without an exception.
+
+    Raises
+    ------
+    ResultError
+        If another process writes into the run, or it cannot be written.
+    """
+    home = path / signoff.AMENDMENT
+    partial, complete = home / "partial", path / signoff.COMPLETE
+    try:
+        lock = _lock_of_amendment(path, home)
+    except OSError as error:
+        raise ResultError(f"{path}: {error.strerror or error}") from None
+    try:
+        _put_in_place(complete, path)
+        shutil.rmtree(partial, ignore_errors=True)
+        yield partial
+        if partial.is_dir():
+            for name, _ in files_in(partial):
+                (path / name).parent.mkdir(parents=True, exist_ok=True)
+            partial.rename(complete)
+            _put_in_place(complete, path)
+    except OSError as error:
+        raise ResultError(f"{error.filename or path}: {error.strerror or error}") from None
+    finally:
+        shutil.rmtree(partial, ignore_errors=True)
+        with suppress(OSError):
+            (home / _LOCK).unlink(missing_ok=True)
+            home.rmdir()
+        if lock is not None:
+            lock.close()
+
+
+def _lock_of_amendment(path: Path, home: Path) -> IO[str] | None:
+    """Lock of the files to be added to a run; ResultError if another process has it."""
+    while True:
+        home.mkdir(exist_ok=True)
+        if any(each.is_symlink() for each in (home, *home.iterdir())):
+            raise ResultError(f"{home}: is a link or holds one, delete it")
+        with suppress(FileNotFoundError):  # its holder deleted the folder after it was made here
+            return locked(home / _LOCK, f"{path}: another process is writing into it")
+
+
+def _put_in_place(complete: Path, path: Path) -> None:
+    """Move complete files into a run, the record last."""
+    files = dict(files_in(complete))
+    for name in sorted(files, key=lambda name: name == signoff.NAME):
+        (path / name).parent.mkdir(parents=True, exist_ok=True)
+        files[name].replace(path / name)
+    if complete.exists():
+        shutil.rmtree(complete)

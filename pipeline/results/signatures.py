@@ -23,6 +23,7 @@ from typing import TYPE_CHECKING, Any
 from camwright.geometry.errors import InputError, ResultError
 from camwright.pipeline.base.files import read_text, sha256_of, write_atomic
 from camwright.pipeline.results import signoff
+from camwright.pipeline.results.folder_exchange import staged
 from camwright.pipeline.results.signing_keys import ROLES, TrustedKey, bytes_of, fingerprint
 
 if TYPE_CHECKING:
@@ -101,11 +102,20 @@ def sign(folder: Path, private: Ed25519PrivateKey, role: str, name: str, date: s
     InputError
         If role or name is none.
     ResultError
-        If the role is signed already, or a signature is of another record.
+        If the role is signed already, a signature is of another record, or another process writes
+        into the run.
     """
     if role not in ROLES:
         raise InputError("--role", role, f"one of: {', '.join(ROLES)}")
     name = checked_name(name)
+    with staged(folder) as place:
+        return _signed(folder, place, private, role, name, date)
+
+
+def _signed(
+    folder: Path, place: Path, private: Ed25519PrivateKey, role: str, name: str, date: str
+) -> Signature:
+    """Signature of a role, written with those of the folder into the folder `place`."""
     file, digest = folder / signoff.SIGNATURES, sha256_of(folder / signoff.NAME)
     before = read_text(file) if file.is_file() else ""
     for number, line in enumerate(before.splitlines(), start=1):
@@ -132,7 +142,7 @@ def sign(folder: Path, private: Ed25519PrivateKey, role: str, name: str, date: s
         "signatures": [{"keyid": key, "sig": base64.b64encode(signed).decode()}],
     }
     ended = before if before.endswith("\n") or not before else f"{before}\n"
-    write_atomic(file, f"{ended}{json.dumps(envelope, separators=(',', ':'))}\n")
+    write_atomic(place / file.name, f"{ended}{json.dumps(envelope, separators=(',', ':'))}\n")
     return Signature(role, name, date, key)
 
 

@@ -9,7 +9,6 @@ from __future__ import annotations
 import platform
 import re
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
 from pathlib import Path
 from typing import NamedTuple
 
@@ -27,7 +26,14 @@ from camwright.pipeline.results.run_reader import CheckRecord, to_be_confirmed
 
 NAME = "signoff.json"
 SIGNATURES = "signoff.intoto.jsonl"
-ADDED = "was added since the sign-off"
+AMENDMENT = ".amendment"
+COMPLETE = f"{AMENDMENT}/complete"
+"""Folder of files on their way into a finished run; see `folder_exchange.staged`."""
+
+_ADDED = "was added since the sign-off"
+_BY = "`camwright report`, `inspect`, `deck` or `sign`"
+_HALF_MOVED = f"an interrupted {_BY} has not moved all its files into place: run it again"
+_INCOMPLETE = f"of {_BY}, which is running or was interrupted; run again, it replaces this folder"
 _SHA256 = re.compile(r"[0-9a-f]{64}")
 
 
@@ -111,33 +117,29 @@ def write(path: Path) -> None:
     write_atomic(path / NAME, json_text(record(path)) + "\n")
 
 
-@contextmanager
-def amended(path: Path) -> Iterator[None]:
-    """Put files that are written into a finished run into its record.
+def write_amended(path: Path, added: Path) -> None:
+    """Write the record of a run with the files of a folder added to it into that folder.
 
-    A record that differs from the files before is left as it is; a folder without a record is none
-    of a finished run.
-
-    Raises
-    ------
-    ResultError
-        If the run is signed.
+    The other hashes are those of the record before.
     """
-    if (path / SIGNATURES).exists():
-        raise ResultError(f"{path}: is signed, nothing more is written into it; use a copy")
-    as_recorded = (path / NAME).is_file() and not changes(path)
-    try:
-        yield
-    finally:
-        if as_recorded:
-            write(path)
+    files = read_json(path / NAME)["files"] | hashes(added)
+    ordered = {name: files[name] for name in sorted(files, key=Path)}
+    write_atomic(added / NAME, json_text(_record(path, ordered)) + "\n")
 
 
 class Difference(NamedTuple):
-    """Difference of a run from its record: relative name of the file, and what it is in words."""
+    """Difference of a run from its record.
+
+    Parameters
+    ----------
+    name : str     relative name of the file
+    words : str    what differs
+    added : bool   whether the record does not know the file, which is in no result
+    """
 
     name: str
     words: str
+    added: bool = False
 
     def __str__(self) -> str:
         name = self.name if self.name.isprintable() else ascii(self.name)
@@ -154,6 +156,8 @@ def changes(path: Path) -> list[Difference]:
     ResultError
         If the folder holds no run that can be read.
     """
+    if _holds_file(path / COMPLETE):
+        return [Difference(AMENDMENT, _HALF_MOVED)]
     try:
         known = _recorded_hashes(path, recorded := read_json(path / NAME))
     except ResultError as error:
@@ -166,13 +170,15 @@ def changes(path: Path) -> list[Difference]:
         if now.get(name) != digest
     ]
     unknown = [name for name in now if name not in known]
-    own = _of_every_run(path) if unknown else ()
-    differences += (
-        Difference(NAME, f"holds no hash of {name}") if name in own else Difference(name, ADDED)
-        for name in unknown
-    )
-    differences += (Difference(name, ADDED) for name in _unhashed(path))
-    return sorted(differences) or _disagreements(recorded, _record(path, now))
+    own = [name for name in _of_every_run(path) if name in unknown] if unknown else []
+    differences += (Difference(NAME, f"holds no hash of {name}") for name in own)
+    if not differences:
+        differences = _disagreements(recorded, _record(path, known))
+    added = (*(name for name in unknown if name not in own), *_unhashed(path))
+    differences += (Difference(name, _ADDED, added=True) for name in added)
+    if _holds_file(path / AMENDMENT):
+        differences.append(Difference(AMENDMENT, _INCOMPLETE, added=True))
+    return sorted(differences)
 
 
 def _recorded_hashes(path: Path, recorded: Json) -> dict[str, str]:
@@ -199,9 +205,14 @@ def _of_every_run(path: Path) -> tuple[str, ...]:
 
 
 def _unhashed(path: Path) -> Iterator[str]:
-    """What no run writes: hidden files, linked folders, and what is neither file nor folder."""
+    """What no run writes: hidden files, linked folders, and what is neither file nor folder.
+
+    Files on their way into the run are left out.
+    """
     for entry in sorted(path.rglob("*")):
         parts = entry.relative_to(path).parts
+        if parts[0] == AMENDMENT and len(parts) > 1:
+            continue
         hidden = any(part.startswith(".") for part in parts) and entry.is_file()
         if (
             hidden
@@ -209,6 +220,12 @@ def _unhashed(path: Path) -> Iterator[str]:
             or not (entry.is_file() or entry.is_dir())
         ):
             yield "/".join(parts)
+
+
+def _holds_file(folder: Path) -> bool:
+    """Whether anything but folders is in a folder, which is not a link."""
+    inside = () if folder.is_symlink() else folder.rglob("*")
+    return any(entry.is_symlink() or not entry.is_dir() for entry in inside)
 
 
 def _is_sha256(value: Json) -> bool:

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import errno
 import hashlib
 import json
+import os
 import pickle
 import subprocess
 import sys
@@ -16,6 +18,7 @@ import report_fixture
 
 from camwright.geometry.errors import InputError, ResultError
 from camwright.pipeline.cli import PASSED, app
+from camwright.pipeline.results import signoff
 from camwright.reports import figure_svg, page, sections
 from camwright.reports import pdf as printing
 
@@ -75,6 +78,24 @@ def test_a_run_whose_case_was_edited_is_not_drawn_again(run: Path) -> None:
 
 def report(*arguments: object) -> object:
     return app(args=["report", *map(str, arguments)], standalone_mode=False)
+
+
+def test_a_report_that_fails_leaves_the_run_as_it_was(
+    run: Path, quick: None, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    sections.report(run)
+    signoff.write(run)
+    before = digests(run)
+
+    def full(_: int) -> None:
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    monkeypatch.setattr(page, "text", lambda _: b"another page")
+    monkeypatch.setattr(os, "fsync", full)
+    with pytest.raises(ResultError, match=r"8_report\.html: No space left on device$"):
+        sections.report(run)
+    assert digests(run) == before
+    assert signoff.changes(run) == []
 
 
 def test_no_solver_is_even_loaded(run: Path) -> None:

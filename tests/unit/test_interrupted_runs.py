@@ -1,9 +1,14 @@
-"""Run folders of processes that are killed, or that cannot write, at every operation on a file."""
+"""Run folders of processes that are killed, or that cannot write, at every operation on a file:
+while a run is written, and while files or a signature are added to a finished one.
+"""
 
 from __future__ import annotations
 
 import errno
+import json
 import os
+import re
+import shutil
 import signal
 import sys
 from collections.abc import Callable, Iterator
@@ -13,15 +18,25 @@ from typing import Any
 
 import numpy as np
 import pytest
+from cryptography.hazmat.primitives.asymmetric.ed25519 import Ed25519PrivateKey
 from small_machine import small_machine
 from small_run import TORQUE, check, summary, values, write_run, write_trial
 
 from camwright.geometry.errors import ResultError
-from camwright.pipeline.base.files import file_hashes
+from camwright.pipeline.base.files import file_hashes, write_atomic
 from camwright.pipeline.case.case_file import parse_case
+from camwright.pipeline.commands.terminal import ALTERED, ERROR, PASSED
 from camwright.pipeline.results import run_reader, signoff
-from camwright.pipeline.results.folder_exchange import complete_exchange
+from camwright.pipeline.results.folder_exchange import (
+    amended,
+    complete_amendment,
+    complete_exchange,
+)
 from camwright.pipeline.results.run_folder import RunFolder
+from camwright.pipeline.results.signatures import sign
+from camwright.pipeline.results.signing_keys import write_key
+
+Command = Callable[..., tuple[int, str, str]]
 
 CHANGES = ("os.rename", "os.remove", "os.rmdir", "os.mkdir", "os.chmod", "tempfile.mkstemp")
 """Audit events of operations that change a folder."""
@@ -67,13 +82,21 @@ def changes_counted(folder: Path, at: int, act: Callable[[], None]) -> Callable[
 
     def hook(event: str, arguments: tuple[Any, ...]) -> None:
         nonlocal count
-        if event in CHANGES and str(arguments[0]).startswith(str(folder)):
+        if event in CHANGES and changed(arguments).startswith(str(folder)):
             count += 1
             if count == at:
                 act()
 
     sys.addaudithook(hook)
     return lambda: count
+
+
+def changed(arguments: tuple[Any, ...]) -> str:
+    """Path that an operation changes, also where it is relative to an open folder."""
+    path, opened = str(arguments[0]), arguments[-1]
+    if isinstance(opened, int) and opened >= 0:
+        path = str(Path(f"/proc/self/fd/{opened}").readlink() / path)
+    return os.path.abspath(path)  # noqa: PTH100 - a link is not to be resolved
 
 
 def in_a_child(work: Callable[[], None]) -> int:
@@ -177,6 +200,197 @@ def test_a_full_disk_loses_nothing_solved(
         assert contents(out) == whole
         assert entries(out.parent) == ["run"]
     assert number > 12, "10 writes after the first piece"
+
+
+PAGE, PICTURE = "8_report.html", "figures/lift.png"
+
+
+def amend(run: Path, words: str = "new") -> None:
+    """Write a page and a picture into a finished run."""
+    with amended(run) as place:
+        for name in (PAGE, PICTURE):
+            write_atomic(place / name, words)
+
+
+def sign_it(run: Path) -> None:
+    private = Ed25519PrivateKey.from_private_bytes(bytes(32))
+    sign(run, private, "checked", "A. Meyer", "2026-01-31T12:00:00Z")
+
+
+@pytest.mark.filterwarnings("ignore:This process:DeprecationWarning")
+@pytest.mark.parametrize("write", [amend, sign_it])
+def test_a_finished_run_is_whole_after_a_kill_before_every_change(
+    write: Callable[[Path], None], tmp_path: Path, command: Command
+) -> None:
+    """As before, as after, or named by `check` as incomplete until a command completes it."""
+    original = write_run(tmp_path / "original")
+    amend(original, "old")
+    before = contents(original)
+    write(shutil.copytree(original, tmp_path / "whole"))
+    whole = contents(tmp_path / "whole")
+    assert whole != before
+    half = 0
+    for number in range(1, 100):
+        out = shutil.copytree(original, tmp_path / str(number))
+
+        def killed(out: Path = out, number: int = number) -> None:
+            changes_counted(out, number, kill_myself)
+            write(out)
+            os._exit(0)
+
+        status = os.waitstatus_to_exitcode(in_a_child(killed))
+        code, _, errors = command("check", out)
+        assert "Traceback" not in errors
+        if status == 0:
+            break
+        assert status == -signal.SIGKILL
+        if code == ALTERED:
+            half += 1
+            assert errors.splitlines() == [
+                f"camwright: {out}/.amendment: an interrupted `camwright report`, `inspect`, `deck`"
+                " or `sign` has not moved all its files into place: run it again"
+            ]
+        else:
+            assert code == PASSED
+            assert contents(out) in (before, whole), number
+            left = any(each.is_file() for each in out.rglob(".amendment/**/*"))
+            assert left == ("running or was interrupted" in errors), number
+        complete_amendment(out)
+        assert contents(out) in (before, whole), number
+        if contents(out) == before:
+            write(out)
+        assert contents(out) == whole, number
+        assert entries(out) == entries(tmp_path / "whole"), number
+        assert signoff.changes(out) == []
+    assert number > 10
+    moved = {*whole.items()} - {*before.items()}
+    assert half == 2 * len(moved), "before its folder is made sure of, and before it is moved"
+
+
+@pytest.mark.parametrize(("call", "last"), [("fsync", 3), ("rename", 1), ("replace", 3)])
+def test_a_full_disk_leaves_a_finished_run_as_it_was(tmp_path: Path, call: str, last: int) -> None:
+    out = write_run(tmp_path / "run")
+    amend(out, "old")
+    before, names = contents(out), entries(out)
+    for number in range(1, last + 1):
+        with pytest.raises(ResultError, match="No space left"), full_disk(call, number):
+            amend(out)
+        assert contents(out) == before
+        assert entries(out) == names
+        assert signoff.changes(out) == []
+    amend(out)
+    assert (out / PAGE).read_text() == "new"
+
+
+def test_files_that_cannot_all_be_moved_are_moved_by_the_next_command(tmp_path: Path) -> None:
+    out = write_run(tmp_path / "run")
+    amend(out, "old")
+    with pytest.raises(ResultError, match="No space left"), full_disk("replace", 5):
+        amend(out)
+    assert (out / PAGE).read_text() == "new"
+    assert (out / PICTURE).read_text() == "old"
+    assert [each.added for each in signoff.changes(out)] == [False]
+    with pytest.raises(ResultError, match="signed alone"), amended(out):
+        raise ResultError("signed alone")
+    assert (out / PICTURE).read_text() == "new"
+    assert signoff.changes(out) == []
+
+
+def test_two_processes_do_not_write_into_a_run(tmp_path: Path) -> None:
+    out = write_run(tmp_path / "run")
+    with amended(out) as place:
+        write_atomic(place / PAGE, "first")
+        with pytest.raises(ResultError, match="another process is writing into it"):
+            amend(out)
+    assert (out / PAGE).read_text() == "first"
+    assert signoff.changes(out) == []
+
+
+@pytest.mark.parametrize("name", [".amendment", ".amendment/complete", ".amendment/lock"])
+def test_a_link_in_place_of_added_files_is_not_followed(tmp_path: Path, name: str) -> None:
+    out = write_run(tmp_path / "run")
+    (tmp_path / "home").mkdir()
+    (tmp_path / "home" / "letter.txt").write_text("private")
+    (out / name).parent.mkdir(exist_ok=True)
+    (out / name).symlink_to(tmp_path / "home")
+    assert [each.name for each in signoff.changes(out)] == [".amendment"]
+    with pytest.raises(ResultError, match="is a link or holds one"):
+        amend(out)
+    assert (tmp_path / "home" / "letter.txt").read_text() == "private"
+
+
+def test_an_interrupted_report_does_not_keep_a_run_from_being_replaced(tmp_path: Path) -> None:
+    out = write_run(tmp_path / "run")
+    write_atomic(out / ".amendment" / "partial" / PAGE, "half")
+    solve(out)
+    assert entries(out.parent) == ["run"]
+    assert ".amendment" not in entries(out)
+
+
+def read_only(folder: Path) -> None:
+    """Refuse every change in a folder for the rest of this process, as a read-only disk does."""
+
+    def hook(event: str, arguments: tuple[Any, ...]) -> None:
+        writes = event in CHANGES or (event == "open" and arguments[2] & (os.O_WRONLY | os.O_RDWR))
+        if writes and changed(arguments if event in CHANGES else arguments[:1]).startswith(
+            str(folder)
+        ):
+            raise OSError(errno.EROFS, os.strerror(errno.EROFS), str(arguments[0]))
+
+    sys.addaudithook(hook)
+
+
+STUDY = """
+name = "small"
+case = "case.toml"
+depth = "preview"
+[[factor]]
+key = "spring.preload"
+list = ["400 N", "401 N"]
+[sampling]
+method = "grid"
+"""
+
+
+@pytest.mark.filterwarnings("ignore:This process:DeprecationWarning")
+@pytest.mark.parametrize(
+    "line",
+    [
+        "run case.toml --depth preview --out disk/new",
+        pytest.param("run case.toml --out disk/run --replace", marks=pytest.mark.slow),
+        "report disk/run",
+        "deck disk/run --angle 10",
+        "sign disk/run --key key --role checked --name A",
+        "study study.toml --jobs 1 --out disk/study",
+        "check disk/run",
+    ],
+)
+def test_a_read_only_disk_is_named_in_one_line(
+    line: str, tmp_path: Path, command: Command, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """`check` writes nothing; every other command says what it cannot write."""
+    disk = tmp_path / "disk"
+    write_run(disk / "run")
+    (tmp_path / "case.toml").write_text(small_machine("small"))
+    (tmp_path / "study.toml").write_text(STUDY)
+    monkeypatch.setenv("XDG_CONFIG_HOME", str(tmp_path / "config"))
+    write_key(tmp_path / "key")
+    monkeypatch.chdir(tmp_path)
+    said = tmp_path / "said.json"
+
+    def work() -> None:
+        read_only(disk)
+        said.write_text(json.dumps(command(*line.split())))
+
+    before = contents(disk)
+    in_a_child(work)
+    code, _, errors = json.loads(said.read_text())
+    assert contents(disk) == before
+    if line.startswith("check"):
+        assert (code, errors) == (PASSED, "")
+    else:
+        assert code == ERROR
+        assert re.fullmatch(r"(designs\n)?camwright: .*disk.*: Read-only file system\n", errors)
 
 
 @pytest.mark.parametrize("number", [1, 2])

@@ -11,8 +11,10 @@ import pytest
 from small_run import check, small_case, summary, write_run, write_trial
 
 from camwright.geometry.errors import ResultError
+from camwright.pipeline.base.files import write_atomic
 from camwright.pipeline.checks.registry import CHECKS
 from camwright.pipeline.results import signoff
+from camwright.pipeline.results.folder_exchange import amended
 from camwright.pipeline.results.model_limits import MODEL_LIMITS
 from camwright.pipeline.results.run_folder import RunFolder
 
@@ -20,10 +22,9 @@ from camwright.pipeline.results.run_folder import RunFolder
 @pytest.fixture
 def run(tmp_path: Path) -> Path:
     out = write_run(tmp_path / "run")
-    with signoff.amended(out):
+    with amended(out) as place:
         for name in ("8_report.html", "figures/a.png", "exports/cam.dxf"):
-            (out / name).parent.mkdir(exist_ok=True)
-            (out / name).write_text("drawn")
+            write_atomic(place / name, "drawn")
     return out
 
 
@@ -103,16 +104,29 @@ def test_missing_and_added_files_are_named(run: Path) -> None:
 def test_presentation_is_recorded_when_it_is_drawn_again(run: Path) -> None:
     (run / "8_report.html").write_text("edited")
     assert said(run) == ["8_report.html: was changed since the sign-off"]
-    with signoff.amended(run):  # an edited folder is not recorded by drawing more
-        (run / "figures" / "b.png").write_text("one more")
+    with amended(run) as place:  # an edited folder is not recorded by drawing more
+        write_atomic(place / "figures" / "b.png", "one more")
     assert said(run) == [
         "8_report.html: was changed since the sign-off",
         "figures/b.png: was added since the sign-off",
     ]
     signoff.write(run)
-    with signoff.amended(run):
-        (run / "8_report.html").write_text("drawn again")
+    with amended(run) as place:
+        write_atomic(place / "8_report.html", "drawn again")
     assert said(run) == []
+
+
+def test_a_file_of_the_user_keeps_no_page_out_of_the_record(run: Path) -> None:
+    (run / "notes.txt").write_text("by hand")
+    with amended(run) as place:
+        write_atomic(place / "8_report.html", "drawn again")
+    assert said(run) == ["notes.txt: was added since the sign-off"]
+
+
+def test_an_amended_record_is_that_of_the_files(run: Path) -> None:
+    amended_record = (run / "signoff.json").read_bytes()
+    signoff.write(run)
+    assert (run / "signoff.json").read_bytes() == amended_record
 
 
 def test_a_hostile_name_is_written_out(run: Path) -> None:
@@ -121,8 +135,8 @@ def test_a_hostile_name_is_written_out(run: Path) -> None:
 
 
 def test_a_folder_that_is_no_run_is_not_recorded(tmp_path: Path) -> None:
-    with signoff.amended(tmp_path):
-        (tmp_path / "a").write_text("")
+    with amended(tmp_path) as place:
+        (place / "a").write_text("")
     assert [path.name for path in tmp_path.iterdir()] == ["a"]
 
 
@@ -142,7 +156,10 @@ def test_a_forged_verdict_is_seen(run: Path) -> None:
     file = run / "signoff.json"
     record = json.loads(file.read_text())
     file.write_text(json.dumps(record | {"verdict": "fail"}))
-    assert said(run) == ["signoff.json: verdict is not what the files of the run say"]
+    forged = "signoff.json: verdict is not what the files of the run say"
+    assert said(run) == [forged]
+    (run / "notes.txt").write_text("added")  # hides nothing
+    assert said(run) == ["notes.txt: was added since the sign-off", forged]
 
 
 def test_without_a_record_nothing_is_verified(run: Path) -> None:
