@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 import sys
+import tomllib
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
-from mutated_inputs import sources, tried
+from mutated_inputs import Source, sources, tried
 
 from camwright.geometry.errors import CamError
+from camwright.pipeline.case.case import Case
+from camwright.pipeline.studies.batch.study_file import Study
 from camwright.pipeline.studies.cam_inspection import read_measured
 from camwright.pipeline.torque.angle_trace import read_trace
 
@@ -26,10 +30,22 @@ def test_mutated_inputs_are_read_or_refused(seed: int) -> None:
 
 
 @pytest.mark.parametrize("source", sources(), ids=lambda source: source.name)
-def test_inputs_without_a_mutation_are_read(source, tmp_path: Path) -> None:
+def test_inputs_without_a_mutation_are_read(source: Source, tmp_path: Path) -> None:
+    """By the name in the file and the bytes of the data; the contour by its radii."""
     for name, content in source.files.items():
         (tmp_path / name).write_bytes(content)
-    source.read(tmp_path / source.name)
+    read = source.read(tmp_path / source.name)
+    if isinstance(read, np.ndarray):
+        radii = np.loadtxt(tmp_path / source.name, delimiter=",", skiprows=1)[:, 1]
+        np.testing.assert_allclose(np.hypot(*read), radii / 1e3, rtol=1e-12)
+        return
+    assert isinstance(read, Case | Study)
+    (stated,) = (content for name, content in source.files.items() if name.endswith(".toml"))
+    assert read.name == tomllib.loads(stated.decode())["name"]
+    if isinstance(read, Case):
+        assert [*read.included.values()] == [
+            content for name, content in source.files.items() if name.endswith(".csv")
+        ]
 
 
 @pytest.mark.parametrize(
