@@ -119,55 +119,47 @@ def check(
     --verify-record also unsigned or signed by an untrusted key, with --recompute not what its case
     gives. Of several the worst: error, 4, FAIL, INCOMPLETE.
     """
-    from camwright.pipeline.results.check_report import FAIL_ON
-
-    if fail_on not in FAIL_ON:
-        raise InputError("--fail-on", fail_on, f"one of: {', '.join(FAIL_ON)}")
-    patterns, alone = only or [], len(targets) == 1
-    if trusted is not None and not verify_record:
-        raise InputError("--trusted", str(trusted), "stated with --verify-record")
-    if not recompute and (angles is not None or seed is not None):
-        option, value = ("--seed", seed) if angles is None else ("--angles", angles)
-        raise InputError(option, value, "stated with --recompute")
-    keys = None
-    if verify_record:
-        from camwright.pipeline.results.signing_keys import read_trusted
-
-        keys = read_trusted(trusted)
-    if alone:
+    _require_known(fail_on)
+    _require_option("--verify-record", verify_record, {"--trusted": trusted})
+    _require_option("--recompute", recompute, {"--angles": angles, "--seed": seed})
+    patterns, keys = only or [], _trusted_keys(trusted) if verify_record else None
+    signatures: Sequence[Signature] = ()
+    if len(targets) == 1:
         record = _recorded(targets[0], keys)
-        if record.faults:
+        if record.faults or (recompute and not _recomputed(targets[0], angles, seed)):
             return ALTERED
-        if recompute and not _recomputed(targets[0], angles, seed):
-            return ALTERED
-        judged = [_judged(targets[0], patterns, fail_on, baseline, remedies=remedies)]
-        judged[0].document.update(record.entries)
+        one = _judged(targets[0], patterns, fail_on, baseline, remedies=remedies)
+        one.document.update(record.entries)
+        judged, signatures = [one], record.signatures or ()
     else:
         _refuse_for_several(len(targets), remedies, baseline, missing, recompute)
         judged = [_of_several(each, patterns, fail_on, keys) for each in targets]
     if junit is not None:
-        from camwright.pipeline.base.files import write_atomic
-        from camwright.pipeline.results.junit_report import junit as junit_text
-
-        write_atomic(junit, junit_text([each.suite for each in judged]))
-    documents = [each.document for each in judged]
+        _write_junit(junit, judged)
     if missing:
-        _show_missing(targets[0], documents[0]["checks"])
+        _show_missing(targets[0], judged[0].document["checks"])
     elif as_json:
-        show_json(documents[0] if alone else {"runs": documents})
-    elif alone:
-        from camwright.pipeline.results.verdict_summary import Places
-
-        target = targets[0]
-        places = Places(str(target), str(_case_of(target)), page_of(target))
-        (show_all if whole else show_failures)(documents[0], places)
-        for each in record.signatures or ():
-            stdout.print(f"signed: {each.words}", markup=False)
+        _show_documents(judged)
+    elif len(targets) == 1:
+        _show_one(targets[0], judged[0].document, signatures, whole)
     else:
-        from camwright.pipeline.results.check_report import overview
-
-        stdout.print(overview(each.row for each in judged))
+        _show_overview(judged)
     return max((each.code for each in judged), key=SEVERITY.index)
+
+
+def _require_known(fail_on: str) -> None:
+    """Refuse an unknown value of --fail-on."""
+    from camwright.pipeline.results.check_report import FAIL_ON
+
+    if fail_on not in FAIL_ON:
+        raise InputError("--fail-on", fail_on, f"one of: {', '.join(FAIL_ON)}")
+
+
+def _require_option(option: str, stated: bool, details: Mapping[str, Path | int | None]) -> None:
+    """Refuse the details of an option that is not stated."""
+    for name, value in details.items():
+        if value is not None and not stated:
+            raise InputError(name, str(value), f"stated with {option}")
 
 
 def _refuse_for_several(
@@ -183,6 +175,46 @@ def _refuse_for_several(
     for option, value in options.items():
         if value:
             raise InputError(option, f"{count} targets", "stated with one run or case alone")
+
+
+def _trusted_keys(trusted: Path | None) -> Mapping[str, TrustedKey]:
+    """Keys of a file, or of this user, by fingerprint."""
+    from camwright.pipeline.results.signing_keys import read_trusted
+
+    return read_trusted(trusted)
+
+
+def _write_junit(file: Path, judged: Sequence[_Judged]) -> None:
+    """Write the checks of runs and cases as JUnit XML."""
+    from camwright.pipeline.base.files import write_atomic
+    from camwright.pipeline.results.junit_report import junit
+
+    write_atomic(file, junit([each.suite for each in judged]))
+
+
+def _show_documents(judged: Sequence[_Judged]) -> None:
+    """Print the checks as JSON; those of several runs and cases in a list."""
+    documents = [each.document for each in judged]
+    show_json(documents[0] if len(documents) == 1 else {"runs": documents})
+
+
+def _show_one(
+    target: Path, document: dict[str, Any], signatures: Sequence[Signature], whole: bool
+) -> None:
+    """Print verdict and checks of one run or case, and who signed it."""
+    from camwright.pipeline.results.verdict_summary import Places
+
+    places = Places(str(target), str(_case_of(target)), page_of(target))
+    (show_all if whole else show_failures)(document, places)
+    for each in signatures:
+        stdout.print(f"signed: {each.words}", markup=False)
+
+
+def _show_overview(judged: Sequence[_Judged]) -> None:
+    """Print a table of several runs and cases."""
+    from camwright.pipeline.results.check_report import overview
+
+    stdout.print(overview(each.row for each in judged))
 
 
 def schema(
