@@ -128,8 +128,8 @@ def recompute(
 ) -> Recomputation:
     """Compute a finished run again from its case and the lift of its final trial, and compare it.
 
-    Of the folder are believed: the case; the lift, where a synthesis chose it; whether that
-    synthesis converged; reason and number of the trial. A check may differ by its error bar, as
+    Taken from the folder: the case; the lift, where a synthesis chose it; whether that synthesis
+    converged; reason and number of the trial. A check may differ by its error bar, as
     computed again.
 
     Parameters

@@ -28,7 +28,7 @@ STATE, CHUNKS = ".state.json", ".chunks"
 
 _LOCK = "lock"
 
-KEPT = "what is solved is kept; run the command again with --resume to resume"
+KEPT = "solved points are kept; run the command again with --resume to resume"
 """Note of an exception after which a run can be resumed."""
 
 OURS = re.compile(
@@ -146,7 +146,7 @@ def amended(path: Path) -> Iterator[Path]:
     """Folder in which to write files for a finished run; they and its record change together.
 
     After an exception the run is as before. A record that differs from the files before is left as
-    it is. A folder without a record is none of a finished run; its own path is returned.
+    it is. A run without a record is not finished: its files are written at once, into `path`.
 
     Raises
     ------

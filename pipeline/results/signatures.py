@@ -121,12 +121,12 @@ def _signed(
     for number, line in enumerate(before.splitlines(), start=1):
         try:
             _, payload, _ = _opened(line)
-            known = _statement(payload, digest)
+            earlier = _statement(payload, digest)
         except _RefusedError as error:
             raise ResultError(f"{file}: line {number}: {error}; delete the file") from None
-        if known["role"] == role:
-            said = f"{role} is signed already, by {known['name']}, {known['date']}"
-            raise ResultError(f"{file}: line {number}: {said}")
+        if earlier["role"] == role:
+            words = f"{role} is signed already, by {earlier['name']}, {earlier['date']}"
+            raise ResultError(f"{file}: line {number}: {words}")
     statement = {
         "_type": STATEMENT,
         "subject": [{"name": signoff.NAME, "digest": {"sha256": digest}}],
@@ -193,19 +193,19 @@ def _valid(line: str, digest: str, trusted: Mapping[str, TrustedKey]) -> Signatu
         known.public.verify(signature, encoded(PAYLOAD, payload))
     except InvalidSignature:
         raise _RefusedError(f"was changed since it was signed with the key {key}") from None
-    said = _statement(payload, digest)
-    if said["role"] not in known.roles:
+    predicate = _statement(payload, digest)
+    if predicate["role"] not in known.roles:
         allowed = ", ".join(known.roles)
-        raise _RefusedError(f"the key {key} may not sign {said['role']}, only {allowed}")
-    return Signature(said["role"], said["name"], said["date"], key, known.owner)
+        raise _RefusedError(f"the key {key} may not sign {predicate['role']}, only {allowed}")
+    return Signature(predicate["role"], predicate["name"], predicate["date"], key, known.owner)
 
 
 def _claim(payload: bytes, digest: str) -> str:
     try:
-        said = _statement(payload, digest)
+        predicate = _statement(payload, digest)
     except _RefusedError:
         return ""
-    return f", which says: {said['role']} by {said['name']}, {said['date']}"
+    return f", which says: {predicate['role']} by {predicate['name']}, {predicate['date']}"
 
 
 def _opened(line: str) -> tuple[str, bytes, bytes]:
@@ -229,18 +229,20 @@ def _statement(payload: bytes, digest: str) -> dict[str, str]:
     statement = _parsed(payload, "statement", keys)
     if statement["_type"] != STATEMENT or statement["predicateType"] != PREDICATE:
         raise _RefusedError("the statement is of another type")
-    said = _closed(statement["predicate"], "predicate", ("role", "name", "date", "signoffSha256"))
-    name, date = said["name"], said["date"]
-    if said["role"] not in ROLES:
+    predicate = _closed(
+        statement["predicate"], "predicate", ("role", "name", "date", "signoffSha256")
+    )
+    name, date = predicate["name"], predicate["date"]
+    if predicate["role"] not in ROLES:
         raise _RefusedError(f"the role is none of {', '.join(ROLES)}")
     if not isinstance(name, str) or not name.strip() or not name.isprintable():
         raise _RefusedError("the name is no printable text")
     if not isinstance(date, str) or not _is_date(date):
         raise _RefusedError("the date is not like 2026-01-31T12:00:00Z")
     subject = [{"name": signoff.NAME, "digest": {"sha256": digest}}]
-    if statement["subject"] != subject or said["signoffSha256"] != digest:
-        raise _RefusedError(f"{signoff.NAME} is not the one {said['role']} by {name}, {date}")
-    return said
+    if statement["subject"] != subject or predicate["signoffSha256"] != digest:
+        raise _RefusedError(f"{signoff.NAME} is not the one {predicate['role']} by {name}, {date}")
+    return predicate
 
 
 def _is_date(text: str) -> bool:

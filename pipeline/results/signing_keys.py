@@ -186,9 +186,9 @@ def _lines_alone(block: re.Match[str]) -> str:
 
 
 def _trusted_line(line: str, path: Path, number: int) -> TrustedKey:
-    before, found, after = line.partition(_OPENSSH)
+    before, algorithm, after = line.partition(_OPENSSH)
     roles = tuple(part for part in before.strip().split(",") if part)
-    if not found or any(role not in ROLES for role in roles):
+    if not algorithm or any(role not in ROLES for role in roles):
         limit = f"`[{','.join(ROLES)}] {_OPENSSH} KEY [OWNER]`"
         raise InputError("--trusted", f"{path}, line {number}", limit)
     key, _, owner = after.strip().partition(" ")

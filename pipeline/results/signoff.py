@@ -1,7 +1,7 @@
 """Sign-off record of a run: figures with error bars, verdict, evidence, hash of every file.
 
-It follows from the files of the run alone and can be reproduced from them. Itself it is signed, see
-`signatures`.
+It follows from the files of the run alone and can be reproduced from them. `signatures` are on this
+record alone.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ COMPLETE = f"{AMENDMENT}/complete"
 _ADDED = "was added since the sign-off"
 _BY = "`camwright report`, `inspect`, `deck` or `sign`"
 _HALF_MOVED = f"an interrupted {_BY} has not moved all its files into place: run it again"
-_INCOMPLETE = f"of {_BY}, which is running or was interrupted; run again, it replaces this folder"
+_INCOMPLETE = f"of {_BY}, which is running or was interrupted: run it again to replace this folder"
 _SHA256 = re.compile(r"[0-9a-f]{64}")
 
 

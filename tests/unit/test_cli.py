@@ -186,7 +186,7 @@ def test_a_full_disk_says_that_the_run_can_be_resumed(
     code, _, err = command("run", case_file, "--out", "run")
     assert code == 2
     assert is_one_line(err)
-    assert "run: No space left on device; what is solved is kept; run the command again" in err
+    assert "run: No space left on device; solved points are kept; run the command again" in err
     assert Path(".run.partial").is_dir()
 
 

@@ -487,7 +487,7 @@ def test_a_role_that_its_key_may_not_sign(run: Path, trusted: Path, command: Com
     assert f"{run}: signed: prepared by A. Meyer" in err
 
 
-def test_a_signed_run_is_told_with_its_signers(run: Path, trusted: Path, command: Command) -> None:
+def test_the_signers_of_a_run_are_listed(run: Path, trusted: Path, command: Command) -> None:
     code, out, err = command("check", run, "--verify-record", "--trusted", trusted)
     assert (code, err) == (0, "")
     key = fingerprint(A.public_key())
