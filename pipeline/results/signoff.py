@@ -33,7 +33,7 @@ COMPLETE = f"{AMENDMENT}/complete"
 _ADDED = "was added since the sign-off"
 _BY = "`camwright report`, `inspect`, `deck` or `sign`"
 _HALF_MOVED = f"an interrupted {_BY} has not moved all its files into place: run it again"
-_INCOMPLETE = f"of {_BY}, which is running or was interrupted: run it again to replace this folder"
+_INCOMPLETE = f"belongs to {_BY}, which is running or was interrupted; run again, it removes this"
 _SHA256 = re.compile(r"[0-9a-f]{64}")
 
 
