@@ -32,7 +32,8 @@ from camwright.pipeline.checks.tolerance_corners import corners_record
 from camwright.pipeline.contact.contact_history import CertificatePoint
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.certificate_angles import begun
-from camwright.pipeline.results import run_reader, signoff
+from camwright.pipeline.results import check_records, run_reader, signoff
+from camwright.pipeline.results.check_records import AnyCheck
 from camwright.pipeline.results.drawn_cam import drawn_cam
 from camwright.pipeline.results.field_file import read_series
 from camwright.pipeline.results.field_output import STRESS, Shown, write_fields
@@ -43,7 +44,7 @@ from camwright.pipeline.results.file_differences import (
 )
 from camwright.pipeline.results.model_limits import limitations
 from camwright.pipeline.results.run_folder import RunFolder, versions
-from camwright.pipeline.results.run_reader import AnyCheck, Run, TrialRecord, read_run
+from camwright.pipeline.results.run_reader import Run, TrialRecord, read_run
 from camwright.pipeline.results.run_records import torque_columns, trial_record
 from camwright.pipeline.results.trial import SmoothingRecord, Trial, TrialPoint
 from camwright.pipeline.results.trial_writer import TrialWriter
@@ -103,7 +104,7 @@ class Recomputation:
     Parameters
     ----------
     checks : tuple        records of the checks, computed again
-    judged : mapping      their verdict, see `run_reader.judgement`
+    judged : mapping      their verdict, see `check_records.judgement`
     differences : tuple   of the folder, one line each, with the file
     angles : tuple        drawn angles; empty below the certified depth
     unseen : tuple        files that do not follow from case and lift, and were not compared
@@ -178,7 +179,7 @@ def recompute(
     differences += of_files
     return Recomputation(
         cast("tuple[AnyCheck, ...]", checks),
-        run_reader.judgement(checks, trial.depth.word),
+        check_records.judgement(checks, trial.depth.word),
         tuple(differences),
         drawn,
         unseen,

@@ -25,9 +25,10 @@ from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.ripple_map import ripple_map
 from camwright.pipeline.iteration import trials_of
 from camwright.pipeline.remedies.remedy_search import order_of, texts_of, with_remedies
+from camwright.pipeline.results.check_records import governing_id
 from camwright.pipeline.results.field_output import Shown, write_fields
 from camwright.pipeline.results.run_folder import RunFolder
-from camwright.pipeline.results.run_reader import Run, governing_id, read_run
+from camwright.pipeline.results.run_reader import Run, read_run
 from camwright.pipeline.results.run_records import crank_speed_record, headline, torque_columns
 from camwright.pipeline.results.trial import Trial, TrialPoint
 from camwright.pipeline.results.trial_writer import TrialWriter

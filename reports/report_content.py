@@ -10,13 +10,9 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 
 from camwright.pipeline.base.files import Json
+from camwright.pipeline.results.check_records import CERTIFIED
 from camwright.pipeline.results.model_limits import MODEL_LIMITS
-from camwright.pipeline.results.run_reader import (
-    CERTIFIED,
-    TrialRecord,
-    load_end_words,
-    results_sha256,
-)
+from camwright.pipeline.results.run_reader import TrialRecord, load_end_words, results_sha256
 from camwright.reports import report_tables, verification_tables
 from camwright.reports.figure_svg import Drawn, drawn_groups
 from camwright.reports.report_data import Material

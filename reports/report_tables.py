@@ -11,8 +11,8 @@ from typing import Any, TypeAlias
 
 from camwright.pipeline.base.files import Json
 from camwright.pipeline.base.units import used
+from camwright.pipeline.results.check_records import utilisation_of
 from camwright.pipeline.results.check_report import not_proven
-from camwright.pipeline.results.run_reader import utilisation_of
 from camwright.pipeline.results.verdict_summary import body_stresses
 
 Scalar: TypeAlias = str | float | None

@@ -6,8 +6,7 @@ from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from typing import cast
 
-from camwright.pipeline.results.check_report import not_proven, reason_without_data
-from camwright.pipeline.results.run_reader import (
+from camwright.pipeline.results.check_records import (
     CERTIFIED,
     OPEN,
     VERDICTS,
@@ -16,6 +15,7 @@ from camwright.pipeline.results.run_reader import (
     judgement,
     to_be_confirmed,
 )
+from camwright.pipeline.results.check_report import not_proven, reason_without_data
 from camwright.pipeline.results.verdict_summary import (
     WORST,
     failure_words,

@@ -16,8 +16,9 @@ from scipy.spatial import Delaunay
 
 from camwright.geometry.periodic_spline import periodic_quintic
 from camwright.pipeline.case.scope_section import Scope
+from camwright.pipeline.results.check_records import binding_of, verdict_of
 from camwright.pipeline.results.field_file import Block, field_file
-from camwright.pipeline.results.run_reader import SCHEMA, binding_of, input_sha256, verdict_of
+from camwright.pipeline.results.run_reader import SCHEMA, input_sha256
 from camwright.pipeline.results.run_records import SPLINE
 
 RATE, PRELOAD, PRIME_RADIUS, ROLLER, WIDTH = 24.2e3, 242.0, 0.050, 0.008, 0.0044

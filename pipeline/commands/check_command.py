@@ -29,8 +29,8 @@ from camwright.pipeline.commands.terminal import (
 if TYPE_CHECKING:
     from xml.etree.ElementTree import Element
 
+    from camwright.pipeline.results.check_records import CheckRecord
     from camwright.pipeline.results.junit_report import Clock
-    from camwright.pipeline.results.run_reader import CheckRecord
     from camwright.pipeline.results.signatures import Signature
     from camwright.pipeline.results.signing_keys import TrustedKey
 
@@ -275,9 +275,9 @@ def _judged(
     CamError
         If the run cannot be read, the case solved, or no check fits a pattern.
     """
+    from camwright.pipeline.results.check_records import VERDICTS, exit_word
     from camwright.pipeline.results.check_report import outcome, overview_row, selected
     from camwright.pipeline.results.junit_report import junit_suite
-    from camwright.pipeline.results.run_reader import VERDICTS, exit_word
 
     if not target.exists():
         raise ResultError(f"{target}: no such case file or run folder")
@@ -437,8 +437,8 @@ def _checked_case(path: Path, remedies: bool) -> tuple[dict[str, Any], Clock]:
     )
     from camwright.pipeline.case.plausibility import implausible
     from camwright.pipeline.preview import preview_case
+    from camwright.pipeline.results.check_records import governing_id, judgement, to_be_confirmed
     from camwright.pipeline.results.junit_report import Clock
-    from camwright.pipeline.results.run_reader import governing_id, judgement, to_be_confirmed
 
     began = time.perf_counter()
     case = read_case(path)

@@ -103,7 +103,7 @@ def show(document: dict[str, Any], places: Places) -> None:
 def show_failures(document: dict[str, Any], places: Places) -> None:
     """Print the failed checks, missing data, verdict, scope and path of the report."""
     from camwright.pipeline.results import verdict_summary
-    from camwright.pipeline.results.run_reader import within_depth
+    from camwright.pipeline.results.check_records import within_depth
 
     checks = within_depth(document["checks"])
     _print_all(verdict_summary.load_end_line(document))
@@ -124,6 +124,7 @@ def show_failures(document: dict[str, Any], places: Places) -> None:
 
 def show_all(document: dict[str, Any], places: Places) -> None:
     """Print checks and evidence by utilisation, remarks, verdict, scope, path of the report."""
+    from camwright.pipeline.results.check_records import within_depth
     from camwright.pipeline.results.check_report import (
         binding_lines,
         consistency_line,
@@ -131,7 +132,6 @@ def show_all(document: dict[str, Any], places: Places) -> None:
         remarks,
         table,
     )
-    from camwright.pipeline.results.run_reader import within_depth
     from camwright.pipeline.results.verdict_summary import (
         load_end_line,
         measured_line,

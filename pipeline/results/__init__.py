@@ -5,6 +5,7 @@ In the order of a run:
 | module                 | responsibility                                                        |
 | ---------------------- | --------------------------------------------------------------------- |
 | `trial`                | a cam with its solution, checks and smoothing                         |
+| `check_records`        | records of checks: status by the numbers, verdict, governing check    |
 | `run_reader`           | a finished run read from its folder; schema of the records            |
 | `model_limits`         | limits of the model, for report, sign-off record and documentation    |
 | `signoff`              | sign-off record: figures, evidence, validity limits, hashes of files  |
@@ -18,7 +19,6 @@ In the order of a run:
 | `field_file`           | VTKHDF file of meshes with fields over the turn: writer and reader    |
 | `contact_zone`         | fine mesh of a body below its contact, interpolation on it            |
 | `stress_fields`        | displacement and stress of both bodies over the turn                  |
-| `recorded_turn`        | outlines and poses of cam and follower for the scene                  |
 | `field_output`         | files of ``fields/``                                                  |
 | `workshop_files`       | contour table, DXF drawing, STEP solid, cutter path, inspection sheet |
 | `drawn_cam`            | cam of a finished run as it was certified                             |

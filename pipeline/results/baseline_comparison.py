@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import Literal, TypedDict
 
-from camwright.pipeline.results.run_reader import CheckRecord
+from camwright.pipeline.results.check_records import CheckRecord
 
 # Relative error bar of a demand without one: digits beyond it are not printed.
 UNKNOWN_ERROR = 1e-6

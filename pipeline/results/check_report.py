@@ -10,15 +10,15 @@ from typing import TYPE_CHECKING, Any
 
 from camwright.geometry.errors import InputError
 from camwright.pipeline.base.units import used
-from camwright.pipeline.results.run_reader import (
+from camwright.pipeline.results.check_records import (
     AnyCheck,
     CheckRecord,
-    Finding,
     governing_of,
     judged,
     utilisation_of,
     within_depth,
 )
+from camwright.pipeline.results.run_reader import Finding
 
 if TYPE_CHECKING:
     from rich.table import Table

@@ -2,26 +2,29 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from enum import StrEnum
 from importlib.resources import files
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import ArrayLike
 
-from camwright.geometry.arrays import Array
+from camwright.geometry.arrays import Array, uniform_turn
+from camwright.geometry.cutouts import KeywayLike
 from camwright.pipeline.base.files import npz_bytes, write_atomic
+from camwright.pipeline.contact.contact_pair import ContactPair
 from camwright.pipeline.contact.elasticity import plane_stress_measures
 from camwright.pipeline.contact.two_scale import CycleBodies
 from camwright.pipeline.cycle.certificate_angles import positions_to_certify
 from camwright.pipeline.cycle.cycle import Cycle
 from camwright.pipeline.results.contact_zone import zone_nodes
 from camwright.pipeline.results.field_file import Block, FieldFile, Notes, field_file
-from camwright.pipeline.results.recorded_turn import turn_view
 from camwright.pipeline.results.stress_fields import (
     BodyField,
     IntArray,
     TurnFields,
+    follower_places,
 )
 from camwright.pipeline.results.trial import Trial
 
@@ -29,9 +32,12 @@ STEP = np.radians(15.0)
 STRESS, TURN, VIEW = "stress.vtkhdf", "turn.npz", "view_stress.py"
 FIELDS = {"displacement_mm": 3, "stress_MPa": 6, "von_mises_MPa": 1, "tau_max_MPa": 1}
 """Point data and their components; stress in the order XX, YY, ZZ, XY, YZ, XZ of VTK."""
+FRAMES = 360
+"""Maximum number of recorded positions."""
 
 _MILLIMETRE, _MEGAPASCAL = 1e-3, 1e6
 _TOGETHER = 24  # positions whose fields are in memory at once
+_TO_MM = 1e3
 _DIGITS = 9  # of a cam angle, deg
 
 
@@ -165,3 +171,47 @@ def _write(
         **measures,
     }
     file.write(name, first, data, field.hidden.T, points)
+
+
+def turn_view(pair: ContactPair, bodies: CycleBodies, cycle: Cycle) -> Mapping[str, ArrayLike]:
+    """Arrays of ``fields/turn.npz``.
+
+    Returns
+    -------
+    mapping   load_case; position (f,) rows of the cycle and cam_angle_deg (f,); cam_mm
+              (2, stations, 2) contour, then bore with keyway, in the cam frame; follower_mm
+              (2, n) nodes of the follower mesh in its own frame; origin of that frame
+              follower_origin_mm (f, 2) and its rotation follower_turn_deg (f,) in the cam frame
+    """
+    count = cycle.theta.size
+    shown = np.arange(0, count, -(-count // FRAMES))
+    places = follower_places(pair, cycle.theta[shown])
+    return {
+        "load_case": np.array(cycle.load_case),
+        "position": shown,
+        "cam_angle_deg": np.degrees(cycle.theta[shown]),
+        "cam_mm": _TO_MM * cam_outlines(pair, 2 * shown.size),
+        "follower_mm": _TO_MM * bodies.follower.body.mesh.points,
+        "follower_origin_mm": _TO_MM * places.origin,
+        "follower_turn_deg": np.degrees(places.angle),
+    }
+
+
+def cam_outlines(pair: ContactPair, stations: int) -> Array:
+    """Contour and bore (2, stations, 2), m, at the same polar angles."""
+    outer = pair.contour.points(uniform_turn(stations))
+    radius, angle = np.hypot(*outer), np.arctan2(outer[1], outer[0])
+    inner = outer * (bore_reach(pair.bore_radius, pair.keyway, angle) / radius)
+    return np.stack([outer, inner], axis=-1)
+
+
+def bore_reach(bore_radius: float, keyway: KeywayLike | None, angle: Array) -> Array:
+    """Distance (...) from the axis to the edge of bore and keyway, m, in directions (...), rad."""
+    reach = np.full(angle.shape, bore_radius)
+    if keyway is None:
+        return reach
+    off = np.abs((angle - keyway.angle + np.pi) % (2 * np.pi) - np.pi)
+    half, floor = 0.5 * keyway.width, bore_radius + keyway.depth
+    with np.errstate(divide="ignore"):
+        slot = np.minimum(floor / np.maximum(np.cos(off), 1e-9), half / np.sin(off))
+    return np.where(off < np.arcsin(half / bore_radius), slot, reach)

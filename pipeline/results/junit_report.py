@@ -13,6 +13,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 from camwright.pipeline.base.units import used
+from camwright.pipeline.results.check_records import CheckRecord, judged
 from camwright.pipeline.results.check_report import (
     corner,
     failing,
@@ -26,7 +27,6 @@ from camwright.pipeline.results.check_report import (
     waiver_words,
     with_error,
 )
-from camwright.pipeline.results.run_reader import CheckRecord, judged
 
 VERDICT = "verdict"
 """Name of the test case that is the verdict of the suite."""

@@ -6,12 +6,10 @@ Reading needs no solver and no case parser.
 from __future__ import annotations
 
 import hashlib
-import math
-from collections import Counter
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple, TypedDict
+from typing import TYPE_CHECKING, Any, TypedDict
 
 from camwright.geometry.errors import InputError, ResultError
 from camwright.pipeline.base.files import (
@@ -23,6 +21,17 @@ from camwright.pipeline.base.files import (
     sha256_of,
 )
 from camwright.pipeline.base.tables import Table, read_table
+from camwright.pipeline.results.check_records import (
+    STATUSES,
+    AnyCheck,
+    CheckRecord,
+    CheckRecordOfAnyCheck,
+    binding_of,
+    governing_id,
+    judgement,
+    status_of,
+    to_be_confirmed,
+)
 
 if TYPE_CHECKING:
     from camwright.pipeline.smoothing.fe_correction import SynthesisRecord
@@ -39,18 +48,6 @@ HEADLINE = (
     *("guide_reaction_A_max_N", "guide_reaction_B_max_N", "friction_loss_J_per_cam_turn"),
     *("p0_difference_max_percent", "residual_equilibrium_max"),
 )
-STATUSES = ("pass", "waived", "not_evaluated", "fail")
-"""Statuses of a check, from the best to the worst."""
-VERDICTS = ("pass", "incomplete", "fail")
-"""Verdicts, from the best to the worst."""
-CERTIFIED = "certified"
-"""Depth of a run with a verdict; a shallower one has a screen, ``fail`` or ``open``."""
-OPEN = "open"
-"""Screen without a failed check; as an exit code it counts as ``incomplete``."""
-_DIGITS = 1e-12
-"""Relative error of a sum of numbers with the 15 digits of a record."""
-_ROUNDING = 1.001e-9
-"""Share of a demand up to which its error is that of rounding, no uncertainty."""
 LIMITS_FILE = "2_limits.csv"
 SPLINE_FILE = "2_spline.csv"
 
@@ -74,50 +71,6 @@ class TrialContents(TypedDict):
     balance: dict[str, Json]
     mesh: dict[str, Json] | None
     certificate: list[dict[str, Json]]
-
-
-class CheckRecordOfAnyCheck(TypedDict):
-    """A record of ``6_checks.json``, in `unit` and degrees; null: missing, or infinite."""
-
-    id: str
-    title: str
-    demand: float | None
-    limit: float | None
-    unit: str
-    utilisation: float | None
-    status: str
-    load_case: str
-    cam_angle_deg: float | None
-    source: str
-    method: str
-    sense: str
-    must_have: bool
-    waiver: str | None
-    waived_up_to: float | None
-    not_proven: bool
-    note: str
-    error: float | None
-    corner: str | None
-    corner_demand: float | None
-    evidence: bool
-    judged_at: str
-
-
-class CheckRecord(CheckRecordOfAnyCheck, total=False):
-    """A record of ``6_checks.json``.
-
-    to_be_confirmed: names of the recalled values on which it rests; missing: dotted keys that the
-    case lacks and without which it is not evaluated; remedy: smallest change that cures it, "" if
-    none is known. Records of earlier versions lack them.
-    """
-
-    to_be_confirmed: list[str]
-    missing: list[str]
-    remedy: str
-
-
-AnyCheck = Mapping[str, object]
-"""A `CheckRecord`, also where it is read as plain JSON."""
 
 
 class ScopeRecord(TypedDict):
@@ -385,176 +338,9 @@ def is_result(name: str) -> bool:
     return file.suffix in (".csv", ".json", ".msh", ".npz") and file.name not in made_last
 
 
-def binding_of(checks: Iterable[CheckRecord]) -> tuple[str, ...]:
-    """Ids of the must-have checks that fail or lack data, without those of a deeper solution."""
-    return tuple(
-        check["id"]
-        for check in within_depth(checks)
-        if check["must_have"] and check["status"] not in ("pass", "waived")
-    )
-
-
-def governing_of(checks: Iterable[AnyCheck]) -> AnyCheck | None:
-    """Must-have check of the design of the greatest utilisation; None if none is evaluated.
-
-    Evidence, which no change of the design moves, and waived checks do not govern. Of equal ones
-    the first by its id.
-    """
-    ranked = [
-        (-used, str(check["id"]), check)
-        for check in checks
-        if _governs(check) and (used := utilisation_of(check)) is not None
-    ]
-    return min(ranked, key=lambda each: each[:2])[2] if ranked else None
-
-
-def _governs(check: AnyCheck) -> bool:
-    """Whether a check is ranked as governing: a must-have of the design that passes or fails."""
-    ranked = check["must_have"] and not check["evidence"]
-    return bool(ranked and check["status"] in ("pass", "fail"))
-
-
-def governing_id(checks: Iterable[AnyCheck]) -> str | None:
-    """Id of the governing check; see `governing_of`."""
-    governing = governing_of(checks)
-    return None if governing is None else str(governing["id"])
-
-
 def load_end_words(ends: Iterable[LoadEndRecord]) -> str:
     """Such as ``leaves the cam at 150.5 deg (over-speed)``; "" without any."""
     return ", ".join(end["statement"] for end in ends)
-
-
-def utilisation_of(check: AnyCheck) -> float | None:
-    """Utilisation of a record; null with status ``fail`` is infinite, as JSON has no infinity."""
-    value = _number(check["utilisation"])
-    return math.inf if value is None and check["status"] == "fail" else value
-
-
-def within_depth(checks: Iterable[CheckRecord]) -> tuple[CheckRecord, ...]:
-    """The records without those that a deeper solution judges."""
-    return tuple(check for check in checks if not check["judged_at"])
-
-
-def judgement(checks: Iterable[AnyCheck], depth: str) -> dict[str, str | None]:
-    """Depth, verdict, screen and both in one line.
-
-    A certified run has a verdict, see `verdict_of`, and no screen. A shallower one has no verdict;
-    its screen is ``fail`` if a must-have check fails, else ``open``.
-    """
-    checks = tuple(checks)
-    line = verdict_line(checks) if depth == CERTIFIED else screen_line(checks, depth)
-    certified = depth == CERTIFIED
-    return {
-        "depth": depth,
-        "verdict": verdict_of(checks) if certified else None,
-        "screen": None if certified else screen_of(checks),
-        "verdict_line": line,
-    }
-
-
-def screen_of(checks: Iterable[AnyCheck]) -> str:
-    """Screen of the must-have checks, as `checks.check.screen` has it."""
-    failing = any(check["must_have"] and check["status"] == "fail" for check in checks)
-    return "fail" if failing else OPEN
-
-
-def exit_word(judged: Mapping[str, Any]) -> str:
-    """Verdict that decides the exit code; ``incomplete`` for an open screen."""
-    word = judged["verdict"] or judged["screen"]
-    return "incomplete" if word == OPEN else str(word)
-
-
-def verdict_of(checks: Iterable[AnyCheck]) -> str:
-    """Verdict of the must-have checks, as `checks.check.verdict` has it.
-
-    ``fail`` if one is beyond its limit or not proven, or without any; else ``incomplete`` if one
-    lacks data; else ``pass``.
-    """
-    deciding = [check["status"] for check in checks if check["must_have"]]
-    if not deciding or "fail" in deciding:
-        return "fail"
-    return "incomplete" if "not_evaluated" in deciding else "pass"
-
-
-def verdict_line(records: Iterable[AnyCheck]) -> str:
-    """Verdict of the must-have checks in one line.
-
-    Such as ``PASS, 2 waived, 3 values to be confirmed`` or ``INCOMPLETE: 1 check without data``. A
-    value to be confirmed counts once, however many checks rest on it.
-    """
-    deciding = [record for record in records if record["must_have"]]
-    if not deciding:
-        return "FAIL: no check decides"
-    verdict, stated = verdict_of(deciding), _counts(deciding)
-    if verdict == "pass":
-        return f"PASS, {stated}" if stated else "PASS"
-    return f"{verdict.upper()}: {stated}"
-
-
-def screen_line(records: Iterable[AnyCheck], depth: str) -> str:
-    """Screen of the must-have checks in one line, such as ``OPEN at the depth preview: ...``."""
-    deciding = [record for record in records if record["must_have"]]
-    within = [record for record in deciding if not record["judged_at"]]
-    deeper = len(deciding) - len(within)
-    later = f"{_counted(deeper, 'check', 'checks')} judged deeper" if deeper else ""
-    parts = ", ".join(part for part in (_counts(within), later) if part)
-    return f"{screen_of(deciding).upper()} at the depth {depth}: {parts or 'no check fails'}"
-
-
-def _counts(deciding: Sequence[AnyCheck]) -> str:
-    """Counts of the must-have checks that do not simply pass, in words."""
-    failed = [record for record in deciding if record["status"] == "fail"]
-    unproven = sum(bool(record["not_proven"]) for record in failed)
-    statuses = Counter(str(record["status"]) for record in deciding)
-    waived, values = statuses["waived"], len(to_be_confirmed(deciding))
-    parts = (
-        _counted(len(failed) - unproven, "check beyond its limit", "checks beyond their limit"),
-        _counted(unproven, "check not proven", "checks not proven"),
-        _counted(statuses["not_evaluated"], "check without data", "checks without data"),
-        f"{waived} waived" if waived else "",
-        _counted(values, "value to be confirmed", "values to be confirmed"),
-    )
-    return ", ".join(part for part in parts if part)
-
-
-def _counted(number: int, one: str, many: str) -> str:
-    """A number with its noun; empty for zero."""
-    return f"{number} {one if number == 1 else many}" if number else ""
-
-
-def to_be_confirmed(records: Iterable[AnyCheck]) -> list[str]:
-    """Names of the recalled values on which the must-have checks rest, each once."""
-    listed = (record.get("to_be_confirmed") for record in records if record["must_have"])
-    names = (str(name) for each in listed if isinstance(each, list) for name in each)
-    return list(dict.fromkeys(names))
-
-
-class Judged(NamedTuple):
-    """Worst demand of a record and half of its error bar, in the unit of the record."""
-
-    demand: float
-    error: float
-
-    def towards(self, sense: str) -> float:
-        """End of the error bar towards the limit."""
-        return self.demand - self.error if sense == "at_least" else self.demand + self.error
-
-
-def judged(record: AnyCheck) -> Judged | None:
-    """Demand by which a record is judged: the worse of nominal and tolerance corner.
-
-    None where a number is missing; a named corner without a number is one. The error bar is the
-    same share of the demand at the corner as at the nominal.
-    """
-    demand, corner = _number(record["demand"]), _number(record["corner_demand"])
-    if demand is None or (record["corner"] and corner is None):
-        return None
-    worse = min if record["sense"] == "at_least" else max
-    worst = demand if corner is None else worse(demand, corner)
-    error = _number(record["error"]) or 0.0
-    share = error / abs(demand) if demand else 0.0
-    return Judged(worst, abs(worst) * share if share > _ROUNDING else 0.0)
 
 
 def _case_text(path: Path, summary: Summary) -> str:
@@ -641,32 +427,3 @@ def _require(file: Path, record: Mapping[str, object], keys: Iterable[str], what
     missing = [key for key in keys if not isinstance(record, dict) or key not in record]
     if missing:
         raise ResultError(f"{file}: {what}lacks {', '.join(missing)}")
-
-
-def status_of(record: AnyCheck) -> str:
-    """Status of a record by its numbers: worst demand, error bar, limit and value of the waiver.
-
-    A missing number is never better than ``not_evaluated``.
-    """
-    one, limit, sense = judged(record), _number(record["limit"]), str(record["sense"])
-    if one is None or limit is None:
-        return "not_evaluated"
-    upper = one.towards(sense)
-    if not record["not_proven"] and _within(upper, limit, sense):
-        return "pass"
-    accepted = _number(record["waived_up_to"]) if record["waiver"] else None
-    covered = accepted is not None and _within(upper, accepted, sense)
-    return "waived" if covered else "fail"
-
-
-def _within(demand: float, limit: float, sense: str) -> bool:
-    """Whether a demand keeps a limit, up to the digits of a record."""
-    slack = _DIGITS * max(abs(demand), abs(limit))
-    return demand >= limit - slack if sense == "at_least" else demand <= limit + slack
-
-
-def _number(value: object) -> float | None:
-    """A finite number of a record."""
-    if isinstance(value, bool) or not isinstance(value, (int, float)) or not math.isfinite(value):
-        return None
-    return float(value)

@@ -20,9 +20,9 @@ from camwright.pipeline.base.files import (
     read_json,
     write_atomic,
 )
-from camwright.pipeline.results import run_reader
+from camwright.pipeline.results import check_records, run_reader
+from camwright.pipeline.results.check_records import CheckRecord, to_be_confirmed
 from camwright.pipeline.results.model_limits import MODEL_LIMITS, limitations
-from camwright.pipeline.results.run_reader import CheckRecord, to_be_confirmed
 
 NAME = "signoff.json"
 SIGNATURES = "signoff.intoto.jsonl"
@@ -64,9 +64,9 @@ def _record(path: Path, files: Mapping[str, str]) -> dict[str, Json]:
             "platform": summary["platform"],
             "versions": summary["versions"],
         },
-        **run_reader.judgement(checks, made["depth"]),
-        "binding": list(run_reader.binding_of(checks)),
-        "governing": run_reader.governing_id(checks),
+        **check_records.judgement(checks, made["depth"]),
+        "binding": list(check_records.binding_of(checks)),
+        "governing": check_records.governing_id(checks),
         "not_evaluated": [c["id"] for c in checks if c["status"] == "not_evaluated"],
         "not_proven": [c["id"] for c in checks if c["not_proven"]],
         "scope": {

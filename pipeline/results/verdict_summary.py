@@ -7,6 +7,14 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, NamedTuple
 
 from camwright.pipeline.base.units import used
+from camwright.pipeline.results.check_records import (
+    CheckRecord,
+    governing_id,
+    governing_of,
+    judged,
+    utilisation_of,
+    within_depth,
+)
 from camwright.pipeline.results.check_report import (
     corner,
     not_proven,
@@ -15,15 +23,7 @@ from camwright.pipeline.results.check_report import (
     reason_without_data,
     unit_text,
 )
-from camwright.pipeline.results.run_reader import (
-    CheckRecord,
-    governing_id,
-    governing_of,
-    judged,
-    load_end_words,
-    utilisation_of,
-    within_depth,
-)
+from camwright.pipeline.results.run_reader import load_end_words
 
 WIDTH = 100
 """Columns of a line."""

@@ -20,7 +20,7 @@ from camwright.pipeline.base.progress import SILENT, Progress
 from camwright.pipeline.base.tables import CAM_ANGLE, Column, Table, read_table, table
 from camwright.pipeline.base.units import in_unit
 from camwright.pipeline.case.case import Case
-from camwright.pipeline.results import run_reader
+from camwright.pipeline.results import check_records, run_reader
 from camwright.pipeline.results.run_records import cycle_columns
 from camwright.pipeline.results.trial import Trial
 from camwright.pipeline.solver import solve
@@ -131,7 +131,7 @@ def write_inspection(run: Path, part: RealPart, tolerance: float, folder: Path) 
         "nominal": _figures_of(run_reader.read_run(run).final.cycle),
         "measured": _figures_of(read_table(folder / "cycle.csv")),
         "verdict": part.trial.verdict,
-        "verdict_line": run_reader.verdict_line(run_reader.read_records(folder / "checks.json")),
+        "verdict_line": check_records.verdict_line(run_reader.read_records(folder / "checks.json")),
         "scope": part.trial.case.scope.as_record(),
         "binding": list(part.trial.binding),
     }

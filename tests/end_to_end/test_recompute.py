@@ -21,7 +21,7 @@ from camwright.pipeline.base.files import npz_bytes, sha256_of
 from camwright.pipeline.case.case_file import read_case
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.recomputation import MOST_ANGLES, Recomputation, recompute
-from camwright.pipeline.results import run_reader, signoff
+from camwright.pipeline.results import check_records, run_reader, signoff
 from camwright.pipeline.run import run_case
 from camwright.reports.sections import report
 
@@ -72,10 +72,10 @@ def check_changed(
 def judged_anew(run: Path, records: Any) -> None:
     file = run / "run.json"
     said = json.loads(file.read_text())
-    judged = run_reader.judgement(records, said["depth"])
+    judged = check_records.judgement(records, said["depth"])
     said |= {"verdict": judged["verdict"], "screen": judged["screen"]}
-    said["binding"] = list(run_reader.binding_of(records))
-    said["governing"] = run_reader.governing_id(records)
+    said["binding"] = list(check_records.binding_of(records))
+    said["governing"] = check_records.governing_id(records)
     file.write_text(json.dumps(said))
 
 

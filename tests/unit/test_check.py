@@ -23,7 +23,7 @@ from camwright.pipeline.checks.check import (
 from camwright.pipeline.checks.check import check as declare
 from camwright.pipeline.checks.part_data import data_key
 from camwright.pipeline.checks.registry import DECLARED
-from camwright.pipeline.results.run_reader import verdict_line
+from camwright.pipeline.results.check_records import verdict_line
 
 
 def at_most(demand, limit=2.0, **more) -> Check:

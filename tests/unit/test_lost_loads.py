@@ -24,8 +24,8 @@ from camwright.pipeline.cycle.crank_speed import study_of
 from camwright.pipeline.cycle.cycle import Cycle
 from camwright.pipeline.engine.crankshaft import StallError
 from camwright.pipeline.preview import preview_case
+from camwright.pipeline.results.check_records import status_of
 from camwright.pipeline.results.field_output import hardest
-from camwright.pipeline.results.run_reader import status_of
 from camwright.pipeline.results.run_records import headline
 from camwright.pipeline.results.trial import Trial
 from camwright.pipeline.results.verdict_summary import body_stresses

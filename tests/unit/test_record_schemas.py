@@ -16,7 +16,7 @@ from record_validation import schema_errors
 from camwright.geometry.errors import InputError
 from camwright.pipeline.case.case_file import read_case
 from camwright.pipeline.contact.tiers import Tier
-from camwright.pipeline.results import run_reader
+from camwright.pipeline.results import check_records, run_reader
 from camwright.pipeline.results.record_schemas import NAMES, record_schema
 from camwright.pipeline.run import run_case
 from camwright.pipeline.studies.valve_train import valve_record
@@ -88,8 +88,8 @@ def test_keys_and_words_are_those_of_the_modules() -> None:
     check = common()["check"]
     record = made_check("stress", 1.0, 2.0).as_record()
     assert set(check["required"]) <= set(record) <= set(check["properties"])
-    assert set(run_reader.CheckRecordOfAnyCheck.__annotations__) <= set(check["required"])
-    assert common()["status"]["enum"] == list(run_reader.STATUSES)
+    assert set(check_records.CheckRecordOfAnyCheck.__annotations__) <= set(check["required"])
+    assert common()["status"]["enum"] == list(check_records.STATUSES)
     assert common()["depth"]["enum"] == [tier.word for tier in Tier]
     assert set(run_reader.HEADLINE) <= set(common()["headline"]["required"])
     run = record_schema("run")
@@ -176,7 +176,7 @@ def document() -> dict[str, Any]:
     return {
         "case": "small",
         "input_sha256": "5f" * 32,
-        **run_reader.judgement(made, "preview"),
+        **check_records.judgement(made, "preview"),
         "to_be_confirmed": [],
         "binding": ["life", "jump"],
         "governing": "jump",

@@ -27,7 +27,7 @@ from camwright.geometry.lift import Lift
 from camwright.pipeline.base.files import json_text
 from camwright.pipeline.base.tables import CAM_ANGLE, LOAD_CASE, Column, read_table, table
 from camwright.pipeline.contact.tiers import Tier
-from camwright.pipeline.results import run_reader, signoff
+from camwright.pipeline.results import check_records, run_reader, signoff
 from camwright.pipeline.results.drawn_cam import drawn_cam
 from camwright.pipeline.results.run_folder import RunFolder
 from camwright.pipeline.results.run_records import column_table
@@ -201,7 +201,7 @@ def test_a_final_trial_that_was_not_solved_is_refused(tmp_path: Path, final: int
 
 
 def test_the_line_of_the_verdict_counts_its_reasons() -> None:
-    line = run_reader.verdict_line
+    line = check_records.verdict_line
     good = check(to_be_confirmed=["a", "b"])
     waived = check("waived", id="w", to_be_confirmed=["b", "c"])
     assert line([check()]) == "PASS"
@@ -215,7 +215,7 @@ def test_the_line_of_the_verdict_counts_its_reasons() -> None:
         " 2 values to be confirmed"
     )
     assert line([optional]) == line([]) == "FAIL: no check decides"
-    assert run_reader.to_be_confirmed([good, waived, optional]) == ["a", "b", "c"]
+    assert check_records.to_be_confirmed([good, waived, optional]) == ["a", "b", "c"]
 
 
 def test_an_optional_check_does_not_fail_the_verdict(tmp_path: Path) -> None:
@@ -295,7 +295,7 @@ def test_a_pass_at_its_limit_is_read(tmp_path: Path, change: dict[str, Any]) -> 
     assert record["status"] == "pass"
 
 
-def _read_with(run: Path, record: dict[str, Any]) -> tuple[run_reader.CheckRecord, ...]:
+def _read_with(run: Path, record: dict[str, Any]) -> tuple[check_records.CheckRecord, ...]:
     """Checks of a run folder whose record of the checks was edited."""
     write_run(run)
     (run / "trial_1" / "6_checks.json").write_text(json.dumps([record]))

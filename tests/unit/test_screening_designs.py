@@ -16,7 +16,7 @@ from camwright.pipeline.case.case_values import quantity_of, replaced, value_of
 from camwright.pipeline.checks.check import Check
 from camwright.pipeline.checks.registry import CHECKS
 from camwright.pipeline.preview import preview_case
-from camwright.pipeline.results.run_reader import governing_id
+from camwright.pipeline.results.check_records import governing_id
 from camwright.pipeline.screening import design_screening
 from camwright.pipeline.screening.design_arrays import Designs, TorqueOfSpeed
 from camwright.pipeline.screening.design_factors import ARRAYS, groups

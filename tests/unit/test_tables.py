@@ -6,7 +6,7 @@ import math
 
 import pytest
 
-from camwright.pipeline.results.run_reader import governing_id, utilisation_of
+from camwright.pipeline.results.check_records import governing_id, utilisation_of
 from camwright.reports import report_tables, verification_tables
 from camwright.reports.verdict_text import governing, governing_load_case, verdict
 

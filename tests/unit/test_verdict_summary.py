@@ -16,8 +16,9 @@ from camwright.pipeline.case.case_file import read_case
 from camwright.pipeline.checks.registry import DECLARED
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.preview import preview_case
+from camwright.pipeline.results.check_records import judgement
 from camwright.pipeline.results.check_report import table
-from camwright.pipeline.results.run_reader import judgement, read_verdict
+from camwright.pipeline.results.run_reader import read_verdict
 from camwright.pipeline.results.verdict_summary import (
     LINES,
     WIDTH,

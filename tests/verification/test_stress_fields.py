@@ -37,10 +37,11 @@ from camwright.pipeline.results.field_output import (
     FIELDS,
     VIEW,
     Shown,
+    bore_reach,
     shown_positions,
+    turn_view,
     write_stress,
 )
-from camwright.pipeline.results.recorded_turn import bore_reach, turn_view
 from camwright.pipeline.results.stress_fields import TurnFields
 
 POSITIONS = 12

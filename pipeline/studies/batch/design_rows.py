@@ -23,7 +23,7 @@ from camwright.pipeline.case.case_file import with_values
 from camwright.pipeline.case.load_case_torque import engine_torques
 from camwright.pipeline.checks.check import screen
 from camwright.pipeline.contact.tiers import Tier
-from camwright.pipeline.results.run_reader import governing_id
+from camwright.pipeline.results.check_records import governing_id
 from camwright.pipeline.results.trial import Trial
 from camwright.pipeline.studies.batch.case_template import Template, UnpackedTemplates
 from camwright.pipeline.studies.batch.dataset import (
