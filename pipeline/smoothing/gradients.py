@@ -39,6 +39,11 @@ class Point(NamedTuple):
     variables: DesignVariables
 
 
+def values_of(function: Function, at: Point) -> Mapping[str, Array | Mean]:
+    """Values of a function of the lift, by name."""
+    return function(lift_jet(at.energy, at.variables), at.highest, at.variables)
+
+
 def differentiated(function: Function, at: Point, freed: bool) -> dict[str, Gradient]:
     """Values of a function of the lift with all derivatives, by name.
 
@@ -51,10 +56,10 @@ def differentiated(function: Function, at: Point, freed: bool) -> dict[str, Grad
     ----------
     Squire and Trapp, SIAM Review 40 (1998) 110: the complex step has no cancellation.
     """
-    slopes = [_values(function, stepped) for stepped in _steps(at, 1j * _STEP, freed)]
+    slopes = [values_of(function, stepped) for stepped in _steps(at, 1j * _STEP, freed)]
     orders = len(at.energy)
     gradients = {}
-    for name, value in _values(function, at).items():
+    for name, value in values_of(function, at).items():
         terms = np.asarray(_terms(value), dtype=float)
         sides = [
             np.broadcast_to(np.imag(_terms(slope[name])) / _STEP, terms.shape) for slope in slopes
@@ -81,7 +86,7 @@ def second_derivatives(
         """Derivatives (len(places), n) in some of the q directions."""
         sides = []
         for place in places:
-            values = _values(function, _step(point, place, 1j * _STEP))
+            values = values_of(function, _step(point, place, 1j * _STEP))
             parts = (weight * np.imag(_terms(values[name])) for name, weight in weights.items())
             sides.append(
                 sum(np.sum(each, axis=tuple(range(each.ndim - 1))) for each in parts) / _STEP
@@ -101,10 +106,6 @@ def second_derivatives(
         up, down = (slopes(_step(at, k, side * step), rest) for side in (1.0, -1.0))
         second[k, rest] = second[rest, k] = (up - down) / (2.0 * step)
     return second
-
-
-def _values(function: Function, at: Point) -> Mapping[str, Array | Mean]:
-    return function(lift_jet(at.energy, at.variables), at.highest, at.variables)
 
 
 def _steps(at: Point, step: complex, freed: bool) -> list[Point]:

@@ -14,8 +14,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from camwright.geometry.arrays import Array
+from camwright.pipeline.smoothing.cam_state import Mean
 from camwright.pipeline.smoothing.cone_program import ConeSolution, Linear
-from camwright.pipeline.smoothing.gradients import differentiated, second_derivatives
+from camwright.pipeline.smoothing.gradients import second_derivatives, values_of
 from camwright.pipeline.smoothing.linear_model import Model, State, Summit
 from camwright.pipeline.smoothing.objective import torque_ripple
 from camwright.pipeline.smoothing.sampled_problem import Search
@@ -97,7 +98,7 @@ class Lagrangian:
 
 
 def lagrangian_curvature(
-    search: Search, state: State, summit: Summit, model: Model, program: ConeSolution
+    search: Search, state: State, here: Model, model: Model, program: ConeSolution
 ) -> Array:
     """Second derivatives (size, size) of the Lagrangian by the scaled unknowns, at a state.
 
@@ -107,7 +108,7 @@ def lagrangian_curvature(
     Parameters
     ----------
     state : State            after the step of the program
-    summit : Summit          there
+    here : Model             there
     model : Model            of the program; its rows have the multipliers
     program : ConeSolution
     """
@@ -119,9 +120,9 @@ def lagrangian_curvature(
     ]
     pointwise = [pair for pair in priced if not pair[0].mean and (pair[0].scenario >= 0).all()]
     means = [pair for pair in priced if pair[0].mean]
-    total += _of_rows(search, state, summit, pointwise)
-    total += _of_means(search, state, summit, means)
-    return total + _of_ripples(search, state, summit, model, program)
+    total += _of_rows(search, state, here.summit, pointwise)
+    total += _of_means(search, state, here, means)
+    return total + _of_ripples(search, state, here.summit, model, program)
 
 
 def _of_rows(
@@ -146,26 +147,28 @@ def _of_rows(
 
 
 def _of_means(
-    search: Search, state: State, summit: Summit, priced: Sequence[tuple[Linear, Array]]
+    search: Search, state: State, here: Model, priced: Sequence[tuple[Linear, Array]]
 ) -> Array:
     """Of limits and costs from means over the turn."""
+    summit = here.summit
     total = np.zeros((search.size, search.size))
     by_name = {name: np.zeros(rows.size) for name, rows in state.means.items()}
     for limit, price in priced:
         by_name[limit.name][limit.scenario] += price
     for names in search.families(limit.name for limit, _ in priced):
         rows = {name: by_name[name] > 0.0 for name in names}
-        function, at, places = search.of_means(state, summit, rows)
+        turn = search.of_means(state, summit, rows)
         weights = {}
-        for name, gradient in differentiated(function, at, search.freed).items():
-            mean = gradient.mean
-            if mean is None:
+        for name, mean in values_of(turn.function, turn.at).items():
+            if not isinstance(mean, Mean):
                 continue
-            price = by_name[name][places[name]]
-            slopes = search.means_slopes(gradient, state, summit)
+            price = by_name[name][turn.places[name]]
+            slopes = here.slopes_of(name, turn.scenarios)
+            if slopes is None:
+                slopes = search.means_slopes(turn, state, summit, name)
             total += slopes.T @ mean.bend(price) @ slopes
             weights[name] = (price @ mean.slopes / search.every.size)[:, None]
-        second = second_derivatives(function, at, search.freed, weights)
+        second = second_derivatives(turn.function, turn.at, search.freed, weights)
         total += _assembled(search, state, summit, second, search.every)
     return total
 

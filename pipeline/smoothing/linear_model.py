@@ -66,10 +66,25 @@ class Summit(NamedTuple):
 
 
 class Model(NamedTuple):
-    """Models at a state: ripples, rows of limits; Hessian and slope of the jerk term."""
+    """Models at a state: ripples, rows of limits; Hessian and slope of the jerk term.
+
+    means: by limit the scenarios (s,) and the derivatives (m, size) of their means over the turn by
+    the scaled unknowns.
+    """
 
     summit: Summit
     norms: list[Norm]
     limits: list[Linear]
+    means: Mapping[str, tuple[NDArray[np.intp], Array]]
     curvature: Array
     slope: Array
+
+    def slopes_of(self, name: str, scenarios: NDArray[np.intp]) -> Array | None:
+        """Derivatives of the means of a limit in some scenarios, rising; None: not in the model."""
+        if name not in self.means:
+            return None
+        known, slopes = self.means[name]
+        if not np.isin(scenarios, known).all():
+            return None
+        by_scenario = slopes.reshape(-1, known.size, slopes.shape[1])
+        return by_scenario[:, np.searchsorted(known, scenarios)].reshape(-1, slopes.shape[1])

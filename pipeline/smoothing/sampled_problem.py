@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,7 +18,6 @@ from camwright.pipeline.smoothing.cone_program import Linear, Norm
 from camwright.pipeline.smoothing.constraints import (
     SHAPE,
     delivered_torque,
-    load_utilisations,
     shape_utilisations,
     utilisations_of,
 )
@@ -48,6 +48,20 @@ _NEAR, _BEHIND = 0.05, 0.01
 _RIPPLE_BEHIND = 0.005  # of the engine's ripple: the same for the ripples of the scenarios
 _PEAKS = 0.1  # of the range of the energy, below its maximum, of peaks that may become the highest
 _FARTHEST = 1.0  # greatest step of a coefficient, of the scale
+
+
+class Means(NamedTuple):
+    """Limits and costs from means over the turn in some scenarios.
+
+    function, at      of the terms by scenario and point, and its arguments
+    scenarios         numbers of the scenarios
+    places : mapping  numbers of the utilisations that the function gives, by limit
+    """
+
+    function: Function
+    at: Point
+    scenarios: NDArray[np.intp]
+    places: Mapping[str, NDArray[np.intp]]
 
 
 class Search:
@@ -204,33 +218,28 @@ class Search:
         """Limits on the shape of the cam."""
         return partial(_shape, self.problem.ratings, names)
 
-    def loads(self, scenario: Scenario, names: frozenset[str] | None = None) -> Function:
-        """Limits on the loads of stacked scenarios."""
-        return partial(_loads, scenario, self.problem.ratings, names)
-
     def function(
         self, names: frozenset[str], variables: DesignVariables, take: Callable[[Array], Array]
     ) -> Function:
-        """Limits of the shape, limits of the loads, or costs, of part of the stacked scenarios."""
+        """Limits of the shape, or those of the loads and costs, of part of the scenarios."""
         if names <= SHAPE_LIMITS:
             return self.shape(names)
         stack = taken(self.stack(self.grid, variables), take)
-        if names <= self.costs:
-            return partial(self._costs, names, stack, take(self._weights))
-        return self.loads(stack, names)
+        return partial(self._loads, names, stack, take(self._weights))
 
-    def _costs(
+    def _loads(
         self, names: frozenset[str], stack: Scenario, weights: Array, jet: Jet, top: float,
         variables: DesignVariables,
     ) -> Mapping[str, Array | Mean]:  # fmt: skip
-        """Costs of those names, of stacked scenarios of these weights (s, 1)."""
+        """Limits and costs of those names, of stacked scenarios of these weights (s, 1)."""
         loads = loaded(jet, top, variables, self.problem.ratings, stack)
-        return self._charged(names, weights, loads, variables)
+        charged = self._charged(names, weights, loads, variables)
+        return {**utilisations_of(loads, names), **charged}
 
     def _charged(
         self, names: frozenset[str], weights: Array, loads: Loads, variables: DesignVariables
     ) -> Mapping[str, Array | Mean]:
-        """As `_costs`, of a loaded cam."""
+        """Costs of those names, of a cam in stacked scenarios of these weights (s, 1)."""
         objective = tuple(each for each in self.problem.objective if each.term.key in names)
         return costs(objective, self._scale, weights, loads, variables)
 
@@ -386,14 +395,13 @@ class Search:
         at = self.point(state, 0.0, self.every)
         gradient = differentiated(_jerk, at, self.freed)["jerk"]
         jerk = self._jerk_scale * self._dense(gradient.local, gradient.shared, state, summit)
-        limits = [
-            *self.rows(state, summit, self.near(state)),
-            *self.means(state, summit, self.near_means(state)),
-        ]
+        rows = self.rows(state, summit, self.near(state))
+        means, slopes = self.means(state, summit, self.near_means(state))
         return Model(
             summit=summit,
             norms=self.norms(state, summit, self._near_ripples(state)),
-            limits=[*limits, *self._least_energy(state), *self._lower_peaks(state)],
+            limits=[*rows, *means, *self._least_energy(state), *self._lower_peaks(state)],
+            means=slopes,
             curvature=jerk.T @ jerk,
             slope=jerk.T @ (self._jerk_scale * gradient.terms),
         )
@@ -500,48 +508,48 @@ class Search:
         return models
 
     def families(self, names: Iterable[str]) -> list[frozenset[str]]:
-        """Names of limits on the shape, of limits on the loads, of costs; without empty ones."""
+        """Names of limits on the shape; of limits on the loads and costs; without empty ones."""
         every = frozenset(names)
-        shape, charged = every & SHAPE_LIMITS, every & self.costs
-        return [each for each in (shape, every - shape - charged, charged) if each]
+        return [each for each in (every & SHAPE_LIMITS, every - SHAPE_LIMITS) if each]
 
     def means(
         self, state: State, summit: Summit, wanted: Mapping[str, NDArray[np.bool_]]
-    ) -> list[Linear]:
-        """Linear models of the wanted utilisations from means, (r,) by limit."""
-        models: list[Linear] = []
+    ) -> tuple[list[Linear], dict[str, tuple[NDArray[np.intp], Array]]]:
+        """Linear models of the wanted utilisations from means, (r,) by limit; see `Model.means`."""
+        models, slopes = list[Linear](), {}
         for names in self.families(name for name, rows in wanted.items() if rows.any()):
-            rows = {name: wanted[name] for name in names}
-            function, at, places = self.of_means(state, summit, rows)
-            for name, gradient in differentiated(function, at, self.freed).items():
+            turn = self.of_means(state, summit, {name: wanted[name] for name in names})
+            for name, gradient in differentiated(turn.function, turn.at, self.freed).items():
                 if gradient.mean is None:
                     continue
-                entries = gradient.mean.slopes @ self.means_slopes(gradient, state, summit)
-                for place, k in enumerate(places[name]):
-                    if wanted[name][k]:
-                        models.append(
-                            self._mean(name, state, entries[[place]], places[name][[place]])
-                        )
-        return models
+                own = self._means_slopes(gradient, state, summit)
+                slopes[name] = turn.scenarios, own
+                entries, numbers = gradient.mean.slopes @ own, turn.places[name]
+                models += [
+                    self._mean(name, state, entries[[place]], numbers[[place]])
+                    for place in np.flatnonzero(wanted[name][numbers])
+                ]
+        return models, slopes
 
     def of_means(
         self, state: State, summit: Summit, rows: Mapping[str, NDArray[np.bool_]]
-    ) -> tuple[Function, Point, Mapping[str, NDArray[np.intp]]]:
-        """Limits whose utilisations (r,) are wanted, in the scenarios they need, at the points.
-
-        Returns
-        -------
-        function, point   of the limits, and its arguments
-        places : mapping  numbers of the utilisations that the function gives, by limit
-        """
+    ) -> Means:
+        """Limits and costs whose utilisations (r,) are wanted, in the scenarios they need."""
         needed = [state.members[name][chosen].any(axis=0) for name, chosen in rows.items()]
-        taken = np.flatnonzero(np.isin(self._corners, self._corners[np.any(needed, axis=0)]))
-        function = self.function(frozenset(rows), state.variables, self.turns(taken))
-        places = {name: np.flatnonzero(state.members[name][:, taken].any(axis=1)) for name in rows}
-        return function, self.point(state, summit.lift, self.every), places
+        own = np.flatnonzero(np.isin(self._corners, self._corners[np.any(needed, axis=0)]))
+        return Means(
+            self.function(frozenset(rows), state.variables, self.turns(own)),
+            self.point(state, summit.lift, self.every),
+            own,
+            {name: np.flatnonzero(state.members[name][:, own].any(axis=1)) for name in rows},
+        )
 
-    def means_slopes(self, gradient: Gradient, state: State, summit: Summit) -> Array:
-        """Derivatives (m, size) of means over the turn by the scaled unknowns."""
+    def means_slopes(self, means: Means, state: State, summit: Summit, name: str) -> Array:
+        """Derivatives (m, size) of the means of a limit by the scaled unknowns."""
+        gradient = differentiated(means.function, means.at, self.freed)[name]
+        return self._means_slopes(gradient, state, summit)
+
+    def _means_slopes(self, gradient: Gradient, state: State, summit: Summit) -> Array:
         slopes = np.zeros((gradient.terms.shape[0], self.size))
         for each, local in zip(slopes, np.moveaxis(gradient.local, 1, 0), strict=True):
             np.add.at(each, self.turn.columns, self.scale * self.turn.chained(local))
@@ -636,10 +644,3 @@ def _shape(
     variables: DesignVariables,
 ) -> Mapping[str, Array | Mean]:  # fmt: skip
     return shape_utilisations(jet, variables, ratings, names)
-
-
-def _loads(
-    scenario: Scenario, ratings: Ratings, names: frozenset[str] | None, jet: Jet, top: float,
-    variables: DesignVariables,
-) -> Mapping[str, Array | Mean]:  # fmt: skip
-    return load_utilisations(jet, top, variables, ratings, scenario, names)

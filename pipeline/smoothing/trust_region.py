@@ -78,7 +78,7 @@ def descended(
             return Descent(state, before, priced, step, np.inf, penalty)
         model = search.model(state)
         if before is not None and priced is not None:
-            bend = lagrangian_curvature(search, state, model.summit, before, priced)
+            bend = lagrangian_curvature(search, state, model, before, priced)
             model = model._replace(curvature=_convex(model.curvature + bend))
         proven, gain = False, np.inf
         while True:
