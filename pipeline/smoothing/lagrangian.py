@@ -18,13 +18,12 @@ from camwright.pipeline.smoothing.cam_state import Mean
 from camwright.pipeline.smoothing.cone_program import ConeSolution, Linear
 from camwright.pipeline.smoothing.gradients import second_derivatives, values_of
 from camwright.pipeline.smoothing.linear_model import Model, State, Summit
-from camwright.pipeline.smoothing.objective import torque_ripple
+from camwright.pipeline.smoothing.objective import residuals_slope, torque_ripple
 from camwright.pipeline.smoothing.sampled_problem import Search
 from camwright.pipeline.smoothing.scenario import DesignVariables
 from camwright.pipeline.smoothing.synthesis_problem import (
     Problem,
     ripple_of,
-    ripple_slope,
     torque_slope,
 )
 
@@ -184,7 +183,9 @@ def _of_ripples(
         item = problem.scenarios[search.weighted[norm.number]]
         values = left[norm.number]
         if objective > _PRICE_LEAST:
-            slope[norm.number] += objective * item.weight * ripple_slope(problem, item, values)
+            slope[norm.number] += (
+                objective * item.weight * residuals_slope(problem.objective, item, values)
+            )
         if ceiling > _PRICE_LEAST:
             slope[norm.number] += ceiling * torque_slope(item, values)
     if not slope.any():

@@ -50,12 +50,14 @@ class Residual:
     reference : str    value at which it is 1
     columns : callable   scenario, columns of crank torque (n, w), N m -> columns (m, w), of the
                          norm of the quantity over its reference
+    transposed : callable   scenario, (m,) -> (n,): the transposed linear map
     """
 
     key: str
     words: str
     reference: str
     columns: Callable[[Scenario, Array], Array] = field(repr=False)
+    transposed: Callable[[Scenario, Array], Array] = field(repr=False)
 
 
 class Turning(NamedTuple):
@@ -116,14 +118,19 @@ def harmonics(orders: Iterable[int]) -> Residual:
     """
     chosen = tuple(orders)
 
-    def columns(item: Scenario, values: Array) -> Array:
-        count = values.shape[0]
+    def waves(item: Scenario, count: int) -> Array:
         resolved = np.array([[order] for order in chosen if 2 * order < count]).reshape(-1, 1)
         angle = resolved * np.arange(count) * (FULL_TURN / count)
-        waves = np.sqrt(2.0) / count * np.concatenate([np.cos(angle), np.sin(angle)])
-        return np.asarray(waves @ values / np.std(item.torque))
+        scale = np.sqrt(2.0) / (count * np.std(item.torque))
+        return np.asarray(scale * np.concatenate([np.cos(angle), np.sin(angle)]))
 
-    return Residual("harmonic", "chosen harmonics of the torque", _ENGINE, columns)
+    return Residual(
+        "harmonic",
+        "chosen harmonics of the torque",
+        _ENGINE,
+        lambda item, values: waves(item, values.shape[0]) @ values,
+        lambda item, level: level @ waves(item, item.torque.size),
+    )
 
 
 def torque_integral(values: Array) -> Array:
@@ -159,8 +166,15 @@ _ENGINE = "torque ripple of the engine"
 _SWING = "energy swing of the engine torque in the design load case"
 _FORCE = "greatest engine torque of the design load case over the prime radius, at the cam"
 
-TORQUE = Residual("torque", "torque ripple", _ENGINE, torque_ripple)
-SPEED = Residual("speed", "speed ripple", "speed ripple of the engine", _speed_ripple)
+# The mean is removed by a symmetric map; integration over a turn is antisymmetric.
+TORQUE = Residual("torque", "torque ripple", _ENGINE, torque_ripple, torque_ripple)
+SPEED = Residual(
+    "speed",
+    "speed ripple",
+    "speed ripple of the engine",
+    _speed_ripple,
+    lambda item, level: -_speed_ripple(item, level),
+)
 LOSS = Cost(
     "loss", "mean loss of guides and roller bearing or face, work per cam turn", _SWING, _loss
 )
@@ -228,6 +242,17 @@ def residuals(objective: Objective, item: Scenario, values: Array) -> Array:
         if isinstance(each.term, Residual)
     ]
     return np.concatenate(parts) if parts else np.zeros((1, *values.shape[1:]))
+
+
+def residuals_slope(objective: Objective, item: Scenario, values: Array) -> Array:
+    """Derivative (n,) of the norm of `residuals` by the crank torque (n,), N m."""
+    slope, square = np.zeros_like(values), 0.0
+    for each in objective:
+        if isinstance(each.term, Residual):
+            level = each.term.columns(item, values)
+            slope += each.weight * each.term.transposed(item, level)
+            square += each.weight * float(level @ level)
+    return slope / np.sqrt(square) if square > 0.0 else slope
 
 
 def costs(

@@ -181,16 +181,6 @@ def ripple_of(problem: Problem, item: Scenario, values: Array) -> Array:
     return residuals(problem.objective, item, values)
 
 
-def ripple_slope(problem: Problem, item: Scenario, values: Array) -> Array:
-    """Derivative (n,) of the norm of `ripple_of` by the crank torque (n,)."""
-    level = ripple_of(problem, item, values)
-    size = float(np.linalg.norm(level))
-    if size == 0.0:
-        return np.zeros_like(values)
-    # the residuals are linear in the torque
-    return ripple_of(problem, item, np.eye(values.size)).T @ level / size
-
-
 def torque_slope(item: Scenario, values: Array) -> Array:
     """Derivative (n,) of the norm of `torque_ripple` by the crank torque (n,)."""
     level = torque_ripple(item, values)

@@ -1,7 +1,6 @@
 """Terms of the objective of a synthesis against the solved cycles of the same cam."""
 
 from dataclasses import replace
-from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -31,6 +30,7 @@ from camwright.pipeline.smoothing.objective import (
     harmonics,
     objective_of,
     residuals,
+    residuals_slope,
 )
 from camwright.pipeline.smoothing.problem_setup import problem_of
 from camwright.pipeline.smoothing.sampled_problem import Search
@@ -116,6 +116,25 @@ def peak_force(case):
     return 2.0 * float(np.abs(torque).max()) / case.cam.prime_radius
 
 
+@pytest.mark.parametrize("count", [24, 25])
+def test_slope_of_the_residuals_matches_differences(count):
+    random = np.random.default_rng(count)
+    torque, left = random.normal(size=(2, count))
+    item = Scenario("made", 80.0, torque, 0.2, 0.05, 0.03, 0.1, 0.1)
+    objective = objective_of({"torque": 0.7, "speed": 1.3, "harmonic": 0.4}, (1, 3))
+    step = 1e-6
+    ends = [
+        [np.linalg.norm(residuals(objective, item, left + side * step * each)) for side in (1, -1)]
+        for each in np.eye(count)
+    ]
+    differences = [(up - down) / (2.0 * step) for up, down in ends]
+    # central differences: round-off 1e-16/1e-6, and the step squared
+    np.testing.assert_allclose(
+        residuals_slope(objective, item, left), differences, rtol=0, atol=1e-9
+    )
+    assert not residuals_slope(objective, item, np.zeros(count)).any()
+
+
 def test_loss_is_that_of_the_power_balance_of_the_cycle(case, solved):
     """Mean cam torque: spring and inertia give back what they take. Bearing by its own spin."""
     idle = solved.cycles[0]
@@ -194,7 +213,12 @@ def small(friction, weights, **changes):
 def costs_of(problem):
     """Costs of the first scenario of a problem, as a function that is differentiated."""
     item = replace(problem.scenarios[0], correction=Correction.none(problem.points))
-    return partial(costs, problem.objective, problem.scale, problem.ratings, item, item.weight)
+
+    def function(jet, top, variables):
+        loads = loaded(jet, top, variables, problem.ratings, item)
+        return costs(problem.objective, problem.scale, item.weight, loads, variables)
+
+    return function
 
 
 def cost_of(problem, design):
