@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -56,20 +57,30 @@ def basis_matrix(theta: ArrayLike, count: int, derivative: int = 0) -> scipy.spa
 
 def basis_rows(theta: ArrayLike, count: int, derivative: int = 0) -> tuple[Array, NDArray[np.intp]]:
     """Non-zero entries of each row of `basis_matrix`, (n, 6), and their columns."""
-    if not count >= LEAST_COEFFICIENTS:
-        raise InputError("smoothing.coefficients", count, f">= {LEAST_COEFFICIENTS}")
     if derivative not in range(DEGREE):
         raise InputError("derivative", derivative, "0, 1, 2, 3 or 4")
+    values, columns = _rows(theta, count, (derivative,))
+    return values[0], columns
+
+
+def _rows(
+    theta: ArrayLike, count: int, derivatives: Sequence[int]
+) -> tuple[Array, NDArray[np.intp]]:
+    """As `basis_rows`, of several derivatives (d,): (d, n, 6)."""
+    if not count >= LEAST_COEFFICIENTS:
+        raise InputError("smoothing.coefficients", count, f">= {LEAST_COEFFICIENTS}")
     angle = np.mod(finite("theta", theta), FULL_TURN)
     part = FULL_TURN / count
     place = np.minimum((angle / part).astype(np.intp), count - 1)
-    step = angle / part - place
-    values = np.zeros((angle.size, DEGREE + 1))
-    for power in range(derivative, DEGREE + 1):
-        front = np.prod(np.arange(power - derivative + 1, power + 1))
-        values += front * step[:, None] ** (power - derivative) * _pieces()[:, power]
-    columns = np.mod(place[:, None] - np.arange(DEGREE + 1), count)
-    return values / part**derivative, columns
+    step = (angle / part - place)[:, None]
+    powers = [step**power for power in range(DEGREE + 1 - min(derivatives))]
+    values = np.zeros((len(derivatives), angle.size, DEGREE + 1))
+    for own, derivative in zip(values, derivatives, strict=True):
+        for power in range(derivative, DEGREE + 1):
+            front = np.prod(np.arange(power - derivative + 1, power + 1))
+            own += front * powers[power - derivative] * _pieces()[:, power]
+        own /= part**derivative
+    return values, np.mod(place[:, None] - np.arange(DEGREE + 1), count)
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,8 +94,8 @@ class Grid:
     @classmethod
     def at(cls, theta: Array, count: int) -> Grid:
         """Grid of `count` splines at cam angles theta (m,), rad."""
-        rows = [basis_rows(theta, count, order) for order in range(ORDERS)]
-        return cls(theta, rows[0][1], np.stack([values for values, _ in rows]))
+        entries, columns = _rows(theta, count, range(ORDERS))
+        return cls(theta, columns, entries)
 
     def energy(self, coefficients: Array) -> tuple[Array, ...]:
         """E, E', E'', E''' at the angles, J/rad^k, each (m,)."""
