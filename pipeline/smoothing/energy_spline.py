@@ -75,11 +75,11 @@ def _rows(
     step = (angle / part - place)[:, None]
     powers = [step**power for power in range(DEGREE + 1 - min(derivatives))]
     values = np.zeros((len(derivatives), angle.size, DEGREE + 1))
-    for own, derivative in zip(values, derivatives, strict=True):
+    for k, derivative in enumerate(derivatives):
         for power in range(derivative, DEGREE + 1):
             front = np.prod(np.arange(power - derivative + 1, power + 1))
-            own += front * powers[power - derivative] * _pieces()[:, power]
-        own /= part**derivative
+            values[k] += front * powers[power - derivative] * _pieces()[:, power]
+        values[k] /= part**derivative
     return values, np.mod(place[:, None] - np.arange(DEGREE + 1), count)
 
 
