@@ -37,6 +37,7 @@ from camwright.pipeline.follower.follower_forces import (
     follower_loads,
     torque_on_cam,
 )
+from camwright.pipeline.torque.motor_line import MotorLine
 from camwright.pipeline.torque.period import FOUR_STROKE
 from camwright.pipeline.torque.torque import Torque
 
@@ -109,7 +110,7 @@ def speed_study(
     *,
     gear_ratio: float = 2.0,
     mechanism_inertia: float = 0.0,
-    load: Load = Load(),  # noqa: B008 - frozen
+    load: Load | MotorLine = Load(),  # noqa: B008 - frozen
     span: float = FOUR_STROKE.angle,
 ) -> SpeedStudy:
     """Crank speed without the mechanism, with its inertia alone, and with the cam.
@@ -144,7 +145,7 @@ def _motion_with_cam(
     pitch: FollowerPath,
     system: FollowerSystem,
     gear_ratio: float,
-    load: Load,
+    load: Load | MotorLine,
     span: float,
 ) -> CrankMotion:
     """Motion of the crank with the cam; `mounted` includes the rotating parts of the mechanism."""
@@ -179,7 +180,7 @@ def study_of(
         replace(machine.system, rubbing=rubbing),
         gear_ratio=machine.gear_ratio,
         mechanism_inertia=shaft.mechanism_inertia,
-        load=Load(shaft.load_exponent),
+        load=shaft.load,
         span=torque.span,
     )
 
@@ -259,7 +260,7 @@ def _motions(
         If the engine stalls, or its torque is constant.
     """
     values, inertia = _driving(torque, shaft.inertia)
-    speed, load = machine.speed, Load(shaft.load_exponent)
+    speed, load = machine.speed, shaft.load
     before = crank_motion(values, inertia, speed, load=load, span=torque.span)
     if not np.ptp(before.net_torque) > 0.0:
         raise InputError("engine_torque", "constant", "a torque that varies over the cycle")

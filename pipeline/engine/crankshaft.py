@@ -16,6 +16,7 @@ from camwright.geometry.errors import CamError, InputError
 from camwright.pipeline.base.quantities import In, Part
 from camwright.pipeline.base.units import shown
 from camwright.pipeline.engine.cylinder import CYCLE_ANGLE
+from camwright.pipeline.torque.motor_line import MotorLine, MotorPoint
 
 SETTLED = 1e-13  # change of the speed between two passes over its mean
 PASSES_MAX = 200
@@ -41,7 +42,13 @@ class Crankshaft(Part):
 
     `inertia` is that of the engine with its flywheel, reciprocating masses left out where the
     engine states them; `mechanism_inertia` that of the turning parts of the mechanism, at the
-    crank. The load follows the speed to the power of `load_exponent`.
+    crank. The load follows the speed to the power of `load_exponent`; with a motor line the motor
+    follows its line instead, and the mean speed with it.
+
+    Raises
+    ------
+    InputError
+        If a value is out of its bounds; as `MotorLine`.
     """
 
     table: ClassVar[str] = "crankshaft"
@@ -50,7 +57,20 @@ class Crankshaft(Part):
     mechanism_inertia: Annotated[float, In("kg m^2", at_least=0, at_most=1e6)] = 0.0
     load_exponent: Annotated[float, In(at_least=0, at_most=4)] = 0.0
     measured_speed_std: Annotated[float, In("rad/s", above=0, at_most=1e3)] | None = None
+    motor_line: tuple[MotorPoint, ...] = ()
     source: str = ""
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if self.motor_line and self.load_exponent:
+            limit = "left out beside crankshaft.motor_line"
+            raise InputError("crankshaft.load_exponent", self.load_exponent, limit)
+        _ = self.load
+
+    @property
+    def load(self) -> Load | MotorLine:
+        """What balances the torque: a load that follows the speed, or a motor on its line."""
+        return MotorLine(self.motor_line) if self.motor_line else Load(self.load_exponent)
 
 
 @dataclass(frozen=True, eq=False)
@@ -188,7 +208,7 @@ def crank_motion(
     inertia: Inertia,
     mean_speed: float,
     *,
-    load: Load = Load(),
+    load: Load | MotorLine = Load(),
     mechanism: MechanismTorque | None = None,
     span: float = CYCLE_ANGLE,
 ) -> CrankMotion:
@@ -197,7 +217,8 @@ def crank_motion(
     In the form of work and kinetic energy, d(J omega^2 / 2)/dtheta = T, the speed at each angle
     follows from the integral of the torques, and the cycle closes when their mean is zero, which
     sets the level of the load. The integral is that of the trigonometric interpolant. Loads that
-    depend on the motion are iterated until loads and speed agree.
+    depend on the motion are iterated until loads and speed agree. With a motor line the line is
+    the load, its torque taken negative, and the mean speed follows from it, not from `mean_speed`.
 
     Parameters
     ----------
@@ -205,7 +226,7 @@ def crank_motion(
                                  parts that `inertia` holds
     inertia : Inertia            at the same angles
     mean_speed : float           rad/s over the time of the cycle
-    load : Load
+    load : Load or MotorLine     what the shaft drives, or the motor that drives it
     mechanism : function, optional
     span : float                 rad of the shaft, whole cycles of the machine
 
@@ -214,7 +235,8 @@ def crank_motion(
     InputError
         If lengths differ or a value is out of bounds.
     CamError
-        If the torques stop the crank within the cycle, or the iteration does not converge.
+        If the torques stop the crank within the cycle, the motor cannot carry them, or the
+        iteration does not converge.
 
     References
     ----------
@@ -226,13 +248,20 @@ def crank_motion(
     if not 0.0 < mean_speed < np.inf:
         raise InputError("mean_speed", mean_speed, "> 0 rad/s")
     slope = _derivative(total, span)
-    speed, acceleration = np.full_like(torque, mean_speed), np.zeros_like(torque)
+    level = mean_speed if isinstance(load, Load) else load.balance(-float(torque.mean()))
+    speed, acceleration = np.full_like(torque, level), np.zeros_like(torque)
     for _ in range(PASSES_MAX):
         mechanical = np.zeros_like(torque) if mechanism is None else mechanism(speed, acceleration)
         driven = torque + mechanical
-        loaded = _closing_load(driven, speed, load)
-        net = driven - loaded
-        before, speed = speed, _speed(_integral(net, span), total, mean_speed, span)
+        before = speed
+        if isinstance(load, Load):
+            loaded = _closing_load(driven, speed, load)
+            net = driven - loaded
+            speed = _speed(_integral(net, span), total, mean_speed, span)
+        else:
+            speed = _speed_on_line(driven, total, load, speed, span)
+            loaded = -load.torque(speed)
+            net = driven - loaded
         acceleration = (net - 0.5 * speed**2 * slope) / total
         change = float(np.abs(speed - before).max()) / mean_speed
         if change < SETTLED:
@@ -241,8 +270,9 @@ def crank_motion(
         text = f"the crank speed did not converge within {PASSES_MAX} passes"
         raise CamError(f"{text}: it still changes by {change:.1e} of its mean")
     again = mechanical if mechanism is None else mechanism(speed, acceleration)
-    level = float(loaded.mean())
-    loaded_again = level * _shape(speed, load)
+    loaded_again = loaded
+    if isinstance(load, Load):
+        loaded_again = float(loaded.mean()) * _shape(speed, load)
     work = span * float((torque + again - loaded_again).mean())
     return CrankMotion(
         theta=readonly(np.arange(torque.size) * (span / torque.size)),
@@ -347,6 +377,35 @@ def _speed(energy: Array, inertia: Array, mean_speed: float, span: float) -> Arr
         if abs(floor - before) <= _STEP_END * floor:
             return speed(floor)
     raise CamError(f"the mean crank speed did not converge within {_STEPS_MAX} steps")
+
+
+def _speed_on_line(
+    driven: Array, inertia: Array, motor: MotorLine, start: Array, span: float
+) -> Array:
+    """Periodic speed of torques (n,), N m, and a motor: dE/dtheta = T + T_motor(omega).
+
+    Newton's steps from the speed `start`, each the solution of the linearised equation
+    dE/dtheta + c E = r, with c > 0 where the line falls. With the integrating factor of c about its
+    mean it has constant coefficients, and each harmonic its own equation.
+    """
+    speed, order = start, _orders(driven.size, span)
+    for _ in range(_STEPS_MAX):
+        energy = 0.5 * inertia * speed**2
+        fall = -motor.slope(speed) / (inertia * speed)
+        rate = float(fall.mean())
+        if not rate > 0.0:
+            raise CamError(
+                f"the motor cannot carry its load: at {shown(_time_mean(speed), 'rpm')} its torque"
+                " does not fall with the speed"
+            )
+        factor = np.exp(_integral(fall - rate, span))
+        right = factor * (driven + motor.torque(speed) + fall * energy)
+        raised = np.fft.irfft(np.fft.rfft(right) / (1j * order + rate), n=driven.size) / factor
+        before, speed = speed, np.sqrt(2.0 * np.maximum(raised, 0.25 * energy) / inertia)
+        if float(np.abs(speed - before).max()) < SETTLED * float(speed.mean()):
+            return np.asarray(speed)
+    text = f"the speed on the motor line did not converge within {_STEPS_MAX} steps"
+    raise CamError(f"{text}: the motor cannot carry its load")
 
 
 def _time_mean(speed: Array) -> float:

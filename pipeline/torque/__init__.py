@@ -13,6 +13,7 @@ In the order of the calculation:
 | `pressure_torque` | torque of pressures from a file                  | p, Pa; T, N m   |
 | `valved_cylinder` | compressor and piston pump                       | p, Pa; T, N m   |
 | `press_torque`    | force over the stroke of a ram                   | F, N; T, N m    |
+| `motor_line`      | torque of a motor over its speed                 | T, N m; omega   |
 | `torque`          | torque as a sum of components; onto the cam turn | T, N m          |
 
 Imports `geometry` and `pipeline.base`.

@@ -32,6 +32,17 @@ from camwright.pipeline.engine.wheel_calibration import WheelReference
 from camwright.pipeline.follower.camshaft_loads import Counterweight, ShaftSection
 from camwright.pipeline.follower.flat_face import FlatFace
 from camwright.pipeline.follower.spring import Spring
+from camwright.pipeline.torque.harmonic_torque import Harmonic, HarmonicTorque
+from camwright.pipeline.torque.motor_line import MotorPoint
+from camwright.pipeline.torque.press_torque import Press
+from camwright.pipeline.torque.pressure_torque import PressureCylinder, PressureTorqueFile
+from camwright.pipeline.torque.tabled_torque import TabledTorqueFile
+from camwright.pipeline.torque.valved_cylinder import (
+    CompressorCylinder,
+    CompressorTorque,
+    PumpCylinder,
+    PumpTorque,
+)
 
 EVERY_PART = Path(__file__).parents[1] / "data" / "every_part.toml"
 DRIVE = {
@@ -86,8 +97,30 @@ def every_part() -> dict[type[Part], Part]:
         LiftPoint(angle=0.0, lift=0.0),
         TriggerWheel(),
         Filter(),
+        MotorPoint(speed=100.0, torque=1.0),
+        *shaft_torques(),
     )
     return {type(part): part for part in (*parts_in(case()), *rest)}
+
+
+def shaft_torques() -> tuple[Part, ...]:
+    """A torque of each kind, and the tables within them."""
+    drive = {"bore": 0.06, "crank_radius": 0.021, "rod_length": 0.1}
+    pressures = {"suction_pressure": 1e5, "discharge_pressure": 3e5}
+    wave = Harmonic(order=1.0, sine=1.0)
+    gas, compressed, pumped = (
+        PressureCylinder(**drive),
+        CompressorCylinder(**drive, **pressures, clearance=0.05),
+        PumpCylinder(**drive, **pressures),
+    )
+    return (
+        TabledTorqueFile(file="torque.csv"),
+        *(wave, HarmonicTorque(harmonics=(wave,))),
+        *(gas, PressureTorqueFile(file="pressure.csv", cylinders=(gas,))),
+        *(compressed, CompressorTorque(cylinders=(compressed,))),
+        *(pumped, PumpTorque(cylinders=(pumped,))),
+        Press(eccentric_radius=0.02, rod_length=0.1, file="force.csv"),
+    )
 
 
 def kinds_of(base: type[Part]) -> Iterator[type[Part]]:

@@ -9,9 +9,10 @@ import pytest
 import scipy
 
 from camwright.geometry.arrays import Array
-from camwright.geometry.errors import InputError
-from camwright.pipeline.engine.crankshaft import Inertia, crank_motion, energy_swing
+from camwright.geometry.errors import CamError, InputError
+from camwright.pipeline.engine.crankshaft import Crankshaft, Inertia, crank_motion, energy_swing
 from camwright.pipeline.torque.harmonic_torque import Harmonic, HarmonicTorque
+from camwright.pipeline.torque.motor_line import MotorLine, MotorPoint
 from camwright.pipeline.torque.press_torque import Press, PressTorque, press_torque
 from camwright.pipeline.torque.pressure_torque import (
     PressureCylinder,
@@ -267,3 +268,81 @@ def test_a_good_table_is_its_own_torque(tmp_path: Path) -> None:
 def test_a_machine_out_of_bounds_is_refused(make, words: str) -> None:
     with pytest.raises(InputError, match=words):
         make()
+
+
+def motor(*points: tuple[float, float]) -> MotorLine:
+    return MotorLine(tuple(MotorPoint(speed=w, torque=t) for w, t in points))
+
+
+INDUCTION = motor((0.0, 120.0), (140.0, 160.0), (157.0, 0.0))  # rising to its pull-out torque
+
+
+def test_the_speed_on_a_motor_line_is_that_of_the_equation_of_motion() -> None:
+    """Against a Runge-Kutta integration to the periodic motion; 1e-9 is that of its steps."""
+    theta, count = grid(720), 720
+
+    def load(angle: Array) -> Array:
+        return -50.0 - 40.0 * np.sin(angle) - 30.0 * np.cos(3.0 * angle)
+
+    def inertia(angle: Array) -> Array:
+        return 0.3 + 0.05 * np.sin(angle) ** 2
+
+    def slope(angle: float, energy: Array) -> Array:
+        return load(angle) + INDUCTION.torque(np.sqrt(2.0 * energy / inertia(angle)))
+
+    energy = np.array([0.5 * 0.3 * 150.0**2])
+    for _ in range(20):
+        last = scipy.integrate.solve_ivp(
+            slope,
+            (0.0, TURN),
+            energy,
+            method="DOP853",
+            rtol=1e-12,
+            atol=1e-9,
+            t_eval=[*theta, TURN],
+        )
+        energy = last.y[:, -1]
+    expected = np.sqrt(2.0 * last.y[0, :count] / inertia(theta))
+    at = Inertia(0.3, 0.05 * np.sin(theta) ** 2)
+    motion = crank_motion(load(theta), at, 60.0, load=INDUCTION, span=TURN)
+    np.testing.assert_allclose(motion.speed, expected, rtol=1e-9)
+    assert motion.closure < 1e-12
+    assert -motion.load_torque.mean() == pytest.approx(50.0, rel=1e-12)
+
+
+def test_a_steep_line_holds_the_speed_and_a_flat_one_gives_the_torque() -> None:
+    """A flat line is a constant torque: the motion of today at the same mean speed."""
+    theta = grid(720)
+    load, inertia = -50.0 - 40.0 * np.sin(theta), Inertia.constant_only(0.3)
+    flat = crank_motion(load, inertia, 150.0, load=motor((0, 51.5), (5150, 0)), span=TURN)
+    mean = flat.statistics.mean
+    constant = crank_motion(load, inertia, mean, span=TURN)
+    np.testing.assert_allclose(flat.speed, constant.speed, rtol=2e-5)
+    steep = crank_motion(load, inertia, 150.0, load=motor((0, 1.5e6), (150, 0)), span=TURN)
+    assert steep.statistics.fluctuation < 1e-4 < flat.statistics.fluctuation
+
+
+@pytest.mark.parametrize(
+    ("points", "words"),
+    [
+        (((0.0, 1.0),), "from 2 to 200"),
+        (((1.0, 1.0), (1.0, 0.0)), "the point before"),
+        (((0.0, 1.0), (1.0, 1.0)), "a line that falls"),
+    ],
+)
+def test_a_bad_motor_line_is_refused(points: tuple[tuple[float, float], ...], words: str) -> None:
+    with pytest.raises(InputError, match=words):
+        Crankshaft(inertia=1.0, motor_line=tuple(MotorPoint(speed=w, torque=t) for w, t in points))
+
+
+def test_a_motor_too_weak_is_named() -> None:
+    theta = grid(720)
+    with pytest.raises(CamError, match="cannot carry its load: 170 N m against 160 N m"):
+        crank_motion(
+            -170.0 + np.sin(theta), Inertia.constant_only(1.0), 150.0, load=INDUCTION, span=TURN
+        )
+    with pytest.raises(CamError, match="cannot carry its load"):  # swings past the pull-out speed
+        crank_motion(
+            -150.0 + 400.0 * np.sin(theta), Inertia.constant_only(0.1), 150.0, load=INDUCTION,
+            span=TURN,
+        )  # fmt: skip
