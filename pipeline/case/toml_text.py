@@ -42,7 +42,7 @@ def tables_of(model: Section | Part, renamed: Mapping[str, str] | None = None) -
         key, value = field.alias or name, getattr(model, name)
         if value is None or value in ((), {}):
             continue
-        if renamed is not None and key in _FILE_KEYS:
+        if renamed is not None and key in _FILE_KEYS and isinstance(value, str):
             value = renamed[value]
         tables[key] = _written(value, _unit_of(field.annotation, field.metadata), renamed)
     return tables
