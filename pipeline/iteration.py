@@ -147,7 +147,7 @@ def trials_of(
     task = _Task(case, torques, min(tier, Tier.CYCLE), sink or NotKept(), progress)
     if case.smoothing.kind == "constrained":
         return _constrained(task)
-    if case.engine is None:
+    if not case.balances:
         trial = task.solved(1, case, given_lift(case), lift_origin(case), GIVEN_LIFT)
         reason = f"prescribed lift: {_result(trial)}, not smoothed"
         task.sink.keep(trial)

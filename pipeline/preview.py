@@ -49,7 +49,7 @@ def _previewed(case: Case, corners: bool, progress: Progress) -> Trial:
         trial = solve(
             case, contour, tier=Tier.PREVIEW, torques=torques, corners=corners, progress=progress
         )
-        smoother = None if case.engine is None else Smoother.from_case(case.smoothing, case.period)
+        smoother = Smoother.from_case(case.smoothing, case.period) if case.balances else None
         return replace(trial, smoothing=smoothing_record(smoother))
     trial = _synthesised(case, torques, progress)
     return judged_at_corners(trial, torques) if corners else trial

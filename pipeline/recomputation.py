@@ -232,7 +232,7 @@ def _lift_differences(
                 what = f"within smoothing.{name}_range" if free else "that"
                 yield f"{run.final.path.name}/trial.json: {name} is not {what} of the case"
         return
-    if case.engine is None:
+    if not case.balances:
         expected = given_lift(case)
     else:
         smoother = Smoother.from_case(case.smoothing, case.period)

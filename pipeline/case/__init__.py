@@ -10,6 +10,7 @@ In the order of the calculation:
 | `limits`               | table of limits, section `[limits]`          | SI               |
 | `value_sources`        | source of each value, confirmed or not       |                  |
 | `engine_section`       | engine: a cylinder model or a measurement    | T, N m           |
+| `torque_section`       | torque of a machine of any cycle             | T, N m           |
 | `lift_section`         | lift: table, segments, points or eccentric   | s, m; theta, rad |
 | `scope_section`        | parts that the sign-off does not cover       |                  |
 | `parts_section`        | follower, valve train                        | m, kg            |
@@ -30,5 +31,6 @@ In the order of the calculation:
 | `plausibility`         | values beyond their usual ranges             |                  |
 | `machine`              | `Machine`: the parts in one load case        | SI               |
 
-Imports `geometry`, `pipeline.base`, `pipeline.engine`, `pipeline.contact` and `pipeline.follower`.
+Imports `geometry`, `pipeline.base`, `pipeline.torque`, `pipeline.engine`, `pipeline.contact` and
+`pipeline.follower`.
 """

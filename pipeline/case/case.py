@@ -31,6 +31,7 @@ from camwright.pipeline.case.requirements_section import (
 from camwright.pipeline.case.scope_section import Scope
 from camwright.pipeline.case.section import Name, Section, Table, Text, named
 from camwright.pipeline.case.toml_text import Tables, tables_of, to_toml
+from camwright.pipeline.case.torque_section import ShaftTorque, torque_files
 from camwright.pipeline.case.workshop_section import Workshop, WorkshopOrder
 from camwright.pipeline.contact.cam_body import CamBody
 from camwright.pipeline.contact.oil_film import Lubricant
@@ -60,6 +61,7 @@ class Case(Section):
     title: Text = ""
     notes: Text = ""
     engine: Engine | None = None
+    torque: ShaftTorque | None = None
     crankshaft: Table[Crankshaft] | None = None
     lift: GivenLift | None = None
     mechanism: Mechanism = Mechanism()
@@ -158,13 +160,22 @@ class Case(Section):
     def period(self) -> Period:
         """Cycle of the machine and the drive of its cam; a lift is a cycle by itself.
 
+        The cycle of an engine and a torque on one shaft is the longer of theirs.
+
         Raises
         ------
         InputError
             If the cam turn does not hold a whole number of cycles.
         """
         ratio = self.mechanism.gear_ratio
-        return Period(FULL_TURN * ratio if self.engine is None else FOUR_STROKE.angle, ratio)
+        cycles = [FOUR_STROKE.angle] * (self.engine is not None)
+        cycles += [] if self.torque is None else [self.torque.cycle]
+        return Period(max(cycles, default=FULL_TURN * ratio), ratio)
+
+    @property
+    def balances(self) -> bool:
+        """Whether the cam balances a torque; otherwise the case has its lift."""
+        return self.lift is None
 
     @property
     def spring_mass(self) -> float:
@@ -209,6 +220,7 @@ class Case(Section):
 def includes(case: Case) -> Iterator[tuple[str, str]]:
     """Dotted field and file name of every file that a case includes."""
     yield from engine_files(case.engine)
+    yield from torque_files(case.torque)
     if isinstance(case.lift, LiftTable):
         yield "lift.file", case.lift.file
     for k, load_case in enumerate(case.load_cases):

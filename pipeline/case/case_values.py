@@ -47,7 +47,7 @@ def quantity_of(key: str) -> In | Count | None:
     InputError
         If no case has such a key; with the closest one.
     """
-    model: Any = Case
+    models: list[Any] = [Case]  # of one kind of a table each
     name = ""
     for step in steps_of(key):
         if isinstance(step, int):
@@ -55,18 +55,18 @@ def quantity_of(key: str) -> In | Count | None:
         if name == "materials":  # this step is the name of one
             name = step
             continue
-        sections = _sections_in(model)
+        sections = [section for model in models for section in _sections_in(model)]
         if not sections:
             raise InputError("factor", key, f"a key of the case file: {name} is no table")
-        known = {
-            field.alias or each: field
-            for section in reversed(sections)
-            for each, field in section.model_fields.items()
-        }
+        known: dict[str, list[Any]] = {}
+        for section in sections:
+            for each, field in section.model_fields.items():
+                hint = _Hint(field.annotation, tuple(field.metadata))
+                known.setdefault(field.alias or each, []).append(hint)
         if step not in known:
             raise InputError("factor", key, f"a key of the case file{suggestion(step, known)}")
-        name, model = step, _Hint(known[step].annotation, tuple(known[step].metadata))
-    return _mark_in(model)
+        name, models = step, known[step]
+    return next((mark for model in models if (mark := _mark_in(model)) is not None), None)
 
 
 class _Hint:

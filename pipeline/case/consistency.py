@@ -21,6 +21,8 @@ from camwright.pipeline.engine.speed_file import SpeedTable
 from camwright.pipeline.follower.guide_friction import friction_limits
 from camwright.pipeline.follower.roller import Roller
 from camwright.pipeline.follower.spring import Spring
+from camwright.pipeline.torque.machine_torque import require_marks
+from camwright.pipeline.torque.period import ratio_text
 
 if TYPE_CHECKING:
     from camwright.pipeline.case.case import Case
@@ -66,10 +68,16 @@ def _check_values(case: Case) -> None:
 
 
 def _check_start(case: Case) -> None:
-    """A case starts either at the torque of an engine or at a lift."""
-    if (case.engine is None) == (case.lift is None):
-        count = "neither" if case.engine is None else "both"
-        raise InputError("engine, lift", count, "exactly one of the two")
+    """A case starts either at the torque of an engine or a machine, or at a lift."""
+    driven = case.engine is not None or case.torque is not None
+    if driven == (case.lift is not None):
+        count = "both" if driven else "neither"
+        limit = "exactly one of the two; [torque] is that of another machine than an engine"
+        raise InputError("engine, lift", count, limit)
+    if case.torque is not None and "gear_ratio" not in case.mechanism.model_fields_set:
+        cycle = shown(case.torque.cycle, "deg")
+        limit = f"given with [torque]: {ratio_text(case.torque.cycle / FULL_TURN)} for one cycle"
+        raise InputError("mechanism.gear_ratio", "missing", f"{limit} of {cycle} in a cam turn")
     if isinstance(case.lift, LiftSegments):
         motion_of(case.lift)
     elif case.valve_train is not None:
@@ -85,20 +93,20 @@ def _check_start(case: Case) -> None:
         raise InputError(
             "crankshaft.inertia", "missing", "given, for the torque of a measured speed"
         )
-    if case.engine is not None and not case.load_cases[0].speed > 0:
+    if case.balances and not case.load_cases[0].speed > 0:
         raise InputError(
             "load_case[0].speed", "0 rpm", "> 0 rpm, as its torque is that of the cam design"
         )
     share, constrained = case.mechanism.compensation, case.smoothing.kind == "constrained"
-    if share != 1.0 and (case.engine is None or constrained):
-        limit = "1 with a lift" if case.engine is None else '1 with smoothing.kind = "constrained"'
+    if share != 1.0 and (not case.balances or constrained):
+        limit = "1 with a lift" if not case.balances else '1 with smoothing.kind = "constrained"'
         _require(case, "mechanism.compensation", False, limit)
     for k, load_case in enumerate(case.load_cases):
         if constrained and load_case.preload is not None:
             limit = 'left out with smoothing.kind = "constrained", which has one spring'
             _require(case, f"load_case[{k}].preload", False, limit)
         for name in ("torque", "torque_reduction", "speed_reduction"):
-            unused = case.engine is not None or getattr(load_case, name) is None
+            unused = case.balances or getattr(load_case, name) is None
             _require(case, f"load_case[{k}].{name}", unused, "left out with a lift")
         modelled = isinstance(case.engine, CylinderEngine) and load_case.torque is None
         if not modelled and (load_case.intake_pressure is not None or not load_case.fired):
@@ -111,7 +119,9 @@ def _check_period(case: Case) -> None:
     """A cam turn holds whole cycles, which the smoothing and the positions resolve."""
     period, smoothing = case.period, case.smoothing
     cycle = shown(period.angle, "deg")
-    if case.lift is None:
+    if case.torque is not None:
+        require_marks(case.torque.marks, case.torque.cycle)
+    if case.balances:
         fill = period.angle / smoothing.spacing
         words = f"a cycle of {cycle} over {{smoothing.spacing}}"
         fits = smoothing.points <= fill * (1.0 + _ROUND_OFF)

@@ -14,9 +14,10 @@ from camwright.pipeline.base.units import rounded
 from camwright.pipeline.case.engine_section import KINDS
 from camwright.pipeline.case.lift_section import LIFT_KINDS
 from camwright.pipeline.case.toml_text import Tables, TomlValue
+from camwright.pipeline.case.torque_section import TORQUE_KINDS
 
 _NUMBERS = ("a whole number", PURE, "true or false")
-_KINDS = {"engine": KINDS, "lift": LIFT_KINDS}
+_KINDS = {"engine": KINDS, "torque": TORQUE_KINDS, "lift": LIFT_KINDS}
 _WORDS = {
     "missing": "given",
     "string_type": "text in quotes",

@@ -14,6 +14,7 @@ from camwright.pipeline.base import disk_cache
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.requirements_section import LoadCase
 from camwright.pipeline.case.speed_notes import calibration_record, speed_notes
+from camwright.pipeline.case.torque_section import shaft_torque
 from camwright.pipeline.engine import (
     combustion,
     cylinder,
@@ -44,7 +45,8 @@ from camwright.pipeline.engine.pressure_trace import (
 from camwright.pipeline.engine.speed_file import SpeedTable, speed_from_csv
 from camwright.pipeline.engine.speed_trace import SpeedTrace
 from camwright.pipeline.torque import torque as torque_module
-from camwright.pipeline.torque.torque import Torque, over_cam_turn
+from camwright.pipeline.torque.tabled_torque import TabledTorqueFile
+from camwright.pipeline.torque.torque import Torque, over_cam_turn, together
 
 _COMPONENT = "component."
 _MODULES = (
@@ -56,11 +58,11 @@ CRANKING = SPEED_RANGE[0]
 
 
 def engine_torques(case: Case) -> dict[str, Torque]:
-    """Engine torque of each load case by name; empty for a case that starts at the lift.
+    """Torque of each load case by name; empty for a case that starts at the lift.
 
     A load case at speed 0 has a torque only from a file, or of a cylinder model cranked unfired.
     """
-    if case.engine is None:
+    if not case.balances:
         return {}
     return {
         state.name: engine_torque(case, state)
@@ -70,7 +72,7 @@ def engine_torques(case: Case) -> dict[str, Torque]:
 
 
 def engine_torque(case: Case, state: LoadCase) -> Torque:
-    """Torque of the engine in one load case, over a cam turn.
+    """Torque of engine and machine in one load case, over a cam turn.
 
     Raises
     ------
@@ -81,9 +83,21 @@ def engine_torque(case: Case, state: LoadCase) -> Torque:
 
 
 def _torque_of_cycle(case: Case, state: LoadCase) -> Torque:
-    engine = case.engine
+    """Torque over a cycle; a file of the load case replaces that of engine and machine."""
+    machine = case.torque
     if state.torque is not None:
-        return torque_from_csv(case.path(state.torque))
+        if machine is None:
+            return torque_from_csv(case.path(state.torque))
+        source = TabledTorqueFile(file=state.torque, cycle=case.period.angle)
+        return shaft_torque(source, state.speed, case.path)
+    if machine is None:
+        return _of_engine(case, state)
+    own = shaft_torque(machine, state.speed, case.path)
+    return own if case.engine is None else together(own, _of_engine(case, state))
+
+
+def _of_engine(case: Case, state: LoadCase) -> Torque:
+    engine = case.engine
     if isinstance(engine, TorqueTable):
         return torque_from_csv(case.path(engine.file))
     if isinstance(engine, CylinderEngine):

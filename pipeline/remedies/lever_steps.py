@@ -133,7 +133,7 @@ class Workbench:
             if lever.key == BEARING:
                 return case.roller_given is not None and case.scope.covers("roller_bearing")
             return True
-        drawn = case.engine is not None and case.smoothing.kind in lever.smoothers
+        drawn = case.balances and case.smoothing.kind in lever.smoothers
         if lever.smoothers and not drawn:
             return False
         first = self._numbers(lever.keys)

@@ -293,7 +293,7 @@ def _suspects(case: Case, values: Mapping[str, Array], highest: Array) -> NDArra
             wrong |= speed > at("limits.overspeed")
             if state.name.casefold().startswith(("standstill", "over-speed")):
                 wrong |= speed != state.speed
-            if k == 0 and case.engine is not None:
+            if k == 0 and case.balances:
                 wrong |= ~(speed > 0.0)
         if not case.tolerances.source.strip() or case.smoothing.kind == "constrained":
             stated = ("tolerances.", "cam.profile_tolerance", "load_case[")

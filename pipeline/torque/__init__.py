@@ -14,6 +14,7 @@ In the order of the calculation:
 | `valved_cylinder` | compressor and piston pump                       | p, Pa; T, N m   |
 | `press_torque`    | force over the stroke of a ram                   | F, N; T, N m    |
 | `motor_line`      | torque of a motor over its speed                 | T, N m; omega   |
+| `machine_torque`  | marks of a cycle, drive or load                  | theta, rad      |
 | `torque`          | torque as a sum of components; onto the cam turn | T, N m          |
 
 Imports `geometry` and `pipeline.base`.

@@ -13,6 +13,7 @@ from camwright.geometry.arrays import FULL_TURN, Array, readonly
 from camwright.geometry.errors import InputError
 from camwright.pipeline.base.quantities import Cycle, In, Part, Torsion
 from camwright.pipeline.base.units import shown
+from camwright.pipeline.torque.machine_torque import MachineTorque, Role
 
 HARMONICS_MAX = 360
 _WHOLE = 1e-9  # of a number of waves: an order and a cycle written as decimals
@@ -30,8 +31,10 @@ class Harmonic(Part):
 
 
 @dataclass(frozen=True, kw_only=True)
-class HarmonicTorque(Part):
+class HarmonicTorque(MachineTorque):
     """Torque T = mean + sum of a cos(k theta) + b sin(k theta) over the shaft angle.
+
+    A load is stated positive and acts against the shaft.
 
     Raises
     ------
@@ -40,9 +43,8 @@ class HarmonicTorque(Part):
         waves of one.
     """
 
-    table: ClassVar[str] = "torque"
-
     kind: Literal["harmonics"] = "harmonics"
+    role: Role = "drive"
     cycle: Cycle = 2.0 * pi
     mean: Torsion = 0.0
     harmonics: tuple[Harmonic, ...]
@@ -81,4 +83,5 @@ class HarmonicTorque(Part):
             each.cosine * np.cos(each.order * angle) + each.sine * np.sin(each.order * angle)
             for each in self.harmonics
         )
-        return readonly(self.mean + sum(waves))
+        torque = self.mean + sum(waves)
+        return readonly(torque if self.role == "drive" else -torque)

@@ -13,8 +13,9 @@ from numpy.typing import ArrayLike
 from camwright.geometry.arrays import FULL_TURN, Array, finite, freeze, readonly
 from camwright.geometry.errors import InputError
 from camwright.geometry.linkage import SliderCrank
-from camwright.pipeline.base.quantities import Angle, FileName, In, Length, Part
+from camwright.pipeline.base.quantities import Angle, FileName, In, Length
 from camwright.pipeline.base.units import shown
+from camwright.pipeline.torque.machine_torque import MachineTorque
 from camwright.pipeline.torque.trace_file import HeaderText, trace_text, value_column
 
 GRAVITY = 9.80665
@@ -24,7 +25,7 @@ _ROUND_OFF = 1e-9  # of a stroke
 
 
 @dataclass(frozen=True, kw_only=True)
-class Press(Part):
+class Press(MachineTorque):
     """Drive of a press and its force, constant over the last part of the stroke or from a file.
 
     At shaft angle `phase` the eccentric points to the ram's upper dead centre. The force opposes
@@ -37,8 +38,6 @@ class Press(Part):
         If a value is out of its bounds, the eccentric cannot rotate fully, there is no force or
         there are two, or it begins above the stroke.
     """
-
-    table: ClassVar[str] = "torque"
 
     kind: Literal["press"] = "press"
     eccentric_radius: Length

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from math import pi
 from pathlib import Path
-from typing import ClassVar, Literal
+from typing import Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -13,9 +13,10 @@ from numpy.typing import ArrayLike
 from camwright.geometry.arrays import FULL_TURN, Array, readonly
 from camwright.geometry.errors import InputError
 from camwright.geometry.periodic_spline import periodic_cubic
-from camwright.pipeline.base.quantities import Cycle, FileName, Part
+from camwright.pipeline.base.quantities import Cycle, FileName
 from camwright.pipeline.base.units import shown
 from camwright.pipeline.torque.angle_trace import Trace, read_trace
+from camwright.pipeline.torque.machine_torque import MachineTorque
 from camwright.pipeline.torque.piston_drive import PistonDrive, require_cylinders, torque_sum
 from camwright.pipeline.torque.trace_file import HeaderText
 
@@ -46,7 +47,7 @@ class PressureCylinder(PistonDrive):
 
 
 @dataclass(frozen=True, kw_only=True)
-class PressureTorqueFile(Part):
+class PressureTorqueFile(MachineTorque):
     """Absolute pressures over one cycle from a file, and the cylinders that they act in.
 
     `angles` of the file are those of the shaft, or those of each cylinder from its outer dead
@@ -57,8 +58,6 @@ class PressureTorqueFile(Part):
     InputError
         If the cycle is no whole number of turns, or the cylinders are none or more than 24.
     """
-
-    table: ClassVar[str] = "torque"
 
     kind: Literal["pressure"] = "pressure"
     cycle: Cycle = 2.0 * pi

@@ -5,15 +5,16 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from math import pi
 from pathlib import Path
-from typing import ClassVar, Literal
+from typing import Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from camwright.geometry.arrays import Array, readonly
 from camwright.geometry.errors import InputError
-from camwright.pipeline.base.quantities import Cycle, FileName, Part
+from camwright.pipeline.base.quantities import Cycle, FileName
 from camwright.pipeline.torque.angle_trace import Trace, read_trace
+from camwright.pipeline.torque.machine_torque import MachineTorque, Role
 from camwright.pipeline.torque.trace_file import HeaderText
 
 CLOSURE_MAX = 0.02
@@ -25,12 +26,14 @@ table is then some ten times as near."""
 
 
 @dataclass(frozen=True, kw_only=True)
-class TabledTorqueFile(Part):
-    """Torque over one cycle from a file: a column of shaft angle, one of torque."""
+class TabledTorqueFile(MachineTorque):
+    """Torque over one cycle from a file: a column of shaft angle, one of torque.
 
-    table: ClassVar[str] = "torque"
+    A load is stated positive and acts against the shaft.
+    """
 
     kind: Literal["table"] = "table"
+    role: Role = "drive"
     cycle: Cycle = 2.0 * pi
     file: FileName
     column: HeaderText = ""
@@ -43,6 +46,7 @@ class TabledTorque:
     Parameters
     ----------
     trace : Trace    N m against shaft angle over one cycle
+    role : str       "drive", or "load": stated positive, acts against the shaft
 
     Raises
     ------
@@ -52,6 +56,7 @@ class TabledTorque:
     """
 
     trace: Trace
+    role: Role = "drive"
 
     def __post_init__(self) -> None:
         trace, name = self.trace, f"{self.trace.source}, {self.trace.column}"
@@ -78,7 +83,8 @@ class TabledTorque:
 
         Where the table is at least twice as dense, the mean over each step.
         """
-        return readonly(self.trace.uniform(np.size(theta)))
+        values = self.trace.uniform(np.size(theta))
+        return readonly(values if self.role == "drive" else -values)
 
     def _change_halved(self) -> float:
         """Change of the work about its mean with every other row left out, over its swing."""
@@ -109,4 +115,5 @@ def tabled_torque(source: TabledTorqueFile, path: str | Path) -> TabledTorque:
         If the file is not one clean cycle; see `read_trace` and `TabledTorque`.
     """
     column = source.column or None
-    return TabledTorque(read_trace(path, "torque", column=column, period=source.cycle))
+    trace = read_trace(path, "torque", column=column, period=source.cycle)
+    return TabledTorque(trace, source.role)

@@ -145,6 +145,30 @@ def over_cam_turn(torque: Torque, period: Period) -> Torque:
     )
 
 
+def together(one: Torque, other: Torque) -> Torque:
+    """Torque of two machines on one shaft, over the longer of their cycles.
+
+    Raises
+    ------
+    InputError
+        If the longer cycle is no whole multiple of the shorter one.
+    """
+    short, long = sorted((one, other), key=lambda each: each.span)
+    times = long.span / short.span
+    if abs(times - round(times)) > _SAME * times:
+        limit = f"a whole part or multiple of {shown(long.span, 'deg')}"
+        raise InputError("torque.cycle", shown(short.span, "deg"), limit)
+    repeated = over_cam_turn(short, Period(short.span, long.span / FULL_TURN))
+    size = max(repeated.theta.size, long.theta.size)
+    first, second = repeated.resampled(size), long.resampled(size)
+    parts = dict(first.components)
+    for name, part in second.components.items():
+        parts[name] = parts[name] + part if name in parts else part
+    known = [each.varying_inertia for each in (first, second) if each.varying_inertia is not None]
+    varying = np.asarray(sum(known)) if known else None
+    return Torque(second.theta, parts, varying, second.error_bar, long.span)
+
+
 def uniform_cycle(count: int, span: float = FOUR_STROKE.angle) -> Array:
     """`count` equally spaced shaft angles over a span (rad) from 0, its end excluded, rad."""
     return np.arange(float(count)) * (span / count)

@@ -12,8 +12,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from camwright.geometry.arrays import Array
 from camwright.geometry.errors import InputError
-from camwright.pipeline.base.quantities import GasPressure, In, Part
+from camwright.pipeline.base.quantities import GasPressure, In
 from camwright.pipeline.base.units import shown
+from camwright.pipeline.torque.machine_torque import MachineTorque
 from camwright.pipeline.torque.piston_drive import PistonDrive, require_cylinders, torque_sum
 
 
@@ -138,7 +139,7 @@ class PumpCylinder(_ValvedCylinder):
 
 
 @dataclass(frozen=True, kw_only=True)
-class CompressorTorque(Part):
+class CompressorTorque(MachineTorque):
     """Torque of a gas compressor on its shaft, whose cylinders may differ.
 
     Raises
@@ -146,8 +147,6 @@ class CompressorTorque(Part):
     InputError
         Without a cylinder, or with more than 24.
     """
-
-    table: ClassVar[str] = "torque"
 
     kind: Literal["compressor"] = "compressor"
     cylinders: tuple[CompressorCylinder, ...]
@@ -164,7 +163,7 @@ class CompressorTorque(Part):
 
 
 @dataclass(frozen=True, kw_only=True)
-class PumpTorque(Part):
+class PumpTorque(MachineTorque):
     """Torque of a piston pump on its shaft, whose cylinders may differ.
 
     Raises
@@ -172,8 +171,6 @@ class PumpTorque(Part):
     InputError
         Without a cylinder, or with more than 24.
     """
-
-    table: ClassVar[str] = "torque"
 
     kind: Literal["pump"] = "pump"
     cylinders: tuple[PumpCylinder, ...]

@@ -33,6 +33,7 @@ from camwright.pipeline.follower.camshaft_loads import Counterweight, ShaftSecti
 from camwright.pipeline.follower.flat_face import FlatFace
 from camwright.pipeline.follower.spring import Spring
 from camwright.pipeline.torque.harmonic_torque import Harmonic, HarmonicTorque
+from camwright.pipeline.torque.machine_torque import Mark
 from camwright.pipeline.torque.motor_line import MotorPoint
 from camwright.pipeline.torque.press_torque import Press
 from camwright.pipeline.torque.pressure_torque import PressureCylinder, PressureTorqueFile
@@ -120,6 +121,7 @@ def shaft_torques() -> tuple[Part, ...]:
         *(compressed, CompressorTorque(cylinders=(compressed,))),
         *(pumped, PumpTorque(cylinders=(pumped,))),
         Press(eccentric_radius=0.02, rod_length=0.1, file="force.csv"),
+        Mark(angle=0.0, name="forming"),
     )
 
 

@@ -79,7 +79,7 @@ def redesign(
     if against not in AGAINST:
         raise InputError("--against", against, " or ".join(AGAINST))
     case, folder = read_case(case_file), case_file.resolve().parent
-    if case.engine is None:
+    if not case.balances:
         raise InputError("engine", "missing", "specified: a redesign balances its torque")
     search = Search(case, folder, catalogue_of(folder), out.absolute(), versions()["source"])
     problem = problem_of(case, engine_torques(case))
