@@ -125,8 +125,7 @@ class RollerCam(ABC):
 
         convex, concave = parts.greatest(curvature), parts.least(curvature)
         return PitchExtremes(
-            parts.greatest(lambda s, s1, _: _angle(np.maximum(s1, 0.0), offset, height + s)),
-            parts.greatest(lambda s, s1, _: _angle(np.minimum(s1, 0.0), offset, height + s)),
+            *_angles(parts, height, offset),
             Extremum(1.0 / convex.value, convex.theta),
             Extremum(-1.0 / concave.value if concave.value < 0.0 else np.inf, concave.theta),
         )
@@ -134,9 +133,12 @@ class RollerCam(ABC):
     def best_offset(self, prime_radius: float, limits: PitchLimits) -> float:
         """Offset (m) of the least pressure angle over its limit, of rise against return."""
 
+        positive("cam.prime_radius", prime_radius, "m")
+
         def use(offset: float) -> float:
-            angles = self.extremes(prime_radius, offset)
-            return max(angles.rise.value / limits.rise, angles.back.value / limits.back)
+            height = float(np.sqrt(prime_radius**2 - offset**2))
+            rise, back = _angles(self.parts(prime_radius, offset), height, offset)
+            return max(rise.value / limits.rise, back.value / limits.back)
 
         most = _OFFSET_SHARE * prime_radius
         return _balanced(least_argument(use, -most, most), most)
@@ -187,7 +189,6 @@ class GivenLiftCam(RollerCam):
         return float(np.hypot(self._height_by_angle(limits, offset), offset))
 
     def _height_by_angle(self, limits: PitchLimits, offset: float) -> float:
-        # On the other stroke s' counts as zero, which the bottom of the lift has in any case.
         rise, back = np.tan(limits.rise), np.tan(limits.back)
         return max(
             self.lift.greatest(lambda s, s1, _: abs(np.maximum(s1, 0) - offset) / rise - s).value,
@@ -248,8 +249,9 @@ class EccentricCam(RollerCam):
             middle = 0.5 * (low + high)
             if not low < middle < high:
                 break
-            angles = self.extremes(middle, offset)
-            kept = angles.rise.value <= limits.rise and angles.back.value <= limits.back
+            height = float(np.sqrt(middle**2 - offset**2))
+            at_rise, at_back = _angles(self.parts(middle, offset), height, offset)
+            kept = at_rise.value <= limits.rise and at_back.value <= limits.back
             low, high = (low, middle) if kept else (middle, high)
         return float(high)
 
@@ -285,6 +287,10 @@ class FaceCam:
         """Least radius of curvature r + s + s'' with a base radius, m."""
         return self.lift.least(lambda s, _, s2: base_radius + s + s2)
 
+    def undercut_factor(self, base_radius: float) -> float:
+        """Least factor (r + s + s'')/(r + s) with a base radius, m, > 0."""
+        return self.lift.least(lambda s, _, s2: 1.0 + s2 / (base_radius + s)).value
+
     @cached_property
     def contact_travel(self) -> tuple[float, float]:
         """Least and greatest distance s' of the contact from the cam axis, m."""
@@ -304,6 +310,17 @@ class FaceCam:
 
 def _slope(_: Array, slope: Array, __: Array) -> Array:
     return slope
+
+
+def _angles(parts: LiftParts, height: float, offset: float) -> tuple[Extremum, Extremum]:
+    """Greatest pressure angles on rise and return, rad, from a height (m) at zero lift.
+
+    On the other stroke s' counts as zero, which the bottom of the lift has in any case.
+    """
+    return (
+        parts.greatest(lambda s, s1, _: _angle(np.maximum(s1, 0.0), offset, height + s)),
+        parts.greatest(lambda s, s1, _: _angle(np.minimum(s1, 0.0), offset, height + s)),
+    )
 
 
 def _angle(slope: Array, offset: float, height: Array) -> Array:

@@ -27,6 +27,7 @@ verdict; a failed trial is smoothed again. `results` writes the run folder, `rep
 | `run`                | trials and certificate of a case, run folder         |                    |
 | `recomputation`      | finished run computed again from case and lift       |                    |
 | `screening`          | closed-form checks of thousands of designs as arrays | p0, Pa; F_n, N     |
+| `sizing`             | open keys of a case, as small as its limits allow    | r, e, m; k, N/m    |
 | `studies`            | inspection, comparisons, valve cam                   |                    |
 | `studies.redesign`   | Pareto front over the catalogues                     |                    |
 | `studies.papers`     | published values, recomputed                         |                    |

@@ -23,6 +23,7 @@ from camwright.pipeline.commands import (
     redesign_command,
     run_command,
     signature_commands,
+    size_command,
     study_command,
 )
 from camwright.pipeline.commands.terminal import ERROR, INTERRUPTED, PASSED, say, stdout
@@ -50,6 +51,7 @@ for _command in (
     run_command.report,
     run_command.init,
     comparison_commands.compare,
+    size_command.size,
     redesign_command.redesign,
     study_command.study,
     contact_command.contact,

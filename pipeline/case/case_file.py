@@ -40,19 +40,34 @@ def read_case(path: str | Path) -> Case:
     InputError
         For the first error, by its dotted name.
     """
-    path = Path(path)
-    return parse_case(_read(path, str(path), "case", CASE_BYTES), path.resolve().parent)
+    return parse_case(case_bytes(path), Path(path).resolve().parent)
+
+
+def case_bytes(path: str | Path) -> bytes:
+    """Contents of a case file.
+
+    Raises
+    ------
+    InputError
+        If it is missing, unreadable or too large.
+    """
+    return _read(Path(path), str(path), "case", CASE_BYTES)
 
 
 def parse_case(content: str | bytes, folder: Path | None = None) -> Case:
     """A case from its text; included files are read from `folder`."""
+    return completed(case_of(tables_in(content), folder), folder)
+
+
+def tables_in(content: str | bytes) -> Tables:
+    """Tables of the text of a case, of this version."""
     data: Tables = parse_toml(content, "case")
     version = data.get("schema_version")
     if version is not None and version != SCHEMA_VERSION:
         raise InputError(
             "schema_version", str(version), f"{SCHEMA_VERSION}, the version of this program"
         )
-    return completed(case_of(data, folder), folder)
+    return data
 
 
 def completed(case: Case, folder: Path | None) -> Case:
@@ -67,8 +82,18 @@ def completed(case: Case, folder: Path | None) -> Case:
 
 def case_of(data: Tables, folder: Path | None = None) -> Case:
     """A case from its tables and the cards of `folder`; included files are not read."""
+    return validated(resolved(data, folder))
+
+
+def resolved(data: Tables, folder: Path | None = None) -> Tables:
+    """Tables of a case with those added and the keys of its cards."""
     tables = with_new_keys(with_added(data))
     fill_cards(tables, folder)
+    return tables
+
+
+def validated(tables: Tables) -> Case:
+    """A case from its resolved tables; included files are not read."""
     try:
         case = Case.model_validate(tables, context={"materials": _cards(tables.get("materials"))})
     except ValidationError as error:
@@ -94,13 +119,14 @@ def with_values(case: Case, values: Mapping[str, TomlValue]) -> Case:
     for key, value in values.items():
         quantity = quantity_of(key)
         if isinstance(value, float) and isinstance(quantity, In) and quantity.unit:
-            _enter(tables, key, units.format(value, quantity.unit))
+            enter(tables, key, units.format(value, quantity.unit))
         else:
-            _enter(tables, key, value)
+            enter(tables, key, value)
     return completed(case_of(tables, case.folder), case.folder)
 
 
-def _enter(tables: Tables, key: str, value: TomlValue) -> None:
+def enter(tables: Tables, key: str, value: TomlValue) -> None:
+    """Enter a value at a dotted key of the tables of a case."""
     *path, last = steps_of(key)
     table: Any = tables
     for step in path:

@@ -11,6 +11,7 @@
 | `contact_command`     | `contact`, `deck`                                       |
 | `inspect_command`     | `inspect`: measured cam                                 |
 | `redesign_command`    | `redesign`: search of the catalogues                    |
+| `size_command`        | `size`: keys that a case leaves open                    |
 | `study_command`       | `study`: many designs on a cluster; answers and page    |
 
 Imports every other package.

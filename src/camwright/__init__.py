@@ -16,6 +16,7 @@ The public names, in the order of the calculation:
 | `read_run`     | read a run folder                                       | `Run`            |
 | `report`       | page and figures of a run folder                        | files by part    |
 | `screen_designs` | closed-form checks of thousands of designs at once    | columns          |
+| `size`         | sizes that a case leaves open, and their checks         | `Sizing`         |
 | `CamError`     | every error that the user can correct, in one line      |                  |
 
 All values are in SI units: m, N, Pa, rad, s, kg. A name is imported when it is first used.
@@ -38,6 +39,7 @@ if TYPE_CHECKING:
     from camwright.pipeline.results.trial import Trial
     from camwright.pipeline.run import run_case
     from camwright.pipeline.screening.design_screening import screen_designs
+    from camwright.pipeline.sizing.sizing import size
     from camwright.pipeline.solver import solve
     from camwright.reports.sections import report
 
@@ -53,6 +55,7 @@ _HOMES = {
     "report": "reports.sections",
     "run_case": "pipeline.run",
     "screen_designs": "pipeline.screening.design_screening",
+    "size": "pipeline.sizing.sizing",
     "solve": "pipeline.solver",
     "synthesize": "pipeline.iteration",
 }
@@ -69,6 +72,7 @@ __all__ = [
     "report",
     "run_case",
     "screen_designs",
+    "size",
     "solve",
     "synthesize",
 ]

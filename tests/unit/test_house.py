@@ -34,6 +34,7 @@ ORDER = (
     "pipeline.remedies",
     "pipeline",
     "pipeline.screening",
+    "pipeline.sizing",
     "pipeline.studies",
     "pipeline.studies.redesign",
     "pipeline.studies.papers",

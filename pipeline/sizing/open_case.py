@@ -1,0 +1,147 @@
+"""A case that leaves keys open for `size`, and the case with their values."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+import tomli_w
+
+from camwright.geometry.errors import InputError, ResultError
+from camwright.pipeline.base import units
+from camwright.pipeline.base.files import write_atomic
+from camwright.pipeline.base.quantities import In
+from camwright.pipeline.case.case import Case, includes
+from camwright.pipeline.case.case_file import (
+    case_bytes,
+    completed,
+    enter,
+    parse_case,
+    resolved,
+    tables_in,
+    validated,
+)
+from camwright.pipeline.case.case_values import quantity_of
+from camwright.pipeline.case.toml_text import Tables, TomlValue
+
+PRIME, OFFSET = "cam.prime_radius", "cam.offset"
+ROLLER, FACE = "roller.radius", "follower.face.width"
+RATE, PRELOAD = "spring.rate", "spring.preload"
+
+_PROVISIONAL: Mapping[str, str] = {
+    PRIME: "9000 mm", OFFSET: "0 mm", ROLLER: "4000 mm", FACE: "9900 mm",
+    RATE: "1 kN/m", PRELOAD: "1 N",
+}  # fmt: skip
+"""Values that contradict no others, until the sizes are known."""
+GAPS = tuple(_PROVISIONAL)
+"""Keys that a case may leave open."""
+
+_HEAD = "\n# Values of the keys that the case left open, by camwright size.\n"
+
+
+@dataclass(frozen=True, eq=False)
+class OpenCase:
+    """A case with open keys.
+
+    Parameters
+    ----------
+    case : Case      with provisional values of the open keys
+    gaps : tuple     dotted keys that it leaves open, in the order of `GAPS`
+    text : str       of its file
+    folder : Path    of its file; None: without files
+    """
+
+    case: Case
+    gaps: tuple[str, ...]
+    text: str
+    folder: Path | None = None
+
+    def with_sources(self, values: Mapping[str, float], sources: Mapping[str, str]) -> str:
+        """Text of the complete case: that of the file, and the values as tables ``[[added]]``.
+
+        Parameters
+        ----------
+        values : mapping    SI number by key
+        sources : mapping   source by key
+        """
+        if not values:
+            return self.text
+        table: Tables = {}
+        for key, value in values.items():
+            enter(table, key, _written(key, value))
+        enter(table, "sources", dict(sources))
+        return f"{self.text.rstrip()}\n{_HEAD}{tomli_w.dumps({'added': [table]})}"
+
+    def sized(self, text: str) -> Case:
+        """The complete case from its text.
+
+        Raises
+        ------
+        InputError
+            If the values contradict the rest of the case.
+        """
+        return parse_case(text, self.folder)
+
+    def write(self, text: str, out: Path) -> Path:
+        """Write the complete case, and copies of its files if it lies in another folder.
+
+        Raises
+        ------
+        ResultError
+            If a file exists already.
+        """
+        if out.exists():
+            raise ResultError(f"{out}: exists already, not overwritten")
+        if self.folder is not None and out.resolve().parent != self.folder.resolve():
+            for _, name in includes(self.case):
+                copy = out.parent / name
+                content = (self.folder / name).read_bytes()
+                if copy.exists() and copy.read_bytes() != content:
+                    raise ResultError(f"{copy}: exists already, not overwritten")
+                write_atomic(copy, content)
+        return write_atomic(out, text)
+
+
+def read_open_case(path: str | Path) -> OpenCase:
+    """Read a case that may leave the keys of `GAPS` open.
+
+    Raises
+    ------
+    InputError
+        For the first error, by its dotted name.
+    """
+    return parse_open_case(case_bytes(path), Path(path).resolve().parent)
+
+
+def parse_open_case(content: str | bytes, folder: Path | None = None) -> OpenCase:
+    """A case with open keys from its text; included files are read from `folder`."""
+    tables = resolved(tables_in(content), folder)
+    other = ROLLER if _entry(tables, "follower.kind") == "flat" else FACE
+    gaps = tuple(key for key in GAPS if key != other and _entry(tables, key) is None)
+    for key in gaps:
+        enter(tables, key, _PROVISIONAL[key])
+    case = completed(validated(tables), folder)
+    if case.engine is not None:
+        for key in (RATE, PRELOAD):
+            if key in gaps:
+                limit = "given with an engine, whose lift follows from the spring"
+                raise InputError(key, "missing", limit)
+        if case.smoothing.kind == "constrained":
+            limit = "a filter, or a lift in place of the engine: a constrained synthesis finds"
+            limit += " spring and prime radius itself"
+            raise InputError("smoothing.kind", "constrained", limit)
+    text = content if isinstance(content, str) else content.decode("utf-8-sig")
+    return OpenCase(case, gaps, text, folder)
+
+
+def _written(key: str, value: float) -> str:
+    quantity = quantity_of(key)
+    return units.format(value, quantity.unit) if isinstance(quantity, In) else str(value)
+
+
+def _entry(tables: Tables, key: str) -> TomlValue | None:
+    node: TomlValue | None = tables
+    for step in key.split("."):
+        node = node.get(step) if isinstance(node, dict) else None
+    return node

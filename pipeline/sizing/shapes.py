@@ -1,0 +1,255 @@
+"""Prime or base radius, offset, roller and face of an open case, by its geometric limits."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+
+from camwright.geometry.arrays import Array
+from camwright.geometry.cam_size import EccentricCam, FaceCam, GivenLiftCam, PitchLimits, RollerCam
+from camwright.geometry.errors import InputError
+from camwright.geometry.extrema import least_argument
+from camwright.geometry.lift_parts import LiftParts
+from camwright.pipeline.base.units import shown
+from camwright.pipeline.case.case import Case
+from camwright.pipeline.case.lift_section import LiftEccentric, LiftSegments, motion_of
+from camwright.pipeline.case.limits import (
+    CURVATURE_RATIO,
+    MINIMUM_WALL,
+    PRESSURE_ANGLE,
+    UNDERCUT_FACTOR,
+)
+from camwright.pipeline.case.load_case_torque import engine_torques
+from camwright.pipeline.checks.cam_shape import least_concave_radius
+from camwright.pipeline.sizing.open_case import FACE, OFFSET, PRIME, ROLLER, OpenCase
+from camwright.pipeline.smoothing.required_lift import cam_lift
+
+DIGITS = 6
+"""Decimal digits of a sized length in m: a micrometre."""
+_HUB_WALL = 1.1
+"""Least roller radius over that of its hub, where the bearing has no ring."""
+_ALIKE = 1e-9
+"""Relative difference of two radii up to which they are equal."""
+
+
+BALANCE, SMALLEST = "least pressure angle of rise against return", "smallest base radius"
+NARROWEST = "narrowest face"
+
+
+class Shape(NamedTuple):
+    """Prime or base radius, offset, and roller radius or face width, m; what governs, in words.
+
+    Under a flat face the prime radius is the base radius.
+    """
+
+    prime_radius: float
+    offset: float
+    roller_radius: float
+    face_width: float
+    governs: str
+    offset_governs: str = BALANCE
+
+    @property
+    def base_radius(self) -> float:
+        """Radius of the base circle, m."""
+        return self.prime_radius - self.roller_radius
+
+
+@dataclass(frozen=True, eq=False)
+class RollerShapes:
+    """Shapes of a roller cam within the limits of a case.
+
+    Parameters
+    ----------
+    case : Case   with provisional values of the open keys
+    gaps : tuple  open keys
+    cam : RollerCam
+    """
+
+    case: Case
+    gaps: tuple[str, ...]
+    cam: RollerCam
+
+    @cached_property
+    def angle_limits(self) -> PitchLimits:
+        """Limits of the pressure angle alone."""
+        angle = self.case.limits[PRESSURE_ANGLE]
+        return PitchLimits(angle, angle)
+
+    @property
+    def _convex_share(self) -> float:
+        """Least convex radius of the pitch curve over the roller radius."""
+        limits = self.case.limits
+        return max(limits[CURVATURE_RATIO], 1.0 / (1.0 - limits[UNDERCUT_FACTOR]))
+
+    def limits(self, roller_radius: float) -> PitchLimits:
+        """Limits of the pitch curve of a roller radius, m."""
+        tool = least_concave_radius(self.case) or 0.0
+        angle = self.case.limits[PRESSURE_ANGLE]
+        convex = self._convex_share * roller_radius
+        return PitchLimits(angle, angle, convex, max(tool - roller_radius, 0.0))
+
+    @property
+    def _least_roller(self) -> float:
+        """Radius of the roller, m; the smallest one that fits its bearing where it is open."""
+        roller = self.case.roller
+        if ROLLER not in self.gaps:
+            return roller.radius
+        ring = roller.bearing.ring
+        return _HUB_WALL * roller.hub_radius if ring is None else 0.5 * ring.outer_diameter
+
+    def smallest(self) -> Shape:
+        """Smallest shape, with the smallest roller.
+
+        Raises
+        ------
+        InputError
+            If a given prime radius is too small for any.
+        """
+        roller = self._least_roller
+        if PRIME not in self.gaps:
+            prime = self.case.cam.prime_radius
+            return Shape(prime, self._offset(prime), roller, 0.0, "given")
+        limits = self.limits(roller)
+        if OFFSET in self.gaps:
+            offset = rounded(self.cam.smallest(limits).offset)
+        else:
+            offset = self.case.cam.offset
+        prime = by_angle = self.cam.least_prime_radius(self.angle_limits, offset)
+        governs, by_offset = f"pressure angle of {shown(limits.rise, 'deg')}", SMALLEST
+        by_curvature = self.cam.least_prime_radius(limits, offset)
+        if by_curvature > by_angle * (1.0 + _ALIKE):
+            prime, governs = by_curvature, "curvature of the pitch curve"
+        wall = least_base_circle(self.case) + roller
+        if wall > prime:
+            prime, governs = wall, "wall around the bore"
+            offset, by_offset = self._offset(prime), BALANCE
+        return Shape(prime, offset, roller, 0.0, governs, by_offset)
+
+    def _offset(self, prime: float) -> float:
+        if OFFSET not in self.gaps:
+            return self.case.cam.offset
+        return rounded(self.cam.best_offset(prime, self.angle_limits))
+
+    def enlarged(self, shape: Shape, prime: float, governs: str) -> Shape:
+        """A shape with a larger prime radius, m, and the offset that fits it."""
+        offset = self._offset(prime)
+        return Shape(prime, offset, shape.roller_radius, shape.face_width, governs, BALANCE)
+
+    def roller_range(self, shape: Shape) -> tuple[float, float]:
+        """Least and greatest roller radius of a shape by bearing, curvature, tool and wall, m."""
+        small = shape.prime_radius - allowance(self.case)
+        pitch = self.cam.extremes(small, shape.offset)
+        most = pitch.convex_radius.value / self._convex_share
+        most = min(most, small - least_base_circle(self.case))
+        tool = least_concave_radius(self.case) or 0.0
+        return max(self._least_roller, tool - pitch.concave_radius.value), most
+
+    def best_roller(self, shape: Shape, force: Array, curvature: Array) -> Shape:
+        """The shape with the roller of the least contact pressure, p0^2 ~ F (1/r + kappa_c).
+
+        A bearing whose ring fits is the roller itself.
+
+        Parameters
+        ----------
+        force, curvature : array (...)   normal force, N, and curvature of the pitch curve, 1/m
+        """
+        least, most = self.roller_range(shape)
+        if not least <= most:
+            limit = f"<= {shown(most, 'mm')} by curvature and wall at this prime radius"
+            raise InputError(ROLLER, shown(least, "mm"), limit)
+        ring = self.case.roller.bearing.ring
+        if ring is not None:
+            return shape._replace(roller_radius=least)
+
+        def pressed(radius: float) -> float:
+            return float(np.max(force / (radius * (1.0 - radius * curvature))))
+
+        radius = rounded(least_argument(pressed, least, most))
+        return shape._replace(roller_radius=float(np.clip(radius, least, most)))
+
+
+@dataclass(frozen=True, eq=False)
+class FaceShapes:
+    """Shapes of a cam under a flat face within the limits of a case."""
+
+    case: Case
+    gaps: tuple[str, ...]
+    cam: FaceCam
+
+    def smallest(self) -> Shape:
+        """Smallest shape, with the narrowest face."""
+        case, base, governs = self.case, self.case.cam.prime_radius, "given"
+        if PRIME in self.gaps:
+            base = self.cam.least_base_radius(undercut_factor=case.limits[UNDERCUT_FACTOR])
+            governs = f"undercut factor of {case.limits[UNDERCUT_FACTOR]:g}"
+            wall = least_base_circle(case)
+            if wall > base:
+                base, governs = wall, "wall around the bore"
+        offset = rounded(self.cam.best_offset) if OFFSET in self.gaps else case.cam.offset
+        face = case.follower.face
+        width = self.cam.face_width(offset) if FACE in self.gaps or face is None else face.width
+        return Shape(base, offset, 0.0, width, governs, NARROWEST)
+
+    def enlarged(self, shape: Shape, prime: float, governs: str) -> Shape:
+        """A shape with a larger base radius, m."""
+        return shape._replace(prime_radius=prime, governs=governs)
+
+
+Shapes = RollerShapes | FaceShapes
+
+
+def shapes_of(opened: OpenCase) -> Shapes:
+    """Shapes of an open case.
+
+    Raises
+    ------
+    InputError
+        If the lift cannot be read or follows from no torque.
+    """
+    case = opened.case
+    section = case.lift
+    if case.follower.kind == "roller" and isinstance(section, LiftEccentric):
+        return RollerShapes(case, opened.gaps, EccentricCam(section.eccentricity))
+    if isinstance(section, LiftSegments):
+        parts = LiftParts.of_motion(motion_of(section))
+    else:
+        parts = LiftParts.of_lift(cam_lift(case, engine_torques(case)))
+    if case.follower.kind == "flat":
+        return FaceShapes(case, opened.gaps, FaceCam(parts))
+    return RollerShapes(case, opened.gaps, GivenLiftCam(parts))
+
+
+def allowance(case: Case) -> float:
+    """Half of the profile tolerance, m, by which a cam may be smaller than drawn."""
+    return 0.5 * case.cam.profile_tolerance
+
+
+def least_base_circle(case: Case) -> float:
+    """Least radius of the base circle by the wall around the bore, m."""
+    return case.limits[MINIMUM_WALL] * case.cam.held_radius
+
+
+def rounded(length: float) -> float:
+    """A length to the last digit of a drawing, m."""
+    return round(length, DIGITS) + 0.0  # no negative zero
+
+
+def rounded_up(length: float) -> float:
+    """A length at least half a digit of a drawing greater, m: a limit is kept with a margin."""
+    return round(float(np.ceil(length * 10**DIGITS + 0.5)) / 10**DIGITS, DIGITS)
+
+
+def values_of(shape: Shape, gaps: tuple[str, ...]) -> Mapping[str, float]:
+    """Values of the open keys of a shape, SI."""
+    values = {
+        PRIME: shape.prime_radius,
+        OFFSET: shape.offset,
+        ROLLER: shape.roller_radius,
+        FACE: shape.face_width,
+    }
+    return {key: value for key, value in values.items() if key in gaps}

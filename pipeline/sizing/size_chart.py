@@ -1,0 +1,99 @@
+"""Pressure angle and curvature over the base radius: the classical chart of cam size."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from camwright.geometry.arrays import Array
+from camwright.pipeline.base.files import Json
+from camwright.pipeline.base.units import in_unit
+from camwright.pipeline.case.case import Case
+from camwright.pipeline.case.limits import CURVATURE_RATIO, PRESSURE_ANGLE, UNDERCUT_FACTOR
+from camwright.pipeline.sizing.shapes import FaceShapes, RollerShapes, Shape, Shapes
+
+_LEAST, _MOST = 0.4, 2.2
+"""Range of the chart over the prime or base radius of the sized cam."""
+_CLEAR = 1.02
+"""Least prime radius of the chart over offset and roller radius."""
+_POINTS, _BEST_POINTS = 73, 19
+
+
+def chart_record(case: Case, shapes: Shapes, shape: Shape) -> dict[str, Json]:
+    """Curves of the chart about a sized shape, in mm and deg.
+
+    Returns
+    -------
+    dict   ``base_radius_mm`` of the shape, and ``panels``: quantity, unit, limit with its label,
+           and curves: label, x: base radius, mm, y, whether dashed
+    """
+    panels = (
+        _face_panels(case, shapes, shape)
+        if isinstance(shapes, FaceShapes)
+        else _roller_panels(case, shapes, shape)
+    )
+    return {"base_radius_mm": in_unit(shape.base_radius, "mm"), "panels": panels}
+
+
+def _roller_panels(case: Case, shapes: RollerShapes, shape: Shape) -> list[dict[str, Json]]:
+    cam, inset = shapes.cam, shape.roller_radius
+    low = max(_LEAST * shape.prime_radius, _CLEAR * abs(shape.offset), _CLEAR * shape.roller_radius)
+    primes, some = (_about(low, shape.prime_radius, count) for count in (_POINTS, _BEST_POINTS))
+
+    def best(prime: float) -> float:
+        offset = cam.best_offset(prime, shapes.angle_limits)
+        return cam.extremes(prime, offset).pressure_angle.value
+
+    def curve(
+        label: str, at: Array, measure: Callable[[float], float], unit: str, *, dashed: bool = False
+    ) -> dict[str, Json]:
+        return _curve(label, at, [measure(float(each)) for each in at], inset, unit, dashed=dashed)
+
+    sized = {float(prime): cam.extremes(float(prime), shape.offset) for prime in primes}
+    angles = [
+        curve("rise", primes, lambda prime: sized[prime].rise.value, "deg"),
+        curve("return", primes, lambda prime: sized[prime].back.value, "deg"),
+    ]
+    if shape.offset != 0.0:
+        angles.append(
+            curve("no offset", some, lambda p: cam.extremes(p).pressure_angle.value, "deg")
+        )
+    angles.append(curve("best offset of each radius", some, best, "deg", dashed=True))
+    radius = [
+        curve("", primes, lambda prime: cam.extremes(prime, shape.offset).convex_radius.value, "mm")
+    ]
+    limits = case.limits
+    share = max(limits[CURVATURE_RATIO], 1.0 / (1.0 - limits[UNDERCUT_FACTOR]))
+    return [
+        _panel("pressure angle", "deg", in_unit(limits[PRESSURE_ANGLE], "deg"), angles),
+        _panel("convex pitch radius", "mm", in_unit(share * shape.roller_radius, "mm"), radius),
+    ]
+
+
+def _face_panels(case: Case, shapes: FaceShapes, shape: Shape) -> list[dict[str, Json]]:
+    bases, cam = _about(_LEAST * shape.prime_radius, shape.prime_radius, _POINTS), shapes.cam
+    radii = bases + cam.least_radius(0.0).value
+    factors = [cam.undercut_factor(float(each)) for each in bases]
+    limit = case.limits[UNDERCUT_FACTOR]
+    return [
+        _panel("radius of curvature", "mm", 0.0, [_curve("", bases, radii.tolist(), 0.0, "mm")]),
+        _panel("undercut factor", "", limit, [_curve("", bases, factors, 0.0, "")]),
+    ]
+
+
+def _about(least: float, radius: float, count: int) -> Array:
+    return np.linspace(least, max(_MOST * radius, 1.5 * least), count)
+
+
+def _curve(
+    label: str, at: Array, values: list[float], inset: float, unit: str, *, dashed: bool = False
+) -> dict[str, Json]:
+    x = [in_unit(float(each) - inset, "mm") for each in at]
+    return {"label": label, "x": x, "y": [in_unit(each, unit) for each in values], "dashed": dashed}
+
+
+def _panel(
+    quantity: str, unit: str, limit: float, curves: list[dict[str, Json]]
+) -> dict[str, Json]:
+    return {"quantity": quantity, "unit": unit, "limit": limit, "curves": curves}

@@ -1,0 +1,160 @@
+"""Record of a sizing, and its text."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from camwright.pipeline.base.files import Json
+from camwright.pipeline.base.quantities import In
+from camwright.pipeline.base.units import in_unit, shown
+from camwright.pipeline.case.case_values import quantity_of
+from camwright.pipeline.case.limits import SPRING_SURGE
+from camwright.pipeline.checks.check import Check
+from camwright.pipeline.sizing.shapes import FaceShapes, Shape, Shapes
+from camwright.pipeline.sizing.open_case import GAPS, PRELOAD, RATE, ROLLER
+from camwright.pipeline.sizing.size_chart import chart_record
+from camwright.pipeline.sizing.sizing import Sizing
+from camwright.pipeline.sizing.spring_choice import greatest_coil_mass
+
+_MM, _DEG = "mm", "deg"
+
+
+def size_record(sizing: Sizing) -> dict[str, Json]:
+    """Record of a sizing.
+
+    ``sized``: value, unit and source of each open key, as in the complete case; ``smallest``: the
+    exact cam at the geometric limits, nominal, and ``drawn``: that of the complete case; spring,
+    checks that the open keys decide, ids of others that fail, and the chart.
+    """
+    case, spring, stroke = sizing.case, sizing.spring, _stroke(sizing)
+    return {
+        "case": case.name,
+        "follower": case.follower.kind,
+        "verdict": sizing.verdict,
+        "sized": {
+            key: {
+                "value": in_unit(value, _unit(key)),
+                "unit": _unit(key),
+                "source": sizing.sources[key],
+            }
+            for key, value in sizing.values.items()
+        },
+        "smallest": _shape_record(sizing.shapes, sizing.exact),
+        "drawn": _shape_record(sizing.shapes, sizing.shape),
+        "spring": {
+            "rate_N_per_mm": in_unit(spring.rate, "N/mm"),
+            "preload_N": spring.preload,
+            "force_at_full_lift_N": spring.size.force(stroke),
+            "energy_at_full_lift_J": spring.size.energy(stroke),
+            "active_mass_max_g": in_unit(greatest_coil_mass(case, spring.rate), "g"),
+        },
+        "checks": [each.as_record() for each in sizing.checks],
+        "other_failures": list(sizing.others),
+        "chart": chart_record(case, sizing.shapes, sizing.shape),
+    }
+
+
+def size_lines(sizing: Sizing) -> Iterator[str]:
+    """Sized values with their reasons, the cam and its checks, a line each."""
+    if not sizing.values:
+        yield f"no key is open; size finds {', '.join(GAPS)}"
+    for key, value in sizing.values.items():
+        yield f"{key} = {shown(value, _unit(key), 6)}; {sizing.sources[key]}"
+    exact, drawn = sizing.exact, sizing.shape
+    if exact.base_radius != drawn.base_radius:
+        yield (
+            f"base radius {shown(exact.base_radius, _MM, 7)} at the limit of the geometry,"
+            f" {shown(drawn.base_radius, _MM, 6)} as drawn"
+        )
+    yield _cam_line(sizing)
+    if {RATE, PRELOAD} & set(sizing.opened.gaps):
+        yield _spring_line(sizing)
+    for each in sizing.checks:
+        if each.status != "pass":
+            yield _check_words(each)
+    if sizing.others:
+        yield f"fails by other keys: {', '.join(sizing.others)}"
+    yield f"{sizing.verdict.upper()} in the preview: {len(sizing.checks)} checks of the open keys"
+
+
+def _cam_line(sizing: Sizing) -> str:
+    shapes, shape = sizing.shapes, sizing.shape
+    if isinstance(shapes, FaceShapes):
+        least = shapes.cam.least_radius(shape.prime_radius)
+        return (
+            f"cam: least radius of curvature {shown(least.value, _MM)}, undercut factor"
+            f" {shapes.cam.undercut_factor(shape.prime_radius):.4g}, face at least"
+            f" {shown(shapes.cam.face_width(shape.offset), _MM)} wide"
+        )
+    pitch = shapes.cam.extremes(shape.prime_radius, shape.offset)
+    words = (
+        f"cam: pressure angle {shown(pitch.rise.value, _DEG)} on the rise,"
+        f" {shown(pitch.back.value, _DEG)} on the return; convex pitch radius"
+        f" {shown(pitch.convex_radius.value, _MM)}"
+    )
+    if ROLLER not in sizing.opened.gaps:
+        return words
+    low, high = shapes.roller_range(shape)
+    return f"{words}; roller {shown(low, _MM)} to {shown(high, _MM)}"
+
+
+def _spring_line(sizing: Sizing) -> str:
+    spring, case = sizing.spring, sizing.case
+    words = f"spring: {shown(spring.size.force(_stroke(sizing)), 'N')} at full lift"
+    if case.spring.design is not None:
+        return words
+    mass = greatest_coil_mass(case, spring.rate)
+    share = case.limits[SPRING_SURGE]
+    return (
+        f"{words}; its active coils may weigh {shown(mass, 'g', 3)} for a surge frequency of"
+        f" {share:g} times that of the cam"
+    )
+
+
+def _check_words(check: Check) -> str:
+    if check.status == "not_evaluated":
+        lacks = f"; the case lacks {', '.join(check.missing)}" if check.missing else ""
+        return f"not known: {check.title}{lacks}"
+    return str(check)
+
+
+def _unit(key: str) -> str:
+    quantity = quantity_of(key)
+    return quantity.unit if isinstance(quantity, In) else ""
+
+
+def _stroke(sizing: Sizing) -> float:
+    shapes, shape = sizing.shapes, sizing.shape
+    if isinstance(shapes, FaceShapes):
+        return shapes.cam.lift.stroke
+    return shapes.cam.parts(shape.prime_radius, shape.offset).stroke
+
+
+def _shape_record(shapes: Shapes, shape: Shape) -> dict[str, Json]:
+    """Lengths of a shape with its extremes on the exact lift."""
+    record: dict[str, Json] = {
+        "base_radius_mm": in_unit(shape.base_radius, _MM),
+        "offset_mm": in_unit(shape.offset, _MM),
+        "governs": shape.governs,
+    }
+    if isinstance(shapes, FaceShapes):
+        least = shapes.cam.least_radius(shape.prime_radius)
+        return record | {
+            "face_width_mm": in_unit(shape.face_width, _MM),
+            "radius_of_curvature_min_mm": in_unit(least.value, _MM),
+            "undercut_factor_min": shapes.cam.undercut_factor(shape.prime_radius),
+        }
+    pitch = shapes.cam.extremes(shape.prime_radius, shape.offset)
+    concave = pitch.concave_radius.value
+    return record | {
+        "prime_radius_mm": in_unit(shape.prime_radius, _MM),
+        "roller_radius_mm": in_unit(shape.roller_radius, _MM),
+        "pressure_angle_rise_deg": in_unit(pitch.rise.value, _DEG),
+        "pressure_angle_rise_at_deg": in_unit(pitch.rise.theta, _DEG),
+        "pressure_angle_return_deg": in_unit(pitch.back.value, _DEG),
+        "pressure_angle_return_at_deg": in_unit(pitch.back.theta, _DEG),
+        "convex_pitch_radius_min_mm": in_unit(pitch.convex_radius.value, _MM),
+        "concave_pitch_radius_min_mm": in_unit(concave, _MM) if np.isfinite(concave) else None,
+    }

@@ -1,0 +1,301 @@
+"""Values of the keys that a case leaves open, as small as its limits allow, and their checks."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from camwright.geometry.errors import CamError
+from camwright.geometry.lift import Lift
+from camwright.pipeline.base.progress import SILENT, Progress
+from camwright.pipeline.case.case import Case
+from camwright.pipeline.case.case_values import refused_as_written, replaced
+from camwright.pipeline.case.given_lift import given_lift
+from camwright.pipeline.case.load_case_torque import engine_torques
+from camwright.pipeline.checks.check import Check, Verdict, verdict, within_depth
+from camwright.pipeline.contact.tiers import Tier
+from camwright.pipeline.engine.torque import Torque
+from camwright.pipeline.results.trial import Trial
+from camwright.pipeline.sizing.shapes import (
+    FaceShapes,
+    RollerShapes,
+    Shape,
+    Shapes,
+    allowance,
+    rounded_up,
+    shapes_of,
+    values_of,
+)
+from camwright.pipeline.sizing.open_case import (
+    FACE,
+    OFFSET,
+    PRELOAD,
+    PRIME,
+    RATE,
+    ROLLER,
+    OpenCase,
+    read_open_case,
+)
+from camwright.pipeline.sizing.spring_choice import ChosenSpring, spring_of, stiffer
+from camwright.pipeline.smoothing.required_lift import cam_lift
+from camwright.pipeline.solver import solve
+
+_SHAPE = ("pressure_angle", "curvature_ratio", "undercut", "concave_radius", "minimum_wall",
+          "cam_radius", "self_intersection", "second_contact", "contact_pressure",
+          "contact_pressure_at_life", "edge_pressure", "shakedown", "jam_index")  # fmt: skip
+_SPRING = ("contact_force_margin", "jump", "jump_speed", "contact_at_overspeed",
+           "contact_over_speed", "elastic_contact", "spring_travel", "spring_solid",
+           "spring_surge", "spring_rate", "spring_coil_gap")  # fmt: skip
+JUDGED: Mapping[str, tuple[str, ...]] = {
+    PRIME: _SHAPE, OFFSET: _SHAPE, ROLLER: _SHAPE, FACE: ("face_width",),
+    RATE: _SPRING, PRELOAD: _SPRING,
+}  # fmt: skip
+"""Checks that an open key decides."""
+_GROWTH = ("pressure_angle", "curvature_ratio", "undercut", "concave_radius", "minimum_wall",
+           "contact_pressure", "contact_pressure_at_life", "edge_pressure", "shakedown",
+           "jam_index")  # fmt: skip
+"""Checks that a larger cam can pass."""
+_HELD = ("contact_force_margin", "jump", "jump_speed", "contact_at_overspeed",
+         "contact_over_speed", "elastic_contact")  # fmt: skip
+"""Checks that a greater preload can pass."""
+
+_STEP, _STEPS, _HALVINGS = 1.1, 16, 16
+"""Factor and number of the steps by which a cam grows: to 4.6 times the radius; 1e-6 of it left."""
+_STIFFER, _LARGER, _TRIES = 1.1, 1.01, 8
+"""Factors of preload and radius by which a preview that fails is repeated, and how often."""
+
+
+@dataclass(frozen=True, eq=False)
+class Sizing:
+    """Sizes of an open case.
+
+    Parameters
+    ----------
+    opened : OpenCase
+    text : str             of the complete case
+    case : Case            complete
+    shapes : Shapes        of the cam within its geometric limits
+    exact : Shape          smallest one by geometry, before rounding
+    shape : Shape          of the complete case
+    spring : ChosenSpring    of the complete case
+    values : mapping       SI number by open key
+    sources : mapping      reason of each value
+    checks : tuple         of the preview: those that the open keys decide
+    others : tuple         ids of the further must-have checks that fail
+    """
+
+    opened: OpenCase
+    text: str
+    case: Case
+    shapes: Shapes
+    exact: Shape
+    shape: Shape
+    spring: ChosenSpring
+    values: Mapping[str, float]
+    sources: Mapping[str, str]
+    checks: tuple[Check, ...]
+    others: tuple[str, ...]
+
+    @property
+    def verdict(self) -> Verdict:
+        """Verdict of the must-have checks that the open keys decide; pass without any."""
+        return verdict(self.checks) if self.checks else "pass"
+
+
+def size(path: str | Path, *, progress: Progress = SILENT) -> Sizing:
+    """Sizes of a case file that leaves keys open; see `sized`.
+
+    Parameters
+    ----------
+    path : str or Path   case file without any of `cam.prime_radius`, `cam.offset`,
+                         `roller.radius`, `follower.face.width`, `spring.rate`, `spring.preload`
+    """
+    return sized(read_open_case(path), progress=progress)
+
+
+def sized(opened: OpenCase, *, progress: Progress = SILENT) -> Sizing:
+    """Sizes of an open case: smallest base radius, best offset, roller, face, spring.
+
+    The geometry gives the smallest cam of pressure angle, curvature, tool and wall. It grows until
+    the closed-form checks of contact pressure and jamming pass; the preload grows until contact
+    holds with friction, surge and elastic stem. The complete case is judged by a preview.
+
+    Raises
+    ------
+    CamError
+        If the case contradicts itself, or has no such cam.
+    """
+    with refused_as_written(opened.case):
+        return _Search(opened, shapes_of(opened), engine_torques(opened.case), progress).sized()
+
+
+@dataclass(frozen=True, eq=False)
+class _Search:
+    opened: OpenCase
+    shapes: Shapes
+    torques: Mapping[str, Torque]
+    progress: Progress
+
+    def sized(self) -> Sizing:
+        self.progress.stage("geometry")
+        exact = self.shapes.smallest()
+        spring = self._spring(exact)
+        shape = self._grown(exact, spring)
+        text, case, trial = self._judged(shape, spring)
+        for _ in range(_TRIES):
+            # the preview adds tolerances, surge, elastic stem and guides to the screening
+            small = self._failing_alone(trial, shape, spring)
+            if PRELOAD in self.opened.gaps and _failing(trial, _HELD):
+                spring = stiffer(spring, _STIFFER, _titles(_failing(trial, _HELD)))
+                shape = self._grown(exact, spring)
+            elif small:
+                larger = self.shapes.enlarged(shape, _LARGER * shape.prime_radius, _titles(small))
+                shape, _ = self._fitted(larger, spring)
+            else:
+                break
+            text, case, trial = self._judged(shape, spring)
+        ids = {name for gap in self.opened.gaps for name in JUDGED[gap]}
+        checks = tuple(each for each in within_depth(trial.checks) if each.id in ids)
+        return Sizing(
+            opened=self.opened,
+            text=text,
+            case=case,
+            shapes=self.shapes,
+            exact=exact,
+            shape=shape,
+            spring=spring,
+            values=self._values(shape, spring),
+            sources=self._sources(shape, spring),
+            checks=tuple(each for each in checks if each.must_have),
+            others=tuple(
+                each.id
+                for each in within_depth(trial.checks)
+                if each.must_have and each.status == "fail" and each.id not in ids
+            ),
+        )
+
+    def _spring(self, shape: Shape) -> ChosenSpring:
+        parts = (
+            self.shapes.cam.lift
+            if isinstance(self.shapes, FaceShapes)
+            else self.shapes.cam.parts(shape.prime_radius, shape.offset)
+        )
+        return spring_of(self.opened.case, self.opened.gaps, parts)
+
+    def _values(self, shape: Shape, spring: ChosenSpring) -> dict[str, float]:
+        own = {RATE: spring.rate, PRELOAD: spring.preload}
+        own |= values_of(shape, self.opened.gaps)
+        return {key: own[key] for key in self.opened.gaps}
+
+    def _sources(self, shape: Shape, spring: ChosenSpring) -> dict[str, str]:
+        words = {
+            PRIME: f"sized: {shape.governs}",
+            OFFSET: f"sized: {shape.offset_governs}",
+            ROLLER: "sized: least contact pressure within curvature and wall",
+            FACE: "sized: travel of the contact and its half-width",
+            RATE: f"sized: {spring.rate_by}",
+            PRELOAD: f"sized: {spring.preload_by}",
+        }
+        return {key: words[key] for key in self.opened.gaps}
+
+    def _lift(self, case: Case) -> Lift:
+        return given_lift(case) if case.lift is not None else cam_lift(case, self.torques)
+
+    def _trial(self, shape: Shape, spring: ChosenSpring) -> Trial:
+        case = replaced(self.opened.case, self._values(shape, spring))
+        contour = case.contour(self._lift(case))
+        return solve(case, contour, tier=Tier.SCREENING, torques=self.torques)
+
+    def _fitted(self, shape: Shape, spring: ChosenSpring) -> tuple[Shape, Trial]:
+        """A shape as drawn, its roller or face by the contact, and its screening.
+
+        Its radius keeps the limits at the profile tolerance, too, and has the digits of a drawing.
+        """
+        gaps = self.opened.gaps
+        if PRIME in gaps:
+            prime = rounded_up(shape.prime_radius + allowance(self.opened.case))
+            shape = shape._replace(prime_radius=prime)
+        if FACE in gaps:
+            shape = shape._replace(face_width=rounded_up(shape.face_width))
+        trial = self._trial(shape, spring)
+        if FACE in gaps:
+            widest = max(
+                float(
+                    np.max(
+                        np.abs(each.contour.pitch.push_arm(each.theta)) + each.contact.half_width
+                    )
+                )
+                for each in trial.cycles
+            )
+            shape = shape._replace(face_width=rounded_up(max(2.0 * widest, shape.face_width)))
+            trial = self._trial(shape, spring)
+        if ROLLER in gaps and isinstance(self.shapes, RollerShapes):
+            force = np.stack([each.loads.normal_force for each in trial.cycles])
+            curvature = np.stack(
+                [each.contour.pitch.curvature(each.theta) for each in trial.cycles]
+            )
+            shape = self.shapes.best_roller(shape, force, curvature)
+            trial = self._trial(shape, spring)
+        return shape, trial
+
+    def _grown(self, shape: Shape, spring: ChosenSpring) -> Shape:
+        """The smallest shape from this one on that passes; the shape itself if none does."""
+        self.progress.stage("contact")
+        least, trial = self._fitted(shape, spring)
+        failing = _failing(trial, _GROWTH)
+        if PRIME not in self.opened.gaps or not failing:
+            return least
+        low, passed = shape.prime_radius, None
+        for _ in range(_STEPS):
+            high = _STEP * low
+            passed = self._passing(shape, high, failing, spring)
+            if passed is not None:
+                break
+            low = high
+        if passed is None:
+            return least
+        for _ in range(_HALVINGS):
+            middle = 0.5 * (low + high)
+            smaller = self._passing(shape, middle, failing, spring)
+            low, high, passed = (
+                (middle, high, passed) if smaller is None else (low, middle, smaller)
+            )
+        return passed
+
+    def _passing(
+        self, shape: Shape, prime: float, failing: tuple[Check, ...], spring: ChosenSpring
+    ) -> Shape | None:
+        larger = self.shapes.enlarged(shape, prime, _titles(failing))
+        try:
+            larger, trial = self._fitted(larger, spring)
+        except CamError:
+            return None
+        return None if _failing(trial, _GROWTH) else larger
+
+    def _failing_alone(self, trial: Trial, shape: Shape, spring: ChosenSpring) -> tuple[Check, ...]:
+        """Failed checks of a preview that a larger cam can pass, where the screening has none."""
+        failing = _failing(trial, _GROWTH) if PRIME in self.opened.gaps else ()
+        return () if _failing(self._trial(shape, spring), _GROWTH) else failing
+
+    def _judged(self, shape: Shape, spring: ChosenSpring) -> tuple[str, Case, Trial]:
+        """Text, complete case and preview of a shape."""
+        self.progress.stage("preview")
+        values = self._values(shape, spring)
+        text = self.opened.with_sources(values, self._sources(shape, spring))
+        case = self.opened.sized(text)
+        contour = case.contour(self._lift(case))
+        return text, case, solve(case, contour, tier=Tier.PREVIEW, torques=self.torques)
+
+
+def _failing(trial: Trial, ids: tuple[str, ...]) -> tuple[Check, ...]:
+    return tuple(
+        each for each in trial.checks
+        if each.id in ids and each.must_have and each.status == "fail"
+    )  # fmt: skip
+
+
+def _titles(checks: tuple[Check, ...]) -> str:
+    return " and ".join(each.title for each in checks)

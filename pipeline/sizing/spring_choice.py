@@ -1,0 +1,114 @@
+"""Rate and preload of an open case: contact at all speeds, within its tolerances."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from camwright.geometry.lift_parts import LiftParts
+from camwright.pipeline.case.case import Case
+from camwright.pipeline.case.limits import CONTACT_FORCE_MARGIN, JUMP_SPEED, SPRING_SURGE
+from camwright.pipeline.case.machine import machines
+from camwright.pipeline.cycle.speed_sweep import highest_speed
+from camwright.pipeline.follower.spring_size import (
+    PRELOAD_SHARE,
+    HoldingCondition,
+    SpringSize,
+    preload_needed,
+    smallest_spring,
+)
+from camwright.pipeline.sizing.open_case import PRELOAD, RATE
+
+_DIGITS = 4
+"""Significant digits of a sized rate or preload."""
+_ROUND_OFF = 1e-12
+
+
+def conditions_of(case: Case) -> tuple[HoldingCondition, ...]:
+    """Conditions that hold the follower on the cam, at the worst ends of the tolerances.
+
+    No jump up to `limits.jump_speed` times the greatest speed, and the share
+    `limits.contact_force_margin` of the preload left at that speed.
+    """
+    states, spring = machines(case), case.spring
+    speed = highest_speed(states) / case.mechanism.gear_ratio
+    worst = {
+        "mass": case.follower.mass * (1.0 + case.tolerances.mass),
+        "damping": case.follower.viscous_damping,
+        "rate_factor": 1.0 - spring.rate_tolerance,
+        "preload_factor": 1.0 - spring.preload_tolerance,
+    }
+    margin = case.limits[CONTACT_FORCE_MARGIN]
+    return (
+        HoldingCondition(cam_speed=case.limits[JUMP_SPEED] * speed, **worst),
+        HoldingCondition(cam_speed=speed, share=margin, **worst),
+    )
+
+
+class ChosenSpring(NamedTuple):
+    """Rate, N/m, and preload, N, each with its reason in words."""
+
+    rate: float
+    preload: float
+    rate_by: str = ""
+    preload_by: str = ""
+
+    @property
+    def size(self) -> SpringSize:
+        """Rate and preload alone."""
+        return SpringSize(self.rate, self.preload)
+
+
+def spring_of(case: Case, gaps: Sequence[str], lift: LiftParts) -> ChosenSpring:
+    """Spring of the open keys: its least energy at full lift, or the preload of a given rate.
+
+    The rate of a spring with a design is that of the design.
+
+    Raises
+    ------
+    InputError
+        If nothing throws the follower off the cam and no rate is given.
+    """
+    design, rate, rate_by = case.spring.design, case.spring.rate, ""
+    conditions = conditions_of(case)
+    if RATE in gaps and design is not None:
+        rate, rate_by = _to_digits(design.rate), "rate of spring.design"
+    elif RATE in gaps:
+        rate = _to_digits(smallest_spring(lift, conditions).rate)
+        rate_by = "least energy of the spring at full lift without follower jump"
+    if PRELOAD not in gaps:
+        return ChosenSpring(rate, case.spring.preload, rate_by)
+    spring = smallest_spring(lift, conditions, rate=rate)
+    share = spring.preload > preload_needed(lift, rate, conditions).value
+    preload_by = (
+        f"share of {PRELOAD_SHARE:g} of the force at full lift"
+        if share
+        else "no follower jump over the speed range"
+    )
+    return ChosenSpring(rate, _preload_up(spring.preload), rate_by, preload_by)
+
+
+def stiffer(spring: ChosenSpring, factor: float, reason: str) -> ChosenSpring:
+    """A spring with a greater preload, for a reason."""
+    return spring._replace(preload=_preload_up(factor * spring.preload), preload_by=reason)
+
+
+def _preload_up(preload: float) -> float:
+    """A preload, N, to four digits, not below it."""
+    step = 10.0 ** (np.floor(np.log10(preload)) - _DIGITS + 1)
+    return _to_digits(float(np.ceil(preload / step * (1.0 - _ROUND_OFF)) * step))
+
+
+def _to_digits(value: float) -> float:
+    return float(f"{value:.{_DIGITS}g}")
+
+
+def greatest_coil_mass(case: Case, rate: float) -> float:
+    """Mass of the active coils, kg, at which the surge frequency is at its limit.
+
+    f1 = sqrt(k/m)/2 at `limits.spring_surge` times the greatest frequency of the cam.
+    """
+    cam = highest_speed(machines(case)) / case.mechanism.gear_ratio / (2.0 * np.pi)
+    return float(rate / (2.0 * case.limits[SPRING_SURGE] * cam) ** 2)
