@@ -12,8 +12,8 @@ from camwright.pipeline.base.units import in_unit, shown
 from camwright.pipeline.case.case_values import quantity_of
 from camwright.pipeline.case.limits import SPRING_SURGE
 from camwright.pipeline.checks.check import Check
-from camwright.pipeline.sizing.shapes import FaceShapes, Shape, Shapes
 from camwright.pipeline.sizing.open_case import GAPS, PRELOAD, RATE, ROLLER
+from camwright.pipeline.sizing.shapes import FaceShapes, Shape, Shapes
 from camwright.pipeline.sizing.size_chart import chart_record
 from camwright.pipeline.sizing.sizing import Sizing
 from camwright.pipeline.sizing.spring_choice import greatest_coil_mass

@@ -17,18 +17,7 @@ from camwright.pipeline.case.given_lift import given_lift
 from camwright.pipeline.case.load_case_torque import engine_torques
 from camwright.pipeline.checks.check import Check, Verdict, verdict, within_depth
 from camwright.pipeline.contact.tiers import Tier
-from camwright.pipeline.engine.torque import Torque
 from camwright.pipeline.results.trial import Trial
-from camwright.pipeline.sizing.shapes import (
-    FaceShapes,
-    RollerShapes,
-    Shape,
-    Shapes,
-    allowance,
-    rounded_up,
-    shapes_of,
-    values_of,
-)
 from camwright.pipeline.sizing.open_case import (
     FACE,
     OFFSET,
@@ -39,9 +28,20 @@ from camwright.pipeline.sizing.open_case import (
     OpenCase,
     read_open_case,
 )
+from camwright.pipeline.sizing.shapes import (
+    FaceShapes,
+    RollerShapes,
+    Shape,
+    Shapes,
+    allowance,
+    rounded_up,
+    shapes_of,
+    values_of,
+)
 from camwright.pipeline.sizing.spring_choice import ChosenSpring, spring_of, stiffer
 from camwright.pipeline.smoothing.required_lift import cam_lift
 from camwright.pipeline.solver import solve
+from camwright.pipeline.torque.torque import Torque
 
 _SHAPE = ("pressure_angle", "curvature_ratio", "undercut", "concave_radius", "minimum_wall",
           "cam_radius", "self_intersection", "second_contact", "contact_pressure",
