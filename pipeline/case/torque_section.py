@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from math import ceil
 from pathlib import Path
 from typing import Annotated
 
 import numpy as np
 from pydantic import Field
 
-from camwright.geometry.arrays import Array
+from camwright.geometry.arrays import FULL_TURN, Array
 from camwright.pipeline.case.section import Table
 from camwright.pipeline.torque.harmonic_torque import HarmonicTorque
 from camwright.pipeline.torque.press_torque import Press, press_torque
@@ -52,7 +53,8 @@ def shaft_torque(torque: ShaftTorque, speed: float, path: Callable[[str], Path])
     InputError
         If a file cannot be read or has wrong contents; by file and line.
     """
-    theta = uniform_cycle(SAMPLES, torque.cycle)
+    turns = ceil(torque.cycle / FULL_TURN * (1.0 - 1e-9))
+    theta = uniform_cycle(SAMPLES * turns, torque.cycle)  # as dense however long the cycle is
     parts: dict[str, Array] = {torque.kind: _values(torque, theta, path)}
     inertia = _inertia(torque, theta)
     if not inertia.any():

@@ -1,0 +1,165 @@
+"""A case by the torque of its machine: cycles of any length, lobes, textbook values."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from camwright.geometry.arrays import uniform_turn
+from camwright.geometry.errors import InputError
+from camwright.pipeline.case.case import Case
+from camwright.pipeline.case.case_file import parse_case
+from camwright.pipeline.case.load_case_torque import engine_torques
+from camwright.pipeline.engine.crankshaft import energy_swing
+from camwright.pipeline.smoothing.required_lift import cam_lift
+
+GX120 = (Path(__file__).parents[2] / "cases" / "gx120.toml").read_text(encoding="utf-8")
+MACHINE = GX120[GX120.index("[mechanism]") :]
+PRESS = """[torque]
+kind = "press"
+eccentric_radius = "30 mm"
+rod_length = "200 mm"
+force = "4 kN"
+working_travel = "8 mm"
+ram_mass = "20 kg"
+"""
+
+
+def case_of(torque: str, ratio: str = "1.0", folder: Path | None = None, **edits: str) -> Case:
+    """The machine of the GX120 with another torque, unsmoothed."""
+    text = f'schema_version = 1\nname = "other"\n{torque}\n{MACHINE}'
+    text = text.replace("gear_ratio = 2.0", f"gear_ratio = {ratio}")
+    text = text.replace('kind = "moving_average"', 'kind = "none"')
+    for old, new in edits.items():
+        assert old in text
+        text = text.replace(old, new)
+    return parse_case(text, folder)
+
+
+def harmonics(mean: float, *waves: tuple[float, float, float]) -> str:
+    """A torque table of a mean and (order, cosine, sine), N m."""
+    rows = ", ".join(
+        f'{{ order = {k}, cosine = "{a} N m", sine = "{b} N m" }}' for k, a, b in waves
+    )
+    return f'[torque]\nkind = "harmonics"\nmean = "{mean} N m"\nharmonics = [{rows}]\n'
+
+
+def left_by(case: Case) -> tuple[float, float]:
+    """Ripple (std, N m) of the shaft torque without the cam and with its spring force alone."""
+    torque = next(iter(engine_torques(case).values()))
+    lift = cam_lift(case, engine_torques(case))
+    theta = uniform_turn(torque.theta.size)
+    on_cam = (case.spring.preload + case.spring.rate * lift(theta)) * lift(theta, 1)
+    after = torque.without_mean().total - on_cam / case.mechanism.gear_ratio
+    return torque.std, float(after.std())
+
+
+# Khurmi, Theory of Machines, ex. 16.11 to 16.13; strokes with k = 200 N/mm and P = 2 kN from
+# the energy swing in closed form: s = (sqrt(P^2 + 2 k E) - P) / k.
+@pytest.mark.parametrize(
+    ("torque", "swing", "stroke"),
+    [
+        (harmonics(20000, (2, -5700, 9500)), 11078.81, 322.999),
+        (harmonics(0, (2, 0, 600), (1, 0, -500)), 1204.167, 100.189),
+        (harmonics(5000, (3, 0, 1500)), 1000.000, 90.499),
+    ],
+)
+def test_lift_of_a_textbook_torque(torque: str, swing: float, stroke: float) -> None:
+    case = case_of(torque)
+    spring = case.spring
+    stiff = case.model_copy(
+        update={"spring": type(spring)(rate=200e3, preload=2e3, travel_max=0.5)}
+    )
+    torques = engine_torques(stiff)
+    whole = next(iter(torques.values()))
+    assert np.ptp(energy_swing(whole.total, whole.span)) == pytest.approx(swing, rel=1e-4)
+    # The spline of 720 samples finds the extremes between them: as many digits as are printed.
+    assert 1e3 * cam_lift(stiff, torques).stroke == pytest.approx(stroke, abs=6e-4)
+
+
+def test_one_press_leaves_one_ripple_however_it_is_stated(tmp_path: Path) -> None:
+    """As 360 deg at ratio 1, at ratio 2, and twice over as a table of 720 deg at ratio 2."""
+    once, twice = case_of(PRESS), case_of(PRESS, '"2:1"')
+    assert (once.period.cycles, twice.period.cycles) == (1, 2)
+    torque = next(iter(engine_torques(once).values()))
+    rows = [f"{0.5 * k},{value!r}" for k, value in enumerate(np.tile(torque.total, 2).tolist())]
+    (tmp_path / "press.csv").write_text("shaft_angle_deg,torque_Nm\n" + "\n".join(rows))
+    table = '[torque]\nkind = "table"\ncycle = "720 deg"\nfile = "press.csv"\n'
+    stated = case_of(table, "2.0", tmp_path)
+    assert stated.period.cycles == 1
+    before, after = zip(*(left_by(each) for each in (once, twice, stated)), strict=True)
+    assert before[1:] == pytest.approx((before[0],) * 2, rel=1e-9)
+    # 1e-9 of the torque: of the interpolation between its samples.
+    np.testing.assert_allclose(after, after[0], rtol=0.0, atol=1e-9 * before[0])
+
+
+@pytest.mark.parametrize("lobes", [2, 3, 5])
+def test_lobes_repeat_to_round_off(lobes: int) -> None:
+    case = case_of(PRESS, f"{lobes}.0")
+    lift = cam_lift(case, engine_torques(case))
+    theta = uniform_turn(720)[: 720 // lobes]
+    turn = 2.0 * np.pi / lobes
+    for k in range(1, lobes):
+        np.testing.assert_allclose(
+            lift(theta + k * turn), lift(theta), rtol=0.0, atol=1e-13 * lift.stroke * 720
+        )
+
+
+def test_a_smoother_acts_on_the_cycle_at_any_number_of_lobes() -> None:
+    smooth = {'kind = "none"': 'kind = "harmonic"\nharmonics = 8.0'}
+    one, three = case_of(PRESS, "1.0", **smooth), case_of(PRESS, "3.0", **smooth)
+    lifts = [cam_lift(case, engine_torques(case)) for case in (one, three)]
+    theta = uniform_turn(90)
+    # The transfer factor of each harmonic is the same; splines through as many samples a lobe.
+    np.testing.assert_allclose(
+        lifts[1](theta / 3.0), lifts[0](theta), rtol=0.0, atol=1e-9 * lifts[0].stroke
+    )
+
+
+def test_an_engine_and_a_load_share_a_shaft() -> None:
+    """The cycle is that of the engine, in which the load repeats twice."""
+    engine = GX120[GX120.index("[engine]") : GX120.index("[mechanism]")]
+    engine = engine[: engine.index("[crankshaft]")] if "[crankshaft]" in engine else engine
+    load = harmonics(0, (1, 0, 5.0)).replace(
+        'kind = "harmonics"', 'kind = "harmonics"\nrole = "load"'
+    )
+    both, alone = case_of(engine + load, "2.0"), case_of(engine, "2.0")
+    assert both.period == alone.period
+    (sum_of,), (own,) = (tuple(engine_torques(case).values()) for case in (both, alone))
+    theta = own.theta
+    np.testing.assert_allclose(
+        sum_of.resampled(720).total, own.total - 5.0 * np.sin(theta), rtol=0.0, atol=1e-9
+    )
+
+
+@pytest.mark.parametrize(
+    ("torque", "ratio", "words"),
+    [
+        (PRESS, "1.5", "mechanism.gear_ratio = 3:2, must be 1 or 2: a cam turn holds a whole"),
+        (PRESS, '"1:2"', "mechanism.gear_ratio = 1:2, must be 1 or 2: a cam turn"),
+        (PRESS, '"0:2"', "mechanism.gear_ratio"),
+        (PRESS, '"2"', "not in quotes"),
+        (PRESS + 'marks = [{ angle = "400 deg", name = "up" }]', "1.0", "torque.marks.angle"),
+        (PRESS + '[lift]\nkind = "eccentric"\neccentricity = "3 mm"', "1.0", "exactly one of"),
+        (PRESS.replace('"press"', '"pressing"'), "1.0", "torque.kind = pressing, must be"),
+        (PRESS.replace("kind", "kinds"), "1.0", "must be a table with kind"),
+        (PRESS.replace('"8 mm"', '"80 mm"'), "1.0", "torque.working_travel = 80 mm, must be <= 60"),
+    ],
+)
+def test_a_refusal_has_one_clear_line(torque: str, ratio: str, words: str) -> None:
+    with pytest.raises(InputError) as refusal:
+        case_of(torque, ratio)
+    assert words in str(refusal.value)
+    assert "\n" not in str(refusal.value)
+
+
+def test_a_torque_needs_its_ratio() -> None:
+    with pytest.raises(InputError, match=r"gear_ratio = missing, must be given with \[torque\]: 1"):
+        parse_case(f'schema_version = 1\nname = "o"\n{PRESS}{MACHINE}'.replace("gear_ratio", "#"))
+
+
+def test_too_few_positions_a_lobe_are_refused() -> None:
+    with pytest.raises(InputError, match=r"solver.positions = 72, must be >= 108, 36 per cycle"):
+        case_of(PRESS, "3.0", **{"positions = 720": "positions = 72"})
