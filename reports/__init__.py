@@ -4,6 +4,7 @@ Modules in the order of use; each imports only those above it.
 
 ====================== ===========================================================================
 report_tables          digits, units and text of a value; rows of checks, key figures and inputs
+machine_words          names of the machine's shaft, of the parts of its cycle
 verification_tables    certificate, benchmarks, tolerance corners, shadow prices, consistency
 verdict_text           verdict in sentences
 figures                contents of a figure: curves, limits, units, title, caption

@@ -19,6 +19,7 @@ from camwright.reports.figures import (
     Panel,
     circle,
 )
+from camwright.reports.machine_words import MachineWords
 from camwright.reports.part_figures import PART_FIGURES
 from camwright.reports.report_tables import number, quantity, words
 from camwright.reports.sheet_turn import Turn, angle_figure, curves_of
@@ -55,16 +56,16 @@ def groups(turn: Turn) -> tuple[tuple[str, tuple[Figure, ...]], ...]:
 
 def _torque(turn: Turn) -> Figure | None:
     curves = curves_of(
-        turn, ("torque_before_Nm", "engine alone"), ("torque_after_Nm", "with the cam"),
+        turn, ("torque_before_Nm", turn.words.alone), ("torque_after_Nm", "with the cam"),
     )  # fmt: skip
     if not curves:
         return None
     cam = turn.columns["cam_torque_Nm"] / turn.gear_ratio
-    curves += (Curve("cam torque at the crank", cam, "muted", dashed=True),)
+    curves += (Curve(f"cam torque at the {turn.words.shaft}", cam, "muted", dashed=True),)
     return angle_figure(
-        turn, "torque", "Crank torque",
-        "Deviation of the crank torque from its mean, without and with the cam; guide friction and "
-        "follower inertia included.",
+        turn, "torque", f"{turn.words.title} torque",
+        f"Deviation of the {turn.words.shaft} torque from its mean, without and with the cam; "
+        "guide friction and follower inertia included.",
         Panel("torque", "N m", curves, height=1.25), mark=False,
     )  # fmt: skip
 
@@ -74,7 +75,7 @@ def _crank_speed(turn: Turn) -> Figure | None:
     if speed is None:
         return None
     wanted = (
-        ("speed_before_rad_per_s", "engine alone", "blue", False),
+        ("speed_before_rad_per_s", turn.words.alone, "blue", False),
         ("speed_inertia_alone_rad_per_s", "added inertia, no cam force", "muted", True),
         ("speed_after_rad_per_s", "with the cam", "vermillion", False),
     )
@@ -83,10 +84,10 @@ def _crank_speed(turn: Turn) -> Figure | None:
         for name, label, colour, dashed in wanted
     )  # fmt: skip
     return angle_figure(
-        turn, "crank-speed", "Crank speed",
-        "Crank speed over the cycle of the first load case: engine alone, with the rotating parts "
-        "of the mechanism but without cam force, and with the cam.",
-        Panel("crank speed", "rad/s", curves, height=1.25), mark=False,
+        turn, "crank-speed", f"{turn.words.title} speed",
+        f"{turn.words.title} speed over a cam turn in the first load case: {turn.words.alone}, "
+        "with the rotating parts of the mechanism but without cam force, and with the cam.",
+        Panel(f"{turn.words.shaft} speed", "rad/s", curves, height=1.25), mark=False,
         crank=speed["crank_angle_deg"],
     )  # fmt: skip
 
@@ -104,9 +105,8 @@ def _components(turn: Turn) -> Figure | None:
     ]
     curves.append(Curve("total", total, "ink", dashed=bool(parts), band=band))
     return angle_figure(
-        turn, "torque-components", "Components of the engine torque",
-        "Positive torque drives the crank. Crank angle 0 is the top dead centre of gas exchange, "
-        "360 deg the firing top dead centre."
+        turn, "torque-components", "Components of the torque",
+        f"Positive torque drives the {turn.words.shaft}. {turn.words.origin}".rstrip()
         + ("" if band is None else " The band holds the measured torque with 95 % probability."),
         Panel("torque", "N m", tuple(curves), height=1.25), mark=False,
         crank=turn.torque["crank_angle_deg"],
@@ -309,10 +309,12 @@ def _ripple_map(turn: Turn) -> Figure | None:
     loads = "" if pressures is None else " Engine load by intake pressure."
     return LineFigure(
         "ripple-map", "Torque ripple by speed and load",
-        "Standard deviation of the crank torque with the cam over that of the engine alone; above "
-        f"1 the cam adds ripple. Quasi-static cam torque with inertia and friction.{loads} "
-        f"{record['engine']}", "crank speed", "rpm", np.array(record["crank_speed_rpm"]),
-        (Panel("ripple ratio", "", curves, (LimitLine(1.0, "engine alone"),), height=1.1),),
+        f"Standard deviation of the {turn.words.shaft} torque with the cam over that of the "
+        f"{turn.words.alone}; above 1 the cam adds ripple. Quasi-static cam torque with inertia "
+        f"and friction.{loads} "
+        f"{record['engine']}",
+        f"{turn.words.shaft} speed", "rpm", np.array(record["crank_speed_rpm"]),
+        (Panel("ripple ratio", "", curves, (LimitLine(1.0, turn.words.alone),), height=1.1),),
     )  # fmt: skip
 
 
@@ -332,23 +334,23 @@ def _trial_points(turn: Turn) -> Figure | None:
     )  # fmt: skip
     return LineFigure(
         "trial-points", "Trials",
-        "Standard deviation of the crank torque with the cam, and the greatest utilisation of the "
-        "required checks that depend on the lift, by trial.",
+        f"Standard deviation of the {turn.words.shaft} torque with the cam, and the greatest "
+        "utilisation of the required checks that depend on the lift, by trial.",
         "trial", "", column("trial"), panels, whole=True,
     )  # fmt: skip
 
 
 def _limits_strip(turn: Turn) -> Figure | None:
-    return limits_strip(turn.limits, turn.gear_ratio, strokes=turn.strokes)
+    return limits_strip(turn.limits, turn.gear_ratio, turn.words)
 
 
-def limits_strip(limits: Table | None, gear_ratio: float, *, strokes: bool) -> Figure | None:
+def limits_strip(limits: Table | None, gear_ratio: float, machine: MachineWords) -> Figure | None:
     """Utilisation over the turn of each limit that reaches half; None without a record.
 
     Parameters
     ----------
     limits : Table or None   2_limits.csv, by decreasing utilisation
-    strokes : bool             whether the turn is a four-stroke cycle
+    machine : MachineWords   marks of the cycle, name of the shaft
     """
     if limits is None:
         return None
@@ -361,7 +363,7 @@ def limits_strip(limits: Table | None, gear_ratio: float, *, strokes: bool) -> F
         "limits", "Active limits",
         "Utilisation of each limit in the synthesis, highest first; orange where the limit is "
         "active and increases the ripple. A limit on a mean value is constant over the turn.",
-        gear_ratio * limits["cam_angle_deg"], panels, gear_ratio, strokes,
+        gear_ratio * limits["cam_angle_deg"], panels, gear_ratio, machine.marks, machine.shaft,
     )  # fmt: skip
 
 

@@ -28,8 +28,6 @@ from camwright.reports.analysis_sheet import groups
 from camwright.reports.figures import (
     CAM_AXIS,
     CAM_STEP,
-    CRANK_AXIS,
-    CRANK_STEP,
     X_AXIS,
     Y_AXIS,
     AngleFigure,
@@ -193,13 +191,14 @@ def _angles(figure: AngleFigure) -> Canvas:
     for ax, panel in zip(axes, figure.panels, strict=True):
         _panel(ax, figure, panel)
     _legends(figure, axes)
-    for start, name, _ in figure.named_strokes:
+    for mark in figure.marks:
         axes[0].annotate(
-            name, (start + 90.0, 1.0), xycoords=("data", "axes fraction"), xytext=(0, -3),
+            mark.name, (0.5 * (mark.start + mark.end), 1.0),
+            xycoords=("data", "axes fraction"), xytext=(0, -3),
             textcoords="offset points", ha="center", va="top", fontsize=7.0,
             color=COLOURS["muted"],
         )  # fmt: skip
-    axes[-1].set_xlabel(CRANK_AXIS, labelpad=2)
+    axes[-1].set_xlabel(figure.shaft_axis, labelpad=2)
     _cam_axis(axes[0], figure.gear_ratio)
     return canvas
 
@@ -222,7 +221,7 @@ def _lines(figure: LineFigure) -> Canvas:
                     note, (x, y), xytext=(0, 4), textcoords="offset points", ha="center",
                     va="bottom", fontsize=7.0, color=COLOURS["muted"], zorder=4,
                 )  # fmt: skip
-        _vertical(ax, panel, strokes=False)
+        _vertical(ax, panel, named=False)
         ax.set_xlim(*figure.span)
         ax.xaxis.set_major_locator(MaxNLocator(nbins=8, integer=figure.whole))
     _legends(figure, axes)
@@ -277,9 +276,9 @@ def _legend(ax: Axes, panel: Panel, height: float) -> None:
 def _panel(ax: Axes, figure: AngleFigure, panel: Panel) -> None:
     """Curves, limits, grid and the line of the worst angle on one pair of axes."""
     crank = figure.closed_crank
-    for start, _, shaded in figure.named_strokes:
-        if shaded:
-            ax.axvspan(start, start + 180.0, color=COLOURS["shade"], linewidth=0, zorder=0)
+    for mark in figure.marks:
+        if mark.shaded:
+            ax.axvspan(mark.start, mark.end, color=COLOURS["shade"], linewidth=0, zorder=0)
     for curve in panel.curves:
         colour = COLOURS[curve.colour]
         if curve.band is not None:
@@ -294,16 +293,16 @@ def _panel(ax: Axes, figure: AngleFigure, panel: Panel) -> None:
         ax.axvline(
             figure.mark, color=COLOURS["ink"], linewidth=0.7, linestyle=(0, (1, 2)), zorder=2
         )
-    _vertical(ax, panel, strokes=figure.strokes)
+    _vertical(ax, panel, named=bool(figure.marks))
     ax.set_xlim(0.0, figure.period)
-    ax.set_xticks(np.arange(0.0, figure.period + 1.0, CRANK_STEP))
+    ax.set_xticks(np.arange(0.0, figure.period + 1.0, figure.shaft_step))
 
 
-def _vertical(ax: Axes, panel: Panel, *, strokes: bool) -> None:
+def _vertical(ax: Axes, panel: Panel, *, named: bool) -> None:
     """Vertical axis of a panel with its limits; frame and grid."""
     from matplotlib.ticker import MaxNLocator
 
-    low, high = vertical_span(panel, strokes)
+    low, high = vertical_span(panel, named)
     ax.set_ylim(low, high)
     if low < 0 < high:
         ax.axhline(0.0, color=COLOURS["muted"], linewidth=0.6, zorder=1)

@@ -12,15 +12,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from camwright.geometry.arrays import Array
+from camwright.reports.machine_words import Mark
 
 SERIES = ("blue", "vermillion", "green", "purple", "orange", "sky")
 FAR_LIMIT = 1.6
 """A limit within this multiple of the curves' range from them extends the vertical axis."""
 WORDS_HEIGHT = 0.09
 """Height of the label of a limit, as a share of the panel."""
-STROKES = ("intake", "compression", "expansion", "exhaust")
-"""Strokes of a four-stroke engine, 180 deg of crank each; every second one is shaded."""
-CRANK_AXIS, CAM_AXIS = "crank angle, deg", "cam angle, deg"
+CAM_AXIS = "cam angle, deg"
 CRANK_STEP, CAM_STEP = 90, 45
 """Spacing of the tick labels on the angle axes, deg."""
 X_AXIS, Y_AXIS = "x, mm (cam angle 0 points along x)", "y, mm"
@@ -91,8 +90,8 @@ class Panel:
         return sum(bool(curve.label) for curve in self.curves)
 
 
-def vertical_span(panel: Panel, strokes: bool) -> tuple[float, float]:
-    """Vertical axis limits: curves, ribbons, near limits, space for names of strokes or points."""
+def vertical_span(panel: Panel, named: bool) -> tuple[float, float]:
+    """Vertical axis limits: curves, ribbons, near limits, space for names of marks or points."""
     if panel.span is not None:
         return panel.span
     held = [part for curve in panel.curves for part in (curve.values, *(curve.band or ()))]
@@ -107,7 +106,7 @@ def vertical_span(panel: Panel, strokes: bool) -> tuple[float, float]:
             low, high = min(low, line.value), max(high, line.value)
     size = max(high - low, size)
     return low - (0.06 * size if low != 0.0 else 0.0), high + (
-        0.16 if strokes or panel.noted else 0.07
+        0.16 if named or panel.noted else 0.07
     ) * size
 
 
@@ -154,7 +153,11 @@ def _free(bottom: float, taken: Sequence[float]) -> bool:
 
 @dataclass(frozen=True, eq=False)
 class AngleFigure:
-    """Panels over one cam turn, crank angle below and cam angle above; `worst` is marked."""
+    """Panels over one cam turn, shaft angle below and cam angle above; `worst` is marked.
+
+    `crank` (n,) are the shaft angles, deg; `shaft` is the name of the shaft, `marks` are the named
+    parts of its turns.
+    """
 
     id: str
     title: str
@@ -162,7 +165,8 @@ class AngleFigure:
     crank: Array
     panels: tuple[Panel, ...]
     gear_ratio: float = 2.0
-    strokes: bool = True
+    marks: tuple[Mark, ...] = ()
+    shaft: str = "crank"
     worst: float | None = None
 
     @property
@@ -181,10 +185,14 @@ class AngleFigure:
         return None if self.worst is None else self.worst % self.period
 
     @property
-    def named_strokes(self) -> tuple[tuple[float, str, bool], ...]:
-        """(start, deg of crank; name; shaded) of each stroke."""
-        names = STROKES if self.strokes else ()
-        return tuple((180.0 * k, name, k % 2 == 1) for k, name in enumerate(names))
+    def shaft_axis(self) -> str:
+        """Title of the lower axis."""
+        return f"{self.shaft} angle, deg"
+
+    @property
+    def shaft_step(self) -> float:
+        """Distance of the ticks of the lower axis, deg: 90 up to two turns."""
+        return CRANK_STEP * max(1.0, np.ceil(self.gear_ratio / 2.0 - 1e-9))
 
     @property
     def legends(self) -> tuple[bool, ...]:
@@ -203,7 +211,7 @@ class AngleFigure:
                 where = self.crank[int(np.nanargmax(np.abs(curve.values)))]
                 parts.append(
                     f"{panel.quantity}, {curve.label}: {low:.4g} to {high:.4g} {panel.unit},"
-                    f" largest magnitude at {where:.4g} degrees crank"
+                    f" largest magnitude at {where:.4g} degrees {self.shaft}"
                 )
             parts += [f"limit {line.label}: {line.value:.4g} {panel.unit}" for line in panel.limits]
         return f"{self.title} over one turn of the cam. " + ". ".join(parts) + "."

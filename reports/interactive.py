@@ -22,8 +22,6 @@ from camwright.pipeline.base.files import Json
 from camwright.reports.figures import (
     CAM_AXIS,
     CAM_STEP,
-    CRANK_AXIS,
-    CRANK_STEP,
     X_AXIS,
     Y_AXIS,
     AngleFigure,
@@ -46,7 +44,7 @@ _PANEL_PIXELS, _TOP_PIXELS, _LEGEND_PIXELS, _BOTTOM_PIXELS, _GAP_PIXELS = 165, 5
 _DIGITS, _STROKE_PIXELS = 6, 14
 _DASHES = {"solid": "solid", "dashed": "dash", "dashdot": "dashdot"}
 _MARKERS = {"dot": "circle", "cross": "cross-thin-open"}
-_HOVER_TITLE, _HOVER_CAM = "crank %{x:.1f}°", " · cam %{customdata:.1f}°"
+_HOVER_ANGLE, _HOVER_CAM = " %{x:.1f}°", " · cam %{customdata:.1f}°"
 
 
 @dataclass(frozen=True)
@@ -99,13 +97,13 @@ def _hash(source: str) -> str:
 def _angles(figure: AngleFigure) -> Spec:
     lines = _Lines.of(figure)
     crank, cam = _numbers(figure.closed_crank), _numbers(figure.closed_crank / figure.gear_ratio)
-    shapes, notes = _shades(figure), _stroke_names(figure)
+    shapes, notes = _shades(figure), _mark_names(figure)
     traces: list[Spec] = []
     axes: dict[str, Spec] = {}
     for number, panel in enumerate(figure.panels):
         end = "" if number == 0 else str(number + 1)
         axis, (bottom, top) = f"y{end}", lines.domains[number]
-        low, high = vertical_span(panel, figure.strokes)
+        low, high = vertical_span(panel, bool(figure.marks))
         axes[f"yaxis{end}"] = {
             "domain": [bottom, top], "fixedrange": True, "range": [low, high],
             "title": {"text": html.escape(panel.title), "standoff": 8},
@@ -131,8 +129,9 @@ def _angles(figure: AngleFigure) -> Spec:
     return {"data": traces, "layout": {
         "height": lines.height, "shapes": shapes, "annotations": notes, **axes,
         "margin": {"l": 68, "r": 14, "t": lines.top, "b": _BOTTOM_PIXELS},
-        "xaxis": {"range": [0, figure.period], "dtick": CRANK_STEP, "fixedrange": True,
-                  "title": {"text": CRANK_AXIS}, "unifiedhovertitle": {"text": _HOVER_TITLE},
+        "xaxis": {"range": [0, figure.period], "dtick": figure.shaft_step, "fixedrange": True,
+                  "title": {"text": figure.shaft_axis},
+                  "unifiedhovertitle": {"text": figure.shaft + _HOVER_ANGLE},
                   "anchor": "y" if last == 1 else f"y{last}"},
         "xaxis2": {"range": [0, 360], "dtick": CAM_STEP, "title": {"text": CAM_AXIS},
                    "fixedrange": True, "overlaying": "x", "side": "top", "anchor": "y"},
@@ -148,7 +147,7 @@ def _sweep(figure: LineFigure) -> Spec:
     for number, panel in enumerate(figure.panels):
         end = "" if number == 0 else str(number + 1)
         axis, (bottom, top) = f"y{end}", lines.domains[number]
-        low, high = vertical_span(panel, strokes=False)
+        low, high = vertical_span(panel, named=False)
         axes[f"yaxis{end}"] = {
             "domain": [bottom, top], "fixedrange": True, "range": [low, high],
             "title": {"text": html.escape(panel.title), "standoff": 8},
@@ -222,12 +221,12 @@ def _limits(panel: Panel, axis: str, low: float, high: float) -> tuple[list[Spec
     return shapes, notes
 
 
-def _stroke_names(figure: AngleFigure) -> list[Spec]:
-    """Names of the strokes at the top of the first panel."""
+def _mark_names(figure: AngleFigure) -> list[Spec]:
+    """Names of the marks at the top of the first panel."""
     return [
-        {"xref": "x", "x": start + 90, "yref": "paper", "y": 1, "yanchor": "top",
-         "showarrow": False, "text": name, "font": {"color": "muted", "size": 10}}
-        for start, name, _ in figure.named_strokes
+        {"xref": "x", "x": 0.5 * (mark.start + mark.end), "yref": "paper", "y": 1, "yanchor": "top",
+         "showarrow": False, "text": html.escape(mark.name), "font": {"color": "muted", "size": 10}}
+        for mark in figure.marks
     ]  # fmt: skip
 
 
@@ -251,12 +250,12 @@ def _band(curve: Curve) -> list[Spec]:
 
 
 def _shades(figure: AngleFigure) -> list[Spec]:
-    """Shaded strokes and the dotted line of the worst angle."""
+    """Shaded marks and the dotted line of the worst angle."""
     common: Spec = {"xref": "x", "yref": "paper", "y0": 0, "y1": 1}
     shapes = [
-        common | {"type": "rect", "x0": start, "x1": start + 180, "fillcolor": "shade",
+        common | {"type": "rect", "x0": mark.start, "x1": mark.end, "fillcolor": "shade",
                   "line": {"width": 0}, "layer": "below"}
-        for start, _, shaded in figure.named_strokes if shaded
+        for mark in figure.marks if mark.shaded
     ]  # fmt: skip
     if figure.mark is not None:
         dotted: Spec = {"color": "ink", "width": 1, "dash": "dot"}

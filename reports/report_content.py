@@ -38,7 +38,7 @@ _RUNNING = ("report", "total")
 SHORT = 140
 """Maximum number of characters of a title or name on one line."""
 TRIALS_HEAD = (
-    "Trial", "Smoothing", "Strength", "Width, crank angle", "Reason", "Verdict",
+    "Trial", "Smoothing", "Strength", "Width, shaft angle", "Reason", "Verdict",
     "Required checks not passed",
 )  # fmt: skip
 MISSING = (
@@ -266,8 +266,9 @@ def _numbers(material: Material) -> Section:
     summary = material.run.summary
     headline = report_tables.headline_rows(summary["headline"])
     blocks = [Block(Pairs("Key figures", headline, 2))]
-    speed = verification_tables.crank_speed(summary["speed"])
-    blocks += _tables((speed, "Crank speed", ""))
+    machine = material.turn.words
+    speed = verification_tables.crank_speed(summary["speed"], machine)
+    blocks += _tables((speed, f"{machine.title} speed", ""))
     lead = f"Over one turn of the final trial. {_beyond_hertz(material)}".rstrip()
     return Section("numbers", "Key figures", blocks, lead)
 
@@ -301,16 +302,17 @@ def _trials(material: Material) -> Section:
     run = material.run
     table = Table("Trials", TRIALS_HEAD, [_trial(trial) for trial in run.trials], 2, 2)
     prices = verification_tables.prices(run.summary["prices"])
+    shaft = material.turn.words.shaft
     lead = (
-        "First-order change of the torque ripple at the crank, with losses and jerk where they are "
-        "weighted, when a limit is relaxed. Limits not listed are inactive."
+        f"First-order change of the torque ripple at the {shaft}, with losses and jerk where "
+        "they are weighted, when a limit is relaxed. Limits not listed are inactive."
     )
     machine = verification_tables.machine_prices(run.summary["machine_prices"])
     machine_lead = (
-        "First-order change of the torque ripple at the crank, with losses and jerk where they are "
-        "weighted, when a number of the machine is greater and the lift synthesised anew: the "
+        f"First-order change of the torque ripple at the {shaft}, with losses and jerk where "
+        "they are weighted, when a number of the machine is greater and the lift synthesised anew: the "
         "greatest change would help most. A greater roller keeps the base radius. The phase of the "
-        "cam on the shaft has no price: the lift shifts with the engine torque."
+        "cam on the shaft has no price: the lift shifts with the torque."
     )
     return Section(
         "trials", "Trials and shadow prices",

@@ -43,7 +43,7 @@ HEADLINES = {
     "torque_std_after_Nm": ("Torque ripple after, standard deviation", "N m"),
     "torque_p2p_before_Nm": ("Torque before, peak to peak", "N m"),
     "torque_p2p_after_Nm": ("Torque after, peak to peak", "N m"),
-    "torque_mean_Nm": ("Mean engine torque", "N m"),
+    "torque_mean_Nm": ("Mean torque", "N m"),
     "lift_max_mm": ("Maximum lift", "mm"),
     "pressure_angle_max_deg": ("Maximum pressure angle", "deg"),
     "pitch_radius_of_curvature_min_mm": ("Minimum convex radius of the pitch curve", "mm"),

@@ -149,6 +149,7 @@ def scene(material: Material, view: TurnView) -> Json:
             for words, name, unit in _READOUT
             if name in rows
         ],
+        "shaft": turn.words.shaft,
         "ratio": float(rows["crank_angle_deg"][1] / rows["cam_angle_deg"][1]),
         "reach": {
             "side": float(np.hypot(*view.contour).max()),

@@ -13,6 +13,7 @@ from camwright.pipeline.base import units
 from camwright.pipeline.base.files import Json
 from camwright.pipeline.base.tables import Table
 from camwright.reports.figures import SERIES, AngleFigure, Curve, Figure, LimitLine, Panel
+from camwright.reports.machine_words import MachineWords, words_of
 from camwright.reports.report_tables import Record, in_unit
 
 
@@ -74,9 +75,9 @@ class Turn:
         return float(ratio) if isinstance(ratio, (int, float)) and ratio > 0 else 2.0
 
     @property
-    def strokes(self) -> bool:
-        """Whether the turn is one cycle of a four-stroke engine."""
-        return self.gear_ratio == 2.0 and self.torque is not None
+    def words(self) -> MachineWords:
+        """Words of the machine."""
+        return words_of(self.case, self.gear_ratio, balances=self.torque is not None)
 
     @property
     def worst(self) -> int:
@@ -154,6 +155,7 @@ def angle_figure(
         return None
     return AngleFigure(
         figure_id, title, caption, turn.crank if crank is None else crank, full, turn.gear_ratio,
-        strokes=turn.strokes,
+        marks=turn.words.marks,
+        shaft=turn.words.shaft,
         worst=float(turn.crank[turn.worst]) if mark else None,
     )  # fmt: skip

@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 
 from camwright.pipeline.base.files import Json
 from camwright.pipeline.results.check_report import sentence
+from camwright.reports.machine_words import MachineWords
 from camwright.reports.report_tables import (
     DASH,
     MINUS,
@@ -71,7 +72,7 @@ MEASUREMENT = {
     "half_orders_percent": ("half orders in the variance of the speed", "%"),
 }
 STATES = {
-    "before": "engine alone",
+    "before": "{alone}",
     "inertia_alone": "added inertia, no cam force",
     "after": "with the cam",
 }
@@ -118,11 +119,12 @@ def consistency(records: Sequence[Record] | None) -> tuple[Table, bool]:
     return Table("Consistency of the inputs", CONSISTENCY_HEAD, rows, 3), flagged
 
 
-def crank_speed(record: Json) -> Table:
-    """Ripple of the crank speed with and without the cam, by load case."""
+def crank_speed(record: Json, machine: MachineWords) -> Table:
+    """Ripple of the speed of the shaft with and without the cam, by load case."""
     rows = [
         [
-            name, shown, quantity(states[state]["std_rad_per_s"], "rad/s"),
+            name, shown.format(alone=machine.alone),
+            quantity(states[state]["std_rad_per_s"], "rad/s"),
             quantity(states[state]["p2p_rad_per_s"], "rad/s"),
             quantity(100.0 * states[state]["fluctuation"], "%", 3),
         ]
@@ -130,7 +132,7 @@ def crank_speed(record: Json) -> Table:
         for state, shown in STATES.items()
         if isinstance(states.get(state), Mapping)
     ]  # fmt: skip
-    return Table("Crank speed", SPEED_HEAD, rows, 2)
+    return Table(f"{machine.title} speed", SPEED_HEAD, rows, 2)
 
 
 def valve_train(record: Json) -> Table:

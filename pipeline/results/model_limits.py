@@ -47,11 +47,11 @@ MODEL_LIMITS = (
         "roller_radial",
     ),
     ModelLimit(
-        "The cam speed is constant in each load case. The speed ripple of the engine acts on the"
+        "The cam speed is constant in each load case. The speed ripple of the shaft acts on the"
         " elastic stem only, where the case states the inertia of the crankshaft."
     ),
     ModelLimit(
-        "Camshaft, camshaft bearings and the drive from crank to cam are rigid, without backlash."
+        "Camshaft, camshaft bearings and the drive of the cam are rigid, without backlash."
         " The deflection of the camshaft is checked apart, without effect on the contact.",
         "shaft_deflection",
     ),

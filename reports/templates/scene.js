@@ -121,7 +121,7 @@
   function say(n) {
     const angle = data.angle[n], deg = (v) => v.toFixed(1) + "°";
     const values = data.readout.map((t) => `${t.words} ${Number(t.values[n].toPrecision(4))} ${t.unit}`);
-    const place = `cam ${deg(angle)}, crank ${deg(angle * data.ratio)}`;
+    const place = `cam ${deg(angle)}, ${data.shaft} ${deg(angle * data.ratio)}`;
     readout.textContent = [place, ...values].join(" · ");
     slider.setAttribute("aria-valuetext", place);
   }

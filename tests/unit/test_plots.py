@@ -23,6 +23,7 @@ from camwright.reports.figures import (
     vertical_span,
 )
 from camwright.reports.interactive import specification
+from camwright.reports.machine_words import words_of
 
 CRANK = np.arange(0.0, 720.0, 10.0)
 WAVE = np.sin(np.radians(CRANK))
@@ -59,13 +60,35 @@ def test_both_axes_are_named_and_agree():
 
 
 def test_a_drive_of_another_ratio_gets_its_own_crank_axis():
-    ax = drawn(figure(gear_ratio=1.0, strokes=False)).axes[0]
+    ax = drawn(figure(gear_ratio=1.0, marks=())).axes[0]
     assert ax.get_xlim() == (0.0, 360.0)
-    assert "intake" not in words(drawn(figure(gear_ratio=1.0, strokes=False)))
+    assert words_of({}, 1.0).marks == ()
+
+
+def test_a_machine_has_its_own_words() -> None:
+    """No crank and no stroke in the picture of a press; its marks stand in every lobe."""
+    forming = {"angle": "150 deg", "name": "forming"}
+    press = {"torque": {"kind": "press", "marks": [{"angle": "0 deg", "name": "down"}, forming]}}
+    machine = words_of(press, 2.0)
+    made = replace(figure(marks=machine.marks), shaft=machine.shaft)
+    canvas = drawn(made)
+    assert words(canvas)[:4] == ["down", "forming", "down", "forming"]
+    assert canvas.axes[0].get_xlabel() == "shaft angle, deg"
+    assert [(mark.start, mark.end) for mark in machine.marks] == [
+        (0.0, 150.0), (150.0, 360.0), (360.0, 510.0), (510.0, 720.0),
+    ]  # fmt: skip
+    assert "crank" not in made.alt + str(specification(made)) + machine.alone
+    assert words_of({"torque": {"kind": "pump"}}, 1.0).marks == ()
+    assert words_of({"torque": {"marks": [{"angle": "1 mm", "name": "x"}]}}, 1.0).marks == ()
 
 
 def test_strokes_are_named_in_order():
-    assert words(drawn(figure()))[:4] == ["intake", "compression", "expansion", "exhaust"]
+    assert words(drawn(figure(marks=words_of({}, 2.0).marks)))[:4] == [
+        "intake",
+        "compression",
+        "expansion",
+        "exhaust",
+    ]
 
 
 def test_a_near_limit_is_in_view_and_a_far_one_in_words():
@@ -119,7 +142,7 @@ def test_the_svg_is_well_formed_themed_and_free_of_clashing_ids():
 
 def test_the_axis_holds_the_ribbon_of_all_load_cases():
     ribbon = (WAVE - 2.0, WAVE + 3.0)
-    low, high = vertical_span(Panel("p", "N", (Curve("a", WAVE, band=ribbon),)), strokes=True)
+    low, high = vertical_span(Panel("p", "N", (Curve("a", WAVE, band=ribbon),)), named=True)
     assert low < WAVE.min() - 2.0 and high > WAVE.max() + 3.0
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from camwright.reports import report_tables, verification_tables
+from camwright.reports.machine_words import words_of
 
 CHECK = {
     "id": "x", "title": "Contact pressure", "demand": 1088.3, "limit": 650.0, "unit": "MPa",
@@ -98,11 +99,11 @@ def test_the_cranks_speed_is_told_by_load_case_and_state() -> None:
     state = {"std_rad_per_s": 3.59, "p2p_rad_per_s": 11.13, "fluctuation": 0.0708}
     idle = {"before": state, "after": state, "flywheel": {}}
     table = verification_tables.crank_speed(
-        {"idle": idle, "stall": {"refused": "the crank stalls"}}
+        {"idle": idle, "stall": {"refused": "the crank stalls"}}, words_of({}, 2.0)
     )
     assert [row[:2] for row in table.rows] == [["idle", "engine alone"], ["idle", "with the cam"]]
     assert table.rows[0][-1] == "7.08\u00a0%"
-    assert verification_tables.crank_speed(None).rows == []
+    assert verification_tables.crank_speed(None, words_of({}, 2.0)).rows == []
 
 
 def test_benchmarks_are_told_in_per_cent() -> None:

@@ -6,6 +6,9 @@ from camwright.pipeline.base.tables import Table
 from camwright.reports.analysis_sheet import BINDS, limits_strip
 from camwright.reports.figure_svg import svg_of
 from camwright.reports.interactive import specification
+from camwright.reports.machine_words import words_of
+
+ENGINE = words_of({}, 2.0)
 
 
 def columns():
@@ -21,7 +24,7 @@ def columns():
 
 
 def test_strips_show_what_is_used_and_mark_where_it_binds():
-    figure = limits_strip(columns(), 2.0, strokes=True)
+    figure = limits_strip(columns(), 2.0, ENGINE)
     assert [panel.quantity for panel in figure.panels] == ["pressure angle", "roller life"]
     use, tight = (curve.values for curve in figure.panels[0].curves)
     marked = np.flatnonzero(np.isfinite(tight))
@@ -33,13 +36,13 @@ def test_strips_show_what_is_used_and_mark_where_it_binds():
 
 
 def test_strips_are_drawn_still_and_live():
-    figure = limits_strip(columns(), 2.0, strokes=True)
+    figure = limits_strip(columns(), 2.0, ENGINE)
     assert "roller life" in svg_of(figure)
     live = specification(figure)
     assert "pressure angle" in str(live["layout"])
 
 
 def test_runs_without_a_record_have_no_strips():
-    assert limits_strip(None, 2.0, strokes=True) is None
+    assert limits_strip(None, 2.0, ENGINE) is None
     unused = Table({"cam_angle_deg": np.arange(4.0), "undercut": np.full(4, 0.1)})
-    assert limits_strip(unused, 2.0, strokes=True) is None
+    assert limits_strip(unused, 2.0, ENGINE) is None

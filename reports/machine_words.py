@@ -1,0 +1,101 @@
+"""Names of a machine in the report: of its shaft, and of the parts of its cycle."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from camwright.geometry.errors import InputError
+from camwright.pipeline.base import units
+from camwright.pipeline.base.files import Json
+from camwright.reports.report_tables import Record
+
+STROKES = ("intake", "compression", "expansion", "exhaust")
+"""Strokes of a four-stroke engine, 180 deg of crank each."""
+_CYCLE = 720.0  # deg of crank
+_WHOLE = 1e-6  # of the cycles in a cam turn
+
+
+@dataclass(frozen=True)
+class Mark:
+    """A named part of the cycle, deg of the shaft; every second one is shaded."""
+
+    start: float
+    end: float
+    name: str
+    shaded: bool
+
+
+@dataclass(frozen=True)
+class MachineWords:
+    """Words of a machine.
+
+    Parameters
+    ----------
+    shaft : str    "crank" of an engine; else "shaft"
+    alone : str    the machine without the cam, in pictures
+    origin : str   one sentence on the shaft angle 0; "" where the case has none
+    marks : tuple  named parts of all cycles of a cam turn
+    """
+
+    shaft: str
+    alone: str
+    origin: str
+    marks: tuple[Mark, ...] = ()
+
+    @property
+    def title(self) -> str:
+        """Name of the shaft at the beginning of a title."""
+        return self.shaft.capitalize()
+
+
+def words_of(case: Record, gear_ratio: float, *, balances: bool = True) -> MachineWords:
+    """Words of the machine of a case, as read from ``case.toml``.
+
+    Parameters
+    ----------
+    balances : bool   whether the run has a torque
+    """
+    torque = case.get("torque")
+    turn = 360.0 * gear_ratio
+    engine = "engine" in case or not isinstance(torque, Mapping)
+    marks = _marks_of(torque, turn) if isinstance(torque, Mapping) else ()
+    if not engine:
+        return MachineWords("shaft", "machine alone", "", marks)
+    if balances and not marks:
+        starts = [180.0 * k for k in range(len(STROKES))]
+        marks = _repeated(starts, STROKES, _CYCLE, turn)
+    origin = (
+        "Crank angle 0 is the top dead centre of gas exchange, 360 deg the firing top dead centre."
+    )
+    return MachineWords("crank", "engine alone", origin, marks)
+
+
+def _marks_of(torque: Mapping[str, Json], turn: float) -> tuple[Mark, ...]:
+    """Marks that a torque carries, in every cycle of a cam turn."""
+    stated = torque.get("marks")
+    rows = [row for row in stated if isinstance(row, Mapping)] if isinstance(stated, list) else []
+    try:
+        starts = [_degrees(row.get("angle")) for row in rows]
+        cycle = _degrees(torque.get("cycle", "360 deg"))
+    except InputError:
+        return ()
+    return _repeated(starts, [str(row.get("name", "")) for row in rows], cycle, turn)
+
+
+def _repeated(
+    starts: list[float], names: list[str] | tuple[str, ...], cycle: float, turn: float
+) -> tuple[Mark, ...]:
+    count = round(turn / cycle)
+    if not starts or count < 1 or abs(turn / cycle - count) > _WHOLE * count:
+        return ()
+    ends = [*starts[1:], cycle]
+    return tuple(
+        Mark(k * cycle + start, k * cycle + end, name, place % 2 == 1)
+        for k in range(count)
+        for place, (start, end, name) in enumerate(zip(starts, ends, names, strict=True))
+    )
+
+
+def _degrees(text: Json) -> float:
+    return units.parse(text, "deg", "torque") / units.factor("deg")
