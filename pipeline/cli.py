@@ -57,6 +57,7 @@ for _command in (
     contact_command.contact,
     comparison_commands.validate,
     comparison_commands.papers,
+    comparison_commands.gallery,
     comparison_commands.compare_mechanisms,
     inspect_command.inspect,
     contact_command.deck,

@@ -7,7 +7,7 @@
 | `check_command`       | `check` of a run or the preview of a case; `schema`     |
 | `signature_commands`  | `keygen`, `sign`: signatures of the record of a run     |
 | `explain_command`     | `explain`: a key of the case file, or a check           |
-| `comparison_commands` | `compare`, `validate`, `papers`, `compare-mechanisms`   |
+| `comparison_commands` | `compare`, `validate`, `papers`, `gallery` and others   |
 | `contact_command`     | `contact`, `deck`                                       |
 | `inspect_command`     | `inspect`: measured cam                                 |
 | `redesign_command`    | `redesign`: search of the catalogues                    |

@@ -1,4 +1,4 @@
-"""Commands `compare`, `validate`, `papers` and `compare-mechanisms`."""
+"""Commands `compare`, `validate`, `papers`, `gallery` and `compare-mechanisms`."""
 
 from __future__ import annotations
 
@@ -118,6 +118,34 @@ def papers(
     names = ", ".join(one["name"] for one in document["figures"])
     stdout.print(f"figures: {names}", markup=False)
     stdout.print(f"page: {out / 'papers.html'}", markup=False)
+    return PASSED
+
+
+def gallery(
+    cases: Annotated[list[Path], typer.Argument(metavar="CASE...", help="Case files (TOML).")],
+    out: Annotated[
+        Path, typer.Option("--out", metavar="DIR", help="Folder for page and record.")
+    ] = Path(),
+) -> int:
+    """Show machines on one page: torque with and without the cam, outline, lift, speed.
+
+    Each case is previewed. Writes gallery.html and gallery.json.
+    """
+    from camwright.pipeline.base.files import json_text, write_atomic
+    from camwright.pipeline.studies.papers.machine_gallery import gallery as document_of
+    from camwright.reports.papers.gallery_page import page
+
+    with progress_shown() as progress:
+        document = document_of(cases, progress)
+        progress.stage("page")
+        text = page(document)
+    write_atomic(out / "gallery.json", json_text(document, indent=None) + "\n")
+    write_atomic(out / "gallery.html", text)
+    for one in document["machines"]:
+        before, after = (one["values"][f"torque_std_{name}_cam_Nm"] for name in ("without", "with"))
+        words = f"{one['name']}: torque ripple {before:.3g} to {after:.3g} N m"
+        stdout.print(words, markup=False)
+    stdout.print(f"page: {out / 'gallery.html'}", markup=False)
     return PASSED
 
 

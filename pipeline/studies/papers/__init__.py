@@ -25,6 +25,7 @@ In the order of the calculation:
 | `figures_2024_cam`        | engine at 800 rpm with and without the cam     | N m; rad/s; mm |
 | `figures_2015_valve`      | valve cams: outlines, shape index, dynamics    | mm; m/s2       |
 | `figures_2024_mechanisms` | slider-crank and eccentric cam                 | N; J           |
+| `machine_gallery`         | command `gallery`: machines and their cams     | N m; mm; rpm   |
 
 A paper is a module with a function `study(targets) -> PaperResult`, named in `PAPERS`. Values
 without an outcome are not decidable. Basis and tolerance of each stand in ``targets.json``. The
