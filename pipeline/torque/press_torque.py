@@ -181,5 +181,13 @@ def press_torque(press: Press, path: str | Path | None = None) -> PressTorque:
     travel_at, travel_factor = value_column(text.name, text.header, "travel", None)
     force_at, force_factor = value_column(text.name, text.header, "force", press.column or None)
     table = text.numbers((travel_at, force_at)) * np.array([travel_factor, force_factor])
-    order = table if table.shape[0] < 2 or table[-1, 0] > table[0, 0] else table[::-1]
-    return PressTorque(press, order[:, 0], order[:, 1])
+    if table.shape[0] < 2:
+        raise InputError(text.name, f"{table.shape[0]} rows", "2 rows or more")
+    upward = table if table[-1, 0] > table[0, 0] else table[::-1]
+    falls = ~(np.diff(upward[:, 0]) > 0.0)
+    if falls.any():
+        between = upward[int(np.argmax(falls)) + 1, 0]
+        limit = "strictly increasing or strictly falling"
+        field = f"{text.name}, {text.header[travel_at]}"
+        raise InputError(field, f"{shown(float(between), 'mm')} out of order", limit)
+    return PressTorque(press, upward[:, 0], upward[:, 1])

@@ -290,7 +290,7 @@ def angle_column(name: str, header: Sequence[str]) -> tuple[int, float]:
     if len(columns) > 1:
         columns = [at for at in columns if "crank" in header[at].lower()] or columns
     if len(columns) != 1:
-        limit = "one column of crank angle with its unit (deg, rad or rev)"
+        limit = "one column of angle with its unit (deg, rad or rev)"
         raise InputError(f"{name} header", ", ".join(header), limit)
     return columns[0], factors[columns[0]]
 

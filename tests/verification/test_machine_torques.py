@@ -165,6 +165,25 @@ def test_a_table_of_force_over_travel(tmp_path: Path) -> None:
     assert -work(machine.torque(grid(90))) == pytest.approx(area, rel=1e-12)
 
 
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("travel_mm,force\n0,1\n1,2\n", "one column of force with its unit"),
+        ("travel_mm,force_kN\n0,1\n", "1 rows, must be 2 rows or more"),
+        ("travel_mm,force_kN\n0,1\n2,1\n1,1\n3,1\n", "travel_mm = 1 mm out of order"),
+        ("travel_mm,force_kN\n0,1\n60,1\n", "from 0 mm to 40 mm"),
+        ("travel_mm,force_kN\n0,0\n6,0\n", "0 N at every height"),
+    ],
+)
+def test_a_bad_table_of_force_is_refused(tmp_path: Path, text: str, words: str) -> None:
+    path = tmp_path / "force.csv"
+    path.write_text(text)
+    press = Press(eccentric_radius=0.02, rod_length=0.15, file="force.csv")
+    with pytest.raises(InputError) as error:
+        press_torque(press, path)
+    assert words in str(error.value)
+
+
 def test_pressure_over_720_deg_with_cylinders_that_differ(tmp_path: Path) -> None:
     """A polytropic cylinder's pressure through a file gives its torque back, at any phase."""
     cylinder = CompressorCylinder(
