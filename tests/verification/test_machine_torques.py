@@ -102,6 +102,28 @@ def test_both_sides_of_a_compressor_add_up() -> None:
     assert double.mean() / single.mean() == pytest.approx(1.0 + ring, rel=1e-5)
 
 
+@pytest.mark.parametrize("theta", [0.3, 1.0, 1.6, 2.9])
+def test_virtual_work_of_both_sides(theta: float) -> None:
+    """On the outward stroke the head side opens and the crank side is compressed."""
+    low, high, clearance, n = 1e5, 5e5, 0.08, 1.3
+    both = CompressorCylinder(
+        **DRIVE, suction_pressure=low, discharge_pressure=high, clearance=clearance, exponent=n,
+        double_acting=True, piston_rod_diameter=0.03, back_pressure=1.2e5,
+    )  # fmt: skip
+    r, rod, step = 0.035, 0.14, 1e-6
+
+    def travel(angle: float) -> float:
+        return r + rod - r * np.cos(angle) - np.sqrt(rod**2 - (r * np.sin(angle)) ** 2)
+
+    open_share = travel(theta) / (2 * r)
+    head = max(high * (clearance / (clearance + open_share)) ** n, low)
+    crank_side = min(low * ((1 + clearance) / (clearance + 1 - open_share)) ** n, high)
+    whole, small = np.pi / 4 * 0.08**2, np.pi / 4 * 0.03**2
+    force = head * whole - crank_side * (whole - small) - 1.2e5 * small
+    rate = (travel(theta + step) - travel(theta - step)) / (2 * step)
+    np.testing.assert_allclose(both.torque(np.array([theta])), force * rate, rtol=1e-8)
+
+
 def test_work_of_a_pump_is_pressure_rise_times_displacement() -> None:
     cylinders = tuple(
         PumpCylinder(**DRIVE, phase=k * TURN / 3.0, suction_pressure=1.2e5, discharge_pressure=9e6)
