@@ -310,9 +310,9 @@ def _trials(material: Material) -> Section:
     machine = verification_tables.machine_prices(run.summary["machine_prices"])
     machine_lead = (
         f"First-order change of the torque ripple at the {shaft}, with losses and jerk where "
-        "they are weighted, when a number of the machine is greater and the lift synthesised anew: the "
-        "greatest change would help most. A greater roller keeps the base radius. The phase of the "
-        "cam on the shaft has no price: the lift shifts with the torque."
+        "they are weighted, when a number of the machine is greater and the lift synthesised "
+        "anew: the greatest change would help most. A greater roller keeps the base radius. The "
+        "phase of the cam on the shaft has no price: the lift shifts with the torque."
     )
     return Section(
         "trials", "Trials and shadow prices",

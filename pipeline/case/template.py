@@ -1,7 +1,7 @@
 """First case of each kind, written by `camwright init`: complete, commented, within its limits.
 
 The kinds differ at the source alone: a cylinder model, a measurement on the engine of that model,
-or a lift. The machine is the same.
+the torque of another machine, or a lift. The mechanism is the same.
 """
 
 from __future__ import annotations
@@ -24,8 +24,13 @@ from camwright.pipeline.engine.modelled_trace import (
     voltage_text,
 )
 from camwright.pipeline.engine.speed_file import WheelTable
+from camwright.pipeline.torque.torque import Torque
 
-Kind = Literal["cylinder", "table", "pressure", "speed", "voltage", "lift", "eccentric"]
+Kind = Literal[
+    "cylinder", "table", "pressure", "speed", "voltage",
+    "torque", "harmonics", "compressor", "pump", "press",
+    "lift", "eccentric",
+]  # fmt: skip
 KINDS: tuple[Kind, ...] = get_args(Kind)
 
 
@@ -61,6 +66,9 @@ def _text(name: str, kind: Kind) -> str:
     parts = (_HEAD, _SOURCES[kind], _MACHINE, _BALANCE if balances else "", _REQUIREMENTS)
     text = "\n".join(part for part in parts if part).replace("@NAME@", name)
     reduction = _REDUCTION if balances else ""
+    ratio, of_shaft, speed, most = _SHAFTS["shaft" if kind in _MACHINES else "crank"]
+    for mark, words in (("RATIO", ratio), ("SHAFT", of_shaft), ("SPEED", speed), ("MOST", most)):
+        text = text.replace(f"@{mark}@", words)
     return text.replace("@DATA@", _data_name(name, kind)).replace("@REDUCTION@", reduction)
 
 
@@ -74,7 +82,10 @@ def _case(text: str) -> Case:
 
 
 def _data(kind: Kind, case: Case) -> str:
-    """What would be measured on the engine of the kind `cylinder`."""
+    """What would be measured on the engine of the kind `cylinder`, or on the pump of `pump`."""
+    if kind == "torque":
+        pump = _case(_text("modelled", "pump"))
+        return _torque_text(engine_torque(pump, pump.load_cases[0]))
     modelled = _case(_text("modelled", "cylinder"))
     engine, state = modelled.engine, modelled.load_cases[0]
     if not isinstance(engine, CylinderEngine):
@@ -92,8 +103,30 @@ def _data(kind: Kind, case: Case) -> str:
 
 _MEASURED: dict[Kind, str] = {
     "table": "torque", "pressure": "pressure", "speed": "tooth_times", "voltage": "voltage",
+    "torque": "torque",
 }  # fmt: skip
 """Quantity of the data file of a kind, as in its name."""
+
+_MACHINES = ("torque", "harmonics", "compressor", "pump", "press")
+_SHAFTS = {
+    "crank": (
+        "gear_ratio = 2.0                     # crank turns per cam turn",
+        "crank", "1500 rpm", "1650 rpm",
+    ),
+    "shaft": (
+        "gear_ratio = 1.0                     # shaft turns per cam turn; 2.0: two lobes",
+        "shaft", "750 rpm", "825 rpm",
+    ),
+}  # fmt: skip
+"""Drive of the cam, name of the shaft, its speed and over-speed."""
+
+
+def _torque_text(torque: Torque) -> str:
+    """Shaft angle and torque over a cycle, as text of `read_trace`, on every other degree."""
+    values = torque.resampled(180).total
+    rows = [f"{2 * k},{value:.3f}" for k, value in enumerate(values)]
+    return "\n".join(["shaft_angle_deg,torque_Nm", *rows]) + "\n"
+
 
 _HEAD = """\
 # A first case: complete, and within all limits. Change one thing at a time, and look again:
@@ -172,6 +205,56 @@ kind = "voltage"
 {_WHEEL}\
 reference_angle = "0 deg"            # crank angle of the middle of the first tooth after the gap
 {_CRANKSHAFT}""",
+    "torque": """\
+# --- The torque to balance, of any machine: a column of shaft angle over its cycle, one of torque,
+# units in the header. Positive drives the shaft; a steady motor or load takes the mean.
+[torque]
+kind = "table"
+file = "@DATA@"
+cycle = "360 deg"                    # after which the torque repeats
+""",
+    "harmonics": """\
+# --- The torque to balance, by its mean and harmonics: positive drives the shaft.
+[torque]
+kind = "harmonics"
+mean = "-12 N m"                     # a steady motor or load takes it
+harmonics = [                        # order: waves per turn of the shaft
+    { order = 1, cosine = "9 N m" },
+    { order = 2, sine = "8 N m" },
+]
+""",
+    "compressor": """\
+# --- The torque to balance, of a compressor. Shaft angle 0: the outer dead centre.
+[torque]
+kind = "compressor"
+cylinders = [                        # several may differ
+    { bore = "66 mm", crank_radius = "25 mm", rod_length = "100 mm", clearance = 0.05, \
+suction_pressure = "100 kPa", discharge_pressure = "500 kPa", reciprocating_mass = "0.3 kg" },
+]
+""",
+    "pump": """\
+# --- The torque to balance, of a piston pump. Shaft angle 0: the outer dead centre.
+[torque]
+kind = "pump"
+cylinders = [                        # several may differ
+    { bore = "24 mm", crank_radius = "25 mm", rod_length = "100 mm", \
+suction_pressure = "100 kPa", discharge_pressure = "1800 kPa" },
+]
+""",
+    "press": """\
+# --- The torque to balance, of a press. Shaft angle 0: upper dead centre of the ram.
+[torque]
+kind = "press"
+eccentric_radius = "30 mm"
+rod_length = "200 mm"
+force = "0.5 kN"                     # over the end of the stroke; or a file of it
+working_travel = "60 mm"              # all of it: a drawing press
+ram_mass = "4 kg"
+marks = [                            # names of parts of the cycle, in the pictures
+    { angle = "0 deg", name = "drawing" },
+    { angle = "180 deg", name = "return" },
+]
+""",
     "lift": """\
 # --- The lift: rises, dwells and returns that fill the turn. Other laws: harmonic,
 # modified_sine, polynomial_345, polynomial_4567 and more.
@@ -195,7 +278,7 @@ eccentricity = "5 mm"                # half of the lift
 _MACHINE = """\
 # --- The mechanism: parts by their cards where there are any, else as drawn
 [mechanism]
-gear_ratio = 2.0                     # crank turns per cam turn
+@RATIO@
 
 [spring]
 rate = "100 kN/m"
@@ -329,7 +412,7 @@ torque_reduction = 0.4               # least reduction of the torque ripple"""
 _REQUIREMENTS = """\
 # --- Requirements without a default
 [limits]
-overspeed = "1650 rpm"               # greatest speed that the machine can reach@REDUCTION@
+overspeed = "@MOST@"               # greatest speed that the machine can reach@REDUCTION@
 roller_life = "1000 h"
 shaft_bearing_life = "1000 h"
 target_life = "1000 h"               # for wear and fatigue
@@ -345,5 +428,5 @@ positions = 72                       # per cam turn; 720 for a sign-off
 # --- Load cases, one table each; standstill and over-speed are judged besides
 [[load_case]]
 name = "running"
-speed = "1500 rpm"                   # of the crank
+speed = "@SPEED@"                   # of the @SHAFT@
 """

@@ -169,9 +169,11 @@ def init(
     kind: Annotated[
         str,
         typer.Option(
-            metavar="cylinder|table|pressure|speed|voltage|lift|eccentric",
+            metavar="cylinder|table|pressure|speed|voltage|torque|harmonics|compressor|pump|press|"
+            "lift|eccentric",
             help="Source of the cam: an engine as a cylinder model, or measured as torque, "
-            "cylinder pressure, tooth times or pick-up voltage; a lift; an eccentric.",
+            "cylinder pressure, tooth times or pick-up voltage; another machine by its torque; "
+            "a lift; an eccentric.",
         ),
     ] = "cylinder",
 ) -> int:
