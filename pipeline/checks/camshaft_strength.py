@@ -353,7 +353,7 @@ def gear_bending(solution: Solution) -> Demand:
 @check(
     GEAR_BENDING_SAFETY,
     id="pinion_bending",
-    title="Tooth root bending stress of the pinion on the crankshaft",
+    title="Tooth root bending stress of the pinion on the machine shaft",
     unit="MPa",
     method="F K/(b m pi y) at the greatest torque, load on the tip of one tooth",
     lift_can_help=True,
@@ -363,7 +363,7 @@ def gear_bending(solution: Solution) -> Demand:
     reason="a broken tooth stops the camshaft, and the pinion has the weaker tooth",
 )
 def pinion_bending(solution: Solution) -> Demand:
-    """Tooth root bending stress of the pinion on the crankshaft, Pa."""
+    """Tooth root bending stress of the pinion on the machine shaft, Pa."""
     gear = _gear(_camshaft(solution.machine))
     figure = f"{(gear.pinion_material or gear.material).name}: {gear.source}".rstrip(": ")
     return _bending_of(solution, gear.pinion_teeth, "pinion_bending_limit", figure)

@@ -126,7 +126,7 @@ def jam_index_friction_max(solution: Solution) -> Demand:
 
 @check(
     JUMP_SPEED,
-    title="Crank speed at follower jump",
+    title="Machine speed at follower jump",
     unit="rpm",
     method="least w sqrt(F_s / (-m w^2 s'')) where the follower decelerates, without friction",
     lift_can_help=True,
@@ -294,7 +294,7 @@ def _least_over_speed(
     end = shown(top, "rpm", 4) + (
         "" if stated else ", the fastest load case, without limits.overspeed"
     )
-    words = f"at {shown(at, 'rpm', 4)} of the crank; swept from standstill to {end}"
+    words = f"at {shown(at, 'rpm', 4)} of the machine; swept from standstill to {end}"
     return Swept(worst, least_damped, words)
 
 

@@ -142,11 +142,11 @@ def chord_error(solution: Solution) -> Demand:
     TORQUE_REDUCTION,
     id="phase_tolerance",
     title="Torque ripple reduction at phase tolerance",
-    formula="min over +-d of 1 - std(T_e(phi + d) - T_c)/std(T_e) >= c; T_e, T_c: crank torque of"
-    " engine and cam, d: tolerances.phase, c: of torque_reduction, as its load cases",
+    formula="min over +-d of 1 - std(T_e(phi + d) - T_c)/std(T_e) >= c; T_e, T_c: torque of"
+    " machine and cam, d: tolerances.phase, c: of torque_reduction, as its load cases",
     reason="Does not decide: the tolerance corners judge torque_reduction at the phase tolerance"
     " too.",
-    method="engine torque shifted by plus and minus the phase tolerance; the lesser",
+    method="torque shifted by plus and minus the phase tolerance; the lesser",
     must_have=False,
     moved_by_tolerance=False,
     load_cases=RIPPLE,
@@ -163,7 +163,7 @@ def phase_tolerance(solution: Solution) -> Demand | None:
         required,
         worst,
         () if phase > 0 else ("tolerances.phase",),
-        note=f"{shown(phase, 'deg')} of crank" if phase > 0 else "",
+        note=f"{shown(phase, 'deg')} of the shaft" if phase > 0 else "",
     )
 
 

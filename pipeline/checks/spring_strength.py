@@ -154,7 +154,9 @@ def _over_speed(solution: Solution, use: Callable[[SpringSweep], Array]) -> Over
     k = int(np.argmax(values))  # the first NaN, where there is one
     value, further = float(values[k]), None if damped is None else damped.hardest_spring
     most = value if further is None else max(float(np.max(use(further))), value)
-    return OverSpeed(value, most, f"at {shown(float(sweep.crank_speed[k]), 'rpm', 4)} of the crank")
+    return OverSpeed(
+        value, most, f"at {shown(float(sweep.crank_speed[k]), 'rpm', 4)} of the machine"
+    )
 
 
 @check(
@@ -328,7 +330,7 @@ def spring_surge(solution: Solution) -> Demand:
         Extreme(ratio),
         note=f"highest harmonic of at least 1 % of the acceleration: {highest}; surge lies"
         f" {margin:.2f} times above it and adds up to {shown(added, 'N', 3)} at"
-        f" {shown(speed, 'rpm', 4)} of the crank with a damping ratio of"
+        f" {shown(speed, 'rpm', 4)} of the machine with a damping ratio of"
         f" {design.damping:g}",
     )
 

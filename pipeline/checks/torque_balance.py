@@ -32,10 +32,10 @@ _CHORD = 1e-5
     title="Torque ripple reduction",
     tier=Tier.SCREENING,
     formula="min over the load cases of 1 - (1 - c)/(1 - c_i) std(T_e - T_c)/std(T_e) >= c; T_e,"
-    " T_c: crank torque of engine and cam about their means, c_i: load_case.torque_reduction, else"
+    " T_c: torque of machine and cam about their means, c_i: load_case.torque_reduction, else"
     " limits.torque_reduction, c: the greatest c_i",
     reason="It is the purpose of the cam.",
-    method="1 - std of the crank torque with the cam, friction and inertia included, over that"
+    method="1 - std of the torque with the cam, friction and inertia included, over that"
     " without it",
     forecast=True,
     load_cases=RIPPLE,
@@ -90,13 +90,13 @@ def least_reduction(
 
 @check(
     SPEED_REDUCTION,
-    title="Speed ripple reduction of the crank",
+    title="Speed ripple reduction",
     formula="min over the load cases of 1 - (1 - c)/(1 - c_i) std(w_c)/std(w_e) >= c; w_c, w_e:"
     " crank speed with and without the cam, c_i: load_case.speed_reduction, else"
     " limits.speed_reduction, c: the greatest c_i",
     reason="Decides where the case requires it.",
-    method="1 - std of the crank speed with the cam over that of the engine alone,"
-    " inertia of crank and follower included",
+    method="1 - std of the speed with the cam over that of the machine alone,"
+    " inertia of shaft and follower included",
     load_cases=RIPPLE,
 )
 def speed_reduction(solution: Solution) -> Demand | None:

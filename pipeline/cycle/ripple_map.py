@@ -28,10 +28,10 @@ _MODELLED = (
     "gas torque interpolated between them, inertia by the square of the speed."
 )
 _SCALED = (
-    "Engine torque of the load case at every speed, its component of inertia by the square of the "
-    "speed: the gas torque at other speeds and loads is not known."
+    "Torque of the load case at every speed, its component of inertia by the square of the "
+    "speed; the rest is taken as at the speed of the load case."
 )
-_FIXED = "Engine torque of the load case at every speed: its inertia is not separated."
+_FIXED = "Torque of the load case at every speed: its inertia is not separated."
 
 
 class RippleMapRecord(TypedDict):

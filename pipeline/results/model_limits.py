@@ -48,7 +48,7 @@ MODEL_LIMITS = (
     ),
     ModelLimit(
         "The cam speed is constant in each load case. The speed ripple of the shaft acts on the"
-        " elastic stem only, where the case states the inertia of the crankshaft."
+        " elastic stem only, where the case states the inertia of the machine."
     ),
     ModelLimit(
         "Camshaft, camshaft bearings and the drive of the cam are rigid, without backlash."

@@ -50,9 +50,9 @@ _DRAWN = 720  # least number of angles at which lift and contour are listed
 
 def torque_columns(torque: Torque) -> dict[Column, Array]:
     """Columns of ``1_torque.csv``: torque of the engine, components, error bar if measured."""
-    total = Column("total", "N m", "Engine torque at the crank")
+    total = Column("total", "N m", "Torque on the machine's shaft")
     parts = {
-        Column(name, "N m", f"Engine torque at the crank, {name.replace('_', ' ')}"): values
+        Column(name, "N m", f"Torque on the machine's shaft, {name.replace('_', ' ')}"): values
         for name, values in torque.components.items()
     }
     columns = {CRANK_ANGLE: torque.theta, total: torque.total, **parts}
