@@ -322,7 +322,7 @@ def test_gradients_match_differences(free, crown, duty):
     means = {name: np.ones(value.shape, dtype=bool) for name, value in state.means.items()}
     up, down = (search.state(*search.after(state, side * h * step)) for side in (1, -1))
     seen = set()
-    for limit in (*search.rows(state, summit, every), *search.means(state, summit, means)):
+    for limit in (*search.rows(state, summit, every), *search.means(state, summit, means)[0]):
         exact = limit.change(step)
         if limit.mean:
             one, other = (each.means[limit.name][limit.scenario] for each in (up, down))
@@ -418,12 +418,15 @@ def test_second_derivatives_of_the_lagrangian_match_its_differences(free, duty, 
     summit, random = search.summit(state), np.random.default_rng(3)
     some = {name: random.random(value.shape) < 0.01 for name, value in state.pointwise.items()}
     means = {name: np.ones(value.shape, dtype=bool) for name, value in state.means.items()}
-    limits = [*search.rows(state, summit, some), *search.means(state, summit, means)]
+    averages, slopes = search.means(state, summit, means)
+    limits = [*search.rows(state, summit, some), *averages]
     norms = search.norms(state, summit, np.arange(2))
-    model = Model(summit, norms, limits, np.zeros((0, 0)), np.zeros(0))
+    model = Model(summit, norms, limits, slopes, np.zeros((0, 0)), np.zeros(0))
     prices = [random.random(limit.level.size) for limit in limits]
     program = ConeSolution(np.zeros(0), 0.0, {}, prices, [(0.6, 0.0), (0.0, 0.3)] * 2, 0.0)
-    exact = lagrangian_curvature(search, state, summit, model, program)
+    exact = lagrangian_curvature(search, state, model, model, program)
+    again = lagrangian_curvature(search, state, model._replace(means={}), model, program)
+    np.testing.assert_allclose(exact, again, rtol=0, atol=1e-12 * np.abs(exact).max())
     lagrangian = Lagrangian.of(search, state, model, program)
     step, h = random.normal(size=search.size), 1e-4
     step[24:] *= 1e-2

@@ -134,7 +134,7 @@ def test_derivatives_are_those_of_the_textbook_by_complex_steps(searched):
     summit, random = search.summit(state), np.random.default_rng(11)
     every = {name: np.ones(value.shape, dtype=bool) for name, value in state.pointwise.items()}
     means = {name: np.ones(value.shape, dtype=bool) for name, value in state.means.items()}
-    limits = [*search.rows(state, summit, every), *search.means(state, summit, means)]
+    limits = [*search.rows(state, summit, every), *search.means(state, summit, means)[0]]
     for _ in range(3):
         step = random.normal(size=search.size)
         slopes = {n: np.imag(v) / 1e-30 for n, v in stated(search, state, step, 1e-30).items()}
