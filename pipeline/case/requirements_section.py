@@ -48,11 +48,12 @@ class Smoothing(Section):
     torque, speed and harmonics (rms) over that of the engine; loss of guides and roller bearing per
     cam turn and greatest energy of the spring over the energy swing of the engine torque; contact
     force at standstill (mean) and greatest contact force over that of the greatest engine torque at
-    the prime radius. harmonic_orders are periods per crank turn. robust_weight is that of the
-    torque ripple at speeds and loads of 1 -+ robust_speed and 1 -+ robust_load. The phase is that
-    of the cam on its shaft, in cam angle. The optimisation starts from `starts` points, all but one
-    random, to find several local optima. coefficients is the number of splines of the turn; where
-    it is missing it rises until the ripple changes by less than ripple_convergence.
+    the prime radius; size, the mean of both means of energy and force at standstill.
+    harmonic_orders are periods per crank turn. robust_weight is that of the torque ripple at speeds
+    and loads of 1 -+ robust_speed and 1 -+ robust_load. The phase is that of the cam on its shaft,
+    in cam angle. The optimisation starts from `starts` points, all but one random, to find several
+    local optima. coefficients is the number of splines of the turn; where it is missing it rises
+    until the ripple changes by less than ripple_convergence.
     """
 
     kind: Literal[
@@ -84,6 +85,7 @@ class Smoothing(Section):
     harmonic_weight: Annotated[float, In(at_least=0, at_most=1e6)] = 0.0
     harmonic_orders: Annotated[tuple[Order, ...], Field(strict=False, max_length=64)] = ()
     loss_weight: Annotated[float, In(at_least=0, at_most=1e6)] = 1.0
+    size_weight: Annotated[float, In(at_least=0, at_most=1e6)] = 0.0
     spring_energy_weight: Annotated[float, In(at_least=0, at_most=1e6)] = 0.0
     rest_force_weight: Annotated[float, In(at_least=0, at_most=1e6)] = 0.0
     peak_force_weight: Annotated[float, In(at_least=0, at_most=1e6)] = 0.0

@@ -162,6 +162,11 @@ def _rest_force(at: Turning) -> Mean:
     return Mean(at.loads.force.spring * at.loads.path.gain / at.scale.force)
 
 
+def _size(at: Turning) -> Mean:
+    """Half of the energy and half of the force at standstill."""
+    return Mean(0.5 * (_spring_energy(at) + _rest_force(at).terms))
+
+
 _ENGINE = "torque ripple of the engine"
 _SWING = "energy swing of the engine torque in the design load case"
 _FORCE = "greatest engine torque of the design load case over the prime radius, at the cam"
@@ -180,6 +185,14 @@ LOSS = Cost(
 )
 COSTS: tuple[Cost, ...] = (
     LOSS,
+    Cost(
+        "size",
+        "size: mean energy of the spring, preload included, and mean contact force at standstill, "
+        "half of each",
+        "energy swing and greatest force of the engine, as of the next two",
+        _size,
+        everywhere=True,
+    ),
     Cost(
         "spring_energy",
         "greatest energy of the spring, preload included",

@@ -22,7 +22,12 @@ from camwright.pipeline.preview import preview_case
 from camwright.pipeline.results.run_records import headline
 from camwright.pipeline.smoothing.cam_state import Jet, Mean, lift_jet, loaded
 from camwright.pipeline.smoothing.constrained_synthesis import synthesise
-from camwright.pipeline.smoothing.gradients import FREED, Point, differentiated
+from camwright.pipeline.smoothing.gradients import (
+    FREED,
+    Point,
+    differentiated,
+    second_derivatives,
+)
 from camwright.pipeline.smoothing.objective import (
     COSTS,
     KEYS,
@@ -377,3 +382,46 @@ def test_objective_of_a_case_has_the_terms_of_its_weights(case):
         "torque": 1.0, "harmonic": 2.0,
     }  # fmt: skip
     assert set(terms(**{f"{key}_weight": 1.0 for key in KEYS}, harmonic_orders=(1.0,))) == set(KEYS)
+
+
+def test_size_has_the_derivatives_of_its_closed_form():
+    """F_s^2/2k = E + P^2/2k, and the force at standstill F_s sqrt(1 + (E'/(F_s r))^2)."""
+    problem = replace(small(0.06, {"size": 1.0}), ratings=rated(roller_radius=0.008))
+    function, scale = costs_of(problem), problem.scale
+    search = Search(problem)
+    at = Point(search.turn.energy(search.exact + 2.0), 0.02, problem.variables)
+
+    def closed(level, slope, rate, preload, radius):
+        force = np.sqrt(preload**2 + 2.0 * rate * level)
+        lift = (force - preload) / rate
+        rest = np.sqrt(force**2 + (slope / (radius + lift)) ** 2)
+        energy = level + preload**2 / (2.0 * rate)
+        return 0.5 * (energy / scale.energy + rest / scale.force)
+
+    variables = problem.variables
+    arguments = [*at.energy[:2], variables.rate, variables.preload, variables.prime_radius]
+    places = [0, 1, 5, 6, 7]  # among E, E', E'', E''', maximum lift, k, P, r0
+
+    def slopes(values):
+        stepped = (
+            closed(*(each + 1e-30j * (k == j) for k, each in enumerate(values)))
+            for j in range(len(values))
+        )
+        return np.array([np.imag(each) / 1e-30 for each in stepped])
+
+    made = differentiated(function, at, freed=True)["size"]
+    np.testing.assert_allclose(made.terms, closed(*arguments), rtol=1e-12)
+    ours = np.concatenate([made.local, made.shared])
+    np.testing.assert_allclose(ours[places], slopes(arguments), rtol=1e-10, atol=1e-14)
+    assert not np.delete(ours, places, axis=0).any()
+    second = second_derivatives(function, at, True, {"size": np.ones(made.terms.shape)})
+    for k, place in enumerate(places):
+        step = 1e-5 * np.abs(arguments[k]).max()
+        up, down = (
+            slopes([each + side * step * (j == k) for j, each in enumerate(arguments)])
+            for side in (1, -1)
+        )
+        expected = (up - down) / (2.0 * step)
+        # both are central differences of complex steps: their truncation is the step squared
+        size = np.abs(expected).max(axis=1, keepdims=True) + 1e-300
+        np.testing.assert_allclose(second[place, places] / size, expected / size, rtol=0, atol=1e-6)

@@ -18,6 +18,7 @@ from camwright.pipeline.smoothing.bounds import bounds_of
 from camwright.pipeline.smoothing.cam_state import Jet
 from camwright.pipeline.smoothing.constrained_synthesis import synthesise
 from camwright.pipeline.smoothing.constraints import shape_utilisations
+from camwright.pipeline.smoothing.objective import objective_of
 from camwright.pipeline.smoothing.problem_setup import problem_of
 from camwright.pipeline.smoothing.sampled_problem import Search
 from camwright.pipeline.smoothing.scenario import DesignVariables, Scenario
@@ -105,6 +106,34 @@ def test_price_is_the_difference_of_designs_solved_again(limit, given, unit):
     assert record["sentence"].endswith("N m off the ripple")
 
 
+@pytest.mark.parametrize(
+    ("limit", "given", "unit"),
+    [
+        ("roller_static", {"normal_force": 700.0, "force_safety": 1.5}, 1.0 / 1.5),
+        ("spring_travel", {"travel": 0.018}, 1e-3),
+        ("pressure_angle", {"pressure_angle": np.radians(20.0), "travel": 0.03}, np.radians(1.0)),
+    ],
+)
+def test_price_with_a_size_weight_is_that_of_the_objective(limit, given, unit):
+    objective = objective_of({"torque": 1.0, "size": 0.05})
+    problem = replace(asked(**given), objective=objective)
+    design, bare = synthesise(problem), synthesise(asked(**given))
+    assert design.feasible and design.converged
+    assert design.cost > 0.0 and design.ripple > bare.ripple
+    record = next(r for r in prices(design, problem) if r["limit"] == limit)
+    name, share = next(iter(given)), 2e-3
+
+    def merit(factor):
+        ratings = rated(problem.ratings, **{name: given[name] * factor})
+        other = synthesise(replace(problem, ratings=ratings, seed=design.coefficients))
+        return other.objective * np.std(TORQUE)
+
+    gained = merit(1.0 - share) - merit(1.0 + share)
+    step = 2.0 * share * given[name] / unit
+    # second order in the step, and the designs are solved to 2e-6 of the ripple
+    assert record["ripple_per_unit_Nm"] == pytest.approx(gained / step, rel=0.01)
+
+
 def test_what_is_said_of_a_limit_has_its_size_and_unit():
     ratings = rated(RATINGS, normal_force=700.0, force_safety=1.5, hollow_radius=0.066,
                       life_force_cubed=LIFE, dynamic_rating=9e3)  # fmt: skip
@@ -156,7 +185,7 @@ def optimum():
     return optimum_of(1e-5)
 
 
-def objective_of(problem, design):
+def objective_value(problem, design):
     state = Search(problem).state(design.coefficients, design.variables)
     return state.ripple + state.cost + state.jerk
 
@@ -172,7 +201,7 @@ def difference_of_new_optima(optimum, key):
         solved = synthesise(other)
         assert solved.converged
         assert solved.feasible
-        return objective_of(other, solved)
+        return objective_value(other, solved)
 
     before = max(np.std(item.torque) for item in problem.scenarios if item.weight > 0)
     return before * (solved_again(-1.0) - solved_again(1.0)) / (200.0 * share)
