@@ -57,6 +57,7 @@ def run_case(
     report: Callable[[Path], object] | None = None,
     ahead: Callable[[Path, Crew], object] | None = None,
     also: Callable[[Trial], Mapping[str, Any]] = lambda _: {},
+    judged: Callable[[Mapping[str, Torque], Trial], object] = lambda *_: None,
 ) -> Run:
     """Trials of a case until a cam passes or the limit that binds is named; writes the run folder.
 
@@ -73,6 +74,7 @@ def run_case(
     report : callable    writes page and pictures into the run folder; None: none are written
     ahead : callable     begins pictures in the worker processes while the certificate is solved
     also : callable      final trial -> further entries of ``run.json``
+    judged : callable    receives engine torques and final trial as soon as it is judged
 
     Returns
     -------
@@ -91,7 +93,7 @@ def run_case(
         crew(jobs) as workers,
     ):
         watch = Stopwatch(progress, began)
-        summary = _solved(folder, case, depth, workers, fields, watch, also, ahead)
+        summary = _solved(folder, case, depth, workers, fields, watch, also, ahead, judged)
         if report is not None:
             watch.stage("report")  # the solution, which takes most of the memory, is released
             folder.write_summary(summary | watch.record())
@@ -109,6 +111,7 @@ def _solved(
     watch: Stopwatch,
     also: Callable[[Trial], Mapping[str, Any]],
     ahead: Callable[[Path, Crew], object] | None,
+    judged: Callable[[Mapping[str, Torque], Trial], object],
 ) -> dict[str, Any]:
     """Solve a case and write all files but report and records; the contents of ``run.json``."""
     watch.stage("torque")
@@ -139,12 +142,14 @@ def _solved(
             ahead(folder.path, workers)
 
     if depth < Tier.CERTIFIED:
+        judged(torques, final)
         rest()
         return summary | judged_of(final, statement)
     sought = _remedies_begun(final, workers, folder.path)
     failing = _failing(final)
     store = writer.store(final.number)
     certified = certify_trial(final, workers, store=store, progress=watch, meanwhile=rest)
+    judged(torques, certified)
     if sought is not None:
         watch.stage("remedies")
         texts = sought.result()

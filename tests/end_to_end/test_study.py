@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import random
+import shutil
 import signal
 import socket
 import subprocess
@@ -11,6 +12,7 @@ import sys
 import threading
 import time
 from collections.abc import Iterable, Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import Self
 
@@ -26,6 +28,7 @@ from camwright.pipeline.results.run_reader import read_run, read_verdict
 from camwright.pipeline.studies.batch import study_run
 from camwright.pipeline.studies.batch.answers import answered
 from camwright.pipeline.studies.batch.answers_yield import Yield
+from camwright.pipeline.studies.batch.case_template import read_templates
 from camwright.pipeline.studies.batch.dataset import (
     parquet_bytes,
     read_dataset,
@@ -33,7 +36,7 @@ from camwright.pipeline.studies.batch.dataset import (
     timings_of,
 )
 from camwright.pipeline.studies.batch.design_plan import SHARD_OF, Task
-from camwright.pipeline.studies.batch.design_rows import completed
+from camwright.pipeline.studies.batch.design_rows import DesignSolver, completed
 from camwright.pipeline.studies.batch.study_file import read_study
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -185,7 +188,11 @@ def test_second_stage_and_kept_runs_are_the_same_with_two_processes(tmp_path: Pa
     assert contents(tmp_path / "jobs1") == contents(tmp_path / "jobs2")
     data = read_dataset(tmp_path / "jobs1")
     assert sorted(data["depth"].tolist()) == ["cycle", "preview"]
-    runs = tmp_path / "jobs1" / "runs"
+    runs = tmp_path / "jobs2" / "runs"
+    (deeper,) = data["id"][data["depth"] == "cycle"]
+    shutil.rmtree(runs / deeper)  # made with its row, and here on its own
+    assert run(tmp_path, "study.toml", "--out", "jobs2", "--resume").returncode == 0
+    assert contents(tmp_path / "jobs1") == contents(tmp_path / "jobs2")
     for name, depth in zip(data["id"], data["depth"], strict=True):
         kept = read_run(runs / name)
         rows = {each["id"]: each for each in read_verdict(runs / name)["checks"]}
@@ -334,14 +341,16 @@ class EveryThirdRefused:
 
     def release(self) -> None: ...
 
-    def shards(self, tasks: Iterable[Task]) -> Iterator[tuple[Task, tuple[bytes, bytes]]]:
+    def shards(
+        self, tasks: Iterable[Task], _: str | None
+    ) -> Iterator[tuple[Task, tuple[bytes, bytes, dict[str, dict[str, bytes]]]]]:
         for task in tasks:
             count = len(task.ids)
             screens = [("open", "fail", "error")[(self.solved + k) % 3] for k in range(count)]
             self.solved += count
             rows = completed(task, {"screen": screens}, ())
             clock = parquet_bytes(timings_of(rows, [0.0] * count))
-            yield task, (parquet_bytes(table_of(rows, task.units)), clock)
+            yield task, (parquet_bytes(table_of(rows, task.units)), clock, {})
 
 
 def test_the_stop_rule_counts_as_the_answers(
@@ -405,9 +414,22 @@ def test_a_design_out_of_time_or_memory_is_a_row(tmp_path: Path, more: str, mess
     assert data["screen"].tolist() == ["error"] * 2
 
 
+def test_a_refused_design_has_a_row_and_no_run(folder: Path) -> None:
+    """Values that the case refuses, of a design whose run would be made with its row."""
+    study = read_study(folder / "study.toml")
+    templates = read_templates(folder, study.cases)
+    plan = study_run.planned(study, templates)
+    task = next(plan.tasks(Tier.CYCLE)).alone(0)
+    task = replace(task, values={"spring.preload": np.array([-1.0])})
+    sent: list[object] = []
+    DesignSolver(templates, plan.settings).solved_and_run(task, 0, "open", sent.append)
+    row, files = sent
+    assert isinstance(row, dict) and "spring.preload = -1" in str(row["message"])
+    assert row["screen"] == "error" and files == {}
+
+
 def test_a_design_that_kills_its_process_is_a_row(folder: Path) -> None:
     """The process that solves is killed each time it starts."""
-    from camwright.pipeline.studies.batch.case_template import read_templates
     from camwright.pipeline.studies.batch.solver_process import SolverProcess
 
     study = read_study(folder / "study.toml")
@@ -425,7 +447,7 @@ def test_a_design_that_kills_its_process_is_a_row(folder: Path) -> None:
 
     thread = threading.Thread(target=killer)
     thread.start()
-    columns, walls = solver.rows(task)
+    columns, walls, _ = solver.rows(task)
     finished.set()
     thread.join()
     assert columns["message"] == ["the process of the solution died 3 times"]

@@ -13,6 +13,7 @@ import pyarrow.parquet as pq
 import pytest
 
 from camwright.geometry.errors import ResultError
+from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.studies.batch import study_run
 from camwright.pipeline.studies.batch.answers_yield import FAILS, PASSES, UNKNOWN
 from camwright.pipeline.studies.batch.dataset import (
@@ -25,8 +26,8 @@ from camwright.pipeline.studies.batch.dataset import (
     table_of,
     values_of,
 )
-from camwright.pipeline.studies.batch.row_selection import Figures, states_in
-from camwright.pipeline.studies.batch.study_file import Objective
+from camwright.pipeline.studies.batch.row_selection import Figures, kept_at_once, states_in
+from camwright.pipeline.studies.batch.study_file import Objective, Study
 from camwright.pipeline.studies.batch.study_folder import Shard, StudyFolder
 
 UNITS = {"spring.rate": "kN/m", "cam.material": None}
@@ -285,6 +286,24 @@ def test_selection() -> None:
     assert states_in(table).tolist() == [PASSES, PASSES, FAILS, PASSES, UNKNOWN]
     figures.keep({"a"})
     assert figures.best(2) == ["a"]
+
+
+@pytest.mark.parametrize(
+    ("keep", "depth", "screen"),
+    [
+        ("", Tier.CYCLE, None),
+        ("failed", Tier.CYCLE, "fail"),
+        ("failed", Tier.PREVIEW, None),
+        ("best:3", Tier.CERTIFIED, "open"),
+        ("best:2", Tier.CERTIFIED, None),
+        ("pareto", Tier.CERTIFIED, None),
+    ],
+)
+def test_runs_are_made_with_the_rows_where_most_are_kept(
+    keep: str, depth: Tier, screen: str | None
+) -> None:
+    study = Study.model_construct(keep=keep)
+    assert kept_at_once(study, depth, 3) == screen
 
 
 @pytest.mark.parametrize("start", [0, 3, 9])

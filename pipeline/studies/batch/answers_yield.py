@@ -6,7 +6,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.special import betaincinv
 
 from camwright.geometry.errors import InputError
 
@@ -68,6 +67,8 @@ class Yield:
         """
         if not 0.0 < confidence < 1.0:
             raise InputError("confidence", confidence, "> 0 and < 1")
+        from scipy.special import betaincinv  # not before the workers of a study start
+
         tail, failed = 0.5 * (1.0 - confidence), self.count - self.passed
         lower = float(betaincinv(self.passed, failed + 1, tail)) if self.passed else 0.0
         upper = float(betaincinv(self.passed + 1, failed, 1.0 - tail)) if failed else 1.0

@@ -5,7 +5,7 @@ Imported where Dask is, by `task_scheduler` and by the workers.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any, cast
 
 from distributed import WorkerPlugin, get_worker
@@ -13,11 +13,11 @@ from distributed import WorkerPlugin, get_worker
 from camwright.pipeline.studies.batch.case_template import Template
 from camwright.pipeline.studies.batch.dataset import parquet_bytes, table_of, timings_of
 from camwright.pipeline.studies.batch.design_plan import Settings, Task
-from camwright.pipeline.studies.batch.design_rows import completed
+from camwright.pipeline.studies.batch.design_rows import Files, completed
 from camwright.pipeline.studies.batch.solver_process import SolverProcess
 
-Shard = tuple[bytes, bytes]
-"""Rows and clock figures of a task as Parquet files."""
+Shard = tuple[bytes, bytes, Mapping[str, Files]]
+"""Rows and clock figures of a task as Parquet files; files of runs made with the rows, by id."""
 
 
 class StudyPlugin(WorkerPlugin):
@@ -36,15 +36,16 @@ class StudyPlugin(WorkerPlugin):
         self.process.close()
 
 
-def solve_shard(task: Task, plugin: str) -> Shard:
-    """Rows of a task, in the process of this worker."""
+def solve_shard(task: Task, plugin: str, screen: str | None) -> Shard:
+    """Rows of a task, in the process of this worker; `screen` as of `SolverProcess.rows`."""
     study = cast(StudyPlugin, get_worker().plugins[plugin])
-    columns, walls = study.process.rows(task)
+    columns, walls, runs = study.process.rows(task, screen)
     rows = completed(task, columns, study.settings.outputs)
-    return parquet_bytes(table_of(rows, task.units)), parquet_bytes(timings_of(rows, walls))
+    clock = parquet_bytes(timings_of(rows, walls))
+    return parquet_bytes(table_of(rows, task.units)), clock, runs
 
 
-def solve_run(task: Task, plugin: str) -> dict[str, bytes]:
+def solve_run(task: Task, plugin: str) -> Files:
     """Files of the run folder of the one design of a task."""
     study = cast(StudyPlugin, get_worker().plugins[plugin])
     return study.process.run_folder(task, 0)

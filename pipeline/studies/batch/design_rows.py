@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import shutil
 import tempfile
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass, field
 from fnmatch import fnmatchcase
 from pathlib import Path
@@ -39,15 +39,23 @@ from camwright.pipeline.studies.batch.dataset import (
     VERDICT,
 )
 from camwright.pipeline.studies.batch.design_plan import Settings, Task
+from camwright.pipeline.torque.torque import Torque
 
 Cell = float | str | None
 Row = dict[str, Cell]
+Files = dict[str, bytes]
+"""Contents by relative name."""
 FAILED, NO_RESULT = "fail", "error"
 OUT_OF_TIME = "not solved within {seconds:g} s"
 OUT_OF_MEMORY = "not solved within {megabytes:.0f} MB of memory"
 DIED = "the process of the solution died {times} times"
 CLOCK = "timings.json"
 UNEXPECTED = "unexpected {kind}: {text}"
+
+
+class _NotKeptError(Exception):
+    """Ends the run of a design that is not kept."""
+
 
 _AT_ONCE = 125  # screened designs: their arrays bound the memory of a process
 
@@ -189,8 +197,45 @@ class DesignSolver:
             self._bases[name] = made.case, made.contour.pitch.lift
         return self._bases[name]
 
-    def run_folder(self, task: Task, row: int) -> dict[str, bytes]:
+    def solved_and_run(
+        self, task: Task, row: int, screen: str, send: Callable[[Row | Files], object]
+    ) -> None:
+        """Send the cells of one design, then the files of its run, made from the same solution.
+
+        Parameters
+        ----------
+        screen : str      of the designs that are kept; of others no files are made
+        send : callable   receives the cells, then the files; none where there is no run
+        """
+        from camwright.pipeline.results.run_records import headline
+
+        cells: Row = {}
+
+        def judged(torques: Mapping[str, Torque], trial: Trial) -> None:
+            cells.update(row_of(trial, headline(torques, trial)))
+            send(cells)
+            if cells[SCREEN.name] != screen:
+                raise _NotKeptError
+
+        files: Files = {}
+        try:
+            files = self.run_folder(task, row, judged)
+        except Exception:  # noqa: BLE001 - a refusal is a row; a run that fails is made again alone
+            if not cells:
+                send(self.solved(task, row))
+        send(files)
+
+    def run_folder(
+        self,
+        task: Task,
+        row: int,
+        judged: Callable[[Mapping[str, Torque], Trial], object] = lambda *_: None,
+    ) -> Files:
         """Files of the run of one design, by relative name; its clock figures as `CLOCK`.
+
+        Parameters
+        ----------
+        judged : callable   as of `run_case`
 
         Raises
         ------
@@ -210,7 +255,7 @@ class DesignSolver:
             report(folder)
 
         try:
-            run_case(case, path, depth=task.tier, jobs=1, report=presented)
+            run_case(case, path, depth=task.tier, jobs=1, report=presented, judged=judged)
             clock = _without_clock(path)
             signoff.write(path)  # has the hash of run.json
             files = {name: file.read_bytes() for name, file in files_in(path)}

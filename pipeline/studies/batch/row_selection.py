@@ -11,6 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from camwright.pipeline.base.files import Json
+from camwright.pipeline.checks.check import Screen
+from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.studies.batch.answers_yield import states_of
 from camwright.pipeline.studies.batch.dataset import (
     DEPTH,
@@ -22,7 +24,7 @@ from camwright.pipeline.studies.batch.dataset import (
     values_of,
 )
 from camwright.pipeline.studies.batch.design_rows import FAILED, NO_RESULT
-from camwright.pipeline.studies.batch.study_file import Objective
+from camwright.pipeline.studies.batch.study_file import Objective, Study
 from camwright.pipeline.studies.redesign.pareto_front import front
 
 if TYPE_CHECKING:
@@ -114,6 +116,27 @@ class Figures:
                 {"message": text, "count": count} for text, count in ranked[:_MESSAGES_MOST]
             ],
         }
+
+
+def kept_at_once(study: Study, tier: Tier, count: int) -> Screen | None:
+    """Value of `screen` of the designs of a stage whose run folder is made with their row.
+
+    Parameters
+    ----------
+    tier : Tier   depth of the stage
+    count : int   designs of the stage
+
+    Returns
+    -------
+    Screen or None   None: few of the designs are kept, or solving them again takes less time than
+                     writing their run
+    """
+    kind, most = study.kept
+    if tier < Tier.CYCLE:
+        return None
+    if kind == "failed":
+        return "fail"
+    return "open" if kind == "best" and count <= most else None
 
 
 def _in(row: tuple[str, str, str, str, float, tuple[float, ...]]) -> bool:

@@ -25,7 +25,7 @@ from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.studies.batch import design_rows
 from camwright.pipeline.studies.batch.case_template import Template
 from camwright.pipeline.studies.batch.design_plan import Settings, Task, study_versions
-from camwright.pipeline.studies.batch.design_rows import Row
+from camwright.pipeline.studies.batch.design_rows import Files, Row
 
 DEATHS_MAX = 3
 """Deaths of the process after which a design is a row."""
@@ -85,8 +85,16 @@ class SolverProcess:
         self._pipe, self._process = ours, process
         return ours, process
 
-    def rows(self, task: Task) -> tuple[dict[str, Any], list[float]]:
-        """Columns of a task, and the wall time of each design, s."""
+    def rows(
+        self, task: Task, screen: str | None = None
+    ) -> tuple[dict[str, Any], list[float], dict[str, Files]]:
+        """Columns of a task, the wall time of each design, s, and files of runs by id.
+
+        Parameters
+        ----------
+        screen : str   of the designs whose run is made from the solution of their row; None: of
+                       none
+        """
         with self._lock:
             if task.tier is Tier.SCREENING:
                 with contextlib.suppress(_OutOfTimeError, _OutOfMemoryError, _DiedError):
@@ -94,22 +102,29 @@ class SolverProcess:
                     reply = self._asked("screened", task)
                     share = (time.perf_counter() - start) / len(task.ids)
                     if reply is not None:
-                        return reply, [share] * len(task.ids)
-            made, walls = [], []
-            for row in range(len(task.ids)):
+                        return reply, [share] * len(task.ids), {}
+            made, walls, runs = [], [], {}
+            for row, name in enumerate(task.ids):
                 start = time.perf_counter()
-                made.append(self._row(task, row))
+                cells = self._row(task, row, screen)
                 walls.append(time.perf_counter() - start)
-            return design_rows.columns_of(made), walls
+                made.append(cells)
+                if screen is not None and self._ready:
+                    runs[name] = self._files(self._reply)
+            kept = {name: files for name, files in runs.items() if files}
+            return design_rows.columns_of(made), walls, kept
 
-    def run_folder(self, task: Task, row: int) -> dict[str, bytes]:
+    def run_folder(self, task: Task, row: int) -> Files:
         """Files of the run of a design; none where it has no result."""
         with self._lock:
-            try:
-                files: dict[str, bytes] = self._asked("run_folder", task, row)
-            except (_OutOfTimeError, _OutOfMemoryError, _DiedError):
-                return {}
+            return self._files(lambda: self._asked("run_folder", task, row))
+
+    def _files(self, reply: Callable[[], Any]) -> Files:
+        """Files of a reply; none where there is none."""
+        with contextlib.suppress(_OutOfTimeError, _OutOfMemoryError, _DiedError):
+            files: Files = reply()
             return files
+        return {}
 
     def close(self) -> None:
         """End the process."""
@@ -121,10 +136,15 @@ class SolverProcess:
         self._process = self._pipe = None
         self._ready = False
 
-    def _row(self, task: Task, row: int) -> Row:
+    def _row(self, task: Task, row: int, screen: str | None) -> Row:
+        """Cells of a design; the files of its run follow where `screen` is not None."""
         for _ in range(DEATHS_MAX):
             try:
-                solved: Row = self._asked("solved", task, row)
+                solved: Row = (
+                    self._asked("solved", task, row)
+                    if screen is None
+                    else self._asked("solved_and_run", task, row, screen)
+                )
             except _OutOfTimeError:
                 return design_rows.out_of_time(self.settings)
             except _OutOfMemoryError:
@@ -136,9 +156,20 @@ class SolverProcess:
 
     def _asked(self, method: str, *arguments: Any) -> Any:
         """Reply of the process, within time and memory."""
-        pipe, process = self._started()
+        pipe, _ = self._started()
         try:
             pipe.send((method, arguments))
+        except OSError:
+            self.close()
+            raise _DiedError from None
+        return self._reply()
+
+    def _reply(self) -> Any:
+        """The next reply of the process, within time and memory."""
+        pipe, process = self._pipe, self._process
+        if pipe is None or process is None:
+            raise _DiedError
+        try:
             deadline = time.monotonic() + self.settings.seconds
             while not pipe.poll(_LOOK_EVERY_S):
                 if time.monotonic() > deadline:
@@ -193,7 +224,11 @@ def serve(pipe: Connection) -> None:
     pipe.send(study_versions())
     while True:
         method, arguments = pipe.recv()
-        pipe.send(_answer(getattr(solver, method), arguments))
+        if method == "solved_and_run":
+            task, row, screen = arguments
+            solver.solved_and_run(task, row, screen, pipe.send)
+        else:
+            pipe.send(_answer(getattr(solver, method), arguments))
 
 
 def _answer(method: Callable[..., Any], arguments: tuple[Any, ...]) -> Any:

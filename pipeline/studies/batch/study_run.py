@@ -33,7 +33,7 @@ from camwright.pipeline.studies.batch.dataset import (
 )
 from camwright.pipeline.studies.batch.design_plan import Plan, Settings, Task, study_versions
 from camwright.pipeline.studies.batch.factor_axes import Axis, axis_of
-from camwright.pipeline.studies.batch.row_selection import Figures, states_in
+from camwright.pipeline.studies.batch.row_selection import Figures, kept_at_once, states_in
 from camwright.pipeline.studies.batch.sampling import Designs, designs_of
 from camwright.pipeline.studies.batch.study_file import Stop, Study
 from camwright.pipeline.studies.batch.study_folder import Shard, StudyFolder
@@ -229,7 +229,11 @@ class _Run:
         pending = missing()
         start = next(pending, None)
         if start is not None:
-            for task, (rows, clock) in self.scheduler.shards(chain([start], pending)):
+            waiting = chain([start], pending)
+            screen = kept_at_once(self.study, tier, count)
+            for task, (rows, clock, runs) in self.scheduler.shards(waiting, screen):
+                for name, files in runs.items():  # before their rows, by which they are known
+                    self.home.write_run(name, files)
                 self.home.write_shard(task.name, rows, clock)
                 watch.take(Shard(task.name, task.ids), table_from(rows))
                 if watch.stopped:

@@ -22,7 +22,12 @@ from camwright.pipeline.studies.batch.dataset import (
     timings_of,
 )
 from camwright.pipeline.studies.batch.design_plan import Settings, Task
-from camwright.pipeline.studies.batch.design_rows import columns_of, completed, died
+from camwright.pipeline.studies.batch.design_rows import (
+    Files,
+    columns_of,
+    completed,
+    died,
+)
 from camwright.pipeline.studies.batch.solver_process import DEATHS_MAX
 
 if TYPE_CHECKING:
@@ -157,13 +162,18 @@ class TaskScheduler:
         client.register_plugin(StudyPlugin(self._plugin, self._templates, self._settings))
         return client
 
-    def shards(self, tasks: Iterable[Task]) -> Iterator[tuple[Task, Shard]]:
-        """Tasks with their shards, as they complete."""
+    def shards(
+        self, tasks: Iterable[Task], screen: str | None = None
+    ) -> Iterator[tuple[Task, Shard]]:
+        """Tasks with their shards, as they complete; `screen` as of `SolverProcess.rows`."""
         from camwright.pipeline.studies.batch.cluster_worker import solve_shard
 
-        return self._completed(solve_shard, tasks, self._apart)
+        def apart(task: Task) -> Shard:
+            return self._apart(task, screen)
 
-    def runs(self, tasks: Iterable[Task]) -> Iterator[tuple[Task, dict[str, bytes]]]:
+        return self._completed(solve_shard, tasks, apart, screen)
+
+    def runs(self, tasks: Iterable[Task]) -> Iterator[tuple[Task, Files]]:
         """Tasks of one design each with the files of its run; none where it has no result."""
         from camwright.pipeline.studies.batch.cluster_worker import solve_run
 
@@ -171,9 +181,10 @@ class TaskScheduler:
 
     def _completed(
         self,
-        method: Callable[[Task, str], Result],
+        method: Callable[..., Result],
         tasks: Iterable[Task],
         killed: Callable[[Task], Result],
+        *arguments: str | None,
     ) -> Iterator[tuple[Task, Result]]:
         """Results as they complete; a few tasks a worker are known to the scheduler at once."""
         from distributed import as_completed
@@ -187,7 +198,7 @@ class TaskScheduler:
             task = next(waiting, None)
             if task is None:
                 return False
-            future = self._client.submit(method, task, self._plugin, pure=False)
+            future = self._client.submit(method, task, self._plugin, *arguments, pure=False)
             running[future] = task
             finished.add(future)
             return True
@@ -217,15 +228,17 @@ class TaskScheduler:
             with contextlib.suppress(Exception):  # a cluster that is lost
                 self._client.cancel(list(running), force=True)
 
-    def _apart(self, task: Task) -> Shard:
+    def _apart(self, task: Task, screen: str | None) -> Shard:
         """Shard of a task that ended its worker too often: each design on its own."""
         import pyarrow as pa
 
         if len(task.ids) == 1:
             rows = completed(task, columns_of([died(DEATHS_MAX)]), self._settings.outputs)
-            return parquet_bytes(table_of(rows, task.units)), parquet_bytes(timings_of(rows, [0.0]))
+            clock = parquet_bytes(timings_of(rows, [0.0]))
+            return parquet_bytes(table_of(rows, task.units)), clock, {}
         alone = [task.alone(row) for row in range(len(task.ids))]
-        parts = {each.ids[0]: shard for each, shard in self.shards(alone)}
+        parts = {each.ids[0]: shard for each, shard in self.shards(alone, screen)}
         rows = joined([table_from(parts[name][0]) for name in task.ids])
-        clock = pa.concat_tables([table_from(parts[name][1]) for name in task.ids])
-        return parquet_bytes(rows), parquet_bytes(clock)
+        clocks = pa.concat_tables([table_from(parts[name][1]) for name in task.ids])
+        runs = {name: files for part in parts.values() for name, files in part[2].items()}
+        return parquet_bytes(rows), parquet_bytes(clocks), runs
