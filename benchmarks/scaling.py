@@ -27,8 +27,9 @@ from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.screening.design_screening import screen_designs
 from camwright.pipeline.studies.batch.case_template import read_templates
 from camwright.pipeline.studies.batch.dataset import DATASET, SHARDS, parquet_bytes, read_parquet
-from camwright.pipeline.studies.batch.design_plan import Plan, Settings
-from camwright.pipeline.studies.batch.design_rows import DesignSolver
+from camwright.pipeline.studies.batch.design_plan import Plan
+from camwright.pipeline.studies.batch.design_solver import DesignSolver
+from camwright.pipeline.studies.batch.design_task import Settings
 from camwright.pipeline.studies.batch.row_selection import Figures
 from camwright.pipeline.studies.batch.sampling import Designs
 from camwright.pipeline.studies.batch.study_file import study_of

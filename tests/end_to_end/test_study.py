@@ -29,14 +29,11 @@ from camwright.pipeline.studies.batch import study_run
 from camwright.pipeline.studies.batch.answers import answered
 from camwright.pipeline.studies.batch.answers_yield import Yield
 from camwright.pipeline.studies.batch.case_template import read_templates
-from camwright.pipeline.studies.batch.dataset import (
-    parquet_bytes,
-    read_dataset,
-    table_of,
-    timings_of,
-)
-from camwright.pipeline.studies.batch.design_plan import SHARD_OF, Task
-from camwright.pipeline.studies.batch.design_rows import DesignSolver, completed
+from camwright.pipeline.studies.batch.dataset import read_dataset, table_from
+from camwright.pipeline.studies.batch.design_plan import SHARD_OF
+from camwright.pipeline.studies.batch.design_rows import encoded
+from camwright.pipeline.studies.batch.design_solver import DesignSolver
+from camwright.pipeline.studies.batch.design_task import Task
 from camwright.pipeline.studies.batch.study_file import read_study
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -348,9 +345,7 @@ class EveryThirdRefused:
             count = len(task.ids)
             screens = [("open", "fail", "error")[(self.solved + k) % 3] for k in range(count)]
             self.solved += count
-            rows = completed(task, {"screen": screens}, ())
-            clock = parquet_bytes(timings_of(rows, [0.0] * count))
-            yield task, (parquet_bytes(table_of(rows, task.units)), clock, {})
+            yield task, (*encoded(task, {"screen": screens}, [0.0] * count, ()), {})
 
 
 def test_the_stop_rule_counts_as_the_answers(
@@ -447,9 +442,10 @@ def test_a_design_that_kills_its_process_is_a_row(folder: Path) -> None:
 
     thread = threading.Thread(target=killer)
     thread.start()
-    columns, walls, _ = solver.rows(task)
+    rows, clock, _ = solver.rows(task)
     finished.set()
     thread.join()
-    assert columns["message"] == ["the process of the solution died 3 times"]
-    assert columns["screen"] == ["error"] and len(walls) == 1
+    table = table_from(rows)
+    assert table["message"].to_pylist() == ["the process of the solution died 3 times"]
+    assert table["screen"].to_pylist() == ["error"] and len(table_from(clock)) == 1
     solver.close()

@@ -15,8 +15,9 @@ from camwright.geometry.errors import InputError
 from camwright.pipeline.case.case_file import read_case
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.studies.batch.case_template import read_templates
-from camwright.pipeline.studies.batch.design_plan import SHARD_OF, Plan, Settings
-from camwright.pipeline.studies.batch.design_rows import DesignSolver
+from camwright.pipeline.studies.batch.design_plan import SHARD_OF, Plan
+from camwright.pipeline.studies.batch.design_solver import DesignSolver
+from camwright.pipeline.studies.batch.design_task import Settings
 from camwright.pipeline.studies.batch.factor_axes import Axis, axis_of
 from camwright.pipeline.studies.batch.sampling import Designs, designs_of
 from camwright.pipeline.studies.batch.study_file import (

@@ -8,9 +8,11 @@ In the order of the calculation:
 | `factor_axes`         | factors: levels, distributions, values          | SI                  |
 | `sampling`            | designs by grid, list, samples of the cube      | share, -            |
 | `case_template`       | base cases with their files                     |                     |
+| `design_task`         | designs of one shard, settings of all           |                     |
 | `design_plan`         | content hash of a design; tasks                 | SHA-256             |
 | `dataset`             | columns, Parquet files, reading                 | unit of each column |
-| `design_rows`         | row of a design, solved or refused              |                     |
+| `design_rows`         | row of a design, refusals, files of a shard     |                     |
+| `design_solver`       | solution of a design; files of its run          |                     |
 | `solver_process`      | supervised process: time, memory, death         | s; B                |
 | `cluster_worker`      | part of a Dask worker                           |                     |
 | `task_scheduler`      | tasks on a local or running cluster             |                     |

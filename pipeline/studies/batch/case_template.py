@@ -7,15 +7,15 @@ import tempfile
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from camwright.geometry.errors import InputError
 from camwright.pipeline.base.files import inside
-from camwright.pipeline.case.cards.card_filling import USER_FILE
-from camwright.pipeline.case.cards.spring_selection import SHIPPED
-from camwright.pipeline.case.case import Case, includes
-from camwright.pipeline.case.case_file import parse_case, read_case
-from camwright.pipeline.case.toml_text import Tables
-from camwright.pipeline.studies.batch.study_file import case_path, read_study_tables
+
+# A worker of the cluster passes templates on: it reads no case.
+if TYPE_CHECKING:
+    from camwright.pipeline.case.case import Case
+    from camwright.pipeline.case.toml_text import Tables
 
 CASE_FILE = "case.toml"
 
@@ -44,6 +44,8 @@ class Template:
 
     def case(self, folder: Path) -> Case:
         """The case, read from its files, which are written under `folder`."""
+        from camwright.pipeline.case.case_file import parse_case
+
         home = folder / self.name
         for name, content in self.files.items():
             (home / name).parent.mkdir(parents=True, exist_ok=True)
@@ -59,6 +61,10 @@ def read_templates(folder: Path, names: Sequence[str]) -> tuple[Template, ...]:
     InputError
         If a case cannot be read, or two have one name.
     """
+    from camwright.pipeline.case.cards.card_filling import USER_FILE
+    from camwright.pipeline.case.case_file import read_case
+    from camwright.pipeline.studies.batch.study_file import case_path, read_study_tables
+
     made: dict[str, Template] = {}
     for name in names:
         path = case_path(folder, name)
@@ -79,6 +85,9 @@ def read_templates(folder: Path, names: Sequence[str]) -> tuple[Template, ...]:
 
 
 def _files(case: Case, tables: Tables) -> list[str]:
+    from camwright.pipeline.case.cards.spring_selection import SHIPPED
+    from camwright.pipeline.case.case import includes
+
     spring = tables.get("spring")
     catalogue = spring.get("catalogue") if isinstance(spring, dict) else None
     own = [catalogue] if isinstance(catalogue, str) and catalogue != SHIPPED else []

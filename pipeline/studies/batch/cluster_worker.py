@@ -11,9 +11,8 @@ from typing import Any, cast
 from distributed import WorkerPlugin, get_worker
 
 from camwright.pipeline.studies.batch.case_template import Template
-from camwright.pipeline.studies.batch.dataset import parquet_bytes, table_of, timings_of
-from camwright.pipeline.studies.batch.design_plan import Settings, Task
-from camwright.pipeline.studies.batch.design_rows import Files, completed
+from camwright.pipeline.studies.batch.design_rows import Files
+from camwright.pipeline.studies.batch.design_task import Settings, Task
 from camwright.pipeline.studies.batch.solver_process import SolverProcess
 
 Shard = tuple[bytes, bytes, Mapping[str, Files]]
@@ -39,10 +38,7 @@ class StudyPlugin(WorkerPlugin):
 def solve_shard(task: Task, plugin: str, screen: str | None) -> Shard:
     """Rows of a task, in the process of this worker; `screen` as of `SolverProcess.rows`."""
     study = cast(StudyPlugin, get_worker().plugins[plugin])
-    columns, walls, runs = study.process.rows(task, screen)
-    rows = completed(task, columns, study.settings.outputs)
-    clock = parquet_bytes(timings_of(rows, walls))
-    return parquet_bytes(table_of(rows, task.units)), clock, runs
+    return study.process.rows(task, screen)
 
 
 def solve_run(task: Task, plugin: str) -> Files:

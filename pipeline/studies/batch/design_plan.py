@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import hashlib
 import importlib.metadata
-import json
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
@@ -14,6 +13,7 @@ from numpy.typing import NDArray
 from camwright.geometry.arrays import Array
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.results.run_folder import versions
+from camwright.pipeline.studies.batch.design_task import Settings, Task
 from camwright.pipeline.studies.batch.factor_axes import Levels
 from camwright.pipeline.studies.batch.sampling import Designs
 
@@ -27,68 +27,6 @@ _TAIL, _LEAST = 6, 5
 _ID = 24  # hex digits: 96 bits
 CASE = "case"
 """Factor that names the case, in a study of several."""
-
-
-@dataclass(frozen=True)
-class Settings:
-    """What the rows depend on besides the designs.
-
-    templates: hash by case name; versions: of the program and its libraries.
-    """
-
-    templates: Mapping[str, str]
-    versions: Mapping[str, str]
-    cam: str
-    positions: int | None
-    corners: bool
-    outputs: tuple[str, ...]
-    seconds: float
-    bytes: int
-
-    @property
-    def sha256(self) -> str:
-        """Hash of all settings."""
-        text = json.dumps(vars(self), sort_keys=True, default=dict)
-        return hashlib.sha256(text.encode()).hexdigest()
-
-
-@dataclass(frozen=True, eq=False)
-class Task:
-    """Designs of one case at one depth, solved together: one shard.
-
-    Parameters
-    ----------
-    name : str          content hash, the name of the shard
-    case : str          name of the case
-    tier : Tier
-    ids : tuple         of the designs
-    values : mapping    by key, SI, (n,)
-    shown : mapping     by key, in the unit of the study file, (n,)
-    units : mapping     by key; None: names
-    """
-
-    name: str
-    case: str
-    tier: Tier
-    ids: tuple[str, ...]
-    values: Mapping[str, Array | Levels]
-    shown: Mapping[str, Array | Levels]
-    units: Mapping[str, str | None]
-
-    def alone(self, row: int) -> Task:
-        """The task of one of its designs."""
-
-        def one(columns: Mapping[str, Array | Levels]) -> dict[str, Array | Levels]:
-            return {key: values[row : row + 1] for key, values in columns.items()}
-
-        return Task(
-            self.name, self.case, self.tier, self.ids[row : row + 1],
-            one(self.values), one(self.shown), self.units,
-        )  # fmt: skip
-
-    def value_of(self, row: int) -> dict[str, str | bool | int | float]:
-        """Values of one design by key, SI."""
-        return {key: _scalar(values[row]) for key, values in self.values.items()}
 
 
 @dataclass(frozen=True, eq=False)
@@ -206,7 +144,3 @@ def _taken(column: Array | Levels, rows: NDArray[np.intp]) -> Array | Levels:
 
 def _list(column: Array | Levels) -> list[str | bool | int | float]:
     return column.tolist() if isinstance(column, np.ndarray) else list(column)
-
-
-def _scalar(value: str | bool | int | float) -> str | bool | int | float:
-    return value.item() if isinstance(value, np.generic) else value

@@ -24,8 +24,8 @@ from camwright.pipeline.base.worker_processes import THREADS, as_worker
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.studies.batch import design_rows
 from camwright.pipeline.studies.batch.case_template import Template
-from camwright.pipeline.studies.batch.design_plan import Settings, Task, study_versions
 from camwright.pipeline.studies.batch.design_rows import Files, Row
+from camwright.pipeline.studies.batch.design_task import Settings, Task
 
 DEATHS_MAX = 3
 """Deaths of the process after which a design is a row."""
@@ -85,10 +85,8 @@ class SolverProcess:
         self._pipe, self._process = ours, process
         return ours, process
 
-    def rows(
-        self, task: Task, screen: str | None = None
-    ) -> tuple[dict[str, Any], list[float], dict[str, Files]]:
-        """Columns of a task, the wall time of each design, s, and files of runs by id.
+    def rows(self, task: Task, screen: str | None = None) -> tuple[bytes, bytes, dict[str, Files]]:
+        """Rows and clock figures of a task as Parquet files, and files of runs by id.
 
         Parameters
         ----------
@@ -102,7 +100,7 @@ class SolverProcess:
                     reply = self._asked("screened", task)
                     share = (time.perf_counter() - start) / len(task.ids)
                     if reply is not None:
-                        return reply, [share] * len(task.ids), {}
+                        return *self._encoded(task, reply, [share] * len(task.ids)), {}
             made, walls, runs = [], [], {}
             for row, name in enumerate(task.ids):
                 start = time.perf_counter()
@@ -112,7 +110,17 @@ class SolverProcess:
                 if screen is not None and self._ready:
                     runs[name] = self._files(self._reply)
             kept = {name: files for name, files in runs.items() if files}
-            return design_rows.columns_of(made), walls, kept
+            return *self._encoded(task, design_rows.columns_of(made), walls), kept
+
+    def _encoded(
+        self, task: Task, columns: Mapping[str, Any], walls: Sequence[float]
+    ) -> tuple[bytes, bytes]:
+        """Parquet files of a task, by the process, or here where it does not live long enough."""
+        with contextlib.suppress(_OutOfTimeError, _OutOfMemoryError, _DiedError):
+            files: tuple[bytes, bytes] | None = self._asked("encoded", task, columns, walls)
+            if files is not None:
+                return files
+        return design_rows.encoded(task, columns, walls, self.settings.outputs)
 
     def run_folder(self, task: Task, row: int) -> Files:
         """Files of the run of a design; none where it has no result."""
@@ -219,8 +227,11 @@ def resident(pid: int) -> int:
 
 def serve(pipe: Connection) -> None:
     """Solve what comes through the pipe until its other end closes."""
+    from camwright.pipeline.studies.batch.design_plan import study_versions
+    from camwright.pipeline.studies.batch.design_solver import DesignSolver
+
     templates, settings = pipe.recv()
-    solver = design_rows.DesignSolver(templates, settings)
+    solver = DesignSolver(templates, settings)
     pipe.send(study_versions())
     while True:
         method, arguments = pipe.recv()

@@ -31,7 +31,8 @@ from camwright.pipeline.studies.batch.dataset import (
     is_text,
     table_from,
 )
-from camwright.pipeline.studies.batch.design_plan import Plan, Settings, Task, study_versions
+from camwright.pipeline.studies.batch.design_plan import Plan, study_versions
+from camwright.pipeline.studies.batch.design_task import Settings, Task
 from camwright.pipeline.studies.batch.factor_axes import Axis, axis_of
 from camwright.pipeline.studies.batch.row_selection import Figures, kept_at_once, states_in
 from camwright.pipeline.studies.batch.sampling import Designs, designs_of

@@ -18,16 +18,14 @@ from camwright.pipeline.studies.batch.dataset import (
     joined,
     parquet_bytes,
     table_from,
-    table_of,
-    timings_of,
 )
-from camwright.pipeline.studies.batch.design_plan import Settings, Task
 from camwright.pipeline.studies.batch.design_rows import (
     Files,
     columns_of,
-    completed,
     died,
+    encoded,
 )
+from camwright.pipeline.studies.batch.design_task import Settings, Task
 from camwright.pipeline.studies.batch.solver_process import DEATHS_MAX
 
 if TYPE_CHECKING:
@@ -233,9 +231,8 @@ class TaskScheduler:
         import pyarrow as pa
 
         if len(task.ids) == 1:
-            rows = completed(task, columns_of([died(DEATHS_MAX)]), self._settings.outputs)
-            clock = parquet_bytes(timings_of(rows, [0.0]))
-            return parquet_bytes(table_of(rows, task.units)), clock, {}
+            columns = columns_of([died(DEATHS_MAX)])
+            return *encoded(task, columns, [0.0], self._settings.outputs), {}
         alone = [task.alone(row) for row in range(len(task.ids))]
         parts = {each.ids[0]: shard for each, shard in self.shards(alone, screen)}
         rows = joined([table_from(parts[name][0]) for name in task.ids])

@@ -1,0 +1,282 @@
+"""Solution of designs: one at its depth, thousands screened as arrays; files of a run."""
+
+from __future__ import annotations
+
+import math
+import shutil
+import tempfile
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import asdict, dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from camwright.geometry.errors import CamError
+from camwright.geometry.lift import Lift
+from camwright.pipeline.base.files import files_in, json_text, read_json, write_atomic
+from camwright.pipeline.base.units import in_unit
+from camwright.pipeline.base.worker_processes import crew
+from camwright.pipeline.case.case import Case
+from camwright.pipeline.case.case_file import with_values
+from camwright.pipeline.case.load_case_torque import engine_torques
+from camwright.pipeline.checks.check import screen
+from camwright.pipeline.contact.tiers import Tier
+from camwright.pipeline.results.check_records import governing_id
+from camwright.pipeline.results.trial import Trial
+from camwright.pipeline.studies.batch.case_template import Template, UnpackedTemplates
+from camwright.pipeline.studies.batch.dataset import (
+    GOVERNING,
+    HEADLINE,
+    MESH,
+    SCREEN,
+    VERDICT,
+)
+from camwright.pipeline.studies.batch.design_rows import (
+    CLOCK,
+    Cell,
+    Files,
+    Row,
+    encoded,
+    lost,
+    out_of_memory,
+)
+from camwright.pipeline.studies.batch.design_task import Settings, Task
+from camwright.pipeline.torque.torque import Torque
+
+UNEXPECTED = "unexpected {kind}: {text}"
+
+_AT_ONCE = 125  # screened designs: their arrays bound the memory of a process
+
+
+class _NotKeptError(Exception):
+    """Ends the run of a design that is not kept."""
+
+
+def row_of(trial: Trial, headline: Mapping[str, float | None]) -> Row:
+    """Cells of a solved design, in the units of the records."""
+    row: Row = {
+        SCREEN.name: screen(trial.checks),
+        VERDICT.name: trial.verdict,
+        GOVERNING.name: governing_id(one.as_record() for one in trial.checks),
+    }
+    row |= {HEADLINE + key: value for key, value in headline.items()}
+    if trial.mesh is not None:
+        row |= {MESH + key: float(v) for key, v in asdict(trial.mesh.quality).items()}
+    for one in trial.checks:
+        unit = one.unit
+        row |= {
+            f"{one.id}.demand": _number(None if one.is_bound else one.worst, unit),
+            f"{one.id}.limit": _number(one.limit, unit),
+            f"{one.id}.utilisation": _number(one.utilisation),
+            f"{one.id}.status": one.status,
+            f"{one.id}.error": _number(one.error, unit),
+        }
+    return row
+
+
+def _number(value: float | None, unit: str = "") -> float | None:
+    if value is None or not math.isfinite(value):
+        return None
+    return float(f"{in_unit(value, unit):.15g}")
+
+
+@dataclass
+class DesignSolver:
+    """Solves designs of the templates of a study; one in each process.
+
+    Parameters
+    ----------
+    templates : sequence   base cases
+    settings : Settings    of the study
+    """
+
+    templates: Sequence[Template]
+    settings: Settings
+    _cases: UnpackedTemplates = field(init=False)
+    _bases: dict[str, tuple[Case, Lift]] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        self._cases = UnpackedTemplates(self.templates)
+
+    def screened(self, task: Task) -> dict[str, Any]:
+        """Columns (n,) of the designs of a task by arrays; see `screen_designs`."""
+        from camwright.pipeline.screening.design_screening import screen_designs
+
+        case = self._cases[task.case]
+        # a case that is itself the design
+        values = task.values or {"spring.preload": np.array([case.spring.preload])}
+        count = len(next(iter(values.values())))
+        pieces = [
+            screen_designs(
+                case,
+                {name: column[start : start + _AT_ONCE] for name, column in values.items()},
+                positions=self._positions(case),
+            )
+            for start in range(0, count, _AT_ONCE)
+        ]
+        names = dict.fromkeys(name for piece in pieces for name in piece)
+        return {name: np.concatenate([piece[name] for piece in pieces]) for name in names}
+
+    def _positions(self, case: Case) -> int:
+        return self.settings.positions or case.solver.positions
+
+    def solved(self, task: Task, row: int) -> Row:
+        """Cells of one design; its refusal is a row with the message."""
+        try:
+            return self._solved(task, row)
+        except CamError as error:
+            return lost(str(error))
+        except MemoryError:
+            return out_of_memory(self.settings)
+        except Exception as error:  # noqa: BLE001 - a row must come of every design
+            text = " ".join(str(error).split())[:200]
+            return lost(UNEXPECTED.format(kind=type(error).__name__, text=text))
+
+    def _solved(self, task: Task, row: int) -> Row:
+        from camwright.pipeline.results.run_records import headline
+
+        if task.tier is Tier.SCREENING:
+            columns = self.screened(task.alone(row))
+            return {name: _cell(values[0]) for name, values in columns.items()}
+        case, lift = self.design(task, row)
+        torques = engine_torques(case)
+        trial = trial_at(case, task.tier, lift, corners=self.settings.corners)
+        return row_of(trial, headline(torques, trial))
+
+    def design(self, task: Task, row: int) -> tuple[Case, Lift | None]:
+        """Case of one design, and its lift where the study has one cam for all.
+
+        Raises
+        ------
+        CamError
+            If the values are refused, or the base case has no cam.
+        """
+        case, lift = self._cases[task.case], None
+        if self.settings.cam == "base":
+            case, lift = self._base(task.case)
+        if task.values:
+            case = with_values(case, task.value_of(row))
+        if task.tier is not Tier.CERTIFIED and self.settings.positions is not None:
+            case = case.with_positions(self.settings.positions)
+        if case.smoothing.kind != "constrained":  # else a wider smoother would be another design
+            solver = case.solver.model_copy(update={"max_trials": 1})
+            case = case.model_copy(update={"solver": solver})
+        return case, lift
+
+    def _base(self, name: str) -> tuple[Case, Lift]:
+        """Base case with the spring and prime radius of its synthesis, and its lift."""
+        from camwright.pipeline.iteration import synthesize
+
+        if name not in self._bases:
+            made = synthesize(self._cases[name])
+            self._bases[name] = made.case, made.contour.pitch.lift
+        return self._bases[name]
+
+    def encoded(
+        self, task: Task, columns: Mapping[str, Sequence[Any]], walls: Sequence[float]
+    ) -> tuple[bytes, bytes]:
+        """Rows and clock figures of a task as Parquet files; see `design_rows.encoded`."""
+        return encoded(task, columns, walls, self.settings.outputs)
+
+    def solved_and_run(
+        self, task: Task, row: int, screen: str, send: Callable[[Row | Files], object]
+    ) -> None:
+        """Send the cells of one design, then the files of its run, made from the same solution.
+
+        Parameters
+        ----------
+        screen : str      of the designs that are kept; of others no files are made
+        send : callable   receives the cells, then the files; none where there is no run
+        """
+        from camwright.pipeline.results.run_records import headline
+
+        cells: Row = {}
+
+        def judged(torques: Mapping[str, Torque], trial: Trial) -> None:
+            cells.update(row_of(trial, headline(torques, trial)))
+            send(cells)
+            if cells[SCREEN.name] != screen:
+                raise _NotKeptError
+
+        files: Files = {}
+        try:
+            files = self.run_folder(task, row, judged)
+        except Exception:  # noqa: BLE001 - a refusal is a row; a run that fails is made again alone
+            if not cells:
+                send(self.solved(task, row))
+        send(files)
+
+    def run_folder(
+        self,
+        task: Task,
+        row: int,
+        judged: Callable[[Mapping[str, Torque], Trial], object] = lambda *_: None,
+    ) -> Files:
+        """Files of the run of one design, by relative name; its clock figures as `CLOCK`.
+
+        Parameters
+        ----------
+        judged : callable   as of `run_case`
+
+        Raises
+        ------
+        CamError
+            If the design is refused.
+        """
+        from camwright.pipeline.results import signoff
+        from camwright.pipeline.run import run_case
+        from camwright.reports.sections import report
+
+        case, _ = self.design(task, row)
+        home = Path(tempfile.mkdtemp(prefix="camwright-run-"))
+        path = home / "run"
+
+        def presented(folder: Path) -> None:
+            _without_clock(folder)
+            report(folder)
+
+        try:
+            run_case(case, path, depth=task.tier, jobs=1, report=presented, judged=judged)
+            clock = _without_clock(path)
+            signoff.write(path)  # has the hash of run.json
+            files = {name: file.read_bytes() for name, file in files_in(path)}
+        finally:
+            shutil.rmtree(home, ignore_errors=True)
+        return files | {CLOCK: clock}
+
+
+def _without_clock(folder: Path) -> bytes:
+    """Take the clock figures out of ``run.json``; they are returned as JSON."""
+    summary = read_json(folder / "run.json")
+    clock, summary["timings_s"], summary["started"] = summary["timings_s"], {}, None
+    write_atomic(folder / "run.json", json_text(summary) + "\n")
+    return f"{json_text(clock)}\n".encode()
+
+
+def trial_at(case: Case, tier: Tier, lift: Lift | None, *, corners: bool) -> Trial:
+    """Trial of a case at a depth, of its own cam or of a lift.
+
+    Raises
+    ------
+    CamError
+        If the case has no such cam, or it cannot be solved.
+    """
+    from camwright.pipeline.iteration import trials_of
+    from camwright.pipeline.preview import preview_case
+    from camwright.pipeline.solver import certify_trial, solve
+
+    if lift is not None:
+        return solve(case, case.contour(lift), tier=tier, corners=corners)
+    if tier <= Tier.PREVIEW:
+        return preview_case(case, corners=corners)
+    trial = trials_of(case, engine_torques(case), tier=tier).final
+    if tier < Tier.CERTIFIED:
+        return trial
+    with crew(1) as workers:
+        return certify_trial(trial, workers)
+
+
+def _cell(value: Any) -> Cell:
+    plain = value.item() if isinstance(value, np.generic) else value
+    return plain if isinstance(plain, (str, float)) or plain is None else float(plain)

@@ -1,0 +1,86 @@
+"""Task of a study: designs of one case solved together, and the settings of all.
+
+A worker of the cluster reads both; neither needs a case.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from camwright.geometry.arrays import Array
+from camwright.pipeline.contact.tiers import Tier
+
+if TYPE_CHECKING:
+    from camwright.pipeline.studies.batch.factor_axes import Levels
+
+
+@dataclass(frozen=True)
+class Settings:
+    """What the rows depend on besides the designs.
+
+    templates: hash by case name; versions: of the program and its libraries.
+    """
+
+    templates: Mapping[str, str]
+    versions: Mapping[str, str]
+    cam: str
+    positions: int | None
+    corners: bool
+    outputs: tuple[str, ...]
+    seconds: float
+    bytes: int
+
+    @property
+    def sha256(self) -> str:
+        """Hash of all settings."""
+        text = json.dumps(vars(self), sort_keys=True, default=dict)
+        return hashlib.sha256(text.encode()).hexdigest()
+
+
+@dataclass(frozen=True, eq=False)
+class Task:
+    """Designs of one case at one depth, solved together: one shard.
+
+    Parameters
+    ----------
+    name : str          content hash, the name of the shard
+    case : str          name of the case
+    tier : Tier
+    ids : tuple         of the designs
+    values : mapping    by key, SI, (n,)
+    shown : mapping     by key, in the unit of the study file, (n,)
+    units : mapping     by key; None: names
+    """
+
+    name: str
+    case: str
+    tier: Tier
+    ids: tuple[str, ...]
+    values: Mapping[str, Array | Levels]
+    shown: Mapping[str, Array | Levels]
+    units: Mapping[str, str | None]
+
+    def alone(self, row: int) -> Task:
+        """The task of one of its designs."""
+
+        def one(columns: Mapping[str, Array | Levels]) -> dict[str, Array | Levels]:
+            return {key: values[row : row + 1] for key, values in columns.items()}
+
+        return Task(
+            self.name, self.case, self.tier, self.ids[row : row + 1],
+            one(self.values), one(self.shown), self.units,
+        )  # fmt: skip
+
+    def value_of(self, row: int) -> dict[str, str | bool | int | float]:
+        """Values of one design by key, SI."""
+        return {key: _scalar(values[row]) for key, values in self.values.items()}
+
+
+def _scalar(value: str | bool | int | float) -> str | bool | int | float:
+    return value.item() if isinstance(value, np.generic) else value
