@@ -150,18 +150,17 @@ def _solved(
     store = writer.store(final.number)
     certified = certify_trial(final, workers, store=store, progress=watch, meanwhile=rest)
     judged(torques, certified)
-    if sought is not None:
+    if sought:
         watch.stage("remedies")
-        texts = sought.result()
+        texts = {name: text for part in sought for name, text in part.result().items()}
         certified = with_changes(certified, checks=with_remedies(certified.checks, texts))
     writer.judge(certified)
     return summary | judged_of(certified, restated(statement, failing, _failing(certified)))
 
 
-def _remedies_begun(final: Trial, workers: Crew, folder: Path) -> Task | None:
-    """Search of the remedies of a final trial in a worker process; None if no check fails."""
-    order = order_of(final, folder)
-    return workers.submit(texts_of, order) if order.failures else None
+def _remedies_begun(final: Trial, workers: Crew, folder: Path) -> list[Task]:
+    """Search of the remedies of a final trial in worker processes; empty if no check fails."""
+    return [workers.submit(texts_of, part) for part in order_of(final, folder).parts]
 
 
 def restated(statement: str, before: Sequence[str], after: Sequence[str]) -> str:

@@ -119,9 +119,9 @@ class Judge:
     corners: Mapping[str, Sequence[str]]
 
     def utilisations(self, case: Case, wanted: Collection[str]) -> dict[str, float]:
-        """Worst utilisation of checks at their governing corners by the coarse closed forms.
+        """Utilisation of each check at its own governing corner by the coarse closed forms.
 
-        Infinite where it is not known.
+        At the nominal where no corner governs; infinite where it is not known.
 
         Raises
         ------
@@ -129,20 +129,17 @@ class Judge:
             If the case has no such cam, or a corner no solution.
         """
         contour, declared = self._contour(case), [DECLARED[name] for name in wanted]
-        names = {name for each in wanted for name in self.corners.get(each, ())[:1]}
-        corners = tuple(self._named(case, names))
-        if len(corners) < len(names) or not all(self.corners.get(each) for each in wanted):
-            corners = (NOMINAL, *corners)
-        worst = dict.fromkeys(wanted, 0.0)
-        for corner, made in zip(
-            corners, checks_at(case, self.torques, contour, corners, declared), strict=True
-        ):
-            by_id = {one.id: one for one in made}
-            for name in wanted:
-                if corner is not NOMINAL and not DECLARED[name].moved_by_tolerance:
-                    continue
-                worst[name] = max(worst[name], used(by_id.get(name)))
-        return worst
+        known = {corner.name: corner for corner in corners_of(case)}
+        governing = {
+            name: known.get(next(iter(self.corners.get(name, ())), ""), NOMINAL) for name in wanted
+        }
+        corners = tuple(dict.fromkeys(governing.values()))
+        made = checks_at(case, self.torques, contour, corners, declared)
+        by_corner = {
+            corner: {one.id: one for one in checks}
+            for corner, checks in zip(corners, made, strict=True)
+        }
+        return {name: used(by_corner[corner].get(name)) for name, corner in governing.items()}
 
     def preview(self, case: Case, wanted: Iterable[str], *, undercut: bool = False) -> Preview:
         """Preview of a case, judged at the corners that govern `wanted` and at their worst ones.

@@ -24,6 +24,7 @@ from camwright.pipeline.case.case_values import value_of
 from camwright.pipeline.case.load_case_torque import engine_torques
 from camwright.pipeline.checks.check import Check
 from camwright.pipeline.checks.lost_loads import STALLS
+from camwright.pipeline.checks.registry import DECLARED
 from camwright.pipeline.follower.follower_forces import LEAVES, LOCKS
 from camwright.pipeline.remedies.case_judge import Judge, Preview, effects, newly_failing, used
 from camwright.pipeline.remedies.lever_steps import Step, Workbench, without_exponent
@@ -97,7 +98,8 @@ class Order(NamedTuple):
     folder : Path      of the files that it includes; None: it includes none
     cards : Path       folder of the user's cards; None: shipped cards only
     lift : Lift        of a constrained synthesis; None: drawn from the case
-    failures : tuple
+    failures : tuple   of the trial
+    sought : tuple     ids of the checks whose remedy is sought; others count as side effects
     """
 
     case: str
@@ -105,6 +107,18 @@ class Order(NamedTuple):
     cards: Path | None
     lift: Lift | None
     failures: tuple[Failure, ...]
+    sought: tuple[str, ...]
+
+    @property
+    def parts(self) -> tuple[Order, ...]:
+        """Orders of one half of the checks each, for two processes; related checks together.
+
+        The remedy of a check does not depend on the others that are sought.
+        """
+        names = [name for name in DECLARED if name in self.sought]
+        middle = -(-len(names) // 2)
+        halves = tuple(names[:middle]), tuple(names[middle:])
+        return tuple(self._replace(sought=half) for half in halves if half)
 
 
 def order_of(trial: Trial, folder: Path | None) -> Order:
@@ -116,16 +130,21 @@ def order_of(trial: Trial, folder: Path | None) -> Order:
     """
     count = max(LEAST_IN_A_RUN, IN_A_RUN // len(trial.cycles))
     worst = failures_of(trial)[:count]
-    return Order(as_drawn(trial).to_toml(), folder, trial.case.folder, _held_lift(trial), worst)
+    return Order(
+        case=as_drawn(trial).to_toml(),
+        folder=folder,
+        cards=trial.case.folder,
+        lift=_held_lift(trial),
+        failures=worst,
+        sought=tuple(each.check for each in worst),
+    )
 
 
 def texts_of(order: Order) -> dict[str, str]:
     """Remedy of each failed check in one line, by its id; a function of a worker process."""
     case = parse_case(order.case, order.folder)
-    return {
-        name: remedy.text
-        for name, remedy in remedies(case, order.cards, order.lift, order.failures).items()
-    }
+    made = remedies(case, order.cards, order.lift, order.failures, order.sought)
+    return {name: remedy.text for name, remedy in made.items()}
 
 
 def remedies_of(trial: Trial) -> dict[str, Remedy]:
@@ -160,7 +179,11 @@ def as_drawn(trial: Trial) -> Case:
 
 
 def remedies(
-    case: Case, cards: Path | None, lift: Lift | None, failures: Sequence[Failure]
+    case: Case,
+    cards: Path | None,
+    lift: Lift | None,
+    failures: Sequence[Failure],
+    sought: Collection[str] | None = None,
 ) -> dict[str, Remedy]:
     """Smallest single change that turns each failed check to pass, by its id.
 
@@ -171,15 +194,17 @@ def remedies(
     ----------
     cards : Path     folder of the user's cards; None: shipped cards only
     lift : Lift      held, that of a constrained synthesis; None: drawn from each case
-    failures : sequence
+    failures : sequence   of the case
+    sought : collection   ids of the checks whose remedy is sought; None: of all failures
     """
-    wanted = {each.check: each for each in failures if each.check in LEVERS}
+    known = {each.check: each for each in failures if each.check in LEVERS}
+    wanted = {name: each for name, each in known.items() if sought is None or name in sought}
     if not wanted:
         return {}
-    corners = {each.check: each.corners for each in wanted.values()}
+    corners = {each.check: each.corners for each in known.values()}
     judge = Judge(engine_torques(case), lift, corners)
-    search = _Search(Workbench(case, cards), judge, wanted)
-    return search.remedies()
+    base = judge.preview(case, known, undercut=True)
+    return _Search(Workbench(case, cards), judge, base, wanted).remedies()
 
 
 class _Seen(NamedTuple):
@@ -215,12 +240,14 @@ class _Confirmed(NamedTuple):
 class _Search:
     """Search of the remedies of one case.
 
-    previews by corners and changes; closest: step of each check that leaves least; previous: last
-    step of each lever that scales; hopeless: levers not pulled further for a check.
+    base: preview of the case; previews by corners and changes; closest: step of each check that
+    leaves least; previous: last step of each lever that scales; hopeless: levers not pulled further
+    for a check.
     """
 
     bench: Workbench
     judge: Judge
+    base: Preview
     failures: Mapping[str, Failure]
     previews: dict[str, Preview | None] = field(default_factory=dict)
     closest: dict[str, _Seen] = field(default_factory=dict)
@@ -230,7 +257,6 @@ class _Search:
     def remedies(self) -> dict[str, Remedy]:
         """Remedy of every failure, in their order."""
         case = self.bench.case
-        self.base = self.judge.preview(case, self.failures, undercut=True)
         quick = self._quick(case, self.failures)
         self.scale = {
             name: _ratio(failure.used, quick[name]) for name, failure in self.failures.items()
