@@ -56,7 +56,7 @@ def _chart(document: Record) -> Canvas:
         axes.grid(visible=True, axis="y")
         axes.spines[["top", "right"]].set_visible(False)
         if len(panel["curves"]) > 1:
-            axes.legend(frameon=False, ncols=3, loc="lower left", bbox_to_anchor=(0, 1))
+            axes.legend(frameon=False, ncols=4, loc="lower left", bbox_to_anchor=(0, 1))
     stacked[-1].set_xlabel(f"base radius, mm (sized: {size:.6g} mm)")
     stacked[-1].set_xlim(
         float(panels[0]["curves"][0]["x"][0]), float(panels[0]["curves"][0]["x"][-1])

@@ -21,6 +21,14 @@ _PICTURES = (".png", ".svg")
 
 def size(
     case: CaseArgument,
+    free: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--free",
+            metavar="KEY",
+            help="A key whose value in CASE is not kept but found; may be repeated.",
+        ),
+    ] = None,
     out: Annotated[
         Path | None, typer.Option("--out", metavar="SIZED.toml", help="Write the complete case.")
     ] = None,
@@ -49,7 +57,7 @@ def size(
     if out is not None and out.exists():
         raise ResultError(f"{out}: exists already, not overwritten")
     with progress_shown() as progress:
-        sizing = sizes(case, progress=progress)
+        sizing = sizes(case, free or (), progress=progress)
     record = size_record(sizing)
     if as_json:
         show_json(record)

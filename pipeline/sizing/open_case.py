@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -33,10 +33,12 @@ _PROVISIONAL: Mapping[str, str] = {
     PRIME: "9000 mm", OFFSET: "0 mm", ROLLER: "4000 mm", FACE: "9900 mm",
     RATE: "1 kN/m", PRELOAD: "1 N",
 }  # fmt: skip
-"""Values that contradict no others, until the sizes are known."""
+"""Values that contradict no others, until the sizes are known; of a roller without a hub."""
 GAPS = tuple(_PROVISIONAL)
 """Keys that a case may leave open."""
 
+HUB_WALL = 1.1
+"""Least radius of a roller over that of its hub, where the bearing has no ring."""
 _HEAD = "\n# Values of the keys that the case left open, by camwright size.\n"
 
 
@@ -103,24 +105,36 @@ class OpenCase:
         return write_atomic(out, text)
 
 
-def read_open_case(path: str | Path) -> OpenCase:
+def read_open_case(path: str | Path, free: Collection[str] = ()) -> OpenCase:
     """Read a case that may leave the keys of `GAPS` open.
+
+    Parameters
+    ----------
+    free : collection   keys whose values in the file are not kept: open as well
 
     Raises
     ------
     InputError
         For the first error, by its dotted name.
     """
-    return parse_open_case(case_bytes(path), Path(path).resolve().parent)
+    return parse_open_case(case_bytes(path), Path(path).resolve().parent, free)
 
 
-def parse_open_case(content: str | bytes, folder: Path | None = None) -> OpenCase:
+def parse_open_case(
+    content: str | bytes, folder: Path | None = None, free: Collection[str] = ()
+) -> OpenCase:
     """A case with open keys from its text; included files are read from `folder`."""
-    tables = resolved(tables_in(content), folder)
+    stated = tables_in(content)
+    text = content if isinstance(content, str) else content.decode("utf-8-sig")
+    if free:
+        for key in free:
+            _open(stated, key)
+        text = tomli_w.dumps(stated)
+    tables = resolved(stated, folder)
     other = ROLLER if _entry(tables, "follower.kind") == "flat" else FACE
     gaps = tuple(key for key in GAPS if key != other and _entry(tables, key) is None)
     for key in gaps:
-        enter(tables, key, _PROVISIONAL[key])
+        enter(tables, key, _least_roller(tables) if key == ROLLER else _PROVISIONAL[key])
     case = completed(validated(tables), folder)
     if case.engine is not None:
         for key in (RATE, PRELOAD):
@@ -131,8 +145,30 @@ def parse_open_case(content: str | bytes, folder: Path | None = None) -> OpenCas
             limit = "a filter, or a lift in place of the engine: a constrained synthesis finds"
             limit += " spring and prime radius itself"
             raise InputError("smoothing.kind", "constrained", limit)
-    text = content if isinstance(content, str) else content.decode("utf-8-sig")
     return OpenCase(case, gaps, text, folder)
+
+
+def _least_roller(tables: Tables) -> str:
+    """Radius of the bearing's ring, or a tenth above that of the hub: the smallest roller."""
+    ring = _entry(tables, "roller.bearing.ring.outer_diameter")
+    if isinstance(ring, str):
+        return units.format(0.5 * units.parse(ring, "mm", ROLLER), "mm")
+    hub = _entry(tables, "roller.hub_radius")
+    if isinstance(hub, str):
+        return units.format(HUB_WALL * units.parse(hub, "mm", "roller.hub_radius"), "mm")
+    return _PROVISIONAL[ROLLER]
+
+
+def _open(tables: Tables, key: str) -> None:
+    """Remove the value of a key from the tables of a file."""
+    if key not in GAPS:
+        raise InputError("--free", key, f"one of: {', '.join(GAPS)}")
+    table, _, name = key.rpartition(".")
+    added = tables.get("added")
+    for each in (tables, *(added if isinstance(added, list) else ())):
+        inner = _entry(each, table) if isinstance(each, dict) else None
+        if isinstance(inner, dict):
+            inner.pop(name, None)
 
 
 def _written(key: str, value: float) -> str:

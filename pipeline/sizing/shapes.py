@@ -30,8 +30,6 @@ from camwright.pipeline.smoothing.required_lift import cam_lift
 
 DIGITS = 6
 """Decimal digits of a sized length in m: a micrometre."""
-_HUB_WALL = 1.1
-"""Least roller radius over that of its hub, where the bearing has no ring."""
 _ALIKE = 1e-9
 """Relative difference of two radii up to which they are equal."""
 
@@ -96,11 +94,7 @@ class RollerShapes:
     @property
     def _least_roller(self) -> float:
         """Radius of the roller, m; the smallest one that fits its bearing where it is open."""
-        roller = self.case.roller
-        if ROLLER not in self.gaps:
-            return roller.radius
-        ring = roller.bearing.ring
-        return _HUB_WALL * roller.hub_radius if ring is None else 0.5 * ring.outer_diameter
+        return self.case.roller.radius
 
     def smallest(self) -> Shape:
         """Smallest shape, with the smallest roller.
@@ -236,7 +230,7 @@ def least_base_circle(case: Case) -> float:
 
 def rounded(length: float) -> float:
     """A length to the last digit of a drawing, m."""
-    return round(length, DIGITS) + 0.0  # no negative zero
+    return round(float(length), DIGITS) + 0.0  # no negative zero
 
 
 def rounded_up(length: float) -> float:

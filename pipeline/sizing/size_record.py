@@ -74,6 +74,8 @@ def size_lines(sizing: Sizing) -> Iterator[str]:
     for each in sizing.checks:
         if each.status != "pass":
             yield _check_words(each)
+    if sizing.no_size:
+        yield f"no prime radius up to {shown(sizing.greatest_tried, _MM)} passes these"
     if sizing.others:
         yield f"fails by other keys: {', '.join(sizing.others)}"
     yield f"{sizing.verdict.upper()} in the preview: {len(sizing.checks)} checks of the open keys"

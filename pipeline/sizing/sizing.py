@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -62,6 +62,8 @@ _HELD = ("contact_force_margin", "jump", "jump_speed", "contact_at_overspeed",
          "contact_over_speed", "elastic_contact")  # fmt: skip
 """Checks that a greater preload can pass."""
 
+_HALF_WIDTHS = 1.25
+"""Half-widths of the contact that a face has beside it: the tolerances press more than nominal."""
 _STEP, _STEPS, _HALVINGS = 1.1, 16, 16
 """Factor and number of the steps by which a cam grows: to 4.6 times the radius; 1e-6 of it left."""
 _STIFFER, _LARGER, _TRIES = 1.1, 1.01, 8
@@ -104,16 +106,28 @@ class Sizing:
         """Verdict of the must-have checks that the open keys decide; pass without any."""
         return verdict(self.checks) if self.checks else "pass"
 
+    @property
+    def no_size(self) -> bool:
+        """Whether checks fail that a larger cam could pass, and none tried does."""
+        failing = any(each.status == "fail" and each.id in _GROWTH for each in self.checks)
+        return failing and PRIME in self.opened.gaps
 
-def size(path: str | Path, *, progress: Progress = SILENT) -> Sizing:
+    @property
+    def greatest_tried(self) -> float:
+        """Greatest prime or base radius that was tried, m."""
+        return self.exact.prime_radius * _STEP**_STEPS
+
+
+def size(path: str | Path, free: Collection[str] = (), *, progress: Progress = SILENT) -> Sizing:
     """Sizes of a case file that leaves keys open; see `sized`.
 
     Parameters
     ----------
     path : str or Path   case file without any of `cam.prime_radius`, `cam.offset`,
                          `roller.radius`, `follower.face.width`, `spring.rate`, `spring.preload`
+    free : collection    those of these keys whose values in the file are not kept
     """
-    return sized(read_open_case(path), progress=progress)
+    return sized(read_open_case(path, free), progress=progress)
 
 
 def sized(opened: OpenCase, *, progress: Progress = SILENT) -> Sizing:
@@ -158,7 +172,7 @@ class _Search:
                 break
             text, case, trial = self._judged(shape, spring)
         ids = {name for gap in self.opened.gaps for name in JUDGED[gap]}
-        checks = tuple(each for each in within_depth(trial.checks) if each.id in ids)
+        made = [each for each in within_depth(trial.checks) if each.must_have]
         return Sizing(
             opened=self.opened,
             text=text,
@@ -169,12 +183,8 @@ class _Search:
             spring=spring,
             values=self._values(shape, spring),
             sources=self._sources(shape, spring),
-            checks=tuple(each for each in checks if each.must_have),
-            others=tuple(
-                each.id
-                for each in within_depth(trial.checks)
-                if each.must_have and each.status == "fail" and each.id not in ids
-            ),
+            checks=tuple(each for each in made if each.id in ids and not _unlimited(each)),
+            others=tuple(each.id for each in made if each.status == "fail" and each.id not in ids),
         )
 
     def _spring(self, shape: Shape) -> ChosenSpring:
@@ -194,12 +204,18 @@ class _Search:
         words = {
             PRIME: f"sized: {shape.governs}",
             OFFSET: f"sized: {shape.offset_governs}",
-            ROLLER: "sized: least contact pressure within curvature and wall",
+            ROLLER: f"sized: {self._roller_by}",
             FACE: "sized: travel of the contact and its half-width",
             RATE: f"sized: {spring.rate_by}",
             PRELOAD: f"sized: {spring.preload_by}",
         }
         return {key: words[key] for key in self.opened.gaps}
+
+    @property
+    def _roller_by(self) -> str:
+        roller = self.opened.case.roller_given
+        ring = roller is not None and roller.bearing.ring is not None
+        return "outer ring of its bearing" if ring else "least contact pressure within curvature"
 
     def _lift(self, case: Case) -> Lift:
         return given_lift(case) if case.lift is not None else cam_lift(case, self.torques)
@@ -223,13 +239,10 @@ class _Search:
         trial = self._trial(shape, spring)
         if FACE in gaps:
             widest = max(
-                float(
-                    np.max(
-                        np.abs(each.contour.pitch.push_arm(each.theta)) + each.contact.half_width
-                    )
-                )
+                float(np.max(np.abs(each.contour.pitch.push_arm(each.theta))
+                             + _HALF_WIDTHS * each.contact.half_width))
                 for each in trial.cycles
-            )
+            )  # fmt: skip
             shape = shape._replace(face_width=rounded_up(max(2.0 * widest, shape.face_width)))
             trial = self._trial(shape, spring)
         if ROLLER in gaps and isinstance(self.shapes, RollerShapes):
@@ -295,6 +308,12 @@ def _failing(trial: Trial, ids: tuple[str, ...]) -> tuple[Check, ...]:
         each for each in trial.checks
         if each.id in ids and each.must_have and each.status == "fail"
     )  # fmt: skip
+
+
+def _unlimited(check: Check) -> bool:
+    """Whether a check is not evaluated because the case sets no such limit."""
+    missing = check.missing if check.status == "not_evaluated" else ()
+    return bool(missing) and all(key.startswith("limits.") for key in missing)
 
 
 def _titles(checks: tuple[Check, ...]) -> str:

@@ -1,0 +1,211 @@
+"""`camwright size`: complete cases that keep the limits by which they are sized."""
+
+from __future__ import annotations
+
+import json
+import math
+import tomllib
+from pathlib import Path
+from typing import Any
+
+import pytest
+import tomli_w
+
+import camwright as cw
+from camwright.geometry.errors import InputError, ResultError
+from camwright.pipeline.case.case_values import replaced
+from camwright.pipeline.case.given_lift import given_lift
+from camwright.pipeline.case.template import first_case
+from camwright.pipeline.commands.size_command import size
+from camwright.pipeline.commands.terminal import PASSED
+from camwright.pipeline.sizing.open_case import GAPS, parse_open_case
+from camwright.pipeline.sizing.shapes import RollerShapes, shapes_of
+from camwright.pipeline.sizing.size_record import size_lines, size_record
+from camwright.pipeline.sizing.sizing import sized
+
+CASES = Path(__file__).parents[2] / "cases"
+EXACT = 1e-6  # mm, of the published digits
+
+Case = dict[str, Any]
+
+
+def first(kind: str = "lift") -> Case:
+    return tomllib.loads(first_case("feed", kind).text)
+
+
+def without(case: Case, *keys: str) -> Case:
+    for key in keys:
+        *tables, last = key.split(".")
+        inner = case
+        for table in tables:
+            inner = inner[table]
+        del inner[last]
+    return case
+
+
+def motion(case: Case, *segments: tuple[str, int, float]) -> Case:
+    case["lift"]["segment"] = [
+        {"law": law, "angle": f"{angle} deg"} | ({"stroke": f"{stroke} mm"} if stroke else {})
+        for law, angle, stroke in segments
+    ]
+    return case
+
+
+def double_rise(law: str) -> Case:
+    """Rise 3 mm, return 3 mm, rise 2 mm, return 2 mm with dwells, a roller of 1 mm."""
+    case = without(first(), "cam.prime_radius", "cam.keyway", "cam.key", "camshaft")
+    strokes = ((90, 3.0), (90, -3.0), (60, 2.0), (60, -2.0))
+    motion(case, *(each for angle, stroke in strokes
+                   for each in ((law, angle, stroke), ("dwell", 15, 0.0))))  # fmt: skip
+    case["cam"] |= {"bore_radius": "1 mm", "offset": "0 mm"}
+    without(case, "roller.pin", "roller.fork")
+    bearing = {"name": "plain", "C": "1 kN"}
+    case["roller"] |= {"radius": "1 mm", "hub_radius": "0.5 mm", "bearing": bearing}
+    case["limits"]["tool_radius"] = "1 mm"
+    return case
+
+
+def steep() -> Case:
+    """A quick rise and a slow return: an offset helps."""
+    case = without(first(), "cam.prime_radius", "spring.design", "spring.rate", "spring.preload")
+    case["follower"]["stem_length"] = "300 mm"
+    case["spring"]["travel_max"] = "30 mm"
+    return motion(case, ("modified_sine", 60, 25.0), ("dwell", 30, 0.0),
+                  ("modified_sine", 100, -25.0), ("dwell", 170, 0.0))  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("law", "base", "radius"),
+    [("cycloidal", 4.677017, 3.096907), ("harmonic", 3.291503, 2.588562)],
+)
+def test_published_size_of_a_roller_cam(law: str, base: float, radius: float) -> None:
+    opened = parse_open_case(tomli_w.dumps(double_rise(law)))
+    assert opened.gaps == ("cam.prime_radius",)
+    shapes = shapes_of(opened)
+    shape = shapes.smallest()
+    assert shape.base_radius * 1e3 == pytest.approx(base, abs=EXACT)
+    least = shapes.cam.extremes(shape.prime_radius, shape.offset).convex_radius
+    assert least.value * 1e3 == pytest.approx(radius, abs=EXACT)
+    assert shape.governs == "pressure angle of 30 deg"
+
+
+@pytest.mark.slow
+def test_a_steep_cam_is_sized_whole(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path, out = tmp_path / "open.toml", tmp_path / "sized.toml"
+    path.write_text("# kept\n" + tomli_w.dumps(steep()), encoding="utf-8")
+    assert size(path, None, out, None, as_json=False) == PASSED
+    shown = capsys.readouterr().out
+    assert "spring: " in shown and "active coils" in shown and f"case: {out}" in shown
+    assert out.with_suffix(".png").read_bytes().startswith(b"\x89PNG")
+    text = out.read_text(encoding="utf-8")
+    assert text.startswith("# kept")
+    case = cw.read_case(out)
+    assert case.sources["cam.prime_radius"] == "sized: curvature of the pitch curve"
+    # the complete case passes the checks by which it is sized, and none is far from its limit
+    checks = {each.id: each for each in cw.preview_case(case).checks}
+    for name in ("pressure_angle", "curvature_ratio", "undercut", "jump", "jump_speed",
+                 "contact_at_overspeed", "elastic_contact"):  # fmt: skip
+        assert checks[name].status == "pass", name
+    assert checks["curvature_ratio"].utilisation == pytest.approx(1.0, abs=1e-3)
+    with pytest.raises(ResultError, match="exists already"):
+        size(path, None, out, None, as_json=False)
+
+
+@pytest.mark.slow
+def test_a_roller_has_the_least_contact_pressure() -> None:
+    case = without(steep(), "roller.radius")
+    case["roller"]["bearing"] = {"name": "plain", "C": "20 kN", "C0": "20 kN"}
+    sizing = sized(parse_open_case(tomli_w.dumps(case)))
+    shape, shapes = sizing.shape, sizing.shapes
+    assert shape.offset > 0.005
+    assert isinstance(shapes, RollerShapes)
+    low, high = shapes.roller_range(shape)
+    pressures = {}
+    for radius in (low, shape.roller_radius, high):
+        other = replaced(sizing.case, {"roller.radius": radius})
+        trial = cw.solve(other, other.contour(given_lift(other)), tier=cw.Tier.SCREENING)
+        (pressure,) = (each for each in trial.checks if each.id == "contact_pressure")
+        pressures[radius] = pressure.demand
+    assert low < shape.roller_radius < high
+    assert min(pressures, key=pressures.__getitem__) == shape.roller_radius
+
+
+@pytest.mark.slow
+def test_the_radius_grows_until_the_contact_holds() -> None:
+    """A soft cam: pressure governs, and a slightly smaller cam fails."""
+    case = steep()
+    case["materials"]["soft"] = {
+        "E": "210 GPa", "nu": 0.3, "yield_strength": "900 MPa", "density": "7850 kg/m^3",
+        "endurance_pressure": "640 MPa", "source": "made up",
+    }  # fmt: skip
+    case["cam"]["material"] = "soft"
+    case["limits"]["edge_factor"] = 1.0
+    case = without(case, "limits.target_life")
+    sizing = sized(parse_open_case(tomli_w.dumps(case)))
+    pressure = {each.id: each for each in sizing.checks}["contact_pressure"]
+    assert pressure.status == "pass"
+    assert sizing.shape.prime_radius > sizing.exact.prime_radius * 1.01
+    assert "pressure" in sizing.sources["cam.prime_radius"]
+    prime = {"cam.prime_radius": 0.97 * sizing.shape.prime_radius}
+    smaller = replaced(sizing.case, prime)
+    checks = cw.solve(smaller, smaller.contour(given_lift(smaller)), tier=cw.Tier.PREVIEW).checks
+    assert {each.id: each for each in checks}["contact_pressure"].status == "fail"
+
+
+@pytest.mark.slow
+def test_a_flat_face_is_sized(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    source = CASES / "papers" / "petrescu_c.toml"
+    free, chart = ["cam.prime_radius", "follower.face.width"], tmp_path / "face.svg"
+    assert size(source, free, None, chart, as_json=True) == PASSED
+    record = json.loads(capsys.readouterr().out)
+    assert record["smallest"]["undercut_factor_min"] == pytest.approx(0.3, abs=1e-9)
+    assert chart.read_text(encoding="utf-8").startswith("<?xml")
+    assert set(record["sized"]) == {*free, "cam.offset"}
+
+
+@pytest.mark.slow
+def test_an_engine_cam_is_sized_by_its_torque() -> None:
+    sizing = cw.size(CASES / "gx120.toml", ["cam.prime_radius"])
+    record = size_record(sizing)["smallest"]
+    assert record["pressure_angle_rise_deg"] == pytest.approx(30.0, abs=1e-3)
+    assert record["pressure_angle_return_deg"] == pytest.approx(30.0, abs=1e-3)
+    assert sizing.verdict == "fail"  # the spring of the paper leaves the cam at the overspeed
+    assert any(line.startswith("no prime radius up to") for line in size_lines(sizing))
+
+
+def test_an_eccentric_is_sized_by_its_circle() -> None:
+    shapes = shapes_of(parse_open_case(first_case("disc", "eccentric").text, None, GAPS[:2]))
+    shape = shapes.smallest()
+    assert shape.governs == "wall around the bore"
+    angle = shapes.cam.extremes(shape.prime_radius).pressure_angle.value
+    assert math.sin(angle) == pytest.approx(0.005 / (shape.prime_radius + 0.005), rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("free", "message"),
+    [
+        (["spring.rate"], r"spring\.rate = missing, must be given with an engine"),
+        (["cam.width"], r"--free = cam\.width, must be one of: cam\.prime_radius"),
+    ],
+)
+def test_refuses_what_cannot_be_open(free: list[str], message: str) -> None:
+    with pytest.raises(InputError, match=message):
+        cw.size(CASES / "gx120.toml", free)
+
+
+def test_refuses_a_constrained_synthesis() -> None:
+    with pytest.raises(InputError, match=r"smoothing\.kind = constrained"):
+        cw.size(CASES / "gx120-flat-face.toml")
+
+
+def test_refuses_a_picture_of_another_kind(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="--chart"):
+        size(CASES / "gx120.toml", None, None, tmp_path / "chart.jpg", as_json=False)
+
+
+def test_a_roller_that_no_cam_carries() -> None:
+    case = first()
+    case["cam"]["prime_radius"] = "50 mm"
+    opened = parse_open_case(tomli_w.dumps(without(case, "roller.radius")))
+    with pytest.raises(InputError, match=r"roller\.radius = 23\.5 mm, must be <= "):
+        sized(opened)
