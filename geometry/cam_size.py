@@ -26,6 +26,8 @@ _BALANCED = 1e-9
 _HALVINGS = 60
 _SCANNED = 25
 """Offsets of a scan where a curvature limits the radius, which need not be convex in the offset."""
+_SECTIONS = 32
+"""Of the two steps of the scan about its least: 2e-8 of the greatest offset is left."""
 _REAL = 1e-6
 """Imaginary over real part up to which a computed root is real: a double root within round-off."""
 _CLEAR = 1e-9
@@ -358,4 +360,5 @@ def _least_of_scan(function: Callable[[float], float], most: float) -> float:
     offsets = np.linspace(-most, most, _SCANNED)
     k = int(np.argmin([function(float(each)) for each in offsets]))
     step = 2.0 * most / (_SCANNED - 1)
-    return least_argument(function, float(offsets[k]) - step, float(offsets[k]) + step)
+    low, high = float(offsets[k]) - step, float(offsets[k]) + step
+    return least_argument(function, low, high, _SECTIONS)

@@ -19,6 +19,7 @@ _MINIMA_MAX = 256
 
 _GOLDEN = 0.5 * (np.sqrt(5.0) - 1.0)
 _SECTIONS = 50
+"""4e-11 of the range is left."""
 
 
 class Extremum(NamedTuple):
@@ -108,14 +109,16 @@ def sampled_least(values: Array) -> Array:
     return -sampled_greatest(-values)
 
 
-def least_argument(function: Callable[[float], float], low: float, high: float) -> float:
+def least_argument(
+    function: Callable[[float], float], low: float, high: float, sections: int = _SECTIONS
+) -> float:
     """Argument of the minimum of a function with no other one between two bounds.
 
-    By golden sections; the function may have a kink. 4e-11 of the range is left.
+    By golden sections, which leave 0.618^sections of the range; the function may have a kink.
     """
     left, right = high - _GOLDEN * (high - low), low + _GOLDEN * (high - low)
     at_left, at_right = function(left), function(right)
-    for _ in range(_SECTIONS):
+    for _ in range(sections):
         if at_left <= at_right:
             high, right, at_right = right, left, at_left
             left = high - _GOLDEN * (high - low)

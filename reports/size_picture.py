@@ -35,8 +35,7 @@ def _chart(document: Record) -> Canvas:
     canvas = Canvas(figsize=(_WIDTH, 0.5 + _HEIGHT * len(panels)), layout="constrained")
     stacked = canvas.subplots(len(panels), 1, sharex=True, squeeze=False)[:, 0]
     for axes, panel in zip(stacked, panels, strict=True):
-        limit, unit = panel["limit"], panel["unit"]
-        here = [limit]
+        unit, here = panel["unit"], []
         for k, curve in enumerate(panel["curves"]):
             x, y = np.array(curve["x"]), np.array(curve["y"])
             axes.plot(
@@ -44,12 +43,14 @@ def _chart(document: Record) -> Canvas:
                 linestyle=(0, (4, 3.4)) if curve["dashed"] else "-", zorder=3,
             )  # fmt: skip
             here.append(float(np.interp(size, x, y)))
-        axes.plot([size], here[1:2], "o", color=COLOURS["ink"], markersize=4, zorder=4)
-        axes.axhline(limit, color=COLOURS["fail"], linewidth=0.9, linestyle=(0, (6, 2)))
-        axes.text(
-            1.0, limit, f"limit {limit:.4g} {unit}".strip(), color=COLOURS["fail"], fontsize=7.2,
-            transform=axes.get_yaxis_transform(), ha="right", va="bottom",
-        )  # fmt: skip
+        axes.plot([size], here[:1], "o", color=COLOURS["ink"], markersize=4, zorder=4)
+        for label, limit in panel["limits"].items():
+            axes.axhline(limit, color=COLOURS["fail"], linewidth=0.9, linestyle=(0, (6, 2)))
+            axes.text(
+                1.0, limit, f"{label} {limit:.4g} {unit}".strip(), color=COLOURS["fail"],
+                fontsize=7.2, transform=axes.get_yaxis_transform(), ha="right", va="bottom",
+            )  # fmt: skip
+            here.append(limit)
         axes.axvline(size, color=COLOURS["ink"], linewidth=0.7, linestyle=(0, (1, 2)))
         axes.set_ylim(min(0.0, *here), _HEADROOM * max(here))
         axes.set_ylabel(f"{panel['quantity']}, {unit}" if unit else panel["quantity"])

@@ -11,7 +11,12 @@ from camwright.pipeline.base.quantities import In
 from camwright.pipeline.base.units import shown
 from camwright.pipeline.case.case_values import quantity_of, text_of
 from camwright.pipeline.case.lift_section import LiftSegments, motion_of
-from camwright.pipeline.case.limits import OVERSPEED, TOOL_RADIUS
+from camwright.pipeline.case.limits import (
+    OVERSPEED,
+    PRESSURE_ANGLE,
+    RETURN_PRESSURE_ANGLE,
+    TOOL_RADIUS,
+)
 from camwright.pipeline.case.requirements_section import OVER_SPEED, STANDSTILL, Tolerances
 from camwright.pipeline.case.value_sources import require_known
 from camwright.pipeline.contact.cam_body import CamBody
@@ -209,6 +214,9 @@ def _check_geometry(case: Case) -> None:
         _check_roller(case, roller)
     smaller = "smaller than {cam.prime_radius}"
     _require(case, "cam.offset", abs(cam.offset) < cam.prime_radius, smaller)
+    back = case.limits[RETURN_PRESSURE_ANGLE]
+    steeper = back is None or back >= case.limits[PRESSURE_ANGLE]
+    _require(case, "limits.return_pressure_angle", steeper, ">= {limits.pressure_angle}")
     _check_ring(case)
     tool, largest = case.workshop.tool_radius, case.limits[TOOL_RADIUS]
     if tool is not None and largest is not None:

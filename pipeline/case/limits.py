@@ -97,6 +97,11 @@ PRESSURE_ANGLE = Limit(
     "pressure_angle", "pressure angle", In("deg", above=0, below=90), radians(30.0),
     "30 deg for a translating follower, Rothbart (2004) ch. 6",
 )  # fmt: skip
+RETURN_PRESSURE_ANGLE = OpenLimit(  # friction cannot lock a follower that the spring drives
+    "return_pressure_angle", "pressure angle on the return", In("deg", above=0, below=90),
+    "45 deg on the return, where the cam does not drive the follower, textbooks of mechanisms:"
+    " verify; without it that of pressure_angle",
+)  # fmt: skip
 CURVATURE_RATIO = Limit(
     "curvature_ratio", "convex pitch radius over roller radius", _RATIO, 1.5,
     "1.5 to 3 roller radii, Norton (2009) ch. 7", "at_least",

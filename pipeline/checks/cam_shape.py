@@ -16,6 +16,7 @@ from camwright.pipeline.case.limits import (
     CURVATURE_RATIO,
     MINIMUM_WALL,
     PRESSURE_ANGLE,
+    RETURN_PRESSURE_ANGLE,
     SECOND_CONTACT_DEPTH,
     TOOL_RADIUS,
     UNDERCUT_FACTOR,
@@ -91,7 +92,8 @@ def acceleration_step(solution: Solution) -> Demand:
     title="Maximum pressure angle",
     tier=Tier.SCREENING,
     formula="max |atan((s' - e)/(d + s))| <= alpha; s, s': lift and its slope, e: offset, d:"
-    " height of the roller centre at zero lift, alpha: limits.pressure_angle",
+    " height of the roller centre at zero lift, alpha: limits.pressure_angle, on the return"
+    " limits.return_pressure_angle where the case sets it",
     reason="Side force, guide friction and jamming grow with the tangent of the angle.",
     method="greatest |atan((s' - e)/d)| of the pitch curve, refined between samples",
     lift_can_help=True,
@@ -100,9 +102,16 @@ def acceleration_step(solution: Solution) -> Demand:
     load_cases=NONE,
 )
 def pressure_angle(solution: Solution) -> Demand:
-    """Greatest angle between contact normal and follower axis, rad."""
+    """Greatest angle between contact normal and follower axis, rad; of the stroke that governs."""
+    limits = solution.machine.limits
+    allowed, on_return = limits[PRESSURE_ANGLE], limits[RETURN_PRESSURE_ANGLE]
+    if on_return is not None:
+        rise, back = solution.contour.require_roller().pitch.pressure_angles
+        if back.value / on_return > rise.value / allowed:
+            source = limits.source(RETURN_PRESSURE_ANGLE)
+            return Demand(back.value, on_return, _at(back), note="on the return", source=source)
+        return Demand(rise.value, allowed, _at(rise), note="on the rise")
     extremum = solution.contour.pitch.pressure_angle_max()
-    allowed = solution.machine.limits[PRESSURE_ANGLE]
     return Demand(float(abs(extremum.value)), allowed, _at(extremum))
 
 

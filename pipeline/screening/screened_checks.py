@@ -29,6 +29,7 @@ from camwright.pipeline.case.limits import (
     MINIMUM_WALL,
     OVERSPEED,
     PRESSURE_ANGLE,
+    RETURN_PRESSURE_ANGLE,
     ROLLER_LIFE,
     ROLLER_LOAD_SHARE,
     ROLLER_SPEED_SHARE,
@@ -89,7 +90,18 @@ def _least(designs: Designs, measure: Callable[[Turns], Array]) -> Array:
 
 
 def _pressure_angle(designs: Designs) -> Judged:
-    return sampled_greatest(np.abs(designs.pressure_angle)), designs.limit(PRESSURE_ANGLE)
+    allowed, on_return = designs.limit(PRESSURE_ANGLE), designs.limit(RETURN_PRESSURE_ANGLE)
+    either = sampled_greatest(np.abs(designs.pressure_angle))
+    if np.isnan(on_return).all():
+        return either, allowed
+    offset, slope = designs.value("cam.offset"), designs.jets[1]
+    rise, back = (
+        sampled_greatest(np.arctan2(np.abs(of_stroke - offset), designs.across))
+        for of_stroke in (np.maximum(slope, 0.0), np.minimum(slope, 0.0))
+    )
+    steeper = back / on_return > rise / allowed  # false for NaN: no limit of the return
+    demand = np.where(np.isnan(on_return), either, np.where(steeper, back, rise))
+    return demand, np.where(steeper, on_return, allowed)
 
 
 def _curvature_ratio(designs: Designs) -> Judged:

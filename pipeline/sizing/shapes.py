@@ -3,14 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
 
 from camwright.geometry.arrays import Array
-from camwright.geometry.cam_size import EccentricCam, FaceCam, GivenLiftCam, PitchLimits, RollerCam
+from camwright.geometry.cam_size import (
+    EccentricCam,
+    FaceCam,
+    GivenLiftCam,
+    PitchLimits,
+    RollerCam,
+    RollerSize,
+)
 from camwright.geometry.errors import InputError
 from camwright.geometry.extrema import least_argument
 from camwright.geometry.lift_parts import LiftParts
@@ -21,6 +28,7 @@ from camwright.pipeline.case.limits import (
     CURVATURE_RATIO,
     MINIMUM_WALL,
     PRESSURE_ANGLE,
+    RETURN_PRESSURE_ANGLE,
     UNDERCUT_FACTOR,
 )
 from camwright.pipeline.case.load_case_torque import engine_torques
@@ -30,6 +38,8 @@ from camwright.pipeline.smoothing.required_lift import cam_lift
 
 DIGITS = 6
 """Decimal digits of a sized length in m: a micrometre."""
+_HALVINGS = 10
+"""Of the range of a roller; a thousandth of the tool radius is left."""
 _ALIKE = 1e-9
 """Relative difference of two radii up to which they are equal."""
 
@@ -75,8 +85,13 @@ class RollerShapes:
     @cached_property
     def angle_limits(self) -> PitchLimits:
         """Limits of the pressure angle alone."""
-        angle = self.case.limits[PRESSURE_ANGLE]
-        return PitchLimits(angle, angle)
+        return PitchLimits(*self._angles)
+
+    @property
+    def _angles(self) -> tuple[float, float]:
+        """Limits of the pressure angle on rise and return, rad."""
+        rise = self.case.limits[PRESSURE_ANGLE]
+        return rise, self.case.limits[RETURN_PRESSURE_ANGLE] or rise
 
     @property
     def _convex_share(self) -> float:
@@ -87,9 +102,8 @@ class RollerShapes:
     def limits(self, roller_radius: float) -> PitchLimits:
         """Limits of the pitch curve of a roller radius, m."""
         tool = least_concave_radius(self.case) or 0.0
-        angle = self.case.limits[PRESSURE_ANGLE]
         convex = self._convex_share * roller_radius
-        return PitchLimits(angle, angle, convex, max(tool - roller_radius, 0.0))
+        return PitchLimits(*self._angles, convex, max(tool - roller_radius, 0.0))
 
     @property
     def _least_roller(self) -> float:
@@ -104,17 +118,16 @@ class RollerShapes:
         InputError
             If a given prime radius is too small for any.
         """
-        roller = self._least_roller
         if PRIME not in self.gaps:
             prime = self.case.cam.prime_radius
-            return Shape(prime, self._offset(prime), roller, 0.0, "given")
+            return Shape(prime, self._offset(prime), self._least_roller, 0.0, "given")
+        roller = self._roller_of_tool()
         limits = self.limits(roller)
-        if OFFSET in self.gaps:
-            offset = rounded(self.cam.smallest(limits).offset)
-        else:
-            offset = self.case.cam.offset
+        offset = rounded(self._smallest(limits).offset)
         prime = by_angle = self.cam.least_prime_radius(self.angle_limits, offset)
         governs, by_offset = f"pressure angle of {shown(limits.rise, 'deg')}", SMALLEST
+        if limits.back != limits.rise:
+            governs += f", {shown(limits.back, 'deg')} on the return"
         by_curvature = self.cam.least_prime_radius(limits, offset)
         if by_curvature > by_angle * (1.0 + _ALIKE):
             prime, governs = by_curvature, "curvature of the pitch curve"
@@ -123,6 +136,34 @@ class RollerShapes:
             prime, governs = wall, "wall around the bore"
             offset, by_offset = self._offset(prime), BALANCE
         return Shape(prime, offset, roller, 0.0, governs, by_offset)
+
+    def _smallest(self, limits: PitchLimits) -> RollerSize:
+        """Smallest prime radius, of any offset where it is open, m."""
+        if OFFSET in self.gaps:
+            return self.cam.smallest(limits)
+        offset = self.case.cam.offset
+        return RollerSize(self.cam.least_prime_radius(limits, offset), offset)
+
+    def _roller_of_tool(self) -> float:
+        """Smallest roller, m; of an open one that from which on the tool sets no larger cam.
+
+        A concave contour has the radius of its pitch curve and that of the roller: the greater the
+        roller, the better a tool fits.
+        """
+        low, tool = self._least_roller, least_concave_radius(self.case) or 0.0
+
+        def hinders(roller: float) -> bool:
+            without = self._smallest(replace(self.limits(roller), concave_radius=0.0))
+            concave = self.cam.extremes(*without).concave_radius.value
+            return concave * (1.0 + _ALIKE) < tool - roller
+
+        if ROLLER not in self.gaps or not tool > low or not hinders(low):
+            return low
+        high = tool
+        for _ in range(_HALVINGS):
+            middle = 0.5 * (low + high)
+            low, high = (middle, high) if hinders(middle) else (low, middle)
+        return high
 
     def _offset(self, prime: float) -> float:
         if OFFSET not in self.gaps:

@@ -7,10 +7,11 @@ from collections.abc import Callable
 import numpy as np
 
 from camwright.geometry.arrays import Array
+from camwright.geometry.cam_size import PitchLimits
 from camwright.pipeline.base.files import Json
 from camwright.pipeline.base.units import in_unit
 from camwright.pipeline.case.case import Case
-from camwright.pipeline.case.limits import CURVATURE_RATIO, PRESSURE_ANGLE, UNDERCUT_FACTOR
+from camwright.pipeline.case.limits import CURVATURE_RATIO, UNDERCUT_FACTOR
 from camwright.pipeline.sizing.shapes import FaceShapes, RollerShapes, Shape, Shapes
 
 _LEAST, _MOST = 0.4, 2.2
@@ -25,8 +26,8 @@ def chart_record(case: Case, shapes: Shapes, shape: Shape) -> dict[str, Json]:
 
     Returns
     -------
-    dict   ``base_radius_mm`` of the shape, and ``panels``: quantity, unit, limit with its label,
-           and curves: label, x: base radius, mm, y, whether dashed
+    dict   ``base_radius_mm`` of the shape, and ``panels``: quantity, unit, limits by label, and
+           curves: label, x: base radius, mm, y, whether dashed
     """
     panels = (
         _face_panels(case, shapes, shape)
@@ -66,8 +67,13 @@ def _roller_panels(case: Case, shapes: RollerShapes, shape: Shape) -> list[dict[
     limits = case.limits
     share = max(limits[CURVATURE_RATIO], 1.0 / (1.0 - limits[UNDERCUT_FACTOR]))
     return [
-        _panel("pressure angle", "deg", in_unit(limits[PRESSURE_ANGLE], "deg"), angles),
-        _panel("convex pitch radius", "mm", in_unit(share * shape.roller_radius, "mm"), radius),
+        _panel("pressure angle", "deg", _angle_limits(shapes.angle_limits), angles),
+        _panel(
+            "convex pitch radius",
+            "mm",
+            {"limit": in_unit(share * shape.roller_radius, "mm")},
+            radius,
+        ),
     ]
 
 
@@ -77,8 +83,13 @@ def _face_panels(case: Case, shapes: FaceShapes, shape: Shape) -> list[dict[str,
     factors = [cam.undercut_factor(float(each)) for each in bases]
     limit = case.limits[UNDERCUT_FACTOR]
     return [
-        _panel("radius of curvature", "mm", 0.0, [_curve("", bases, radii.tolist(), 0.0, "mm")]),
-        _panel("undercut factor", "", limit, [_curve("", bases, factors, 0.0, "")]),
+        _panel(
+            "radius of curvature",
+            "mm",
+            {"cusp": 0.0},
+            [_curve("", bases, radii.tolist(), 0.0, "mm")],
+        ),
+        _panel("undercut factor", "", {"limit": limit}, [_curve("", bases, factors, 0.0, "")]),
     ]
 
 
@@ -93,7 +104,13 @@ def _curve(
     return {"label": label, "x": x, "y": [in_unit(each, unit) for each in values], "dashed": dashed}
 
 
+def _angle_limits(limits: PitchLimits) -> dict[str, float]:
+    """Limits of the pressure angle by label, deg."""
+    rise, back = in_unit(limits.rise, "deg"), in_unit(limits.back, "deg")
+    return {"limit": rise} if rise == back else {"limit, rise": rise, "limit, return": back}
+
+
 def _panel(
-    quantity: str, unit: str, limit: float, curves: list[dict[str, Json]]
+    quantity: str, unit: str, limits: dict[str, float], curves: list[dict[str, Json]]
 ) -> dict[str, Json]:
-    return {"quantity": quantity, "unit": unit, "limit": limit, "curves": curves}
+    return {"quantity": quantity, "unit": unit, "limits": limits, "curves": curves}

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import math
 import tomllib
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -209,3 +210,37 @@ def test_a_roller_that_no_cam_carries() -> None:
     opened = parse_open_case(tomli_w.dumps(without(case, "roller.radius")))
     with pytest.raises(InputError, match=r"roller\.radius = 23\.5 mm, must be <= "):
         sized(opened)
+
+
+@pytest.mark.slow
+def test_the_return_may_be_steeper() -> None:
+    case = without(steep(), "roller.radius")
+    case["roller"]["bearing"] = {"name": "plain", "C": "20 kN", "C0": "20 kN"}
+    case["cam"]["bore_radius"], case["roller"]["hub_radius"] = "10 mm", "6 mm"
+    case["limits"] |= {"return_pressure_angle": "45 deg", "tool_radius": "5 mm"}
+    sizing = sized(parse_open_case(tomli_w.dumps(case)))
+    assert isinstance(sizing.shapes, RollerShapes)
+    angles = sizing.shapes.cam.extremes(sizing.exact.prime_radius, sizing.exact.offset)
+    assert "45 deg on the return" in sizing.exact.governs
+    assert math.degrees(angles.rise.value) == pytest.approx(30.0, abs=1e-6)
+    (judged,) = (each for each in sizing.checks if each.id == "pressure_angle")
+    assert judged.status == "pass" and judged.utilisation == pytest.approx(1.0, abs=1e-3)
+
+
+@pytest.mark.slow
+def test_a_larger_roller_fits_the_tool() -> None:
+    """A concave flank has the radius of its pitch curve and that of the roller."""
+    case = without(steep(), "roller.radius", "roller.bearing.card")
+    case["roller"]["hub_radius"], case["cam"]["bore_radius"] = "6 mm", "10 mm"
+    case["roller"]["bearing"] = {"name": "plain", "C": "20 kN"}
+    case["limits"]["return_pressure_angle"] = "45 deg"
+    shapes = shapes_of(parse_open_case(tomli_w.dumps(case)))
+    assert isinstance(shapes, RollerShapes)
+    shape = shapes.smallest()
+    assert shape.roller_radius > 1.5 * 6.6e-3
+    pitch = shapes.cam.extremes(shape.prime_radius, shape.offset)
+    concave = pitch.concave_radius.value + shape.roller_radius
+    # the roller is halved in to a thousandth of the tool radius, which moves both radii
+    assert concave == pytest.approx(1.1 * 0.025, rel=5e-3)
+    least = replace(shapes, gaps=tuple(key for key in shapes.gaps if key != "roller.radius"))
+    assert least.smallest().prime_radius > 1.05 * shape.prime_radius

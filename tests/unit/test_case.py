@@ -150,6 +150,8 @@ def test_positions_can_be_given_again() -> None:
         ("points = 12", 'points = 12\nfree = ["mass"]', "smoothing.free[0] = mass, must be"),
         ("[limits.sources]", 'curvature_rate = "-1 1/mm^2"\n[limits.sources]',
          "limits.curvature_rate = -1 1/mm^2, must be > 0"),
+        ("[limits.sources]", 'return_pressure_angle = "29 deg"\n[limits.sources]',
+         "limits.return_pressure_angle = 29 deg, must be >= limits.pressure_angle = 30 deg"),
         ("[limits.sources]", 'curvature_rate = "1 1/m"\n[limits.sources]',
          "limits.curvature_rate = 1 1/m, must be in a unit of"),
         ('rod_length = "73 mm"', 'rod_length = "20 mm"',

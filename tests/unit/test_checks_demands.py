@@ -246,6 +246,18 @@ def test_pressure_angle_of_an_eccentric_disc():
     assert cam_shape.concave_radius(solution) is None
 
 
+def test_pressure_angle_of_the_stroke_that_governs():
+    pitch = made.solution().contour.pitch
+    rise, back = pitch.pressure_angles
+    even = with_limits(pressure_angle=0.5, return_pressure_angle=0.5)
+    steep = with_limits(pressure_angle=0.3, return_pressure_angle=1.5)
+    checked = cam_shape.pressure_angle(steep)
+    assert (checked.demand, checked.limit, checked.note) == (rise.value, 0.3, "on the rise")
+    worst = cam_shape.pressure_angle(even)
+    assert worst.demand == max(rise.value, back.value)
+    assert worst.demand == pytest.approx(pitch.pressure_angle_max().value, abs=1e-12)
+
+
 def test_limit_of_thirty_degrees_reads_thirty():
     check = cam_shape.pressure_angle(with_limits(pressure_angle=np.deg2rad(30)))
     assert check.as_record()["limit"] == 30.0

@@ -137,7 +137,8 @@ class Watched(dict):
 def test_the_source_of_every_limit_is_looked_up_and_no_other():
     """But for the overspeed, of which a limit is made; `limits.sources` accepts no other name."""
     sources = Watched()
-    for solution in (made.solution(), hollow(), soft(), faced()):
+    of_return = with_limits(pressure_angle=0.3, return_pressure_angle=0.2)
+    for solution in (made.solution(), hollow(), soft(), faced(), of_return):
         limits = made.changed(solution.case.limits, sources=sources)
         case = made.changed(solution.case, limits=limits)
         all_checks(made.changed_solution(solution, case=case))

@@ -13,8 +13,10 @@ from camwright.geometry.errors import GeometryError, InputError
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_file import read_case, with_values
 from camwright.pipeline.case.case_values import quantity_of, replaced, value_of
+from camwright.pipeline.case.load_case_torque import engine_torques
 from camwright.pipeline.checks.check import Check
 from camwright.pipeline.checks.registry import CHECKS
+from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.preview import preview_case
 from camwright.pipeline.results.check_records import governing_id
 from camwright.pipeline.screening import design_screening
@@ -22,6 +24,8 @@ from camwright.pipeline.screening.design_arrays import Designs, TorqueOfSpeed
 from camwright.pipeline.screening.design_factors import ARRAYS, groups
 from camwright.pipeline.screening.design_screening import screen_designs, utilisations
 from camwright.pipeline.screening.screened_checks import SCREENED
+from camwright.pipeline.smoothing.required_lift import cam_lift
+from camwright.pipeline.solver import solve
 
 CASES = Path(__file__).parents[2] / "cases"
 
@@ -131,6 +135,22 @@ def test_a_limit_of_each_design_is_its_own() -> None:
     columns = screen_designs(case(), {"limits.pressure_angle": ["30 deg", "60 deg"]})
     assert list(columns["pressure_angle.status"]) == ["fail", "pass"]
     np.testing.assert_allclose(columns["pressure_angle.limit"], [30.0, 60.0], rtol=1e-12)
+
+
+@pytest.mark.parametrize("offset", ["0 mm", "8 mm"])
+def test_the_stroke_that_governs_the_pressure_angle(offset: str) -> None:
+    """Of designs with and without a limit of the return, as the check judges them."""
+    backs = ["30 deg", "40 deg", "80 deg"]
+    factors = {"limits.return_pressure_angle": backs, "cam.offset": [offset] * len(backs)}
+    columns = screen_designs(case(), factors)
+    for k, back in enumerate(backs):
+        own = with_values(case(), {"limits.return_pressure_angle": back, "cam.offset": offset})
+        contour = own.contour(cam_lift(own, engine_torques(own)))
+        checks = solve(own, contour, tier=Tier.SCREENING).checks
+        (check,) = (each for each in checks if each.id == "pressure_angle")
+        record = check.as_record()
+        assert columns["pressure_angle.demand"][k] == pytest.approx(record["demand"], rel=1e-4)
+        assert columns["pressure_angle.limit"][k] == pytest.approx(record["limit"], rel=1e-12)
 
 
 def test_load_cases_with_own_torque_reductions_are_screened_as_the_preview_judges_them() -> None:

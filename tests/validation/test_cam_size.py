@@ -181,7 +181,7 @@ def test_best_offset_balances_rise_and_return() -> None:
         assert angles.rise.value == pytest.approx(limits.rise, abs=1e-8)
         assert angles.back.value <= limits.back + 1e-8
         assert cam.best_offset(size.prime_radius, limits) == pytest.approx(size.offset, abs=1e-7)
-        trials = np.linspace(-0.9, 0.9, 61) * size.prime_radius
+        trials = np.linspace(-0.9, 0.9, 13) * size.prime_radius
         assert all(
             cam.least_prime_radius(limits, float(e)) >= size.prime_radius - ROUND_OFF
             for e in trials

@@ -57,7 +57,7 @@ def test_smallest_spring_of_a_harmonic_cam() -> None:
     assert spring.rate == pytest.approx((1.0 - PRELOAD_SHARE) * throw / stroke, rel=1e-8)
 
 
-@pytest.mark.parametrize("law", [name for name in LAWS if name != "parabolic"])
+@pytest.mark.parametrize("law", ["cycloidal", "harmonic", "modified_trapezoid"])
 def test_no_other_rate_stores_less(law: str) -> None:
     stroke = 0.012
     lift = rise_and_return(law, stroke, 100 * DEG)
