@@ -136,10 +136,10 @@ def parse_open_case(
     for key in gaps:
         enter(tables, key, _least_roller(tables) if key == ROLLER else _PROVISIONAL[key])
     case = completed(validated(tables), folder)
-    if case.engine is not None:
+    if case.lift is None:
         for key in (RATE, PRELOAD):
             if key in gaps:
-                limit = "given with an engine, whose lift follows from the spring"
+                limit = "given without [lift]: the lift follows from torque and spring"
                 raise InputError(key, "missing", limit)
         if case.smoothing.kind == "constrained":
             limit = "a filter, or a lift in place of the engine: a constrained synthesis finds"

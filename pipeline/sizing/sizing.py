@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from camwright.geometry.errors import CamError
+from camwright.geometry.errors import CamError, InputError
 from camwright.geometry.lift import Lift
 from camwright.pipeline.base.progress import SILENT, Progress
 from camwright.pipeline.case.case import Case
@@ -38,7 +38,7 @@ from camwright.pipeline.sizing.shapes import (
     shapes_of,
     values_of,
 )
-from camwright.pipeline.sizing.spring_choice import ChosenSpring, spring_of, stiffer
+from camwright.pipeline.sizing.spring_choice import ChosenSpring, more_preload, spring_of, stiffer
 from camwright.pipeline.smoothing.required_lift import cam_lift
 from camwright.pipeline.solver import solve
 from camwright.pipeline.torque.torque import Torque
@@ -61,13 +61,15 @@ _GROWTH = ("pressure_angle", "curvature_ratio", "undercut", "concave_radius", "m
 _HELD = ("contact_force_margin", "jump", "jump_speed", "contact_at_overspeed",
          "contact_over_speed", "elastic_contact")  # fmt: skip
 """Checks that a greater preload can pass."""
+_WOUND = ("spring_surge", "spring_solid", "spring_coil_gap")
+"""Checks that the winding of a stiffer spring can pass."""
 
 _HALF_WIDTHS = 1.25
 """Half-widths of the contact that a face has beside it: the tolerances press more than nominal."""
-_STEP, _STEPS, _HALVINGS = 1.1, 16, 16
-"""Factor and number of the steps by which a cam grows: to 4.6 times the radius; 1e-6 of it left."""
+_STEP, _STEPS, _HALVINGS = 1.1, 16, 12
+"""Factor and number of the steps by which a cam grows: to 4.6 times the radius, 2e-5 of it left."""
 _STIFFER, _LARGER, _TRIES = 1.1, 1.01, 8
-"""Factors of preload and radius by which a preview that fails is repeated, and how often."""
+"""Factors of preload or rate and of radius by which a failing preview is repeated; how often."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -146,6 +148,10 @@ def sized(opened: OpenCase, *, progress: Progress = SILENT) -> Sizing:
         return _Search(opened, shapes_of(opened), engine_torques(opened.case), progress).sized()
 
 
+_Tried = tuple[ChosenSpring, Shape, tuple[str, Case, Trial]]
+"""Spring and shape with text, complete case and preview."""
+
+
 @dataclass(frozen=True, eq=False)
 class _Search:
     opened: OpenCase
@@ -159,11 +165,15 @@ class _Search:
         spring = self._spring(exact)
         shape = self._grown(exact, spring)
         text, case, trial = self._judged(shape, spring)
+        if self._rate_is_open and _failing(trial, _WOUND):
+            spring, shape, (text, case, trial) = self._stiffened(
+                exact, (spring, shape, (text, case, trial))
+            )
         for _ in range(_TRIES):
             # the preview adds tolerances, surge, elastic stem and guides to the screening
             small = self._failing_alone(trial, shape, spring)
             if PRELOAD in self.opened.gaps and _failing(trial, _HELD):
-                spring = stiffer(spring, _STIFFER, _titles(_failing(trial, _HELD)))
+                spring = more_preload(spring, _STIFFER, _titles(_failing(trial, _HELD)))
                 shape = self._grown(exact, spring)
             elif small:
                 larger = self.shapes.enlarged(shape, _LARGER * shape.prime_radius, _titles(small))
@@ -187,13 +197,32 @@ class _Search:
             others=tuple(each.id for each in made if each.status == "fail" and each.id not in ids),
         )
 
-    def _spring(self, shape: Shape) -> ChosenSpring:
+    @property
+    def _rate_is_open(self) -> bool:
+        """Whether no winding sets the rate; a spring of a catalogue follows it."""
+        return RATE in self.opened.gaps and self.opened.case.spring.design is None
+
+    def _spring(self, shape: Shape, stiff: ChosenSpring | None = None) -> ChosenSpring:
         parts = (
             self.shapes.cam.lift
             if isinstance(self.shapes, FaceShapes)
             else self.shapes.cam.parts(shape.prime_radius, shape.offset)
         )
-        return spring_of(self.opened.case, self.opened.gaps, parts)
+        return spring_of(self.opened.case, self.opened.gaps, parts, stiff)
+
+    def _stiffened(self, exact: Shape, first: _Tried) -> _Tried:
+        """The first of stiffer springs whose winding passes; the given one if none does."""
+        reason, spring = _titles(_failing(first[2][2], _WOUND)), first[0]
+        for _ in range(_TRIES):
+            spring = self._spring(exact, stiffer(spring, _STIFFER, reason))
+            shape = self._grown(exact, spring)
+            try:
+                judged = self._judged(shape, spring)
+            except InputError:  # the catalogue has no spring of this rate
+                continue
+            if not _failing(judged[2], _WOUND):
+                return spring, shape, judged
+        return first
 
     def _values(self, shape: Shape, spring: ChosenSpring) -> dict[str, float]:
         own = {RATE: spring.rate, PRELOAD: spring.preload}

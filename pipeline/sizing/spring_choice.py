@@ -34,8 +34,12 @@ def conditions_of(case: Case) -> tuple[HoldingCondition, ...]:
     """
     states, spring = machines(case), case.spring
     speed = highest_speed(states) / case.mechanism.gear_ratio
+    mass, spread, gravity = (
+        case.follower.mass, case.tolerances.mass, states[0].system.gravity_along_axis
+    )  # fmt: skip
     worst = {
-        "mass": case.follower.mass * (1.0 + case.tolerances.mass),
+        "mass": mass * (1.0 + spread),
+        "held": mass * min(gravity * (1.0 - spread), gravity * (1.0 + spread)),
         "damping": case.follower.viscous_damping,
         "rate_factor": 1.0 - spring.rate_tolerance,
         "preload_factor": 1.0 - spring.preload_tolerance,
@@ -61,10 +65,16 @@ class ChosenSpring(NamedTuple):
         return SpringSize(self.rate, self.preload)
 
 
-def spring_of(case: Case, gaps: Sequence[str], lift: LiftParts) -> ChosenSpring:
+def spring_of(
+    case: Case, gaps: Sequence[str], lift: LiftParts, stiff: ChosenSpring | None = None
+) -> ChosenSpring:
     """Spring of the open keys: its least energy at full lift, or the preload of a given rate.
 
     The rate of a spring with a design is that of the design.
+
+    Parameters
+    ----------
+    stiff : ChosenSpring   with a rate of another reason, of which the preload is sought
 
     Raises
     ------
@@ -73,7 +83,9 @@ def spring_of(case: Case, gaps: Sequence[str], lift: LiftParts) -> ChosenSpring:
     """
     design, rate, rate_by = case.spring.design, case.spring.rate, ""
     conditions = conditions_of(case)
-    if RATE in gaps and design is not None:
+    if stiff is not None:
+        rate, rate_by = stiff.rate, stiff.rate_by
+    elif RATE in gaps and design is not None:
         rate, rate_by = _to_digits(design.rate), "rate of spring.design"
     elif RATE in gaps:
         rate = _to_digits(smallest_spring(lift, conditions).rate)
@@ -90,9 +102,14 @@ def spring_of(case: Case, gaps: Sequence[str], lift: LiftParts) -> ChosenSpring:
     return ChosenSpring(rate, _preload_up(spring.preload), rate_by, preload_by)
 
 
-def stiffer(spring: ChosenSpring, factor: float, reason: str) -> ChosenSpring:
+def more_preload(spring: ChosenSpring, factor: float, reason: str) -> ChosenSpring:
     """A spring with a greater preload, for a reason."""
     return spring._replace(preload=_preload_up(factor * spring.preload), preload_by=reason)
+
+
+def stiffer(spring: ChosenSpring, factor: float, reason: str) -> ChosenSpring:
+    """A spring with a greater rate, for a reason."""
+    return spring._replace(rate=_to_digits(factor * spring.rate), rate_by=reason)
 
 
 def _preload_up(preload: float) -> float:

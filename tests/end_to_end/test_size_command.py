@@ -185,7 +185,10 @@ def test_an_eccentric_is_sized_by_its_circle() -> None:
 @pytest.mark.parametrize(
     ("free", "message"),
     [
-        (["spring.rate"], r"spring\.rate = missing, must be given with an engine"),
+        (
+            ["spring.rate"],
+            r"spring\.rate = missing, must be given without .lift.: the lift follows",
+        ),
         (["cam.width"], r"--free = cam\.width, must be one of: cam\.prime_radius"),
     ],
 )
@@ -244,3 +247,16 @@ def test_a_larger_roller_fits_the_tool() -> None:
     assert concave == pytest.approx(1.1 * 0.025, rel=5e-3)
     least = replace(shapes, gaps=tuple(key for key in shapes.gaps if key != "roller.radius"))
     assert least.smallest().prime_radius > 1.05 * shape.prime_radius
+
+
+@pytest.mark.slow
+def test_a_spring_of_the_catalogue_is_stiff_enough_for_its_surge() -> None:
+    case = without(first(), "spring.design")
+    case["spring"]["catalogue"] = "shipped"
+    free = ("spring.rate", "spring.preload")
+    sizing = sized(parse_open_case(tomli_w.dumps(case), None, free))
+    checks = {each.id: each for each in sizing.checks}
+    assert sizing.verdict == "pass"
+    assert checks["spring_surge"].status == "pass"
+    assert "surge" in sizing.sources["spring.rate"].lower()
+    assert sizing.case.spring.design is not None
