@@ -29,6 +29,10 @@ def size(
             help="A key whose value in CASE is not kept but found; may be repeated.",
         ),
     ] = None,
+    least_radius: Annotated[
+        str,
+        typer.Option("--least-radius", help="Least convex radius of the contour, mm."),
+    ] = "0 mm",
     out: Annotated[
         Path | None, typer.Option("--out", metavar="SIZED.toml", help="Write the complete case.")
     ] = None,
@@ -48,6 +52,7 @@ def size(
     and spring.preload; those left out are found, the others kept. Exit code 0: the checks that they
     decide pass in the preview, 1: no size passes, 2: error, 3: data are missing.
     """
+    from camwright.pipeline.base import units
     from camwright.pipeline.sizing.size_record import size_lines, size_record
     from camwright.pipeline.sizing.sizing import size as sizes
     from camwright.reports.size_picture import draw
@@ -56,8 +61,11 @@ def size(
         raise InputError("--chart", str(chart), f"a file that ends in {' or '.join(_PICTURES)}")
     if out is not None and out.exists():
         raise ResultError(f"{out}: exists already, not overwritten")
+    least = units.parse(least_radius, "mm", "--least-radius")
+    if not least >= 0.0:
+        raise InputError("--least-radius", least_radius, ">= 0 mm")
     with progress_shown() as progress:
-        sizing = sizes(case, free or (), progress=progress)
+        sizing = sizes(case, free or (), least_radius=least, progress=progress)
     record = size_record(sizing)
     if as_json:
         show_json(record)

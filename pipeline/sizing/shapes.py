@@ -73,14 +73,16 @@ class RollerShapes:
 
     Parameters
     ----------
-    case : Case   with provisional values of the open keys
-    gaps : tuple  open keys
+    case : Case            with provisional values of the open keys
+    gaps : tuple           open keys
     cam : RollerCam
+    least_radius : float   least convex radius of the contour, m, >= 0
     """
 
     case: Case
     gaps: tuple[str, ...]
     cam: RollerCam
+    least_radius: float = 0.0
 
     @cached_property
     def angle_limits(self) -> PitchLimits:
@@ -102,7 +104,7 @@ class RollerShapes:
     def limits(self, roller_radius: float) -> PitchLimits:
         """Limits of the pitch curve of a roller radius, m."""
         tool = least_concave_radius(self.case) or 0.0
-        convex = self._convex_share * roller_radius
+        convex = max(self._convex_share * roller_radius, roller_radius + self.least_radius)
         return PitchLimits(*self._angles, convex, max(tool - roller_radius, 0.0))
 
     @property
@@ -179,7 +181,8 @@ class RollerShapes:
         """Least and greatest roller radius of a shape by bearing, curvature, tool and wall, m."""
         small = shape.prime_radius - allowance(self.case)
         pitch = self.cam.extremes(small, shape.offset)
-        most = pitch.convex_radius.value / self._convex_share
+        convex = pitch.convex_radius.value
+        most = min(convex / self._convex_share, convex - self.least_radius)
         most = min(most, small - least_base_circle(self.case))
         tool = least_concave_radius(self.case) or 0.0
         return max(self._least_roller, tool - pitch.concave_radius.value), most
@@ -210,11 +213,12 @@ class RollerShapes:
 
 @dataclass(frozen=True, eq=False)
 class FaceShapes:
-    """Shapes of a cam under a flat face within the limits of a case."""
+    """Shapes of a cam under a flat face within the limits of a case; see `RollerShapes`."""
 
     case: Case
     gaps: tuple[str, ...]
     cam: FaceCam
+    least_radius: float = 0.0
 
     def smallest(self) -> Shape:
         """Smallest shape, with the narrowest face."""
@@ -222,6 +226,10 @@ class FaceShapes:
         if PRIME in self.gaps:
             base = self.cam.least_base_radius(undercut_factor=case.limits[UNDERCUT_FACTOR])
             governs = f"undercut factor of {case.limits[UNDERCUT_FACTOR]:g}"
+            by_radius = self.cam.least_base_radius(self.least_radius)
+            if by_radius > base:
+                base = by_radius
+                governs = f"radius of curvature of {shown(self.least_radius, 'mm')}"
             wall = least_base_circle(case)
             if wall > base:
                 base, governs = wall, "wall around the bore"
@@ -238,25 +246,30 @@ class FaceShapes:
 Shapes = RollerShapes | FaceShapes
 
 
-def shapes_of(opened: OpenCase) -> Shapes:
+def shapes_of(opened: OpenCase, least_radius: float = 0.0) -> Shapes:
     """Shapes of an open case.
+
+    Parameters
+    ----------
+    least_radius : float   least convex radius of the contour, m, >= 0
 
     Raises
     ------
     InputError
-        If the lift cannot be read or follows from no torque.
+        If the lift cannot be read or follows from no torque, or the radius is negative.
     """
-    case = opened.case
-    section = case.lift
+    if not 0.0 <= least_radius < np.inf:
+        raise InputError("least radius", least_radius, ">= 0 m")
+    case, section, gaps = opened.case, opened.case.lift, opened.gaps
     if case.follower.kind == "roller" and isinstance(section, LiftEccentric):
-        return RollerShapes(case, opened.gaps, EccentricCam(section.eccentricity))
+        return RollerShapes(case, gaps, EccentricCam(section.eccentricity), least_radius)
     if isinstance(section, LiftSegments):
         parts = LiftParts.of_motion(motion_of(section))
     else:
         parts = LiftParts.of_lift(cam_lift(case, engine_torques(case)))
     if case.follower.kind == "flat":
-        return FaceShapes(case, opened.gaps, FaceCam(parts))
-    return RollerShapes(case, opened.gaps, GivenLiftCam(parts))
+        return FaceShapes(case, gaps, FaceCam(parts), least_radius)
+    return RollerShapes(case, gaps, GivenLiftCam(parts), least_radius)
 
 
 def allowance(case: Case) -> float:

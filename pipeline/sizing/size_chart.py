@@ -11,7 +11,7 @@ from camwright.geometry.cam_size import PitchLimits
 from camwright.pipeline.base.files import Json
 from camwright.pipeline.base.units import in_unit
 from camwright.pipeline.case.case import Case
-from camwright.pipeline.case.limits import CURVATURE_RATIO, UNDERCUT_FACTOR
+from camwright.pipeline.case.limits import UNDERCUT_FACTOR
 from camwright.pipeline.sizing.shapes import FaceShapes, RollerShapes, Shape, Shapes
 
 _LEAST, _MOST = 0.4, 2.2
@@ -32,12 +32,12 @@ def chart_record(case: Case, shapes: Shapes, shape: Shape) -> dict[str, Json]:
     panels = (
         _face_panels(case, shapes, shape)
         if isinstance(shapes, FaceShapes)
-        else _roller_panels(case, shapes, shape)
+        else _roller_panels(shapes, shape)
     )
     return {"base_radius_mm": in_unit(shape.base_radius, "mm"), "panels": panels}
 
 
-def _roller_panels(case: Case, shapes: RollerShapes, shape: Shape) -> list[dict[str, Json]]:
+def _roller_panels(shapes: RollerShapes, shape: Shape) -> list[dict[str, Json]]:
     cam, inset = shapes.cam, shape.roller_radius
     low = max(_LEAST * shape.prime_radius, _CLEAR * abs(shape.offset), _CLEAR * shape.roller_radius)
     primes, some = (_about(low, shape.prime_radius, count) for count in (_POINTS, _BEST_POINTS))
@@ -61,19 +61,11 @@ def _roller_panels(case: Case, shapes: RollerShapes, shape: Shape) -> list[dict[
             curve("no offset", some, lambda p: cam.extremes(p).pressure_angle.value, "deg")
         )
     angles.append(curve("best offset of each radius", some, best, "deg", dashed=True))
-    radius = [
-        curve("", primes, lambda prime: cam.extremes(prime, shape.offset).convex_radius.value, "mm")
-    ]
-    limits = case.limits
-    share = max(limits[CURVATURE_RATIO], 1.0 / (1.0 - limits[UNDERCUT_FACTOR]))
+    radius = [curve("", primes, lambda prime: sized[prime].convex_radius.value, "mm")]
+    least = in_unit(shapes.limits(shape.roller_radius).convex_radius, "mm")
     return [
         _panel("pressure angle", "deg", _angle_limits(shapes.angle_limits), angles),
-        _panel(
-            "convex pitch radius",
-            "mm",
-            {"limit": in_unit(share * shape.roller_radius, "mm")},
-            radius,
-        ),
+        _panel("convex pitch radius", "mm", {"limit": least}, radius),
     ]
 
 
@@ -81,14 +73,10 @@ def _face_panels(case: Case, shapes: FaceShapes, shape: Shape) -> list[dict[str,
     bases, cam = _about(_LEAST * shape.prime_radius, shape.prime_radius, _POINTS), shapes.cam
     radii = bases + cam.least_radius(0.0).value
     factors = [cam.undercut_factor(float(each)) for each in bases]
-    limit = case.limits[UNDERCUT_FACTOR]
+    limit, least = case.limits[UNDERCUT_FACTOR], in_unit(shapes.least_radius, "mm")
+    radius = [_curve("", bases, radii.tolist(), 0.0, "mm")]
     return [
-        _panel(
-            "radius of curvature",
-            "mm",
-            {"cusp": 0.0},
-            [_curve("", bases, radii.tolist(), 0.0, "mm")],
-        ),
+        _panel("radius of curvature", "mm", {"limit" if least else "cusp": least}, radius),
         _panel("undercut factor", "", {"limit": limit}, [_curve("", bases, factors, 0.0, "")]),
     ]
 

@@ -120,19 +120,26 @@ class Sizing:
         return self.exact.prime_radius * _STEP**_STEPS
 
 
-def size(path: str | Path, free: Collection[str] = (), *, progress: Progress = SILENT) -> Sizing:
+def size(
+    path: str | Path,
+    free: Collection[str] = (),
+    *,
+    least_radius: float = 0.0,
+    progress: Progress = SILENT,
+) -> Sizing:
     """Sizes of a case file that leaves keys open; see `sized`.
 
     Parameters
     ----------
-    path : str or Path   case file without any of `cam.prime_radius`, `cam.offset`,
-                         `roller.radius`, `follower.face.width`, `spring.rate`, `spring.preload`
-    free : collection    those of these keys whose values in the file are not kept
+    path : str or Path     case file without any of `cam.prime_radius`, `cam.offset`,
+                           `roller.radius`, `follower.face.width`, `spring.rate`, `spring.preload`
+    free : collection      those of these keys whose values in the file are not kept
+    least_radius : float   least convex radius of the contour, m
     """
-    return sized(read_open_case(path, free), progress=progress)
+    return sized(read_open_case(path, free), least_radius=least_radius, progress=progress)
 
 
-def sized(opened: OpenCase, *, progress: Progress = SILENT) -> Sizing:
+def sized(opened: OpenCase, *, least_radius: float = 0.0, progress: Progress = SILENT) -> Sizing:
     """Sizes of an open case: smallest base radius, best offset, roller, face, spring.
 
     The geometry gives the smallest cam of pressure angle, curvature, tool and wall. It grows until
@@ -145,7 +152,8 @@ def sized(opened: OpenCase, *, progress: Progress = SILENT) -> Sizing:
         If the case contradicts itself, or has no such cam.
     """
     with refused_as_written(opened.case):
-        return _Search(opened, shapes_of(opened), engine_torques(opened.case), progress).sized()
+        shapes = shapes_of(opened, least_radius)
+        return _Search(opened, shapes, engine_torques(opened.case), progress).sized()
 
 
 _Tried = tuple[ChosenSpring, Shape, tuple[str, Case, Trial]]

@@ -90,11 +90,27 @@ def test_published_size_of_a_roller_cam(law: str, base: float, radius: float) ->
     assert shape.governs == "pressure angle of 30 deg"
 
 
+@pytest.mark.parametrize(
+    ("law", "base", "width"), [("cycloidal", 9.895394, 7.639437), ("harmonic", 7.25, 6.0)]
+)
+def test_published_size_of_a_flat_face(law: str, base: float, width: float) -> None:
+    case = without(double_rise(law), "roller")
+    face = {"depth": "5 mm", "thickness": "3 mm", "material": "case_hardened"}
+    case["follower"] |= {"kind": "flat", "face": face}
+    case["limits"]["undercut_factor"] = 0.01
+    opened = parse_open_case(tomli_w.dumps(case))
+    assert opened.gaps == ("cam.prime_radius", "follower.face.width")
+    shape = shapes_of(opened, 0.25e-3).smallest()
+    assert shape.base_radius * 1e3 == pytest.approx(base, abs=EXACT)
+    assert shape.face_width * 1e3 == pytest.approx(width, abs=EXACT)
+    assert shape.governs == "radius of curvature of 0.25 mm"
+
+
 @pytest.mark.slow
 def test_a_steep_cam_is_sized_whole(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     path, out = tmp_path / "open.toml", tmp_path / "sized.toml"
     path.write_text("# kept\n" + tomli_w.dumps(steep()), encoding="utf-8")
-    assert size(path, None, out, None, as_json=False) == PASSED
+    assert size(path, None, "0 mm", out, None, as_json=False) == PASSED
     shown = capsys.readouterr().out
     assert "spring: " in shown and "active coils" in shown and f"case: {out}" in shown
     assert out.with_suffix(".png").read_bytes().startswith(b"\x89PNG")
@@ -109,7 +125,7 @@ def test_a_steep_cam_is_sized_whole(tmp_path: Path, capsys: pytest.CaptureFixtur
         assert checks[name].status == "pass", name
     assert checks["curvature_ratio"].utilisation == pytest.approx(1.0, abs=1e-3)
     with pytest.raises(ResultError, match="exists already"):
-        size(path, None, out, None, as_json=False)
+        size(path, None, "0 mm", out, None, as_json=False)
 
 
 @pytest.mark.slow
@@ -157,7 +173,7 @@ def test_the_radius_grows_until_the_contact_holds() -> None:
 def test_a_flat_face_is_sized(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     source = CASES / "papers" / "petrescu_c.toml"
     free, chart = ["cam.prime_radius", "follower.face.width"], tmp_path / "face.svg"
-    assert size(source, free, None, chart, as_json=True) == PASSED
+    assert size(source, free, "0 mm", None, chart, as_json=True) == PASSED
     record = json.loads(capsys.readouterr().out)
     assert record["smallest"]["undercut_factor_min"] == pytest.approx(0.3, abs=1e-9)
     assert chart.read_text(encoding="utf-8").startswith("<?xml")
@@ -204,7 +220,7 @@ def test_refuses_a_constrained_synthesis() -> None:
 
 def test_refuses_a_picture_of_another_kind(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="--chart"):
-        size(CASES / "gx120.toml", None, None, tmp_path / "chart.jpg", as_json=False)
+        size(CASES / "gx120.toml", None, "0 mm", None, tmp_path / "chart.jpg", as_json=False)
 
 
 def test_a_roller_that_no_cam_carries() -> None:
