@@ -30,7 +30,9 @@ from camwright.pipeline.results.verdict_summary import (
 from camwright.pipeline.run import run_case
 
 CASES = sorted(Path(__file__).parents[2].glob("cases/**/*.toml"))
-SOLVED = [each for each in CASES if each.stem != "mechanisms"]
+SOLVED = [
+    each for each in CASES if each.stem != "mechanisms" and each.parent.name != "machines"
+]  # the machines are solved by tests/verification/test_shipped_machines.py
 PLACES = Places("runs/gx120", "cases/gx120.toml", "runs/gx120/8_report.html", 14.47)
 REMEDY = "roller.radius = 45 mm instead of 32 mm; the cam radius grows by 13 mm to 89 mm, its limit"
 
