@@ -34,6 +34,7 @@ verdict; a failed trial is smoothed again. `results` writes the run folder, `rep
 | `reports`            | report and pictures from a run folder                |                    |
 | `reports.study`      | page of a study                                      |                    |
 | `reports.papers`     | pages of the papers: figures, verdicts               |                    |
+| `reports.comparisons` | pages of comparisons, sizes, inspections            |                    |
 | `studies.batch`      | studies of many designs                              |                    |
 | `commands`           | one function per command                             |                    |
 | `cli`                | command line                                         |                    |

@@ -25,10 +25,5 @@ pdf                    ``8_report.pdf``: PDF/A on A4, by typst
 scene_solids           rings, boxes and rods as triangles
 scene_page             ``scene.html``: interactive 3-D view over the turn
 sections               parts of a report by name; `report` writes them
-smoother_page          comparison of smoothers
-redesign_page          Pareto front of a redesign
-size_picture           chart of cam size: pressure angle and curvature over the base radius
-mechanism_figures      slider-crank and eccentric cams: friction energy, torque, workspaces
-inspection_pictures    deviation of a measured cam, normal force and contact pressure
 ====================== ===========================================================================
 """

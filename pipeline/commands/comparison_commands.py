@@ -36,7 +36,7 @@ def compare(
         ranked,
         recommendation,
     )
-    from camwright.reports import smoother_page
+    from camwright.reports.comparisons import smoother_page
 
     design = read_case(case)
     with progress_shown() as progress:
@@ -161,7 +161,7 @@ def compare_mechanisms(
     Friction loss by pair, slip, reduced inertia and workspaces.
     """
     from camwright.pipeline.studies.papers.mechanism_comparison import compared, lines
-    from camwright.reports import mechanism_figures
+    from camwright.reports.comparisons import mechanism_figures
 
     with progress_shown() as progress:
         progress.stage("mechanisms")

@@ -48,7 +48,7 @@ def inspect(
     from camwright.pipeline.results.drawn_cam import drawn_cam
     from camwright.pipeline.results.folder_exchange import amended
     from camwright.pipeline.studies import cam_inspection
-    from camwright.reports.inspection_pictures import draw
+    from camwright.reports.comparisons.inspection_pictures import draw
 
     width = None if tolerance is None else units.parse(tolerance, "um", "--tolerance")
     if width is not None and not width > 0:

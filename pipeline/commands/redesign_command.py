@@ -41,7 +41,7 @@ def redesign(
     """
     from camwright.pipeline.studies.redesign.redesign_study import RECORD
     from camwright.pipeline.studies.redesign.redesign_study import redesign as searched
-    from camwright.reports import redesign_page as page
+    from camwright.reports.comparisons import redesign_page as page
 
     if jobs is not None and not 1 <= jobs <= 256:
         raise InputError("--jobs", jobs, ">= 1 and <= 256")
@@ -63,7 +63,7 @@ def redesign(
 def _show(document: dict[str, Any], folder: Path) -> None:
     from rich.table import Table
 
-    from camwright.reports.redesign_page import COLUMNS
+    from camwright.reports.comparisons.redesign_page import COLUMNS
     from camwright.reports.report_tables import listed
 
     table = Table(box=None, pad_edge=False)

@@ -55,7 +55,7 @@ def size(
     from camwright.pipeline.base import units
     from camwright.pipeline.sizing.size_record import size_lines, size_record
     from camwright.pipeline.sizing.sizing import size as sizes
-    from camwright.reports.size_picture import draw
+    from camwright.reports.comparisons.size_picture import draw
 
     if chart is not None and chart.suffix not in _PICTURES:
         raise InputError("--chart", str(chart), f"a file that ends in {' or '.join(_PICTURES)}")

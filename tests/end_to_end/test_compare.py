@@ -17,7 +17,7 @@ from camwright.pipeline.studies.smoother_comparison import (
     ranked,
     recommendation,
 )
-from camwright.reports import smoother_page
+from camwright.reports.comparisons import smoother_page
 
 CASE = Path(__file__).parents[1] / "data" / "soft_spring.toml"
 

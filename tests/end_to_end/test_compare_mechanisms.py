@@ -8,7 +8,7 @@ import pytest
 
 from camwright.geometry.errors import InputError
 from camwright.pipeline.studies.papers.mechanism_comparison import compared, lines, load_comparison
-from camwright.reports import mechanism_figures
+from camwright.reports.comparisons import mechanism_figures
 
 ROOT = Path(__file__).resolve().parents[2]
 CASE = ROOT / "cases" / "papers" / "mechanisms.toml"

@@ -371,7 +371,7 @@ def test_redesign_exits_by_its_points(
     code: int,
 ) -> None:
     from camwright.pipeline.studies.redesign import redesign_study
-    from camwright.reports import redesign_page
+    from camwright.reports.comparisons import redesign_page
 
     points = [{"file": "point.toml", "verdict": "pass", "open": one} for one in open_checks]
     document: dict[str, Any] = {"points": points, "tried": [], "pruned": []}

@@ -41,6 +41,7 @@ ORDER = (
     "reports",
     "reports.study",
     "reports.papers",
+    "reports.comparisons",
     "pipeline.studies.batch",
     "pipeline.commands",
     "pipeline.cli",

@@ -1,0 +1,14 @@
+"""Pages and pictures of comparisons, sizes and inspections. Nothing is solved.
+
+In the order of use:
+
+| module                | responsibility                                                       |
+| --------------------- | -------------------------------------------------------------------- |
+| `smoother_page`       | comparison of smoothers                                              |
+| `redesign_page`       | Pareto front of a redesign                                           |
+| `size_picture`        | chart of cam size: pressure angle and curvature over the base radius |
+| `mechanism_figures`   | slider-crank and eccentric cams: friction energy, torque, workspaces |
+| `inspection_pictures` | deviation of a measured cam, normal force and contact pressure       |
+
+Imported by `commands`.
+"""
