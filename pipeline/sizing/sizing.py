@@ -68,6 +68,9 @@ _HALF_WIDTHS = 1.25
 """Half-widths of the contact that a face has beside it: the tolerances press more than nominal."""
 _STEP, _STEPS, _HALVINGS = 1.1, 16, 12
 """Factor and number of the steps by which a cam grows: to 4.6 times the radius, 2e-5 of it left."""
+_NOT_RAISED: Mapping[str, float] = {}
+_MARGIN = 1.001
+"""The ratio of preview and screening changes slightly with the radius."""
 _STIFFER, _LARGER, _TRIES = 1.1, 1.01, 8
 """Factors of preload or rate and of radius by which a failing preview is repeated; how often."""
 
@@ -177,15 +180,23 @@ class _Search:
             spring, shape, (text, case, trial) = self._stiffened(
                 exact, (spring, shape, (text, case, trial))
             )
+        raised: dict[str, float] = {}
         for _ in range(_TRIES):
             # the preview adds tolerances, surge, elastic stem and guides to the screening
-            small = self._failing_alone(trial, shape, spring)
+            screened = self._trial(shape, spring)
+            small = _failing(trial, _GROWTH) if PRIME in self.opened.gaps else ()
             if PRELOAD in self.opened.gaps and _failing(trial, _HELD):
                 spring = more_preload(spring, _STIFFER, _titles(_failing(trial, _HELD)))
-                shape = self._grown(exact, spring)
-            elif small:
-                larger = self.shapes.enlarged(shape, _LARGER * shape.prime_radius, _titles(small))
-                shape, _ = self._fitted(larger, spring)
+                shape = self._grown(exact, spring, raised)
+            elif small and not _failing(screened, _GROWTH):
+                raised |= _raised(small, screened)
+                larger = self._grown(exact, spring, raised)
+                if not larger.prime_radius > shape.prime_radius:
+                    prime = _LARGER * shape.prime_radius
+                    larger, _ = self._fitted(
+                        self.shapes.enlarged(shape, prime, _titles(small)), spring
+                    )
+                shape = larger
             else:
                 break
             text, case, trial = self._judged(shape, spring)
@@ -291,17 +302,22 @@ class _Search:
             trial = self._trial(shape, spring)
         return shape, trial
 
-    def _grown(self, shape: Shape, spring: ChosenSpring) -> Shape:
-        """The smallest shape from this one on that passes; the shape itself if none does."""
+    def _grown(
+        self, shape: Shape, spring: ChosenSpring, raised: Mapping[str, float] = _NOT_RAISED
+    ) -> Shape:
+        """The smallest shape from this one on that passes; the shape itself if none does.
+
+        raised: utilisation in the preview over that of the screening, by check.
+        """
         self.progress.stage("contact")
         least, trial = self._fitted(shape, spring)
-        failing = _failing(trial, _GROWTH)
+        failing = _failing(trial, _GROWTH, raised)
         if PRIME not in self.opened.gaps or not failing:
             return least
         low, passed = shape.prime_radius, None
         for _ in range(_STEPS):
             high = _STEP * low
-            passed = self._passing(shape, high, failing, spring)
+            passed = self._passing(shape, high, failing, spring, raised)
             if passed is not None:
                 break
             low = high
@@ -309,26 +325,26 @@ class _Search:
             return least
         for _ in range(_HALVINGS):
             middle = 0.5 * (low + high)
-            smaller = self._passing(shape, middle, failing, spring)
+            smaller = self._passing(shape, middle, failing, spring, raised)
             low, high, passed = (
                 (middle, high, passed) if smaller is None else (low, middle, smaller)
             )
         return passed
 
     def _passing(
-        self, shape: Shape, prime: float, failing: tuple[Check, ...], spring: ChosenSpring
+        self,
+        shape: Shape,
+        prime: float,
+        failing: tuple[Check, ...],
+        spring: ChosenSpring,
+        raised: Mapping[str, float],
     ) -> Shape | None:
         larger = self.shapes.enlarged(shape, prime, _titles(failing))
         try:
             larger, trial = self._fitted(larger, spring)
         except CamError:
             return None
-        return None if _failing(trial, _GROWTH) else larger
-
-    def _failing_alone(self, trial: Trial, shape: Shape, spring: ChosenSpring) -> tuple[Check, ...]:
-        """Failed checks of a preview that a larger cam can pass, where the screening has none."""
-        failing = _failing(trial, _GROWTH) if PRIME in self.opened.gaps else ()
-        return () if _failing(self._trial(shape, spring), _GROWTH) else failing
+        return None if _failing(trial, _GROWTH, raised) else larger
 
     def _judged(self, shape: Shape, spring: ChosenSpring) -> tuple[str, Case, Trial]:
         """Text, complete case and preview of a shape."""
@@ -340,11 +356,28 @@ class _Search:
         return text, case, solve(case, contour, tier=Tier.PREVIEW, torques=self.torques)
 
 
-def _failing(trial: Trial, ids: tuple[str, ...]) -> tuple[Check, ...]:
-    return tuple(
-        each for each in trial.checks
-        if each.id in ids and each.must_have and each.status == "fail"
-    )  # fmt: skip
+def _failing(
+    trial: Trial, ids: tuple[str, ...], raised: Mapping[str, float] = _NOT_RAISED
+) -> tuple[Check, ...]:
+    """Must-have checks that fail, or would at a utilisation raised by a factor."""
+
+    def fails(check: Check) -> bool:
+        factor = raised.get(check.id, 1.0) if check.status == "pass" else 1.0
+        return check.status == "fail" or (
+            factor > 1.0 and (check.utilisation or 0.0) * factor > 1.0
+        )
+
+    return tuple(each for each in trial.checks if each.id in ids and each.must_have and fails(each))
+
+
+def _raised(failing: tuple[Check, ...], screened: Trial) -> dict[str, float]:
+    """Utilisation of checks in the preview over that of the screening, by id."""
+    below = {each.id: each.utilisation for each in screened.checks}
+    return {
+        each.id: _MARGIN * each.utilisation / share
+        for each in failing
+        if each.utilisation and (share := below.get(each.id))
+    }
 
 
 def _unlimited(check: Check) -> bool:

@@ -155,7 +155,7 @@ def test_the_radius_grows_until_the_contact_holds() -> None:
         "E": "210 GPa", "nu": 0.3, "yield_strength": "900 MPa", "density": "7850 kg/m^3",
         "endurance_pressure": "640 MPa", "source": "made up",
     }  # fmt: skip
-    case["cam"]["material"] = "soft"
+    case["cam"] |= {"material": "soft", "offset": "0 mm"}
     case["limits"]["edge_factor"] = 1.0
     case = without(case, "limits.target_life")
     sizing = sized(parse_open_case(tomli_w.dumps(case)))
