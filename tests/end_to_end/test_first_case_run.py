@@ -17,10 +17,12 @@ from camwright.pipeline.results.run_reader import read_run
 from camwright.pipeline.run import run_case
 
 LEAST_MARGIN = 0.05
+PREVIEWED = ("torque", "harmonics", "compressor", "pump")
+"""Machines that test_first_case.py previews; the press stands for them here."""
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("kind", [kind for kind in KINDS if kind not in PREVIEWED])
 def test_a_first_case_passes(tmp_path, monkeypatch, kind):
     monkeypatch.chdir(tmp_path)
     assert init("first", kind) == PASSED

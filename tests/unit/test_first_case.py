@@ -71,6 +71,14 @@ def test_a_cam_in_the_measured_torque_of_the_model(tmp_path, balancing, kind):
     holds(solve(case, trial.contour, tier=Tier.PREVIEW, torques=torques, corners=False))
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize("kind", ["torque", "harmonics", "compressor", "pump"])
+def test_a_cam_of_another_machine(tmp_path, kind):
+    case = written(tmp_path, kind)
+    assert case.period.cycles == 1
+    holds(preview_case(case))
+
+
 def test_the_machine_is_the_same_in_each_kind(tmp_path):
     cases = [written(tmp_path, kind) for kind in KINDS]
     for part in ("spring", "cam", "camshaft", "roller", "follower", "guides", "materials"):
