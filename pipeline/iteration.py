@@ -280,7 +280,10 @@ def _constrained(task: _Task) -> Iteration:
         conflict = None
         if last and not design.feasible:
             task.progress.stage("conflicting limits")
-            conflict = infeasibility(problem, roller_problems(case, torques, problem))
+            margin = case.smoothing.correction_margin
+            after = corrected(problem, design, comparisons) if margin > 0.0 else problem
+            rollers = roller_problems(case, torques, after)
+            conflict = infeasibility(problem, rollers, after, margin)
             record["infeasible"] = conflict.as_record()
         task.sink.keep(trial)
         points.append(TrialPoint.of(trial))

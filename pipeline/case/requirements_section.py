@@ -53,7 +53,9 @@ class Smoothing(Section):
     and loads of 1 -+ robust_speed and 1 -+ robust_load. The phase is that of the cam on its shaft,
     in cam angle. The optimisation starts from `starts` points, all but one random, to find several
     local optima. coefficients is the number of splines of the turn; where it is missing it rises
-    until the ripple changes by less than ripple_convergence.
+    until the ripple changes by less than ripple_convergence. Where limits conflict, the relaxations
+    keep them with the corrections of the nearest solved cam, greater by correction_margin; with a
+    margin of 0 those of the closed form alone are stated.
     """
 
     kind: Literal[
@@ -93,6 +95,7 @@ class Smoothing(Section):
     robust_speed: Annotated[float, In(at_least=0, below=1)] = 0.1
     robust_load: Annotated[float, In(at_least=0, below=1)] = 0.1
     jerk_weight: Annotated[float, In(at_least=0, at_most=1e3)] = 1e-5
+    correction_margin: Annotated[float, In(at_least=0, at_most=1)] = 0.03
     corners: bool = False
     source: Text = ""
 

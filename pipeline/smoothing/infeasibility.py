@@ -87,7 +87,12 @@ class _Candidate:
     factor_max: float = FACTOR_MAX
 
 
-def infeasibility(problem: Problem, rollers: Iterable[tuple[str, Problem]] = ()) -> Infeasibility:
+def infeasibility(
+    problem: Problem,
+    rollers: Iterable[tuple[str, Problem]] = (),
+    solved: Problem | None = None,
+    margin: float = 0.0,
+) -> Infeasibility:
     """Smallest set of conflicting limits, and feasible relaxations.
 
     A deletion filter determines the set: each limit in turn is dropped, and stays out where the
@@ -99,6 +104,9 @@ def infeasibility(problem: Problem, rollers: Iterable[tuple[str, Problem]] = ())
     ----------
     problem : Problem   without a feasible design
     rollers : iterable  name and problem of alternative rollers, the smallest first
+    solved : Problem    with the corrections of the nearest solved cam, in which the relaxations are
+                        feasible; None: the problem itself
+    margin : float      of those corrections, which change with the cam, and of each relaxation
 
     References
     ----------
@@ -109,13 +117,29 @@ def infeasibility(problem: Problem, rollers: Iterable[tuple[str, Problem]] = ())
     least_used_first = sorted(nearest.utilisation, key=lambda name: nearest.utilisation[name])
     conflict, _ = _conflicting(coarse, least_used_first)
     conflict.reverse()
-    tried = [_smallest(coarse, each) for each in _candidates(problem, conflict)]
+    wide = _with_margin(coarse if solved is None else coarsened(solved), margin)
+    least = _MARGIN + margin
+    known = problem if solved is None else solved
+    tried = [_smallest(wide, each, least) for each in _candidates(known, conflict)]
     relaxations = [item for item in tried if item is not None]
     if any(name.startswith("roller") for name in conflict):
-        relaxations += _from_catalogue(problem, rollers, relaxations)
+        wider = ((name, _with_margin(other, margin)) for name, other in rollers)
+        relaxations += _from_catalogue(problem, wider, relaxations)
     if TORQUE_REDUCTION.id in conflict:
-        relaxations += _less_reduction(coarse)
+        relaxations += _less_reduction(wide, least)
     return Infeasibility(tuple(conflict), tuple(sorted(relaxations, key=lambda item: item.factor)))
+
+
+def _with_margin(problem: Problem, margin: float) -> Problem:
+    """The problem with greater corrections."""
+    if margin == 0.0:
+        return problem
+    return replace(
+        problem,
+        scenarios=tuple(
+            replace(item, correction=item.correction.enlarged(margin)) for item in problem.scenarios
+        ),
+    )
 
 
 def _conflicting(
@@ -209,10 +233,10 @@ def _with_variable(name: str) -> Change:
     return change
 
 
-def _smallest(problem: Problem, tried: _Candidate) -> Relaxation | None:
-    """Smallest feasible change, a margin included; None up to the maximum factor."""
+def _smallest(problem: Problem, tried: _Candidate, margin: float) -> Relaxation | None:
+    """Smallest feasible change times a margin; None up to the maximum factor."""
     low, high = 1.0, tried.factor_max
-    if high <= _MARGIN or not _feasible(tried.change(problem, high**tried.direction)):
+    if high <= margin or not _feasible(tried.change(problem, high**tried.direction)):
         return None
     for _ in range(_BISECTIONS):
         middle = float(np.sqrt(low * high))
@@ -220,7 +244,7 @@ def _smallest(problem: Problem, tried: _Candidate) -> Relaxation | None:
             high = middle
         else:
             low = middle
-    factor = high * _MARGIN
+    factor = high * margin
 
     def change(other: Problem, size: float) -> Problem:
         return tried.change(other, size**tried.direction)
@@ -256,13 +280,13 @@ def _replaced_by(other: Problem) -> Change:
     return lambda _problem, _factor: other
 
 
-def _less_reduction(problem: Problem) -> list[Relaxation]:
+def _less_reduction(problem: Problem, margin: float) -> list[Relaxation]:
     """Torque ripple reduction feasible within the other limits: the greatest one required."""
     ripple = _ripple_over_ceilings(problem)
     best = None if ripple is None else synthesise(ripple)
     if best is None or not best.feasible:
         return []
-    factor = best.ripple * (1.0 - RESERVE) * _MARGIN
+    factor = best.ripple * (1.0 - RESERVE) * margin
 
     def less(required: float | None, size: float) -> float | None:
         return None if required is None else 1.0 - (1.0 - required) * size

@@ -158,6 +158,12 @@ class Ratings:
         return self.roller_radius if self.face is None else 0.5 * self.face.width
 
 
+_FACTORS = (
+    "contact", "guide_a", "guide_b", "rubbing_a", "rubbing_b", "jam", "edge_a", "edge_b", "hot_a",
+    "hot_b",
+)  # fmt: skip
+
+
 @dataclass(frozen=True, eq=False)
 class Correction:
     """Finite-element result over closed form at n equally spaced cam angles, each (n,).
@@ -208,6 +214,10 @@ class Correction:
             edge_a=one, edge_b=one, hot_a=one, hot_b=one, surge=zero, swept_surge=zero,
             elastic=zero, swept_speed=zero, elastic_speed=zero, rolling=zero, least_lift=zero,
         )  # fmt: skip
+
+    def enlarged(self, margin: float) -> Correction:
+        """A correction greater by a margin, of the corrected loads; surge and speeds are kept."""
+        return replace(self, **{name: getattr(self, name) * (1.0 + margin) for name in _FACTORS})
 
     def towards(self, other: Correction, share: float) -> Correction:
         """Linear interpolation to another correction, at the angles of that one."""

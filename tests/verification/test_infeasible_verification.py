@@ -8,12 +8,15 @@ import pytest
 from synthesis_ratings import rated
 
 from camwright.geometry.arrays import uniform_turn
-from camwright.pipeline.case.case_file import read_case
+from camwright.pipeline.case.case_file import read_case, with_values
 from camwright.pipeline.case.load_case_torque import engine_torques
+from camwright.pipeline.contact.tiers import Tier
+from camwright.pipeline.iteration import trials_of
 from camwright.pipeline.smoothing.constrained_synthesis import synthesise
+from camwright.pipeline.smoothing.fe_correction import rank, solved_ripple
 from camwright.pipeline.smoothing.infeasibility import infeasibility
 from camwright.pipeline.smoothing.problem_setup import problem_of, roller_problems
-from camwright.pipeline.smoothing.scenario import DesignVariables, Scenario
+from camwright.pipeline.smoothing.scenario import Correction, DesignVariables, Scenario
 from camwright.pipeline.smoothing.synthesis_problem import Problem
 
 CASES = Path(__file__).parents[2] / "cases"
@@ -55,6 +58,29 @@ def test_smallest_conflict_and_every_way_out():
     force = offered["static load rating of the roller"]
     nearer = force.change(given, 0.9 * force.factor)  # a tenth less is no way out any more
     assert not kept(nearer)
+
+
+@pytest.mark.slow
+def test_relaxations_hold_with_greater_corrections():
+    """Solved guides rub with 3 times the load of the closed form, and 1.05 times that later."""
+    given, margin = small(normal_force=330.0, travel=0.05), 0.05
+
+    def solved_to(factor):
+        none = Correction.none(given.points)
+        fix = replace(none, rubbing_a=factor * none.rubbing_a, rubbing_b=factor * none.rubbing_b)
+        return replace(
+            given, scenarios=tuple(replace(item, correction=fix) for item in given.scenarios)
+        )
+
+    solved, worst = solved_to(3.0), solved_to(3.0 * (1.0 + margin))
+    plain, corrected = infeasibility(given), infeasibility(given, solved=solved, margin=margin)
+    assert corrected.conflict == plain.conflict
+    assert infeasibility(given, margin=0.0).as_record() == plain.as_record()
+    size = {each.what: each.factor for each in plain.relaxations}
+    assert corrected.relaxations
+    for each in corrected.relaxations:
+        assert kept(each.change(worst, each.factor)), each.sentence
+        assert each.factor > size[each.what]
 
 
 @pytest.mark.parametrize(
@@ -110,3 +136,25 @@ def test_published_engine_behind_the_published_roller():
     assert any(item.what.startswith("roller track") for item in report.relaxations)
     for item in report.relaxations:
         assert kept(item.change(given, item.factor)), item.sentence
+
+
+@pytest.mark.slow
+def test_smallest_relaxation_passes_by_finite_elements():
+    """The redesigned GX120 cannot remove 62 % of the ripple; what the run offers instead it can."""
+    settings = {"smoothing.coefficients": 48, "smoothing.starts": 1}
+    case = read_case(CASES / "gx120-redesign.toml").with_positions(72)
+    case = with_values(case, {**settings, "limits.torque_reduction": 0.62})
+
+    def last_trial(case):
+        return trials_of(case, engine_torques(case), tier=Tier.CYCLE).final
+
+    conflict = last_trial(case).synthesis["infeasible"]
+    assert "torque_reduction" in conflict["conflict"]
+    smallest = conflict["relaxations"][0]
+    assert smallest["what"] == "torque ripple reduction"
+    # as printed, to four digits
+    trial = last_trial(
+        with_values(case, {"limits.torque_reduction": float(f"{smallest['to']:.4g}")})
+    )
+    assert trial.synthesis["feasible"]
+    assert rank(trial.checks, solved_ripple(trial.cycles)).violation == 0.0
