@@ -15,6 +15,7 @@ def _forces(turn: Turn) -> Figure | None:
         turn, ("spring_force_N", "spring"), ("inertia_force_N", "inertia"),
         ("side_force_N", "side force"), ("guide_friction_A_N", "friction A"),
         ("guide_friction_B_N", "friction B"), ("viscous_force_N", "viscous drag"),
+        ("applied_force_N", "weight and external force"),
     )  # fmt: skip
     return angle_figure(
         turn, "forces", "Force components on the follower",

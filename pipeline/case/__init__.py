@@ -20,6 +20,7 @@ In the order of the calculation:
 | `consistency`          | consistency of the sections with one another |                  |
 | `error_text`           | first error in one line: field, value, limit |                  |
 | `cards`                | cards of materials and parts, catalogues     |                  |
+| `external_load`        | external force and weight of the follower    | F_e, N           |
 | `given_lift`           | lift of a case without engine                | s, m             |
 | `keys`                 | every key: meaning, unit, range, default     |                  |
 | `added_tables`         | tables that complete a case; missing keys    |                  |

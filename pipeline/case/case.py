@@ -223,6 +223,8 @@ def includes(case: Case) -> Iterator[tuple[str, str]]:
     yield from torque_files(case.torque)
     if isinstance(case.lift, LiftTable):
         yield "lift.file", case.lift.file
+    if case.follower.external_force_file is not None:
+        yield "follower.external_force_file", case.follower.external_force_file
     for k, load_case in enumerate(case.load_cases):
         if load_case.torque is not None:
             yield f"load_case[{k}].torque", load_case.torque

@@ -21,6 +21,7 @@ from camwright.pipeline.case.case import Case, includes, kept_as
 from camwright.pipeline.case.case_values import quantity_of, refused_as_written, steps_of
 from camwright.pipeline.case.consistency import check_sections
 from camwright.pipeline.case.error_text import Written, first_error
+from camwright.pipeline.case.external_load import external_force
 from camwright.pipeline.case.given_lift import given_lift
 from camwright.pipeline.case.renamed_keys import with_new_keys
 from camwright.pipeline.case.section import named
@@ -71,9 +72,13 @@ def tables_in(content: str | bytes) -> Tables:
 
 
 def completed(case: Case, folder: Path | None) -> Case:
-    """A case with the files that it includes, read from `folder`; a face too narrow is refused."""
+    """A case with the files that it includes, read from `folder`.
+
+    A face too narrow and a file without an external force are refused.
+    """
     case._folder = folder
     case._included = MappingProxyType(_read_includes(case, folder))
+    external_force(case)  # refuses a file without one
     if case.lift is not None and case.follower.face is not None:
         with refused_as_written(case):
             case.follower.face.contour(given_lift(case), case.cam)  # refuses a face too narrow

@@ -8,6 +8,7 @@ import numpy as np
 
 from camwright.pipeline.base.material import Material
 from camwright.pipeline.case.case import Case
+from camwright.pipeline.case.external_load import external_force
 from camwright.pipeline.case.limits import (
     OVERSPEED,
     SPEED_REDUCTION,
@@ -22,6 +23,7 @@ from camwright.pipeline.contact.hertz import contact_modulus
 from camwright.pipeline.contact.oil_film import Lubricant
 from camwright.pipeline.engine.crankshaft import Crankshaft
 from camwright.pipeline.follower.camshaft_loads import Camshaft
+from camwright.pipeline.follower.external_force import ExternalForce
 from camwright.pipeline.follower.flat_face import FlatFace
 from camwright.pipeline.follower.follower_forces import FollowerSystem
 from camwright.pipeline.follower.follower_kind import FollowerKind
@@ -84,6 +86,8 @@ class Machine:
     follower : FollowerKind    the part that touches the cam, roller or flat face
     mass : float               that moves with the follower, kg, spring_mass of it of the spring
     viscous_damping : float    of the guides, N s/m
+    gravity_along_axis : float component of g towards the cam, m/s2
+    external : ExternalForce   on the follower
     stem : Stem
     overhang_at_max_lift : float    guide A to roller centre or face, m
     stiffness : float          from cam to follower mass, N/m; None: of the members described
@@ -108,6 +112,8 @@ class Machine:
     mass: float
     spring_mass: float
     viscous_damping: float
+    gravity_along_axis: float
+    external: ExternalForce
     stem: Stem
     overhang_at_max_lift: float
     stiffness: float | None
@@ -224,7 +230,7 @@ class Machine:
 
     @property
     def system(self) -> FollowerSystem:
-        """Spring, mass and friction of the follower."""
+        """Spring, mass, friction and external force of the follower."""
         return FollowerSystem(
             mass=self.mass,
             spring=self.spring,
@@ -232,6 +238,8 @@ class Machine:
             overhang_at_max_lift=self.overhang_at_max_lift,
             friction_a=self.friction.nominal[0],
             friction_b=self.friction.nominal[1],
+            gravity_along_axis=self.gravity_along_axis,
+            external=self.external,
             viscous_damping=self.viscous_damping,
             face_friction=self.follower.side_friction,
         )
@@ -304,6 +312,8 @@ def machine(case: Case, state: LoadCase) -> Machine:
         mass=follower.mass,
         spring_mass=case.spring_mass,
         viscous_damping=follower.viscous_damping,
+        gravity_along_axis=follower.gravity_along_axis,
+        external=external_force(case),
         stem=stem,
         overhang_at_max_lift=follower.overhang_at_max_lift,
         stiffness=follower.stiffness,

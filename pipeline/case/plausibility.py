@@ -18,6 +18,7 @@ from camwright.geometry.energy import spring_deflection
 from camwright.pipeline.base.units import in_unit, shown
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_values import text_of, value_of
+from camwright.pipeline.case.external_load import closing_preload
 from camwright.pipeline.case.load_case_torque import pressure
 from camwright.pipeline.engine.crankshaft import energy_swing
 from camwright.pipeline.engine.pressure_trace import PressureTable
@@ -118,7 +119,7 @@ def _spring_findings(case: Case, torques: Mapping[str, Torque]) -> Iterator[Find
     if torque is None or chosen:
         return
     swing = case.mechanism.compensation * float(np.ptp(energy_swing(torque.total, torque.span)))
-    lift = float(spring_deflection(swing, spring.rate, spring.preload))
+    lift = float(spring_deflection(swing, spring.rate, closing_preload(case)))
     of_rate, of_radius = 0.5 * spring.rate * lift**2 / swing, lift / case.cam.prime_radius
     of_torque = f"of the energy swing of the torque, {shown(swing, 'J')}"
     rate = f"spring.rate = {text_of(case, 'spring.rate')}"

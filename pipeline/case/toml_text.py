@@ -26,7 +26,7 @@ _FieldValue: TypeAlias = (
 )
 
 _HEADING = "# Camwright case, resolved: every default is written out.\n"
-_FILE_KEYS = ("file", "torque", "motored_file")
+_FILE_KEYS = ("file", "torque", "motored_file", "external_force_file")
 
 
 def to_toml(case: Section, renamed: Mapping[str, str]) -> str:

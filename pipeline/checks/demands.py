@@ -28,14 +28,21 @@ def common_reduction(
     return np.asarray(1.0 - (1.0 - reduction) * ((1.0 - common) / (1.0 - required)))
 
 
-def unloading(inertia: Array, spring: Array) -> Array:
-    """Unloading inertia force over spring force: -m w^2 s'' / F_s."""
-    return -inertia / spring
+def unloading(inertia: Array, closing: Array) -> Array:
+    """Unloading inertia force over closing force: -m w^2 s'' / F_c."""
+    return -inertia / closing
 
 
-def force_left(spring: Array, inertia: Array, least_spring: float | Array) -> Array:
-    """Sum of spring and inertia force over the least spring force, without friction."""
-    return (spring + inertia) / least_spring
+def greatest_unloading(inertia: Array, closing: Array) -> Array:
+    """As `unloading`, >= 0 and real; infinite where no force closes the contact at rest."""
+    closed = np.where(closing == 0.0, np.nan, closing)
+    use = np.maximum(unloading(inertia, closed), 0.0)
+    return np.where(closing <= 0.0, np.inf, use)
+
+
+def force_left(closing: Array, inertia: Array, least_spring: float | Array) -> Array:
+    """Sum of closing and inertia force over the least spring force, without friction."""
+    return (closing + inertia) / least_spring
 
 
 def jam_outward(lift_slope: Array, jam_index: Array) -> Array:

@@ -47,27 +47,29 @@ _TIE = 1e-9  # relative difference up to which two forces are equal, and one is 
 def contact_force_margin(solution: Solution) -> Demand:
     """Minimum contact force over the least spring force."""
     worst = least(solution.cycles, lambda c: c.loads.normal_force / c.least_spring_force)
-    return Demand(worst.value, solution.machine.limits[CONTACT_FORCE_MARGIN], worst)
+    limit = solution.machine.limits[CONTACT_FORCE_MARGIN]
+    return Demand(worst.value, limit, worst, note=_lifts_off(solution.cycles))
 
 
 @check(
     JUMP,
-    title="Maximum unloading inertia force / spring force",
-    method="greatest -m w^2 s'' / F_s over the turn; the jump speed is w / sqrt of it",
+    title="Maximum unloading inertia force / closing force",
+    method="greatest -m w^2 s'' / F_c over the turn; the jump speed is w / sqrt of it",
     lift_can_help=True,
     tier=Tier.SCREENING,
     forecast=True,
-    formula="max(-m w^2 s'' / F_s) <= limits.jump over all load cases and angles; m: moving mass,"
-    " w: cam speed, s'': second derivative of the lift, F_s: spring force",
+    formula="max(-m w^2 s'' / F_c) <= limits.jump over all load cases and angles; m: moving mass,"
+    " w: cam speed, s'': second derivative of the lift, F_c: closing force, of the spring with"
+    " weight and external force",
     reason="At 1 the inertia of the follower lifts it off the cam.",
     rests_on="",
 )
 def jump(solution: Solution) -> Demand:
-    """Maximum unloading inertia force over the spring force."""
+    """Maximum unloading inertia force over the closing force."""
     worst = greatest(
         solution.cycles,
-        lambda cycle: np.maximum(
-            demands.unloading(cycle.loads.inertia_force, cycle.loads.spring_force), 0.0
+        lambda cycle: demands.greatest_unloading(
+            cycle.loads.inertia_force, cycle.loads.closing_force
         ),
     )
     return Demand(worst.value, solution.machine.limits[JUMP], worst)
@@ -128,11 +130,12 @@ def jam_index_friction_max(solution: Solution) -> Demand:
     JUMP_SPEED,
     title="Machine speed at follower jump",
     unit="rpm",
-    method="least w sqrt(F_s / (-m w^2 s'')) where the follower decelerates, without friction",
+    method="least w sqrt(F_c / (-m w^2 s'')) where the follower decelerates, without friction",
     lift_can_help=True,
     tier=Tier.SCREENING,
-    formula="min(w sqrt(F_s / (-m w^2 s''))) >= limits.jump_speed times limits.overspeed; w: crank"
-    " speed, F_s: spring force, m: moving mass, s'': second derivative of the lift",
+    formula="min(w sqrt(F_c / (-m w^2 s''))) >= limits.jump_speed times limits.overspeed; w: crank"
+    " speed, F_c: closing force, of the spring with weight and external force, m: moving mass, s'':"
+    " second derivative of the lift",
     reason="An engine exceeds its governed speed, and damping and tolerances are not known"
     " closely.",
     load_cases=SPEED_RANGE,
@@ -152,12 +155,12 @@ def jump_speed(solution: Solution) -> Demand | None:
     CONTACT_FORCE_MARGIN,
     id="contact_at_overspeed",
     title="Minimum contact force / least spring force at overspeed",
-    method="least spring force plus m w^2 s'' at the overspeed, without friction",
+    method="least closing force plus m w^2 s'' at the overspeed, without friction",
     lift_can_help=True,
     tier=Tier.SCREENING,
-    formula="min(F_s + m w^2 s'') / F_0 >= limits.contact_force_margin at w of limits.overspeed;"
-    " F_s: spring force, m: moving mass, s'': second derivative of the lift, F_0: spring force at"
-    " minimum lift",
+    formula="min(F_c + m w^2 s'') / F_0 >= limits.contact_force_margin at w of limits.overspeed;"
+    " F_c: closing force, of the spring with weight and external force, m: moving mass, s'': second"
+    " derivative of the lift, F_0: spring force at minimum lift",
     reason="The synthesis keeps the contact by this closed form; the sweep adds friction"
     " and surge.",
     load_cases=SPEED_RANGE,
@@ -171,7 +174,7 @@ def contact_at_overspeed(solution: Solution) -> Demand:
     def force(cycle: Cycle) -> Array:
         scale, loads = (over / cycle.machine.crank_speed) ** 2, cycle.loads
         inertia, held = scale * loads.inertia_force, cycle.least_spring_force
-        return np.asarray(demands.force_left(loads.spring_force, inertia, held))
+        return np.asarray(demands.force_left(loads.closing_force, inertia, held))
 
     worst = least(solution.cycles, force)._replace(load_case="")
     return Demand(worst.value, limit, worst)
@@ -186,11 +189,11 @@ def contact_at_overspeed(solution: Solution) -> Demand:
     lift_can_help=True,
     part="spring",
     formula="min N(w, theta) / F_0 >= limits.contact_force_margin over all speeds from standstill"
-    " to over-speed; N = (P + k s + m w^2 s'' + c w s' + F_w) / ((1 - j) cos(alpha)), F_0: spring"
-    " force at minimum lift, F_w: sum over the harmonics of k (phi cot phi - 1) s_h,"
-    " phi = pi h w / w_1 sqrt(1 - 2 i zeta), j: jam index with the sign of the motion, w_1: first"
-    " natural frequency of the spring, zeta: spring.design.damping_ratio; if the case does not"
-    " state it, 0.01 with an error bar down to 0.002",
+    " to over-speed; N = (P + k s + F_e + m w^2 s'' + c w s' + F_w) / ((1 - j) cos(alpha)), F_e:"
+    " weight and external force, F_0: spring force at minimum lift, F_w: sum over the harmonics of"
+    " k (phi cot phi - 1) s_h, phi = pi h w / w_1 sqrt(1 - 2 i zeta), j: jam index with the sign of"
+    " the motion, w_1: first natural frequency of the spring, zeta: spring.design.damping_ratio; if"
+    " the case does not state it, 0.01 with an error bar down to 0.002",
     reason="Between the load cases a harmonic of the lift may meet a natural frequency of"
     " the spring and lift the follower off the cam.",
     load_cases=SPEED_RANGE,
@@ -244,6 +247,18 @@ def elastic_contact(solution: Solution) -> Demand:
         note="; ".join(each for each in (note, _flights(histories)) if each),
         method="one mass on the stiffness of the stem, without friction: harmonic response with the"
         f" surge of the spring over the speed range; load cases by {methods}",
+    )
+
+
+def _lifts_off(cycles: Sequence[Cycle]) -> str:
+    """Least axial force of a follower that leaves the cam, and the preload that keeps it on."""
+    worst = least(cycles, lambda cycle: cycle.loads.required_force)
+    if not worst.value < 0.0:
+        return ""
+    preload = max(each.machine.spring.preload for each in cycles) - worst.value
+    return (
+        f"the follower leaves the cam: axial force without friction {shown(worst.value, 'N')};"
+        f" a preload above {shown(preload, 'N')} keeps it on the cam"
     )
 
 
@@ -319,8 +334,9 @@ def _jump_speed(cycle: Cycle) -> Array:
     """Crank speed of follower jump by cam angle (n,), rad/s; NaN where not known."""
     pull = -cycle.loads.inertia_force
     slows = pull > _TIE * np.abs(pull).max()  # in a dwell the acceleration is round-off
-    ratio = np.sqrt(cycle.loads.spring_force / np.where(slows, pull, 1.0))
-    free = np.where(np.isnan(pull), np.nan, np.inf)
+    closing = cycle.loads.closing_force
+    ratio = np.sqrt(np.where(closing < 0.0, 0.0, closing) / np.where(slows, pull, 1.0))
+    free = np.where(np.isnan(pull), np.nan, np.where(closing <= 0.0, 0.0, np.inf))
     return np.where(slows, cycle.machine.crank_speed * ratio, free)
 
 

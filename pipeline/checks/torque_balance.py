@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
@@ -175,14 +175,14 @@ def contact_torque(solution: Solution) -> Demand:
     CONTACT_TORQUE,
     id="contact_work",
     title="Cam work from the contact pressures vs. friction heat",
-    method="work of the pressures over the turn less that of spring and inertia, against the heat"
-    " of guides and face, over the energy exchanged",
+    method="work of the pressures over the turn less that of spring, inertia, weight and external"
+    " force, against the heat of guides and face, over the energy exchanged",
     evidence=True,
     tier=Tier.CYCLE,
     moved_by_tolerance=False,
-    formula="|integral of (T_p - (F_s + F_i) s') - Q| / (integral of |T| / 2) <= c; T_p: cam torque"
-    " of the contact pressures, F_s, F_i: spring and inertia force, Q: friction heat of guides and"
-    " face over a turn, c: limits.contact_torque",
+    formula="|integral of (T_p - (F_c + F_i) s') - Q| / (integral of |T| / 2) <= c; T_p: cam torque"
+    " of the contact pressures, F_c: spring force, weight and external force, F_i: inertia force,"
+    " Q: friction heat of guides and face over a turn, c: limits.contact_torque",
     reason="Energy must not appear or vanish between the contact and the guides.",
 )
 def contact_work(solution: Solution) -> Demand:
@@ -230,12 +230,12 @@ def _integral(values: Array, at: Array) -> Array:
 @check(
     FRICTION_BALANCE,
     title="Friction work vs. heat in guides and face",
-    formula="|integral of (T - (F_s + F_i) s') - Q| / Q <= c; T: cam torque, F_s, F_i: spring and"
-    " inertia force, s': slope of the lift, Q: friction heat of guides and face over a"
-    " turn, c: limits.friction_balance",
+    formula="|integral of (T - (F_c + F_i) s') - Q| / Q <= c; T: cam torque, F_c: spring force,"
+    " weight and external force, F_i: inertia force, s': slope of the lift, Q: friction heat of"
+    " guides and face over a turn, c: limits.friction_balance",
     reason="Work that the guides do not dissipate would be an error of the forces.",
-    method="cam work less work of spring and inertia, against friction force times sliding distance"
-    " of guides and face, relative",
+    method="cam work less work of spring, inertia, weight and external force, against friction"
+    " force times sliding distance of guides and face, relative",
     evidence=True,
     moved_by_tolerance=False,
 )
@@ -243,7 +243,17 @@ def friction_balance(solution: Solution) -> Demand:
     """Difference of friction work from heat of guides and face, relative."""
     worst = worst_case(solution.cycles, _heat_mismatch, integral=False)
     allowed = solution.machine.limits[FRICTION_BALANCE]
-    return Demand(worst.value, allowed, worst, note="; ".join(map(_loss, solution.cycles)))
+    words = (*map(_loss, solution.cycles), *_applied_work(solution.cycles))
+    return Demand(worst.value, allowed, worst, note="; ".join(words))
+
+
+def _applied_work(cycles: Sequence[Cycle]) -> tuple[str, ...]:
+    """Net work of an external force that depends on the angle, in words; none of a constant one."""
+    if not cycles[0].machine.external.varies:
+        return ()
+    work = cycles[0].loads.applied_work
+    way = "takes" if work >= 0.0 else "gives"
+    return (f"the external force {way} {shown(abs(work), 'J', 3)} a cam turn",)
 
 
 def _stored(cycle: Cycle) -> float:
@@ -273,9 +283,9 @@ def _loss(cycle: Cycle) -> str:
 
 
 def _friction_loss(cycle: Cycle, torque: Array) -> float:
-    """Work of a cam torque (n,) over a turn less that of spring and inertia, J."""
+    """Work of a cam torque (n,) over a turn less that of closing and inertia force, J."""
     loads, slope = cycle.loads, _touching_slope(cycle)
-    spent = torque - (loads.spring_force + loads.inertia_force) * slope
+    spent = torque - (loads.closing_force + loads.inertia_force) * slope
     return FULL_TURN / len(slope) * float(np.sum(spent))
 
 

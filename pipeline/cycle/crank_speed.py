@@ -89,7 +89,9 @@ def follower_inertia(pitch: FollowerPath, mass: float, gear_ratio: float, count:
 def mechanism_torque(
     pitch: FollowerPath, system: FollowerSystem, gear_ratio: float, count: int
 ) -> MechanismTorque:
-    """Torque of spring and friction on the crank; J(theta) includes the follower's inertia.
+    """Torque of spring, weight, external force and friction on the crank.
+
+    J(theta) includes the inertia of the follower.
 
     Friction depends on the contact force, and thus on speed and acceleration of the crank.
     """
@@ -296,12 +298,13 @@ def consistency(
     loads = follower_loads(pitch, system, machine.speed / ratio, theta)
     findings = []
     if demand is not None and demand.any():
-        stored = machine.spring.energy(pitch.lift.stroke)
-        findings.append(ratio_finding(demand, loads.spring_force * loads.lift_slope, ratio))
+        stored = machine.spring.energy(pitch.lift.stroke) + system.dead_load * pitch.lift.stroke
+        storing = loads.spring_force + system.dead_load
+        findings.append(ratio_finding(demand, storing * loads.lift_slope, ratio))
         findings.append(energy_finding(demand, stored, span=torque.span))
     if study is not None:
         taken = -torque.span * float(study.after.mechanism_torque.mean())
-        findings.append(work_finding(loads.friction_loss, taken))
+        findings.append(work_finding(loads.friction_loss + loads.applied_work, taken))
     std = None if shaft is None else shaft.measured_speed_std
     if shaft is not None and std is not None and measured:
         balanced = torque.without_mean().total

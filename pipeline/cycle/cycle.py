@@ -265,6 +265,9 @@ class Cycle:
                 "stem_end_deflection", "um", "Transverse deflection of the stem at the contact"
             ): guides.roller_deflection,
         }
+        if loads.applied_force.any():
+            applied = Column("applied_force", "N", "Weight and external force on the follower")
+            columns[applied] = loads.applied_force
         if (crown := self.crown) is not None:
             columns |= {
                 contact_column(

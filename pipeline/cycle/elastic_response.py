@@ -46,6 +46,7 @@ def elastic_follower(machine: Machine) -> ElasticFollower:
         machine.spring.rate,
         machine.spring.preload,
         machine.damping_ratio,
+        machine.system.load,
     )
 
 

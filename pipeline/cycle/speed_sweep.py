@@ -158,7 +158,7 @@ def swept_forces(
     speed = np.array([cam_speed])
     moving = follower.resonant.stiffness(speed).moving
     surge = np.broadcast_to(follower.resonant.surge(moving)[0], ANGLES)
-    rigid = follower.spring + cam_speed**2 * follower.inertia
+    rigid = follower.closing + cam_speed**2 * follower.inertia
     return SweptForces(surge, follower.elastic(speed[:, None], moving)[0] - rigid)
 
 
@@ -280,14 +280,15 @@ class _Resonant:
 class _Follower:
     """Follower on its cam: forces (n,) that depend on the speed by powers alone.
 
-    inertia, viscous: per square and per first power of the cam speed; gain: normal force over
-    axial force without friction; arm: cam torque over that force, m.
+    closing: spring, weight and external force; inertia, viscous: per square and per first power of
+    the cam speed; gain: normal force over axial force without friction; arm: cam torque over that
+    force, m.
     """
 
     machine: Machine
     resonant: _Resonant
     theta: Array
-    spring: Array
+    closing: Array
     inertia: Array
     viscous: Array
     gain: Array
@@ -304,7 +305,7 @@ class _Follower:
             machine=machine,
             resonant=_Resonant.of(machine.spring, machine.spring.design, pitch),
             theta=theta,
-            spring=loads.spring_force,
+            closing=loads.closing_force,
             # The coils have their own inertia in the surge.
             inertia=loads.inertia_force * machine.mass_without_spring / machine.mass,
             viscous=loads.viscous_force,
@@ -318,7 +319,7 @@ class _Follower:
         surge = self.resonant.surge(moving)
         speed = cam_speed[:, None]
         push = speed**2 * self.inertia
-        push += self.spring
+        push += self.closing
         if self.viscous.any():
             push += speed * self.viscous
         push += surge
@@ -351,6 +352,7 @@ class _Follower:
         joint = stem + 1.0j * damping * w
         force = behind * spectrum
         force[:, 0] += ANGLES * machine.spring.preload
+        force += np.fft.rfft(machine.system.applied_force(self.theta))
         force *= joint
         joint += behind
         force /= joint

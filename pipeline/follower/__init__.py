@@ -7,6 +7,7 @@ In the order of the calculation:
 | `stem_beam`             | stem as a chain of beam elements           | E I, N m2; m/N        |
 | `spring`                | helical spring, strength, buckling, surge  | k, N/m; P, N; tau, Pa |
 | `spring_size`           | rate and preload against follower jump     | k, N/m; P, N          |
+| `external_force`        | force of the machine on the follower       | F_e, N                |
 | `follower_forces`       | forces with guide friction                 | F_a, N; T, N m        |
 | `guide_contact`         | beam in bores with unilateral contact      | N; m                  |
 | `guide_reactions`       | reactions and pressures of two guides      | A, B, N; p, Pa        |

@@ -1,11 +1,11 @@
 """Follower with elastic stem: periodic response, and cam speed of the loss of contact.
 
 The cam displaces the foot by s; the mass m with displacement x rests on the stem, spring K and
-damper c, under the follower spring k with preload P:
+damper c, under the follower spring k with preload P and a load F_e of weight and machine:
 
-    m x'' + c_k x' + k x + P = N,    N = K (s - x) + c (s' - x'),    N >= 0.
+    m x'' + c_k x' + k x + P + F_e = N,    N = K (s - x) + c (s' - x'),    N >= 0.
 
-Derivatives by time; the foot has no mass. At rest the mass is displaced by -P/(K + k).
+Derivatives by time; the foot has no mass. At rest the mass is displaced by -(P + F_e)/(K + k).
 """
 
 from __future__ import annotations
@@ -17,6 +17,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from camwright.geometry.arrays import FULL_TURN, Array, finite, freeze, uniform_turn
 from camwright.geometry.errors import InputError
+from camwright.pipeline.follower.external_force import NO_FORCE, ExternalForce
 
 STEADY = 1e-12  # relative variation up to which a speed is constant
 
@@ -33,6 +34,7 @@ class ElasticFollower:
     spring_rate : float      k, N/m, >= 0
     preload : float          P, N, >= 0
     guide_damping : float    c_k between mass and frame, N s/m, >= 0
+    load : ExternalForce     F_e, weight and external force, towards the cam
     """
 
     mass: float
@@ -41,6 +43,7 @@ class ElasticFollower:
     preload: float
     damping: float = 0.0
     guide_damping: float = 0.0
+    load: ExternalForce = NO_FORCE
 
     def __post_init__(self) -> None:
         for name, unit in (("mass", "kg"), ("stiffness", "N/m")):
@@ -52,11 +55,17 @@ class ElasticFollower:
 
     @classmethod
     def with_damping_ratio(
-        cls, mass: float, stiffness: float, spring_rate: float, preload: float, ratio: float
+        cls,
+        mass: float,
+        stiffness: float,
+        spring_rate: float,
+        preload: float,
+        ratio: float,
+        load: ExternalForce = NO_FORCE,
     ) -> ElasticFollower:
         """With the damping of the stem as a share of critical damping."""
         critical = 2.0 * np.sqrt(mass * (stiffness + spring_rate))
-        return cls(mass, stiffness, spring_rate, preload, ratio * float(critical))
+        return cls(mass, stiffness, spring_rate, preload, ratio * float(critical), load=load)
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,8 +87,13 @@ class Response:
         return bool((self.contact_force < 0.0).any())
 
 
-def quasi_static(lift: ArrayLike, follower: ElasticFollower) -> Array:
-    """Displacement without inertia and damping, (K s - P)/(K + k), m.
+def quasi_static(lift: ArrayLike, follower: ElasticFollower, theta: ArrayLike = 0.0) -> Array:
+    """Displacement without inertia and damping, (K s - P - F_e)/(K + k), m.
+
+    Parameters
+    ----------
+    lift : array (...)    s, m
+    theta : array (...)   cam angle of the load, rad
 
     References
     ----------
@@ -87,7 +101,8 @@ def quasi_static(lift: ArrayLike, follower: ElasticFollower) -> Array:
     """
     s = finite("lift", lift)
     total = follower.stiffness + follower.spring_rate
-    return np.asarray((follower.stiffness * s - follower.preload) / total)
+    held = follower.preload + follower.load.at(np.asarray(theta, dtype=float))
+    return np.asarray((follower.stiffness * s - held) / total)
 
 
 def harmonic_response(lift: Array, cam_speed: float, follower: ElasticFollower) -> Response:
@@ -116,6 +131,7 @@ def harmonic_response(lift: Array, cam_speed: float, follower: ElasticFollower) 
     # Solved for the compression s - x: the difference would lose digits on a stiff stem.
     drive = (f.mass * w**2 + f.guide_damping * w + f.spring_rate) * foot
     drive[0] += n * f.preload
+    drive += np.fft.rfft(f.load.at(uniform_turn(n)))
     short = drive / dynamic
 
     def back(spectrum: NDArray[np.complex128]) -> Array:
@@ -155,7 +171,8 @@ def collocation_response(lift: Array, cam_speed: Array, follower: ElasticFollowe
     foot_speed = rate @ s
     foot_acceleration = rate @ foot_speed
     drive = f.mass * foot_acceleration + f.guide_damping * foot_speed + f.spring_rate * s
-    short = np.asarray(np.linalg.solve(system, drive + f.preload), dtype=float)
+    held = f.preload + f.load.at(uniform_turn(s.size))
+    short = np.asarray(np.linalg.solve(system, drive + held), dtype=float)
     short_speed = rate @ short
     return Response(
         theta=uniform_turn(s.size),

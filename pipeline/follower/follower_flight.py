@@ -37,7 +37,7 @@ class Bounce:
     """Motion with flights and landings from an initial state; arrays (steps,), SI.
 
     theta: cam angle, may exceed a turn; `energy`: kinetic energy plus that of both springs less the
-    work of the cam, constant without damping; `dissipated`: energy of the dampers.
+    work of cam and load, constant without damping; `dissipated`: energy of the dampers.
     """
 
     theta: Array
@@ -135,7 +135,7 @@ class _Phase(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class _Motion:
-    """Equations of motion of the state (x, v, work of the cam, losses, time)."""
+    """Equations of motion of the state (x, v, work of cam and load, losses, time)."""
 
     lift: Lift
     speed: PeriodicPolynomial
@@ -145,6 +145,11 @@ class _Motion:
         """Lift, m, and its rate, m/s."""
         s, slope = self.lift.derivatives(angle, 1)
         return float(s), float(slope) * float(self.speed(angle))
+
+    def load(self, angle: float) -> float:
+        """Weight and external force, N."""
+        load = self.follower.load
+        return float(load.at(np.asarray(angle))) if load.varies else float(load.force[0])
 
     def force(self, angle: float, state: Array) -> float:
         """Contact force, N."""
@@ -161,11 +166,13 @@ class _Motion:
             pace = 1.0 / float(self.speed(at))
             approach = u - y[1]
             push = f.stiffness * (s - y[0]) + f.damping * approach if touching else 0.0
+            load = self.load(at)
             lost = f.guide_damping * y[1] ** 2 + (f.damping * approach**2 if touching else 0.0)
             acceleration = (
-                push - f.spring_rate * y[0] - f.preload - f.guide_damping * y[1]
+                push - f.spring_rate * y[0] - f.preload - load - f.guide_damping * y[1]
             ) / f.mass
-            return [pace * y[1], pace * acceleration, pace * push * u, pace * lost, pace]
+            work = push * u - load * y[1]
+            return [pace * y[1], pace * acceleration, pace * work, pace * lost, pace]
 
         stem = np.sqrt(f.stiffness / f.mass)
         solution = scipy.integrate.solve_ivp(

@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from camwright.geometry.arrays import FULL_TURN, Array, Values, finite, freeze
 from camwright.geometry.errors import InputError
 from camwright.geometry.follower_path import FollowerPath
+from camwright.pipeline.follower.external_force import NO_FORCE, ExternalForce
 from camwright.pipeline.follower.spring import Spring
 
 REST = 1e-9  # slope over stroke, 1/rad, up to which a spline is in a dwell
@@ -104,14 +105,16 @@ class MovedMass(Protocol):
     @property
     def friction_b(self) -> float | Array: ...
     @property
-    def gravity_along_axis(self) -> float | Array: ...
-    @property
     def viscous_damping(self) -> float | Array: ...
     @property
     def face_friction(self) -> float | Array: ...
 
     def spring_force(self, lift: Array) -> Array:
         """Force (..., n) of the spring at a lift, N."""
+        ...
+
+    def applied_force(self, theta: Array) -> Array:
+        """Weight and external force at cam angles (n,), N, positive towards the cam."""
         ...
 
     def rubbing_factors(self, push: Push, overhang: Array, theta: Array) -> tuple[Array, Array]:
@@ -147,6 +150,7 @@ class FollowerSystem:
     overhang_at_max_lift : float    a, roller centre to middle of A at maximum lift, m, >= 0
     friction_a, friction_b : float  Coulomb coefficients, >= 0
     gravity_along_axis : float      component of g towards the cam, m/s2
+    external : ExternalForce        of the machine on the follower, towards the cam
     viscous_damping : float         c3 of the guides, N s/m, >= 0
     face_friction : float           of a flat face sliding on the cam, >= 0; 0: a roller
     rubbing : Rubbing               of guides of finite length, see `guided_loads`; None: of
@@ -165,6 +169,7 @@ class FollowerSystem:
     friction_a: float
     friction_b: float
     gravity_along_axis: float = 0.0
+    external: ExternalForce = NO_FORCE
     viscous_damping: float = 0.0
     face_friction: float = 0.0
     rubbing: Rubbing | None = None
@@ -188,6 +193,20 @@ class FollowerSystem:
         """Force (..., n) of the spring at a lift, N."""
         return self.spring.force(lift)
 
+    def applied_force(self, theta: Array) -> Array:
+        """Weight and external force at cam angles (n,), N, positive towards the cam."""
+        return self.load.at(theta)
+
+    @property
+    def load(self) -> ExternalForce:
+        """Weight and external force over the cam angle."""
+        return self.external.plus(self.mass * self.gravity_along_axis)
+
+    @property
+    def dead_load(self) -> float:
+        """Weight and mean external force, N, positive towards the cam."""
+        return self.load.mean
+
     def guide_factors(self, overhang: ArrayLike) -> tuple[Array, Array]:
         """|A|/F_t and |B|/F_t, see `levers`."""
         return levers(np.asarray(overhang, dtype=float), self.guide_spacing)
@@ -203,6 +222,7 @@ class FollowerSystem:
 class Loads:
     """Forces on the follower at each cam angle; arrays (n,), of many followers (..., n), SI.
 
+    `applied_force`: weight and external force, positive towards the cam.
     `tangential_force`: side force on the stem, signed like the pressure angle; `end_moment`: couple
     of the axial force of a face beside the stem axis, N m, positive towards the side force.
     `reaction_*`: reactions of point supports, both with the sign of the side force, although A acts
@@ -221,6 +241,7 @@ class Loads:
     velocity: Array
     acceleration: Array
     spring_force: Array
+    applied_force: Array
     inertia_force: Array
     axial_force: Array
     normal_force: Array
@@ -248,11 +269,23 @@ class Loads:
         """Rubbing load of the guides over axial force and side-load factor, over the turn."""
         return Rubbing(self.theta, self.rubbing_a, self.rubbing_b)
 
-    def frictionless_force(self, system: FollowerSystem) -> Array:
-        """Axial force without guide friction, N, of the system of these loads."""
-        weight = system.mass * system.gravity_along_axis
-        demand = self.spring_force + self.inertia_force + weight + self.viscous_force
-        return np.asarray(np.maximum(demand, 0.0))
+    @property
+    def closing_force(self) -> Array:
+        """Spring, weight and external force, N: towards the cam, the follower at rest."""
+        return np.asarray(self.spring_force + self.applied_force)
+
+    @property
+    def required_force(self) -> Array:
+        """Axial force without guide friction, N; negative: that of a cam that could pull.
+
+        The preload less its minimum is the preload at which the follower stays on the cam.
+        """
+        return np.asarray(self.closing_force + self.inertia_force + self.viscous_force)
+
+    @property
+    def frictionless_force(self) -> Array:
+        """Axial force without guide friction, N; 0 where the follower leaves the cam."""
+        return np.asarray(np.maximum(self.required_force, 0.0))
 
     @property
     def separated(self) -> NDArray[np.bool_]:
@@ -288,6 +321,14 @@ class Loads:
         return np.asarray(self.friction_force_a + self.friction_force_b)
 
     @property
+    def applied_work(self) -> float:
+        """Work of the cam against weight and external force over one turn, J.
+
+        That of the weight and of a constant force is zero.
+        """
+        return turn_integral(self.theta, self.applied_force * self.lift_slope)
+
+    @property
     def friction_loss(self) -> float:
         """Friction loss of both guides and of a face over one cam turn, J."""
         rubbing = self.friction_force * np.abs(self.lift_slope) + self.sliding_torque
@@ -315,7 +356,8 @@ def jump_speed(
 ) -> tuple[float, float]:
     """Minimum constant cam speed with loss of contact, and its cam angle.
 
-    Minimum of sqrt((P + k s + m g) / (-m s'')) over the angles with s'' < 0.
+    Minimum of sqrt((P + k s + F_e) / (-m s'')) over the angles with s'' < 0; F_e: weight and
+    external force.
 
     Parameters
     ----------
@@ -334,7 +376,7 @@ def jump_speed(
     """
     theta = finite("theta", theta)
     lift, _, bend = pitch.lift.derivatives(theta, 2)
-    hold = system.spring.force(lift) + system.mass * system.gravity_along_axis
+    hold = system.spring.force(lift) + system.applied_force(theta)
     throw = -system.mass * bend
     square = np.divide(
         np.maximum(hold, 0.0), throw, out=np.full_like(throw, np.inf), where=throw > 0.0
@@ -377,14 +419,14 @@ def follower_loads(
 
         F_a = F + sign(v) c |F_t|    hence    F_a = F / (1 - sign(v) c |tan(alpha)|)
 
-    with F = P + k s + m (a + g) + c3 v. On a flat face F_a acts along the stem at s' - e from its
-    axis, and mu F_a along the face in the direction of the cam surface: the guides carry the side
-    force mu F_a and the couple (s' - e) F_a, and the cam torque includes mu F_a (r + s). With an
-    offset, side force and motion have independent signs; in a dwell friction is zero. F <= 0: loss
-    of contact; all cam and guide forces are zero, spring and inertia force are those of the
-    prescribed lift. The denominator is bounded below by `JAM_FLOOR`: close to jamming the forces
-    stay finite, and `jam_index` alone indicates the jam. Neglected: the couple of the friction
-    forces about the stem axis, rolling friction.
+    with F = P + k s + F_e + m a + c3 v, F_e: weight and external force. On a flat face F_a acts
+    along the stem at s' - e from its axis, and mu F_a along the face in the direction of the cam
+    surface: the guides carry the side force mu F_a and the couple (s' - e) F_a, and the cam torque
+    includes mu F_a (r + s). With an offset, side force and motion have independent signs; in a
+    dwell friction is zero. F <= 0: loss of contact; all cam and guide forces are zero, spring and
+    inertia force are those of the prescribed lift. The denominator is bounded below by `JAM_FLOOR`:
+    close to jamming the forces stay finite, and `jam_index` alone indicates the jam. Neglected: the
+    couple of the friction forces about the stem axis, the weight across it, rolling friction.
 
     Parameters
     ----------
@@ -448,11 +490,10 @@ def loads_of(
     """
     lift, slope, push = motion.lift, motion.slope, motion.push
     acceleration = motion.bend * cam_speed**2 + slope * np.asarray(cam_acceleration)
-    spring_force = system.spring_force(lift)
+    spring_force, applied_force = system.spring_force(lift), system.applied_force(theta)
     inertia_force = system.mass * acceleration
     viscous_force = system.viscous_damping * slope * cam_speed
-    weight = system.mass * system.gravity_along_axis
-    demand = spring_force + inertia_force + weight + viscous_force
+    demand = spring_force + applied_force + inertia_force + viscous_force
 
     overhang = system.overhang_at_max_lift + (motion.highest - lift)
     on_points = push.on_points(*levers(overhang, system.guide_spacing))
@@ -473,6 +514,7 @@ def loads_of(
         velocity=slope * cam_speed,
         acceleration=acceleration,
         spring_force=spring_force,
+        applied_force=applied_force,
         inertia_force=inertia_force,
         axial_force=axial_force,
         normal_force=axial_force / np.cos(motion.pressure_angle),
@@ -497,21 +539,23 @@ def loads_of(
 def torque_on_cam(
     pitch: FollowerPath, system: FollowerSystem, theta: Array
 ) -> Callable[[Array, Array], Array]:
-    """Torque of spring and friction on the cam (n,), N m, by its speed and acceleration (n,).
+    """Torque of spring, weight, external force and friction on the cam (n,), N m.
+
+    By its speed and acceleration (n,).
 
     That of the inertia of the follower is left out; friction depends on the contact force and thus
     on the motion. As by `follower_loads`, without what does not change at the same cam angles.
     """
     still = follower_loads(pitch, system, 0.0, theta)
     slope, bend = still.lift_slope, pitch.lift.derivatives(theta, 2)[2]
-    weight = system.mass * system.gravity_along_axis
+    closing = still.closing_force
     share = share_left(slope, still.jam_index)
     arm = slope + system.face_friction * pitch.height(theta)
 
     def torque(speed: Array, cam_acceleration: Array) -> Array:
         inertia_force = system.mass * (bend * speed**2 + slope * cam_acceleration)
         viscous_force = system.viscous_damping * slope * speed
-        demand = still.spring_force + inertia_force + weight + viscous_force
+        demand = closing + inertia_force + viscous_force
         return np.asarray(inertia_force * slope - np.maximum(demand, 0.0) / share * arm)
 
     return torque

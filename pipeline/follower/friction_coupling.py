@@ -130,9 +130,7 @@ def guided_strokes(
         require_fit(stem, guides, each.overhang, knots)
     way = _joined([Push.of(s.pitch, s.system, s.theta) for s in strokes])
     slope = np.concatenate([each.lift_slope for each in points])
-    force = np.concatenate(
-        [each.frictionless_force(s.system) for each, s in zip(points, strokes, strict=True)]
-    )
+    force = np.concatenate([each.frictionless_force for each in points])
     sizes = [s.theta.size for s in strokes]
     friction_a = np.repeat([s.system.friction_a for s in strokes], sizes)
     friction_b = np.repeat([s.system.friction_b for s in strokes], sizes)

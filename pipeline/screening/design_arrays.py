@@ -26,6 +26,7 @@ from camwright.pipeline.case.requirements_section import LoadCase
 from camwright.pipeline.checks import demands
 from camwright.pipeline.contact.elliptic_contact import Ellipse, elliptic_contact
 from camwright.pipeline.contact.hertz import peak_pressure_square
+from camwright.pipeline.follower.external_force import ExternalForce
 from camwright.pipeline.follower.follower_forces import (
     REST,
     FollowerMotion,
@@ -58,13 +59,23 @@ class FollowerOfDesigns:
     friction_a: Array
     friction_b: Array
     viscous_damping: Array
+    gravity_along_axis: float
+    external: ExternalForce
     rubbing: tuple[Array, Array] | None = None
-    gravity_along_axis: float = 0.0
     face_friction: float = 0.0
 
     def spring_force(self, lift: Array) -> Array:
         """Force (m, n) of the springs at a lift (m, n), N."""
         return spring_force(self.preload, self.rate, lift)
+
+    def applied_force(self, theta: Array) -> Array:
+        """Weight and external force (m, n) at cam angles (n,), N."""
+        return np.asarray(self.mass * self.gravity_along_axis + self.external.at(theta))
+
+    @property
+    def closing_preload(self) -> Array:
+        """Preload, weight and mean external force (m, 1), N."""
+        return self.preload + (self.mass * self.gravity_along_axis + self.external.mean)
 
     def rubbing_factors(self, push: Push, overhang: Array, theta: Array) -> tuple[Array, Array]:  # noqa: ARG002
         """Rubbing load of guides A and B over axial force and side-load factor."""
@@ -110,8 +121,8 @@ class Turns:
 class Source:
     """What the lifts of a group of designs follow from.
 
-    torque (1 or m, N): smoothed engine torque, crank N m; energy (N,): of the spring over the turn,
-    J, of a synthesised lift; lift (N,): of the case file, m. Two are None.
+    torque (1 or m, N): smoothed engine torque, crank N m; energy (N,): stored over the turn, J,
+    of a synthesised lift; lift (N,): of the case file, m. Two are None.
     """
 
     torque: Array | None = None
@@ -162,7 +173,7 @@ class Designs:
         source = self.source
         if source.lift is not None:
             return source.lift[None, :]
-        rate, preload = self.value("spring.rate"), self.value("spring.preload")
+        rate, preload = self.follower.rate, self.follower.closing_preload
         if source.energy is not None:
             energy = source.energy[None, :]
         elif source.torque is not None:
@@ -268,6 +279,8 @@ class Designs:
             friction_a=self.value("guides.a.friction"),
             friction_b=self.value("guides.b.friction"),
             viscous_damping=self.value("follower.viscous_damping"),
+            gravity_along_axis=self.machine.gravity_along_axis,
+            external=self.machine.external,
         )
 
     @cached_property

@@ -14,6 +14,7 @@ from camwright.geometry.extrema import sampled_greatest, sampled_least
 from camwright.pipeline.base.units import in_unit
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_values import replaced
+from camwright.pipeline.case.external_load import closing_preload
 from camwright.pipeline.case.given_lift import given_lift
 from camwright.pipeline.case.load_case_torque import has_torque
 from camwright.pipeline.checks.check import Declaration
@@ -236,13 +237,13 @@ _SYNTHESES: dict[str, tuple[Case, Array]] = {}  # by the hash of the case, made 
 
 
 def synthesis(case: Case) -> tuple[Case, Array]:
-    """The case as its synthesis draws it, and the energy of its spring over the turn (N,), J."""
+    """The case as its synthesis draws it, and the energy that it stores over the turn (N,), J."""
     key = case.sha256
     if key not in _SYNTHESES:
         trial = preview_case(case, corners=False)
-        spring, lift = trial.case.spring, trial.lift.values
+        rate, preload = trial.case.spring.rate, closing_preload(trial.case)
         _SYNTHESES.clear()
-        _SYNTHESES[key] = trial.case, spring_energy(spring.preload, spring.rate, lift)
+        _SYNTHESES[key] = trial.case, spring_energy(preload, rate, trial.lift.values)
     return _SYNTHESES[key]
 
 

@@ -173,8 +173,8 @@ def _contact_force_margin(designs: Designs) -> Judged:
 def _jump(designs: Designs) -> Judged:
     worst = _worst(
         designs,
-        lambda turns: np.maximum(
-            demands.unloading(turns.loads.inertia_force, turns.loads.spring_force), 0.0
+        lambda turns: demands.greatest_unloading(
+            turns.loads.inertia_force, turns.loads.closing_force
         ),
     )
     return worst, designs.limit(JUMP)
@@ -184,7 +184,7 @@ def _jump_speed(designs: Designs) -> Judged:
     """From the greatest quotient of unloading inertia and spring force, at the crank speed."""
     speeds = []
     for turns in designs.turns:
-        use = demands.unloading(turns.loads.inertia_force, turns.loads.spring_force)
+        use = demands.greatest_unloading(turns.loads.inertia_force, turns.loads.closing_force)
         greatest = np.maximum(sampled_greatest(use), 0.0)
         with np.errstate(divide="ignore"):
             speeds.append(turns.crank_speed[:, 0] / np.sqrt(greatest))
@@ -197,7 +197,7 @@ def _contact_at_overspeed(designs: Designs) -> Judged:
 
     def force(turns: Turns) -> Array:
         inertia = (over / turns.crank_speed) ** 2 * turns.loads.inertia_force
-        return demands.force_left(turns.loads.spring_force, inertia, _least_spring_force(turns))
+        return demands.force_left(turns.loads.closing_force, inertia, _least_spring_force(turns))
 
     return _least(designs, force), designs.limit(CONTACT_FORCE_MARGIN)
 

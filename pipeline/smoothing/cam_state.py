@@ -35,14 +35,15 @@ class Jet(NamedTuple):
 def lift_jet(energy: tuple[Array, ...], variables: DesignVariables) -> Jet:
     """Lift and three derivatives from the stored energy and its derivatives, J/rad^k.
 
-    F_s = sqrt(P^2 + 2 k E), s = 2 E / (F_s + P), and E' = F_s s' differentiated.
+    F = sqrt(P^2 + 2 k E), s = 2 E / (F + P), and E' = F s' differentiated; P: preload, weight and
+    mean external force.
     """
     level, first, second, third = energy
-    force = np.sqrt(variables.preload**2 + 2.0 * variables.rate * level)
+    force = np.sqrt(variables.closing**2 + 2.0 * variables.rate * level)
     slope = first / force
     bend = (second - variables.rate * slope**2) / force
     return Jet(
-        lift=2.0 * level / (force + variables.preload),
+        lift=2.0 * level / (force + variables.closing),
         slope=slope,
         bend=bend,
         jerk=(third - 3.0 * variables.rate * slope * bend) / force,
@@ -235,11 +236,13 @@ def motion(jet: Jet, variables: DesignVariables, ratings: Ratings) -> Motion:
 class Forces(NamedTuple):
     """Forces of one scenario, N; loads of guides A and B over the axial force.
 
+    closing: spring, weight and external force.
     rubbing: normal loads of the friction in the guides, corrected; share: axial force without
     friction over axial force; surged: normal force with the surge of the spring, >= 0.
     """
 
     spring: Array
+    closing: Array
     inertia: Array
     axial: Array
     normal: Array
@@ -266,6 +269,7 @@ def forces(
         variables.preload * scenario.preload_factor
         + variables.rate * scenario.rate_factor * jet.lift
     )
+    closing = spring + (scenario.mass * scenario.gravity + scenario.external)
     inertia = scenario.mass * scenario.cam_speed**2 * jet.bend
     viscous = scenario.viscous_damping * scenario.cam_speed * jet.slope
     lever = levers(scenario.overhang + highest - jet.lift, scenario.guide_spacing)
@@ -273,10 +277,11 @@ def forces(
     rubbing = (guides[0].corrected(fix.rubbing_a), guides[1].corrected(fix.rubbing_b))
     jam = scenario.friction_a * rubbing[0] + scenario.friction_b * rubbing[1]
     share = 1.0 - np.sign(np.real(jet.slope)) * jam
-    axial, gain = (spring + inertia + viscous) / share, path.gain
+    axial, gain = (closing + inertia + viscous) / share, path.gain
     surged = (axial + fix.surge / share) * gain
     return Forces(
         spring=spring,
+        closing=closing,
         inertia=inertia,
         axial=axial,
         normal=axial * gain,

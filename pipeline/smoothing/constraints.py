@@ -159,7 +159,7 @@ def _contact_at_overspeed(at: Loads, limit: float) -> Array | None:
     if at.ratings.overspeed is None:
         return None
     thrown = _inertia(at, at.ratings.overspeed)
-    return 1.0 + limit - demands.force_left(at.force.spring, thrown, at.least_spring)
+    return 1.0 + limit - demands.force_left(at.force.closing, thrown, at.least_spring)
 
 
 def _jam_index_friction_max(at: Loads, limit: float) -> Array | None:
@@ -245,12 +245,14 @@ LOADS: tuple[Constraint[Loads], ...] = (
     ),
     Constraint("contact_at_overspeed", CONTACT_FORCE_MARGIN, _contact_at_overspeed),
     Constraint(
-        "jump", JUMP, lambda at, limit: demands.unloading(at.force.inertia, at.force.spring) / limit
+        "jump",
+        JUMP,
+        lambda at, limit: demands.unloading(at.force.inertia, at.force.closing) / limit,
     ),
     Constraint(
         "jump_speed",
         lambda ratings: ratings.jump_speed,
-        lambda at, limit: demands.unloading(_inertia(at, limit), at.force.spring),
+        lambda at, limit: demands.unloading(_inertia(at, limit), at.force.closing),
     ),
     Constraint(
         "jam_index",

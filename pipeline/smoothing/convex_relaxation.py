@@ -1,7 +1,8 @@
 r"""Convex part of a synthesis, without friction and inertia, solved to its global optimum.
 
-Without them the cam torque is E' and the ripple convex in the coefficients. With
-q = P^2 + 2 k E the limit of the travel is linear in them, and that of the pressure angle is
+Without them the cam torque is E' and the ripple convex in the coefficients; of an external force
+the mean alone counts, with preload and weight in P. With q = P^2 + 2 k E the limit of the travel is
+linear in them, and that of the pressure angle is
 
     |E'| <= tan(alpha) F_s r = tan(alpha) ((r0 - P/k) sqrt(q) + q/k),
 
@@ -63,7 +64,7 @@ def convex_start(problem: Problem) -> Core | None:
     Demeulenaere et al., ASME J. Mech. Des. 131 (2009) 101004: splines by convex programs.
     """
     variables, ratings = problem.variables, problem.ratings
-    if ratings.offset != 0.0 or variables.prime_radius * variables.rate < variables.preload:
+    if ratings.offset != 0.0 or variables.prime_radius * variables.rate < variables.closing:
         return None
     points = min(problem.points, COARSE_POINTS)
     turns = tuple(
@@ -95,26 +96,26 @@ def _program(search: Search) -> Cones:
         program.at_most(energy[[k]], problem.energy[1])
     if ratings.travel is not None:
         top = ratings.travel * (1.0 - RESERVE)
-        program.at_most(energy, spring_energy(variables.preload, variables.rate, top))
+        program.at_most(energy, spring_energy(variables.closing, variables.rate, top))
     # q / P^2 = 1 + growth, and sigma / P is the unknown
-    growth = (2.0 * variables.rate / variables.preload**2) * energy
+    growth = (2.0 * variables.rate / variables.closing**2) * energy
     sigma = program.columns(scipy.sparse.csr_array(np.eye(points)), count + 1)
     steepest = ratings.limits.get(PRESSURE_ANGLE)
     if ratings.slope_max is not None:
-        wide = ratings.slope_max * (1.0 - RESERVE) * variables.preload
+        wide = ratings.slope_max * (1.0 - RESERVE) * variables.closing
         for side in (1.0, -1.0):
             program.at_most(side * torque - wide * sigma, 0.0)
         program.square_at_most(sigma, growth, 1.0)
     elif steepest is not None:
-        steep = np.tan(steepest * (1.0 - RESERVE)) * variables.preload
-        by_root = variables.prime_radius - variables.preload / variables.rate
-        room = steep * (by_root * sigma + (variables.preload / variables.rate) * growth)
+        steep = np.tan(steepest * (1.0 - RESERVE)) * variables.closing
+        by_root = variables.prime_radius - variables.closing / variables.rate
+        room = steep * (by_root * sigma + (variables.closing / variables.rate) * growth)
         for side in (1.0, -1.0):
-            program.at_most(side * torque - room, steep * variables.preload / variables.rate)
+            program.at_most(side * torque - room, steep * variables.closing / variables.rate)
         program.square_at_most(sigma, growth, 1.0)
     if ratings.normal_force is not None:
-        share = (ratings.normal_force * (1.0 - RESERVE) / variables.preload) ** 2
-        sideways = torque / (variables.prime_radius * variables.preload)
+        share = (ratings.normal_force * (1.0 - RESERVE) / variables.closing) ** 2
+        sideways = torque / (variables.prime_radius * variables.closing)
         if ratings.face is not None:
             sideways = 0.0 * sideways
         program.square_at_most(sideways, -growth, share - 1.0)

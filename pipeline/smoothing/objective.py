@@ -145,7 +145,7 @@ def _loss(at: Turning) -> Mean:
     """Work of the friction of guides, and of roller bearing or face, over a turn."""
     cam = at.loads
     ratings, force = cam.ratings, cam.force
-    guides = (force.axial - force.spring - force.inertia) * cam.jet.slope
+    guides = (force.axial - force.closing - force.inertia) * cam.jet.slope
     drag = 0.0 if ratings.drag is None else ratings.drag.bearing_torque(force.normal)
     contact = drag * magnitude(np.asarray(cam.path.rolling)) + force.axial * cam.path.sliding
     return Mean(FULL_TURN / at.scale.energy * (guides + contact))
@@ -159,7 +159,7 @@ def _spring_energy(at: Turning) -> Array:
 
 def _rest_force(at: Turning) -> Mean:
     """Contact force at standstill without friction; every angle is as likely."""
-    return Mean(at.loads.force.spring * at.loads.path.gain / at.scale.force)
+    return Mean(at.loads.force.closing * at.loads.path.gain / at.scale.force)
 
 
 def _size(at: Turning) -> Mean:

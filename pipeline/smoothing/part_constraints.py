@@ -169,7 +169,7 @@ def _swept_force(at: Loads, limit: float) -> Array | None:
         return None
     fix = scenario.correction
     speed = np.where(fix.swept_speed > 0.0, fix.swept_speed, fastest)
-    push = at.force.spring + fix.swept_surge
+    push = at.force.closing + fix.swept_surge
     push = push + (scenario.mass - scenario.spring_mass) * speed**2 * at.jet.bend
     push = push + scenario.viscous_damping * speed * at.jet.slope
     normal = push / at.force.share * at.path.gain
@@ -184,7 +184,7 @@ def _elastic_contact(at: Loads, limit: float) -> Array | None:
     fix = scenario.correction
     speed = np.where(fix.elastic_speed > 0.0, fix.elastic_speed, fastest)
     inertia = (scenario.mass - scenario.spring_mass) * speed**2 * at.jet.bend
-    push = demands.force_left(at.force.spring + fix.elastic, inertia, at.least_spring)
+    push = demands.force_left(at.force.closing + fix.elastic, inertia, at.least_spring)
     return _where(scenario.swept, 1.0 + limit - push)
 
 

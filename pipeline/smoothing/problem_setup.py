@@ -9,10 +9,12 @@ from pathlib import Path
 
 import numpy as np
 
+from camwright.geometry.arrays import uniform_turn
 from camwright.geometry.errors import InputError
 from camwright.pipeline.case.cards.catalogue import catalogue_of
 from camwright.pipeline.case.cards.substitution import with_roller
 from camwright.pipeline.case.case import Case
+from camwright.pipeline.case.external_load import closing_preload, dead_load, require_closing
 from camwright.pipeline.case.limits import OVERSPEED
 from camwright.pipeline.case.load_case_torque import engine_torque
 from camwright.pipeline.case.machine import Machine, machines
@@ -48,6 +50,10 @@ def problem_of(case: Case, torques: Mapping[str, Torque]) -> Problem:
     smoothing = case.smoothing
     if "preload" in smoothing.free and any(s.preload is not None for s in case.load_cases):
         raise InputError("smoothing.free", "preload", "a preload common to all load cases")
+    dead = dead_load(case)
+    closing_preload(case)  # refuses one that is not positive
+    if "preload" in smoothing.free and smoothing.preload_range is not None:
+        require_closing("smoothing.preload_range", smoothing.preload_range[0], dead)
     states = machines(case)
     first = {each.spring.preload: each.load_case for each in reversed(states)}
     scenarios = [
@@ -74,7 +80,12 @@ def problem_of(case: Case, torques: Mapping[str, Torque]) -> Problem:
     return Problem(
         scenarios=tuple(scenarios),
         ratings=ratings_of(case),
-        variables=DesignVariables(case.spring.rate, case.spring.preload, case.cam.prime_radius),
+        variables=DesignVariables(
+            case.spring.rate,
+            case.spring.preload,
+            case.cam.prime_radius,
+            dead_load=dead,
+        ),
         gear_ratio=case.mechanism.gear_ratio,
         freed=freed,
         energy=(0.0, np.inf if "initial_energy" in smoothing.free else 0.0),
@@ -143,6 +154,8 @@ def _scenarios(case: Case, machine: Machine, torque: Torque | None) -> list[Scen
         friction_b=friction.nominal[1],
         viscous_damping=machine.viscous_damping,
         preload_factor=machine.spring.preload / case.spring.preload,
+        gravity=machine.gravity_along_axis,
+        external=machine.external.at(uniform_turn(POINTS if machine.external.varies else 1)),
         weight=0.0 if torque is None else machine.ripple_weight,
         torque_reduction=None if torque is None else machine.torque_reduction,
         duty=machine.duty,

@@ -10,6 +10,7 @@ from camwright.geometry.arrays import Array, uniform_turn
 from camwright.geometry.energy import lift_from_torque
 from camwright.geometry.lift import Lift
 from camwright.pipeline.case.case import Case
+from camwright.pipeline.case.external_load import closing_preload
 from camwright.pipeline.case.given_lift import given_lift
 from camwright.pipeline.smoothing.smoothers import Smoother, smoothed
 from camwright.pipeline.torque.torque import Torque
@@ -40,6 +41,9 @@ def required_torque(case: Case, torque: Torque, smoother: Smoother) -> Array:
 def required_lift(case: Case, torque: Torque, smoother: Smoother) -> Lift:
     """Lift whose spring stores and returns the work of the required torque.
 
+    With the spring the weight and the mean external force store work; the rest of the external
+    force is none of the lift alone.
+
     Parameters
     ----------
     torque : Torque   of the design load case
@@ -47,12 +51,12 @@ def required_lift(case: Case, torque: Torque, smoother: Smoother) -> Lift:
     Raises
     ------
     InputError
-        If the smoothing leaves no torque.
+        If the smoothing leaves no torque, or weight and external force pull the follower off.
     """
     target = case.mechanism.gear_ratio * required_torque(case, torque, smoother)
     _require_ripple(torque, target, smoother)
     return lift_from_torque(
-        uniform_turn(target.size), target, case.spring.rate, case.spring.preload
+        uniform_turn(target.size), target, case.spring.rate, closing_preload(case)
     )
 
 

@@ -125,11 +125,11 @@ class Search:
             torque - torque.mean(),
             problem.coefficients,
             rate=variables.rate,
-            preload=variables.preload,
+            preload=variables.closing,
             prime_radius=variables.prime_radius,
             pressure_angle=ratings.limits.get(PRESSURE_ANGLE, np.pi / 3),
             slope_max=ratings.slope_max,
-            energy_max=float(spring_energy(variables.preload, variables.rate, travel)),
+            energy_max=float(spring_energy(variables.closing, variables.rate, travel)),
         )
         rise = float(np.clip(0.0, problem.energy[0] - 1e-12, problem.energy[1]))
         least = float(self.turn.energy(exact)[0].min())

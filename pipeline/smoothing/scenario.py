@@ -21,13 +21,20 @@ Value = float | Array
 class DesignVariables:
     """Design variables: spring rate, N/m; preload, N; prime radius, m; phase, rad.
 
-    The phase is the angle by which the cam leads the spline of its energy on the shaft.
+    The phase is the angle by which the cam leads the spline of its energy on the shaft. dead_load:
+    weight and mean external force, N, towards the cam, which store work with the spring; given.
     """
 
     rate: float
     preload: float
     prime_radius: float
     phase: float = 0.0
+    dead_load: float = 0.0
+
+    @property
+    def closing(self) -> float:
+        """Force towards the cam at zero lift and rest, N."""
+        return self.preload + self.dead_load
 
 
 class ModifiedLife(NamedTuple):
@@ -260,6 +267,9 @@ class Scenario:
     friction_a, friction_b : float
     friction_worst : two floats   maximum friction of guides A and B; None: not known
     rate_factor, preload_factor : float   spring of the scenario over the nominal spring
+    gravity : float          component of g along the axis towards the cam, m/s2
+    external : array (n,)    external force at n equal cam angles, N, towards the cam; one value:
+                             constant
     nominal : bool           False: a tolerance corner or an end of a range of operation
     swept : bool             limits over the speed range hold in it: those of the first load case
                              of each preload
@@ -277,6 +287,8 @@ class Scenario:
     viscous_damping: Value = 0.0
     rate_factor: Value = 1.0
     preload_factor: Value = 1.0
+    gravity: float = 0.0
+    external: Array = field(default_factory=lambda: readonly(np.zeros(1)))
     weight: float = 1.0
     torque_reduction: float | None = None
     duty: Value | None = None
@@ -300,9 +312,13 @@ class Scenario:
 def stacked(scenarios: Sequence[Scenario], theta: Array) -> Scenario:
     """Scenarios at once: numbers (s, 1), corrections (s, n) at cam angles theta (n,), rad.
 
+    All have the same external force.
+
     The maximum friction is known in all of them, or left out.
     """
     # The corners of a load case share its correction.
+    around = np.arange(scenarios[0].external.size) * (FULL_TURN / scenarios[0].external.size)
+    external = np.interp(theta, around, scenarios[0].external, period=FULL_TURN)
     different = {id(each.correction): each.correction for each in scenarios}
     different = {key: each.at(theta) for key, each in different.items()}
     corrections = [different[id(each.correction)] for each in scenarios]
@@ -322,6 +338,7 @@ def stacked(scenarios: Sequence[Scenario], theta: Array) -> Scenario:
         viscous_damping=_column(each.viscous_damping for each in scenarios),
         rate_factor=_column(each.rate_factor for each in scenarios),
         preload_factor=_column(each.preload_factor for each in scenarios),
+        external=np.broadcast_to(external, (len(scenarios), external.size)),
         spring_mass=_column(each.spring_mass for each in scenarios),
         nominal=_column(each.nominal for each in scenarios),
         swept=_column(each.swept for each in scenarios),
@@ -355,6 +372,7 @@ def taken(stack: Scenario, take: Callable[[Array], Array]) -> Scenario:
         viscous_damping=of(stack.viscous_damping),
         rate_factor=of(stack.rate_factor),
         preload_factor=of(stack.preload_factor),
+        external=of(stack.external),
         spring_mass=of(stack.spring_mass),
         nominal=of(stack.nominal),
         swept=of(stack.swept),

@@ -153,7 +153,7 @@ class Design:
         """Lift at `samples` equally spaced cam angles."""
         theta = uniform_turn(samples) - float(self.variables.phase)
         energy = np.maximum(basis_matrix(theta, self.coefficients.size) @ self.coefficients, 0.0)
-        deflection = spring_deflection(energy, self.variables.rate, self.variables.preload)
+        deflection = spring_deflection(energy, self.variables.rate, self.variables.closing)
         return Lift(uniform_turn(samples), deflection)
 
 

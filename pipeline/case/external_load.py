@@ -1,0 +1,63 @@
+"""External force on the follower of a case, and its constant part with the weight."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from pathlib import Path
+
+from camwright.geometry.arrays import FULL_TURN
+from camwright.geometry.errors import InputError
+from camwright.pipeline.base.units import shown
+from camwright.pipeline.case.case import Case, kept_as
+from camwright.pipeline.engine.angle_trace import read_trace
+from camwright.pipeline.follower.external_force import NO_FORCE, ExternalForce
+
+
+def external_force(case: Case) -> ExternalForce:
+    """Force of the machine on the follower over the cam angle.
+
+    Raises
+    ------
+    InputError
+        If its file cannot be read or has wrong contents; by file and line.
+    """
+    follower = case.follower
+    name = follower.external_force_file
+    if name is not None:
+        return _from_file(case.path(name), case.included[kept_as(name)])
+    if not follower.external_force:
+        return NO_FORCE
+    return ExternalForce.constant(follower.external_force)
+
+
+def dead_load(case: Case) -> float:
+    """Weight and mean external force, N, positive towards the cam."""
+    weight = case.follower.mass * case.follower.gravity_along_axis
+    return weight + external_force(case).mean
+
+
+def closing_preload(case: Case) -> float:
+    """Force towards the cam at zero lift and rest, N: preload, weight and mean external force.
+
+    Raises
+    ------
+    InputError
+        If it is not positive: no lift stores the work of a torque.
+    """
+    dead = dead_load(case)
+    require_closing("spring.preload", case.spring.preload, dead)
+    return case.spring.preload + dead
+
+
+def require_closing(key: str, preload: float, dead: float) -> None:
+    """Refuse a preload that weight and mean external force, N, cancel."""
+    if not preload + dead > 0.0:
+        limit = f"> {shown(-dead, 'N')}, as weight and external force pull the follower off"
+        raise InputError(key, shown(preload, "N"), limit)
+
+
+@lru_cache(maxsize=8)
+def _from_file(path: Path, _content: bytes) -> ExternalForce:
+    """Force of a file; its contents tell whether it has changed."""
+    trace = read_trace(path, "force", period=FULL_TURN)
+    return ExternalForce(trace.angle, trace.values)
