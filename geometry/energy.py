@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 from numpy.typing import ArrayLike
 
@@ -10,6 +12,9 @@ from camwright.geometry.errors import InputError
 from camwright.geometry.extrema import least
 from camwright.geometry.lift import Lift, require_uniform_turn
 from camwright.geometry.periodic_spline import PeriodicPolynomial, periodic_quintic
+
+Deflection = Callable[[Array], Array]
+"""Lift (...), m, at which a spring stores an energy (...), J."""
 
 MEAN_TOLERANCE = 1e-12
 """Maximum mean over the maximum torque: round-off of removing the mean."""
@@ -102,10 +107,27 @@ def lift_from_torque(
     _require_spring(spring_rate, preload)
     if not preload**2 + 2 * spring_rate * initial_energy > 0:
         raise InputError("spring.preload", preload, "> 0 N, or the minimum lift is a corner")
+    return lift_of_spring(
+        theta,
+        cam_torque,
+        lambda energy: spring_deflection(energy, spring_rate, preload),
+        initial_energy,
+    )
+
+
+def lift_of_spring(
+    theta: ArrayLike, cam_torque: ArrayLike, deflection: Deflection, initial_energy: float = 0.0
+) -> Lift:
+    """As `lift_from_torque`, of any spring.
+
+    Parameters
+    ----------
+    deflection : callable    stored energy (...), J, >= 0 -> lift (...), m
+    """
     energy, gain = stored_energy(theta, cam_torque)
     stored = initial_energy + energy
-    values = spring_deflection(stored, spring_rate, preload)
-    ends = spring_deflection(np.maximum([stored[0], stored[0] + gain], 0), spring_rate, preload)
+    values = deflection(stored)
+    ends = deflection(np.maximum([stored[0], stored[0] + gain], 0))
     return Lift(readonly(theta), values, closure=float(abs(ends[1] - ends[0])))
 
 

@@ -264,6 +264,11 @@ class Part:
     defaults: ClassVar[Mapping[str, str]] = {}
 
     @property
+    def derived(self) -> tuple[str, ...]:
+        """Names of the fields that follow from others: a case leaves them out."""
+        return ()
+
+    @property
     def lacking(self) -> tuple[str, ...]:
         """Names of the numbers and words without a value, unless `defaults` has their meaning."""
         return tuple(

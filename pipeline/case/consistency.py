@@ -102,6 +102,10 @@ def _check_start(case: Case) -> None:
         raise InputError(
             "load_case[0].speed", "0 rpm", "> 0 rpm, as its torque is that of the cam design"
         )
+    freed = {"spring_rate", "preload"} & set(case.smoothing.free)
+    if freed and case.spring.shape is not None:
+        limit = f'left out with spring.kind = "{case.spring.kind}"'
+        raise InputError("smoothing.free", min(freed), limit)
     share, constrained = case.mechanism.compensation, case.smoothing.kind == "constrained"
     if share != 1.0 and (not case.balances or constrained):
         limit = "1 with a lift" if not case.balances else '1 with smoothing.kind = "constrained"'
@@ -109,6 +113,9 @@ def _check_start(case: Case) -> None:
     for k, load_case in enumerate(case.load_cases):
         if constrained and load_case.preload is not None:
             limit = 'left out with smoothing.kind = "constrained", which has one spring'
+            _require(case, f"load_case[{k}].preload", False, limit)
+        if case.spring.shape is not None and load_case.preload is not None:
+            limit = f'left out with spring.kind = "{case.spring.kind}"'
             _require(case, f"load_case[{k}].preload", False, limit)
         for name in ("torque", "torque_reduction", "speed_reduction"):
             unused = case.balances or getattr(load_case, name) is None

@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from camwright.pipeline.base.external_force import ExternalForce
 from camwright.pipeline.base.material import Material
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.external_load import external_force
@@ -23,7 +24,6 @@ from camwright.pipeline.contact.hertz import contact_modulus
 from camwright.pipeline.contact.oil_film import Lubricant
 from camwright.pipeline.engine.crankshaft import Crankshaft
 from camwright.pipeline.follower.camshaft_loads import Camshaft
-from camwright.pipeline.follower.external_force import ExternalForce
 from camwright.pipeline.follower.flat_face import FlatFace
 from camwright.pipeline.follower.follower_forces import FollowerSystem
 from camwright.pipeline.follower.follower_kind import FollowerKind

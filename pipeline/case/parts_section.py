@@ -10,10 +10,10 @@ from pydantic import model_validator
 
 from camwright.geometry.errors import InputError
 from camwright.pipeline.base import units
+from camwright.pipeline.base.external_force import STANDARD_GRAVITY
 from camwright.pipeline.base.material import Material
 from camwright.pipeline.base.quantities import FileName, In, Length, Mass, Share
 from camwright.pipeline.case.section import MaterialName, Section, Table, Text
-from camwright.pipeline.follower.external_force import STANDARD_GRAVITY
 from camwright.pipeline.follower.flat_face import FlatFace
 
 

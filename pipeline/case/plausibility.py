@@ -14,7 +14,6 @@ from typing import Any
 
 import numpy as np
 
-from camwright.geometry.energy import spring_deflection
 from camwright.pipeline.base.units import in_unit, shown
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_values import text_of, value_of
@@ -23,6 +22,7 @@ from camwright.pipeline.case.load_case_torque import pressure
 from camwright.pipeline.engine.crankshaft import energy_swing
 from camwright.pipeline.engine.pressure_trace import PressureTable
 from camwright.pipeline.engine.torque_consistency import Finding
+from camwright.pipeline.follower.spring import stored_lift
 from camwright.pipeline.torque.torque import Torque
 
 PLAUSIBILITY = "plausibility"
@@ -119,7 +119,7 @@ def _spring_findings(case: Case, torques: Mapping[str, Torque]) -> Iterator[Find
     if torque is None or chosen:
         return
     swing = case.mechanism.compensation * float(np.ptp(energy_swing(torque.total, torque.span)))
-    lift = float(spring_deflection(swing, spring.rate, closing_preload(case)))
+    lift = float(stored_lift(swing, spring.rate, closing_preload(case), spring.shape))
     of_rate, of_radius = 0.5 * spring.rate * lift**2 / swing, lift / case.cam.prime_radius
     of_torque = f"of the energy swing of the torque, {shown(swing, 'J')}"
     rate = f"spring.rate = {text_of(case, 'spring.rate')}"

@@ -38,9 +38,10 @@ def tables_of(model: Section | Part, renamed: Mapping[str, str] | None = None) -
     """A section or part as the tables of a case file; absent fields are left out."""
     section = section_of(type(model)) if isinstance(model, Part) else type(model)
     tables: Tables = {}
+    left_out = model.derived if isinstance(model, Part) else ()
     for name, field in section.model_fields.items():
         key, value = field.alias or name, getattr(model, name)
-        if value is None or value in ((), {}):
+        if value is None or value in ((), {}) or name in left_out:
             continue
         if renamed is not None and key in _FILE_KEYS and isinstance(value, str):
             value = renamed[value]

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from camwright.geometry.arrays import Array, freeze
+from camwright.geometry.arrays import Array, freeze, uniform_turn
 from camwright.geometry.lift import Lift
 from camwright.geometry.periodic_spline import PeriodicPolynomial, periodic_quintic
+from camwright.pipeline.base.external_force import ExternalForce
 from camwright.pipeline.case.machine import Machine
 from camwright.pipeline.follower.elastic_follower import (
     ElasticFollower,
@@ -38,15 +39,26 @@ class ElasticHistory:
         freeze(self, deflection=self.deflection)
 
 
-def elastic_follower(machine: Machine) -> ElasticFollower:
-    """The follower's mass on bearing, pin, fork, stem and camshaft in series."""
+def elastic_follower(machine: Machine, lift: Array | None = None) -> ElasticFollower:
+    """The follower's mass on bearing, pin, fork, stem and camshaft in series.
+
+    Parameters
+    ----------
+    lift : array (n,)   at equal angles of a turn, m, at which a spring that is not linear differs
+                        from its tangent at zero lift; None: it is linear
+    """
+    load = machine.system.load
+    if lift is not None and machine.spring.shape is not None:
+        spring, theta = machine.spring, uniform_turn(lift.size)
+        bent = spring.force(lift) - (spring.preload + spring.rate * lift)
+        load = ExternalForce(theta, load.at(theta) + bent)
     return ElasticFollower.with_damping_ratio(
         machine.mass,
         machine.axial_stiffness,
         machine.spring.rate,
         machine.spring.preload,
         machine.damping_ratio,
-        machine.system.load,
+        load,
     )
 
 
@@ -62,7 +74,7 @@ def elastic_history(
     cam_speed : array (n,)   rad/s
     flights : bool           compute the flights, by far the most expensive part
     """
-    follower = elastic_follower(machine)
+    follower = elastic_follower(machine, at)
     response = periodic_response(at, cam_speed, follower)
     lost: tuple[Flight, ...] = ()
     force = float(response.contact_force.max())

@@ -280,15 +280,16 @@ class _Resonant:
 class _Follower:
     """Follower on its cam: forces (n,) that depend on the speed by powers alone.
 
-    closing: spring, weight and external force; inertia, viscous: per square and per first power of
-    the cam speed; gain: normal force over axial force without friction; arm: cam torque over that
-    force, m.
+    closing: spring, weight and external force; beside: less that of the linear spring of the rate
+    at zero lift; inertia, viscous: per square and per first power of the cam speed; gain: normal
+    force over axial force without friction; arm: cam torque over that force, m.
     """
 
     machine: Machine
     resonant: _Resonant
     theta: Array
     closing: Array
+    beside: Array
     inertia: Array
     viscous: Array
     gain: Array
@@ -306,6 +307,7 @@ class _Follower:
             resonant=_Resonant.of(machine.spring, machine.spring.design, pitch),
             theta=theta,
             closing=loads.closing_force,
+            beside=loads.applied_force + _bent(machine.spring, loads.lift),
             # The coils have their own inertia in the surge.
             inertia=loads.inertia_force * machine.mass_without_spring / machine.mass,
             viscous=loads.viscous_force,
@@ -352,11 +354,18 @@ class _Follower:
         joint = stem + 1.0j * damping * w
         force = behind * spectrum
         force[:, 0] += ANGLES * machine.spring.preload
-        force += np.fft.rfft(machine.system.applied_force(self.theta))
+        force += np.fft.rfft(self.beside)
         force *= joint
         joint += behind
         force /= joint
         return np.fft.irfft(force, ANGLES)
+
+
+def _bent(spring: Spring, lift: Array) -> Array:
+    """Force (n,) of a spring less that of the linear one of its rate at zero lift, N."""
+    if spring.shape is None:
+        return np.zeros_like(lift)
+    return spring.force(lift) - (spring.preload + spring.rate * lift)
 
 
 def _met(modes: Array, peak: Array, enough: float, top: float) -> Array:

@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from camwright.geometry.arrays import FULL_TURN, Array, finite, freeze, uniform_turn
 from camwright.geometry.errors import InputError
-from camwright.pipeline.follower.external_force import NO_FORCE, ExternalForce
+from camwright.pipeline.base.external_force import NO_FORCE, ExternalForce
 
 STEADY = 1e-12  # relative variation up to which a speed is constant
 

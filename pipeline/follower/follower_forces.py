@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from camwright.geometry.arrays import FULL_TURN, Array, Values, finite, freeze
 from camwright.geometry.errors import InputError
 from camwright.geometry.follower_path import FollowerPath
-from camwright.pipeline.follower.external_force import NO_FORCE, ExternalForce
+from camwright.pipeline.base.external_force import NO_FORCE, ExternalForce
 from camwright.pipeline.follower.spring import Spring
 
 REST = 1e-9  # slope over stroke, 1/rad, up to which a spline is in a dwell

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from camwright.geometry.arrays import Array, finite
+from camwright.geometry.energy import spring_deflection
 from camwright.geometry.errors import InputError
 from camwright.pipeline.base.quantities import (
     In,
@@ -24,6 +25,12 @@ from camwright.pipeline.base.quantities import (
     Temperature,
 )
 from camwright.pipeline.base.units import shown
+from camwright.pipeline.follower.spring_kinds import (
+    GasSpring,
+    SpringShape,
+    rise,
+    shaped_deflection,
+)
 
 INDEX_MIN, INDEX_MAX = 3.0, 20.0  # D/d that can be coiled
 DEAD_COILS = 2.0  # of squared and ground ends
@@ -302,43 +309,92 @@ class HelicalSpring(WoundWire[float], Part):
 
 @dataclass(frozen=True, kw_only=True)
 class Spring(Part):
-    """Linear spring of the follower, preloaded at zero lift.
+    """Spring of the follower, preloaded at zero lift; linear, or of another kind.
 
-    Tolerances are relative; travel_max: maximum lift; design: geometry of the wound spring.
+    rate: at zero lift. Tolerances are relative, of the preload and of the rise of the force;
+    travel_max: maximum lift; design: geometry of the wound spring. A gas spring sets rate and
+    preload, which its case leaves out.
+
+    Raises
+    ------
+    InputError
+        If a value is out of its bounds, or the tables are not those of the kind.
     """
 
     table: ClassVar[str] = "spring"
+    defaults: ClassVar[Mapping[str, str]] = MappingProxyType({"kind": "coil"})
 
+    kind: Literal["coil", "gas"] | None = None
     rate: Rate
     preload: Preload
     travel_max: Length | None = None
     rate_tolerance: Annotated[float, In(above=0, below=1)] = 0.05
     preload_tolerance: Annotated[float, In(above=0, below=1)] = 0.05
     design: HelicalSpring | None = None
+    gas: GasSpring | None = None
     source: str = ""
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        kind = self.kind or "coil"
+        for name, owner in (("gas", "gas"), ("design", "coil")):
+            stated = getattr(self, name) is not None
+            if stated and kind != owner:
+                raise InputError(
+                    f"spring.{name}", "a table", f'left out with spring.kind = "{kind}"'
+                )
+            if kind == owner and not stated and name != "design":
+                raise InputError(f"spring.{name}", "missing", f'given with spring.kind = "{kind}"')
+
+    @property
+    def shape(self) -> SpringShape | None:
+        """Rise of the force over the lift; None: linear."""
+        return self.gas
+
+    @property
+    def derived(self) -> tuple[str, ...]:
+        """Fields that follow from others, which a case leaves out."""
+        return () if self.shape is None else ("rate", "preload")
 
     def force(self, lift: Array) -> Array:
         """Force at a lift (...), m, in N."""
-        return spring_force(self.preload, self.rate, lift)
+        return spring_force(self.preload, self.rate, lift, self.shape)
 
     def stiffness(self, lift: Array) -> Array:
-        """Slope k of the force over the lift (...), N/m."""
-        return self.rate + 0.0 * lift
+        """Slope of the force over the lift (...), N/m."""
+        if self.shape is None:
+            return self.rate + 0.0 * lift
+        return np.asarray(self.rate * rise(self.shape, lift).slope)
 
     def energy(self, lift: float) -> float:
         """Energy at a lift, m, beyond that at zero lift, J."""
-        return float(spring_energy(self.preload, self.rate, np.asarray(lift)))
+        return float(spring_energy(self.preload, self.rate, np.asarray(lift), self.shape))
 
 
-def spring_force(preload: float | Array, rate: float | Array, lift: Array) -> Array:
-    """Force P + k s (...) of a linear spring at a lift (...), m, in N."""
-    return np.asarray(preload + rate * lift)
+def spring_force(
+    preload: float | Array, rate: float | Array, lift: Array, shape: SpringShape | None = None
+) -> Array:
+    """Force P + k s (...) at a lift (...), m, in N; of a shape P + k rho(s)."""
+    return np.asarray(preload + rate * (lift if shape is None else rise(shape, lift).travel))
 
 
-def spring_energy(preload: float, rate: float, lift: ArrayLike) -> Array:
-    """Energy P s + k s^2 / 2 (...) of a linear spring at a lift (...), m, in J."""
+def spring_energy(
+    preload: float, rate: float, lift: ArrayLike, shape: SpringShape | None = None
+) -> Array:
+    """Energy P s + k s^2 / 2 (...) at a lift (...), m, in J; of a shape P s + k R(s)."""
     at = np.asarray(lift, dtype=float)
-    return np.asarray(preload * at + 0.5 * rate * at**2)
+    if shape is None:
+        return np.asarray(preload * at + 0.5 * rate * at**2)
+    return np.asarray(preload * at + rate * rise(shape, at).work)
+
+
+def stored_lift(
+    energy: ArrayLike, rate: ArrayLike, preload: ArrayLike, shape: SpringShape | None = None
+) -> Array:
+    """Lift (...), m, at which a spring stores an energy beyond that at zero lift, J, >= 0."""
+    if shape is None:
+        return spring_deflection(energy, rate, preload)
+    return shaped_deflection(energy, rate, preload, shape)
 
 
 def surge_harmonics(

@@ -13,10 +13,10 @@ from numpy.polynomial.chebyshev import chebvander
 from numpy.typing import NDArray
 
 from camwright.geometry.arrays import Array, uniform_turn
-from camwright.geometry.energy import spring_deflection
 from camwright.geometry.extrema import sampled_greatest, sampled_least
 from camwright.geometry.periodic_spline import knot_derivatives, knot_integrals
 from camwright.geometry.pitch_curve import speed_and_curvature
+from camwright.pipeline.base.external_force import ExternalForce
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_values import value_of
 from camwright.pipeline.case.limits import OVERSPEED, TORQUE_REDUCTION, AnyLimit
@@ -26,7 +26,6 @@ from camwright.pipeline.case.requirements_section import LoadCase
 from camwright.pipeline.checks import demands
 from camwright.pipeline.contact.elliptic_contact import Ellipse, elliptic_contact
 from camwright.pipeline.contact.hertz import peak_pressure_square
-from camwright.pipeline.follower.external_force import ExternalForce
 from camwright.pipeline.follower.follower_forces import (
     REST,
     FollowerMotion,
@@ -37,7 +36,8 @@ from camwright.pipeline.follower.follower_forces import (
 )
 from camwright.pipeline.follower.guide_friction import friction_limits
 from camwright.pipeline.follower.guide_table import GuideRatios, GuideTable, Place, guide_table
-from camwright.pipeline.follower.spring import spring_force
+from camwright.pipeline.follower.spring import spring_force, stored_lift
+from camwright.pipeline.follower.spring_kinds import SpringShape
 from camwright.pipeline.screening.design_factors import WoundSprings, wound_spring
 
 Columns = Mapping[str, Array]
@@ -61,12 +61,13 @@ class FollowerOfDesigns:
     viscous_damping: Array
     gravity_along_axis: float
     external: ExternalForce
+    shape: SpringShape | None
     rubbing: tuple[Array, Array] | None = None
     face_friction: float = 0.0
 
     def spring_force(self, lift: Array) -> Array:
         """Force (m, n) of the springs at a lift (m, n), N."""
-        return spring_force(self.preload, self.rate, lift)
+        return spring_force(self.preload, self.rate, lift, self.shape)
 
     def applied_force(self, theta: Array) -> Array:
         """Weight and external force (m, n) at cam angles (n,), N."""
@@ -181,7 +182,7 @@ class Designs:
             stored = knot_integrals(source.torque)
             stored = stored - sampled_least(stored)[:, None]
             energy = share * np.maximum(stored, 0.0)
-        return spring_deflection(energy, rate, preload)
+        return stored_lift(energy, rate, preload, self.follower.shape)
 
     @cached_property
     def jets(self) -> Array:
@@ -281,6 +282,7 @@ class Designs:
             viscous_damping=self.value("follower.viscous_damping"),
             gravity_along_axis=self.machine.gravity_along_axis,
             external=self.machine.external,
+            shape=self.case.spring.shape,
         )
 
     @cached_property

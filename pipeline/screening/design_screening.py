@@ -241,9 +241,10 @@ def synthesis(case: Case) -> tuple[Case, Array]:
     key = case.sha256
     if key not in _SYNTHESES:
         trial = preview_case(case, corners=False)
-        rate, preload = trial.case.spring.rate, closing_preload(trial.case)
+        spring, closing = trial.case.spring, closing_preload(trial.case)
+        energy = spring_energy(closing, spring.rate, trial.lift.values, spring.shape)
         _SYNTHESES.clear()
-        _SYNTHESES[key] = trial.case, spring_energy(preload, rate, trial.lift.values)
+        _SYNTHESES[key] = trial.case, energy
     return _SYNTHESES[key]
 
 

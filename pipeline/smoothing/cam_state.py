@@ -20,6 +20,7 @@ from camwright.pipeline.case.limits import AnyLimit, Limit, OpenLimit
 from camwright.pipeline.checks import demands
 from camwright.pipeline.follower.follower_forces import levers
 from camwright.pipeline.follower.roller_motion import rolling_share
+from camwright.pipeline.follower.spring_kinds import SpringShape, rise, shaped_deflection
 from camwright.pipeline.smoothing.scenario import DesignVariables, Ratings, Scenario, Value
 
 
@@ -39,6 +40,8 @@ def lift_jet(energy: tuple[Array, ...], variables: DesignVariables) -> Jet:
     mean external force.
     """
     level, first, second, third = energy
+    if variables.shape is not None:
+        return _shaped_jet(energy, variables, variables.shape)
     force = np.sqrt(variables.closing**2 + 2.0 * variables.rate * level)
     slope = first / force
     bend = (second - variables.rate * slope**2) / force
@@ -48,6 +51,19 @@ def lift_jet(energy: tuple[Array, ...], variables: DesignVariables) -> Jet:
         bend=bend,
         jerk=(third - 3.0 * variables.rate * slope * bend) / force,
     )
+
+
+def _shaped_jet(energy: tuple[Array, ...], variables: DesignVariables, shape: SpringShape) -> Jet:
+    """As `lift_jet`, of a spring that is not linear: E' = F s', F = P + k rho(s) differentiated."""
+    level, first, second, third = energy
+    lift = shaped_deflection(level, variables.rate, variables.closing, shape)
+    law = rise(shape, lift)
+    force = variables.closing + variables.rate * law.travel
+    rate, change = variables.rate * law.slope, variables.rate * law.bend
+    slope = first / force
+    bend = (second - rate * slope**2) / force
+    jerk = (third - 3.0 * rate * slope * bend - change * slope**3) / force
+    return Jet(lift=lift, slope=slope, bend=bend, jerk=jerk)
 
 
 class Reaction(NamedTuple):
@@ -265,9 +281,9 @@ def forces(
     ----------
     highest : float   maximum lift, m
     """
+    travel = jet.lift if variables.shape is None else rise(variables.shape, jet.lift).travel
     spring = (
-        variables.preload * scenario.preload_factor
-        + variables.rate * scenario.rate_factor * jet.lift
+        variables.preload * scenario.preload_factor + variables.rate * scenario.rate_factor * travel
     )
     closing = spring + (scenario.mass * scenario.gravity + scenario.external)
     inertia = scenario.mass * scenario.cam_speed**2 * jet.bend
@@ -464,7 +480,9 @@ def loaded(
     """Cam of a lift in one scenario; highest: maximum lift, m."""
     path = motion(jet, variables, ratings)
     force = forces(jet, path, highest, variables, scenario)
-    rate = variables.rate * scenario.rate_factor
+    rate, least = variables.rate * scenario.rate_factor, scenario.correction.least_lift
+    if variables.shape is not None:
+        least = rise(variables.shape, least).travel
     return Loads(
         jet,
         path,
@@ -472,8 +490,7 @@ def loaded(
         scenario,
         force,
         highest=highest,
-        least_spring=variables.preload * scenario.preload_factor
-        + rate * scenario.correction.least_lift,
+        least_spring=variables.preload * scenario.preload_factor + rate * least,
     )
 
 

@@ -56,7 +56,8 @@ def convex_start(problem: Problem) -> Core | None:
 
     Returns
     -------
-    Core or None   None if the problem is not convex (r0 < P/k, an offset) or not solved
+    Core or None   None if the problem is not convex (r0 < P/k, an offset, a spring that is not
+                   linear) or not solved
 
     References
     ----------
@@ -64,7 +65,9 @@ def convex_start(problem: Problem) -> Core | None:
     Demeulenaere et al., ASME J. Mech. Des. 131 (2009) 101004: splines by convex programs.
     """
     variables, ratings = problem.variables, problem.ratings
-    if ratings.offset != 0.0 or variables.prime_radius * variables.rate < variables.closing:
+    if variables.shape is not None or ratings.offset != 0.0:
+        return None
+    if variables.prime_radius * variables.rate < variables.closing:
         return None
     points = min(problem.points, COARSE_POINTS)
     turns = tuple(

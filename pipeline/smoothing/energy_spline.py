@@ -13,6 +13,8 @@ from numpy.typing import ArrayLike, NDArray
 from camwright.geometry.arrays import FULL_TURN, Array, finite, positive, readonly, uniform_turn
 from camwright.geometry.energy import MEAN_TOLERANCE, stored_energy
 from camwright.geometry.errors import InputError
+from camwright.pipeline.follower.spring import spring_force, stored_lift
+from camwright.pipeline.follower.spring_kinds import SpringShape
 
 DEGREE = 5
 LEAST_COEFFICIENTS = 12
@@ -152,7 +154,13 @@ def lowest(coefficients: Array) -> float:
     return float(min(values.min(), between.min(initial=np.inf)))
 
 
-def force_moment(energy: ArrayLike, rate: float, preload: float, prime_radius: float) -> Array:
+def force_moment(
+    energy: ArrayLike,
+    rate: float,
+    preload: float,
+    prime_radius: float,
+    shape: SpringShape | None = None,
+) -> Array:
     """Spring force times radius, F_s r, N m; concave in the energy where r0 >= P / k.
 
     Parameters
@@ -160,7 +168,11 @@ def force_moment(energy: ArrayLike, rate: float, preload: float, prime_radius: f
     energy : array (...)    E, J, >= 0
     rate, preload : float   k, N/m; P, N
     prime_radius : float     r0 of the pitch curve, m
+    shape : SpringShape      None: a linear spring
     """
+    if shape is not None:
+        lift = stored_lift(energy, rate, preload, shape)
+        return np.asarray(spring_force(preload, rate, lift, shape) * (prime_radius + lift))
     square = preload**2 + 2.0 * rate * np.asarray(energy, dtype=float)
     return np.asarray((prime_radius - preload / rate) * np.sqrt(square) + square / rate)
 
@@ -175,6 +187,7 @@ def exact_start(
     pressure_angle: float,
     energy_max: float,
     slope_max: float | None = None,
+    shape: SpringShape | None = None,
 ) -> Array:
     """Coefficients of the energy of the unsmoothed torque, raised until the pressure angle holds.
 
@@ -189,6 +202,7 @@ def exact_start(
     pressure_angle : float    limit, rad
     energy_max : float        maximum stored energy beyond the preload, J; may be infinite
     slope_max : float         lift per radian at the edge of a flat face, m; None: a roller
+    shape : SpringShape       None: a linear spring
 
     Returns
     -------
@@ -212,9 +226,15 @@ def exact_start(
     def excess(rise: float) -> float:
         level = np.maximum(energy + rise, 0.0)
         if slope_max is not None:
-            steepest = slope_max * np.sqrt(preload**2 + 2.0 * rate * level)
+            force = np.sqrt(preload**2 + 2.0 * rate * level)
+            if shape is not None:
+                lift = stored_lift(level, rate, preload, shape)
+                force = spring_force(preload, rate, lift, shape)
+            steepest = slope_max * force
         else:
-            steepest = np.tan(pressure_angle) * force_moment(level, rate, preload, prime_radius)
+            steepest = np.tan(pressure_angle) * force_moment(
+                level, rate, preload, prime_radius, shape
+            )
         return float((slope - steepest).max())
 
     highest = float(energy.max())

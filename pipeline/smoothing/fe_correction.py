@@ -433,7 +433,9 @@ def design_record(
         "converged": design.converged,
         "steps": design.steps,
         "ripple_left": design.ripple,
-        "initial_energy_J": float(spring_energy(variables.closing, variables.rate, least)),
+        "initial_energy_J": float(
+            spring_energy(variables.closing, variables.rate, least, variables.shape)
+        ),
         "spring_rate_N_per_mm": in_unit(variables.rate, "N/mm"),
         "preload_N": variables.preload,
         "prime_radius_mm": in_unit(variables.prime_radius, "mm"),

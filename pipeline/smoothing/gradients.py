@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -123,7 +122,7 @@ def _step(at: Point, place: int, step: complex) -> Point:
         return at._replace(highest=_sum(at.highest, step))
     name = FREED[place - orders - 1]
     value = _sum(getattr(at.variables, name), step)
-    return at._replace(variables=replace(at.variables, **{name: value}))
+    return at._replace(variables=at.variables.with_value(name, value))
 
 
 def _sum(value: float, step: complex) -> float:

@@ -216,7 +216,7 @@ def _random(problem: Problem, size: float, random: np.random.Generator) -> Probl
     energy = low + size * random.uniform(0.3, 1.2) * (waves - waves.min()) / np.ptp(waves)
     variables = problem.variables
     for name, (least, greatest) in problem.freed.items():
-        variables = replace(variables, **{name: float(random.uniform(least, greatest))})
+        variables = variables.with_value(name, float(random.uniform(least, greatest)))
     return replace(problem, seed=readonly(energy), variables=variables)
 
 

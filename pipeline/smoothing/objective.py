@@ -17,6 +17,7 @@ import numpy as np
 from camwright.geometry.arrays import FULL_TURN, Array
 from camwright.geometry.errors import InputError
 from camwright.geometry.pitch_curve import magnitude
+from camwright.pipeline.follower.spring_kinds import rise
 from camwright.pipeline.smoothing.cam_state import Loads, Mean
 from camwright.pipeline.smoothing.scenario import DesignVariables, Scenario, Value
 
@@ -152,8 +153,12 @@ def _loss(at: Turning) -> Mean:
 
 
 def _spring_energy(at: Turning) -> Array:
-    """F_s^2/(2 k), the preload included."""
+    """F_s^2/(2 k), the preload included; of another spring that beyond zero lift and P^2/(2 k)."""
     rate = at.variables.rate * at.loads.scenario.rate_factor
+    if at.variables.shape is not None:
+        preload = at.variables.preload * at.loads.scenario.preload_factor
+        held = preload * at.loads.jet.lift + rate * rise(at.variables.shape, at.loads.jet.lift).work
+        return np.asarray((held + preload**2 / (2.0 * rate)) / at.scale.energy)
     return at.loads.force.spring**2 / (2.0 * rate * at.scale.energy)
 
 

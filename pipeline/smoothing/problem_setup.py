@@ -85,6 +85,7 @@ def problem_of(case: Case, torques: Mapping[str, Torque]) -> Problem:
             case.spring.preload,
             case.cam.prime_radius,
             dead_load=dead,
+            shape=case.spring.shape,
         ),
         gear_ratio=case.mechanism.gear_ratio,
         freed=freed,

@@ -7,11 +7,12 @@ from collections.abc import Mapping
 import numpy as np
 
 from camwright.geometry.arrays import Array, uniform_turn
-from camwright.geometry.energy import lift_from_torque
+from camwright.geometry.energy import lift_of_spring
 from camwright.geometry.lift import Lift
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.external_load import closing_preload
 from camwright.pipeline.case.given_lift import given_lift
+from camwright.pipeline.follower.spring import stored_lift
 from camwright.pipeline.smoothing.smoothers import Smoother, smoothed
 from camwright.pipeline.torque.torque import Torque
 
@@ -55,8 +56,11 @@ def required_lift(case: Case, torque: Torque, smoother: Smoother) -> Lift:
     """
     target = case.mechanism.gear_ratio * required_torque(case, torque, smoother)
     _require_ripple(torque, target, smoother)
-    return lift_from_torque(
-        uniform_turn(target.size), target, case.spring.rate, closing_preload(case)
+    spring, closing = case.spring, closing_preload(case)
+    return lift_of_spring(
+        uniform_turn(target.size),
+        target,
+        lambda energy: stored_lift(energy, spring.rate, closing, spring.shape),
     )
 
 

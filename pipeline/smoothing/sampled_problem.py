@@ -126,10 +126,13 @@ class Search:
             problem.coefficients,
             rate=variables.rate,
             preload=variables.closing,
+            shape=variables.shape,
             prime_radius=variables.prime_radius,
             pressure_angle=ratings.limits.get(PRESSURE_ANGLE, np.pi / 3),
             slope_max=ratings.slope_max,
-            energy_max=float(spring_energy(variables.closing, variables.rate, travel)),
+            energy_max=float(
+                spring_energy(variables.closing, variables.rate, travel, variables.shape)
+            ),
         )
         rise = float(np.clip(0.0, problem.energy[0] - 1e-12, problem.energy[1]))
         least = float(self.turn.energy(exact)[0].min())

@@ -13,6 +13,7 @@ from camwright.pipeline.case.limits import AnyLimit
 from camwright.pipeline.checks.key_strength import KeywayRoot
 from camwright.pipeline.checks.roller_bearing import Grease
 from camwright.pipeline.contact.traction import Drag
+from camwright.pipeline.follower.spring_kinds import SpringShape
 
 Value = float | Array
 
@@ -22,7 +23,8 @@ class DesignVariables:
     """Design variables: spring rate, N/m; preload, N; prime radius, m; phase, rad.
 
     The phase is the angle by which the cam leads the spline of its energy on the shaft. dead_load:
-    weight and mean external force, N, towards the cam, which store work with the spring; given.
+    weight and mean external force, N, towards the cam, which store work with the spring; shape: of
+    the force of the spring over the lift, None: linear; both given.
     """
 
     rate: float
@@ -30,6 +32,11 @@ class DesignVariables:
     prime_radius: float
     phase: float = 0.0
     dead_load: float = 0.0
+    shape: SpringShape | None = None
+
+    def with_value(self, name: str, value: float) -> DesignVariables:
+        """With another value of a variable."""
+        return replace(self, **{name: value})  # type: ignore[arg-type]
 
     @property
     def closing(self) -> float:

@@ -9,9 +9,9 @@ from typing import Protocol
 import numpy as np
 
 from camwright.geometry.arrays import Array, readonly, uniform_turn
-from camwright.geometry.energy import spring_deflection
 from camwright.geometry.lift import Lift
 from camwright.pipeline.case.limits import TORQUE_REDUCTION
+from camwright.pipeline.follower.spring import stored_lift
 from camwright.pipeline.smoothing.energy_spline import basis_matrix
 from camwright.pipeline.smoothing.objective import (
     TORQUE,
@@ -153,7 +153,8 @@ class Design:
         """Lift at `samples` equally spaced cam angles."""
         theta = uniform_turn(samples) - float(self.variables.phase)
         energy = np.maximum(basis_matrix(theta, self.coefficients.size) @ self.coefficients, 0.0)
-        deflection = spring_deflection(energy, self.variables.rate, self.variables.closing)
+        made = self.variables
+        deflection = stored_lift(energy, made.rate, made.closing, made.shape)
         return Lift(uniform_turn(samples), deflection)
 
 

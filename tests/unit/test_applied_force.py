@@ -12,6 +12,7 @@ from camwright.geometry.errors import InputError
 from camwright.geometry.lift import Lift
 from camwright.geometry.motion_laws import Motion, Segment
 from camwright.geometry.pitch_curve import PitchCurve
+from camwright.pipeline.base.external_force import STANDARD_GRAVITY, ExternalForce
 from camwright.pipeline.base.units import in_unit
 from camwright.pipeline.case.case_file import parse_case, read_case
 from camwright.pipeline.case.external_load import closing_preload, dead_load, external_force
@@ -22,7 +23,6 @@ from camwright.pipeline.follower.elastic_follower import (
     collocation_response,
     harmonic_response,
 )
-from camwright.pipeline.follower.external_force import STANDARD_GRAVITY, ExternalForce
 from camwright.pipeline.follower.follower_flight import bounce
 from camwright.pipeline.follower.follower_forces import FollowerSystem, follower_loads
 from camwright.pipeline.follower.spring import Spring

@@ -22,7 +22,7 @@ from camwright.pipeline.case.cards.provenance import (
     source_words,
     without_provenance,
 )
-from camwright.pipeline.case.cards.spring_selection import put_spring
+from camwright.pipeline.case.cards.spring_selection import put_force, put_spring
 from camwright.pipeline.case.toml_text import Tables, TomlValue, tables_of
 from camwright.pipeline.case.value_sources import UNSTATED, put_sources
 
@@ -49,6 +49,7 @@ def fill_cards(case: Tables, folder: Path | None) -> None:
         For an unknown card, or a file of cards that cannot be read.
     """
     put_spring(case, folder)
+    put_force(case)
     named = [place for place in _places(case) if "card" in place[2]]
     if not named:
         return

@@ -1,6 +1,7 @@
 """``spring.catalogue = "FILE"``: the lightest spring of a catalogue for a case.
 
-The resolved case states the dimensions of the selected spring instead of the catalogue.
+The resolved case states the dimensions of the selected spring instead of the catalogue. Rate and
+preload of a spring that is not linear follow from its table.
 """
 
 from __future__ import annotations
@@ -11,6 +12,7 @@ from pathlib import Path
 from camwright.geometry.errors import InputError
 from camwright.pipeline.base import units
 from camwright.pipeline.base.files import inside
+from camwright.pipeline.case.cards.part_table import read_part
 from camwright.pipeline.case.cards.spring_catalogue import (
     CATALOGUE,
     SpringDemand,
@@ -21,6 +23,7 @@ from camwright.pipeline.case.cards.spring_catalogue import (
 from camwright.pipeline.case.limits import SPRING_FATIGUE, SPRING_SOLID
 from camwright.pipeline.case.toml_text import Tables, TomlValue, tables_of
 from camwright.pipeline.case.value_sources import put_sources
+from camwright.pipeline.follower.spring_kinds import SHAPES
 
 SHIPPED = "shipped"
 _NEAREST = 3
@@ -66,6 +69,29 @@ def put_spring(case: Tables, folder: Path | None) -> None:
     why = f"lightest of {len(springs)} in catalogue {name}: {best.name}; {best.source}"
     spring["design"] = tables_of(replace(best, source=why.rstrip("; ")))
     put_sources(case, "spring.design", spring["design"], sources_in(path, best.name))
+
+
+def put_force(case: Tables) -> None:
+    """Put rate and preload of a spring that is not linear into its table, changed in place.
+
+    Raises
+    ------
+    InputError
+        If the case states one of them, or its table is refused.
+    """
+    spring = case.get("spring")
+    if not isinstance(spring, dict):
+        return
+    kind = spring.get("kind")
+    part = SHAPES.get(kind) if isinstance(kind, str) else None
+    if part is None or str(kind) not in spring:
+        return  # `Case` refuses a kind without its table
+    shape = read_part(part, spring[str(kind)], f"spring.{kind}")
+    for key, value, unit in (("rate", shape.rate, "kN/m"), ("preload", shape.preload, "N")):
+        if key in spring:
+            limit = f"left out: by spring.{kind} it is {units.shown(value, unit)}"
+            raise InputError(f"spring.{key}", str(spring[key]), limit)
+        spring[key] = units.format(value, unit)
 
 
 def _demand(case: Tables, spring: Tables) -> SpringDemand | None:

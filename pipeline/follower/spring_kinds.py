@@ -1,0 +1,205 @@
+"""Springs whose force is not linear in the lift: gas spring; the lift from their energy.
+
+The force over the lift is F(s) = P + k rho(s), with the preload P, the rate k at zero lift and a
+rise rho that is s near zero: rate and preload mean the same as those of a coil spring, and so do
+their tolerances. The stored energy beyond that at zero lift is P s + k R(s), with R the integral of
+rho. All functions take complex numbers: a complex step gives their derivative to round-off.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
+from typing import Annotated, ClassVar, NamedTuple, Protocol
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from camwright.geometry.arrays import Array
+from camwright.geometry.errors import ContactError
+from camwright.pipeline.base.quantities import In, Length, Part, Temperature
+
+ATMOSPHERE = 101_325.0
+"""Pressure of the surroundings, Pa."""
+CHARGED_AT = 293.15
+"""Temperature at which a charging pressure is stated, K: 20 degC."""
+STROKE_SHARE = 0.995
+"""Share of the lift to the singularity of a force up to which the law holds; tangent beyond."""
+_ROUNDS = 100
+_CLOSE = 1e-13  # of a lift, and a hundredth of it of the reach: beyond round-off of the energy
+
+
+class Rise(NamedTuple):
+    """R, m2; rho, m; rho'; rho'', 1/m, each (...)."""
+
+    work: Array
+    travel: Array
+    slope: Array
+    bend: Array
+
+
+class SpringShape(Protocol):
+    """Rise of the force of a spring over the lift."""
+
+    @property
+    def reach(self) -> float:
+        """Lift up to which the law holds, m."""
+        ...
+
+    def within(self, lift: Array) -> Rise:
+        """Rise at a lift (...) up to the reach, m."""
+        ...
+
+
+def rise(shape: SpringShape, lift: Array) -> Rise:
+    """Rise at a lift (...), m; along the tangent below zero and beyond the reach."""
+    real = np.real(lift)
+    beyond = (real > shape.reach) | (real < 0.0)
+    end = np.where(real < 0.0, 0.0, shape.reach)
+    law = shape.within(np.where(beyond, end, lift))
+    over = np.where(beyond, lift - end, 0.0)
+    return Rise(
+        law.work + (law.travel + 0.5 * law.slope * over) * over,
+        law.travel + law.slope * over,
+        law.slope,
+        np.where(beyond, 0.0 * law.bend, law.bend),
+    )
+
+
+def shaped_deflection(
+    energy: ArrayLike, rate: ArrayLike, preload: ArrayLike, shape: SpringShape
+) -> Array:
+    """Lift (...), m, at which a spring stores an energy beyond that at zero lift, J.
+
+    Newton's method within a bracket on P s + k R(s) = E, which increases with s; one more step in
+    complex numbers has the exact derivative.
+
+    Parameters
+    ----------
+    energy : array (...)          J; may be complex, as rate and preload
+    rate, preload : array (...)   k at zero lift, N/m, > 0; P, N, > 0
+
+    Raises
+    ------
+    ContactError
+        If 100 rounds do not converge.
+    """
+    k, start = np.asarray(rate).real, np.asarray(preload).real
+    wanted = np.asarray(energy).real
+    # below zero the spring is linear; above, its force is at least the preload
+    lift = 2.0 * wanted / (np.sqrt(start**2 + 2.0 * k * wanted) + start)
+    low = np.minimum(lift, 0.0)
+    high = np.where(wanted < 0.0, lift, wanted / start)
+    for _ in range(_ROUNDS):
+        law = rise(shape, lift)
+        miss = start * lift + k * law.work - wanted
+        low, high = np.where(miss < 0.0, lift, low), np.where(miss > 0.0, lift, high)
+        step = lift - miss / (start + k * law.travel)
+        inside = (step >= low) & (step <= high)
+        nearer = np.where(inside, step, 0.5 * (low + high))
+        close = np.abs(nearer - lift) <= _CLOSE * (np.abs(nearer) + 0.01 * shape.reach)
+        lift = nearer
+        if close.all():
+            break
+    else:
+        raise ContactError(f"spring: {np.sum(~close)} lifts not converged in {_ROUNDS} rounds")
+    law = rise(shape, lift)
+    if not any(np.iscomplexobj(each) for each in (energy, rate, preload)):
+        return np.asarray(lift)
+    miss = np.asarray(energy) - (np.asarray(preload) * lift + np.asarray(rate) * law.work)
+    return np.asarray(lift + 1j * np.imag(miss) / (start + k * law.travel))
+
+
+class Limited(NamedTuple):
+    """State of a spring at a lift (...), that its maker limits: SI."""
+
+    pressure: Array
+    temperature: Array
+
+
+@dataclass(frozen=True, kw_only=True)
+class GasSpring(Part):
+    """Gas spring: a piston of an area on a gas volume.
+
+    pressure: above that of the surroundings at zero lift and 20 degC; volume: of the gas at zero
+    lift; exponent: of the polytropic compression, 1 slow to 1.4 fast for nitrogen; temperature: of
+    the gas in operation, at which the pressure is higher. Limits: of the maker, each of a check.
+
+    Raises
+    ------
+    InputError
+        If a value is out of its bounds.
+    """
+
+    table: ClassVar[str] = "spring.gas"
+    defaults: ClassVar[Mapping[str, str]] = MappingProxyType(
+        {"temperature": "20 degC, at which the pressure is stated"}
+    )
+
+    pressure: Annotated[float, In("bar", above=0, at_most=10_000)]
+    area: Annotated[float, In("mm^2", above=0, at_most=1e7)]
+    volume: Annotated[float, In("cm^3", above=0, at_most=1e6)]
+    exponent: Annotated[float, In(at_least=1, at_most=1.7)] = 1.3
+    temperature: Temperature | None = None
+    pressure_limit: Annotated[float, In("bar", above=0, at_most=10_000)] | None = None
+    temperature_limit: Temperature | None = None
+    speed_limit: Annotated[float, In("m/s", above=0, at_most=1000)] | None = None
+    stroke: Length | None = None
+    source: str = ""
+
+    @property
+    def column(self) -> float:
+        """Height V/A of the gas at zero lift, m."""
+        return self.volume / self.area
+
+    @property
+    def warm(self) -> float:
+        """Temperature of the gas, K."""
+        return CHARGED_AT if self.temperature is None else self.temperature
+
+    @property
+    def absolute(self) -> float:
+        """Absolute pressure at zero lift and the temperature of the gas, Pa."""
+        return (self.pressure + ATMOSPHERE) * self.warm / CHARGED_AT
+
+    @property
+    def preload(self) -> float:
+        """Force at zero lift, N."""
+        return (self.absolute - ATMOSPHERE) * self.area
+
+    @property
+    def rate(self) -> float:
+        """Slope of the force at zero lift, n p A^2 / V, N/m."""
+        return self.exponent * self.absolute * self.area / self.column
+
+    @property
+    def reach(self) -> float:
+        """Lift up to which the law holds, m."""
+        return STROKE_SHARE * self.column
+
+    def within(self, lift: Array) -> Rise:
+        """Rise of p A (1 - s/L)^-n, L = V/A, over its slope at zero lift."""
+        column, n = self.column, self.exponent
+        left = 1.0 - lift / column
+        once = -np.log(left) if n - 1.0 < _ISOTHERMAL else (left ** (1.0 - n) - 1.0) / (n - 1.0)
+        return Rise(
+            column / n * (column * once - lift),
+            column / n * (left**-n - 1.0),
+            left ** -(n + 1.0),
+            (n + 1.0) / column * left ** -(n + 2.0),
+        )
+
+    def at(self, lift: ArrayLike) -> Limited:
+        """Pressure above the surroundings, Pa, and temperature of the gas, K, at a lift (...), m.
+
+        p V^n and T V^(n - 1) are constant.
+        """
+        left = 1.0 - np.minimum(np.asarray(lift, dtype=float), self.reach) / self.column
+        pressure = self.absolute * left**-self.exponent - ATMOSPHERE
+        return Limited(pressure, self.warm * left ** (1.0 - self.exponent))
+
+
+_ISOTHERMAL = 1e-9  # exponent less 1, below which the compression is isothermal
+SHAPES: Mapping[str, type[GasSpring]] = MappingProxyType({"gas": GasSpring})
+"""Tables of the kinds of spring that are not linear, by `spring.kind`."""

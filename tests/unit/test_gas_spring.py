@@ -1,0 +1,222 @@
+"""Gas spring: force, energy, lift from energy, derivatives, case, synthesis and screening."""
+
+import tomllib
+from functools import cache
+from itertools import pairwise
+
+import numpy as np
+import pytest
+import scipy
+from small_machine import small_machine
+
+from camwright.geometry.arrays import uniform_turn
+from camwright.geometry.errors import InputError
+from camwright.geometry.lift import Lift
+from camwright.geometry.pitch_curve import PitchCurve
+from camwright.pipeline.case.case_file import case_of, parse_case
+from camwright.pipeline.case.load_case_torque import engine_torques
+from camwright.pipeline.case.machine import Corner, machine
+from camwright.pipeline.cycle.elastic_response import elastic_history
+from camwright.pipeline.follower.follower_forces import follower_loads
+from camwright.pipeline.follower.spring import Spring, spring_energy, spring_force, stored_lift
+from camwright.pipeline.follower.spring_kinds import ATMOSPHERE, GasSpring, rise
+from camwright.pipeline.preview import preview_case
+from camwright.pipeline.screening.design_screening import screen_designs
+from camwright.pipeline.smoothing.cam_state import forces, lift_jet, motion
+from camwright.pipeline.smoothing.problem_setup import problem_of
+from camwright.pipeline.smoothing.required_lift import required_lift, required_torque
+from camwright.pipeline.smoothing.sampled_problem import Search
+from camwright.pipeline.smoothing.scenario import stacked
+from camwright.pipeline.smoothing.smoothers import Smoother
+
+GAS = GasSpring(pressure=30e5, area=113e-6, volume=6e-6, exponent=1.3)
+SPRING = Spring(kind="gas", gas=GAS, rate=GAS.rate, preload=GAS.preload)
+TABLE = """
+kind = "gas"
+
+[spring.gas]
+pressure = "30 bar"
+area = "113 mm^2"
+volume = "6 cm^3"
+"""
+
+
+def gas_case(extra="", table=TABLE):
+    text = small_machine("gas").replace('rate = "24.2 kN/m"\n', "")
+    old = 'preload = "400 N"                    # at the smallest cam radius\n'
+    assert old in text
+    return parse_case(text.replace(old, table) + extra)
+
+
+@cache
+def case():
+    return gas_case()
+
+
+def test_force_is_that_of_the_compressed_gas():
+    """p V^n = constant from 30 bar above the surroundings; by hand at 20 mm."""
+    left = 6e-6 - 113e-6 * 0.02
+    pressure = (30e5 + ATMOSPHERE) * (6e-6 / left) ** 1.3
+    assert SPRING.force(np.array(0.02)) == pytest.approx(
+        (pressure - ATMOSPHERE) * 113e-6, rel=1e-14
+    )
+    assert GAS.at(0.02).pressure == pytest.approx(pressure - ATMOSPHERE, rel=1e-14)
+    assert GAS.at(0.02).temperature == pytest.approx(293.15 * (6e-6 / left) ** 0.3, rel=1e-14)
+    assert SPRING.force(np.array(0.0)) == pytest.approx(30e5 * 113e-6, rel=1e-14)
+
+
+def test_warm_gas_has_a_greater_pressure():
+    warm = GasSpring(pressure=30e5, area=113e-6, volume=6e-6, temperature=323.15)
+    absolute = (30e5 + ATMOSPHERE) * 323.15 / 293.15
+    assert warm.preload == pytest.approx((absolute - ATMOSPHERE) * 113e-6, rel=1e-14)
+
+
+@pytest.mark.parametrize("exponent", [1.0, 1.0 + 1e-7, 1.3, 1.4])
+def test_energy_is_the_integral_of_the_force(exponent):
+    gas = GasSpring(pressure=30e5, area=113e-6, volume=6e-6, exponent=exponent)
+    spring = Spring(kind="gas", gas=gas, rate=gas.rate, preload=gas.preload)
+    for lift in (0.001, 0.02, 0.045, gas.reach + 0.002):  # beyond the reach along the tangent
+        parts = [0.0, min(lift, gas.reach), lift] if lift > gas.reach else [0.0, lift]
+        exact = sum(
+            scipy.integrate.quad(lambda s: float(spring.force(np.array(s))), a, b, epsrel=1e-12)[0]
+            for a, b in pairwise(parts)
+        )
+        # the integral of an exponent near 1 cancels to eps over the exponent less 1
+        assert spring.energy(lift) == pytest.approx(exact, rel=1e-7 if exponent > 1.2 else 1e-6)
+
+
+def test_derivatives_of_the_rise_are_those_of_the_force():
+    lift = np.array([0.003, 0.02, 0.045])
+    law = rise(GAS, lift)
+    step = 1e-30
+    by_complex = rise(GAS, lift + 1j * step)
+    assert np.imag(by_complex.work) / step == pytest.approx(law.travel, rel=1e-12)
+    assert np.imag(by_complex.travel) / step == pytest.approx(law.slope, rel=1e-12)
+    assert np.imag(by_complex.slope) / step == pytest.approx(law.bend, rel=1e-12)
+
+
+def test_lift_stores_its_energy():
+    lift = np.linspace(0.0, 0.05, 41)
+    energy = spring_energy(SPRING.preload, SPRING.rate, lift, GAS)
+    again = stored_lift(energy, SPRING.rate, SPRING.preload, GAS)
+    np.testing.assert_allclose(again, lift, rtol=1e-12, atol=1e-15)
+
+
+def test_jet_has_exact_derivatives():
+    """Lift and derivatives along E(theta), and by E, P and k, against differences."""
+    problem = problem_of(case(), engine_torques(case()))
+    variables = problem.variables
+    assert variables.shape is case().spring.gas
+    theta = np.linspace(0.3, 0.3 + 4e-3, 5)
+    energy = (
+        6.0 + 3.0 * np.sin(theta),
+        3.0 * np.cos(theta),
+        -3.0 * np.sin(theta),
+        -3.0 * np.cos(theta),
+    )
+    jet, h = lift_jet(energy, variables), 1e-3
+    assert jet.slope[2] == pytest.approx(
+        (8 * (jet.lift[3] - jet.lift[1]) - (jet.lift[4] - jet.lift[0])) / (12 * h), rel=1e-9
+    )
+    assert jet.bend[2] == pytest.approx(
+        (8 * (jet.slope[3] - jet.slope[1]) - (jet.slope[4] - jet.slope[0])) / (12 * h), rel=1e-9
+    )
+    assert jet.jerk[2] == pytest.approx(
+        (8 * (jet.bend[3] - jet.bend[1]) - (jet.bend[4] - jet.bend[0])) / (12 * h), rel=1e-9
+    )
+    by_complex = lift_jet((energy[0] + 1e-30j, *energy[1:]), variables)
+    up, down = (lift_jet((energy[0] + side, *energy[1:]), variables) for side in (1e-4, -1e-4))
+    for name in jet._fields:
+        slope = (getattr(up, name) - getattr(down, name)) / 2e-4
+        assert np.imag(getattr(by_complex, name)) / 1e-30 == pytest.approx(slope, rel=1e-6), name
+
+
+def test_lift_of_a_case_delivers_the_torque():
+    torque, smoother = engine_torques(case())["idle"], Smoother.from_case(case().smoothing)
+    lift = required_lift(case(), torque, smoother)
+    wanted = case().mechanism.gear_ratio * required_torque(case(), torque, smoother)
+    theta = uniform_turn(wanted.size)
+    given = case().spring.force(lift(theta)) * lift(theta, 1)
+    assert given == pytest.approx(wanted, abs=1e-6 * np.abs(wanted).max())
+
+
+def test_synthesis_has_the_forces_of_the_follower():
+    problem = problem_of(case(), engine_torques(case()))
+    search = Search(problem)
+    theta, idle = search.turn.theta, problem.scenarios[0]
+    jet = lift_jet(search.turn.energy(search.exact), problem.variables)
+    drive = machine(case(), case().load_cases[0])
+    pitch = PitchCurve(Lift(theta, jet.lift), case().cam.prime_radius)
+    loads = follower_loads(pitch, drive.system, drive.cam_speed, theta)
+    path = motion(jet, problem.variables, problem.ratings)
+    force = forces(jet, path, float(jet.lift.max()), problem.variables, stacked([idle], theta))
+    wide = float(loads.spring_force.max())
+    assert force.spring[0] == pytest.approx(loads.spring_force, abs=1e-12 * wide)
+
+
+def test_preview_and_screening_agree():
+    trial = preview_case(case(), corners=False)
+    checks = {each.id: each for each in trial.checks}
+    assert checks["friction_balance"].demand < 1e-6
+    columns = screen_designs(case(), {"follower.mass": np.array([0.25, 0.3])}, positions=72)
+    for name, apart in (("torque_reduction", 1e-3), ("jump", 3e-3)):
+        demand = columns[f"{name}.demand"][0]
+        # the preview has samples, the screening vertices
+        error = checks[name].error_share or 0.0
+        assert demand == pytest.approx(checks[name].demand, rel=apart + error), name
+
+
+def test_stiff_follower_has_the_force_of_the_rigid_one():
+    """The bent force acts on the elastic mass: at low speed the contact force is the spring's."""
+    drive = machine(case(), case().load_cases[0])
+    lift = Lift(uniform_turn(72), 0.01 * (1.0 - np.cos(uniform_turn(72))))
+    at = lift(uniform_turn(361))
+    history = elastic_history(drive, lift, at, np.full(361, 0.01), flights=False)
+    # the stem shortens by F/K: the force of the shortened spring
+    stem, rate = drive.axial_stiffness, drive.spring.rate
+    exact = drive.spring.force(at) / (1.0 + rate / stem)
+    assert history.response.contact_force == pytest.approx(exact, rel=1e-5)
+
+
+def test_corner_scales_preload_and_rise():
+    drive = machine(case(), case().load_cases[0])
+    there = drive.at_corner(Corner("high", rate=1.1, preload=0.9)).spring
+    lift = np.array([0.0, 0.01, 0.03])
+    here = drive.spring
+    exact = 0.9 * here.preload + 1.1 * (here.force(lift) - here.preload)
+    np.testing.assert_allclose(there.force(lift), exact, rtol=1e-13)
+    assert spring_force(1.0, 2.0, lift) == pytest.approx(1.0 + 2.0 * lift)
+
+
+def test_resolved_case_reads_back():
+    text = case().to_toml()
+    table = tomllib.loads(text)["spring"]
+    assert "rate" not in table and "preload" not in table
+    again = case_of(tomllib.loads(text))
+    assert again.spring == case().spring
+    assert again.to_toml() == text
+
+
+@pytest.mark.parametrize(
+    ("table", "refusal"),
+    [
+        (
+            TABLE.replace('kind = "gas"', 'kind = "gas"\npreload = "400 N"'),
+            "spring.preload = 400 N",
+        ),
+        (TABLE.replace('"gas"', '"air"'), "spring.kind = air"),
+        ('kind = "gas"\n', "spring"),
+        (TABLE.replace('"6 cm^3"', '"0 cm^3"'), "spring.gas.volume = 0 cm^3"),
+        (TABLE + 'colour = "red"\n', "spring.gas.colour = unknown key"),
+    ],
+)
+def test_bad_tables_are_refused_in_one_line(table, refusal):
+    with pytest.raises(InputError) as caught:
+        gas_case(table=table)
+    assert refusal in str(caught.value)
+    assert "\n" not in str(caught.value)
+
+
+def test_preload_of_a_load_case_and_freed_springs_are_refused():
+    with pytest.raises(InputError, match=r"load_case\[0\].preload"):
+        gas_case('preload = "300 N"\n')
