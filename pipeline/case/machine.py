@@ -165,6 +165,7 @@ class Machine:
             "pin": roller is not None and roller.pin is not None,
             "fork": roller is not None and roller.fork is not None,
             "spring": self.spring.design is not None,
+            "gas_spring": self.spring.gas is not None,
             "guides": True,
             "camshaft": shaft is not None,
             "camshaft_bearings": shaft is not None

@@ -10,14 +10,15 @@ from camwright.geometry.errors import InputError
 from camwright.pipeline.case.section import Section, Text
 
 PartName = Literal[
-    "roller_bearing", "pin", "fork", "spring", "guides", "camshaft", "camshaft_bearings", "key",
-    "gear",
+    "roller_bearing", "pin", "fork", "spring", "gas_spring", "guides", "camshaft",
+    "camshaft_bearings", "key", "gear",
 ]  # fmt: skip
 PART_WORDS: dict[PartName, str] = {
     "roller_bearing": "bearing of the roller",
     "pin": "pin of the roller",
     "fork": "fork of the roller",
     "spring": "spring design",
+    "gas_spring": "gas spring",
     "guides": "guides",
     "camshaft": "camshaft",
     "camshaft_bearings": "camshaft bearings",

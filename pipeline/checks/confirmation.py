@@ -18,7 +18,7 @@ from camwright.pipeline.case.toml_text import Tables
 from camwright.pipeline.case.value_sources import OF_A_CHECK, confirms, source_of, values_at
 from camwright.pipeline.checks.check import Check
 
-_SPRING = ("spring.rate", "spring.preload")
+_SPRING = ("spring.rate", "spring.preload", "spring.gas.*")
 _MOTION = (*_SPRING, "follower.mass", "limits.overspeed")
 _LOADS = (
     *_MOTION,
@@ -165,6 +165,10 @@ RESTS_ON: Mapping[str, tuple[str, ...]] = MappingProxyType(
         "anti_rotation": (),
         **_guides("guide_wear", "guide.wear_rate", "limits.target_life"),
         "guide_length": (),
+        "gas_pressure": (*_SPRING,),
+        "gas_stroke": ("spring.gas.stroke",),
+        "gas_speed": (*_MOTION, "spring.gas.speed_limit"),
+        "gas_temperature": ("spring.gas.*temperature*",),
         "spring_stress": (*_SPRING, *_SURGE, *_WIRE, "limits.overspeed"),
         "spring_fatigue": (*_SPRING, *_SURGE, *_WIRE, "limits.overspeed"),
         "spring_solid": (*_SPRING, *_RATE),
@@ -248,7 +252,7 @@ RESTS_ON: Mapping[str, tuple[str, ...]] = MappingProxyType(
         ),
         **{f"data_{name}": () for name in (
             "cam", "follower", "roller", "face", "roller_bearing", "pin", "fork", "spring",
-            "guides", "camshaft", "camshaft_bearings", "key", "gear",
+            "gas_spring", "guides", "camshaft", "camshaft_bearings", "key", "gear",
         )},
     }
 )  # fmt: skip

@@ -21,10 +21,12 @@ def _data(
     tables: Callable[[Case], Tables],
     needs: Literal["", "roller", "face"] = "",
     described_by: tuple[str, ...] = (),
+    applies: Callable[[Case], bool] = lambda _: True,
 ) -> Declaration:
     """Check that a part is described and lacks no datum; None if the scope leaves it out.
 
-    described_by: tables or keys by which the case describes the part.
+    described_by: tables or keys by which the case describes the part; applies: whether a case can
+    have it.
     """
     words: str = "flat face" if name == "face" else name
     coverable: PartName | None = None
@@ -46,6 +48,8 @@ def _data(
     )
     def data(solution: Solution) -> Demand | None:
         machine = solution.machine
+        if not applies(solution.case):
+            return None
         if coverable is not None:
             if not machine.scope.covers(coverable):
                 return None
@@ -61,6 +65,10 @@ def _data(
 
 def _spring(case: Case) -> Tables:
     return {"spring": case.spring, "spring.design": case.spring.design}
+
+
+def _gas_spring(case: Case) -> Tables:
+    return {"spring": case.spring, "spring.gas": case.spring.gas}
 
 
 def _guides(case: Case) -> Tables:
@@ -88,7 +96,18 @@ data_pin = _data(
 data_fork = _data(
     "fork", lambda case: {"roller.fork": case.roller.fork}, "roller", described_by=("roller.fork",)
 )
-data_spring = _data("spring", _spring, described_by=("spring.design",))
+data_spring = _data(
+    "spring",
+    _spring,
+    described_by=("spring.design",),
+    applies=lambda case: case.spring.shape is None,
+)
+data_gas_spring = _data(
+    "gas_spring",
+    _gas_spring,
+    described_by=("spring.gas",),
+    applies=lambda case: case.spring.gas is not None,
+)
 data_guides = _data("guides", _guides)
 data_camshaft = _data(
     "camshaft", lambda case: {"camshaft": case.camshaft}, described_by=("camshaft",)

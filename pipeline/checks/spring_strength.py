@@ -1,4 +1,7 @@
-"""Checks of the spring design: strength, fatigue, solid length, buckling, surge, relaxation."""
+"""Checks of the spring design: strength, fatigue, solid length, buckling, surge, relaxation.
+
+Of a gas spring: pressure, stroke, speed and temperature.
+"""
 
 from __future__ import annotations
 
@@ -24,6 +27,7 @@ from camwright.pipeline.follower.spring import (
     WoundWire,
     surge_harmonics,
 )
+from camwright.pipeline.follower.spring_kinds import GasSpring
 
 RATE_TOLERANCE = 0.05  # of the rate, where the case has none
 PRELOAD_TOLERANCE = 0.05  # of the preload, where the case has none
@@ -360,3 +364,115 @@ def spring_relaxation(solution: Solution) -> Demand:
         figures=(design.source,),
         corner=_corner(spring, HARDEST),
     )
+
+
+def _gas(solution: Solution) -> GasSpring:
+    gas = solution.machine.spring.gas
+    if gas is None:
+        raise InputError("spring.gas", "missing", "given for the checks of the gas spring")
+    return gas
+
+
+def gas_pressure_at(spring: Spring, gas: GasSpring, travel: float) -> float:
+    """Pressure above the surroundings at a lift, m, of the hardest spring in tolerance, Pa."""
+    preload = spring.preload * (1.0 + spring.preload_tolerance)
+    risen = float(spring.force(np.asarray(travel))) - spring.preload
+    return (preload + risen * (1.0 + spring.rate_tolerance)) / gas.area
+
+
+def _gas_check(
+    name: str,
+    measure: Callable[[Solution, GasSpring], float | None],
+    allowed: str,
+    *,
+    title: str,
+    unit: str,
+    method: str,
+    formula: str,
+    reason: str,
+    needs: tuple[str, ...] = (),
+    lift_can_help: bool = True,
+    corner: str = "",
+) -> Declaration:
+    """Check of a gas spring against the limit of its maker, `spring.gas.<allowed>`."""
+
+    @check(
+        id=name,
+        title=title,
+        unit=unit,
+        source="data sheet of the maker",
+        method=method,
+        lift_can_help=lift_can_help,
+        moved_by_tolerance=False,
+        part="gas_spring",
+        formula=formula,
+        reason=reason,
+        load_cases=NONE,
+    )
+    def demand(solution: Solution) -> Demand:
+        gas = _gas(solution)
+        return Demand(
+            measure(solution, gas),
+            getattr(gas, allowed),
+            missing=lacking("spring.gas", gas, allowed, *needs),
+            figures=(gas.source,),
+            corner=_corner(solution.machine.spring, corner) if corner else "",
+        )
+
+    return demand
+
+
+def _travel(solution: Solution) -> float:
+    return float(solution.contour.pitch.lift.highest.value)
+
+
+def _greatest_speed(solution: Solution) -> float:
+    """Greatest speed of the follower over the load cases, m/s."""
+    return max(float(np.max(np.abs(cycle.loads.velocity))) for cycle in solution.cycles)
+
+
+gas_pressure = _gas_check(
+    "gas_pressure",
+    lambda solution, gas: gas_pressure_at(solution.machine.spring, gas, _travel(solution)),
+    "pressure_limit",
+    title="Maximum pressure of the gas spring",
+    unit="MPa",
+    method="force at maximum lift over the area, preload and rise of the force high",
+    formula="(P + F(h) - P) / A <= spring.gas.pressure_limit; P: preload, F(h): force at maximum"
+    " lift, both high in tolerance, A: area; above the pressure of the surroundings",
+    reason="beyond it seals and cylinder of the spring fail.",
+    corner=HARDEST,
+)
+gas_stroke = _gas_check(
+    "gas_stroke",
+    lambda solution, _: _travel(solution),
+    "stroke",
+    title="Stroke of the gas spring",
+    unit="mm",
+    method="greatest lift, between samples too",
+    formula="h <= spring.gas.stroke; h: maximum lift",
+    reason="a gas spring that strikes its stop breaks.",
+)
+gas_speed = _gas_check(
+    "gas_speed",
+    lambda solution, _: _greatest_speed(solution),
+    "speed_limit",
+    title="Maximum piston speed of the gas spring",
+    unit="m/s",
+    method="greatest speed of the follower over the load cases",
+    formula="max|w s'| <= spring.gas.speed_limit over all load cases; w: cam speed, s': slope of"
+    " the lift",
+    reason="a faster seal overheats and wears.",
+)
+gas_temperature = _gas_check(
+    "gas_temperature",
+    lambda _, gas: gas.temperature,
+    "temperature_limit",
+    title="Temperature of the gas spring",
+    unit="K",
+    method="spring.gas.temperature, at which the pressure is computed",
+    formula="T <= spring.gas.temperature_limit; T: spring.gas.temperature",
+    reason="seals and oil of the spring age above it.",
+    needs=("temperature",),
+    lift_can_help=False,
+)

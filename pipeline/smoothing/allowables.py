@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import replace
+from functools import partial
 from typing import Literal, NamedTuple, TypedDict
 
 import numpy as np
@@ -49,7 +50,12 @@ from camwright.pipeline.checks.part_strength import (
     seat_pressure,
 )
 from camwright.pipeline.checks.roller_bearing import Grease, allowed_spin, grease_of, least_speed
-from camwright.pipeline.checks.spring_strength import Work, hardest_work, relaxation_allowed
+from camwright.pipeline.checks.spring_strength import (
+    Work,
+    gas_pressure_at,
+    hardest_work,
+    relaxation_allowed,
+)
 from camwright.pipeline.contact.traction import Drag
 from camwright.pipeline.cycle.part_loads import edge_pressure_of
 from camwright.pipeline.cycle.solution import Solution
@@ -59,6 +65,8 @@ from camwright.pipeline.follower.guide_friction import thermal_resistance
 from camwright.pipeline.follower.guide_reactions import Guide
 from camwright.pipeline.follower.roller import Roller
 from camwright.pipeline.follower.roller_parts import Bearing
+from camwright.pipeline.follower.spring import Spring
+from camwright.pipeline.follower.spring_kinds import GasSpring
 from camwright.pipeline.smoothing.constraints import rows_kept
 from camwright.pipeline.smoothing.scenario import Face, ModifiedLife, Ratings
 
@@ -185,7 +193,8 @@ def _of_guides(case: Case, machine: Machine, fastest: float) -> _GuideRatings:
     both = machine.guides.both
     powers = [_least(power_limits(side, guide, case, machine)) for side, guide in both]
     edges = [edge_load(machine, guide, ROOM) for _, guide in both]
-    slopes = [None if g.speed_limit is None else g.speed_limit / fastest for _, g in both]
+    gas = case.spring.gas if case.scope.covers("gas_spring") else None
+    slopes = [_slope_limit((g, gas), fastest) for _, g in both]
     (a, b) = (guide for _, guide in both)
     return {
         "guide_pressure": (a.pressure_limit, b.pressure_limit),
@@ -198,6 +207,13 @@ def _of_guides(case: Case, machine: Machine, fastest: float) -> _GuideRatings:
         "guide_slope": (slopes[0], slopes[1]),
         "guide_length": (a.length, b.length),
     }
+
+
+def _slope_limit(parts: tuple[Guide, GasSpring | None], fastest: float) -> float | None:
+    """Greatest lift per cam angle by the speeds of a guide and a gas spring, m/rad."""
+    speeds = [part.speed_limit for part in parts if part is not None]
+    stated = [speed for speed in speeds if speed is not None]
+    return min(stated) / fastest if stated else None
 
 
 def power_limits(side: str, guide: Guide, case: Case, machine: Machine) -> dict[str, float]:
@@ -360,6 +376,14 @@ def travel_limits(case: Case, surge: Surge | None = None) -> dict[str, float]:
     allowed = {}
     if spring.travel_max is not None:
         allowed["spring_travel"] = spring.travel_max
+    gas = spring.gas if case.scope.covers("gas_spring") else None
+    if gas is not None and gas.stroke is not None:
+        allowed["gas_stroke"] = gas.stroke
+    if gas is not None and gas.pressure_limit is not None:
+        beyond = partial(_over_pressure, spring, gas, gas.pressure_limit)
+        if beyond(0.0) < 0.0 < beyond(gas.reach):
+            root = scipy.optimize.brentq(beyond, 0.0, gas.reach, xtol=1e-12)
+            allowed["gas_pressure"] = float(root)
     design = spring.design if case.scope.covers("spring") else None
     if design is None or {"spring_rate", "preload"} & set(case.smoothing.free):
         return allowed
@@ -400,6 +424,10 @@ def travel_limits(case: Case, surge: Surge | None = None) -> dict[str, float]:
                 scipy.optimize.brentq(at, _TRAVEL_LEAST, _TRAVEL_MOST, xtol=1e-12)
             )
     return allowed
+
+
+def _over_pressure(spring: Spring, gas: GasSpring, limit: float, travel: float) -> float:
+    return gas_pressure_at(spring, gas, travel) - limit
 
 
 def force_limits(case: Case) -> dict[str, float]:

@@ -16,12 +16,14 @@ from camwright.geometry.pitch_curve import PitchCurve
 from camwright.pipeline.case.case_file import case_of, parse_case
 from camwright.pipeline.case.load_case_torque import engine_torques
 from camwright.pipeline.case.machine import Corner, machine
+from camwright.pipeline.checks.spring_strength import gas_pressure_at
 from camwright.pipeline.cycle.elastic_response import elastic_history
 from camwright.pipeline.follower.follower_forces import follower_loads
 from camwright.pipeline.follower.spring import Spring, spring_energy, spring_force, stored_lift
 from camwright.pipeline.follower.spring_kinds import ATMOSPHERE, GasSpring, rise
 from camwright.pipeline.preview import preview_case
 from camwright.pipeline.screening.design_screening import screen_designs
+from camwright.pipeline.smoothing.allowables import travel_limits
 from camwright.pipeline.smoothing.cam_state import forces, lift_jet, motion
 from camwright.pipeline.smoothing.problem_setup import problem_of
 from camwright.pipeline.smoothing.required_lift import required_lift, required_torque
@@ -220,3 +222,43 @@ def test_bad_tables_are_refused_in_one_line(table, refusal):
 def test_preload_of_a_load_case_and_freed_springs_are_refused():
     with pytest.raises(InputError, match=r"load_case\[0\].preload"):
         gas_case('preload = "300 N"\n')
+
+
+LIMITS = """
+temperature = "320 K"
+pressure_limit = "60 bar"
+temperature_limit = "353 K"
+speed_limit = "1 m/s"
+stroke = "20 mm"
+source = "made up"
+"""
+
+
+def test_limits_of_the_maker():
+    """Checks and travel limits of the synthesis against p V^n integrated in steps."""
+    limited = gas_case(table=TABLE + LIMITS)
+    trial = preview_case(limited, corners=False)
+    checks = {each.id: each for each in trial.checks}
+    highest = trial.lift.highest.value
+    absolute = (30e5 + ATMOSPHERE) * 320.0 / 293.15
+    volume = np.linspace(6e-6, 6e-6 - 113e-6 * highest, 20001)
+    pressure = absolute * np.exp(scipy.integrate.trapezoid(-1.3 / volume, volume))  # dp/p = -n dV/V
+    hard = 1.05 * (pressure - ATMOSPHERE)
+    assert checks["gas_pressure"].demand == pytest.approx(hard, rel=1e-6)
+    assert checks["gas_stroke"].demand == pytest.approx(highest, rel=1e-9)
+    speed = max(float(np.abs(c.loads.velocity).max()) for c in trial.cycles)
+    assert checks["gas_speed"].demand == pytest.approx(speed, rel=1e-12)
+    assert checks["gas_temperature"].demand == 320.0
+    assert checks["data_gas_spring"].missing == ("spring.travel_max",)
+    assert not any(name.startswith("spring_") and name != "spring_travel" for name in checks)
+    allowed = travel_limits(limited)
+    assert allowed["gas_stroke"] == 0.02
+    at_limit = gas_pressure_at(limited.spring, limited.spring.gas, allowed["gas_pressure"])
+    assert at_limit == pytest.approx(60e5, rel=1e-9)
+
+
+def test_checks_without_a_data_sheet_are_not_evaluated_by_name():
+    checks = {each.id: each for each in preview_case(case(), corners=False).checks}
+    assert checks["gas_pressure"].status == "not_evaluated"
+    assert checks["gas_pressure"].missing == ("spring.gas.pressure_limit",)
+    assert "data_spring" not in checks

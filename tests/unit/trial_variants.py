@@ -18,6 +18,7 @@ from camwright.pipeline.cycle.rolling_history import RollingHistory, SweptStress
 from camwright.pipeline.cycle.solution import Solution
 from camwright.pipeline.follower.camshaft_loads import Reversal
 from camwright.pipeline.follower.guide_friction import GuideHeat
+from camwright.pipeline.follower.spring_kinds import GasSpring
 
 NAN = np.full(made.POSITIONS, np.nan)
 TWO_ENDS = np.tile([-1e-4, 1e-4], (made.POSITIONS, 1))
@@ -35,6 +36,16 @@ def with_limits(**values: Any) -> Solution:
 def with_part(section: str, **values: Any) -> Solution:
     """The solution with a section of its case changed."""
     return with_case(**{section: made.changed(getattr(made.case(), section), **values)})
+
+
+def with_gas_spring(**values: Any) -> Solution:
+    """The solution on a gas spring: a column of 50 mm, 30 bar above the surroundings."""
+    stated = {
+        "temperature": 320.0, "pressure_limit": 1e7, "temperature_limit": 353.0,
+        "speed_limit": 2.0, "stroke": 0.02, "source": "made up",
+    }  # fmt: skip
+    gas = GasSpring(pressure=30e5, area=100e-6, volume=5e-6, **(stated | values))
+    return with_part("spring", kind="gas", design=None, gas=gas, rate=gas.rate, preload=gas.preload)
 
 
 def with_material(name: str, **values: Any) -> Solution:
