@@ -166,6 +166,7 @@ class Machine:
             "fork": roller is not None and roller.fork is not None,
             "spring": self.spring.design is not None,
             "gas_spring": self.spring.gas is not None,
+            "torsion_spring": self.spring.torsion is not None,
             "guides": True,
             "camshaft": shaft is not None,
             "camshaft_bearings": shaft is not None

@@ -10,8 +10,8 @@ from camwright.geometry.errors import InputError
 from camwright.pipeline.case.section import Section, Text
 
 PartName = Literal[
-    "roller_bearing", "pin", "fork", "spring", "gas_spring", "guides", "camshaft",
-    "camshaft_bearings", "key", "gear",
+    "roller_bearing", "pin", "fork", "spring", "gas_spring", "torsion_spring", "guides",
+    "camshaft", "camshaft_bearings", "key", "gear",
 ]  # fmt: skip
 PART_WORDS: dict[PartName, str] = {
     "roller_bearing": "bearing of the roller",
@@ -19,6 +19,7 @@ PART_WORDS: dict[PartName, str] = {
     "fork": "fork of the roller",
     "spring": "spring design",
     "gas_spring": "gas spring",
+    "torsion_spring": "torsion spring",
     "guides": "guides",
     "camshaft": "camshaft",
     "camshaft_bearings": "camshaft bearings",

@@ -18,7 +18,7 @@ from camwright.pipeline.case.toml_text import Tables
 from camwright.pipeline.case.value_sources import OF_A_CHECK, confirms, source_of, values_at
 from camwright.pipeline.checks.check import Check
 
-_SPRING = ("spring.rate", "spring.preload", "spring.gas.*")
+_SPRING = ("spring.rate", "spring.preload", "spring.gas.*", "spring.torsion.*")
 _MOTION = (*_SPRING, "follower.mass", "limits.overspeed")
 _LOADS = (
     *_MOTION,
@@ -166,6 +166,8 @@ RESTS_ON: Mapping[str, tuple[str, ...]] = MappingProxyType(
         **_guides("guide_wear", "guide.wear_rate", "limits.target_life"),
         "guide_length": (),
         "gas_pressure": (*_SPRING,),
+        "torsion_stress": (*_SPRING,),
+        "torsion_fatigue": (*_SPRING,),
         "gas_stroke": ("spring.gas.stroke",),
         "gas_speed": (*_MOTION, "spring.gas.speed_limit"),
         "gas_temperature": ("spring.gas.*temperature*",),
@@ -252,7 +254,8 @@ RESTS_ON: Mapping[str, tuple[str, ...]] = MappingProxyType(
         ),
         **{f"data_{name}": () for name in (
             "cam", "follower", "roller", "face", "roller_bearing", "pin", "fork", "spring",
-            "gas_spring", "guides", "camshaft", "camshaft_bearings", "key", "gear",
+            "gas_spring", "torsion_spring", "guides", "camshaft", "camshaft_bearings", "key",
+            "gear",
         )},
     }
 )  # fmt: skip

@@ -108,6 +108,12 @@ data_gas_spring = _data(
     described_by=("spring.gas",),
     applies=lambda case: case.spring.gas is not None,
 )
+data_torsion_spring = _data(
+    "torsion_spring",
+    lambda case: {"spring": case.spring, "spring.torsion": case.spring.torsion},
+    described_by=("spring.torsion",),
+    applies=lambda case: case.spring.torsion is not None,
+)
 data_guides = _data("guides", _guides)
 data_camshaft = _data(
     "camshaft", lambda case: {"camshaft": case.camshaft}, described_by=("camshaft",)

@@ -1,6 +1,6 @@
 """Checks of the spring design: strength, fatigue, solid length, buckling, surge, relaxation.
 
-Of a gas spring: pressure, stroke, speed and temperature.
+Of a gas spring: pressure, stroke, speed and temperature; of a torsion spring: bending stress.
 """
 
 from __future__ import annotations
@@ -27,10 +27,11 @@ from camwright.pipeline.follower.spring import (
     WoundWire,
     surge_harmonics,
 )
-from camwright.pipeline.follower.spring_kinds import GasSpring
+from camwright.pipeline.follower.spring_kinds import GasSpring, TorsionSpring
 
 RATE_TOLERANCE = 0.05  # of the rate, where the case has none
 PRELOAD_TOLERANCE = 0.05  # of the preload, where the case has none
+BENDING_STRENGTH = 0.7  # permissible bending stress over R_m, DIN EN 13906-3: verify
 HARDEST = "preload and rate high"
 STABLE = "stable at any deflection"
 
@@ -475,4 +476,95 @@ gas_temperature = _gas_check(
     reason="seals and oil of the spring age above it.",
     needs=("temperature",),
     lift_can_help=False,
+)
+
+
+def torsion_stress_at(
+    spring: Spring, torsion: TorsionSpring, travel: float
+) -> tuple[float, float] | None:
+    """Bending stress at zero lift and at a lift, m, of the hardest spring in tolerance, Pa.
+
+    None without the wire.
+    """
+    preload = spring.preload * (1.0 + spring.preload_tolerance)
+    risen = float(spring.force(np.asarray(travel))) - spring.preload
+    force = np.array([preload, preload + risen * (1.0 + spring.rate_tolerance)])
+    stress = torsion.bending_stress(torsion.moment_at(force, np.array([0.0, travel])))
+    return None if stress is None else (float(stress[0]), float(stress[1]))
+
+
+def _torsion_check(
+    name: str,
+    measure: Callable[[float, float], float],
+    allowed: Callable[[TorsionSpring], float | None],
+    *,
+    title: str,
+    source: str,
+    method: str,
+    formula: str,
+    reason: str,
+    needs: str,
+) -> Declaration:
+    """Check of the bending stress of a torsion spring at zero and maximum lift."""
+
+    @check(
+        id=name,
+        title=title,
+        unit="MPa",
+        source=source,
+        method=method,
+        lift_can_help=True,
+        moved_by_tolerance=False,
+        part="torsion_spring",
+        formula=formula,
+        reason=reason,
+        load_cases=NONE,
+    )
+    def demand(solution: Solution) -> Demand:
+        spring = solution.machine.spring
+        torsion = spring.torsion
+        if torsion is None:
+            raise InputError("spring.torsion", "missing", "given for the checks of the spring")
+        stress = torsion_stress_at(spring, torsion, _travel(solution))
+        return Demand(
+            None if stress is None else measure(*stress),
+            allowed(torsion),
+            missing=lacking("spring.torsion", torsion, "wire_diameter", "mean_diameter", needs),
+            figures=(torsion.source,),
+            corner=_corner(spring, HARDEST),
+        )
+
+    return demand
+
+
+def torsion_strength(torsion: TorsionSpring) -> float | None:
+    """Permissible bending stress of a torsion spring, 0.7 R_m, Pa; None without R_m."""
+    strength = torsion.tensile_strength
+    return None if strength is None else BENDING_STRENGTH * strength
+
+
+torsion_stress = _torsion_check(
+    "torsion_stress",
+    lambda _, most: most,
+    torsion_strength,
+    title="Maximum bending stress of the torsion spring",
+    source="0.7 R_m, DIN EN 13906-3: verify",
+    method="q 32 M/(pi d^3) at maximum lift, preload and rise of the force high",
+    formula="q 32 M / (pi d^3) <= 0.7 R_m; M: moment at maximum lift with the tolerances high,"
+    " q = (w + 0.07)/(w - 0.75), w = D/d, R_m: tensile strength of the wire",
+    reason="A spring beyond its yield strength sets and loses the force that keeps the follower on"
+    " the cam.",
+    needs="tensile_strength",
+)
+torsion_fatigue = _torsion_check(
+    "torsion_fatigue",
+    lambda least, most: most - least,
+    lambda torsion: torsion.stress_range,
+    title="Range of the bending stress of the torsion spring",
+    source="spring.torsion.stress_range: fatigue diagram of DIN EN 13906-3, or of the maker",
+    method="difference of q 32 M/(pi d^3) at maximum and zero lift, preload and rise high",
+    formula="q 32 (M_h - M_0) / (pi d^3) <= spring.torsion.stress_range; M_h, M_0: moments at"
+    " maximum and zero lift with the tolerances high, q: as of `torsion_stress`",
+    reason="A broken spring releases the follower.",
+    needs="stress_range",
 )

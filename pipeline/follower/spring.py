@@ -28,6 +28,7 @@ from camwright.pipeline.base.units import shown
 from camwright.pipeline.follower.spring_kinds import (
     GasSpring,
     SpringShape,
+    TorsionSpring,
     rise,
     shaped_deflection,
 )
@@ -312,8 +313,8 @@ class Spring(Part):
     """Spring of the follower, preloaded at zero lift; linear, or of another kind.
 
     rate: at zero lift. Tolerances are relative, of the preload and of the rise of the force;
-    travel_max: maximum lift; design: geometry of the wound spring. A gas spring sets rate and
-    preload, which its case leaves out.
+    travel_max: maximum lift; design: geometry of the wound spring. A gas or torsion spring sets
+    rate and preload, which its case leaves out.
 
     Raises
     ------
@@ -324,7 +325,7 @@ class Spring(Part):
     table: ClassVar[str] = "spring"
     defaults: ClassVar[Mapping[str, str]] = MappingProxyType({"kind": "coil"})
 
-    kind: Literal["coil", "gas"] | None = None
+    kind: Literal["coil", "gas", "torsion"] | None = None
     rate: Rate
     preload: Preload
     travel_max: Length | None = None
@@ -332,12 +333,13 @@ class Spring(Part):
     preload_tolerance: Annotated[float, In(above=0, below=1)] = 0.05
     design: HelicalSpring | None = None
     gas: GasSpring | None = None
+    torsion: TorsionSpring | None = None
     source: str = ""
 
     def __post_init__(self) -> None:
         super().__post_init__()
         kind = self.kind or "coil"
-        for name, owner in (("gas", "gas"), ("design", "coil")):
+        for name, owner in (("gas", "gas"), ("torsion", "torsion"), ("design", "coil")):
             stated = getattr(self, name) is not None
             if stated and kind != owner:
                 raise InputError(
@@ -349,7 +351,7 @@ class Spring(Part):
     @property
     def shape(self) -> SpringShape | None:
         """Rise of the force over the lift; None: linear."""
-        return self.gas
+        return self.gas or self.torsion
 
     @property
     def derived(self) -> tuple[str, ...]:

@@ -1,4 +1,4 @@
-"""Springs whose force is not linear in the lift: gas spring; the lift from their energy.
+"""Springs whose force is not linear in the lift: gas and torsion; the lift from their energy.
 
 The force over the lift is F(s) = P + k rho(s), with the preload P, the rate k at zero lift and a
 rise rho that is s near zero: rate and preload mean the same as those of a coil spring, and so do
@@ -17,8 +17,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from camwright.geometry.arrays import Array
-from camwright.geometry.errors import ContactError
-from camwright.pipeline.base.quantities import In, Length, Part, Temperature
+from camwright.geometry.errors import ContactError, InputError
+from camwright.pipeline.base.quantities import In, Length, Part, Pressure, Temperature
+from camwright.pipeline.base.units import shown
 
 ATMOSPHERE = 101_325.0
 """Pressure of the surroundings, Pa."""
@@ -200,6 +201,110 @@ class GasSpring(Part):
         return Limited(pressure, self.warm * left ** (1.0 - self.exponent))
 
 
+_STEEPEST = 0.98  # sine of the greatest angle of an arm
 _ISOTHERMAL = 1e-9  # exponent less 1, below which the compression is isothermal
-SHAPES: Mapping[str, type[GasSpring]] = MappingProxyType({"gas": GasSpring})
+
+
+@dataclass(frozen=True, kw_only=True)
+class TorsionSpring(Part):
+    """Torsion spring whose arm presses on the follower through a pin that slides across its axis.
+
+    moment: at zero lift; angular_rate: moment per angle; arm: from the coil axis to the pin;
+    arm_angle: of the arm at zero lift from square to the follower axis, positive towards the
+    outward stroke. Wire, mean diameter, strength and permissible range of the bending stress: for
+    the checks.
+
+    Raises
+    ------
+    InputError
+        If a value is out of its bounds, or the force falls with the lift.
+
+    References
+    ----------
+    Work M d(beta) = F ds with s = l (sin(beta) - sin(beta_0)).
+    """
+
+    table: ClassVar[str] = "spring.torsion"
+
+    moment: Annotated[float, In("N m", above=0, at_most=1e6)]
+    angular_rate: Annotated[float, In("N m/rad", above=0, at_most=1e6)]
+    arm: Length
+    arm_angle: Annotated[float, In("deg", at_least=-75, at_most=75)] = 0.0
+    wire_diameter: Length | None = None
+    mean_diameter: Length | None = None
+    tensile_strength: Pressure | None = None
+    stress_range: Pressure | None = None
+    source: str = ""
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if not self.rate > 0.0:
+            stated = shown(self.arm_angle, "deg")
+            raise InputError("spring.torsion.arm_angle", stated, "greater: the force must rise")
+
+    @property
+    def preload(self) -> float:
+        """Force at zero lift, N."""
+        return float(self.moment / (self.arm * np.cos(self.arm_angle)))
+
+    @property
+    def rate(self) -> float:
+        """Slope of the force at zero lift, N/m."""
+        bent = self.angular_rate + self.preload * self.arm * np.sin(self.arm_angle)
+        return float(bent / (self.arm * np.cos(self.arm_angle)) ** 2)
+
+    @property
+    def reach(self) -> float:
+        """Lift up to which the law holds, m: the arm nearly along the follower axis."""
+        return float(self.arm * (_STEEPEST - np.sin(self.arm_angle)))
+
+    def angle(self, lift: Array) -> Array:
+        """Angle (...) that the arm has turned from zero lift, rad."""
+        turned: Array = np.arcsin(np.sin(self.arm_angle) + lift / self.arm) - self.arm_angle
+        return turned
+
+    def within(self, lift: Array) -> Rise:
+        """Rise of F = (M_0 + c (beta - beta_0)) / (l cos(beta)), over its slope at zero lift."""
+        turned, c = self.angle(lift), self.angular_rate
+        sine = np.sin(self.arm_angle) + lift / self.arm
+        across = self.arm * np.sqrt(1.0 - sine**2)
+        force = (self.moment + c * turned) / across
+        steep = c + force * self.arm * sine  # F' (l cos(beta))^2
+        slope = steep / across**2
+        tangent = sine * self.arm / across
+        # by the angle: dF = steep / across, and that of steep
+        change = steep * tangent + force * across
+        bend = (change + 2.0 * steep * tangent) / across**3
+        work = (self.moment + 0.5 * c * turned) * turned
+        return Rise(
+            (work - self.preload * lift) / self.rate,
+            (force - self.preload) / self.rate,
+            slope / self.rate,
+            bend / self.rate,
+        )
+
+    def moment_at(self, force: ArrayLike, lift: ArrayLike) -> Array:
+        """Moment (...), N m, of a force on the follower, N, at a lift, m."""
+        turned = self.angle(np.minimum(np.asarray(lift, dtype=float), self.reach))
+        return np.asarray(np.asarray(force) * self.arm * np.cos(self.arm_angle + turned))
+
+    def bending_stress(self, moment: ArrayLike) -> Array | None:
+        """Greatest bending stress (...) at the inside of the coils, Pa; None without the wire.
+
+        sigma = q 32 M / (pi d^3), q = (w + 0.07)/(w - 0.75), w = D/d.
+
+        References
+        ----------
+        DIN EN 13906-3 (recalled, verify).
+        """
+        if self.wire_diameter is None or self.mean_diameter is None:
+            return None
+        index = self.mean_diameter / self.wire_diameter
+        curved = (index + 0.07) / (index - 0.75)
+        return np.asarray(curved * 32.0 * np.asarray(moment) / (np.pi * self.wire_diameter**3))
+
+
+SHAPES: Mapping[str, type[GasSpring] | type[TorsionSpring]] = MappingProxyType(
+    {"gas": GasSpring, "torsion": TorsionSpring}
+)
 """Tables of the kinds of spring that are not linear, by `spring.kind`."""

@@ -194,6 +194,8 @@ LEVERS: Mapping[str, tuple[Lever, ...]] = {
     "gas_pressure": (_one("spring.gas.volume", most=2.0), *_GENTLER),
     "gas_stroke": (*_SPRING, *_GENTLER),
     "gas_speed": (*_SPRING, *_GENTLER),
+    "torsion_stress": (_one("spring.torsion.wire_diameter", most=2.0), *_GENTLER),
+    "torsion_fatigue": (_one("spring.torsion.wire_diameter", most=2.0), *_GENTLER),
     "spring_rate": (_one("spring.design.coils"), _one("spring.design.coils", -1)),
     "roller_pin": (_one("roller.pin.diameter", most=2.0), *_LOAD),
     "roller_pin_fatigue": (_one("roller.pin.diameter", most=2.0), *_LOAD),

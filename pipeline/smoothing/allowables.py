@@ -55,6 +55,8 @@ from camwright.pipeline.checks.spring_strength import (
     gas_pressure_at,
     hardest_work,
     relaxation_allowed,
+    torsion_strength,
+    torsion_stress_at,
 )
 from camwright.pipeline.contact.traction import Drag
 from camwright.pipeline.cycle.part_loads import edge_pressure_of
@@ -66,7 +68,7 @@ from camwright.pipeline.follower.guide_reactions import Guide
 from camwright.pipeline.follower.roller import Roller
 from camwright.pipeline.follower.roller_parts import Bearing
 from camwright.pipeline.follower.spring import Spring
-from camwright.pipeline.follower.spring_kinds import GasSpring
+from camwright.pipeline.follower.spring_kinds import GasSpring, TorsionSpring
 from camwright.pipeline.smoothing.constraints import rows_kept
 from camwright.pipeline.smoothing.scenario import Face, ModifiedLife, Ratings
 
@@ -384,6 +386,9 @@ def travel_limits(case: Case, surge: Surge | None = None) -> dict[str, float]:
         if beyond(0.0) < 0.0 < beyond(gas.reach):
             root = scipy.optimize.brentq(beyond, 0.0, gas.reach, xtol=1e-12)
             allowed["gas_pressure"] = float(root)
+    torsion = spring.torsion if case.scope.covers("torsion_spring") else None
+    if torsion is not None:
+        allowed |= _travels_of_torsion(spring, torsion)
     design = spring.design if case.scope.covers("spring") else None
     if design is None or {"spring_rate", "preload"} & set(case.smoothing.free):
         return allowed
@@ -428,6 +433,25 @@ def travel_limits(case: Case, surge: Surge | None = None) -> dict[str, float]:
 
 def _over_pressure(spring: Spring, gas: GasSpring, limit: float, travel: float) -> float:
     return gas_pressure_at(spring, gas, travel) - limit
+
+
+def _travels_of_torsion(spring: Spring, torsion: TorsionSpring) -> dict[str, float]:
+    """Greatest lift, m, by the limits of the bending stress of a torsion spring."""
+    ranges = {"torsion_stress": 0.0, "torsion_fatigue": 1.0}
+    limits = {"torsion_stress": torsion_strength(torsion), "torsion_fatigue": torsion.stress_range}
+    allowed = {}
+    for name, less in ranges.items():
+
+        def over(travel: float, less: float = less, limit: float | None = limits[name]) -> float:
+            stress = torsion_stress_at(spring, torsion, travel)
+            if stress is None or limit is None:
+                return -1.0
+            return stress[1] - less * stress[0] - limit
+
+        if over(0.0) < 0.0 < over(torsion.reach):
+            root = scipy.optimize.brentq(over, 0.0, torsion.reach, xtol=1e-12)
+            allowed[name] = float(root)
+    return allowed
 
 
 def force_limits(case: Case) -> dict[str, float]:

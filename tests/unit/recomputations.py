@@ -54,6 +54,9 @@ _BY_TEST: dict[tuple[str, str], tuple[str, ...]] = {
     ("unit/test_gas_spring.py", "test_limits_of_the_maker"): (
         "gas_pressure", "gas_stroke", "gas_speed", "gas_temperature",
     ),
+    ("unit/test_torsion_spring.py", "test_stress_of_the_wire"): (
+        "torsion_stress", "torsion_fatigue",
+    ),
     (_SPRING, "test_rate_and_relaxation_from_the_wire"): ("spring_rate", "spring_relaxation"),
     # contact
     (_CONTACT, "test_pressure_is_that_of_roark"): (

@@ -20,6 +20,7 @@ from trial_variants import (
     with_material,
     with_mesh,
     with_part,
+    with_torsion_spring,
 )
 
 HERTZ = made.cycle().contact.p0_hertz
@@ -143,6 +144,31 @@ for name, field, hand, how in (
         how,
         with_gas_spring,
     )
+# the arm has turned by asin(1/4) over the stroke, moment and rise of the force 5 % high
+BENT = (12.0 + 20.0 * np.arcsin(0.25)) * 1.05
+CURVED = (8.0 + 0.07) / (8.0 - 0.75) * 32.0 / (np.pi * 0.006**3) / 1e6
+tried(
+    "torsion_stress",
+    limited(
+        "torsion_stress",
+        lambda s: with_torsion_spring(tensile_strength=s / 0.7),
+        with_torsion_spring,
+    ),
+    lambda: with_torsion_spring(tensile_strength=None),
+    lambda: with_torsion_spring(tensile_strength=np.nan),
+    CURVED * BENT,
+    "q 32 M/(pi d^3)",
+    with_torsion_spring,
+)
+tried(
+    "torsion_fatigue",
+    limited("torsion_fatigue", lambda s: with_torsion_spring(stress_range=s), with_torsion_spring),
+    lambda: with_torsion_spring(wire_diameter=None),
+    lambda: with_torsion_spring(stress_range=np.nan),
+    CURVED * (BENT - 1.05 * 12.0),
+    "q 32 (M_h - M_0)/(pi d^3)",
+    with_torsion_spring,
+)
 tried(
     "spring_rate",
     limited("spring_rate", lambda t: with_part("spring", rate_tolerance=t)),

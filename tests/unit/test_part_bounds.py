@@ -32,6 +32,7 @@ from camwright.pipeline.engine.wheel_calibration import WheelReference
 from camwright.pipeline.follower.camshaft_loads import Counterweight, ShaftSection
 from camwright.pipeline.follower.flat_face import FlatFace
 from camwright.pipeline.follower.spring import Spring
+from camwright.pipeline.follower.spring_kinds import GasSpring, TorsionSpring
 from camwright.pipeline.torque.harmonic_torque import Harmonic, HarmonicTorque
 from camwright.pipeline.torque.machine_torque import Mark
 from camwright.pipeline.torque.motor_line import MotorPoint
@@ -84,6 +85,8 @@ def every_part() -> dict[type[Part], Part]:
         steel,
         FlatFace(width=0.02, depth=0.01, thickness=0.005, material=steel),
         Crankshaft(inertia=0.01),
+        GasSpring(pressure=3e6, area=1e-4, volume=5e-6),
+        TorsionSpring(moment=1.0, angular_rate=20.0, arm=0.04),
         BalanceHole(),
         Counterweight(unbalance=1e-4, angle=0.0, position=0.0),
         ShaftSection(

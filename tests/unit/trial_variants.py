@@ -18,7 +18,7 @@ from camwright.pipeline.cycle.rolling_history import RollingHistory, SweptStress
 from camwright.pipeline.cycle.solution import Solution
 from camwright.pipeline.follower.camshaft_loads import Reversal
 from camwright.pipeline.follower.guide_friction import GuideHeat
-from camwright.pipeline.follower.spring_kinds import GasSpring
+from camwright.pipeline.follower.spring_kinds import GasSpring, TorsionSpring
 
 NAN = np.full(made.POSITIONS, np.nan)
 TWO_ENDS = np.tile([-1e-4, 1e-4], (made.POSITIONS, 1))
@@ -46,6 +46,23 @@ def with_gas_spring(**values: Any) -> Solution:
     }  # fmt: skip
     gas = GasSpring(pressure=30e5, area=100e-6, volume=5e-6, **(stated | values))
     return with_part("spring", kind="gas", design=None, gas=gas, rate=gas.rate, preload=gas.preload)
+
+
+def with_torsion_spring(**values: Any) -> Solution:
+    """The solution on a torsion spring, its arm square to the follower at zero lift."""
+    stated = {
+        "wire_diameter": 0.006, "mean_diameter": 0.048, "tensile_strength": 1.7e9,
+        "stress_range": 5e8, "source": "made up",
+    }  # fmt: skip
+    spring = TorsionSpring(moment=12.0, angular_rate=20.0, arm=0.04, **(stated | values))
+    return with_part(
+        "spring",
+        kind="torsion",
+        design=None,
+        torsion=spring,
+        rate=spring.rate,
+        preload=spring.preload,
+    )
 
 
 def with_material(name: str, **values: Any) -> Solution:
