@@ -29,7 +29,7 @@ GROUPS = (
     ("Shape", ("outline", "pressure-angle", "face", "lift", "radii")),
     ("Limits", ("limits",)),
     ("Contact", ("pressure", "half-width", "stress")),
-    ("Forces and guides", ("normal-force", "forces", "guides", "jamming", "speed")),
+    ("Forces and guides", ("normal-force", "forces", "spring-force", "guides", "jamming", "speed")),
     ("Parts", ("edge-pressure", "elastic", "roller", "film", "parts")),
     ("Trials", ("trial-points",)),
 )

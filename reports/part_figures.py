@@ -6,8 +6,10 @@ from collections.abc import Callable
 
 import numpy as np
 
-from camwright.reports.figures import Curve, Figure, LimitLine, Panel
+from camwright.reports.figures import Curve, Figure, LimitLine, LineFigure, Panel
 from camwright.reports.sheet_turn import Turn, angle_figure, curves_of
+
+_TRAVEL_POINTS = 31
 
 
 def _forces(turn: Turn) -> Figure | None:
@@ -15,13 +17,29 @@ def _forces(turn: Turn) -> Figure | None:
         turn, ("spring_force_N", "spring"), ("inertia_force_N", "inertia"),
         ("side_force_N", "side force"), ("guide_friction_A_N", "friction A"),
         ("guide_friction_B_N", "friction B"), ("viscous_force_N", "viscous drag"),
-        ("applied_force_N", "weight and external force"),
+        ("applied_force_N", "applied"), dashed=(6,),
     )  # fmt: skip
+    shown = "applied_force_N" in turn.columns
+    applied = " Applied: weight and external force." if shown else ""
     return angle_figure(
         turn, "forces", "Force components on the follower",
         "Components along the stem; the side force is perpendicular to it and carried by the "
-        "guides.",
+        f"guides.{applied}",
         Panel("force", "N", curves, height=1.25),
+    )  # fmt: skip
+
+
+def _spring_force(turn: Turn) -> Figure | None:
+    """Of a spring that is not linear."""
+    if turn.case.get("spring", {}).get("kind", "coil") == "coil":
+        return None
+    lift, first = np.unique(turn.columns["lift_mm"], return_index=True)
+    at = np.linspace(lift[0], lift[-1], _TRAVEL_POINTS)
+    force = np.interp(at, lift, turn.columns["spring_force_N"][first])
+    return LineFigure(
+        "spring-force", "Spring force over the travel",
+        "Force of the spring at the lifts of the turn, without friction.",
+        "lift", "mm", at, (Panel("force", "N", (Curve("", force, "blue"),)),),
     )  # fmt: skip
 
 
@@ -186,6 +204,6 @@ def _parts(turn: Turn) -> Figure | None:
 
 
 PART_FIGURES: tuple[Callable[[Turn], Figure | None], ...] = (
-    _forces, _normal_force, _guides, _jamming, _speed, _edge_pressure, _elastic, _roller, _film,
-    _parts,
+    _forces, _spring_force, _normal_force, _guides, _jamming, _speed, _edge_pressure, _elastic,
+    _roller, _film, _parts,
 )  # fmt: skip

@@ -295,7 +295,7 @@ def moving_masses(solution: Solution) -> tuple[dict[str, float], tuple[str, ...]
     masses["stem"] = float(follower.stem_material.density * section * max(length - shorter, 0.0))
     if design is not None:
         masses["spring"] = follower.spring_share * design.mass
-    elif machine.scope.covers("spring"):
+    elif machine.spring.shape is None and machine.scope.covers("spring"):
         missing.append("spring.design")
     return masses, tuple(missing)
 

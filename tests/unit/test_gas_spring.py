@@ -3,6 +3,7 @@
 import tomllib
 from functools import cache
 from itertools import pairwise
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -30,6 +31,7 @@ from camwright.pipeline.smoothing.required_lift import required_lift, required_t
 from camwright.pipeline.smoothing.sampled_problem import Search
 from camwright.pipeline.smoothing.scenario import stacked
 from camwright.pipeline.smoothing.smoothers import Smoother
+from camwright.reports import part_figures
 
 GAS = GasSpring(pressure=30e5, area=113e-6, volume=6e-6, exponent=1.3)
 SPRING = Spring(kind="gas", gas=GAS, rate=GAS.rate, preload=GAS.preload)
@@ -255,6 +257,19 @@ def test_limits_of_the_maker():
     assert allowed["gas_stroke"] == 0.02
     at_limit = gas_pressure_at(limited.spring, limited.spring.gas, allowed["gas_pressure"])
     assert at_limit == pytest.approx(60e5, rel=1e-9)
+
+
+def test_figure_of_the_force_over_the_travel():
+    """Of a spring that is not linear alone."""
+    lift = 0.015 * (1.0 - np.cos(np.linspace(0.0, np.pi, 40)))
+    columns = {"lift_mm": 1e3 * lift, "spring_force_N": SPRING.force(lift)}
+    turn = SimpleNamespace(case={"spring": {"kind": "gas"}}, columns=columns)
+    figure = part_figures._spring_force(turn)
+    (curve,) = figure.panels[0].curves
+    exact = SPRING.force(1e-3 * figure.x)
+    assert curve.values == pytest.approx(exact, rel=0.02)  # linear between the angles of the turn
+    turn.case = {"spring": {}}
+    assert part_figures._spring_force(turn) is None
 
 
 def test_checks_without_a_data_sheet_are_not_evaluated_by_name():
