@@ -18,6 +18,7 @@ from typing import (
     ClassVar,
     Literal,
     NamedTuple,
+    Self,
     Union,
     get_args,
     get_origin,
@@ -267,6 +268,10 @@ class Part:
     def derived(self) -> tuple[str, ...]:
         """Names of the fields that follow from others: a case leaves them out."""
         return ()
+
+    def with_derived(self) -> Self:
+        """The part with those fields as the others have them."""
+        return self
 
     @property
     def lacking(self) -> tuple[str, ...]:

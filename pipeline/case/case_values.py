@@ -201,5 +201,8 @@ def _put(node: Any, path: Sequence[str | int], values: Mapping[str | int, Any]) 
     if isinstance(node, Part):
         for name in named.keys() - {field.name for field in fields(node)}:  # type: ignore[arg-type]
             raise InputError("factor", name, f"a key of {node.table}")
-        return replace(node, **named)  # type: ignore[type-var]
+        for name in named.keys() & set(node.derived):
+            key = f"{node.table}.{name}"
+            raise InputError(key, str(named[name]), "left out: it follows from other keys")
+        return replace(node, **named).with_derived()  # type: ignore[type-var]
     return node.model_copy(update=named)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from types import MappingProxyType
 from typing import Annotated, ClassVar, Generic, Literal, TypeVar, cast
@@ -357,6 +357,11 @@ class Spring(Part):
     def derived(self) -> tuple[str, ...]:
         """Fields that follow from others, which a case leaves out."""
         return () if self.shape is None else ("rate", "preload")
+
+    def with_derived(self) -> Spring:
+        """The spring with rate and preload of its gas or torsion spring."""
+        shape = self.gas or self.torsion
+        return self if shape is None else replace(self, rate=shape.rate, preload=shape.preload)
 
     def force(self, lift: Array) -> Array:
         """Force at a lift (...), m, in N."""

@@ -57,7 +57,10 @@ def is_array(case: Case, key: str, values: Factor) -> bool:
     """Whether designs that differ in a key are solved at once.
 
     Not in a table that the case leaves out, and not at a speed of zero: it has no engine torque.
+    Rate and preload of a gas or torsion spring are refused with the case.
     """
+    if case.spring.shape is not None and key.endswith((".preload", "spring.rate")):
+        return False
     if value_of(case, key.rpartition(".")[0]) is None:
         return False
     if key.startswith("smoothing."):

@@ -15,6 +15,7 @@ from camwright.geometry.errors import InputError
 from camwright.geometry.lift import Lift
 from camwright.geometry.pitch_curve import PitchCurve
 from camwright.pipeline.case.case_file import case_of, parse_case
+from camwright.pipeline.case.case_values import replaced
 from camwright.pipeline.case.load_case_torque import engine_torques
 from camwright.pipeline.case.machine import Corner, machine
 from camwright.pipeline.checks.spring_strength import gas_pressure_at
@@ -190,6 +191,18 @@ def test_corner_scales_preload_and_rise():
     exact = 0.9 * here.preload + 1.1 * (here.force(lift) - here.preload)
     np.testing.assert_allclose(there.force(lift), exact, rtol=1e-13)
     assert spring_force(1.0, 2.0, lift) == pytest.approx(1.0 + 2.0 * lift)
+
+
+def test_other_values_of_the_gas_set_rate_and_preload():
+    """In place of its table in a study; rate and preload by themselves are refused."""
+    other = replaced(case(), {"spring.gas.volume": 7e-6}).spring
+    assert other.rate == GasSpring(pressure=30e5, area=113e-6, volume=7e-6).rate
+    with pytest.raises(InputError, match=r"spring.preload = 400.0, must be left out"):
+        replaced(case(), {"spring.preload": 400.0})
+    columns = screen_designs(case(), {"spring.gas.volume": np.array([6e-6, 7e-6])}, positions=72)
+    assert columns["jump.demand"][0] != columns["jump.demand"][1]
+    refused = screen_designs(case(), {"spring.preload": np.array([300.0, 400.0])}, positions=72)
+    assert all("spring.preload" in words for words in refused["message"])
 
 
 def test_resolved_case_reads_back():
