@@ -168,7 +168,8 @@ def machine_prices(
     at_optimum = level(case)
     records: list[MachinePriceRecord] = []
     for number in NUMBERS:
-        if number.needs not in ("", problem.ratings.follower):
+        derived = {f"spring.{name}" for name in case.spring.derived}
+        if number.needs not in ("", problem.ratings.follower) or number.key in derived:
             continue
         value = number.value(case)
         if number.free in problem.freed or value <= 0.0:

@@ -18,6 +18,7 @@ from camwright.pipeline.case.case_file import case_of, parse_case
 from camwright.pipeline.case.case_values import replaced
 from camwright.pipeline.case.load_case_torque import engine_torques
 from camwright.pipeline.case.machine import Corner, machine
+from camwright.pipeline.case.template import first_case
 from camwright.pipeline.checks.spring_strength import gas_pressure_at
 from camwright.pipeline.cycle.elastic_response import elastic_history
 from camwright.pipeline.follower.follower_forces import follower_loads
@@ -283,6 +284,22 @@ def test_figure_of_the_force_over_the_travel():
     assert curve.values == pytest.approx(exact, rel=0.02)  # linear between the angles of the turn
     turn.case = {"spring": {}}
     assert part_figures._spring_force(turn) is None
+
+
+@pytest.mark.slow
+def test_synthesis_on_a_gas_spring_keeps_every_limit():
+    """The first case on a gas spring, with weight and an external force: no check fails."""
+    text = first_case("gas").text
+    table = TABLE.replace("30 bar", "50 bar").replace("113", "314").replace("6 cm", "12.56 cm")
+    spring = '[spring]\ntravel_max = "18 mm"' + table + LIMITS.replace("60 bar", "150 bar")
+    head, rest = text.split("[spring]")
+    load = 'gravity_angle = "0 deg"\nexternal_force = "100 N"\nmass = "1.1 kg"'
+    text = head + spring + rest[rest.index("\n[cam]") :].replace('mass = "1.1 kg"', load)
+    limited = parse_case(text.replace('"1 m/s"', '"2 m/s"'))
+    trial = preview_case(limited, corners=False)
+    failed = [each.id for each in trial.checks if each.must_have and each.status == "fail"]
+    assert failed == []
+    assert trial.synthesis["converged"]
 
 
 def test_checks_without_a_data_sheet_are_not_evaluated_by_name():
