@@ -80,6 +80,8 @@ def previewed(case: Any, contour: Any) -> Trial:
 @pytest.fixture(scope="module")
 def rolls() -> Trial:
     case = full_case()
+    hung = case.follower.model_copy(update={"gravity_angle": 0.0})
+    case = case.model_copy(update={"follower": hung})
     return previewed(case, case.contour(cam_lift(case, engine_torques(case))))
 
 
