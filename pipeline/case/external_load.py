@@ -10,7 +10,7 @@ from camwright.geometry.errors import InputError
 from camwright.pipeline.base.external_force import NO_FORCE, ExternalForce
 from camwright.pipeline.base.units import shown
 from camwright.pipeline.case.case import Case, kept_as
-from camwright.pipeline.engine.angle_trace import read_trace
+from camwright.pipeline.torque.angle_trace import read_trace
 
 
 def external_force(case: Case) -> ExternalForce:

@@ -6,6 +6,7 @@ In the order of the calculation:
 | --------------- | ------------------------------------------------- | ------------------ |
 | `open_case`     | a case with open keys; the case with their values |                    |
 | `shapes`        | prime or base radius, offset, roller, face        | r, e, m            |
+| `spring_size`   | rate and preload against follower jump            | k, N/m; P, N       |
 | `spring_choice` | rate and preload against jump, surge              | k, N/m; P, N       |
 | `sizing`        | values of the open keys, their checks             | SI                 |
 | `size_chart`    | pressure angle and curvature over the base radius | alpha, rad; rho, m |

@@ -12,14 +12,14 @@ from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.limits import CONTACT_FORCE_MARGIN, JUMP_SPEED, SPRING_SURGE
 from camwright.pipeline.case.machine import machines
 from camwright.pipeline.cycle.speed_sweep import highest_speed
-from camwright.pipeline.follower.spring_size import (
+from camwright.pipeline.sizing.open_case import PRELOAD, RATE
+from camwright.pipeline.sizing.spring_size import (
     PRELOAD_SHARE,
     HoldingCondition,
     SpringSize,
     preload_needed,
     smallest_spring,
 )
-from camwright.pipeline.sizing.open_case import PRELOAD, RATE
 
 _DIGITS = 4
 """Significant digits of a sized rate or preload."""

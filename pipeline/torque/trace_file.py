@@ -68,7 +68,6 @@ QUANTITY_UNITS: Mapping[str, Mapping[str, float]] = MappingProxyType(
             "lbft": 1.3558179483314,
             "ftlb": 1.3558179483314,
         },
-        "force": {"N": 1.0, "kN": 1e3, "lbf": 4.4482216152605, "kgf": 9.80665},
         "pressure": {
             "Pa": 1.0,
             "hPa": 1e2,

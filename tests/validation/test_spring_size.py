@@ -8,7 +8,7 @@ import pytest
 from camwright.geometry.errors import InputError
 from camwright.geometry.lift_parts import LiftParts
 from camwright.geometry.motion_laws import LAWS, Motion, Segment
-from camwright.pipeline.follower.spring_size import (
+from camwright.pipeline.sizing.spring_size import (
     PRELOAD_SHARE,
     HoldingCondition,
     preload_needed,
