@@ -30,6 +30,7 @@ verdict; a failed trial is smoothed again. `results` writes the run folder, `rep
 | `sizing`             | open keys of a case, as small as its limits allow    | r, e, m; k, N/m    |
 | `studies`            | inspection, comparisons, valve cam                   |                    |
 | `studies.redesign`   | Pareto front over the catalogues                     |                    |
+| `studies.design`     | from a torque to a case with all parts               | E, J; k, N/m; m    |
 | `studies.papers`     | published values, recomputed                         |                    |
 | `reports`            | report and pictures from a run folder                |                    |
 | `reports.study`      | page of a study                                      |                    |

@@ -18,6 +18,7 @@ from camwright.pipeline.commands import (
     check_command,
     comparison_commands,
     contact_command,
+    design_command,
     explain_command,
     inspect_command,
     redesign_command,
@@ -52,6 +53,7 @@ for _command in (
     run_command.init,
     comparison_commands.compare,
     size_command.size,
+    design_command.design,
     redesign_command.redesign,
     study_command.study,
     contact_command.contact,
@@ -70,6 +72,7 @@ _RESUMED_BY = {
     "run": "; run the command again with --resume to resume",
     "study": "; run the command again with --resume to resume",
     "redesign": "; run the command again to resume",
+    "design": "; run the command again to resume",
 }
 
 

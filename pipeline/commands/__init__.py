@@ -10,6 +10,7 @@
 | `comparison_commands` | `compare`, `validate`, `papers`, `gallery` and others   |
 | `contact_command`     | `contact`, `deck`                                       |
 | `inspect_command`     | `inspect`: measured cam                                 |
+| `design_command`      | `design`: a case with all parts from a torque table     |
 | `redesign_command`    | `redesign`: search of the catalogues                    |
 | `size_command`        | `size`: keys that a case leaves open                    |
 | `study_command`       | `study`: many designs on a cluster; answers and page    |

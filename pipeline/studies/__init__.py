@@ -11,6 +11,7 @@ In the order of the calculation:
 | `valve_cam`              | machine motion of a valve cam                 | J*, kg m2; rad/s    |
 | `valve_train`            | record of the machine motion in ``run.json``  |                     |
 | `redesign`               | Pareto front over the catalogues              |                     |
+| `design`                 | from a torque to a case with all parts        | E, J                |
 | `papers`                 | published values, recomputed                  |                     |
 | `batch`                  | studies of many designs                       |                     |
 

@@ -6,6 +6,7 @@ In the order of use:
 | ---------------- | ------------------------------------------------------------ |
 | `study_contents` | yield, failures, effects, front and inputs as text and bars  |
 | `study_page`     | ``study.html``: contents, designs with linked selection      |
+| `design_picture` | ``design.png``: torque, front, cam and parts of a design     |
 
 Imported by `commands`.
 """

@@ -15,6 +15,7 @@ The public names, in the order of the calculation:
 | `run_case`     | trials until the checks pass or a limit binds; run folder | `Run`          |
 | `read_run`     | read a run folder                                       | `Run`            |
 | `report`       | page and figures of a run folder                        | files by part    |
+| `design_from_torque` | case file with all parts for a torque table        | record           |
 | `screen_designs` | closed-form checks of thousands of designs at once    | columns          |
 | `size`         | sizes that a case leaves open, and their checks         | `Sizing`         |
 | `CamError`     | every error that the user can correct, in one line      |                  |
@@ -41,6 +42,7 @@ if TYPE_CHECKING:
     from camwright.pipeline.screening.design_screening import screen_designs
     from camwright.pipeline.sizing.sizing import size
     from camwright.pipeline.solver import solve
+    from camwright.pipeline.studies.design.design_study import design_from_torque
     from camwright.reports.sections import report
 
 _HOMES = {
@@ -49,6 +51,7 @@ _HOMES = {
     "Check": "pipeline.checks.check",
     "Tier": "pipeline.contact.tiers",
     "Trial": "pipeline.results.trial",
+    "design_from_torque": "pipeline.studies.design.design_study",
     "preview_case": "pipeline.preview",
     "read_case": "pipeline.case.case_file",
     "read_run": "pipeline.results.run_reader",
@@ -66,6 +69,7 @@ __all__ = [
     "Check",
     "Tier",
     "Trial",
+    "design_from_torque",
     "preview_case",
     "read_case",
     "read_run",

@@ -37,6 +37,7 @@ ORDER = (
     "pipeline.sizing",
     "pipeline.studies",
     "pipeline.studies.redesign",
+    "pipeline.studies.design",
     "pipeline.studies.papers",
     "reports",
     "reports.study",
@@ -50,6 +51,7 @@ ORDER = (
 RANK = {name: place for place, name in enumerate(ORDER)} | {
     "pipeline.case.cards": ORDER.index("pipeline.case"),
     "pipeline.studies.redesign": ORDER.index("pipeline.studies"),
+    "pipeline.studies.design": ORDER.index("pipeline.studies"),
     "pipeline.studies.papers": ORDER.index("pipeline.studies"),
 }
 FLAT_MAX, PACKAGE_MAX = 6, 26

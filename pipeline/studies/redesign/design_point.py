@@ -117,15 +117,19 @@ class Point:
         }
 
 
-def point_of(case: Case) -> Point:
+def point_of(case: Case, *, corners: bool = False) -> Point:
     """Point of a case by constrained synthesis and preview.
+
+    Parameters
+    ----------
+    corners : bool   judge each check at its worst tolerance corner
 
     Raises
     ------
     CamError
         If there is no such cam.
     """
-    trial = preview_case(case, corners=False)
+    trial = preview_case(case, corners=corners)
     drawn, contour, turn = trial.case, trial.contour, trial.cycles[0].turn
     rest, torque = turn.torque_after, turn.torque_before
     if rest is None or torque is None:

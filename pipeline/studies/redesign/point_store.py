@@ -25,7 +25,8 @@ SOLVED = "solved"
 
 @dataclass(frozen=True)
 class Task:
-    """A case as text, to be solved by the synthesis alone, in full, or for its conflict of limits.
+    """A case as text, to be solved by the synthesis alone, in full, in full at the worst tolerance
+    corners, or for its conflict of limits.
 
     base: the original case, whose torque all variants share; folder: of the included files and of
     the cache ``solved/``; version: of the source.
@@ -35,7 +36,7 @@ class Task:
     base: str
     folder: Path
     version: str
-    tier: Literal["rough", "whole", "conflict"]
+    tier: Literal["rough", "whole", "corners", "conflict"]
 
     @property
     def path(self) -> Path:
@@ -57,7 +58,7 @@ def solved(task: Task) -> Record:
             problem = problem_of(case, _torques(task.base, task.folder))
             record = {"feasible": False, **infeasibility(problem).as_record()}
         else:
-            record = point_of(case).as_record()
+            record = point_of(case, corners=task.tier == "corners").as_record()
     except CamError as error:
         record = {"feasible": False, "why": str(error)}
     write_atomic(task.path, json_text(record) + "\n")

@@ -1,0 +1,125 @@
+"""Command `design`: from a torque table to a case file with all parts."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from camwright.pipeline.commands.terminal import (
+    FAILED,
+    PASSED,
+    progress_shown,
+    show_json,
+    stdout,
+)
+
+
+def design(
+    torque: Annotated[
+        Path, typer.Argument(metavar="TORQUE", help="CSV: shaft angle and torque of one cycle.")
+    ],
+    speed: Annotated[str, typer.Option(help='Speed of the shaft, such as "1500 rpm".')],
+    out: Annotated[Path, typer.Option("--out", metavar="CASE", help="Case file to write.")],
+    speeds: Annotated[
+        str | None, typer.Option(help='Range of speeds, such as "800..3600 rpm".')
+    ] = None,
+    overspeed: Annotated[
+        str | None, typer.Option(help="Greatest speed; default: 1.2 times the greatest of these.")
+    ] = None,
+    cycle: Annotated[
+        str | None, typer.Option(help='Angle of a cycle, "360 deg"; default: of the table.')
+    ] = None,
+    ratio: Annotated[
+        str | None,
+        typer.Option(help='Shaft turns per cam turn, 2 or "3:2"; default: one cycle a cam turn.'),
+    ] = None,
+    space: Annotated[
+        str | None,
+        typer.Option(help="From the cam's far side to the top of the roller; default: any."),
+    ] = None,
+    life: Annotated[str | None, typer.Option(help='Life; default: "2000 h".')] = None,
+    ambient: Annotated[
+        str | None, typer.Option(help='Temperature of the surroundings; default: "40 degC".')
+    ] = None,
+    remove: Annotated[
+        str | None, typer.Option(help="Share of the torque ripple to remove; default: 50%.")
+    ] = None,
+    run: Annotated[bool, typer.Option("--run", help="Run the chosen case.")] = False,
+    as_json: Annotated[bool, typer.Option("--json", help="Print the record as JSON.")] = False,
+) -> int:
+    """Design a cam with all its parts for a torque.
+
+    Spring, preload, base circle, roller, guides, shaft and key from the catalogues, the lift by
+    the constrained synthesis. Writes the smallest case that passes by closed forms, the front of
+    ripple against size in CASE_design, and a picture of the choice. Where none passes, the limits
+    in conflict and the smallest relaxations. What is not given is assumed, and marked so. Exit
+    code 0: a case passes, 1: none does, 2: error. Solved points are cached; run the command again
+    to resume.
+    """
+    from camwright.pipeline.studies.design.design_study import PICTURE, designed, points_folder
+    from camwright.pipeline.studies.design.design_task import task_of
+    from camwright.reports.study import design_picture
+
+    task = task_of(
+        torque, speed=speed, speeds=speeds, overspeed=overspeed, cycle=cycle, ratio=ratio,
+        space=space, life=life, ambient=ambient, remove=remove,
+    )  # fmt: skip
+    with progress_shown() as progress:
+        document = designed(task, out, progress)
+    picture = design_picture.write(points_folder(out) / PICTURE, document)
+    if as_json:
+        show_json(document)
+    else:
+        _show(document, out)
+        stdout.print(f"picture: {picture}", markup=False)
+    if document["chosen"] is None:
+        return FAILED
+    return _run(out) if run else PASSED
+
+
+def _show(document: dict[str, Any], out: Path) -> None:
+    demand = document["torque"]
+    stdout.print(
+        f"torque: {demand['ripple_Nm']:.4g} N m of ripple (std), {demand['energy_swing_J']:.4g} J "
+        f"of energy swing over {demand['cycle_deg']:g} deg",
+        markup=False,
+    )
+    for row in document["points"]:
+        stdout.print(
+            f"  {row['file']}: {row['size_mm']:.4g} mm, {row['ripple_left_Nm']:.4g} N m left "
+            f"({100 * row['removed']:.0f} % removed), {row['roller']}, spring {row['spring']}",
+            markup=False,
+        )
+    chosen, assumed = document["chosen"], ", ".join(document["assumed"]) or "nothing"
+    if chosen is not None:
+        stdout.print(
+            f"chosen: {out}: {chosen['size_mm']:.4g} mm, {100 * chosen['removed']:.0f} % removed; "
+            f"passes by closed forms; assumed: {assumed}\n"
+            f"next: camwright run {out} --out runs/{out.stem}",
+            markup=False,
+        )
+        return
+    conflict = document["conflict"]
+    stdout.print(f"no design keeps together: {'; '.join(conflict['limits'])}", markup=False)
+    for each in conflict["relaxations"]:
+        stdout.print(f"  passes with {_words(each)}", markup=False)
+    if not conflict["relaxations"]:
+        stdout.print("  no single relaxation within the range tried passes", markup=False)
+
+
+def _words(relaxation: dict[str, str]) -> str:
+    """A relaxation as options of the command."""
+    over = relaxation.get("overspeed")
+    further = f' --overspeed "{over}"' if over else ""
+    return f'{relaxation["option"]} "{relaxation["to"]}"{further}, not {relaxation["from"]}'
+
+
+def _run(case: Path) -> int:
+    from camwright.pipeline.commands.check_command import check
+    from camwright.pipeline.commands.run_command import run
+
+    folder = case.absolute().parent / "runs" / case.stem
+    run(case, folder, replace=folder.exists())
+    return check([folder])

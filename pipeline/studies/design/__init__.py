@@ -1,0 +1,15 @@
+"""Design: from a torque table to a case with all parts, and the front of ripple and size.
+
+In the order of the calculation:
+
+| module             | responsibility                                  | symbol, unit        |
+| ------------------ | ----------------------------------------------- | ------------------- |
+| `design_task`      | torque and requirements, given or assumed       | T, N m; E, J        |
+| `machine_frame`    | parts sized by roller and cam torque            | m                   |
+| `spring_choice`    | springs that store the energy, as arrays        | k, N/m; P, N; s, m  |
+| `design_case`      | case file of a design, with reasons and sources |                     |
+| `candidate_search` | screening over rollers, springs, base circles   | T, N m; m           |
+| `design_study`     | front, choice, conflict and relaxations, files  |                     |
+
+Imported by `commands` alone.
+"""

@@ -1,0 +1,223 @@
+"""Search over rollers, springs and base circles: closed-form checks of all of them as arrays."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, fields, replace
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from camwright.geometry.arrays import Array
+from camwright.geometry.errors import CamError
+from camwright.pipeline.base.progress import Progress
+from camwright.pipeline.case.cards.bearing_cards import BearingCard
+from camwright.pipeline.case.cards.card_filling import known_cards
+from camwright.pipeline.case.cards.catalogue import better_roller, catalogue_of, undominated
+from camwright.pipeline.case.cards.part_table import read_part
+from camwright.pipeline.case.cards.provenance import without_provenance
+from camwright.pipeline.case.case_file import parse_case, with_values
+from camwright.pipeline.case.toml_text import Tables
+from camwright.pipeline.follower.spring import HelicalSpring
+from camwright.pipeline.screening.design_screening import Column, screen_designs
+from camwright.pipeline.studies.design.design_case import (
+    OIL_WARMER,
+    Machinery,
+    case_text,
+    oils_of,
+)
+from camwright.pipeline.studies.design.design_task import DesignTask
+from camwright.pipeline.studies.design.machine_frame import Frame, frame_of, seats
+from camwright.pipeline.studies.design.spring_choice import SpringPoint, of_catalogue, wound
+
+WIRE = "chrome_silicon"
+RELAXATION = 0.005  # share of the force that a preset spring loses
+_TRAVELS = 12
+_TRAVEL_LEAST = 2e-3  # m
+_TRAVEL_MOST = 0.12  # m
+_PRELOADS = (0.15, 0.3, 0.45, 0.6)  # of the greatest force
+_SHARES = 3
+_RADII = 7
+_STEEP, _FLAT = np.radians((28.0, 6.0))  # pressure angles of the least and greatest base circle
+_REMOVED_MORE = 0.05  # of the ripple, above the requirement
+_PEAK = 1.25  # cam torque over that of the balanced ripple
+_FREE_ROOM = 5.0  # m, of a cam whose space is not limited
+_HARMONICS = 12.0
+POSITIONS = 90
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """A design with the estimates of the screening.
+
+    excess: sum of what the utilisations of its checks are above 1.
+    """
+
+    design: Machinery
+    ripple: float
+    cam_radius: float
+    excess: float
+    governing: str
+
+    @property
+    def size(self) -> float:
+        """From the far side of the cam to the top of the roller at maximum lift, m."""
+        return self.cam_radius + self.design.height
+
+
+def spring_wire(task: DesignTask, folder: Path | None) -> HelicalSpring:
+    """Wire of wound springs, as a spring of any size."""
+    card = without_provenance(known_cards(folder)["wires"][WIRE])
+    size: Tables = {"wire_diameter": "5 mm", "mean_diameter": "30 mm", "coils": 5.0,
+                    "free_length": "80 mm"}  # fmt: skip
+    drawn: Tables = {"treatment": "peened", "relaxation": RELAXATION}
+    spring = read_part(HelicalSpring, {**card, **size, **drawn}, f"cards.wires.{WIRE}")
+    return replace(spring, temperature=task.ambient + OIL_WARMER)
+
+
+def candidates(task: DesignTask, folder: Path, file: str, progress: Progress) -> list[Candidate]:
+    """Screened designs of all rollers of the catalogue that can bear the force.
+
+    Parameters
+    ----------
+    folder : Path   of the torque table, the user's cards and springs
+    file : str      torque table in it
+    """
+    parts = catalogue_of(folder)
+    wire, oils, sizes = spring_wire(task, folder), oils_of(folder), seats()
+    rollers = undominated(parts.rollers, better_roller)
+    order = sorted(rollers, key=lambda name: (rollers[name].outer_diameter, rollers[name].C))
+    screened: list[Candidate] = []
+    for k, name in enumerate(order, start=1):
+        card = rollers[name]
+        springs = _springs(task, card, wire, list(parts.springs.values()))
+        if springs and card.balls is not None:
+            force = max(point.greatest for point in springs)
+            torque = _PEAK * task.ratio * task.demand.peak
+            frame = frame_of(name, card, torque, force, task.ratio, sizes)
+            if frame is not None:
+                screened += _screened(task, frame, springs, oils, folder, file)
+        progress.advance(k, len(order))
+    return screened
+
+
+def _springs(
+    task: DesignTask, card: BearingCard, wire: HelicalSpring, catalogue: list[HelicalSpring]
+) -> list[SpringPoint]:
+    """Springs that store the energy, with forces within the ratings of the roller."""
+    swing = task.demand.energy_swing
+    shares = np.linspace(min(task.remove + _REMOVED_MORE, 1.0), 1.0, _SHARES)
+    travels = np.geomspace(_TRAVEL_LEAST, _TRAVEL_MOST, _TRAVELS)
+    most = 0.95 * min(
+        card.C0 / 1.5, 0.5 * card.C, card.radial_limit or np.inf, card.static_radial_limit or np.inf
+    )
+    share, travel, preload = (
+        each.ravel() for each in np.meshgrid(shares, travels, _PRELOADS, indexing="ij")
+    )
+    mean = share * swing / travel
+    greatest = 2.0 * mean / (1.0 + preload)
+    kept = greatest <= most
+    greatest, travel, preload = greatest[kept], travel[kept], preload[kept]
+    rate = (1.0 - preload) * greatest / travel
+    points = wound(wire, rate, preload * greatest, travel, task.cam_speed)
+    points += [
+        replace(point, spring=replace(
+            point.spring, temperature=wire.temperature, relaxation=RELAXATION
+        ))
+        for point in of_catalogue(
+            catalogue, list(shares * swing), list(travels), task.cam_speed
+        )
+        if point.greatest <= most
+    ]  # fmt: skip
+    return points
+
+
+def _screened(
+    task: DesignTask,
+    frame: Frame,
+    springs: list[SpringPoint],
+    oils: Mapping[str, tuple[float, float]],
+    folder: Path,
+    file: str,
+) -> list[Candidate]:
+    """Closed-form checks of a frame with each spring on several base circles."""
+    designs = [
+        Machinery(task, frame, spring, float(radius), spring.travel, 0.0, oils=oils)
+        for spring in springs
+        for radius in _radii(task, frame, spring)
+    ]
+    if not designs:
+        return []
+    longest = max(designs, key=lambda each: each.lift)
+    roomy = replace(longest, cam_radius=longest.prime_radius, task=replace(task, space=None))
+    text = case_text(roomy, "screening", file)
+    case = parse_case(text, folder)
+    case = with_values(case, {"smoothing.kind": "harmonic", "smoothing.harmonics": _HARMONICS})
+    try:
+        columns = screen_designs(case, _factors(task, designs), positions=POSITIONS)
+    except CamError:
+        return []
+    return _judged(designs, columns)
+
+
+def _radii(task: DesignTask, frame: Frame, spring: SpringPoint) -> Array:
+    """Prime radii from a steep to a flat pressure angle, not below the hub, within the space."""
+    mean = 0.5 * (spring.preload + spring.greatest)
+    slope = task.ratio * task.demand.peak / mean
+    low = max(frame.least_radius, slope / np.tan(_STEEP) - 0.5 * spring.travel)
+    high = max(1.15 * low, slope / np.tan(_FLAT))
+    if task.space is not None:
+        # the cam reaches at least the base circle on its far side
+        high = min(high, 0.5 * task.space - 0.5 * spring.travel)
+    if not low <= high:
+        return np.zeros(0)
+    return 5e-4 * np.ceil(np.geomspace(low, high, _RADII) / 5e-4)
+
+
+def _factors(task: DesignTask, designs: list[Machinery]) -> dict[str, Array]:
+    springs = [each.spring for each in designs]
+    windings = ("wire_diameter", "mean_diameter", "coils", "free_length", "end_factor",
+                "shear_modulus", "density", "strength_at_1mm", "strength_exponent")  # fmt: skip
+    known = {each.name for each in fields(HelicalSpring)}
+    factors = {
+        f"spring.design.{name}": np.array([getattr(each.spring, name) for each in springs])
+        for name in windings
+        if name in known
+    }
+    energy = np.array([(e.preload + 0.5 * e.spring.rate * e.travel) * e.travel for e in springs])
+    return factors | {
+        "spring.rate": np.array([each.spring.rate for each in springs]),
+        "spring.preload": np.array([each.preload for each in springs]),
+        "spring.travel_max": np.array([1.02 * each.lift for each in designs]),
+        "cam.prime_radius": np.array([each.prime_radius for each in designs]),
+        "follower.mass": np.array([float(each.mass) for each in designs]),
+        "guides.spacing": np.array([each.frame.spacing(each.lift) for each in designs]),
+        "mechanism.compensation": np.minimum(energy / task.demand.energy_swing, 1.0),
+        "limits.cam_radius": np.array([min(each.room, _FREE_ROOM) for each in designs]),
+    }
+
+
+def _judged(designs: list[Machinery], columns: Mapping[str, Column]) -> list[Candidate]:
+    used = np.array([
+        np.nan_to_num(np.asarray(columns[name], dtype=float), nan=0.0, posinf=99.0)
+        for name in columns
+        if name.endswith(".utilisation")
+    ])  # fmt: skip
+    names = [name.split(".")[0] for name in columns if name.endswith(".utilisation")]
+    excess = np.maximum(used - 1.0, 0.0).sum(axis=0)
+    worst = used.argmax(axis=0)
+    ripple = np.asarray(columns["headline.torque_std_after_Nm"], dtype=float)
+    radius = np.asarray(columns["cam_radius.demand"], dtype=float)
+    good: NDArray[np.bool_] = np.isfinite(ripple) & np.isfinite(radius)
+    good &= np.asarray(columns["screen"] != "error")
+    return [
+        Candidate(
+            replace(designs[row], cam_radius=1e-3 * float(radius[row])),
+            float(ripple[row]),
+            1e-3 * float(radius[row]),
+            float(excess[row]),
+            names[worst[row]],
+        )
+        for row in np.flatnonzero(good)
+    ]

@@ -1,0 +1,245 @@
+"""Task of a design: a torque over one cycle, speeds, and requirements, given or assumed."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import inf, isfinite
+from pathlib import Path
+
+import numpy as np
+
+from camwright.geometry.arrays import FULL_TURN, Array, readonly
+from camwright.geometry.errors import InputError
+from camwright.pipeline.base import units
+from camwright.pipeline.torque.angle_trace import ROWS_MIN
+from camwright.pipeline.torque.period import Period
+from camwright.pipeline.torque.tabled_torque import TabledTorqueFile, tabled_torque
+from camwright.pipeline.torque.torque import SAMPLES, uniform_cycle
+from camwright.pipeline.torque.trace_file import angle_column, trace_text
+
+_OVER = 1.2  # over-speed over the greatest speed
+_LIFE = "2000 h"
+_AMBIENT = "40 degC"
+_REMOVE = 0.5
+_WHOLE = 0.02  # of a turn: a span this near to whole turns is a cycle of them
+
+
+@dataclass(frozen=True, eq=False)
+class TorqueDemand:
+    """Torque that the cam is to balance: its ripple and the energy to be stored.
+
+    Parameters
+    ----------
+    torque : array (720,)   N m at equal shaft angles of one cycle, without its mean
+    mean : float            N m
+    cycle : float           rad of the shaft
+    """
+
+    torque: Array
+    mean: float
+    cycle: float
+
+    @property
+    def ripple(self) -> float:
+        """Standard deviation, N m."""
+        return float(self.torque.std())
+
+    @property
+    def peak(self) -> float:
+        """Greatest deviation from the mean, N m."""
+        return float(np.abs(self.torque).max())
+
+    @property
+    def energy_swing(self) -> float:
+        """Greatest less least energy of the cycle, J: integral of the torque over the angle."""
+        energy = np.cumsum(self.torque) * (self.cycle / self.torque.size)
+        return float(np.ptp(energy))
+
+
+@dataclass(frozen=True, kw_only=True)
+class DesignTask:
+    """A torque and the requirements on the cam that balances it, SI.
+
+    space: from the far side of the cam to the top of the roller at maximum lift, None: not limited;
+    remove: share of the torque ripple to be removed; assumed: names of what was not given.
+    """
+
+    file: Path
+    demand: TorqueDemand
+    speed: float
+    speeds: tuple[float, float]
+    overspeed: float
+    period: Period
+    space: float | None
+    life: float
+    ambient: float
+    remove: float
+    assumed: frozenset[str]
+
+    def source(self, name: str, reason: str = "") -> str:
+        """Source of a requirement for the case file."""
+        if name not in self.assumed:
+            return "given"
+        return f"assumed: {reason}" if reason else "assumed"
+
+    @property
+    def ratio(self) -> float:
+        """Shaft turns per cam turn."""
+        return self.period.ratio
+
+    @property
+    def cam_speed(self) -> float:
+        """Cam speed at the over-speed, rad/s."""
+        return self.overspeed / self.ratio
+
+
+def task_of(
+    torque: str | Path,
+    *,
+    speed: str | float,
+    speeds: str | tuple[str | float, str | float] | None = None,
+    overspeed: str | float | None = None,
+    cycle: str | float | None = None,
+    ratio: str | float | None = None,
+    space: str | float | None = None,
+    life: str | float | None = None,
+    ambient: str | float | None = None,
+    remove: str | float | None = None,
+) -> DesignTask:
+    """Task of a torque table; numbers in SI, or text with a unit.
+
+    Parameters
+    ----------
+    torque : path        CSV: a column of shaft angle, one of torque, with their units
+    speed : speed        of the shaft, rad/s or such as ``"1500 rpm"``
+    speeds : pair        least and greatest speed; text: ``"800..3600 rpm"``
+    overspeed : speed    None: 1.2 times the greatest speed
+    cycle : angle        of the torque, of the shaft; None: that of the table, whole turns
+    ratio : float        shaft turns per cam turn; None: one cycle per cam turn
+    space : length       from the far side of the cam to the top of the roller at maximum lift;
+                         None: not limited
+    life, ambient        None: 2000 h, 40 degC
+    remove : share       of the torque ripple to be removed; None: 50 %
+
+    Raises
+    ------
+    InputError
+        If a value cannot be read or is out of its bounds, or the table is no torque of a cycle: no
+        file, no units, constant, not periodic, rows too coarse for its waves.
+    """
+    path = Path(torque)
+    given = {"overspeed": overspeed, "cycle": cycle, "ratio": ratio, "space": space, "life": life,
+             "ambient": ambient, "remove": remove, "speeds": speeds}  # fmt: skip
+    running = _number(speed, "rpm", "--speed", above=0.0)
+    least, most = _range(speeds, running)
+    fastest = _OVER * most
+    if overspeed is not None:
+        fastest = _number(overspeed, "rpm", "--overspeed", at_least=most)
+    angle = _cycle(path, cycle)
+    period = _period(angle, None if ratio is None else _turns(ratio))
+    share = _REMOVE if remove is None else _share(remove)
+    return DesignTask(
+        file=path,
+        demand=_demand(path, angle),
+        speed=running,
+        speeds=(least, most),
+        overspeed=fastest,
+        period=period,
+        space=None if space is None else _number(space, "mm", "--space", above=0.0),
+        life=_number(_LIFE if life is None else life, "h", "--life", above=0.0),
+        ambient=_number(_AMBIENT if ambient is None else ambient, "K", "--ambient", above=0.0),
+        remove=share,
+        assumed=frozenset(name for name, value in given.items() if value is None),
+    )
+
+
+def _number(
+    value: str | float, unit: str, field: str, *, above: float = -inf, at_least: float = -inf
+) -> float:
+    """A number in SI from a number in SI or a text with a unit."""
+    read = units.parse(value, unit, field) if isinstance(value, str) else float(value)
+    if not (isfinite(read) and read > above):
+        raise InputError(field, _as_text(value), f"> {units.shown(above, unit)}")
+    if not read >= at_least * (1.0 - 1e-12):
+        raise InputError(field, _as_text(value), f">= {units.shown(at_least, unit)}")
+    return read
+
+
+def _as_text(value: str | float) -> str:
+    return value if isinstance(value, str) else f"{value:g}"
+
+
+def _range(
+    speeds: str | tuple[str | float, str | float] | None, running: float
+) -> tuple[float, float]:
+    if speeds is None:
+        return running, running
+    if isinstance(speeds, str):
+        least, dots, most = speeds.partition("..")
+        if not dots:
+            raise InputError("--speeds", speeds, "two speeds, such as 800..3600 rpm")
+        unit = most.strip().lstrip("+-.0123456789eE").strip()
+        speeds = (least if any(c.isalpha() for c in least) else f"{least.strip()} {unit}", most)
+    low, high = (_number(each, "rpm", "--speeds", above=0.0) for each in speeds)
+    if not low <= running * (1.0 + 1e-12) or not running <= high * (1.0 + 1e-12):
+        shown = f"{units.shown(low, 'rpm')} to {units.shown(high, 'rpm')}"
+        raise InputError("--speeds", shown, f"about --speed = {units.shown(running, 'rpm')}")
+    return low, high
+
+
+def _share(value: str | float) -> float:
+    text = str(value).strip()
+    try:
+        share = 0.01 * float(text[:-1]) if text.endswith("%") else float(text)
+    except ValueError:
+        raise InputError("--remove", text[:40], "a share, such as 60% or 0.6") from None
+    if not 0.0 < share < 1.0:
+        raise InputError("--remove", text, "> 0 % and < 100 %")
+    return share
+
+
+def _cycle(path: Path, cycle: str | float | None) -> float:
+    """Angle of the cycle, rad; that of the table where it is not given."""
+    if cycle is not None:
+        return _number(cycle, "deg", "--cycle", above=0.0)
+    text = trace_text(path)
+    at, factor = angle_column(text.name, text.header)
+    angle = text.numbers((at,))[:, 0] * factor
+    if angle.size < ROWS_MIN:
+        raise InputError(text.name, f"{angle.size} rows", f"{ROWS_MIN} rows or more")
+    spacing = float(np.median(np.diff(angle)))
+    span = float(angle[-1] - angle[0])
+    for whole in (span, span + spacing):
+        turns = max(round(whole / FULL_TURN), 1)
+        if abs(whole / FULL_TURN - turns) <= _WHOLE:
+            return turns * FULL_TURN
+    limit = "whole turns of the shaft, or the angle of the cycle as --cycle"
+    raise InputError(f"{text.name} span", f"{np.degrees(span):.6g} deg", limit)
+
+
+def _turns(ratio: str | float) -> float:
+    """A ratio as a number, or as text such as ``3:2``."""
+    text = str(ratio).strip()
+    above, colon, below = text.partition(":")
+    try:
+        value = float(above) / float(below) if colon else float(above)
+    except (ValueError, ZeroDivisionError):
+        raise InputError("--ratio", text[:40], 'a number or "3:2"') from None
+    return value
+
+
+def _period(cycle: float, ratio: float | None) -> Period:
+    """Period of the machine; without a ratio a cam turn is one cycle, of one turn or more."""
+    if ratio is None:
+        return Period(cycle, cycle / FULL_TURN * max(1, round(FULL_TURN / cycle)))
+    try:
+        return Period(cycle, ratio)
+    except InputError as error:
+        raise InputError("--ratio", error.value, error.limit) from None
+
+
+def _demand(path: Path, cycle: float) -> TorqueDemand:
+    source = TabledTorqueFile(file=path.name, cycle=cycle)
+    values = tabled_torque(source, path).torque(uniform_cycle(SAMPLES, cycle))
+    mean = float(values.mean())
+    return TorqueDemand(readonly(values - mean), mean, cycle)

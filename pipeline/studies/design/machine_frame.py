@@ -1,0 +1,215 @@
+"""Parts about a cam, sized by its roller and its torque: stem, guides, fork, shaft, key, gear.
+
+Proportions of drawn machines, rounded to sizes of standards; the checks judge them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import ceil, pi
+from pathlib import Path
+from typing import ClassVar
+
+from camwright.pipeline.base.files import read_toml
+from camwright.pipeline.base.quantities import Force, Length, Part
+from camwright.pipeline.case.cards.bearing_cards import BearingCard
+from camwright.pipeline.case.cards.part_table import read_part
+from camwright.pipeline.case.toml_text import Tables
+
+SEATS = Path(__file__).parents[2] / "case" / "cards" / "shaft_seats.toml"
+STEMS = (8, 10, 12, 14, 16, 20, 25, 30, 35, 40)  # mm, of wrapped bushes of ISO 3547
+MODULES = (1.0, 1.25, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0)  # mm, ISO 54, row I
+STEEL = 7850.0  # kg/m3
+MEAN_BUSH = 1.5  # length over diameter
+_KEY_STRESS = 0.45 * 370e6 * 0.6  # Pa: 0.9 R_e of C45, halved by reversals, 60 % used
+_SHAFT_STRESS = 40e6  # Pa: bending of C45 at a press fit, with safety 1.5 and scatter
+_SHRINK = 45e6 * 0.12  # Pa: pressure of H7/s6 times friction
+_TOOTH = 12e6  # Pa: T / (m^3 z b/m) of case-hardened teeth at half of their strength
+_PINION = 20
+
+
+@dataclass(frozen=True, kw_only=True)
+class Seat(Part):
+    """Bore of a cam with its keyway, and the ball bearing of the same bore."""
+
+    table: ClassVar[str] = "seat"
+
+    bore: Length
+    key_width: Length
+    hub_depth: Length
+    bearing: str
+    C: Force
+    C0: Force
+
+
+@dataclass(frozen=True)
+class Frame:
+    """Parts that follow from roller and cam torque; lengths in m.
+
+    Parameters
+    ----------
+    roller : str        name of its card
+    card : BearingCard
+    seat : Seat         of the cam on its shaft
+    module : float      of the gear
+    """
+
+    roller: str
+    card: BearingCard
+    seat: Seat
+    module: float
+    teeth: tuple[int, int]
+
+    @property
+    def radius(self) -> float:
+        return 0.5 * self.card.outer_diameter
+
+    @property
+    def stem(self) -> float:
+        return stem_of(self.card)
+
+    @property
+    def bush_length(self) -> float:
+        return 5e-3 * ceil(MEAN_BUSH * self.stem / 5e-3 - 1e-9)
+
+    @property
+    def bush_wall(self) -> float:
+        """Wall of a wrapped bush, ISO 3547."""
+        return 1e-3 if self.stem < 0.019 else 1.5e-3 if self.stem < 0.029 else 2e-3
+
+    @property
+    def cheek_width(self) -> float:
+        return 1e-3 * max(2, round(300.0 * self.card.bore))
+
+    @property
+    def bridge(self) -> float:
+        return 1e-3 * max(2, round(1e3 * 0.085 * self.card.outer_diameter))
+
+    @property
+    def cheek_length(self) -> float:
+        return 1e-3 * ceil(1e3 * self.radius + 2.0)
+
+    @property
+    def cheek_height(self) -> float:
+        return 1e-3 * ceil(1.3e3 * self.card.bore)
+
+    @property
+    def pin_span(self) -> float:
+        return self.card.width + self.cheek_width + 5e-4
+
+    @property
+    def overhang(self) -> float:
+        """From the middle of guide A to the roller's centre at maximum lift."""
+        room = self.cheek_length - self.radius + self.bridge + 2e-3
+        return 1e-3 * ceil(1e3 * (self.radius + room + 0.5 * self.bush_length))
+
+    def spacing(self, lift: float) -> float:
+        """Distance of the guides: guided length 2.3 times the greatest overhang."""
+        least = 2.3 * (self.overhang + lift) - self.bush_length
+        return 1e-3 * ceil(1e3 * max(least, 2.0 * self.bush_length))
+
+    def stem_length(self, lift: float) -> float:
+        """From the roller's centre through guide B at zero lift."""
+        reach = self.overhang + lift + self.spacing(lift) + 0.5 * self.bush_length
+        return 1e-3 * ceil(1e3 * reach + 3.0)
+
+    def mass(self, lift: float, spring: float) -> float:
+        """Mass of all that moves with the follower, a third of a spring (kg) among it, kg."""
+        solid = 0.25 * pi * STEEL
+        disc = solid * (self.card.outer_diameter**2 - self.card.bore**2) * self.card.width
+        pin = solid * self.card.bore**2 * (self.pin_span + self.cheek_width)
+        cheeks = 2.0 * STEEL * self.cheek_width * self.cheek_height * self.cheek_length
+        bridge = STEEL * self.bridge * self.cheek_height * (self.pin_span + self.cheek_width)
+        stem = solid * self.stem**2 * self.stem_length(lift)
+        return disc + pin + cheeks + bridge + stem + spring / 3.0
+
+    @property
+    def bearing_spacing(self) -> float:
+        return 1e-3 * ceil(1e3 * (2.0 * self.card.width + 1.2 * self.seat.bore))
+
+    @property
+    def gear_width(self) -> float:
+        return 10.0 * self.module
+
+    @property
+    def gear_radius(self) -> float:
+        return 0.5 * self.module * self.teeth[0]
+
+    @property
+    def gear_position(self) -> float:
+        return -1e-3 * ceil(1e3 * (0.5 * self.gear_width + 0.5 * self.seat.bore))
+
+    @property
+    def key_length(self) -> float:
+        return 1e-3 * int(1e3 * self.card.width - 0.4)
+
+    @property
+    def slip_torque(self) -> float:
+        """Torque of the shrunk seat of the cam, N m."""
+        return 0.5 * _SHRINK * pi * self.seat.bore**2 * self.card.width
+
+    @property
+    def least_radius(self) -> float:
+        """Least prime radius with a hub of 1.75 times bore and keyway."""
+        return self.radius + 1.8 * (0.5 * self.seat.bore + self.seat.hub_depth)
+
+    def rotor_mass(self, cam_radius: float) -> float:
+        """Mass of cam, gear and shaft, kg."""
+        solid = pi * STEEL
+        cam = solid * cam_radius**2 * self.card.width
+        gear = solid * self.gear_radius**2 * self.gear_width
+        shaft = 0.25 * solid * self.seat.bore**2 * 1.6 * self.bearing_spacing
+        return cam + gear + shaft
+
+
+def stem_of(card: BearingCard) -> float:
+    """Stem diameter, m: that of the sizes which is nearest to 0.42 roller diameters."""
+    wanted = 1e3 * 0.42 * card.outer_diameter
+    return 1e-3 * min(STEMS, key=lambda size: abs(size - wanted))
+
+
+def seats() -> tuple[Seat, ...]:
+    """Seats of the shipped cards, by increasing bore."""
+    table: Tables = read_toml(SEATS, SEATS.name, 64 * 1024)
+    rows = table["seat"]
+    listed = rows if isinstance(rows, list) else []
+    read = [read_part(Seat, row, f"cards.seat[{k}]") for k, row in enumerate(listed)]
+    return tuple(sorted(read, key=lambda seat: seat.bore))
+
+
+def seat_source() -> str:
+    """Source of the seats."""
+    return str(read_toml(SEATS, SEATS.name, 64 * 1024)["source"])
+
+
+def frame_of(
+    name: str, card: BearingCard, torque: float, force: float, ratio: float, sizes: Sequence[Seat]
+) -> Frame | None:
+    """Frame of a roller for a cam torque, N m, and a normal force, N; None: no seat is enough."""
+    width = card.width - 4e-4
+    for seat in sizes:
+        key = _KEY_STRESS * seat.hub_depth * width * 0.5 * seat.bore
+        moment = 0.25 * force * (2.0 * card.width + 1.2 * seat.bore)
+        bend = _SHAFT_STRESS * pi * seat.bore**3 / 32.0
+        slip = 0.5 * _SHRINK * pi * seat.bore**2 * card.width
+        static = seat.C0 / 1.5
+        enough = (key, 0.5 * slip, static, bend), (torque, torque, 0.6 * force, moment)
+        if seat.bore >= 0.5 * card.bore and all(a >= b for a, b in zip(*enough, strict=True)):
+            break
+    else:
+        return None
+    gear, pinion = _teeth(ratio)
+    # T on the gear; the pinion carries the same tooth force
+    module = next((m for m in MODULES if _TOOTH * 1e-9 * m**3 * gear * 10 >= torque), MODULES[-1])
+    least = next((m for m in MODULES if 0.5e-3 * m * gear > 0.8 * seat.bore), MODULES[-1])
+    return Frame(name, card, seat, 1e-3 * max(module, least), (gear, pinion))
+
+
+def _teeth(ratio: float) -> tuple[int, int]:
+    """Teeth of gear and pinion of a ratio of shaft turns per cam turn."""
+    for pinion in range(_PINION, 6 * _PINION):
+        gear = pinion * ratio
+        if abs(gear - round(gear)) < 1e-6 and round(gear) >= _PINION:
+            return round(gear), pinion
+    return max(_PINION, round(_PINION * ratio)), _PINION

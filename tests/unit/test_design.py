@@ -1,0 +1,161 @@
+"""Design from a torque: task, springs, frame and case text."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from camwright.geometry.errors import InputError, ResultError
+from camwright.pipeline.case.cards.catalogue import catalogue_of
+from camwright.pipeline.case.cards.spring_catalogue import SpringDemand
+from camwright.pipeline.case.case_file import parse_case
+from camwright.pipeline.studies.design.candidate_search import spring_wire
+from camwright.pipeline.studies.design.design_case import Machinery, case_text, oils_of
+from camwright.pipeline.studies.design.design_study import designed
+from camwright.pipeline.studies.design.design_task import DesignTask, task_of
+from camwright.pipeline.studies.design.machine_frame import frame_of, seats
+from camwright.pipeline.studies.design.spring_choice import wound
+
+RPM = np.pi / 30.0
+
+
+def table(folder: Path, span: float = 360.0, header: str = "shaft_angle_deg,torque_Nm") -> Path:
+    """Torque 10 sin(t) of one cycle: energy swing 20 J at 360 deg."""
+    angle = np.arange(0.0, span, 5.0)
+    torque = 3.0 + 10.0 * np.sin(2.0 * np.pi * angle / span)
+    rows = [f"{a:g},{t:.9g}" for a, t in zip(angle, torque, strict=True)]
+    path = folder / "torque.csv"
+    path.write_text("\n".join([header, *rows]) + "\n", encoding="utf-8")
+    return path
+
+
+def task_in(folder: Path) -> DesignTask:
+    return task_of(table(folder), speed="300 rpm")
+
+
+def test_demand_of_a_sine(tmp_path: Path) -> None:
+    """Mean 3 N m, ripple 10/sqrt 2, energy swing 2 x 10 J; its sum over 720 angles."""
+    demand = task_in(tmp_path).demand
+    assert demand.mean == pytest.approx(3.0, abs=1e-6)
+    assert demand.ripple == pytest.approx(10.0 / np.sqrt(2.0), rel=1e-4)
+    assert demand.energy_swing == pytest.approx(20.0, rel=1e-4)
+
+
+def test_what_is_not_given_is_assumed(tmp_path: Path) -> None:
+    task = task_of(table(tmp_path), speed="300 rpm", life="500 h")
+    assert task.overspeed == pytest.approx(1.2 * 300.0 * RPM)
+    assert task.ratio == 1.0
+    assert "overspeed" in task.assumed
+    assert "life" not in task.assumed
+    assert task.source("life") == "given"
+    assert task.source("overspeed", "x").startswith("assumed")
+
+
+@pytest.mark.parametrize(("span", "ratio"), [(720.0, 2.0), (360.0, 1.0), (180.0, 1.0)])
+def test_a_cam_turn_is_one_cycle_of_one_turn_or_more(
+    tmp_path: Path, span: float, ratio: float
+) -> None:
+    task = task_of(table(tmp_path, span), speed="300 rpm", cycle=f"{span:g} deg")
+    assert task.ratio == ratio
+
+
+def test_speeds_and_shares(tmp_path: Path) -> None:
+    task = task_of(table(tmp_path), speed="1500 rpm", speeds="800..3600 rpm", remove="60%")
+    assert task.speeds == pytest.approx((800.0 * RPM, 3600.0 * RPM))
+    assert task.overspeed == pytest.approx(1.2 * 3600.0 * RPM)
+    assert task.remove == pytest.approx(0.6)
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        ({"speed": "0 rpm"}, "--speed = 0 rpm"),
+        ({"speed": "300 mm"}, "--speed"),
+        ({"speed": "300 rpm", "speeds": "400..500 rpm"}, "--speeds"),
+        ({"speed": "300 rpm", "speeds": "400 rpm"}, "--speeds"),
+        ({"speed": "300 rpm", "overspeed": "200 rpm"}, "--overspeed = 200 rpm"),
+        ({"speed": "300 rpm", "ratio": "3:0"}, "--ratio"),
+        ({"speed": "300 rpm", "ratio": "1.3"}, "1 or 2"),
+        ({"speed": "300 rpm", "remove": "120%"}, "--remove = 120%"),
+        ({"speed": "300 rpm", "cycle": "500 deg"}, "span"),
+    ],
+)
+def test_an_option_is_refused_in_one_line(
+    tmp_path: Path, options: dict[str, str], words: str
+) -> None:
+    with pytest.raises(InputError) as refused:
+        task_of(table(tmp_path), **options)
+    assert words in str(refused.value)
+    assert "\n" not in str(refused.value)
+
+
+def test_a_table_of_no_whole_turns_names_the_option(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="--cycle"):
+        task_of(table(tmp_path, 500.0), speed="300 rpm")
+
+
+def test_a_table_without_units_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="unit"):
+        task_of(table(tmp_path, header="shaft_angle_deg,torque"), speed="300 rpm")
+
+
+def test_wound_springs_meet_their_demand(tmp_path: Path) -> None:
+    """Each spring against `SpringDemand`, which the winding does not use."""
+    task = task_in(tmp_path)
+    wire = spring_wire(task, None)
+    travel = np.geomspace(4e-3, 20e-3, 5)
+    greatest = 2.0 * 20.0 / travel / 1.3
+    points = wound(wire, 0.7 * greatest / travel, 0.3 * greatest, travel, task.cam_speed)
+    assert len(points) == travel.size
+    for point in points:
+        spring = point.spring
+        demand = SpringDemand(
+            spring.rate, point.preload, point.travel, rate_spread=0.05, preload_spread=0.05
+        )
+        assert demand.shortfalls(spring) == ()
+        assert spring.surge_frequency >= 13.0 * task.cam_speed / (2.0 * np.pi)
+        stored = (point.preload + 0.5 * spring.rate * point.travel) * point.travel
+        assert stored == pytest.approx(20.0, rel=0.02)  # coils in steps of 0.05
+
+
+def test_the_seat_grows_with_the_torque() -> None:
+    card = catalogue_of(None).rollers["track_roller_47x18"]
+    small = frame_of("r", card, 5.0, 1e3, 2.0, seats())
+    large = frame_of("r", card, 80.0, 1e3, 2.0, seats())
+    assert small is not None
+    assert large is not None
+    assert small.seat.bore < large.seat.bore
+    assert large.teeth == (40, 20)
+    assert frame_of("r", card, 1e5, 1e3, 2.0, seats()) is None
+
+
+def test_the_case_states_given_and_assumed(tmp_path: Path) -> None:
+    """The text is a case with all parts; the verdict counts what is assumed."""
+    task = replace(task_in(tmp_path), space=0.15)
+    card = catalogue_of(None).rollers["track_roller_35x16"]
+    frame = frame_of("track_roller_35x16", card, 12.0, 3e3, task.ratio, seats())
+    assert frame is not None
+    point = wound(
+        spring_wire(task, None), np.array([150e3]), np.array([900.0]), np.array([9e-3]), 30.0
+    )[0]
+    design = Machinery(task, frame, point, 0.046, 9e-3, 0.035, oils=oils_of(None))
+    case = parse_case(case_text(design, "sine", "torque.csv"), tmp_path)
+    assert case.period.angle == pytest.approx(2.0 * np.pi)
+    assert case.limits.sources["target_life"] == "assumed"
+    assert case.limits.sources["overspeed"].startswith("assumed")
+    assert case.cam.prime_radius == pytest.approx(0.046)
+    room = 0.15 - 0.046 - 9e-3 - frame.radius
+    assert case.limits.cam_radius == pytest.approx(room, abs=1e-8)
+
+
+def test_a_folder_of_something_else_is_refused(tmp_path: Path) -> None:
+    task = task_in(tmp_path)
+    with pytest.raises(InputError, match="--out"):
+        designed(task, tmp_path / "x.txt")
+    (tmp_path / "x_design").mkdir()
+    (tmp_path / "x_design" / "letter.txt").write_text("mine", encoding="utf-8")
+    with pytest.raises(ResultError, match="holds something other"):
+        designed(task, tmp_path / "x.toml")
