@@ -8,6 +8,7 @@ from typing import Annotated, Any
 import typer
 
 from camwright.pipeline.commands.terminal import (
+    EXIT_CODE,
     FAILED,
     PASSED,
     progress_shown,
@@ -117,9 +118,9 @@ def _words(relaxation: dict[str, str]) -> str:
 
 
 def _run(case: Path) -> int:
-    from camwright.pipeline.commands.check_command import check
     from camwright.pipeline.commands.run_command import run
+    from camwright.pipeline.results.run_reader import read_verdict
 
     folder = case.absolute().parent / "runs" / case.stem
     run(case, folder, replace=folder.exists())
-    return check([folder])
+    return EXIT_CODE[read_verdict(folder)["verdict"]]
