@@ -60,7 +60,7 @@ def design(
     to resume.
     """
     from camwright.pipeline.studies.design.design_study import PICTURE, designed, points_folder
-    from camwright.pipeline.studies.design.design_task import task_of
+    from camwright.pipeline.studies.design.torque_task import task_of
     from camwright.reports.study import design_picture
 
     task = task_of(

@@ -15,9 +15,9 @@ from camwright.pipeline.case.case_file import parse_case
 from camwright.pipeline.studies.design.candidate_search import spring_wire
 from camwright.pipeline.studies.design.design_case import Machinery, case_text, oils_of
 from camwright.pipeline.studies.design.design_study import designed
-from camwright.pipeline.studies.design.design_task import DesignTask, task_of
 from camwright.pipeline.studies.design.machine_frame import frame_of, seats
-from camwright.pipeline.studies.design.spring_choice import wound
+from camwright.pipeline.studies.design.torque_task import DesignTask, task_of
+from camwright.pipeline.studies.design.wound_springs import wound
 
 RPM = np.pi / 30.0
 

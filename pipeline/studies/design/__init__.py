@@ -4,9 +4,9 @@ In the order of the calculation:
 
 | module             | responsibility                                  | symbol, unit        |
 | ------------------ | ----------------------------------------------- | ------------------- |
-| `design_task`      | torque and requirements, given or assumed       | T, N m; E, J        |
+| `torque_task`      | torque and requirements, given or assumed       | T, N m; E, J        |
 | `machine_frame`    | parts sized by roller and cam torque            | m                   |
-| `spring_choice`    | springs that store the energy, as arrays        | k, N/m; P, N; s, m  |
+| `wound_springs`    | springs that store the energy, as arrays        | k, N/m; P, N; s, m  |
 | `design_case`      | case file of a design, with reasons and sources |                     |
 | `candidate_search` | screening over rollers, springs, base circles   | T, N m; m           |
 | `design_study`     | front, choice, conflict and relaxations, files  |                     |

@@ -27,9 +27,9 @@ from camwright.pipeline.studies.design.design_case import (
     case_text,
     oils_of,
 )
-from camwright.pipeline.studies.design.design_task import DesignTask
 from camwright.pipeline.studies.design.machine_frame import Frame, frame_of, seats
-from camwright.pipeline.studies.design.spring_choice import SpringPoint, of_catalogue, wound
+from camwright.pipeline.studies.design.torque_task import DesignTask
+from camwright.pipeline.studies.design.wound_springs import SpringPoint, of_catalogue, wound
 
 WIRE = "chrome_silicon"
 RELAXATION = 0.005  # share of the force that a preset spring loses

@@ -17,9 +17,9 @@ from camwright.pipeline.case.cards.card_filling import known_cards, viscosity
 from camwright.pipeline.case.toml_text import tables_of
 from camwright.pipeline.follower.bearing_life import rated_viscosity
 from camwright.pipeline.follower.spring import HelicalSpring
-from camwright.pipeline.studies.design.design_task import DesignTask
 from camwright.pipeline.studies.design.machine_frame import Frame, seat_source
-from camwright.pipeline.studies.design.spring_choice import SpringPoint
+from camwright.pipeline.studies.design.torque_task import DesignTask
+from camwright.pipeline.studies.design.wound_springs import SpringPoint
 
 OIL_WARMER = 20.0  # K of oil and spring above the surroundings
 _KAPPA = 1.25  # viscosity ratio of the roller bearing at the least speed

@@ -25,7 +25,7 @@ from camwright.pipeline.preview import preview_case
 from camwright.pipeline.results.run_folder import versions
 from camwright.pipeline.studies.design.candidate_search import Candidate, candidates
 from camwright.pipeline.studies.design.design_case import Machinery, case_text
-from camwright.pipeline.studies.design.design_task import DesignTask, task_of
+from camwright.pipeline.studies.design.torque_task import DesignTask, task_of
 from camwright.pipeline.studies.redesign.pareto_front import front, thinned
 from camwright.pipeline.studies.redesign.point_store import SOLVED, Record, Task, solved
 
