@@ -147,7 +147,7 @@ def _check_period(case: Case) -> None:
     for order in smoothing.harmonic_orders:
         waves = order * period.angle / FULL_TURN
         if abs(waves - round(waves)) > _ROUND_OFF * waves:
-            limit = f"per shaft turn, with whole waves in a cycle of {cycle}"
+            limit = f"a multiple of {FULL_TURN / period.angle:g}: whole waves in a cycle of {cycle}"
             raise InputError("smoothing.harmonic_orders", order, limit)
     least = _POSITIONS_MIN * period.cycles
     limit = f">= {least}, {_POSITIONS_MIN} per cycle of {cycle}"

@@ -7,7 +7,6 @@ In the order of the calculation:
 | `stem_beam`             | stem as a chain of beam elements           | E I, N m2; m/N        |
 | `spring_kinds`          | gas, torsion spring; lift from energy      | rho, m; p, Pa         |
 | `spring`                | helical spring, strength, buckling, surge  | k, N/m; P, N; tau, Pa |
-| `external_force`        | force of the machine on the follower       | F_e, N                |
 | `follower_forces`       | forces with guide friction                 | F_a, N; T, N m        |
 | `guide_contact`         | beam in bores with unilateral contact      | N; m                  |
 | `guide_reactions`       | reactions and pressures of two guides      | A, B, N; p, Pa        |

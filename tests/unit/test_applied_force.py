@@ -185,7 +185,8 @@ def test_follower_that_hangs_off_the_cam_stores_no_work():
 def test_lift_stores_the_work_with_the_dead_load(trial):
     """(P + k s + F) s' is the required torque, F the weight and the mean of the force."""
     case = trial.case
-    torque, smoother = engine_torques(case)["idle"], Smoother.from_case(case.smoothing)
+    torque = engine_torques(case)["idle"]
+    smoother = Smoother.from_case(case.smoothing, case.period)
     lift = required_lift(case, torque, smoother)
     wanted = case.mechanism.gear_ratio * required_torque(case, torque, smoother)
     theta = uniform_turn(wanted.size)

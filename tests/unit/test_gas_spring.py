@@ -138,7 +138,8 @@ def test_jet_has_exact_derivatives():
 
 
 def test_lift_of_a_case_delivers_the_torque():
-    torque, smoother = engine_torques(case())["idle"], Smoother.from_case(case().smoothing)
+    torque = engine_torques(case())["idle"]
+    smoother = Smoother.from_case(case().smoothing, case().period)
     lift = required_lift(case(), torque, smoother)
     wanted = case().mechanism.gear_ratio * required_torque(case(), torque, smoother)
     theta = uniform_turn(wanted.size)

@@ -203,7 +203,10 @@ def test_a_lift_that_is_given_has_nothing_to_lower(case):
 @pytest.mark.parametrize(
     ("lines", "words"),
     [
-        ("harmonic_orders = [0.75]", r"harmonic_orders = 0\.75, must be whole or half"),
+        (
+            "harmonic_orders = [0.75]",
+            r"harmonic_orders = 0\.75, must be a multiple of 0\.5: whole waves",
+        ),
         ("harmonic_weight = 1.0", r"harmonic_orders = missing, must be given"),
         ("harmonic_orders = [0.0]", r"harmonic_orders\[0\] = 0\.0, must be >= 0\.5 and <= 180"),
         ("loss_weight = -1", r"loss_weight = -1, must be >= 0"),

@@ -84,7 +84,8 @@ def test_lift_stores_its_energy():
 
 
 def test_case_delivers_the_torque_with_exact_derivatives():
-    torque, smoother = engine_torques(case())["idle"], Smoother.from_case(case().smoothing)
+    torque = engine_torques(case())["idle"]
+    smoother = Smoother.from_case(case().smoothing, case().period)
     lift = required_lift(case(), torque, smoother)
     wanted = case().mechanism.gear_ratio * required_torque(case(), torque, smoother)
     theta = uniform_turn(wanted.size)
