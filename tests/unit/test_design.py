@@ -10,12 +10,13 @@ import pytest
 
 from camwright.geometry.errors import InputError, ResultError
 from camwright.pipeline.case.cards.catalogue import catalogue_of
+from camwright.pipeline.case.cards.shaft_seats import seats
 from camwright.pipeline.case.cards.spring_catalogue import SpringDemand
 from camwright.pipeline.case.case_file import parse_case
 from camwright.pipeline.studies.design.candidate_search import spring_wire
 from camwright.pipeline.studies.design.design_case import Machinery, case_text, oils_of
 from camwright.pipeline.studies.design.design_study import designed
-from camwright.pipeline.studies.design.machine_frame import frame_of, seats
+from camwright.pipeline.studies.design.machine_frame import frame_of
 from camwright.pipeline.studies.design.torque_task import DesignTask, task_of
 from camwright.pipeline.studies.design.wound_springs import wound
 

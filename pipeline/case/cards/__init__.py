@@ -7,6 +7,7 @@ In the order of use; the values are in the TOML files of this folder.
 | `part_table`       | a part from a table, errors in one line    | SI                   |
 | `provenance`       | source, place and condition of each number |                      |
 | `bearing_cards`    | ball bearings: ratings, dimensions         | C, C0, N; m          |
+| `shaft_seats`      | bore, keyway and bearing of a camshaft     | C, C0, N; m          |
 | `spring_catalogue` | springs of a catalogue, demand on a spring | k, N/m; P, N; s, m   |
 | `spring_selection` | lightest spring of a catalogue for a case  | kg                   |
 | `card_filling`     | keys of a case from its cards              | nu, mm2/s; eta, Pa s |

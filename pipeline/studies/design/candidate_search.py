@@ -17,6 +17,7 @@ from camwright.pipeline.case.cards.card_filling import known_cards
 from camwright.pipeline.case.cards.catalogue import better_roller, catalogue_of, undominated
 from camwright.pipeline.case.cards.part_table import read_part
 from camwright.pipeline.case.cards.provenance import without_provenance
+from camwright.pipeline.case.cards.shaft_seats import seats
 from camwright.pipeline.case.case_file import parse_case, with_values
 from camwright.pipeline.case.toml_text import Tables
 from camwright.pipeline.follower.spring import HelicalSpring
@@ -27,7 +28,7 @@ from camwright.pipeline.studies.design.design_case import (
     case_text,
     oils_of,
 )
-from camwright.pipeline.studies.design.machine_frame import Frame, frame_of, seats
+from camwright.pipeline.studies.design.machine_frame import Frame, frame_of
 from camwright.pipeline.studies.design.torque_task import DesignTask
 from camwright.pipeline.studies.design.wound_springs import SpringPoint, of_catalogue, wound
 

@@ -14,10 +14,11 @@ import tomli_w
 from camwright.geometry.arrays import FULL_TURN
 from camwright.pipeline.base import units
 from camwright.pipeline.case.cards.card_filling import known_cards, viscosity
+from camwright.pipeline.case.cards.shaft_seats import seat_source
 from camwright.pipeline.case.toml_text import tables_of
 from camwright.pipeline.follower.bearing_life import rated_viscosity
 from camwright.pipeline.follower.spring import HelicalSpring
-from camwright.pipeline.studies.design.machine_frame import Frame, seat_source
+from camwright.pipeline.studies.design.machine_frame import Frame
 from camwright.pipeline.studies.design.torque_task import DesignTask
 from camwright.pipeline.studies.design.wound_springs import SpringPoint
 

@@ -8,16 +8,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from math import ceil, pi
-from pathlib import Path
-from typing import ClassVar
 
-from camwright.pipeline.base.files import read_toml
-from camwright.pipeline.base.quantities import Force, Length, Part
 from camwright.pipeline.case.cards.bearing_cards import BearingCard
-from camwright.pipeline.case.cards.part_table import read_part
-from camwright.pipeline.case.toml_text import Tables
+from camwright.pipeline.case.cards.shaft_seats import Seat
 
-SEATS = Path(__file__).parents[2] / "case" / "cards" / "shaft_seats.toml"
 STEMS = (8, 10, 12, 14, 16, 20, 25, 30, 35, 40)  # mm, of wrapped bushes of ISO 3547
 MODULES = (1.0, 1.25, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0)  # mm, ISO 54, row I
 STEEL = 7850.0  # kg/m3
@@ -27,20 +21,6 @@ _SHAFT_STRESS = 40e6  # Pa: bending of C45 at a press fit, with safety 1.5 and s
 _SHRINK = 45e6 * 0.12  # Pa: pressure of H7/s6 times friction
 _TOOTH = 12e6  # Pa: T / (m^3 z b/m) of case-hardened teeth at half of their strength
 _PINION = 20
-
-
-@dataclass(frozen=True, kw_only=True)
-class Seat(Part):
-    """Bore of a cam with its keyway, and the ball bearing of the same bore."""
-
-    table: ClassVar[str] = "seat"
-
-    bore: Length
-    key_width: Length
-    hub_depth: Length
-    bearing: str
-    C: Force
-    C0: Force
 
 
 @dataclass(frozen=True)
@@ -167,20 +147,6 @@ def stem_of(card: BearingCard) -> float:
     """Stem diameter, m: that of the sizes which is nearest to 0.42 roller diameters."""
     wanted = 1e3 * 0.42 * card.outer_diameter
     return 1e-3 * min(STEMS, key=lambda size: abs(size - wanted))
-
-
-def seats() -> tuple[Seat, ...]:
-    """Seats of the shipped cards, by increasing bore."""
-    table: Tables = read_toml(SEATS, SEATS.name, 64 * 1024)
-    rows = table["seat"]
-    listed = rows if isinstance(rows, list) else []
-    read = [read_part(Seat, row, f"cards.seat[{k}]") for k, row in enumerate(listed)]
-    return tuple(sorted(read, key=lambda seat: seat.bore))
-
-
-def seat_source() -> str:
-    """Source of the seats."""
-    return str(read_toml(SEATS, SEATS.name, 64 * 1024)["source"])
 
 
 def frame_of(

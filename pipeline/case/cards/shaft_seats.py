@@ -1,0 +1,43 @@
+"""Seats of a camshaft: bore and keyway of the cam, ball bearing of the same bore."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import ClassVar
+
+from camwright.pipeline.base.files import read_toml
+from camwright.pipeline.base.quantities import Force, Length, Part
+from camwright.pipeline.case.cards.part_table import read_part
+from camwright.pipeline.case.toml_text import Tables
+
+_FILE = Path(__file__).with_name("shaft_seats.toml")
+_BYTES_MAX = 64 * 1024
+
+
+@dataclass(frozen=True, kw_only=True)
+class Seat(Part):
+    """Bore of a cam with its keyway, and the ball bearing of the same bore."""
+
+    table: ClassVar[str] = "seat"
+
+    bore: Length
+    key_width: Length
+    hub_depth: Length
+    bearing: str
+    C: Force
+    C0: Force
+
+
+def seats() -> tuple[Seat, ...]:
+    """Seats of the shipped cards, by increasing bore."""
+    table: Tables = read_toml(_FILE, _FILE.name, _BYTES_MAX)
+    rows = table["seat"]
+    listed = rows if isinstance(rows, list) else []
+    read = [read_part(Seat, row, f"cards.seat[{k}]") for k, row in enumerate(listed)]
+    return tuple(sorted(read, key=lambda seat: seat.bore))
+
+
+def seat_source() -> str:
+    """Source of the seats."""
+    return str(read_toml(_FILE, _FILE.name, _BYTES_MAX)["source"])
