@@ -1,6 +1,7 @@
 """Constrained synthesis: the cam of least residual ripple within all limits.
 
-The unknowns are the coefficients of the stored energy, a periodic quintic B-spline, and the free
+The unknowns are the coefficients of the stored energy, a periodic quintic B-spline, of one lobe
+where the lobes are equal, and the free
 ones of spring rate, preload, prime radius and phase. The search starts from the global optimum of
 the convex part of the problem or from the exact energy. Each step solves a convex program within a
 trust region: linear models of delivered torque and limits, second derivatives of the Lagrangian. It
@@ -92,7 +93,7 @@ def _beside_peaks(search: Search, state: State) -> Grid:
         near |= peak & (value >= min(1.0 - RESERVE - _REFINED, value.max()))
     offsets = np.arange(1 - FINEST, FINEST) * (step / FINEST)
     theta = np.unique(np.round((search.turn.theta[near, None] + offsets).ravel() / step, 6)) * step
-    return Grid.at(theta, search.problem.coefficients)
+    return search.problem.grid(theta)
 
 
 def _between(state: State, peaks: _Peaks) -> Array:
@@ -121,6 +122,7 @@ def _design(search: Search, descent: Descent, steps: int, peaks: _Peaks) -> Desi
     }
     return Design(
         coefficients=readonly(state.coefficients),
+        lobes=search.problem.lobes,
         variables=state.variables,
         ripple=state.ripple,
         cost=state.cost,

@@ -28,7 +28,6 @@ from camwright.pipeline.smoothing.cone_program import Cones
 from camwright.pipeline.smoothing.energy_spline import basis_matrix
 from camwright.pipeline.smoothing.sampled_problem import Search
 from camwright.pipeline.smoothing.synthesis_problem import (
-    COARSE_POINTS,
     RESERVE,
     Problem,
     ripple_of,
@@ -69,7 +68,7 @@ def convex_start(problem: Problem) -> Core | None:
         return None
     if variables.prime_radius * variables.rate < variables.closing:
         return None
-    points = min(problem.points, COARSE_POINTS)
+    points = problem.coarse_points
     turns = tuple(
         replace(item, torque=thinned(item.torque, points), mass=0.0, friction_a=0.0, friction_b=0.0)
         for item in problem.scenarios
@@ -88,7 +87,9 @@ def _program(search: Search) -> Cones:
     problem, variables, ratings = search.problem, search.problem.variables, search.problem.ratings
     count, points = problem.coefficients, problem.points
     theta = uniform_turn(points)
-    level, slope = (search.scale * basis_matrix(theta, count, order) for order in (0, 1))
+    level, slope = (
+        search.scale * basis_matrix(theta, count, order, problem.lobes) for order in (0, 1)
+    )
     program = Cones(count + 1 + points)
     energy, torque = program.columns(level, 0), program.columns(slope, 0)
     program.charge(1.0, count)
@@ -129,12 +130,14 @@ def _ripple(search: Search, program: Cones) -> None:
     """Add the greatest weighted ripple, and the jerk of the energy in place of that of the lift."""
     problem = search.problem
     count = problem.coefficients
-    slope = basis_matrix(search.turn.theta, count, 1).toarray() * search.scale
+    slope, third = (
+        search.scale * basis_matrix(search.turn.theta, count, order, problem.lobes).toarray()
+        for order in (1, 3)
+    )
     for item in problem.scenarios:
         columns = np.column_stack([-slope / problem.gear_ratio, item.torque])
         level, slopes = triangle(item.weight * ripple_of(problem, item, columns))
         program.norm_at_most(slopes, level, count)
-    third = basis_matrix(search.turn.theta, count, 3).toarray() * search.scale
     norm = float(np.linalg.norm(third @ search.exact)) / search.scale or 1.0
     jerk = np.sqrt(problem.jerk_weight) / norm * third
     program.charge_square(jerk.T @ jerk)

@@ -1,4 +1,8 @@
-"""Stored energy over one cam turn as a periodic quintic B-spline; exact start of a search."""
+"""Stored energy over one cam turn as a periodic quintic B-spline; exact start of a search.
+
+Of a cam with equal lobes the splines are those of one lobe: the unknowns of all lobes are the same,
+and the lobes repeat to round-off.
+"""
 
 from __future__ import annotations
 
@@ -32,14 +36,17 @@ def _pieces() -> Array:
     return readonly(inside.T)
 
 
-def basis_matrix(theta: ArrayLike, count: int, derivative: int = 0) -> scipy.sparse.csr_array:
+def basis_matrix(
+    theta: ArrayLike, count: int, derivative: int = 0, lobes: int = 1
+) -> scipy.sparse.csr_array:
     """Periodic quintic B-splines or their derivatives at cam angles, (n, count), six a row.
 
     Parameters
     ----------
     theta : array (n,)   cam angle, rad
-    count : int          splines of one turn, >= 12
+    count : int          splines of one lobe, >= 12
     derivative : int     0 to 4, per rad
+    lobes : int          equal lobes of the turn
 
     Raises
     ------
@@ -50,28 +57,30 @@ def basis_matrix(theta: ArrayLike, count: int, derivative: int = 0) -> scipy.spa
     ----------
     de Boor, A Practical Guide to Splines (1978), ch. IX.
     """
-    values, columns = basis_rows(theta, count, derivative)
+    values, columns = basis_rows(theta, count, derivative, lobes)
     rows = np.repeat(np.arange(len(columns)), DEGREE + 1)
     return scipy.sparse.csr_array(
         (values.ravel(), (rows, columns.ravel())), shape=(len(columns), count)
     )
 
 
-def basis_rows(theta: ArrayLike, count: int, derivative: int = 0) -> tuple[Array, NDArray[np.intp]]:
+def basis_rows(
+    theta: ArrayLike, count: int, derivative: int = 0, lobes: int = 1
+) -> tuple[Array, NDArray[np.intp]]:
     """Non-zero entries of each row of `basis_matrix`, (n, 6), and their columns."""
     if derivative not in range(DEGREE):
         raise InputError("derivative", derivative, "0, 1, 2, 3 or 4")
-    values, columns = _rows(theta, count, (derivative,))
+    values, columns = _rows(theta, count, (derivative,), lobes)
     return values[0], columns
 
 
 def _rows(
-    theta: ArrayLike, count: int, derivatives: Sequence[int]
+    theta: ArrayLike, count: int, derivatives: Sequence[int], lobes: int
 ) -> tuple[Array, NDArray[np.intp]]:
     """As `basis_rows`, of several derivatives (d,): (d, n, 6)."""
     if not count >= LEAST_COEFFICIENTS:
         raise InputError("smoothing.coefficients", count, f">= {LEAST_COEFFICIENTS}")
-    angle = np.mod(finite("theta", theta), FULL_TURN)
+    angle = np.mod(lobes * finite("theta", theta), FULL_TURN)
     part = FULL_TURN / count
     place = np.minimum((angle / part).astype(np.intp), count - 1)
     step = (angle / part - place)[:, None]
@@ -81,7 +90,7 @@ def _rows(
         for power in range(derivative, DEGREE + 1):
             front = np.prod(np.arange(power - derivative + 1, power + 1))
             values[k] += front * powers[power - derivative] * _pieces()[:, power]
-        values[k] /= part**derivative
+        values[k] /= (part / lobes) ** derivative
     return values, np.mod(place[:, None] - np.arange(DEGREE + 1), count)
 
 
@@ -94,9 +103,9 @@ class Grid:
     entries: Array
 
     @classmethod
-    def at(cls, theta: Array, count: int) -> Grid:
-        """Grid of `count` splines at cam angles theta (m,), rad."""
-        entries, columns = _rows(theta, count, range(ORDERS))
+    def at(cls, theta: Array, count: int, lobes: int = 1) -> Grid:
+        """Grid of `count` splines a lobe at cam angles theta (m,), rad."""
+        entries, columns = _rows(theta, count, range(ORDERS), lobes)
         return cls(theta, columns, entries)
 
     def energy(self, coefficients: Array) -> tuple[Array, ...]:
@@ -109,13 +118,14 @@ class Grid:
         return np.asarray(np.einsum("km,kmj->mj", local, self.entries))
 
 
-def fitted_energy(cam_torque: ArrayLike, count: int) -> Array:
+def fitted_energy(cam_torque: ArrayLike, count: int, lobes: int = 1) -> Array:
     """Coefficients (count,), J, of the energy whose derivative fits the torque; its minimum is 0.
 
     Parameters
     ----------
     cam_torque : array (n,)   N m at n equal cam angles, of zero mean
-    count : int               splines of one turn, >= 12
+    count : int               splines of one lobe, >= 12
+    lobes : int               equal lobes of the turn, in which the torque repeats
 
     Raises
     ------
@@ -129,7 +139,7 @@ def fitted_energy(cam_torque: ArrayLike, count: int) -> Array:
         )
     theta = uniform_turn(torque.size)
     energy, _ = stored_energy(theta, torque)
-    slope, level = basis_matrix(theta, count, 1), basis_matrix(theta, count)
+    level, slope = (basis_matrix(theta, count, order, lobes) for order in (0, 1))
     # the slope leaves the constant undetermined: a small weight on the energy fixes it
     weight = 1e-6
     normal = (slope.T @ slope + weight * (level.T @ level)).tocsc()
@@ -140,7 +150,10 @@ def fitted_energy(cam_torque: ArrayLike, count: int) -> Array:
 
 
 def lowest(coefficients: Array) -> float:
-    """Minimum of the energy, J: on a grid finer than the knots, refined between its angles."""
+    """Minimum of the energy, J: on a grid finer than the knots, refined between its angles.
+
+    A lobe is stretched to the turn, which leaves the minimum as it is.
+    """
     theta = uniform_turn(max(_FIT_ANGLES, 16 * coefficients.size))
     values = basis_matrix(theta, coefficients.size) @ coefficients
     near = theta[(values <= np.roll(values, 1)) & (values <= np.roll(values, -1))]
@@ -188,6 +201,7 @@ def exact_start(
     energy_max: float,
     slope_max: float | None = None,
     shape: SpringShape | None = None,
+    lobes: int = 1,
 ) -> Array:
     """Coefficients of the energy of the unsmoothed torque, raised until the pressure angle holds.
 
@@ -196,13 +210,14 @@ def exact_start(
     Parameters
     ----------
     cam_torque : array (n,)   N m at n equal cam angles, of zero mean
-    count : int               splines of one turn
+    count : int               splines of one lobe
     rate, preload : float     of the spring, N/m and N, > 0
     prime_radius : float       of the pitch curve, m, > 0
     pressure_angle : float    limit, rad
     energy_max : float        maximum stored energy beyond the preload, J; may be infinite
     slope_max : float         lift per radian at the edge of a flat face, m; None: a roller
     shape : SpringShape       None: a linear spring
+    lobes : int               equal lobes of the turn, in which the torque repeats
 
     Returns
     -------
@@ -218,10 +233,10 @@ def exact_start(
                         ("cam.prime_radius", prime_radius),
                         ("limits.pressure_angle", pressure_angle)):  # fmt: skip
         positive(name, value)
-    coefficients = fitted_energy(cam_torque, count)
+    coefficients = fitted_energy(cam_torque, count, lobes)
     theta = uniform_turn(_FIT_ANGLES)
-    energy = basis_matrix(theta, count) @ coefficients
-    slope = np.abs(basis_matrix(theta, count, 1) @ coefficients)
+    energy = basis_matrix(theta, count, 0, lobes) @ coefficients
+    slope = np.abs(basis_matrix(theta, count, 1, lobes) @ coefficients)
 
     def excess(rise: float) -> float:
         level = np.maximum(energy + rise, 0.0)

@@ -102,7 +102,7 @@ class Resolution:
 
     Parameters
     ----------
-    coefficients : int   splines of the design
+    coefficients : int   splines of the turn of the design
     coarser : int        of the design before; None: the number is that of the case
     change : float       of the ripple between both, over that of the design
     settled : bool       whether it is within the required convergence
@@ -143,7 +143,7 @@ class Explored(NamedTuple):
 
     @property
     def splines(self) -> int:
-        """Number of splines of the design."""
+        """Number of splines of a lobe of the design."""
         return int(self.design.coefficients.size)
 
 
@@ -161,7 +161,7 @@ def explored(problem: Problem, count: int) -> Explored:
     coarse = coarsened(problem)
     random = np.random.default_rng(_SEED)
     designs, resolution = resolved(problem, approached(coarse))
-    fine = replace(problem, coefficients=resolution.coefficients)
+    fine = replace(problem, coefficients=designs[-1].coefficients.size)
     size = float(np.abs(Search(coarse).exact).max())
     others = [continued(fine, approached(_random(coarse, size, random))) for _ in range(count - 1)]
     alike = [designs[-1], *others]
@@ -179,17 +179,19 @@ def resolved(problem: Problem, start: Design | State) -> tuple[list[Design], Res
     """
     designs = [continued(problem, start)]
     if problem.convergence is None:
-        return designs, Resolution(problem.coefficients)
+        return designs, Resolution(problem.lobes * problem.coefficients)
+    most = COEFFICIENTS_MAX // problem.lobes
     while True:
         before, count = designs[-1], designs[-1].coefficients.size
-        finer = min(round(_REFINEMENT * count), COEFFICIENTS_MAX)
+        finer = min(round(_REFINEMENT * count), most)
         designs.append(continued(replace(problem, coefficients=finer), before))
         after = designs[-1]
         least = max(after.ripple, NEGLIGIBLE)  # below, ripples are equal
         change = max(before.ripple, NEGLIGIBLE) / least - 1.0
         settled = abs(change) <= problem.convergence
-        if settled or finer == COEFFICIENTS_MAX or not (before.feasible and after.feasible):
-            return designs, Resolution(finer, count, change, settled)
+        if settled or finer == most or not (before.feasible and after.feasible):
+            lobes = problem.lobes
+            return designs, Resolution(lobes * finer, lobes * count, change, settled)
 
 
 def continued(problem: Problem, start: Design | State) -> Design:

@@ -24,10 +24,11 @@ from camwright.pipeline.follower.guide_friction import FrictionRange
 from camwright.pipeline.smoothing.allowables import ratings_of
 from camwright.pipeline.smoothing.objective import KEYS, Objective, objective_of
 from camwright.pipeline.smoothing.scenario import Correction, DesignVariables, Scenario
-from camwright.pipeline.smoothing.synthesis_problem import COEFFICIENTS, Problem
+from camwright.pipeline.smoothing.synthesis_problem import COEFFICIENTS, Problem, per_lobe
 from camwright.pipeline.torque.torque import Torque
 
 POINTS = 720
+"""Cam angles of a synthesis, about; a whole number in a lobe."""
 
 
 def problem_of(case: Case, torques: Mapping[str, Torque]) -> Problem:
@@ -72,6 +73,8 @@ def problem_of(case: Case, torques: Mapping[str, Torque]) -> Problem:
         "prime_radius": "prime_radius",
         "phase": "phase",
     }
+    # A force of the machine over the cam angle differs from lobe to lobe.
+    lobes = 1 if any(each.external.varies for each in states) else case.period.cycles
     freed = {
         short: getattr(smoothing, f"{name}_range")
         for name, short in names.items()
@@ -90,9 +93,10 @@ def problem_of(case: Case, torques: Mapping[str, Torque]) -> Problem:
         gear_ratio=case.mechanism.gear_ratio,
         freed=freed,
         energy=(0.0, np.inf if "initial_energy" in smoothing.free else 0.0),
-        coefficients=smoothing.coefficients or COEFFICIENTS,
+        coefficients=per_lobe(smoothing.coefficients or COEFFICIENTS, lobes),
+        lobes=lobes,
         convergence=smoothing.ripple_convergence if smoothing.coefficients is None else None,
-        points=POINTS,
+        points=_points(case),
         objective=_objective(case),
         jerk_weight=smoothing.jerk_weight,
     )
@@ -139,9 +143,10 @@ def _objective(case: Case) -> Objective:
 
 def _scenarios(case: Case, machine: Machine, torque: Torque | None) -> list[Scenario]:
     """The load case and, where the case includes them, its tolerance corners."""
-    values = np.zeros(POINTS)  # at rest the engine has no torque
+    points = _points(case)
+    values = np.zeros(points)  # at rest the engine has no torque
     if torque is not None:
-        values = torque.without_mean().resampled(POINTS).total
+        values = torque.without_mean().resampled(points).total
     friction = machine.friction
     nominal = Scenario(
         name=machine.load_case,
@@ -156,12 +161,12 @@ def _scenarios(case: Case, machine: Machine, torque: Torque | None) -> list[Scen
         viscous_damping=machine.viscous_damping,
         preload_factor=machine.spring.preload / case.spring.preload,
         gravity=machine.gravity_along_axis,
-        external=machine.external.at(uniform_turn(POINTS if machine.external.varies else 1)),
+        external=machine.external.at(uniform_turn(points if machine.external.varies else 1)),
         weight=0.0 if torque is None else machine.ripple_weight,
         torque_reduction=None if torque is None else machine.torque_reduction,
         duty=machine.duty,
         friction_worst=friction.greatest,
-        correction=Correction.none(POINTS),
+        correction=Correction.none(points),
     )
     if not case.smoothing.corners:
         return [nominal]
@@ -184,7 +189,7 @@ def _robust(case: Case, state: LoadCase, nominal: Scenario) -> list[Scenario]:
             changed["intake_pressure"] = (state.intake_pressure or modelled.intake_pressure) * load
             factor = 1.0
         torque = engine_torque(case, state.model_copy(update=changed))
-        values = factor * torque.without_mean().resampled(POINTS).total
+        values = factor * torque.without_mean().resampled(_points(case)).total
         scenarios.append(
             replace(
                 nominal,
@@ -235,6 +240,11 @@ def _corners(case: Case, nominal: Scenario, friction: FrictionRange) -> list[Sce
     ]
     corners += [replace(each, corner=number) for number, each in enumerate(single, len(ends) + 1)]
     return [replace(each, nominal=False) for each in corners]
+
+
+def _points(case: Case) -> int:
+    cycles = case.period.cycles
+    return cycles * round(POINTS / cycles)
 
 
 def _ends(tolerance: float) -> list[float]:

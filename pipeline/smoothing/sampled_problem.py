@@ -74,12 +74,11 @@ class Search:
 
     def __init__(self, problem: Problem, extra: Array | None = None) -> None:
         self.problem = problem
-        count = problem.coefficients
         theta = uniform_turn(problem.points)
         self.extra = np.zeros(0) if extra is None else extra
-        self.turn = Grid.at(theta, count)
+        self.turn = problem.grid(theta)
         self.grid = (
-            Grid.at(np.concatenate([theta, self.extra]), count) if self.extra.size else self.turn
+            problem.grid(np.concatenate([theta, self.extra])) if self.extra.size else self.turn
         )
         self.every = np.arange(problem.points, dtype=np.intp)
         self.weighted = [
@@ -105,7 +104,7 @@ class Search:
         self.scale = max(float(np.abs(self.exact).max()), 1e-9)
         exact = lift_jet(self.turn.energy(self.exact), problem.variables)
         # Scaled so that the second derivative of the exact energy has the norm 1.
-        bend = basis_matrix(self.turn.theta, count, 2) * self.scale
+        bend = basis_matrix(theta, problem.coefficients, 2, problem.lobes) * self.scale
         size = float(np.linalg.norm(bend @ self.exact)) / self.scale or 1.0
         self.bend = np.asarray(np.linalg.qr(bend.toarray() / size, mode="r"))
         self._jerk_scale = np.sqrt(problem.jerk_weight) / (float(np.linalg.norm(exact.jerk)) or 1.0)
@@ -128,6 +127,7 @@ class Search:
             preload=variables.closing,
             shape=variables.shape,
             prime_radius=variables.prime_radius,
+            lobes=problem.lobes,
             pressure_angle=ratings.limits.get(PRESSURE_ANGLE, np.pi / 3),
             slope_max=ratings.slope_max,
             energy_max=float(
@@ -145,11 +145,12 @@ class Search:
     def _peaks(self, coefficients: Array) -> Grid:
         """Splines at the cam angles of the peaks of the lift near its maximum, the highest first.
 
-        Refined between the points.
+        Refined between the points. Of equal lobes the peaks of one.
         """
         if self._last is not None and self._last[0] is coefficients:
             return self._last[1]
-        energy, step = self.turn.energy(coefficients)[0], self.turn.theta[1]
+        lobe, step = self.problem.points // self.problem.lobes, self.turn.theta[1]
+        energy = self.turn.energy(coefficients)[0][:lobe]
         before, after = np.roll(energy, 1), np.roll(energy, -1)
         high = energy >= energy.max() - _PEAKS * np.ptp(energy)
         k = np.flatnonzero(high & (energy >= before) & (energy > after))
@@ -160,10 +161,10 @@ class Search:
         )
         angle = self.turn.theta[k] + step * np.clip(shift, -1.0, 1.0)
         for _ in range(2):  # Newton on E' = 0
-            _, slope, bend, _ = Grid.at(angle, coefficients.size).energy(coefficients)
+            _, slope, bend, _ = self.problem.grid(angle).energy(coefficients)
             newton = np.divide(slope, bend, out=np.zeros(k.size), where=bend < 0.0)
             angle = angle - np.clip(newton, -step, step)
-        peaks = Grid.at(angle, coefficients.size)
+        peaks = self.problem.grid(angle)
         order = np.argsort(-peaks.energy(coefficients)[0], kind="stable")
         self._last = (
             coefficients,

@@ -16,7 +16,6 @@ from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_values import replaced, value_of
 from camwright.pipeline.smoothing.bounds import Bound, bounds_of
 from camwright.pipeline.smoothing.cam_state import lift_jet, motion
-from camwright.pipeline.smoothing.energy_spline import Grid
 from camwright.pipeline.smoothing.problem_setup import problem_of
 from camwright.pipeline.smoothing.sampled_problem import Search
 from camwright.pipeline.smoothing.scenario import Ratings
@@ -322,8 +321,7 @@ def _load_share(design: Design, problem: Problem, name: str) -> float:
     binds = _binding(use)
     if not binds.any():
         return 1.0
-    grid = Grid.at(theta[binds], design.coefficients.size)
-    jet = lift_jet(grid.energy(design.coefficients), design.variables)
+    jet = lift_jet(problem.grid(theta[binds]).energy(design.coefficients), design.variables)
     bend = motion(jet, design.variables, problem.ratings).bend
     return float(np.mean(np.asarray(use)[binds] - bend))
 

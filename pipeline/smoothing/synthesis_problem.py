@@ -12,7 +12,7 @@ from camwright.geometry.arrays import Array, readonly, uniform_turn
 from camwright.geometry.lift import Lift
 from camwright.pipeline.case.limits import TORQUE_REDUCTION
 from camwright.pipeline.follower.spring import stored_lift
-from camwright.pipeline.smoothing.energy_spline import basis_matrix
+from camwright.pipeline.smoothing.energy_spline import LEAST_COEFFICIENTS, Grid, basis_matrix
 from camwright.pipeline.smoothing.objective import (
     TORQUE,
     Objective,
@@ -46,8 +46,9 @@ class Problem:
     freed : mapping                 free variables of `rate`, `preload`, `prime_radius`, `phase`:
                                     (least, greatest), SI
     energy : (float, float)         least and greatest energy at minimum lift, E0, J
-    coefficients : int              number of splines of the turn
-    points : int                    number of cam angles
+    coefficients : int              number of splines of a lobe
+    lobes : int                     equal lobes of the turn
+    points : int                    number of cam angles, a whole number in a lobe
     objective : tuple of Weighted   terms that are minimised
     jerk_weight : float             of the lift jerk over that of the exact energy
     left_out : frozenset            checks whose limits are not kept
@@ -61,12 +62,22 @@ class Problem:
     freed: Mapping[str, tuple[float, float]] = field(default_factory=dict)
     energy: tuple[float, float] = (0.0, np.inf)
     coefficients: int = 96
+    lobes: int = 1
     convergence: float | None = None
     points: int = 720
     objective: Objective = (Weighted(TORQUE, 1.0),)
     jerk_weight: float = 1e-5
     left_out: frozenset[str] = frozenset()
     seed: Array | None = None
+
+    def grid(self, theta: Array) -> Grid:
+        """Splines of the energy at cam angles (m,), rad."""
+        return Grid.at(theta, self.coefficients, self.lobes)
+
+    @property
+    def coarse_points(self) -> int:
+        """Number of cam angles of a coarse problem."""
+        return min(self.points, COARSE_POINTS // self.lobes * self.lobes)
 
     @property
     def torque_alone(self) -> bool:
@@ -106,7 +117,7 @@ class Design:
 
     Parameters
     ----------
-    coefficients : array    of the energy, J
+    coefficients : array    of the energy of a lobe, J
     variables : DesignVariables
     ripple : float          greatest weighted residual ripple over that of the engine
     cost : float            weighted costs of the objective
@@ -115,6 +126,7 @@ class Design:
     strip : mapping         cam angle, rad, and utilisation at it, by limit
     steps : int             of the search
     gain : float            decrease of the objective that another step of the search foresees
+    lobes : int             equal lobes of the turn
     lagrangian : OfProblems   of the optimum; None: no program was solved
     """
 
@@ -127,6 +139,7 @@ class Design:
     strip: Mapping[str, tuple[Array, Array]]
     steps: int
     gain: float
+    lobes: int = 1
     lagrangian: OfProblems | None = None
 
     @property
@@ -152,7 +165,8 @@ class Design:
     def lift(self, samples: int = 1440) -> Lift:
         """Lift at `samples` equally spaced cam angles."""
         theta = uniform_turn(samples) - float(self.variables.phase)
-        energy = np.maximum(basis_matrix(theta, self.coefficients.size) @ self.coefficients, 0.0)
+        splines = basis_matrix(theta, self.coefficients.size, lobes=self.lobes)
+        energy = np.maximum(splines @ self.coefficients, 0.0)
         made = self.variables
         deflection = stored_lift(energy, made.rate, made.closing, made.shape)
         return Lift(uniform_turn(samples), deflection)
@@ -160,15 +174,20 @@ class Design:
 
 def coarsened(problem: Problem) -> Problem:
     """Problem with fewer points and splines, without a seed, for feasibility and ranking."""
-    points = min(problem.points, COARSE_POINTS)
+    points = problem.coarse_points
     turns = tuple(replace(item, torque=thinned(item.torque, points)) for item in problem.scenarios)
     return replace(
         problem,
         scenarios=turns,
         points=points,
-        coefficients=min(problem.coefficients, COARSE_COEFFICIENTS),
+        coefficients=min(problem.coefficients, per_lobe(COARSE_COEFFICIENTS, problem.lobes)),
         seed=None,
     )
+
+
+def per_lobe(coefficients: int, lobes: int) -> int:
+    """Splines of a lobe from those of the turn, no fewer than a periodic spline has."""
+    return max(-(-coefficients // lobes), LEAST_COEFFICIENTS)
 
 
 def thinned(torque: Array, points: int) -> Array:

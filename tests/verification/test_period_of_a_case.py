@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -13,7 +14,10 @@ from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_file import parse_case
 from camwright.pipeline.case.load_case_torque import engine_torques
 from camwright.pipeline.engine.crankshaft import energy_swing
+from camwright.pipeline.smoothing.multistart import explored
+from camwright.pipeline.smoothing.problem_setup import problem_of
 from camwright.pipeline.smoothing.required_lift import cam_lift
+from camwright.pipeline.smoothing.synthesis_problem import Design, Problem
 
 GX120 = (Path(__file__).parents[2] / "cases" / "gx120.toml").read_text(encoding="utf-8")
 MACHINE = GX120[GX120.index("[mechanism]") :]
@@ -105,6 +109,36 @@ def test_lobes_repeat_to_round_off(lobes: int) -> None:
         np.testing.assert_allclose(
             lift(theta + k * turn), lift(theta), rtol=0.0, atol=1e-13 * lift.stroke * 720
         )
+
+
+PUMP = (Path(__file__).parents[2] / "cases" / "machines" / "dosing-pump.toml").read_text("utf-8")
+
+
+def synthesis(lobes: int) -> tuple[Problem, Design]:
+    """Of the dosing pump without tolerance corners, on few splines."""
+    text = PUMP.replace("gear_ratio = 1.0", f"gear_ratio = {lobes}.0")
+    text = text.replace("corners = true ", "corners = false\ncoefficients = 48 ")
+    text = text.replace("torque_reduction = 0.5", "torque_reduction = 0.05")
+    case = parse_case(text)
+    problem = problem_of(case, engine_torques(case))
+    return problem, explored(problem, 1).design
+
+
+@pytest.mark.parametrize("lobes", [2, 3, 7])
+def test_synthesised_lobes_repeat_to_round_off(lobes: int) -> None:
+    """The splines of a lobe are the unknowns; at 7 lobes 720 angles are not a whole number each."""
+    problem, design = synthesis(lobes)
+    assert (problem.lobes, problem.points % lobes, design.feasible) == (lobes, 0, True)
+    lift = design.lift(240 * lobes)
+    each = lift(uniform_turn(240 * lobes)).reshape(lobes, -1)
+    np.testing.assert_allclose(each, each[[0] * lobes], rtol=0.0, atol=1e-13 * lift.stroke)
+
+
+def test_lobes_of_one_spline_are_the_optimum_of_all() -> None:
+    """Against a synthesis that leaves each lobe its own splines, started elsewhere."""
+    problem, design = synthesis(2)
+    free = replace(problem, lobes=1, coefficients=2 * problem.coefficients)
+    assert explored(free, 1).design.ripple == pytest.approx(design.ripple, rel=1e-4)
 
 
 def test_a_smoother_acts_on_the_cycle_at_any_number_of_lobes() -> None:
