@@ -52,10 +52,10 @@ class Smoothing(Section):
     harmonic_orders are periods per crank turn. robust_weight is that of the torque ripple at speeds
     and loads of 1 -+ robust_speed and 1 -+ robust_load. The phase is that of the cam on its shaft,
     in cam angle. The optimisation starts from `starts` points, all but one random, to find several
-    local optima. coefficients is the number of splines of the turn; where it is missing it rises
-    until the ripple changes by less than ripple_convergence. Where limits conflict, the relaxations
-    keep them with the corrections of the nearest solved cam, greater by correction_margin; with a
-    margin of 0 those of the closed form alone are stated.
+    local optima. coefficients is the number of splines of the turn, the same in each lobe; where it
+    is missing it rises until the ripple changes by less than ripple_convergence. Where limits
+    conflict, the relaxations keep them with the corrections of the nearest solved cam, greater by
+    correction_margin; with a margin of 0 those of the closed form alone are stated.
     """
 
     kind: Literal[
