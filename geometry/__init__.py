@@ -27,7 +27,8 @@ In the order of the calculation:
 | `measured_contour`  | measured contour against the nominal one    | phase, rad; deviation, m     |
 | `cutter_path`       | path of a milling cutter or grinding wheel  | x, y, m                      |
 | `cutouts`           | bore, keyway and counter-hole               | m                            |
-| `cad_drawing`       | chords, clamped spline, DXF file            | m; mm in the file            |
+| `arc_polyline`      | contour as arcs within a tolerance          | m                            |
+| `cad_drawing`       | clamped spline, DXF file                    | m; mm in the file            |
 
 Imports no other package of the project.
 """

@@ -1,36 +1,36 @@
-"""CAD drawing of the cam: contour as chords and as a spline, and the DXF file."""
+"""CAD drawing of the cam: clamped spline of a curve, and the DXF file."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
-from camwright.geometry.arrays import FULL_TURN, Array, freeze, positive
+from camwright.geometry.arc_polyline import ARC_ERROR, ArcPolyline, arc_polyline
+from camwright.geometry.arrays import FULL_TURN, Array, positive
 from camwright.geometry.contour import Contour
 from camwright.geometry.cutouts import HoleLike, KeywayLike, keyway_corners
-from camwright.geometry.errors import GeometryError, InputError, ResultError
+from camwright.geometry.errors import GeometryError, ResultError
 
 if TYPE_CHECKING:
     from ezdxf.layouts import Modelspace
     from scipy.interpolate import BSpline
 
-LAYERS = ("surface", "pitch", "bore", "keyway", "note", "counter_hole")
-"""Layers of the DXF file."""
+CUT = "cut"
+"""Layer of the curves to cut: contour and bore with keyway, each once and closed."""
+LAYERS = {CUT: True, "counter_hole": True, "pitch": False, "mark": False, "note": False}
+"""Layers of the DXF file, and whether they plot."""
 
-AREA_ERROR = 1e-6
-"""Default error of the area within the chords, over the area."""
-
-SPLINE_ERROR = 1e-9
-"""m: default distance of the spline from the contour between its knots, below any machine's."""
-
-_FINE = 8
 _SPLINE_DEGREE = 3
 _SPLINE_PARTS = (22, 45, 90, 180, 360, 720, 1440, 2880, 5760, 11520)
 _MILLIMETRE = 1e-3
 _METRIC = 4  # code of millimetres in a DXF header
+_LETTER = 2.0  # mm, height of the notes
+_LINE = 3.2  # mm, from note to note
+_HALF_CIRCLE = 1.0  # bulge: tangent of a quarter of the angle of an arc
 
 
 class CurveLike(Protocol):
@@ -38,18 +38,6 @@ class CurveLike(Protocol):
 
     def points(self, theta: Array) -> Array: ...
     def velocity(self, theta: Array) -> Array: ...
-
-
-@dataclass(frozen=True, eq=False)
-class Chords:
-    """Closed polyline on a contour: angles (n,), rad; points (2, n), m; chord error, m."""
-
-    theta: Array
-    points: Array
-    error: float
-
-    def __post_init__(self) -> None:
-        freeze(self, theta=self.theta, points=self.points)
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,49 +50,8 @@ class Outline:
     counter_hole: HoleLike | None = None
 
 
-def chords(contour: Contour, error: float | None = None) -> Chords:
-    """Chords of the contour with a uniform distance from it, at most `error`.
-
-    Parameters
-    ----------
-    contour : Contour
-    error : float      m, > 0; by default the area within the chords differs from that of the
-                       contour by at most one millionth
-
-    Raises
-    ------
-    GeometryError
-        If the contour is undercut.
-    InputError
-        If the error is not positive, or requires more than a million points.
-
-    Notes
-    -----
-    A chord of length L is k L^2 / 8 from a curve of curvature k; the angles are spaced so that
-    this is constant. The point of maximum radius is always included.
-    """
-    contour.require_no_undercut()
-    if error is None:
-        error = AREA_ERROR * contour.area() / contour.perimeter()
-    positive("chord_error", error, "m")
-    count = _FINE * contour.lift.search_count
-    start = contour.radius_max().theta
-    theta = start + np.linspace(0.0, FULL_TURN, count + 1)
-    # at least a share of the mean curvature, or the chord over an inflection would be long
-    curvature = np.abs(contour.curvature(theta))
-    curvature = np.maximum(curvature, 0.05 * FULL_TURN / contour.perimeter())
-    density = np.sqrt(curvature / (8 * error)) * contour.speed(theta)
-    steps = 0.5 * (density[1:] + density[:-1]) * np.diff(theta)
-    count_to = np.concatenate([[0.0], np.cumsum(steps)])
-    parts = int(np.ceil(1.02 * count_to[-1])) + 3
-    if parts > 1_000_000:
-        raise InputError("chord_error", error, "large enough for a million chords")
-    at = np.interp(np.linspace(0.0, count_to[-1], parts, endpoint=False), count_to, theta)
-    return Chords(at, contour.points(at), error)
-
-
 def clamped_spline(
-    curve: CurveLike, error: float = SPLINE_ERROR, start: float = 0.0, stop: float = FULL_TURN
+    curve: CurveLike, error: float, start: float = 0.0, stop: float = FULL_TURN
 ) -> BSpline:
     """Clamped cubic spline of fewest parts within `error` of a closed curve, by cam angle.
 
@@ -135,15 +82,19 @@ def clamped_spline(
     raise GeometryError(f"error of the finest spline = {worst:.3g} m, must be <= {error:g} m")
 
 
-def write_dxf(path: Path, outline: Outline, error: float | None = None) -> float:
-    """DXF file in millimetres: contour, pitch curve, bore, keyway and counter-hole.
+def write_dxf(
+    path: Path, outline: Outline, error: float = ARC_ERROR, notes: Sequence[str] = ()
+) -> ArcPolyline:
+    """DXF file in millimetres: the curves to cut, and others on layers that do not plot.
 
-    The layer ``surface`` has the contour twice, as a closed LWPOLYLINE of chords and as a SPLINE;
-    the layer ``note`` states the chord error.
+    The layer ``cut`` has the contour once, as a closed polyline of arcs within `error` (m) of it,
+    and the bore with its keyway as one closed polyline with arcs; a bore without keyway is a
+    circle. ``counter_hole`` has the counter-hole, ``pitch`` the pitch curve, ``mark`` the line of
+    cam angle zero and an arrow in the direction of turning, ``note`` the error and the `notes`.
 
     Returns
     -------
-    float    chord error, m
+    ArcPolyline    the contour as drawn
 
     Raises
     ------
@@ -154,49 +105,88 @@ def write_dxf(path: Path, outline: Outline, error: float | None = None) -> float
     """
     import ezdxf
 
-    polyline = chords(outline.contour, error)
+    arcs = arc_polyline(outline.contour, error)
     ezdxf.options.write_fixed_meta_data_for_testing = True  # no date, no random identifier
     document = ezdxf.new("R2010", units=_METRIC)
-    for colour, layer in enumerate(LAYERS, start=1):
-        document.layers.add(layer, color=colour)
+    for colour, (layer, plots) in enumerate(LAYERS.items(), start=1):
+        document.layers.add(layer, color=colour, plot=plots)
     space = document.modelspace()
-    corners = [(x, y) for x, y in (polyline.points / _MILLIMETRE).T.tolist()]
-    space.add_lwpolyline(corners, close=True, dxfattribs={"layer": "surface"})
-    _add_spline(space, outline.contour, "surface")
-    if outline.contour.rolls:  # a face has no pitch curve
-        _add_spline(space, outline.contour.pitch, "pitch")
-    _add_hole(space, outline)
+    _add_arcs(space, arcs.points, arcs.bulges)
+    _add_bore(space, outline)
     if outline.counter_hole is not None:
         x, y = (outline.counter_hole.centre / _MILLIMETRE).tolist()
         radius = outline.counter_hole.radius / _MILLIMETRE
         space.add_circle((x, y), radius, dxfattribs={"layer": "counter_hole"})
-    note = f"chord error {polyline.error / _MILLIMETRE:.6g} mm, {len(corners)} chords, units mm"
-    low = float(polyline.points[1].min()) / _MILLIMETRE - 6.0
-    space.add_text(note, height=2.0, dxfattribs={"layer": "note", "insert": (0.0, low)})
+    curves = [arcs.points]
+    if outline.contour.rolls:  # a face has no pitch curve
+        curves.append(_add_spline(space, outline.contour.pitch, error, "pitch"))
+    around = np.hstack(curves) / _MILLIMETRE
+    reach = float(np.hypot(*around).max())
+    _add_marks(space, reach)
+    low, high = np.minimum(around.min(axis=1), -reach), np.maximum(around.max(axis=1), reach)
+    lines = [
+        f"layer {CUT}: contour of {arcs.bulges.size} arcs within {error / _MILLIMETRE:.6g} mm; "
+        "units mm",
+        *(" ".join(note.split()) for note in notes),
+    ]
+    for k, line in enumerate(lines, start=1):
+        at = (float(low[0]), float(low[1]) - k * _LINE - _LETTER)
+        space.add_text(line, height=_LETTER, dxfattribs={"layer": "note", "insert": at})
+    high[0] = max(high[0], low[0] + 0.9 * _LETTER * max(map(len, lines)))
+    low[1] -= len(lines) * _LINE + _LETTER
+    space.reset_extents((*low.tolist(), 0.0), (*high.tolist(), 0.0))
     for kind in sorted(document.entitydb.dxf_types_in_use()):
         document.classes.add_class(kind)  # ezdxf itself adds them in the order of a set
     try:
         document.saveas(path)
     except OSError as failure:
         raise ResultError(f"{path}: {failure.strerror or failure}") from None
-    return polyline.error
+    return arcs
 
 
-def _add_spline(space: Modelspace, curve: CurveLike, layer: str) -> None:
-    spline = clamped_spline(curve)
+def _add_arcs(space: Modelspace, points: Array, bulges: Array) -> None:
+    """Closed polyline of arcs (2, n), m, to cut."""
+    rows = np.vstack([points / _MILLIMETRE, bulges]).T.tolist()
+    space.add_lwpolyline(rows, format="xyb", close=True, dxfattribs={"layer": CUT})
+
+
+def _add_spline(space: Modelspace, curve: CurveLike, error: float, layer: str) -> Array:
+    """Closed spline of a curve; returns its control points (2, n), m, which enclose it."""
+    spline = clamped_spline(curve, error)
     entity = space.add_spline(degree=_SPLINE_DEGREE, dxfattribs={"layer": layer})
     entity.control_points = [(x, y, 0.0) for x, y in (spline.c / _MILLIMETRE).tolist()]
     entity.knots = spline.t.tolist()
     entity.dxf.flags = entity.dxf.flags | entity.CLOSED
+    control: Array = spline.c.T
+    return control
 
 
-def _add_hole(space: Modelspace, outline: Outline) -> None:
-    radius = outline.bore_radius / _MILLIMETRE
+def _add_bore(space: Modelspace, outline: Outline) -> None:
+    radius = outline.bore_radius
     if outline.keyway is None:
-        space.add_circle((0.0, 0.0), radius, dxfattribs={"layer": "bore"})
+        space.add_circle((0.0, 0.0), radius / _MILLIMETRE, dxfattribs={"layer": CUT})
         return
-    corners = keyway_corners(outline.bore_radius, outline.keyway) / _MILLIMETRE
-    turned = np.degrees(np.arctan2(corners[1], corners[0]))
-    space.add_arc((0.0, 0.0), radius, turned[3], turned[0], dxfattribs={"layer": "bore"})
-    points = [(x, y) for x, y in corners.T.tolist()]
-    space.add_lwpolyline(points, dxfattribs={"layer": "keyway"})
+    corners = keyway_corners(radius, outline.keyway)
+    middle = corners.mean(axis=1)
+    far = -radius * middle / np.hypot(*middle)  # two arcs: some machines turn less than half
+    turned = np.pi - np.arcsin(0.5 * outline.keyway.width / radius)
+    bulge = np.tan(turned / 4.0)
+    _add_arcs(space, np.column_stack([corners, far]), np.array([0.0, 0.0, 0.0, bulge, bulge]))
+
+
+def _add_marks(space: Modelspace, reach: float) -> None:
+    """Line of cam angle zero from the axis to the outermost curve, mm, and the arrow of turning.
+
+    The cam angle grows counter-clockwise on the cam, past a follower at rest: the cam turns
+    clockwise.
+    """
+    on = {"layer": "mark"}
+    space.add_line((0.0, 0.0), (reach, 0.0), dxfattribs=on)
+    space.add_text("0 deg", height=_LETTER, dxfattribs=on | {"insert": (0.8 * reach, 1.0)})
+    radius, tip = 0.75 * reach, np.radians(60.0)
+    space.add_arc((0.0, 0.0), radius, 60.0, 120.0, dxfattribs=on)
+    end = radius * np.array([np.cos(tip), np.sin(tip)])
+    for angle in (-np.pi / 6, np.pi / 6):  # a barb back along the arc, to both sides
+        back = tip + np.pi / 2 + angle
+        barb = end + 0.06 * reach * np.array([np.cos(back), np.sin(back)])
+        space.add_line(tuple(end.tolist()), tuple(barb.tolist()), dxfattribs=on)

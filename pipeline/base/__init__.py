@@ -8,6 +8,7 @@ In the order of use:
 | `quantities`       | quantities of an input: unit and bounds of a field       | SI               |
 | `material`         | material card: elastic constants, strengths, source      | E, Pa; nu; S, Pa |
 | `external_force`   | force over the cam angle, linear between samples         | F_e, N           |
+| `fits`             | sizes with limit deviations: bores and keyways           | m                |
 | `files`            | files read, written in one step, hashed; JSON records    | SHA-256          |
 | `tables`           | columns with unit and meaning; CSV files                 |                  |
 | `disk_cache`       | arrays that depend on their key alone, kept between runs |                  |

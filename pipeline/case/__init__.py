@@ -15,7 +15,7 @@ In the order of the calculation:
 | `scope_section`        | parts that the sign-off does not cover       |                  |
 | `parts_section`        | follower, valve train                        | m, kg            |
 | `requirements_section` | smoothing, tolerances, load cases, solver    | rad/s; N; rad    |
-| `workshop_section`     | tool, table step, chord error                | m, rad           |
+| `workshop_section`     | workshop files; title block of the documents | m, rad           |
 | `case`                 | `Case`: all sections, included files, hash   |                  |
 | `consistency`          | consistency of the sections with one another |                  |
 | `error_text`           | first error in one line: field, value, limit |                  |

@@ -32,7 +32,7 @@ from camwright.pipeline.case.scope_section import Scope
 from camwright.pipeline.case.section import Name, Section, Table, Text, named
 from camwright.pipeline.case.toml_text import Tables, tables_of, to_toml
 from camwright.pipeline.case.torque_section import ShaftTorque, torque_files
-from camwright.pipeline.case.workshop_section import Workshop, WorkshopOrder
+from camwright.pipeline.case.workshop_section import Document, Workshop, WorkshopOrder
 from camwright.pipeline.contact.cam_body import CamBody
 from camwright.pipeline.contact.oil_film import Lubricant
 from camwright.pipeline.engine.crankshaft import Crankshaft
@@ -60,6 +60,7 @@ class Case(Section):
     name: Name
     title: Text = ""
     notes: Text = ""
+    document: Document = Document()
     engine: Engine | None = None
     torque: ShaftTorque | None = None
     crankshaft: Table[Crankshaft] | None = None
@@ -211,10 +212,10 @@ class Case(Section):
 
     @property
     def workshop_order(self) -> WorkshopOrder:
-        """Tables, tool, tolerance band and chord error of the workshop files."""
+        """Tables, tool, tolerance band and error of the arcs of the workshop files."""
         shop = self.workshop
         tool = self.largest_tool if shop.tool_radius is None else shop.tool_radius
-        return WorkshopOrder(shop.table_step, tool, self.cam.profile_tolerance, shop.chord_error)
+        return WorkshopOrder(shop.table_step, tool, self.cam.profile_tolerance, shop.arc_error)
 
 
 def includes(case: Case) -> Iterator[tuple[str, str]]:

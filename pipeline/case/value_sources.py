@@ -20,7 +20,16 @@ OF_A_CHECK = "checks."
 """Prefix of a value that the program holds: the limit that a check declares."""
 _OPEN = re.compile(r"\b(recalled|verify|assum\w*|estimat\w*)\b", re.IGNORECASE)
 _WORDS = ("source", "sources", "name", "condition")
-_NO_VALUES = ("schema_version", "name", "title", "notes", "sources", "confirmed", "scope")
+_NO_VALUES = (
+    "schema_version",
+    "name",
+    "title",
+    "notes",
+    "sources",
+    "confirmed",
+    "scope",
+    "document",
+)
 
 
 def confirms(source: str) -> bool:

@@ -20,7 +20,7 @@ In the order of a run:
 | `contact_zone`         | fine mesh of a body below its contact, interpolation on it            |
 | `stress_fields`        | displacement and stress of both bodies over the turn                  |
 | `field_output`         | files of ``fields/``                                                  |
-| `workshop_files`       | contour table, DXF drawing, STEP solid, cutter path, inspection sheet |
+| `workshop_files`       | dimensions of the cam; contour table, DXF, STEP, cutter path, sheet   |
 | `drawn_cam`            | cam of a finished run as it was certified                             |
 | `contact_deck`         | contact at one cam angle as an input deck                             |
 | `check_text`           | declaration of a check in words: formula, limit, calculation          |

@@ -1,8 +1,9 @@
-"""Workshop files: contour table, drawing, solid, cutter path, inspection sheet."""
+"""Workshop files: dimensions, contour table, drawing, solid, cutter path, inspection sheet."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -14,7 +15,10 @@ from camwright.geometry.cutter_path import cutter_path
 from camwright.geometry.errors import CamError, ResultError
 from camwright.meshes.step_solid import write_step
 from camwright.pipeline.base.files import write_atomic
+from camwright.pipeline.base.fits import Size, keyway_depth_deviations, size_deviations
+from camwright.pipeline.base.material import Material
 from camwright.pipeline.base.tables import CAM_ANGLE, Column, table
+from camwright.pipeline.base.units import shown
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.cycle.cam_balance import drilled_hole
 from camwright.pipeline.cycle.cycle import LIFT, PRESSURE_ANGLE
@@ -26,6 +30,81 @@ _INSPECTION = (
 )  # fmt: skip
 
 WORKSHOP = "workshop"
+
+
+@dataclass(frozen=True)
+class CamDimensions:
+    """Dimensions of a cam, m, and the state of its material in words; "": not stated.
+
+    bore : Size               diameter
+    keyway_width : Size       None without a keyway, as the others of the keyway
+    keyway_depth : Size       from the opposite side of the bore to the floor
+    root_radius : float       fillet at the floor of the keyway, None: not known
+    profile_tolerance : float width of the zone of the contour
+    """
+
+    bore: Size
+    keyway_width: Size | None
+    keyway_depth: Size | None
+    root_radius: float | None
+    thickness: float
+    material: str
+    hardness: str
+    roughness: float | None
+    profile_tolerance: float
+
+    @property
+    def datum(self) -> str:
+        """Datum of the contour: axis of the bore, middle plane of the keyway."""
+        return "A" if self.keyway_width is None else "A-B"
+
+
+def dimensions_of(case: Case) -> CamDimensions:
+    """Dimensions of the cam of a case."""
+    cam, shop = case.cam, case.workshop
+    bore, keyway = 2.0 * cam.bore_radius, cam.keyway
+    width = depth = None
+    if keyway is not None:
+        deviations = size_deviations(keyway.width, shop.keyway_fit)
+        width = Size(keyway.width, shop.keyway_fit, deviations)
+        depth = Size(bore + keyway.depth, "", keyway_depth_deviations(keyway.width))
+    return CamDimensions(
+        Size(bore, shop.bore_fit, size_deviations(bore, shop.bore_fit)),
+        width, depth, cam.keyway_root_radius, cam.width,
+        ", ".join(filter(None, (cam.material.name, " ".join(cam.material.condition.split())))),
+        _hardness(cam.material), cam.roughness, cam.profile_tolerance,
+    )  # fmt: skip
+
+
+def notes_of(case: Case) -> Iterator[str]:
+    """Notes of the DXF file: identification, sizes, tolerances and material."""
+    stated, size = case.document, dimensions_of(case)
+    entries = (case.name, stated.part_number, stated.revision and f"revision {stated.revision}")
+    yield ", ".join(filter(None, entries))
+    yield f"bore {size.bore.words}, thickness {shown(size.thickness, 'mm')}"
+    if size.keyway_width is not None and size.keyway_depth is not None:
+        yield f"keyway width {size.keyway_width.words}, depth {size.keyway_depth.words}"
+    yield (
+        f"contour within {shown(size.profile_tolerance, 'mm')} (profile of a line,"
+        f" ISO 1101) to datum {size.datum}: axis of the bore"
+        + ("" if size.keyway_width is None else ", middle plane of the keyway")
+    )
+    yield ", ".join(filter(None, (f"material {stated.material or size.material}", size.hardness)))
+    yield "cam angles grow counter-clockwise from the marked line; the cam turns clockwise"
+
+
+def _hardness(material: Material) -> str:
+    """Treatment, hardness and case depth of a card; "" without any."""
+    words = []
+    if material.treatment is not None:
+        words.append(material.treatment.replace("_", "-").replace("not-", "not "))
+    if material.hardness_vickers is not None:
+        words.append(f"{material.hardness_vickers:g} HV")
+    if material.hardness_brinell is not None:
+        words.append(f"{material.hardness_brinell:g} HB")
+    if material.case_depth is not None:
+        words.append(f"case depth {shown(material.case_depth, 'mm')}")
+    return ", ".join(words)
 
 
 def outline_of(case: Case, contour: Contour) -> Outline:
@@ -50,7 +129,9 @@ def write_workshop(
     tool = order.tool_radius or contour.fitting_tool
     jobs: dict[str, Callable[[Path], object]] = {
         "contour.csv": lambda path: write_atomic(path, contour_table(contour, order.theta)),
-        "contour.dxf": lambda path: write_dxf(path, outline, order.chord_error),
+        "contour.dxf": lambda path: write_dxf(
+            path, outline, order.arc_error, tuple(notes_of(case))
+        ),
         "cam.step": lambda path: write_step(path, outline, case.cam.width),
         "cutter.csv": lambda path: write_atomic(path, cutter_table(contour, tool, order.theta)),
         "inspection.csv": lambda path: write_atomic(

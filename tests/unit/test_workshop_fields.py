@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import datetime as dt
 import io
 from pathlib import Path
 
@@ -15,12 +16,13 @@ from camwright.geometry.contour import Contour
 from camwright.geometry.cutter_path import cutter_path
 from camwright.geometry.errors import InputError
 from camwright.geometry.lift import Lift
+from camwright.pipeline.base.fits import keyway_depth_deviations, size_deviations
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_file import parse_case
 from camwright.pipeline.results.workshop_files import write_workshop
 
 LIMITS = "[limits]\n"
-ORDER = '[workshop]\ntable_step = "0.25 deg"\ntool_radius = "6 mm"\nchord_error = "2 um"\n'
+ORDER = '[workshop]\ntable_step = "0.25 deg"\ntool_radius = "6 mm"\narc_error = "2 um"\n'
 
 
 GROUND = '\n[tolerances]\nsource = "ground track"\n'
@@ -58,14 +60,14 @@ def test_the_files_are_those_ordered(tmp_path: Path) -> None:
     np.testing.assert_allclose(1e-3 * centre, cutter_path(drawn, 6e-3, theta).centre, atol=1e-15)
     sheet = rows(tmp_path / "inspection.csv")
     assert {row["deviation_max_mm"] for row in sheet} == {"0.008"}  # half of the band
-    notes = ezdxf.readfile(tmp_path / "contour.dxf").modelspace().query("TEXT")
-    assert notes[0].dxf.text.startswith("chord error 0.002 mm")
+    notes = ezdxf.readfile(tmp_path / "contour.dxf").modelspace().query("TEXT[layer=='note']")
+    assert "arcs within 0.002 mm" in notes[0].dxf.text
 
 
 def test_without_an_order_the_tables_are_half_a_degree_apart_and_the_roller_is_the_tool() -> None:
     order = case("").workshop_order
     assert np.degrees(order.step) == pytest.approx(0.5)
-    assert (order.tool_radius, order.chord_error, order.tolerance) == (None, None, 1e-4)
+    assert (order.tool_radius, order.arc_error, order.tolerance) == (None, 1e-6, 1e-4)
 
 
 def test_the_tool_of_the_limits_is_the_workshops_unless_it_has_its_own() -> None:
@@ -116,9 +118,9 @@ def test_a_tool_too_large_for_a_hollow_leaves_its_file_out_and_says_so(tmp_path:
         ('tool_radius = "inf mm"', "workshop.tool_radius = inf mm, must be finite"),
         ('tool_radius = "1e5 mm"', "workshop.tool_radius = 1e5 mm, must be > 0 and <= 10000 mm"),
         ("tool_radius = true", "workshop.tool_radius = true, must be a number with a unit"),
-        ('chord_error = "0 um"', "workshop.chord_error = 0 um, must be >= 0.001 and <= 1000 um"),
-        ('chord_error = "2 mm"', "workshop.chord_error = 2 mm, must be >= 0.001 and <= 1000 um"),
-        ('chord_eror = "1 um"', "did you mean chord_error?"),
+        ('arc_error = "0 um"', "workshop.arc_error = 0 um, must be >= 0.001 and <= 1000 um"),
+        ('arc_error = "2 mm"', "workshop.arc_error = 2 mm, must be >= 0.001 and <= 1000 um"),
+        ('arc_eror = "1 um"', "did you mean arc_error?"),
         ('tool_radius = "<script>alert(1)</script>"', "must be a number with a unit"),
     ],
 )
@@ -131,3 +133,60 @@ def test_what_no_workshop_could_mean_is_refused(line: str, message: str) -> None
 def test_a_tool_larger_than_the_hollows_are_checked_for_is_refused() -> None:
     with pytest.raises(InputError, match=r"tool_radius = 6 mm, must be <= limits\.tool_radius = "):
         case(limits='tool_radius = "5 mm"\n')
+
+
+DOCUMENT = """
+[document]
+project = "Idle of a one-cylinder engine"
+part_number = "CW-0042"
+revision = "B"
+author = "A. Engineer"
+date = 2026-03-02
+material = "16MnCr5, case-hardened"
+"""
+
+
+def test_title_block_is_read_back_and_stands_in_the_drawing(tmp_path: Path) -> None:
+    import ezdxf
+
+    of = case('[workshop]\nbore_fit = "H6"\n' + DOCUMENT)
+    assert parse_case(of.to_toml()).document == of.document
+    assert of.document.date == dt.date(2026, 3, 2)
+    write_workshop(tmp_path, of, contour(of))
+    notes = ezdxf.readfile(tmp_path / "contour.dxf").modelspace().query("TEXT[layer=='note']")
+    text = "\n".join(note.dxf.text for note in notes)
+    for words in ("CW-0042, revision B", "material 16MnCr5, case-hardened", " H6 (+"):
+        assert words in text
+
+
+def test_title_block_is_optional_and_its_entries_are_short_lines() -> None:
+    assert set(case().document.model_dump().values()) == {None}
+    for line in ('author = ""', f'project = "{"x" * 61}"', 'date = "today"', "date = 2026-13-01"):
+        with pytest.raises(InputError):
+            case(f"[workshop]\n[document]\n{line}\n")
+
+
+def test_the_former_name_of_the_error_of_the_drawing_is_read() -> None:
+    assert case('[workshop]\nchord_error = "2 um"\n').workshop.arc_error == pytest.approx(2e-6)
+
+
+@pytest.mark.parametrize(
+    ("size", "fit", "bounds"),
+    [  # of ISO 286-2 and DIN 6885-1
+        (17.0, "H7", (0.0, 18.0)), (18.0, "H7", (0.0, 18.0)), (18.1, "H7", (0.0, 21.0)),
+        (25.0, "H6", (0.0, 13.0)), (50.0, "H8", (0.0, 39.0)), (3.0, "JS9", (-12.5, 12.5)),
+        (5.0, "JS9", (-15.0, 15.0)), (5.0, "P9", (-42.0, -12.0)), (8.0, "P9", (-51.0, -15.0)),
+        (500.0, "H7", (0.0, 63.0)),
+    ],
+)  # fmt: skip
+def test_deviations_of_the_standard(size: float, fit: str, bounds: tuple[float, float]) -> None:
+    assert size_deviations(1e-3 * size, fit) == pytest.approx(np.multiply(bounds, 1e-6))
+
+
+def test_sizes_beyond_the_standard_have_no_deviations() -> None:
+    assert size_deviations(0.501, "H7") is None
+    assert keyway_depth_deviations(0.101) is None
+    upper = {width: keyway_depth_deviations(1e-3 * width).upper for width in (6, 8, 32, 36)}
+    assert upper == pytest.approx({6: 1e-4, 8: 2e-4, 32: 2e-4, 36: 3e-4})
+    with pytest.raises(InputError):
+        size_deviations(float("nan"), "H7")

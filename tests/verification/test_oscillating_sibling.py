@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 from cam_parts import mesh_area
 
+from camwright.geometry.arc_polyline import arc_polyline
 from camwright.geometry.arrays import FULL_TURN, uniform_turn
-from camwright.geometry.cad_drawing import chords
 from camwright.geometry.contour import Contour, Frame, Undercut
 from camwright.geometry.cutter_path import cutter_path
 from camwright.geometry.extrema import Extremum, least
@@ -179,7 +179,7 @@ def test_tools_for_contours_take_it():
     bend = -0.5 * CAM.curvature(THETA)[:, None] * xi**2
     # the cubic term over the quadratic one, kappa' xi / (3 kappa), is 6.1e-5 at most
     np.testing.assert_allclose(CAM.surface_offset(THETA, xi), bend, rtol=1e-4, atol=1e-15)
-    assert chords(CAM, 1e-6).points.shape[1] > 100
+    assert arc_polyline(CAM).area == pytest.approx(CAM.area(), rel=1e-6)
     np.testing.assert_allclose(
         cutter_path(CAM, ROLLER, THETA).centre, CAM.pitch.points(THETA), atol=1e-12
     )

@@ -8,12 +8,16 @@ import subprocess
 import sys
 from pathlib import Path
 
+import ezdxf
 import numpy as np
 import pytest
 from cam_parts import Keyway
+from ezdxf.math import bulge_center
+from scipy.spatial import cKDTree
 
+from camwright.geometry.arc_polyline import ARC_ERROR, arc_polyline
 from camwright.geometry.arrays import uniform_turn
-from camwright.geometry.cad_drawing import LAYERS, Outline, chords, write_dxf
+from camwright.geometry.cad_drawing import CUT, LAYERS, Outline, write_dxf
 from camwright.geometry.contour import Contour, RollerContour
 from camwright.geometry.cutouts import keyway_corners
 from camwright.geometry.cutter_path import cutter_path
@@ -40,6 +44,15 @@ def circle() -> Contour:
     return RollerContour(PitchCurve(Lift(THETA, np.zeros(360)), 0.050), 0.008)
 
 
+def keyed_hole() -> tuple[float, float]:
+    """Area and perimeter of bore and keyway, m^2 and m."""
+    half, turn = 0.5 * KEYWAY.width, np.arcsin(0.5 * KEYWAY.width / BORE)
+    mouth = BORE * np.cos(turn)
+    area = np.pi * BORE**2 + 2 * half * (BORE + KEYWAY.depth - mouth)
+    area -= BORE**2 * turn - half * mouth  # the cap of the bore that the slot takes in
+    return area, 2 * (BORE * (np.pi - turn) + BORE + KEYWAY.depth - mouth + half)
+
+
 def polygon_measures(points: np.ndarray) -> tuple[float, float]:
     """Area and perimeter of a closed polygon (2, n)."""
     step = np.roll(points, -1, axis=1) - points
@@ -47,70 +60,101 @@ def polygon_measures(points: np.ndarray) -> tuple[float, float]:
     return float(area), float(np.sum(np.hypot(*step)))
 
 
+def swept(line) -> np.ndarray:
+    """Points (2, n), m, along a closed polyline, with the centres that ezdxf reads of its arcs."""
+    rows = line.get_points("xyb")
+    share = np.arange(4000) / 4000
+    points = []
+    for (x, y, bulge), (to_x, to_y, _) in zip(rows, rows[1:] + rows[:1], strict=True):
+        if bulge == 0.0:
+            points.append(np.array([[x], [y]]) + np.outer((to_x - x, to_y - y), share))
+            continue
+        centre = bulge_center((x, y), (to_x, to_y), bulge)
+        reach = complex(x - centre.x, y - centre.y)
+        turned = complex(centre.x, centre.y) + reach * np.exp(4j * np.arctan(bulge) * share)
+        points.append(np.stack([turned.real, turned.imag]))
+    return np.hstack(points) * MM
+
+
 @pytest.fixture(scope="module", params=[wavy, circle], ids=["wavy", "circle"])
 def drawn(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory):
-    """A contour and its drawing read back."""
-    import ezdxf
-
+    """A contour, its drawing read back, and the arcs that it returned."""
     contour = request.param()
     path = tmp_path_factory.mktemp("dxf") / "contour.dxf"
-    error = write_dxf(path, Outline(contour, BORE, KEYWAY))
+    arcs = write_dxf(path, Outline(contour, BORE, KEYWAY), notes=("bore\n17 H7",))
     document = ezdxf.readfile(path)
     assert not document.audit().has_errors
-    return contour, error, document
+    return contour, arcs, document
 
 
 def on_layer(document, layer: str, kind: str):
     return [e for e in document.modelspace() if e.dxf.layer == layer and e.dxftype() == kind]
 
 
-def test_chords_of_the_drawing_are_the_contour(drawn) -> None:
-    contour, error, document = drawn
-    (line,) = on_layer(document, "surface", "LWPOLYLINE")
-    points = np.array(line.get_points("xy")).T * MM
-    area, perimeter = polygon_measures(points)
-    assert line.closed
+def test_the_cutting_layer_has_one_contour_and_one_hole(drawn) -> None:
+    contour, arcs, document = drawn
+    cut = document.modelspace().query(f"*[layer=='{CUT}']")
+    assert [(e.dxftype(), e.closed) for e in cut] == 2 * [("LWPOLYLINE", True)]
+    outer, hole = (swept(line) for line in cut)
+    area, perimeter = polygon_measures(outer)
     assert area == pytest.approx(contour.area(), rel=WITHIN)
-    assert perimeter == pytest.approx(contour.perimeter(), rel=WITHIN)
-    assert np.hypot(*points).max() == pytest.approx(contour.radius_max().value, rel=WITHIN)
-    # the sagitta of every chord, measured on the contour itself, is as the drawing states
-    theta = chords(contour).theta
-    middle = contour.points(0.5 * (theta + np.append(theta[1:], theta[0] + 2 * np.pi)))
-    chord = np.roll(points, -1, axis=1) - points
-    across = np.abs(chord[0] * (middle - points)[1] - chord[1] * (middle - points)[0])
-    sagitta = across / np.hypot(*chord)
-    assert sagitta.max() <= error
-    assert sagitta.max() >= 0.8 * error  # no finer than said either: a drawing is to be small
-    (note,) = on_layer(document, "note", "TEXT")
-    assert f"{error / MM:.6g} mm" in note.dxf.text
+    assert perimeter == pytest.approx(contour.perimeter(), rel=1e-5)
+    assert arcs.area == pytest.approx(area, rel=2e-7)
+    assert np.hypot(*outer).max() == pytest.approx(contour.radius_max().value, abs=ARC_ERROR)
+    assert len(cut[0]) == arcs.bulges.size <= 300
+    area, perimeter = polygon_measures(hole)
+    exact, around = keyed_hole()
+    assert (area, perimeter) == (pytest.approx(exact, rel=WITHIN), pytest.approx(around, rel=1e-5))
+    assert max(abs(bulge) for *_, bulge in cut[1].get_points("xyb")) < 1.0  # no more than half
 
 
-def test_spline_of_the_drawing_is_the_contour(drawn) -> None:
+def test_arcs_are_within_the_stated_error(drawn) -> None:
+    """Each point of the arcs against the nearest of a dense polygon on the contour."""
+    contour, arcs, document = drawn
+    outer = swept(on_layer(document, CUT, "LWPOLYLINE")[0])
+    tree = cKDTree(contour.polygon(400_000).T)
+    apart = tree.query(outer.T)[0]
+    spacing = contour.perimeter() / 400_000
+    assert apart.max() <= 1.05 * ARC_ERROR + spacing
+    assert arcs.error <= ARC_ERROR
+    texts = [e.dxf.text for e in on_layer(document, "note", "TEXT")]
+    assert "arcs within 0.001 mm" in texts[0]
+    assert texts[1] == "bore 17 H7"  # on one line
+
+
+def test_other_layers_do_not_plot_and_extents_are_set(drawn) -> None:
     contour, _, document = drawn
-    (spline,) = on_layer(document, "surface", "SPLINE")
-    tool = spline.construction_tool()
-    at = np.linspace(0.0, tool.max_t, 20_001)[:-1]
-    points = np.array([(p.x, p.y) for p in tool.points(at)]).T * MM
-    area, perimeter = polygon_measures(points)
-    assert spline.closed
-    assert area == pytest.approx(contour.area(), rel=WITHIN)
-    assert perimeter == pytest.approx(contour.perimeter(), rel=WITHIN)
-    assert np.hypot(*points).max() == pytest.approx(contour.radius_max().value, rel=WITHIN)
-
-
-def test_drawing_has_its_layers_in_millimetres(drawn) -> None:
-    _, _, document = drawn
     assert document.header["$INSUNITS"] == 4
-    assert {layer.dxf.name for layer in document.layers} >= set(LAYERS)
+    plots = {layer.dxf.name: bool(layer.dxf.plot) for layer in document.layers}
+    assert {name: plots[name] for name in LAYERS} == dict(LAYERS)
     assert len(on_layer(document, "pitch", "SPLINE")) == 1
-    (arc,) = on_layer(document, "bore", "ARC")
-    (slot,) = on_layer(document, "keyway", "LWPOLYLINE")
-    corners = np.array(slot.get_points("xy")) * MM
-    assert arc.dxf.radius == pytest.approx(BORE / MM, rel=1e-12)
-    assert np.hypot(*corners[0]) == pytest.approx(BORE, rel=1e-12)
-    assert np.hypot(*(corners[2] - corners[1])) == pytest.approx(KEYWAY.width, rel=1e-12)
-    ends = np.array([(arc.start_point.x, arc.start_point.y), (arc.end_point.x, arc.end_point.y)])
-    np.testing.assert_allclose(ends * MM, corners[[3, 0]], atol=1e-12)
+    low, high = (np.array(document.header[f"$EXT{end}"])[:2] * MM for end in ("MIN", "MAX"))
+    corners = contour.polygon(10_000)
+    assert (low <= corners.min(axis=1)).all()
+    assert (corners.max(axis=1) <= high).all()
+    assert (np.abs([low, high]) < 5 * contour.radius_max().value).all()
+
+
+def test_line_of_angle_zero_goes_through_the_contour_there(drawn) -> None:
+    contour, _, document = drawn
+    (line, *_) = on_layer(document, "mark", "LINE")
+    assert (line.dxf.start.x, line.dxf.start.y, line.dxf.end.y) == (0.0, 0.0, 0.0)
+    assert line.dxf.end.x * MM >= contour.radius_max().value
+
+
+@pytest.mark.parametrize("error", [3e-7, 1e-7])
+def test_a_smaller_error_takes_more_arcs(error: float) -> None:
+    arcs, finer = arc_polyline(wavy(), error), arc_polyline(wavy(), error / 10.0)
+    assert 0.2 * error < arcs.error <= error
+    # the distance of a pair grows with the cube of its length
+    assert finer.bulges.size / arcs.bulges.size == pytest.approx(10 ** (1 / 3), rel=0.3)
+
+
+def test_arcs_finer_than_numbers_are_refused() -> None:
+    with pytest.raises(GeometryError, match="must be <= 1e-21 m"):
+        arc_polyline(wavy(), 1e-21)
+    with pytest.raises(InputError):
+        arc_polyline(wavy(), 0.0)
 
 
 def test_files_are_the_same_whatever_day_and_process(tmp_path: Path) -> None:
@@ -139,18 +183,14 @@ for name in ("cam.step", "again.step"):
 
 
 def test_circle_cam_gives_a_circle(tmp_path: Path) -> None:
-    import ezdxf
-
     path = tmp_path / "circle.dxf"
-    write_dxf(path, Outline(circle(), BORE))
+    arcs = write_dxf(path, Outline(circle(), BORE))
     space = ezdxf.readfile(path).modelspace()
-    (spline,) = space.query("SPLINE[layer=='surface']")
-    (line,) = space.query("LWPOLYLINE[layer=='surface']")
-    (bore,) = space.query("CIRCLE[layer=='bore']")
-    tool = spline.construction_tool()
-    radii = [np.hypot(p.x, p.y) for p in tool.points(np.linspace(0, tool.max_t, 5001))]
-    np.testing.assert_allclose(radii, 42.0, atol=2e-6)  # mm: the spline's own bound is 1e-6
-    np.testing.assert_allclose(np.hypot(*np.array(line.get_points("xy")).T), 42.0, atol=1e-11)
+    (line,) = space.query(f"LWPOLYLINE[layer=='{CUT}']")
+    (bore,) = space.query(f"CIRCLE[layer=='{CUT}']")
+    np.testing.assert_allclose(np.hypot(*swept(line)) / MM, 42.0, atol=1e-6)
+    np.testing.assert_allclose(arcs.bulges, np.tan(np.pi / arcs.bulges.size / 2), rtol=1e-9)
+    assert arcs.area == pytest.approx(np.pi * 0.042**2, rel=1e-12)
     assert bore.dxf.radius == pytest.approx(10.0, rel=1e-12)
 
 
@@ -159,10 +199,7 @@ def test_solid_read_back_by_gmsh(make, tmp_path: Path, capfd: pytest.CaptureFixt
     contour, path = make(), tmp_path / "cam.step"
     write_step(path, Outline(contour, BORE, KEYWAY), WIDTH)
     assert capfd.readouterr().out == ""
-    half, turn = 0.5 * KEYWAY.width, np.arcsin(0.5 * KEYWAY.width / BORE)
-    mouth = BORE * np.cos(turn)
-    hole = np.pi * BORE**2 + 2 * half * (BORE + KEYWAY.depth - mouth)
-    hole -= BORE**2 * turn - half * mouth  # the cap of the bore that the slot takes in
+    hole, _ = keyed_hole()
     with session() as gmsh:
         gmsh.model.occ.importShapes(str(path))
         gmsh.model.occ.synchronize()
@@ -210,16 +247,6 @@ def test_cutter_larger_than_a_hollow_is_refused() -> None:
         cutter_path(contour, 1.01 * hollow, THETA)
     with pytest.raises(InputError):
         cutter_path(contour, 0.0, THETA)
-
-
-def test_stated_chord_error_is_kept_at_any_size() -> None:
-    for error in (1e-5, 1e-6):
-        found = chords(wavy(), error)
-        assert found.error == error
-        close = chords(wavy(), 0.25 * error)
-        # a quarter of the error takes twice the chords; three more are cut at any size, and one
-        # may be owed to rounding up
-        assert 2 * found.theta.size - close.theta.size in (3, 4)
 
 
 def test_tables_hold_the_contour_to_the_last_digit() -> None:
