@@ -9,6 +9,7 @@ verification_tables    certificate, benchmarks, tolerance corners, shadow prices
 verdict_text           verdict in sentences
 figures                contents of a figure: curves, limits, units, title, caption
 sheet_turn             one load case over a cam turn (`Turn`); curves from its columns
+arrangement_data       sizes and motion of the mechanism, its drawing at a cam angle
 part_figures           figures of forces, guides, roller, oil film, spring, pin, ring, key, shaft
 analysis_sheet         figures of torque, shape, limits and contact; all groups in order
 report_data            a run folder, read once (`Material`)

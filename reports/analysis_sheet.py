@@ -134,8 +134,6 @@ def _outline(turn: Turn) -> Figure | None:
     c = turn.contour
     theta = turn.columns["cam_angle_deg"][turn.worst]
     distance = np.abs((c["cam_angle_deg"] - theta + 180.0) % 360.0 - 180.0)
-    width, depth = (turn.length("cam", "keyway", key) for key in ("width", "depth"))
-    angle = turn.length("cam", "keyway", "angle", unit="rad") or 0.0
     worst, name = int(np.argmin(distance)), turn.follower_name
     pitch = np.array([c["pitch_x_mm"], c["pitch_y_mm"]]) if turn.rolls else None
     return OutlineFigure(
@@ -145,7 +143,7 @@ def _outline(turn: Turn) -> Figure | None:
         np.array([c["contour_x_mm"], c["contour_y_mm"]]), pitch,
         _roller_outline(turn, worst) if turn.rolls else _face_outline(turn, worst), name,
         turn.length("cam", "bore_radius"),
-        (width, depth, angle) if width is not None and depth is not None else None,
+        turn.keyway,
         worst, f"at {theta:.4g} deg", turn.counter_hole,
     )  # fmt: skip
 

@@ -81,9 +81,19 @@ class Turn:
 
     @property
     def worst(self) -> int:
-        """Row of the maximum contact pressure."""
-        pressure = self.columns["p0_fe_MPa"]
-        return int(np.nanargmax(pressure)) if np.isfinite(pressure).any() else 0
+        """Row of the maximum contact pressure; of Hertz without finite elements."""
+        for name in ("p0_fe_MPa", "p0_hertz_MPa"):
+            if np.isfinite(self.columns[name]).any():
+                return int(np.nanargmax(self.columns[name]))
+        return 0
+
+    @property
+    def keyway(self) -> tuple[float, float, float] | None:
+        """Width and depth, mm, and angle, rad; None without a keyway."""
+        width, depth = (self.length("cam", "keyway", key) for key in ("width", "depth"))
+        if width is None or depth is None:
+            return None
+        return width, depth, self.length("cam", "keyway", "angle", unit="rad") or 0.0
 
     @property
     def rolls(self) -> bool:

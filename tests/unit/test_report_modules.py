@@ -8,6 +8,7 @@ from pathlib import Path
 from camwright import reports
 
 FOLDER = Path(reports.__file__).parent
+PACKAGES = {path.parent.name for path in FOLDER.glob("*/__init__.py")}
 
 
 def listed() -> list[str]:
@@ -22,9 +23,10 @@ def imported(module: str) -> set[str]:
     for node in ast.walk(tree):
         if isinstance(node, ast.ImportFrom) and node.module == "camwright.reports":
             names |= {alias.name for alias in node.names}
-        elif isinstance(node, ast.ImportFrom) and str(node.module).startswith("camwright.reports."):
-            names.add(str(node.module).rpartition(".")[2])
-    return names
+        elif isinstance(node, ast.ImportFrom) and node.module:
+            above, _, name = node.module.rpartition(".")
+            names |= {name} if above == "camwright.reports" else set()
+    return names - PACKAGES
 
 
 def test_the_table_lists_every_module_once():

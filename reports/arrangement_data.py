@@ -1,0 +1,158 @@
+"""Arrangement of a run: sizes and motion from its stored results, the drawing at an angle."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+
+import numpy as np
+
+from camwright.geometry.arrays import median
+from camwright.reports.drawing import arrangement
+from camwright.reports.drawing.arrangement import FORCES, Bush, Mechanism, Motion
+from camwright.reports.drawing.drawing_shapes import Drawing
+from camwright.reports.drawing.spring_shapes import Coil, Gas, Spring, Torsion
+from camwright.reports.sheet_turn import Turn
+
+_COLUMNS = {"contact": "normal_force_N", "spring": "spring_force_N",
+            "guide-a": "guide_reaction_A_N", "guide-b": "guide_reaction_B_N"}  # fmt: skip
+_SEAT = 0.22  # of the stem: thickness of a seat
+# Shares of the stem diameter where the case has no size.
+_COIL, _WIRE, _GUIDE, _OVERHANG, _SPACING = 2.6, 0.42, 2.0, 3.0, 7.0
+_PIN_SHARE = 0.5  # of the roller
+_TURNS = 7.0
+
+
+def arrangement_at(turn: Turn, row: int | None = None) -> Drawing:
+    """The mechanism at a row of the cycle; None: at the maximum contact pressure."""
+    return arrangement.drawing(mechanism_of(turn), motion_of(turn), turn.worst if row is None
+                               else row)  # fmt: skip
+
+
+def motion_of(turn: Turn) -> Motion:
+    """Motion and forces of the load case of a report."""
+    c = turn.columns
+    return Motion(
+        turn.load_case, np.radians(c["cam_angle_deg"]), turn.crank, turn.words.shaft,
+        c["lift_mm"], np.radians(c["pressure_angle_deg"]), c.get("face_contact_offset_mm"),
+        {name: np.nan_to_num(c[_COLUMNS[name]]) for name in FORCES},
+    )  # fmt: skip
+
+
+@lru_cache(maxsize=2)
+def mechanism_of(turn: Turn) -> Mechanism:
+    """Sizes of the mechanism; those that the case does not state follow from the stem."""
+    contour = np.array([turn.contour["contour_x_mm"], turn.contour["contour_y_mm"]])
+    axis, lowest = _reference(turn)
+    stroke = float(np.max(turn.lift["lift_mm"]))
+    stem = turn.length("follower", "stem_diameter") or 0.2 * float(np.hypot(*contour).min())
+    guides = _guides(turn, stem, lowest + stroke)
+    spring = _spring(turn, stem, stroke, guides)
+    roller = turn.length("roller", "radius") if turn.rolls else None
+    return Mechanism(
+        contour, turn.length("cam", "bore_radius"), turn.keyway, _drilled(turn), axis, lowest,
+        stroke, roller, _pin(turn, roller or 0.0), _face(turn) if roller is None else None, stem,
+        _stem_end(turn, stem, lowest, guides, spring), guides, spring,
+    )  # fmt: skip
+
+
+def _reference(turn: Turn) -> tuple[float, float]:
+    """x of the follower axis and height of roller centre or face at zero lift, mm."""
+    c, lift = turn.contour, turn.lift["lift_mm"]
+    if not turn.rolls:
+        support = (c["contour_x_mm"] * c["normal_x"] + c["contour_y_mm"] * c["normal_y"]) - lift
+        return 0.0, median(support)
+    theta = np.radians(c["cam_angle_deg"])
+    x, y = c["pitch_x_mm"], c["pitch_y_mm"]
+    along, across = x * np.cos(theta) + y * np.sin(theta), x * np.sin(theta) - y * np.cos(theta)
+    return median(across), median(along - lift)
+
+
+def _drilled(turn: Turn) -> tuple[float, float, float] | None:
+    hole = turn.counter_hole
+    return hole[:3] if hole is not None and hole[3] else None
+
+
+def _pin(turn: Turn, roller: float) -> float:
+    """Radius of the roller pin, mm."""
+    stated = turn.length("roller", "pin", "diameter")
+    hub = turn.length("roller", "hub_radius")
+    radius = 0.5 * stated if stated else hub or _PIN_SHARE * roller
+    return min(radius, 0.8 * roller)
+
+
+def _face(turn: Turn) -> tuple[float, float]:
+    width = turn.length("follower", "face", "width")
+    thick = turn.length("follower", "face", "thickness")
+    wanders = turn.columns.get("face_contact_offset_mm")
+    least = 2.2 * float(np.max(np.abs(wanders))) if wanders is not None else 1.0
+    return width or least, thick or 0.3 * (width or least)
+
+
+def _guides(turn: Turn, stem: float, highest: float) -> tuple[Bush, Bush]:
+    """Guide A at its overhang from roller centre or face at maximum lift, guide B beyond it."""
+    overhang = turn.length("follower", "overhang_at_max_lift") or _OVERHANG * stem
+    spacing = turn.length("guides", "spacing") or _SPACING * stem
+    a, b = (
+        Bush(middle, turn.length("guides", name, "length") or _GUIDE * stem,
+             max(turn.length("guides", name, "diameter") or stem, stem))
+        for name, middle in (("a", highest + overhang), ("b", highest + overhang + spacing))
+    )  # fmt: skip
+    return a, b
+
+
+def _spring(turn: Turn, stem: float, stroke: float, guides: tuple[Bush, Bush]) -> Spring:
+    """The spring between the guides where it fits there, else above them."""
+    kind, seat = turn.case.get("spring", {}).get("kind", "coil"), _SEAT * stem
+    above = _top(guides[1]) + seat + 0.3 * stem
+    if kind == "gas":
+        area = turn.length("spring", "gas", "area", unit="mm^2") or stem**2
+        volume = turn.length("spring", "gas", "volume", unit="cm^3")
+        return Gas.of(area, stroke * area if volume is None else 1e3 * volume, above, stroke)
+    if kind == "torsion":
+        arm = turn.length("spring", "torsion", "arm") or 2.0 * stroke
+        raised = turn.length("spring", "torsion", "arm_angle", unit="rad") or 0.0
+        diameter = turn.length("spring", "torsion", "mean_diameter") or 0.4 * arm
+        wire = turn.length("spring", "torsion", "wire_diameter") or 0.15 * diameter
+        between = _top(guides[0]) + seat + 0.3 * stem
+        return Torsion(arm, raised, diameter, wire, between)
+    diameter = turn.length("spring", "design", "mean_diameter") or _COIL * stem
+    active = turn.case.get("spring", {}).get("design", {}).get("coils")
+    turns = float(active) + 2.0 if isinstance(active, (int, float)) else _TURNS
+    room = _bottom(guides[1]) - _top(guides[0]) - seat
+    stated = _installed(turn)
+    length = stated or (room if room > 1.3 * stroke else 1.8 * stroke + 2.0 * stem)
+    thickest = min(_WIRE * stem, 0.75 * (length - stroke) / (turns + 1.0))
+    wire = turn.length("spring", "design", "wire_diameter") or thickest
+    if length <= room and diameter - wire > stem:
+        return Coil(wire, diameter, turns, _bottom(guides[1]) - length, length)
+    return Coil(wire, diameter, turns, above, length)
+
+
+def _installed(turn: Turn) -> float | None:
+    """Length of a coil spring at zero lift, mm: free length less preload over rate."""
+    free = turn.length("spring", "design", "free_length")
+    lift, force = turn.columns["lift_mm"], turn.columns["spring_force_N"]
+    low, high = int(np.argmin(lift)), int(np.argmax(lift))
+    rise, travel = float(force[high] - force[low]), float(lift[high] - lift[low])
+    if free is None or not rise > 0.0 or not travel > 0.0:
+        return None
+    length = free - float(force[low]) * travel / rise + float(lift[low])
+    return length if length > travel else None
+
+
+def _stem_end(
+    turn: Turn, stem: float, lowest: float, guides: tuple[Bush, Bush], spring: Spring
+) -> float:
+    """Height of the end of the stem at zero lift, mm."""
+    stated = turn.length("follower", "stem_length")
+    if stated is not None:
+        return max(lowest + stated, spring.seat)
+    return max(_top(guides[1]) + 0.4 * stem, spring.seat)
+
+
+def _top(bush: Bush) -> float:
+    return bush.middle + 0.5 * bush.length
+
+
+def _bottom(bush: Bush) -> float:
+    return bush.middle - 0.5 * bush.length

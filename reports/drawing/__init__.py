@@ -1,0 +1,14 @@
+"""Drawing of the mechanism: cam, follower, guides, spring and forces as lines. Nothing is solved.
+
+In the order of use:
+
+| module           | responsibility                                            | symbol, unit |
+| ---------------- | --------------------------------------------------------- | ------------ |
+| `drawing_shapes` | outlines, arrows, texts; groups that move together        | x, y, mm     |
+| `spring_shapes`  | coils, gas spring, torsion spring between their seats     | L, mm        |
+| `arrangement`    | the mechanism at a cam angle, with force arrows to scale  | theta, rad   |
+| `drawing_svg`    | a drawing as SVG, in fixed colours or in those of a page  |              |
+
+Coordinates are in the plane of the cam, y along the follower axis, away from the cam. Imports
+`geometry` and `base`; `reports` reads the sizes from a run.
+"""

@@ -1,0 +1,411 @@
+"""Arrangement of cam, follower, guides and spring at a cam angle, with the forces to scale.
+
+The follower moves along y; the cam turns clockwise about the origin. Forces are those on the
+follower: the contact force along the normal of the contact, the reactions across the stem.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from camwright.geometry.arrays import Array
+from camwright.pipeline.base.files import Json
+from camwright.reports.drawing.drawing_shapes import (
+    Arrow,
+    Drawing,
+    Group,
+    Outline,
+    Pen,
+    Pose,
+    Shape,
+    Text,
+    bore_outline,
+    circle,
+    hatching,
+    rectangle,
+    segment,
+)
+from camwright.reports.drawing.spring_shapes import Coil, Spring
+
+_EDGE, _THIN = 0.45, 0.22  # mm, of lines on a mechanism `_WHOLE` high
+_WHOLE = 260.0
+_FORCE_SHARE = 0.85
+"""Length of the greatest force over the least radius of the cam."""
+FORCES = {"contact": "Contact force", "spring": "Spring force",
+          "guide-a": "Guide A", "guide-b": "Guide B"}  # fmt: skip
+COLOURS = {"contact": "vermillion", "spring": "green", "guide-a": "blue", "guide-b": "blue"}
+
+
+@dataclass(frozen=True)
+class Bush:
+    """Guide of the stem: height of its middle, length and bore, mm."""
+
+    middle: float
+    length: float
+    bore: float
+
+    @property
+    def wall(self) -> float:
+        """Wall as it is drawn, mm."""
+        return 0.16 * self.bore
+
+
+@dataclass(frozen=True, eq=False)
+class Mechanism:
+    """Sizes in mm, angles in rad.
+
+    contour : array (2, n)   in the frame of the cam, angle zero along x
+    bore, keyway             radius; width, depth and angle; None: not stated
+    counter_hole             centre x, y and radius of a drilled hole, or None
+    axis                     x of the follower axis
+    lowest, stroke           height of roller centre or face at zero lift; greatest lift
+    roller, pin              radii; None: a flat face
+    face                     width and thickness of a flat face; None: a roller
+    stem, stem_end           diameter; height of its end at zero lift
+    """
+
+    contour: Array
+    bore: float | None
+    keyway: tuple[float, float, float] | None
+    counter_hole: tuple[float, float, float] | None
+    axis: float
+    lowest: float
+    stroke: float
+    roller: float | None
+    pin: float
+    face: tuple[float, float] | None
+    stem: float
+    stem_end: float
+    guides: tuple[Bush, Bush]
+    spring: Spring
+
+    @property
+    def radius_max(self) -> float:
+        """Greatest radius of the contour, mm."""
+        return float(np.hypot(*self.contour).max())
+
+    @property
+    def top(self) -> float:
+        """Height of the highest part, mm."""
+        above = self.guides[1].middle + 0.5 * self.guides[1].length
+        return max(self.stem_end + self.stroke, self.spring.top + 0.06 * self.stem, above)
+
+    @property
+    def height(self) -> float:
+        """Height of cam and follower together, mm."""
+        return self.top + self.radius_max
+
+    @property
+    def scale(self) -> float:
+        """Size of lines and texts relative to a mechanism `_WHOLE` high."""
+        return self.height / _WHOLE
+
+    @property
+    def text(self) -> float:
+        """Height of the text, mm."""
+        return 6.2 * self.scale
+
+    @property
+    def arrow_length(self) -> float:
+        """Length of the greatest force, mm."""
+        return _FORCE_SHARE * float(np.hypot(*self.contour).min())
+
+
+@dataclass(frozen=True, eq=False)
+class Motion:
+    """One load case over the turn; arrays (n,), SI but for lengths in mm.
+
+    theta : cam angle, rad; lift, mm; pressure_angle, rad; contact_offset : of the contact from the
+    axis of a flat face, mm, None of a roller; forces : N by the names of `FORCES`, reactions
+    positive where they act against a side force that is positive
+    """
+
+    load_case: str
+    theta: Array
+    shaft_angle: Array
+    shaft: str
+    lift: Array
+    pressure_angle: Array
+    contact_offset: Array | None
+    forces: dict[str, Array]
+
+    @property
+    def greatest_force(self) -> float:
+        """Greatest force of the turn, N."""
+        return max(float(np.abs(each).max()) for each in self.forces.values())
+
+
+def cam_turn(theta: float) -> float:
+    """Rotation of the cam, rad, at a cam angle."""
+    return 0.5 * np.pi - theta
+
+
+def drawing(mechanism: Mechanism, motion: Motion, row: int) -> Drawing:
+    """The mechanism at one row of the motion."""
+    m, lift = mechanism, float(motion.lift[row])
+    behind, before = m.spring.groups(m.axis, lift)
+    theta = float(motion.theta[row])
+    groups = (
+        Group("axes", tuple(_axes(m))),
+        Group("cam", tuple(_cam(m)), Pose(cam_turn(theta))),
+        Group("turning", tuple(_turning(m))),
+        *behind,
+        Group("follower", tuple(_follower(m)), Pose(shift=(m.axis, m.lowest + lift))),
+        *before,
+        Group("guides", tuple(_guides(m))),
+        Group("forces", tuple(arrows(m, motion, row))),
+        Group("values", tuple(_values(m, motion, row))),
+    )
+    return Drawing("Arrangement", alt(motion, row), groups, _box(m))
+
+
+def alt(motion: Motion, row: int) -> str:
+    """Text alternative: angle and forces."""
+    forces = ", ".join(f"{name.lower()} {_newtons(motion, key, row)}" for key, name in
+                       FORCES.items())  # fmt: skip
+    return (
+        "Cam, follower, guides and spring in the plane of the cam at "
+        f"{_angle_words(motion, row)}, load case {motion.load_case}. Lift "
+        f"{motion.lift[row]:.4g} mm; {forces}. The cam turns clockwise."
+    )
+
+
+def _angle_words(motion: Motion, row: int) -> str:
+    cam, shaft = np.degrees(motion.theta[row]), motion.shaft_angle[row]
+    return f"cam {cam:.1f}°, {motion.shaft} {shaft:.1f}°"
+
+
+def _newtons(motion: Motion, name: str, row: int) -> str:
+    value = abs(float(motion.forces[name][row]))
+    return f"{value:.0f} N" if value >= 100.0 else f"{value:.3g} N"
+
+
+def _axes(m: Mechanism) -> list[Shape]:
+    """Follower axis and centre lines of the cam."""
+    pen = Pen("muted", _THIN * m.scale, dash="dashdot")
+    reach = m.radius_max + 0.8 * m.text
+    return [
+        Outline((segment((m.axis, -reach), (m.axis, m.top + 0.8 * m.text)),), pen, closed=False),
+        Outline((segment((-reach, 0.0), (reach, 0.0)),), pen, closed=False),
+    ]
+
+
+def _cam(m: Mechanism) -> list[Shape]:
+    """Contour, openings and the mark of the angle zero, in the frame of the cam."""
+    edge = Pen("ink", _EDGE * m.scale, "steel")
+    holes = [] if m.bore is None else [bore_outline(m.bore, m.keyway)]
+    if m.counter_hole is not None:
+        x, y, radius = m.counter_hole
+        holes.append(circle(radius, (x, y)))
+    zero = float(np.hypot(*m.contour[:, 0])) * np.array([0.86, 1.0])
+    along = m.contour[:, 0] / np.hypot(*m.contour[:, 0])
+    mark = np.outer(along, zero)
+    words = Text("0°", tuple(0.78 * m.contour[:, 0] - 0.4 * m.text * np.array([0.0, 1.0])),
+                 0.85 * m.text, "muted", "middle")  # fmt: skip
+    return [
+        Outline((m.contour, *holes), edge),
+        Outline((mark,), Pen("ink", 1.6 * edge.width), closed=False),
+        words,
+    ]
+
+
+def _turning(m: Mechanism) -> list[Shape]:
+    """Arc with an arrow in the direction of turning, below the cam on its left."""
+    radius = m.radius_max + 0.9 * m.text
+    angle = np.radians(np.linspace(247.0, 218.0, 25))
+    arc = radius * np.stack([np.cos(angle), np.sin(angle)])
+    width = 0.8 * m.scale
+    return [
+        Outline((arc[:, :-1],), Pen("muted", width), closed=False),
+        Arrow("turning", tuple(arc[:, -5]), tuple(arc[:, -1] + 0.6 * (arc[:, -1] - arc[:, -2])),
+              "muted", width),
+    ]  # fmt: skip
+
+
+def _follower(m: Mechanism) -> list[Shape]:
+    """Roller with pin and fork, or face; stem and moving seat; origin at roller centre or face."""
+    edge = Pen("ink", _EDGE * m.scale, "steel")
+    half, end = 0.5 * m.stem, m.stem_end - m.lowest
+    made: list[Shape] = []
+    if m.roller is not None:
+        bridge = m.roller + 0.25 * m.stem
+        made += [
+            Outline((rectangle(-half, 0.0, half, end),), edge),
+            Outline((rectangle(-1.1 * half, bridge, 1.1 * half, bridge + 0.35 * m.stem),), edge),
+            Outline((circle(m.roller), circle(m.pin)), Pen("ink", edge.width, "card")),
+            Outline((circle(m.pin),), edge),
+        ]
+    elif m.face is not None:
+        width, thick = m.face
+        made += [
+            Outline((rectangle(-half, thick, half, end),), edge),
+            Outline((rectangle(-0.5 * width, 0.0, 0.5 * width, thick),), edge),
+        ]
+    seat, reach = m.spring.seat - m.lowest, min(m.spring.reach, 4.0 * m.stem)
+    thick = 0.22 * m.stem
+    if not isinstance(m.spring, Coil):
+        reach = 0.8 * m.stem
+    made.append(Outline((rectangle(-reach, seat - thick, reach, seat),), edge))
+    return made
+
+
+def _guides(m: Mechanism) -> list[Shape]:
+    """Bushes in hatched housings, and the fixed seat of the spring."""
+    edge, thin = Pen("ink", _EDGE * m.scale, "shade"), Pen("muted", _THIN * m.scale)
+    made: list[Shape] = []
+    for bush in m.guides:
+        low, high = bush.middle - 0.5 * bush.length, bush.middle + 0.5 * bush.length
+        for side in (-1.0, 1.0):
+            inner = m.axis + side * 0.5 * bush.bore
+            outer, far = inner + side * bush.wall, inner + side * (bush.wall + 0.55 * m.stem)
+            box = (min(outer, far), low, max(outer, far), high)
+            made += [
+                Outline(hatching(box, 3.2 * m.scale), thin, closed=False),
+                Outline((segment((outer, low), (outer, high)),), Pen("ink", edge.width),
+                        closed=False),
+                Outline((rectangle(min(inner, outer), low, max(inner, outer), high),), edge),
+            ]  # fmt: skip
+    if isinstance(m.spring, Coil):
+        for side in (-1.0, 1.0):
+            inner, outer = (
+                m.axis + side * 0.55 * m.stem,
+                m.axis + side * (m.spring.reach + m.stem / 4),
+            )
+            box = (min(inner, outer), m.spring.top, max(inner, outer), m.spring.top + 0.22 * m.stem)
+            made += [Outline(hatching(box, 3.2 * m.scale), thin, closed=False),
+                     Outline((segment((inner, m.spring.top), (outer, m.spring.top)),),
+                             Pen("ink", edge.width), closed=False)]  # fmt: skip
+    return made
+
+
+def contact_point(mechanism: Mechanism, motion: Motion) -> Array:
+    """Contact (2, n), mm."""
+    m, height = mechanism, mechanism.lowest + motion.lift
+    if m.roller is None:
+        across = np.zeros_like(height) if motion.contact_offset is None else motion.contact_offset
+        return np.stack([m.axis - across, height])
+    angle = motion.pressure_angle
+    return np.stack([m.axis - m.roller * np.sin(angle), height - m.roller * np.cos(angle)])
+
+
+def arrows(mechanism: Mechanism, motion: Motion, row: int) -> list[Arrow]:
+    """Forces on the follower at one row, to one scale over the turn."""
+    m = mechanism
+    scale = m.arrow_length / motion.greatest_force if motion.greatest_force > 0.0 else 0.0
+    touch = contact_point(m, motion)[:, row]
+    angle = float(motion.pressure_angle[row])
+    beside = m.axis + m.spring.reach + 1.6 * m.scale
+    pushed = 0.5 * m.stem
+    at = {
+        "contact": (touch, np.array([np.sin(angle), np.cos(angle)])),
+        "spring": (np.array([beside, m.spring.seat + motion.lift[row]]), np.array([0.0, -1.0])),
+        # a positive side force points along +x: guide A pushes back, guide B with it
+        "guide-a": (np.array([m.axis, m.guides[0].middle]), np.array([-1.0, 0.0])),
+        "guide-b": (np.array([m.axis, m.guides[1].middle]), np.array([1.0, 0.0])),
+    }
+    made = []
+    for name, (tip, along) in at.items():
+        force = float(motion.forces[name][row])
+        push = np.sign(force) * along
+        end = tip - pushed * push if name.startswith("guide") else tip
+        tail = end - abs(force) * scale * push
+        made.append(Arrow(name, (float(tail[0]), float(tail[1])), (float(end[0]), float(end[1])),
+                          COLOURS[name], 1.5 * m.scale))  # fmt: skip
+    return made
+
+
+def label_places(mechanism: Mechanism) -> dict[str, tuple[float, float]]:
+    """Places of the values, in a column right of all that moves; none overlaps another."""
+    m, pitch = mechanism, 2.7 * mechanism.text
+    wanted = sorted(
+        {
+            "contact": m.radius_max + 0.6 * m.text, "guide-a": m.guides[0].middle,
+            "spring": m.spring.seat + 0.5 * m.stroke, "guide-b": m.guides[1].middle,
+        }.items(), key=lambda item: item[1],
+    )  # fmt: skip
+    across, free = _column(m), m.radius_max + 0.6 * m.text
+    places = {}
+    for name, height in wanted:
+        places[name] = (across, max(height, free))
+        free = places[name][1] + pitch
+    return places
+
+
+def _column(m: Mechanism) -> float:
+    """Left edge of the values: right of spring, face, guides and the arrows beside them, mm."""
+    bush = max(0.5 * each.bore + each.wall for each in m.guides) + 0.55 * m.stem
+    face = 0.0 if m.face is None else 0.5 * m.face[0]
+    beside = m.spring.reach + 4.0 * m.scale
+    return m.axis + max(beside, face, bush, 0.5 * m.stem + m.arrow_length) + 0.8 * m.text
+
+
+def _values(m: Mechanism, motion: Motion, row: int) -> list[Shape]:
+    """Names and values of the forces; angle; scale of the arrows."""
+    made: list[Shape] = []
+    for name, (x, y) in label_places(m).items():
+        words = _newtons(motion, name, row)
+        made += [
+            Text(FORCES[name], (x, y + 1.05 * m.text), 0.82 * m.text, "muted"),
+            Text(words, (x, y), m.text, COLOURS[name], bold=True, name=name),
+        ]
+    left, bottom, right, _ = _box(m)
+    foot = bottom + 0.7 * m.text
+    made.append(Text(_angle_words(motion, row), (left + 0.4 * m.text, foot), m.text, bold=True,
+                     name="angle"))  # fmt: skip
+    if motion.greatest_force > 0.0:
+        stated = _round(0.5 * motion.greatest_force)
+        length = stated * m.arrow_length / motion.greatest_force
+        end = right - 0.4 * m.text
+        bar, y = segment((end - length, foot), (end, foot)), foot + 0.5 * m.text
+        made += [
+            Outline((bar,), Pen("ink", 1.5 * m.scale), closed=False),
+            Text(f"{stated:g} N", (end, y), 0.82 * m.text, "muted", "end"),
+        ]
+    return made
+
+
+def _round(value: float) -> float:
+    """Greatest of 1, 2, 5 times a power of ten up to a value."""
+    power = 10.0 ** np.floor(np.log10(value))
+    return float(max(step * power for step in (1.0, 2.0, 5.0) if step * power <= value))
+
+
+def _box(m: Mechanism) -> tuple[float, float, float, float]:
+    margin = 1.4 * m.text
+    places = label_places(m)
+    widest = max(Text(name, (0.0, 0.0), 0.82 * m.text).box[2] for name in FORCES.values())
+    right = max(m.radius_max + margin, _column(m) + widest)
+    left = min(-m.radius_max - margin, m.axis - 0.5 * m.stem - m.arrow_length - 0.5 * margin)
+    top = max(m.top + margin, max(y for _, y in places.values()) + 2.2 * m.text)
+    return left, -m.radius_max - 2.4 * margin, right, top
+
+
+def moving_record(mechanism: Mechanism, motion: Motion, rows: Sequence[int]) -> dict[str, Json]:
+    """Poses of the moving groups, arrows and values at rows of the motion, for a page.
+
+    Poses are turn (deg, counter-clockwise), shift x and y (mm) and stretch of each row.
+    """
+    poses: dict[str, list[Pose]] = {}
+    tips: dict[str, list[list[float]]] = {name: [] for name in FORCES}
+    words: dict[str, list[str]] = {name: [] for name in (*FORCES, "angle")}
+    for row in rows:
+        for group in drawing(mechanism, motion, row).groups:
+            poses.setdefault(group.name, []).append(group.pose)
+        for arrow in arrows(mechanism, motion, row):
+            tips[arrow.name].append([round(v, 2) for v in (*arrow.tail, *arrow.tip)])
+            words[arrow.name].append(_newtons(motion, arrow.name, row))
+        words["angle"].append(_angle_words(motion, row))
+    return {
+        "poses": {
+            name: [
+                [round(v, 3) for v in (np.degrees(p.turn), *p.shift, p.stretch)] for p in of_group
+            ]
+            for name, of_group in poses.items()
+            if any(pose != of_group[0] for pose in of_group)
+        },
+        "arrows": tips,
+        "words": words,
+    }

@@ -1,0 +1,119 @@
+"""A drawing as SVG; mm become user units, y points up."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from html import escape
+
+import numpy as np
+
+from camwright.geometry.arrays import Array
+from camwright.reports.drawing.drawing_shapes import Arrow, Drawing, Group, Outline, Text
+
+_DASHES = {"dashed": (4.0, 2.5), "dashdot": (9.0, 2.0, 1.5, 2.0)}  # widths of the line
+
+
+def svg_of(drawing: Drawing, colours: Mapping[str, str], font: str, attributes: str = "") -> str:
+    """SVG text of a drawing.
+
+    Parameters
+    ----------
+    colours : mapping   a CSS colour by the name that the pens use
+    font : str          font families
+    attributes : str    of the root element, escaped
+    """
+    left, _, _, top = drawing.box
+    width, height = drawing.size
+    used = sorted(
+        {s.colour for group in drawing.groups for s in group.shapes if isinstance(s, Arrow)}
+    )
+    heads = "".join(_head(name, colours[name]) for name in used)
+    body = "\n".join(_group(group, colours) for group in drawing.groups)
+    return (
+        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="{_n(left)} {_n(-top)} {_n(width)} '
+        f'{_n(height)}" font-family="{escape(font)}"{attributes and " " + attributes}>\n'
+        f"<defs>{heads}</defs>\n{body}\n</svg>\n"
+    )
+
+
+def _head(name: str, colour: str) -> str:
+    """Arrow head as a marker, sized by the width of the line."""
+    return (
+        f'<marker id="head-{name}" viewBox="0 0 3.4 3" refX="0" refY="1.5" markerWidth="3.4" '
+        f'markerHeight="3" orient="auto"><path d="M0 0L3.4 1.5L0 3Z" fill="{colour}"/></marker>'
+    )
+
+
+def _group(group: Group, colours: Mapping[str, str]) -> str:
+    pose = group.pose
+    place = ""
+    if pose.turn or any(pose.shift):
+        x, y = pose.shift
+        place = f' transform="{transform(pose.turn, x, y)}"'
+    shapes = "\n".join(_shape(shape, pose.stretch, colours) for shape in group.shapes)
+    return f'<g data-part="{group.name}"{place}>\n{shapes}\n</g>'
+
+
+def transform(turn: float, x: float, y: float) -> str:
+    """Transform of a group; turn in rad counter-clockwise, mm."""
+    return f"translate({_n(x)} {_n(-y)}) rotate({_n(-np.degrees(turn))})"
+
+
+def _shape(shape: Outline | Arrow | Text, stretch: float, colours: Mapping[str, str]) -> str:
+    if isinstance(shape, Outline):
+        return _outline(shape, stretch, colours)
+    return _arrow(shape, colours) if isinstance(shape, Arrow) else _text(shape, colours)
+
+
+def _outline(shape: Outline, stretch: float, colours: Mapping[str, str]) -> str:
+    pen = shape.pen
+    fill = colours[pen.fill] if pen.fill else "none"
+    style = f'fill="{fill}"'
+    if len(shape.lines) > 1 and shape.closed:
+        style += ' fill-rule="evenodd"'
+    if pen.stroke:
+        style += f' stroke="{colours[pen.stroke]}" stroke-width="{_n(pen.width)}"'
+        style += ' stroke-linejoin="round"'
+        if pen.dash in _DASHES:
+            dashes = " ".join(_n(part * max(pen.width, 0.3)) for part in _DASHES[pen.dash])
+            style += f' stroke-dasharray="{dashes}"'
+        elif not shape.closed:
+            style += ' stroke-linecap="round"'
+    path = "".join(_line(line, stretch, shape.closed) for line in shape.lines)
+    return f'<path d="{path}" {style}/>'
+
+
+def _line(points: Array, stretch: float, closed: bool) -> str:
+    pairs = [f"{_n(x)} {_n(-stretch * y)}" for x, y in points.T]
+    return f"M{'L'.join(pairs)}{'Z' if closed else ''}"
+
+
+def _arrow(arrow: Arrow, colours: Mapping[str, str]) -> str:
+    """A line up to the head, which the marker adds; hidden where the head is longer."""
+    tail, tip = np.array(arrow.tail), np.array(arrow.tip)
+    length = float(np.hypot(*(tip - tail)))
+    shown = length > arrow.head
+    neck = tip - (tip - tail) * (arrow.head / length) if shown else tip
+    hidden = "" if shown else ' visibility="hidden"'
+    return (
+        f'<line data-arrow="{arrow.name}" x1="{_n(tail[0])}" y1="{_n(-tail[1])}" '
+        f'x2="{_n(neck[0])}" y2="{_n(-neck[1])}" stroke="{colours[arrow.colour]}" '
+        f'stroke-width="{_n(arrow.width)}" marker-end="url(#head-{arrow.colour})"{hidden}/>'
+    )
+
+
+def _text(text: Text, colours: Mapping[str, str]) -> str:
+    x, y = text.place
+    weight = ' font-weight="bold"' if text.bold else ""
+    name = f' data-value="{text.name}"' if text.name else ""
+    return (
+        f'<text{name} x="{_n(x)}" y="{_n(-y)}" font-size="{_n(text.height)}" '
+        f'text-anchor="{text.align}" fill="{colours[text.colour]}"{weight}>'
+        f"{escape(text.words)}</text>"
+    )
+
+
+def _n(value: float) -> str:
+    """A number with at most three decimals."""
+    text = f"{value:.3f}".rstrip("0").rstrip(".")
+    return "0" if text in ("-0", "") else text

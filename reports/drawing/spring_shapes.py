@@ -1,0 +1,187 @@
+"""Coil, gas and torsion springs between their seats."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import cycle, pairwise
+from math import asin, cos, pi, sin, sqrt
+
+import numpy as np
+
+from camwright.geometry.arrays import Array
+from camwright.reports.drawing.drawing_shapes import (
+    Group,
+    Outline,
+    Pen,
+    Pose,
+    circle,
+    rectangle,
+    segment,
+)
+
+_EDGE = 0.35  # mm, of a drawn part
+_WIRE_EDGE = 0.06  # of the wire
+_ROD_SHARE, _WALL_SHARE = 0.45, 0.1  # of the bore of a gas spring
+
+
+@dataclass(frozen=True)
+class Coil:
+    """Helical spring from a seat that moves with the follower to a fixed one above it; mm.
+
+    seat : height of the moving seat at zero lift; length : between the seats at zero lift;
+    turns : all coils
+    """
+
+    wire: float
+    diameter: float
+    turns: float
+    seat: float
+    length: float
+
+    @property
+    def reach(self) -> float:
+        """Half of the outer diameter, mm."""
+        return 0.5 * (self.diameter + self.wire)
+
+    @property
+    def top(self) -> float:
+        """Height of the fixed seat, mm."""
+        return self.seat + self.length
+
+    def groups(self, axis: float, lift: float) -> tuple[tuple[Group, ...], tuple[Group, ...]]:
+        """Groups behind and before the stem at a lift."""
+        pose = self.pose(axis, lift)
+        behind, before = self._strands()
+        return (
+            (Group("spring-behind", self._drawn(behind, "muted"), pose),),
+            (Group("spring-before", self._drawn(before, "steel"), pose),),
+        )
+
+    def pose(self, axis: float, lift: float) -> Pose:
+        """Place of the coils, which reach from 0 to 1 along y."""
+        inside = max(self.length - lift - self.wire, 0.0)
+        return Pose(shift=(axis, self.seat + lift + 0.5 * self.wire), stretch=inside)
+
+    def _strands(self) -> tuple[list[Array], list[Array]]:
+        """Half coils on the far side and on the near side, x in mm, y from 0 to 1."""
+        count = max(round(self.turns), 2)
+        half = 0.5 * self.diameter
+        steps = np.linspace(0.0, 1.0, 2 * count + 1)
+        strands = [
+            segment((side * half, low), (-side * half, high))
+            for side, (low, high) in zip(cycle((-1.0, 1.0)), pairwise(steps), strict=False)
+        ]
+        return strands[1::2], strands[::2]
+
+    def _drawn(self, strands: list[Array], fill: str) -> tuple[Outline, ...]:
+        """Strands of wire with an edge."""
+        widths = (("ink", self.wire), (fill, (1.0 - 2.0 * _WIRE_EDGE) * self.wire))
+        return tuple(
+            Outline((strand,), Pen(stroke, width), closed=False)
+            for strand in strands
+            for stroke, width in widths
+        )
+
+
+@dataclass(frozen=True)
+class Gas:
+    """Gas spring: rod on a seat that moves with the follower, cylinder held above it; mm."""
+
+    bore: float
+    seat: float
+    stroke: float
+    body: float
+
+    @classmethod
+    def of(cls, area: float, volume: float, seat: float, stroke: float) -> Gas:
+        """From the area of the piston, mm2, and the volume of the gas, mm3."""
+        bore = 2.0 * sqrt(area / pi)
+        inside = min(max(volume / area, 1.2 * stroke), 4.0 * stroke)
+        return cls(bore, seat, stroke, inside + 4.0 * _WALL_SHARE * bore)
+
+    @property
+    def reach(self) -> float:
+        """Half of the outer diameter, mm."""
+        return 0.6 * self.bore
+
+    @property
+    def top(self) -> float:
+        """Height of the fixed end, mm."""
+        return self.seat + 1.25 * self.stroke + self.body
+
+    def groups(self, axis: float, lift: float) -> tuple[tuple[Group, ...], tuple[Group, ...]]:
+        """Groups behind and before the stem at a lift."""
+        wall = _WALL_SHARE * self.bore
+        low, rod = self.top - self.body, 0.5 * _ROD_SHARE * self.bore
+        half = 0.5 * self.bore
+        piston = low + 1.2 * wall - self.seat
+        outside = rectangle(-half - wall, low, half + wall, self.top)
+        inside = rectangle(-half, low + wall, half, self.top - wall)
+        body = (
+            Outline((outside,), Pen("ink", _EDGE, "steel")),
+            Outline((inside,), Pen("ink", _EDGE, "card")),
+        )
+        moving = (
+            Outline((rectangle(-rod, 0.0, rod, piston),), Pen("ink", _EDGE, "steel")),
+            Outline((rectangle(-half, piston, half, piston + wall),), Pen("ink", _EDGE, "muted")),
+        )
+        return (), (
+            Group("gas-body", body, Pose(shift=(axis, 0.0))),
+            Group("follower-rod", moving, Pose(shift=(axis, self.seat + lift))),
+        )
+
+
+@dataclass(frozen=True)
+class Torsion:
+    """Torsion spring beside the follower; its arm presses on a pin of the follower; mm, rad.
+
+    arm_angle : of the arm at zero lift from square to the axis, positive outwards
+    """
+
+    arm: float
+    arm_angle: float
+    diameter: float
+    wire: float
+    seat: float
+
+    @property
+    def reach(self) -> float:
+        """Distance of the far side of the coil from the follower axis, mm."""
+        return self.arm * cos(self.arm_angle) + 0.5 * (self.diameter + self.wire)
+
+    @property
+    def top(self) -> float:
+        """Greatest height of the coil, mm."""
+        return self._pivot(0.0)[1] + 0.5 * (self.diameter + self.wire)
+
+    def _pivot(self, axis: float) -> tuple[float, float]:
+        return (
+            axis + self.arm * cos(self.arm_angle),
+            self.seat - self.arm * sin(self.arm_angle),
+        )
+
+    def pose(self, axis: float, lift: float) -> Pose:
+        """Place of the arm, which lies along -x from the coil axis at an angle of zero."""
+        raised = asin(min(max(sin(self.arm_angle) + lift / self.arm, -1.0), 1.0))
+        return Pose(-raised, self._pivot(axis))
+
+    def groups(self, axis: float, lift: float) -> tuple[tuple[Group, ...], tuple[Group, ...]]:
+        """Groups behind and before the stem at a lift."""
+        half = 0.5 * self.diameter
+        coil = Outline((circle(half + 0.5 * self.wire), circle(half - 0.5 * self.wire)),
+                       Pen("ink", _EDGE, "steel"))  # fmt: skip
+        strand = segment((0.0, half), (-self.arm, 0.0))
+        arm = tuple(
+            Outline((strand,), Pen(stroke, width), closed=False)
+            for stroke, width in (
+                ("ink", self.wire),
+                ("steel", (1.0 - 2.0 * _WIRE_EDGE) * self.wire),
+            )
+        )
+        return (), (
+            Group("coil", (coil,), Pose(shift=self._pivot(axis))),
+            Group("spring-arm", arm, self.pose(axis, lift)),
+        )
+
+
+Spring = Coil | Gas | Torsion
