@@ -227,13 +227,13 @@ def elastic_contact(solution: Solution) -> Demand:
     """Minimum contact force with an elastic stem over the least spring force."""
     worst = least(
         solution.cycles,
-        lambda c: c.parts.elastic.response.contact_force / c.least_spring_force,
+        lambda c: c.elastic.response.contact_force / c.least_spring_force,
     )
     swept = _least_over_speed(
         solution,
         lambda sweep: (sweep.elastic_force_min, sweep.elastic_angle, sweep.elastic_error),
     )
-    histories = [cycle.parts.elastic for cycle in solution.cycles]
+    histories = [cycle.elastic for cycle in solution.cycles]
     methods = "; ".join(dict.fromkeys(history.method for history in histories))
     note = ""
     # A load case at constant speed is in the sweep, too: equal but for round-off.

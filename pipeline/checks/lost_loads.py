@@ -97,8 +97,4 @@ def _in(solution: Solution, load_cases: Collection[str]) -> Solution:
         solution,
         machines=tuple(each for each in solution.machines if each.load_case in load_cases),
         cycles=tuple(each for each in solution.cycles if each.load_case in load_cases),
-        crank_speed={k: v for k, v in solution.crank_speed.items() if k in load_cases},
-        crank_speed_halved={
-            k: v for k, v in solution.crank_speed_halved.items() if k in load_cases
-        },
     )

@@ -74,14 +74,15 @@ def outcomes(
     corners: Sequence[Corner] | None = None,
     declarations: Sequence[Declaration] = TOLERANCED,
 ) -> tuple[Outcome, ...]:
-    """Outcomes at the nominal, then at each corner.
+    """Outcomes at each corner.
 
     Parameters
     ----------
-    corners : sequence        None: every corner of the case
+    corners : sequence        None: the nominal, then every corner of the case
     declarations : sequence   of the checks made there
     """
-    corners = NOMINAL, *(corners_of(case) if corners is None else corners)
+    if corners is None:
+        corners = NOMINAL, *corners_of(case)
     try:
         solved = _turns_at(case, torques, contour, corners)
     except CamError:  # of one corner at least: each on its own

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -222,29 +223,44 @@ def driven_cam(
     return DrivenCam(readonly(periodic_quintic(after.speed)(rubbing.theta) / machine.gear_ratio))
 
 
-def speed_ripple(
-    machines: Iterable[Machine],
-    torques: Mapping[str, Torque],
-    pitch: FollowerPath,
-    rubbing: Mapping[str, Rubbing],
-) -> dict[str, tuple[float, float]]:
+@dataclass(frozen=True, eq=False)
+class SpeedRipple(Mapping[str, tuple[float, float]]):
     """Standard deviation of the crank speed, rad/s, by load case: engine alone, with the cam.
 
-    Empty without a crankshaft; NaN for a load case that stalls.
+    Empty without a crankshaft; NaN for a load case that stalls. Computed when it is first read.
     """
-    ripple: dict[str, tuple[float, float]] = {}
-    for machine in machines:
-        name = machine.load_case
-        if machine.crankshaft is None or name not in torques or not machine.speed > 0:
-            continue
-        try:
-            motions = _motions(machine, machine.crankshaft, torques[name], pitch, rubbing.get(name))
-        except CamError:
-            ripple[name] = (np.nan, np.nan)
-        else:
-            before, after = (each.statistics.std for each in motions)
-            ripple[name] = (before, after)
-    return ripple
+
+    machines: Sequence[Machine]
+    torques: Mapping[str, Torque]
+    pitch: FollowerPath
+    rubbing: Mapping[str, Rubbing]
+
+    @cached_property
+    def _ripple(self) -> dict[str, tuple[float, float]]:
+        ripple: dict[str, tuple[float, float]] = {}
+        for machine in self.machines:
+            name, shaft = machine.load_case, machine.crankshaft
+            if shaft is None or name not in self.torques or not machine.speed > 0:
+                continue
+            try:
+                motions = _motions(
+                    machine, shaft, self.torques[name], self.pitch, self.rubbing.get(name)
+                )
+            except CamError:
+                ripple[name] = (np.nan, np.nan)
+            else:
+                before, after = (each.statistics.std for each in motions)
+                ripple[name] = (before, after)
+        return ripple
+
+    def __getitem__(self, load_case: str) -> tuple[float, float]:
+        return self._ripple[load_case]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._ripple)
+
+    def __len__(self) -> int:
+        return len(self._ripple)
 
 
 def _motions(

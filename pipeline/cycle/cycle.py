@@ -19,6 +19,7 @@ from camwright.pipeline.contact.contact_pair import ContactPair
 from camwright.pipeline.contact.elliptic_contact import CrownedContact, crowned_contact
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.contact.two_scale import CycleBodies
+from camwright.pipeline.cycle.elastic_response import ElasticHistory, elastic_history
 from camwright.pipeline.cycle.part_loads import PartLoads, part_loads, spring_surge
 from camwright.pipeline.cycle.rolling_history import RollingHistory, rolling_history
 from camwright.pipeline.cycle.turn import Turn
@@ -40,7 +41,8 @@ def least_spring_force(spring: Spring, contour: Contour) -> float:
 
 @dataclass(frozen=True, eq=False)
 class Cycle:
-    """A turn with its contact; rolling and part loads are computed from both on first use.
+    """A turn with its contact; rolling, part loads and the response of an elastic follower are
+    computed from both on first use.
 
     bodies are the meshed bodies of the contact; None in a preview, where the contact is that of
     half-planes, and for a contour that encloses no body, where it is unknown. None inside rolling
@@ -128,12 +130,20 @@ class Cycle:
 
     @cached_property
     def parts(self) -> PartLoads:
-        """Loads of guides, stem, spring, pin, key and shaft over the turn.
+        """Loads of guides, stem, spring, pin, key and shaft over the turn."""
+        return part_loads(self.turn, self.contour, self.pair.width)
 
-        A preview does not compute the flights of an elastic follower that leaves the cam.
+    @cached_property
+    def elastic(self) -> ElasticHistory:
+        """Response of the elastic follower.
+
+        A preview does not compute the flights of one that leaves the cam.
         """
         flights = self.contact.tier is not Tier.PREVIEW
-        return part_loads(self.turn, self.contour, self.pair.width, flights=flights)
+        turn, lift = self.turn, self.contour.pitch.lift
+        return elastic_history(
+            turn.machine, lift, turn.loads.lift, turn.driven.speed, flights=flights
+        )
 
     @property
     def shares(self) -> GuideShares:
@@ -295,12 +305,12 @@ class Cycle:
             columns[shear] = contact.tau_any_plane
         if contact.tier is not None:
             columns |= self.rolling.columns()
-        return columns | self.parts.columns() | self.shares.columns()
+        return columns | self.parts.columns(self.elastic) | self.shares.columns()
 
 
 @dataclass(frozen=True, eq=False)
 class _ThinnedCycle(Cycle):
-    """A cycle at every few positions of `whole`, with its rolling and part loads."""
+    """A cycle at every few positions of `whole`, with what is computed from it."""
 
     whole: Cycle
     step: int
@@ -312,6 +322,10 @@ class _ThinnedCycle(Cycle):
     @cached_property
     def parts(self) -> PartLoads:
         return _at_every(self.whole.parts, self.whole.theta.size, self.step)
+
+    @cached_property
+    def elastic(self) -> ElasticHistory:
+        return _at_every(self.whole.elastic, self.whole.theta.size, self.step)
 
 
 Result = TypeVar("Result")

@@ -14,7 +14,7 @@ from camwright.pipeline.case.machine import Machine
 from camwright.pipeline.contact.elasticity.radial_compliance import Bush, Pin
 from camwright.pipeline.contact.pin_in_hole import peak_pressure
 from camwright.pipeline.cycle.cam_balance import camshaft_loads
-from camwright.pipeline.cycle.elastic_response import ElasticHistory, elastic_history
+from camwright.pipeline.cycle.elastic_response import ElasticHistory
 from camwright.pipeline.cycle.turn import Turn
 from camwright.pipeline.follower.camshaft_loads import (
     Reversal,
@@ -53,7 +53,6 @@ class PartLoads:
     heat_max_b: GuideHeat
     friction: FrictionBounds
     viscous_force: Array
-    elastic: ElasticHistory
     reversals: tuple[Reversal, ...]
     bore_pressure: Array
     key_pressure: Array | None
@@ -73,9 +72,9 @@ class PartLoads:
             if isinstance(getattr(self, name), np.ndarray):
                 freeze(self, **{name: getattr(self, name)})
 
-    def columns(self) -> dict[Column, Array]:
+    def columns(self, elastic: ElasticHistory) -> dict[Column, Array]:
         """Columns of ``5_cycle.csv``, of the parts that the machine has."""
-        friction, elastic = self.friction, self.elastic
+        friction = self.friction
         columns = {
             Column(
                 "guide_edge_pressure_A", "MPa", "Maximum pressure of the stem in guide A"
@@ -132,15 +131,12 @@ class PartLoads:
         return {column: values for column, values in columns.items() if values is not None}
 
 
-def part_loads(
-    turn: Turn, contour: Contour, contact_width: float, *, flights: bool = True
-) -> PartLoads:
+def part_loads(turn: Turn, contour: Contour, contact_width: float) -> PartLoads:
     """Loads of all parts over a turn.
 
     Parameters
     ----------
     contact_width : float   of the line contact, m
-    flights : bool          compute the flights of an elastic follower that leaves the cam
     """
     machine, loads, guides = turn.machine, turn.loads, turn.guides
     friction = turn.friction
@@ -158,9 +154,6 @@ def part_loads(
         heat_max_b=_heat(machine, pair.b, friction.greatest.friction_force_b, friction.greatest),
         friction=friction,
         viscous_force=loads.viscous_force,
-        elastic=elastic_history(
-            machine, contour.pitch.lift, loads.lift, turn.driven.speed, flights=flights
-        ),
         reversals=torque_reversals(
             loads.theta,
             loads.cam_torque,

@@ -28,7 +28,7 @@ from camwright.pipeline.contact.two_scale import CycleBodies, loaded_cam, two_sc
 from camwright.pipeline.cycle.certificate_angles import begun, positions_to_certify
 from camwright.pipeline.cycle.contact_setup import contact_pair
 from camwright.pipeline.cycle.contact_store import NOT_STORED, ContactStore, piece_key
-from camwright.pipeline.cycle.crank_speed import speed_ripple
+from camwright.pipeline.cycle.crank_speed import SpeedRipple
 from camwright.pipeline.cycle.cycle import Cycle
 from camwright.pipeline.cycle.speed_sweep import (
     SpeedSweep,
@@ -252,11 +252,11 @@ def solved_turns(
     solved = Solution(case, contour, states, tier, mesh, cycles, coarse=coarse)
     if coarse:
         return solved
-    solved = replace(solved, crank_speed=speed_ripple(states, known, pitch, rubbing))
+    solved = replace(solved, crank_speed=SpeedRipple(states, known, pitch, rubbing))
     if not error_bars:
         return solved
     halved = {name: each.resampled(each.theta.size // 2) for name, each in known.items()}
-    return replace(solved, crank_speed_halved=speed_ripple(states, halved, pitch, rubbing))
+    return replace(solved, crank_speed_halved=SpeedRipple(states, halved, pitch, rubbing))
 
 
 def certified_solution(

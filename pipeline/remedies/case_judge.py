@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection, Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
@@ -18,6 +18,7 @@ from camwright.pipeline.checks.check import Check, Declaration
 from camwright.pipeline.checks.registry import CHECKS, DECLARED, TOLERANCED, checks_of
 from camwright.pipeline.checks.tolerance_corners import (
     NOMINAL,
+    Outcome,
     checks_at,
     corners_of,
     governed,
@@ -63,17 +64,37 @@ class Preview:
     torques: Mapping[str, Torque]
     governing: tuple[Corner, ...]
     worst: tuple[Corner, ...]
+    _outcomes: dict[str, dict[Corner, Outcome]] = field(default_factory=dict, init=False)
 
     def check(self, name: str, *, everywhere: bool = False) -> Check | None:
         """One check at its worst corner, or at every corner; None where it does not apply."""
+        declared = DECLARED[name]
         corners = corners_of(self.solved.case) if everywhere else self.worst
-        made = self._at_corners([DECLARED[name]], corners)
+        made = checks_of(self.solved, [declared])
+        if made and declared in TOLERANCED and corners:
+            made = governed(made, self._tried(declared, (NOMINAL, *corners)))
         return made[0] if made else None
+
+    def _tried(self, declared: Declaration, corners: Sequence[Corner]) -> tuple[Outcome, ...]:
+        """Outcomes of one check; a corner that is already solved is not solved again."""
+        known = self._outcomes.setdefault(declared.id, {})
+        left = [corner for corner in corners if corner not in known]
+        if left:
+            case, contour = self.solved.case, self.solved.contour
+            made = outcomes(case, self.torques, contour, left, [declared])
+            known |= {outcome.corner: outcome for outcome in made}
+        return tuple(known[corner] for corner in corners)
 
     @cached_property
     def checks(self) -> Mapping[str, Check]:
         """Every must-have check of the design at its worst corner, by id."""
-        return {one.id: one for one in self._at_corners(_DECIDING, self.governing)}
+        case, contour = self.solved.case, self.solved.contour
+        made = checks_of(self.solved, _DECIDING)
+        if self.governing:
+            toleranced = [one for one in _DECIDING if one in TOLERANCED]
+            tried = outcomes(case, self.torques, contour, (NOMINAL, *self.governing), toleranced)
+            made = governed(made, tried)
+        return {one.id: one for one in made}
 
     @cached_property
     def headline(self) -> Headline:
@@ -91,16 +112,6 @@ class Preview:
             float(disc.mass) + solved.case.follower.mass,
             float(contour.radius_max().value),
         )
-
-    def _at_corners(
-        self, declared: Sequence[Declaration], corners: Sequence[Corner]
-    ) -> tuple[Check, ...]:
-        case, contour = self.solved.case, self.solved.contour
-        made = checks_of(self.solved, declared)
-        toleranced = [one for one in declared if one in TOLERANCED]
-        if not toleranced or not corners:
-            return made
-        return governed(made, outcomes(case, self.torques, contour, corners, toleranced))
 
 
 @dataclass(frozen=True, eq=False)

@@ -37,6 +37,7 @@ from camwright.pipeline.contact.rolling_envelope import Envelope
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle import solution as solving
 from camwright.pipeline.cycle.cycle import Cycle
+from camwright.pipeline.cycle.elastic_response import ElasticHistory
 from camwright.pipeline.cycle.oil_film_history import FilmHistory
 from camwright.pipeline.cycle.part_loads import PartLoads
 from camwright.pipeline.cycle.rolling_history import RollingHistory, SweptStress
@@ -175,16 +176,21 @@ def put(result: Any, **values: Any) -> Any:
     )
 
 
-def with_results(cycle: Cycle, rolling: RollingHistory, parts: PartLoads) -> Cycle:
-    """The cycle with these for its rolling and its part loads."""
-    # A cycle computes both when they are first read and keeps them here: it takes no made-up ones.
-    vars(cycle).update(rolling=rolling, parts=parts)
+RESULTS = ("rolling", "parts", "elastic")
+
+
+def with_results(
+    cycle: Cycle, rolling: RollingHistory, parts: PartLoads, elastic: ElasticHistory
+) -> Cycle:
+    """The cycle with these for its rolling, its part loads and its elastic response."""
+    # A cycle computes them when they are first read and keeps them here: it takes no made-up ones.
+    vars(cycle).update(rolling=rolling, parts=parts, elastic=elastic)
     return cycle
 
 
 def changed_cycle(cycle: Cycle, **values: Any) -> Cycle:
-    """A cycle with some of its fields, of those of its turn, or its rolling or parts replaced."""
-    results = {name: values.pop(name, getattr(cycle, name)) for name in ("rolling", "parts")}
+    """A cycle with some of its fields, of those of its turn, or its results replaced."""
+    results = {name: values.pop(name, getattr(cycle, name)) for name in RESULTS}
     names = {field.name for field in fields(Turn)} & set(values)
     turn = replace(cycle.turn, **{name: values.pop(name) for name in names})
     return with_results(replace(cycle, turn=turn, **values), **results)
@@ -243,6 +249,7 @@ def cycle(
         ),
         "rolling": _rolling(base),
         "parts": _parts(base),
+        "elastic": _elastic(base),
     }
     return changed_cycle(base, **(plain | values))
 
@@ -305,11 +312,9 @@ def _parts(base: Cycle) -> PartLoads:
         friction_force_a=still,
         friction_force_b=still,
     )
-    response = replace(parts.elastic.response, contact_force=300.0 + 100.0 * WAVE)
     return put(
         parts,
         friction=replace(parts.friction, greatest=roughest),
-        elastic=replace(parts.elastic, response=response),
         guide_edge_pressure_a=30e6 + 10e6 * WAVE,
         guide_edge_pressure_b=20e6 + 10e6 * WAVE,
         heat_a=heat,
@@ -323,6 +328,11 @@ def _parts(base: Cycle) -> PartLoads:
         bore_pressure=20e6 + 10e6 * WAVE,
         reversals=(),
     )
+
+
+def _elastic(base: Cycle) -> ElasticHistory:
+    response = replace(base.elastic.response, contact_force=300.0 + 100.0 * WAVE)
+    return replace(base.elastic, response=response)
 
 
 # --- beside the cycle ------------------------------------------------------------------------

@@ -54,7 +54,7 @@ def test_the_stem_rides_on_that_speed_and_says_so(gx120):
     given = turn(machine, contour, torque, POSITIONS)
     pair, unknown = contact_pair(machine, contour), ContactHistory.unknown(POSITIONS)
     cycle = Cycle(given, contour, pair, None, unknown)
-    elastic = cycle.parts.elastic
+    elastic = cycle.elastic
     assert "varies by" in elastic.method
     columns = named(cycle.columns())
     np.testing.assert_array_equal(columns["cam_speed"], given.driven.speed)

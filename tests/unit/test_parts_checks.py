@@ -335,7 +335,7 @@ def test_overspeed_jumps_and_lands(bare):
     """Fast enough to leave the cam: the check fails and names the losses of contact."""
     state = bare.case.load_cases[0].model_copy(update={"speed": 2000.0})
     fast = harmonic(bare.case.model_copy(update={"load_cases": (state,)}))
-    elastic = fast.cycles[0].parts.elastic
+    elastic = fast.cycles[0].elastic
     assert elastic.response.lost
     assert elastic.flights
     assert elastic.force_max > fast.cycles[0].loads.spring_force.max()
@@ -352,7 +352,7 @@ def test_a_preview_loses_the_contact_but_follows_no_flight(bare):
     state = bare.case.load_cases[0].model_copy(update={"speed": 2000.0})
     case = bare.case.model_copy(update={"load_cases": (state,)})
     preview = harmonic(case, Tier.PREVIEW)
-    elastic = preview.cycles[0].parts.elastic
+    elastic = preview.cycles[0].elastic
     assert elastic.response.lost
     assert elastic.flights == ()
     check = jump_and_jamming.elastic_contact(preview)

@@ -172,10 +172,9 @@ def with_worst_friction(**values: Any) -> Solution:
 
 
 def with_elastic_force(force: Any) -> Solution:
-    elastic = made.cycle().parts.elastic
-    return with_parts(
-        elastic=replace(elastic, response=replace(elastic.response, contact_force=force))
-    )
+    elastic = made.cycle().elastic
+    response = replace(elastic.response, contact_force=force)
+    return with_cycle(elastic=replace(elastic, response=response))
 
 
 def with_certificate(**values: Any) -> Solution:
