@@ -70,7 +70,7 @@ def clamped_spline(
     for parts in _SPLINE_PARTS:
         theta = np.linspace(start, stop, parts + 1)
         points = curve.points(theta)
-        if stop - start == FULL_TURN:
+        if np.isclose(stop - start, FULL_TURN, rtol=1e-12, atol=0.0):
             points[:, -1] = points[:, 0]  # closed to the last bit
         ends = ([(1, first)], [(1, last)])
         spline = make_interp_spline(theta, points.T, _SPLINE_DEGREE, bc_type=ends)

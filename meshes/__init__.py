@@ -13,7 +13,8 @@ In the order of the calculation:
 | `vtu`           | VTU file of a grid                        |                       |
 | `mesh_files`    | MSH and VTU files                         | mm, N, MPa            |
 | `calculix_deck` | input deck for CalculiX and Abaqus        | mm, N, MPa            |
-| `step_solid`    | STEP file of the cam                      | mm                    |
+| `step_text`     | STEP file of a part: header, product      | mm                    |
+| `step_solid`    | solid of the cam in a STEP file           | mm                    |
 
 Imports `geometry` alone.
 """

@@ -1,141 +1,287 @@
-"""STEP file of the cam: the outline with bore, keyway and counter-hole, extruded."""
+"""Solid of the cam in a STEP file: its outline with bore, keyway and counter-hole, extruded."""
 
 from __future__ import annotations
 
-import itertools
-import os
-import re
-import sys
-from collections.abc import Iterator
-from contextlib import contextmanager
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
 from pathlib import Path
-from types import ModuleType
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
-from camwright.geometry.arrays import FULL_TURN, positive
+from camwright.geometry.arrays import FULL_TURN, Array, positive, uniform_turn
 from camwright.geometry.cad_drawing import Outline, clamped_spline
+from camwright.geometry.contour import Contour
 from camwright.geometry.cutouts import keyway_corners
-from camwright.geometry.errors import GeometryError, MeshError, ResultError
+from camwright.geometry.errors import GeometryError, ResultError
+from camwright.meshes.cam_outline import wall_at
 from camwright.meshes.element_size import MILLIMETRE
-from camwright.meshes.gmsh_mesher import session
+from camwright.meshes.step_text import Entities, PartTitle, listed, quoted, real, step_text
+
+if TYPE_CHECKING:
+    from scipy.interpolate import BSpline
 
 _STEP_ERROR = 1e-8  # m; a smaller one only enlarges the file
-_DATE = re.compile(rb"(FILE_NAME\('[^']*',\s*)'[^']*'")
-_PRODUCT = re.compile(
-    rb"PRODUCT\('Open CASCADE STEP translator \S+ \d+((?:\.\d+)*)',\s*'[^']*',\s*'',\s*"
+_EDGES = 8
+"""Edges at each rim of the contour's face: with one, OpenCASCADE errs by 1e-3 in the volume."""
+
+_UP, _DOWN = (0.0, 0.0, 1.0), (0.0, 0.0, -1.0)
+_REMARKS = (
+    "one solid from z = 0, millimetres",
+    "angle zero: the seam of the face contour, on the axis +x; angles grow counter-clockwise",
 )
-_OCCURRENCE = re.compile(rb"(NEXT_ASSEMBLY_USAGE_OCCURRENCE\()'\d+'")
-_PIECES = 8
-"""Splines of the contour; on longer ones the areas of the CAD kernel err by more than 1e-6."""
 
 
-def write_step(path: Path, outline: Outline, width: float) -> None:
-    """STEP file of the cam as one solid from z = 0 to its width, mm.
+class Side(Protocol):
+    """Side of an outline, with the material on its left: its curve and the wall above it, mm."""
+
+    @property
+    def name(self) -> str: ...
+
+    @property
+    def corners(self) -> Array:
+        """Ends (n, 2) of its edges: more than two where one edge would be too long."""
+
+    def curve(self, file: Entities, z: float) -> str:
+        """Reference of the curve of its edges at a height."""
+
+    def wall(self, file: Entities, width: float) -> tuple[str, bool]:
+        """Reference of the surface over the curve; whether its normal points out of the solid."""
+
+
+@dataclass(frozen=True, eq=False)
+class _Line:
+    """Straight side."""
+
+    name: str
+    corners: Array
+
+    @property
+    def _along(self) -> Array:
+        way: Array = self.corners[1] - self.corners[0]
+        return way / np.hypot(*way)
+
+    def curve(self, file: Entities, z: float) -> str:
+        return _line(file, (*self.corners[0], z), (*self._along, 0.0))
+
+    def wall(self, file: Entities, width: float) -> tuple[str, bool]:  # noqa: ARG002
+        x, y = self._along
+        return file.add(
+            "PLANE", "''", file.frame((*self.corners[0], 0.0), (y, -x, 0.0), (x, y, 0.0))
+        ), True
+
+
+@dataclass(frozen=True, eq=False)
+class _Arc:
+    """Side of a hole along a circle, clockwise; a whole circle where it ends at its start."""
+
+    name: str
+    corners: Array
+    centre: Array
+    radius: float
+
+    def curve(self, file: Entities, z: float) -> str:
+        return file.add("CIRCLE", "''", self._frame(file, z, _DOWN), real(self.radius))
+
+    def wall(self, file: Entities, width: float) -> tuple[str, bool]:  # noqa: ARG002
+        frame = self._frame(file, 0.0, _UP)
+        return file.add("CYLINDRICAL_SURFACE", "''", frame, real(self.radius)), False
+
+    def _frame(self, file: Entities, z: float, axis: Sequence[float]) -> str:
+        first = (self.corners[0] - self.centre) / self.radius
+        return file.frame((*self.centre, z), axis, (*first, 0.0))
+
+
+@dataclass(frozen=True, eq=False)
+class _Spline:
+    """Closed side along a clamped spline."""
+
+    name: str
+    spline: BSpline
+
+    @property
+    def corners(self) -> Array:
+        first, last = self.spline.t[[0, -1]]
+        corners: Array = self.spline(np.linspace(first, last, _EDGES + 1))
+        corners[-1] = corners[0]
+        return corners
+
+    def curve(self, file: Entities, z: float) -> str:
+        controls = listed(file.point((*point, z)) for point in self.spline.c)
+        repeats, knots = self._knots
+        form = (".UNSPECIFIED.", ".T.", ".F.", repeats, knots, ".UNSPECIFIED.")
+        return file.add("B_SPLINE_CURVE_WITH_KNOTS", "''", self.spline.k, controls, *form)
+
+    def wall(self, file: Entities, width: float) -> tuple[str, bool]:
+        # The height comes first: OpenCASCADE integrates volumes along the second parameter edge by
+        # edge, and along the first at once, which erred by 1 % along a contour.
+        controls = listed(
+            listed(file.point((*point, z)) for point in self.spline.c) for z in (0.0, width)
+        )
+        repeats, knots = self._knots
+        form = (".UNSPECIFIED.", ".F.", ".T.", ".F.")
+        ends = ("(2,2)", repeats, listed(map(real, (0.0, width))), knots, ".UNSPECIFIED.")
+        degrees = (1, self.spline.k)
+        return file.add(
+            "B_SPLINE_SURFACE_WITH_KNOTS", "''", *degrees, controls, *form, *ends
+        ), False
+
+    @property
+    def _knots(self) -> tuple[str, str]:
+        """Multiplicities and knots."""
+        knots, repeats = np.unique(self.spline.t, return_counts=True)
+        return listed(repeats.tolist()), listed(map(real, knots))
+
+
+def write_step(path: Path, outline: Outline, width: float, title: PartTitle) -> None:
+    """STEP file of the cam: one solid from z = 0 to its width, mm, named as its title.
+
+    The contour is one face. Its seam, on the axis +x, marks angle zero.
 
     Parameters
     ----------
     path
     outline : Outline
     width : float        m
+    title : PartTitle
 
     Raises
     ------
     GeometryError
-        If the contour is undercut.
-    MeshError
-        If the CAD kernel rejects the outline.
+        If the contour is undercut, intersects itself, or meets bore or keyway.
     ResultError
         If the file cannot be written.
     """
     positive("cam.width", width, "m")
     outline.contour.require_no_undercut()
+    _require_wall(outline)
+    file = Entities()
+    solid = _solid(file, _loops(outline), width / MILLIMETRE, title.name)
     try:
-        with session() as gmsh:
-            occ = gmsh.model.occ
-            outer = occ.addCurveLoop(_contour_curves(occ, outline))
-            hole = occ.addCurveLoop(_hole_curves(occ, outline))
-            face = occ.addPlaneSurface([outer, hole, *_counter_hole(occ, outline)])
-            occ.extrude([(2, face)], 0.0, 0.0, width / MILLIMETRE)
-            occ.synchronize()
-            with _without_stdout():
-                gmsh.write(str(path))
-    except (GeometryError, MeshError):
-        raise
-    except Exception as error:
-        raise MeshError(
-            f"outline of the solid = rejected by gmsh: {' '.join(str(error).split())}"
-        ) from error
-    if not path.is_file() or b"END-ISO-10303-21" not in path.read_bytes()[-200:]:
-        raise ResultError(f"{path}: incomplete file")
-    path.write_bytes(_reproducible(path.read_bytes()))
+        path.write_text(step_text(title, _REMARKS, file, solid), encoding="ascii", newline="\n")
+    except OSError as failure:
+        raise ResultError(f"{path}: {failure.strerror or failure}") from None
 
 
-def _reproducible(text: bytes) -> bytes:
-    """The same bytes for the same cam: a fixed date, names without the counters of the process."""
-    count = itertools.count(1)
-    text = _DATE.sub(rb"\g<1>'1970-01-01T00:00:00'", text, count=1)
-    text = _PRODUCT.sub(rb"PRODUCT('cam\g<1>','cam\g<1>','',", text)
-    return _OCCURRENCE.sub(lambda match: match[1] + b"'%d'" % next(count), text)
+def _require_wall(outline: Outline) -> None:
+    contour = outline.contour
+    if contour.self_intersections():
+        raise GeometryError("contour = intersects itself, must bound one body")
+    points = contour.points(uniform_turn(contour.lift.search_count))
+    wall = float(wall_at(points, outline.bore_radius, outline.keyway).min())
+    if not wall > 0:
+        raise GeometryError(f"wall around the bore = {wall / MILLIMETRE:.4g} mm, must be > 0 mm")
 
 
-def _contour_curves(occ: ModuleType, outline: Outline) -> list[int]:
-    """Contour as splines over equal parts of the turn with common end points."""
-    seams = np.linspace(0.0, FULL_TURN, _PIECES + 1)
-    corners = (outline.contour.points(seams[:-1]) / MILLIMETRE).T.tolist()
-    ends = [occ.addPoint(x, y, 0.0) for x, y in corners]
-    curves = []
-    for k in range(_PIECES):
-        spline = clamped_spline(outline.contour, _STEP_ERROR, seams[k], seams[k + 1])
-        inner = [occ.addPoint(x, y, 0.0) for x, y in (spline.c[1:-1] / MILLIMETRE).tolist()]
-        knots, repeats = np.unique(spline.t, return_counts=True)
-        curves.append(
-            occ.addBSpline(
-                [ends[k], *inner, ends[(k + 1) % _PIECES]],
-                degree=spline.k,
-                knots=knots.tolist(),
-                multiplicities=repeats.tolist(),
-            )
-        )
-    return curves
+# --- outline, mm
 
 
-def _hole_curves(occ: ModuleType, outline: Outline) -> list[int]:
-    radius = outline.bore_radius / MILLIMETRE
+def _loops(outline: Outline) -> list[list[Side]]:
+    """Contour, counter-clockwise, then the holes, clockwise."""
+    start = _angle_zero(outline.contour)
+    spline = clamped_spline(outline.contour, _STEP_ERROR, start, start + FULL_TURN)
+    spline.c = spline.c / MILLIMETRE
+    loops: list[list[Side]] = [[_Spline("contour", spline)], _bore(outline)]
+    if outline.counter_hole is not None:
+        hole = outline.counter_hole
+        loops.append([_circle("counter-hole", hole.centre / MILLIMETRE, hole.radius / MILLIMETRE)])
+    return loops
+
+
+def _angle_zero(contour: Contour) -> float:
+    """Cam angle, rad, at which the contour crosses the axis +x."""
+    from scipy.optimize import brentq
+
+    theta = np.linspace(-0.5 * FULL_TURN, 0.5 * FULL_TURN, contour.lift.search_count + 1)
+    x, y = contour.points(theta)
+    crossings = np.flatnonzero((y[:-1] < 0) & (y[1:] >= 0) & (x[:-1] > 0))
+    k = crossings[np.argmin(np.abs(theta[crossings]))]
+    return float(
+        brentq(lambda at: float(contour.points(at)[1]), theta[k], theta[k + 1], xtol=1e-15)
+    )
+
+
+def _bore(outline: Outline) -> list[Side]:
+    radius, centre = outline.bore_radius / MILLIMETRE, np.zeros(2)
     if outline.keyway is None:
-        return [occ.addCircle(0.0, 0.0, 0.0, radius)]
-    corners = keyway_corners(outline.bore_radius, outline.keyway) / MILLIMETRE
-    points = [occ.addPoint(x, y, 0.0) for x, y in corners.T.tolist()]
-    sides = [occ.addLine(points[k], points[k + 1]) for k in range(3)]
-    # two arcs, since the kernel accepts none of half a turn or more
-    centre = occ.addPoint(0.0, 0.0, 0.0)
-    back = -corners.mean(axis=1) / np.hypot(*corners.mean(axis=1)) * radius
-    far = occ.addPoint(back[0], back[1], 0.0)
-    arcs = [
-        occ.addCircleArc(points[3], centre, far),
-        occ.addCircleArc(far, centre, points[0]),
+        return [_circle("bore", centre, radius)]
+    corners = keyway_corners(outline.bore_radius, outline.keyway).T[::-1] / MILLIMETRE
+    sides: list[Side] = [_Line("keyway", np.array(ends)) for ends in pairwise(corners)]
+    return [*sides, _Arc("bore", corners[[-1, 0]], centre, radius)]
+
+
+def _circle(name: str, centre: Array, radius: float) -> Side:
+    start = centre + np.array([radius, 0.0])
+    return _Arc(name, np.array([start, start]), centre, radius)
+
+
+# --- solid
+
+
+def _solid(file: Entities, loops: Sequence[Sequence[Side]], width: float, name: str) -> str:
+    """Reference of the solid between z = 0 and its width."""
+    walls: list[str] = []
+    below: list[list[str]] = []
+    above: list[list[str]] = []
+    for sides in loops:
+        below.append([])
+        above.append([])
+        for side in sides:
+            low, high = _edges(file, side, 0.0), _edges(file, side, width)
+            rise, fall = (_upright(file, side.corners[end], width) for end in (-1, 0))
+            around = [(edge, True) for edge in (*low, rise)]
+            around += [(edge, False) for edge in (*reversed(high), fall)]
+            surface, outward = side.wall(file, width)
+            walls.append(_face(file, side.name, [_loop(file, around)], surface, outward))
+            below[-1] += low
+            above[-1] += high
+    floor = [_loop(file, [(edge, False) for edge in reversed(edges)]) for edges in below]
+    top = [_loop(file, [(edge, True) for edge in edges]) for edges in above]
+    ends = [_end(file, "bottom", floor, 0.0, _DOWN), _end(file, "top", top, width, _UP)]
+    shell = file.add("CLOSED_SHELL", "''", listed([*walls, *ends]))
+    return file.add("MANIFOLD_SOLID_BREP", quoted(name), shell)
+
+
+def _end(file: Entities, name: str, loops: Sequence[str], z: float, normal: Sequence[float]) -> str:
+    plane = file.add("PLANE", "''", file.frame((0.0, 0.0, z), normal, (1.0, 0.0, 0.0)))
+    return _face(file, name, loops, plane, True)
+
+
+def _face(file: Entities, name: str, loops: Sequence[str], surface: str, outward: bool) -> str:
+    """Reference of a face; its first loop is the outer one."""
+    outer, *inner = loops
+    bounds = [file.add("FACE_OUTER_BOUND", "''", outer, ".T.")]
+    bounds += [file.add("FACE_BOUND", "''", loop, ".T.") for loop in inner]
+    sense = ".T." if outward else ".F."
+    return file.add("ADVANCED_FACE", quoted(name), listed(bounds), surface, sense)
+
+
+def _loop(file: Entities, edges: Sequence[tuple[str, bool]]) -> str:
+    """Reference of a loop of edges, each along its curve or against it."""
+    turned = [
+        file.add("ORIENTED_EDGE", "''", "*", "*", edge, ".T." if along else ".F.")
+        for edge, along in edges
     ]
-    return [*sides, *arcs]
+    return file.add("EDGE_LOOP", "''", listed(turned))
 
 
-def _counter_hole(occ: ModuleType, outline: Outline) -> list[int]:
-    """Loop of the counter-hole, if there is one."""
-    if outline.counter_hole is None:
-        return []
-    x, y = (outline.counter_hole.centre / MILLIMETRE).tolist()
-    return [occ.addCurveLoop([occ.addCircle(x, y, 0.0, outline.counter_hole.radius / MILLIMETRE)])]
+def _edges(file: Entities, side: Side, z: float) -> list[str]:
+    curve = side.curve(file, z)
+    vertices = [_vertex(file, corner, z) for corner in side.corners]
+    return [file.add("EDGE_CURVE", "''", *ends, curve, ".T.") for ends in pairwise(vertices)]
 
 
-@contextmanager
-def _without_stdout() -> Iterator[None]:
-    """Standard output closed: the CAD kernel prints regardless of gmsh's options."""
-    sys.stdout.flush()
-    kept = os.dup(1)
-    null = os.open(os.devnull, os.O_WRONLY)
-    try:
-        os.dup2(null, 1)
-        yield
-    finally:
-        os.dup2(kept, 1)
-        os.close(null)
-        os.close(kept)
+def _upright(file: Entities, at: Array, width: float) -> str:
+    """Reference of the edge of two walls; of the seam of one wall all round."""
+    ends = (_vertex(file, at, 0.0), _vertex(file, at, width))
+    return file.add("EDGE_CURVE", "''", *ends, _line(file, (*at, 0.0), _UP), ".T.")
+
+
+def _vertex(file: Entities, at: Array, z: float) -> str:
+    return file.add("VERTEX_POINT", "''", file.point((*at, z)))
+
+
+def _line(file: Entities, at: Sequence[float], along: Sequence[float]) -> str:
+    vector = file.add("VECTOR", "''", file.direction(along), "1.")
+    return file.add("LINE", "''", file.point(at), vector)

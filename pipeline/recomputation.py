@@ -44,11 +44,11 @@ from camwright.pipeline.results.file_differences import (
 )
 from camwright.pipeline.results.model_limits import limitations
 from camwright.pipeline.results.run_folder import RunFolder, versions
-from camwright.pipeline.results.run_reader import Run, TrialRecord, read_run
+from camwright.pipeline.results.run_reader import Run, TrialRecord, read_run, results_sha256
 from camwright.pipeline.results.run_records import torque_columns, trial_record
 from camwright.pipeline.results.trial import SmoothingRecord, Trial, TrialPoint
 from camwright.pipeline.results.trial_writer import TrialWriter
-from camwright.pipeline.results.workshop_files import WORKSHOP, write_workshop
+from camwright.pipeline.results.workshop_files import WORKSHOP, stamp_solid, write_workshop
 from camwright.pipeline.run import judged_of, summary_of
 from camwright.pipeline.smoothing.required_lift import cam_lift
 from camwright.pipeline.smoothing.smoothers import Smoother
@@ -387,7 +387,9 @@ def _written(
         again.write_corners(corners_record(trial.case, trial.corners))
     summary = summary_of(again, torques, trial, (TrialPoint.of(trial),))
     if trial.mesh is not None:
-        write_workshop(again.path / WORKSHOP, trial.case, trial.contour)
+        shop = again.path / WORKSHOP
+        write_workshop(shop, trial.case, trial.contour)
+        stamp_solid(shop, run.summary["input_sha256"], results_sha256(run.summary["files"]))
     if trial.depth >= Tier.CYCLE:
         write_fields(again.fields, trial, _shown_fields(run.path, trial))
     return summary | judged_of(trial, run.summary["statement"])

@@ -48,6 +48,7 @@ from camwright.pipeline.results.folder_exchange import (
     settle,
     unlock,
 )
+from camwright.pipeline.results.workshop_files import WORKSHOP, stamp_solid
 
 _TEMPORARY = re.compile(r"\.\w+\.tmp")
 _LIBRARIES = (
@@ -229,6 +230,9 @@ class RunFolder:
     def finish(self, summary: Mapping[str, Json]) -> None:
         """Write summary and sign-off record, and move the folder to its final path."""
         self.write_summary(summary)
+        recorded = run_reader.read_summary(self.path)
+        results = run_reader.results_sha256(recorded["files"])
+        stamp_solid(self.path / WORKSHOP, recorded["input_sha256"], results)
         signoff.write(self.path)
         try:
             (self.path / STATE).unlink()

@@ -14,7 +14,8 @@ from camwright.geometry.contour import Contour
 from camwright.geometry.cutter_path import cutter_path
 from camwright.geometry.errors import CamError, ResultError
 from camwright.meshes.step_solid import write_step
-from camwright.pipeline.base.files import write_atomic
+from camwright.meshes.step_text import PartTitle, stamped
+from camwright.pipeline.base.files import read_text, write_atomic
 from camwright.pipeline.base.fits import Size, keyway_depth_deviations, size_deviations
 from camwright.pipeline.base.material import Material
 from camwright.pipeline.base.tables import CAM_ANGLE, Column, table
@@ -30,6 +31,7 @@ _INSPECTION = (
 )  # fmt: skip
 
 WORKSHOP = "workshop"
+SOLID = "cam.step"
 
 
 @dataclass(frozen=True)
@@ -113,6 +115,20 @@ def outline_of(case: Case, contour: Contour) -> Outline:
     return Outline(contour, cam.bore_radius, cam.keyway, drilled_hole(cam, contour))
 
 
+def part_title(case: Case) -> PartTitle:
+    """Product of the cam in its STEP file."""
+    stated = case.document
+    return PartTitle(
+        case.name,
+        number=stated.part_number or "",
+        revision=stated.revision or "",
+        project=stated.project or "",
+        author=stated.author or "",
+        material=stated.material or dimensions_of(case).material,
+        date="" if stated.date is None else stated.date.isoformat(),
+    )
+
+
 def write_workshop(
     folder: Path,
     case: Case,
@@ -132,7 +148,7 @@ def write_workshop(
         "contour.dxf": lambda path: write_dxf(
             path, outline, order.arc_error, tuple(notes_of(case))
         ),
-        "cam.step": lambda path: write_step(path, outline, case.cam.width),
+        SOLID: lambda path: write_step(path, outline, case.cam.width, part_title(case)),
         "cutter.csv": lambda path: write_atomic(path, cutter_table(contour, tool, order.theta)),
         "inspection.csv": lambda path: write_atomic(
             path, inspection_sheet(contour, order.theta, order.tolerance)
@@ -146,6 +162,16 @@ def write_workshop(
         except CamError as error:
             (folder / name).unlink(missing_ok=True)
             note(f"{WORKSHOP}/{name} is left out: {error}")
+
+
+def stamp_solid(folder: Path, case_sha256: str, results_sha256: str) -> None:
+    """State the hashes of case and results in the header of the STEP file, if there is one.
+
+    The results are complete only after the solid was written; no hash covers the solid itself.
+    """
+    file = folder / SOLID
+    if file.is_file():
+        write_atomic(file, stamped(read_text(file), case_sha256, results_sha256))
 
 
 def contour_table(contour: Contour, theta: Array) -> str:
