@@ -19,7 +19,7 @@ from camwright.geometry.lift import Lift
 from camwright.pipeline.base.fits import keyway_depth_deviations, size_deviations
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_file import parse_case
-from camwright.pipeline.results.workshop_files import write_workshop
+from camwright.pipeline.results.workshop_files import part_title, stamp_solid, write_workshop
 
 LIMITS = "[limits]\n"
 ORDER = '[workshop]\ntable_step = "0.25 deg"\ntool_radius = "6 mm"\narc_error = "2 um"\n'
@@ -62,6 +62,25 @@ def test_the_files_are_those_ordered(tmp_path: Path) -> None:
     assert {row["deviation_max_mm"] for row in sheet} == {"0.008"}  # half of the band
     notes = ezdxf.readfile(tmp_path / "contour.dxf").modelspace().query("TEXT[layer=='note']")
     assert "arcs within 0.002 mm" in notes[0].dxf.text
+
+
+TITLE = (
+    '\n[document]\npart_number = "4711"\nrevision = "B"\nproject = "press"\nauthor = "A. Meyer"\n'
+    "date = 2026-01-31\n"
+)
+
+
+def test_the_solid_is_named_after_the_case_and_its_title_block(tmp_path: Path) -> None:
+    of = case(tail=TITLE)
+    write_workshop(tmp_path, of, contour(of))
+    stamp_solid(tmp_path, "a" * 64, "b" * 64)
+    text = (tmp_path / "cam.step").read_text(encoding="ascii")
+    assert f"PRODUCT('4711','{of.name}','press'," in text
+    assert f"FILE_NAME('{of.name}','2026-01-31T00:00:00',('A. Meyer')" in text
+    assert f"'material {of.cam.material.name}" in text
+    assert f"'results SHA-256 {'b' * 64}'" in text
+    assert part_title(case()).number == part_title(case()).date == ""
+    stamp_solid(tmp_path / "nowhere", "a" * 64, "b" * 64)  # no solid was made
 
 
 def test_without_an_order_the_tables_are_half_a_degree_apart_and_the_roller_is_the_tool() -> None:
