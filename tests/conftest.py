@@ -44,3 +44,22 @@ def command(
         return int(leaving.value.code or 0), captured.out, captured.err
 
     return call
+
+
+DIED = 70
+"""Exit code after the death of a test process (EX_SOFTWARE of sysexits.h): `make test` repeats."""
+_DIED = pytest.StashKey[bool]()
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_testnodedown(node, error) -> None:
+    """How a test process ended, which pytest-xdist does not say."""
+    if error:
+        status = node.gateway._io.popen.wait(timeout=10)
+        sys.stderr.write(f"\ntest process {node.gateway.id} ended with status {status}: {error}\n")
+        node.config.stash[_DIED] = True
+
+
+def pytest_sessionfinish(session: pytest.Session) -> None:
+    if session.config.stash.get(_DIED, False):
+        session.exitstatus = DIED
