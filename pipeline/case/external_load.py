@@ -11,6 +11,7 @@ from camwright.pipeline.base.external_force import NO_FORCE, ExternalForce
 from camwright.pipeline.base.units import shown
 from camwright.pipeline.case.case import Case, kept_as
 from camwright.pipeline.torque.angle_trace import read_trace
+from camwright.pipeline.torque.tabled_torque import require_cycle
 
 
 def external_force(case: Case) -> ExternalForce:
@@ -59,5 +60,9 @@ def require_closing(key: str, preload: float, dead: float) -> None:
 @lru_cache(maxsize=8)
 def _from_file(path: Path, _content: bytes) -> ExternalForce:
     """Force of a file; its contents tell whether it has changed."""
-    trace = read_trace(path, "force", period=FULL_TURN)
+    trace = read_trace(path, "force", period=FULL_TURN, part="cam")
+    if not trace.values.any():
+        text = f"{trace.source}, {trace.column}"
+        raise InputError(text, "0 N at every angle", "a force, or left out")
+    require_cycle(trace, "N")
     return ExternalForce(trace.angle, trace.values)

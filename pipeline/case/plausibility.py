@@ -23,6 +23,7 @@ from camwright.pipeline.engine.crankshaft import energy_swing
 from camwright.pipeline.engine.pressure_trace import PressureTable
 from camwright.pipeline.engine.torque_consistency import Finding
 from camwright.pipeline.follower.spring import stored_lift
+from camwright.pipeline.torque.motor_line import MotorLine
 from camwright.pipeline.torque.torque import Torque
 
 PLAUSIBILITY = "plausibility"
@@ -52,8 +53,8 @@ class Usual:
 def implausible(case: Case, torques: Mapping[str, Torque]) -> tuple[Finding, ...]:
     """Values of a case beyond their usual ranges, one finding each.
 
-    Besides the values of single keys: the peak-to-peak engine torque, and the spring against
-    the energy swing of the torque of the design load case.
+    Besides the values of single keys: the peak-to-peak torque, the speed at which a motor carries
+    it, and the spring against the energy swing of the torque of the design load case.
 
     Parameters
     ----------
@@ -67,13 +68,14 @@ def implausible(case: Case, torques: Mapping[str, Torque]) -> tuple[Finding, ...
                 judged.append(usual.finding(key, value, f"{key} = {text_of(case, key)}"))
     judged += _torque_findings(case, torques)
     judged += _pressure_findings(case)
+    judged += _motor_findings(case, torques)
     findings = [one for one in judged if one is not None]
     if not {one.title for one in findings} & {"spring.rate", "spring.preload", *_TORQUES}:
         findings += _spring_findings(case, torques)
     return tuple(findings)
 
 
-_TORQUES = ("engine", "engine.file")
+_TORQUES = ("engine", "engine.file", "torque", "torque.file")
 
 
 def _torque_findings(case: Case, torques: Mapping[str, Torque]) -> Iterator[Finding | None]:
@@ -82,7 +84,8 @@ def _torque_findings(case: Case, torques: Mapping[str, Torque]) -> Iterator[Find
         torque = torques.get(state.name)
         if torque is None or (state.torque is None and k > 0):
             continue
-        measured = "engine" if not hasattr(case.engine, "file") else "engine.file"
+        stated = "torque" if case.engine is None else "engine"
+        measured = f"{stated}.file" if hasattr(getattr(case, stated), "file") else stated
         key = measured if state.torque is None else f"load_case[{k}].torque"
         swing = float(np.ptp(torque.total))
         level = "torque" if swing > 0.0 else "constant torque"
@@ -110,6 +113,23 @@ def _pressure_findings(case: Case) -> Iterator[Finding | None]:
     if lead is not None:
         text = f"engine.motored_file: peak {shown(lead, 'deg')} before the dead centre"
         yield _usual("motored_lead").finding("engine.motored_file", lead, text)
+
+
+def _motor_findings(case: Case, torques: Mapping[str, Torque]) -> Iterator[Finding | None]:
+    """The speed at which the motor line carries the mean torque, against that of a load case."""
+    motor = None if case.crankshaft is None else case.crankshaft.load
+    if not isinstance(motor, MotorLine):
+        return
+    for k, state in enumerate(case.load_cases):
+        torque = torques.get(state.name)
+        if torque is None or not state.speed > 0.0:
+            continue
+        key, speed = f"load_case[{k}].speed", motor.balance(-torque.mean)
+        words = f"{key} = {shown(state.speed, 'rpm')}, but crankshaft.motor_line carries the mean"
+        words += f" torque of {shown(-torque.mean, 'N m')} at {shown(speed, 'rpm')}"
+        stated, carried = (in_unit(each, "rpm") for each in (state.speed, speed))
+        made = Finding(PLAUSIBILITY, key, stated, carried, "rpm", words)
+        yield made if made.flagged else None
 
 
 def _spring_findings(case: Case, torques: Mapping[str, Torque]) -> Iterator[Finding]:

@@ -138,12 +138,12 @@ def energy_finding(
 
 
 def work_finding(friction_loss: float, crank_work: float) -> Finding:
-    """Work of the crank on the mechanism per cycle against the friction loss of its guides, J."""
+    """Work of the shaft on the mechanism per cycle against the friction loss of its guides, J."""
     return Finding(
         "work",
         "work of the mechanism per cycle",
         friction_loss,
         crank_work,
         "J",
-        "work taken from the crank at its varying speed against guide friction at constant speed",
+        "work taken from the shaft at its varying speed against guide friction at constant speed",
     )

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from math import radians
 from pathlib import Path
+from typing import Literal
 
 import numpy as np
 import scipy
@@ -108,8 +109,9 @@ def read_trace(
     *,
     column: str | None = None,
     period: float = FOUR_STROKE.angle,
+    part: Literal["crank", "cam"] = "crank",
 ) -> Trace:
-    """One quantity over one period of the crank, from a CSV file.
+    """One quantity over one period of the crank or of the cam, from a CSV file.
 
     The first line that is not a comment (`#`) names the columns and their units, in any usual
     form: `crank_angle_deg`, `crank angle [deg]`, `angle (rad)`, `torque_Nm`, `torque [kN m]`.
@@ -120,10 +122,11 @@ def read_trace(
     Parameters
     ----------
     path : path
-    quantity : str            "torque", "pressure" or "speed"
+    quantity : str            "torque", "force", "pressure" or "speed"
     column : str, optional    header of the value column, or its beginning; needed if several
                               columns are of the quantity
     period : float            rad
+    part : str                whose angle: "crank", the shaft of any machine, or "cam"
 
     Raises
     ------
@@ -137,7 +140,7 @@ def read_trace(
         raise InputError("quantity", quantity, "one of " + ", ".join(QUANTITY_UNITS))
     text = trace_text(Path(path))
     name, header, lines = text.name, text.header, text.line_numbers
-    angle_at, angle_factor = angle_column(name, header)
+    angle_at, angle_factor = angle_column(name, header, part)
     value_at, value_factor = value_column(name, header, quantity, column)
     table = text.numbers((angle_at, value_at))
     angle = table[:, 0] * angle_factor
@@ -219,6 +222,8 @@ def guard_span(
         hint = " (the angles look like degrees)"
     elif abs(2.0 * span / period - 1.0) < 0.1:
         hint = " (this is half a cycle)"
+    elif round(span / period) > 1 and abs(span / (period * round(span / period)) - 1.0) < 0.1:
+        hint = f" (this is {round(span / period)} cycles)"
     value = f"{np.degrees(span):.6g} deg from first to last row{hint}"
     raise InputError(f"{name} span", value, f"one cycle of {np.degrees(period):g} deg")
 

@@ -53,9 +53,10 @@ class MotorLine:
             if not lower.speed < upper.speed:
                 limit = f"> {shown(lower.speed, 'rpm')}, the point before"
                 raise InputError("crankshaft.motor_line.speed", shown(upper.speed, "rpm"), limit)
-        if not self.points[-1].torque < self.points[-2].torque:
-            limit = "a line that falls to its highest speed"
-            raise InputError("crankshaft.motor_line.torque", "rising or constant", limit)
+        before, last = self.points[-2:]
+        if not last.torque < before.torque:
+            limit = f"< {shown(before.torque, 'N m')}, the point before: the line falls at its end"
+            raise InputError("crankshaft.motor_line.torque", shown(last.torque, "N m"), limit)
 
     def torque(self, speed: ArrayLike) -> Array:
         """Torque at speeds (...), rad/s, N m."""

@@ -59,19 +59,11 @@ class TabledTorque:
     role: Role = "drive"
 
     def __post_init__(self) -> None:
-        trace, name = self.trace, f"{self.trace.source}, {self.trace.column}"
-        peak_to_peak = float(np.ptp(trace.values))
-        if not peak_to_peak > 0.0:
-            text = f"constant, {float(trace.values[0]):.6g} N m"
-            raise InputError(name, text, "a torque that varies over the cycle")
-        if not trace.closure <= CLOSURE_MAX * peak_to_peak:
-            text = f"not closed, {trace.closure:.4g} N m between both ends of the cycle"
-            limit = f"<= {CLOSURE_MAX * peak_to_peak:.4g} N m, {CLOSURE_MAX:.0%} of peak to peak"
-            raise InputError(name, text, limit)
-        if (change := self._change_halved()) > HALVED_MAX:
-            text = f"{trace.angle.size} rows; the work changes by {change:.0%} with half of them"
-            limit = f"so many rows that it changes by {HALVED_MAX:.0%} or less"
-            raise InputError(name, text, limit)
+        if not float(np.ptp(self.trace.values)) > 0.0:
+            text = f"constant, {float(self.trace.values[0]):.6g} N m"
+            limit = "a torque that varies over the cycle"
+            raise InputError(f"{self.trace.source}, {self.trace.column}", text, limit)
+        require_cycle(self.trace, "N m")
 
     @property
     def cycle(self) -> float:
@@ -86,17 +78,41 @@ class TabledTorque:
         values = self.trace.uniform(np.size(theta))
         return readonly(values if self.role == "drive" else -values)
 
-    def _change_halved(self) -> float:
-        """Change of the work about its mean with every other row left out, over its swing."""
-        trace = self.trace
-        count = 4 * trace.angle.size
-        whole = _swing(trace, count)
-        halves = (
-            _swing(replace(trace, angle=trace.angle[k::2], values=trace.values[k::2]), count)
-            for k in (0, 1)
-        )
-        largest = max(float(np.abs(half - whole).max()) for half in halves)
-        return largest / float(np.ptp(whole))
+
+def require_cycle(trace: Trace, unit: str) -> None:
+    """Refuse values that vary and do not close, or have too few rows for their harmonics.
+
+    Parameters
+    ----------
+    unit : str   of the values, SI
+
+    Raises
+    ------
+    InputError
+        If the values differ at the ends of the cycle by more than 2 % of their peak to peak, or
+        their integral changes by more than 10 % of its swing with every other row left out.
+    """
+    name, peak_to_peak = f"{trace.source}, {trace.column}", float(np.ptp(trace.values))
+    if not trace.closure <= CLOSURE_MAX * peak_to_peak:
+        text = f"not closed, {trace.closure:.4g} {unit} between both ends of the cycle"
+        limit = f"<= {CLOSURE_MAX * peak_to_peak:.4g} {unit}, {CLOSURE_MAX:.0%} of peak to peak"
+        raise InputError(name, text, limit)
+    if peak_to_peak > 0.0 and (change := _change_halved(trace)) > HALVED_MAX:
+        text = f"{trace.angle.size} rows; the work changes by {change:.0%} with half of them"
+        limit = f"more rows, so that it changes by {HALVED_MAX:.0%} or less: these are aliased"
+        raise InputError(name, text, limit)
+
+
+def _change_halved(trace: Trace) -> float:
+    """Change of the work about its mean with every other row left out, over its swing."""
+    count = 4 * trace.angle.size
+    whole = _swing(trace, count)
+    halves = (
+        _swing(replace(trace, angle=trace.angle[k::2], values=trace.values[k::2]), count)
+        for k in (0, 1)
+    )
+    largest = max(float(np.abs(half - whole).max()) for half in halves)
+    return largest / float(np.ptp(whole))
 
 
 def _swing(trace: Trace, count: int) -> Array:

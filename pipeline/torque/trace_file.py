@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from math import pi
 from pathlib import Path
 from types import MappingProxyType
-from typing import Annotated
+from typing import Annotated, Literal
 
 import numpy as np
 
@@ -283,14 +283,19 @@ def _with_unit(header: Sequence[str], units: Mapping[str, float]) -> dict[int, f
     return {at: factor for at, factor in factors.items() if factor is not None}
 
 
-def angle_column(name: str, header: Sequence[str]) -> tuple[int, float]:
-    """Column of the crank angle and its factor to rad."""
+def angle_column(
+    name: str, header: Sequence[str], part: Literal["crank", "cam"] = "crank"
+) -> tuple[int, float]:
+    """Column of the angle of a part, and its factor to rad; of the cam none of the crank."""
     factors = _with_unit(header, ANGLE_UNITS)
     columns = list(factors)
-    if len(columns) > 1:
-        columns = [at for at in columns if "crank" in header[at].lower()] or columns
+    if len(columns) > 1 or part == "cam":
+        columns = [at for at in columns if part in header[at].lower()] or columns
+    if part == "cam":
+        columns = [at for at in columns if "crank" not in header[at].lower()]
     if len(columns) != 1:
-        limit = "one column of angle with its unit (deg, rad or rev)"
+        which = "cam angle" if part == "cam" else "angle"
+        limit = f"one column of {which} with its unit (deg, rad or rev)"
         raise InputError(f"{name} header", ", ".join(header), limit)
     return columns[0], factors[columns[0]]
 
@@ -307,6 +312,9 @@ def value_column(
     for word in (quantity, "total"):
         if len(columns) > 1:
             columns = [at for at in columns if word in header[at].lower()] or columns
+    if len(columns) > 1 and column is None:
+        limit = f"one column of {quantity}, or column = the beginning of its header"
+        raise InputError(f"{name} header", ", ".join(header), limit)
     if len(columns) != 1:
         wanted = f"one column of {column or quantity}"
         limit = f"{wanted} with its unit ({', '.join(QUANTITY_UNITS[quantity])})"

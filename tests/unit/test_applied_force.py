@@ -168,12 +168,27 @@ def test_bad_keys_are_refused(keys, refusal):
     assert refusal in str(caught.value)
 
 
-def test_bad_file_is_refused_when_the_case_is_read(tmp_path):
-    (tmp_path / "force.csv").write_text(f"cam_angle_deg,force\n{STROKES}\n", encoding="utf-8")
+@pytest.mark.parametrize(
+    ("header", "force", "refusal"),
+    [
+        ("cam_angle_deg,force", lambda k: k % 9, "one column of force with its unit"),
+        ("angle,force_N", lambda k: k % 9, "one column of cam angle with its unit"),
+        ("crank_angle_deg,force_N", lambda k: k % 9, "one column of cam angle with its unit"),
+        ("cam_angle_deg,force_N", lambda k: 0, "0 N at every angle"),
+        ("cam_angle_deg,force_N", lambda k: k, "not closed, 36 N between both ends"),
+        ("cam_angle_deg,force_N", lambda k: (-1) ** k, "must be more rows"),
+        ("cam_angle_rad,force_N", lambda k: k % 9, "(the angles look like degrees)"),
+    ],
+)
+def test_bad_file_is_refused_in_one_line_when_the_case_is_read(tmp_path, header, force, refusal):
+    rows = "\n".join(f"{10 * k},{force(k)}" for k in range(37))
+    (tmp_path / "force.csv").write_text(f"{header}\n{rows}\n", encoding="utf-8")
     case = with_keys('external_force_file = "force.csv"')
     (tmp_path / "case.toml").write_text(case, encoding="utf-8")
-    with pytest.raises(InputError, match="force"):
+    with pytest.raises(InputError) as caught:
         read_case(tmp_path / "case.toml")
+    assert refusal in str(caught.value)
+    assert "\n" not in str(caught.value)
 
 
 def test_follower_that_hangs_off_the_cam_stores_no_work():

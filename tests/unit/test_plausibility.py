@@ -54,6 +54,18 @@ def test_a_value_that_cannot_be_meant_has_one_warning(old: str, new: str, words:
     assert one.endswith(")")  # the source of the range
 
 
+def test_a_motor_at_another_speed_than_the_load_case_has_one_warning() -> None:
+    """3.898 N m on the line from 5 N m at 1000 rpm to none at 1200 rpm: at 1044 rpm."""
+    text = (ROOT / "cases" / "machines" / "dosing-pump.toml").read_text(encoding="utf-8")
+    assert warnings(parse_case(text)) == []
+    text = changed(changed(text, '"113 rpm"', '"1000 rpm"'), '"120 rpm"', '"1200 rpm"')
+    (one,) = warnings(parse_case(text))
+    assert one == (
+        "load_case[0].speed = 115 rpm, but crankshaft.motor_line carries the mean torque of"
+        " 3.898 N m at 1044 rpm"
+    )
+
+
 def test_a_rate_a_thousand_times_too_low_contradicts_the_torque() -> None:
     text = changed(REDESIGN, 'rate = "180 kN/m"', 'rate = "180 N/m"')
     text = text[: text.index("[spring.design]")] + text[text.index("[cam]") :]

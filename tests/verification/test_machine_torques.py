@@ -251,10 +251,14 @@ def test_pressure_over_720_deg_with_cylinders_that_differ(tmp_path: Path) -> Non
         ),
         (
             "angle_deg,T_Nm\n" + "\n".join(f"{20 * k},{np.sin(k):.6f}" for k in range(36)),
-            "one cycle of 360 deg",
+            "(this is 2 cycles), must be one cycle of 360 deg",
+        ),
+        (
+            "angle_deg,T_Nm,M_Nm\n" + "\n".join(f"{10 * k},{k % 5},1" for k in range(36)),
+            "one column of torque, or column = the beginning of its header",
         ),
     ],
-    ids=["empty", "no rows", "unit", "constant", "open", "aliased", "cycle"],
+    ids=["empty", "no rows", "unit", "constant", "open", "aliased", "cycle", "columns"],
 )
 def test_a_bad_table_gets_one_clear_line(tmp_path: Path, text: str, words: str) -> None:
     path = tmp_path / "torque.csv"
@@ -368,7 +372,7 @@ def test_a_steep_line_holds_the_speed_and_a_flat_one_gives_the_torque() -> None:
     [
         (((0.0, 1.0),), "from 2 to 200"),
         (((1.0, 1.0), (1.0, 0.0)), "the point before"),
-        (((0.0, 1.0), (1.0, 1.0)), "a line that falls"),
+        (((0.0, 1.0), (1.0, 1.0)), "= 1 N m, must be < 1 N m, the point before"),
     ],
 )
 def test_a_bad_motor_line_is_refused(points: tuple[tuple[float, float], ...], words: str) -> None:
