@@ -72,7 +72,7 @@ def run_case(
     began : float        `time.perf_counter` at the start of the program, for the times of the
                          stages; None: now
     report : callable    writes page and pictures into the run folder; None: none are written
-    ahead : callable     begins pictures in the worker processes while the certificate is solved
+    ahead : callable     begins pictures in the worker processes before the certificate
     also : callable      final trial -> further entries of ``run.json``
     judged : callable    receives engine torques and final trial as soon as it is judged
 
@@ -115,6 +115,8 @@ def _solved(
 ) -> dict[str, Any]:
     """Solve a case and write all files but report and records; the contents of ``run.json``."""
     watch.stage("torque")
+    if depth is Tier.CERTIFIED:
+        workers.prepare(order_of.__module__)
     torques = engine_torques(case)
     for finding in implausible(case, torques):
         watch.note(f"warning: {finding.how}")
@@ -128,27 +130,25 @@ def _solved(
         folder.write_corners(corners_record(final.case, final.corners))
     summary = summary_of(folder, torques, final, points) | dict(also(final))
 
-    def rest() -> None:
-        """Files that need no certificate."""
-        if depth >= Tier.CYCLE:
-            watch.stage("fields")
-            write_fields(folder.fields, final, fields, watch.advance)
-        if final.mesh is not None:  # else the contour is no body to machine
-            watch.stage(WORKSHOP)
-            write_workshop(folder.path / WORKSHOP, final.case, final.contour, note=watch.note)
-        if depth is Tier.CERTIFIED and ahead is not None:
-            watch.stage("report")
-            folder.write_summary(summary | judged_of(final, statement) | watch.record())
-            ahead(folder.path, workers)
-
+    sought: list[Task] = []
     if depth < Tier.CERTIFIED:
         judged(torques, final)
-        rest()
+    else:
+        sought = _remedies_begun(final, workers, folder.path)
+    if depth >= Tier.CYCLE:
+        watch.stage("fields")
+        write_fields(folder.fields, final, fields, watch.advance)
+    if final.mesh is not None:  # else the contour is no body to machine
+        watch.stage(WORKSHOP)
+        write_workshop(folder.path / WORKSHOP, final.case, final.contour, note=watch.note)
+    if depth < Tier.CERTIFIED:
         return summary | judged_of(final, statement)
-    sought = _remedies_begun(final, workers, folder.path)
+    if ahead is not None:
+        watch.stage("report")
+        folder.write_summary(summary | judged_of(final, statement) | watch.record())
+        ahead(folder.path, workers)
     failing = _failing(final)
-    store = writer.store(final.number)
-    certified = certify_trial(final, workers, store=store, progress=watch, meanwhile=rest)
+    certified = certify_trial(final, workers, store=writer.store(final.number), progress=watch)
     judged(torques, certified)
     if sought:
         watch.stage("remedies")

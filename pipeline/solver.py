@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import replace
 
 from camwright.geometry.contour import Contour
@@ -100,12 +100,9 @@ def certify_trial(
     *,
     store: ContactStore = NOT_STORED,
     progress: Progress = SILENT,
-    meanwhile: Callable[[], object] = lambda: None,
 ) -> Trial:
     """Trial with its certificate, checked again; see `certified_solution`."""
-    solved = certified_solution(
-        trial.solution, workers, store=store, progress=progress, meanwhile=meanwhile
-    )
+    solved = certified_solution(trial.solution, workers, store=store, progress=progress)
     return replace(
         trial, solution=solved, checks=_judged(all_checks(solved), solved, trial.corners)
     )

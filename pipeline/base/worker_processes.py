@@ -11,6 +11,7 @@ from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass, field
 from functools import partial
+from importlib import import_module
 from multiprocessing import active_children
 from multiprocessing.context import SpawnContext, SpawnProcess
 from multiprocessing.popen_spawn_posix import Popen
@@ -116,6 +117,12 @@ class Crew:
         self._stack = stack
         self._pool: ProcessPoolExecutor | None = None
 
+    def prepare(self, module: str) -> None:
+        """Start the processes, which import a module while this one works; none with one."""
+        if self.workers > 1:
+            for _ in range(self.workers):
+                self.submit(_imported, module)
+
     def submit(self, function: Callable[..., Any], *arguments: object) -> Task:
         """Call a function of the package in a worker, or later here with one process."""
         if self.workers <= 1:
@@ -123,6 +130,10 @@ class Crew:
         if self._pool is None:
             self._pool = self._stack.enter_context(pool(self.workers))
         return self._pool.submit(function, *arguments)
+
+
+def _imported(module: str) -> None:
+    import_module(module)
 
 
 @contextmanager

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
@@ -176,7 +176,8 @@ def solution(
         If a mesh, the contact or the guides cannot be solved.
     """
     states = machines(case)
-    turns = turns_of(states, contour, case, torques, positions, coarse=coarse)
+    bounds = tier >= Tier.CYCLE  # which every check is made of
+    turns = turns_of(states, contour, case, torques, positions, coarse=coarse, bounds=bounds)
     return solved_turns(
         case, contour, turns, tier, torques, coarse=coarse, store=store, progress=progress
     )
@@ -190,12 +191,13 @@ def turns_of(
     positions: int | None = None,
     *,
     coarse: bool = False,
+    bounds: bool = False,
 ) -> tuple[Turn, ...]:
-    """Loads of the machine in every load case, before the contact is solved."""
+    """Loads of the machine in every load case, before the contact is solved; see `turns`."""
     known = engine_torques(case) if torques is None else torques
     count = case.solver.positions if positions is None else positions
     inputs = [TurnInput(each, contour, known.get(each.load_case)) for each in states]
-    return turns(inputs, count, coarse=coarse)
+    return turns(inputs, count, coarse=coarse, bounds=bounds)
 
 
 def solved_turns(
@@ -265,7 +267,6 @@ def certified_solution(
     *,
     store: ContactStore = NOT_STORED,
     progress: Progress = SILENT,
-    meanwhile: Callable[[], object] = lambda: None,
 ) -> Solution:
     """The solution with certificate and benchmarks.
 
@@ -273,19 +274,16 @@ def certified_solution(
     ----------
     workers : Crew         processes that solve the meshes
     store : ContactStore   of the figures of the meshes, to resume an interrupted certificate
-    meanwhile : callable   other work of this process while they do
     """
     final = replace(solved, tier=Tier.CERTIFIED)
     chosen = positions_to_certify(solved.cycles, solved.case.solver.certificate_positions)
     if solved.mesh is None or not chosen:
-        meanwhile()
         return final
     pair = solved.cycles[0].pair
     certificate = begun(pair, solved.cycles, chosen, workers, store=store)
     progress.stage(BENCHMARKS)
     known = benchmarks(solved.case.contact_radius)
     error = bore_error(pair, solved.cycles)
-    meanwhile()
     progress.stage(CERTIFICATE)
     points = certificate.points(progress.advance)
     return replace(final, certificate=points, benchmarks=known, bore_error=error)

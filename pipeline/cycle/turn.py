@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import NamedTuple
 
@@ -88,11 +88,22 @@ def turn(
     return one
 
 
-def turns(inputs: Sequence[TurnInput], positions: int, *, coarse: bool = False) -> tuple[Turn, ...]:
-    """As `turn` of each load case; those in the same guides are solved at once."""
+def turns(
+    inputs: Sequence[TurnInput], positions: int, *, coarse: bool = False, bounds: bool = False
+) -> tuple[Turn, ...]:
+    """As `turn` of each load case; those in the same guides are solved at once.
+
+    Parameters
+    ----------
+    bounds : bool   the bounds of the friction as well, instead of when they are first read
+    """
     theta, knots = uniform_turn(positions), COARSE_KNOTS if coarse else KNOTS
-    guided = _guided([(each, each.machine.system) for each in inputs], theta, knots)
-    bounds = _Bounds(inputs, theta, knots)
+    strokes = _Strokes(inputs, theta, knots)
+    strokes.solve(
+        (each, system)
+        for each in inputs
+        for system in (each.machine.system, *(_rubbed(each.machine) if bounds else ()))
+    )
     engine = {id(torque): torque for _, _, torque in inputs if torque is not None}
     before = {
         key: torque.without_mean().resampled(positions).total for key, torque in engine.items()
@@ -101,8 +112,7 @@ def turns(inputs: Sequence[TurnInput], positions: int, *, coarse: bool = False) 
         _turn(
             each,
             theta,
-            guided[_key(each, each.machine.system)],
-            bounds,
+            strokes,
             before.get(id(each.torque)),
             coarse=coarse,
         )
@@ -110,8 +120,55 @@ def turns(inputs: Sequence[TurnInput], positions: int, *, coarse: bool = False) 
     )
 
 
-_Rubbed = tuple[TurnInput, FollowerSystem]
 _Key = tuple[Stem, GuidePair, int, FollowerSystem, float]
+
+
+def _rubbed(machine: Machine) -> tuple[FollowerSystem, ...]:
+    """Follower at the bounds of the friction."""
+    friction, system = machine.friction, machine.system
+    bounds = friction.least, friction.nominal, friction.greatest
+    return tuple(replace(system, friction_a=a, friction_b=b) for a, b in bounds)
+
+
+@dataclass(eq=False)
+class _Strokes:
+    """Followers of the load cases in their guides; those in the same guides are solved at once."""
+
+    inputs: Sequence[TurnInput]
+    theta: Array
+    knots: int
+    _known: dict[_Key, Guided] = field(default_factory=dict)
+    _together: bool = True
+
+    def of(self, given: TurnInput, system: FollowerSystem) -> Guided:
+        """A follower in its guides, with the bounds of the friction of every load case."""
+        key = _key(given, system)
+        if key not in self._known and self._together:
+            try:
+                self.solve((each, one) for each in self.inputs for one in _rubbed(each.machine))
+            except CamError:  # of one load case at least: each on its own
+                self._together = False
+        if key not in self._known:
+            self.solve((given, one) for one in _rubbed(given.machine))
+        return self._known[key]
+
+    def solve(self, wanted: Iterable[tuple[TurnInput, FollowerSystem]]) -> None:
+        """Solve the followers that are not known.
+
+        Raises
+        ------
+        CamError
+            If one of them cannot be solved.
+        """
+        left: dict[tuple[Stem, GuidePair], dict[_Key, Stroke]] = {}
+        for given, system in wanted:
+            key, machine = _key(given, system), given.machine
+            if key not in self._known:
+                strokes = left.setdefault((machine.stem, machine.guides), {})
+                strokes[key] = Stroke(given.contour.pitch, system, machine.cam_speed, self.theta)
+        for (stem, guides), strokes in left.items():
+            solved = guided_strokes(tuple(strokes.values()), stem, guides, self.knots)
+            self._known |= zip(strokes, solved, strict=True)
 
 
 def _key(given: TurnInput, system: FollowerSystem) -> _Key:
@@ -119,75 +176,26 @@ def _key(given: TurnInput, system: FollowerSystem) -> _Key:
     return machine.stem, machine.guides, id(given.contour.pitch), system, machine.cam_speed
 
 
-def _guided(rubbed: Sequence[_Rubbed], theta: Array, knots: int) -> dict[_Key, Guided]:
-    """Loads of followers; those in the same guides are solved at once."""
-    wanted: dict[tuple[Stem, GuidePair], dict[_Key, Stroke]] = {}
-    for given, system in rubbed:
-        machine, pitch = given.machine, given.contour.pitch
-        strokes = wanted.setdefault((machine.stem, machine.guides), {})
-        strokes[_key(given, system)] = Stroke(pitch, system, machine.cam_speed, theta)
-    guided: dict[_Key, Guided] = {}
-    for (stem, guides), strokes in wanted.items():
-        solved = guided_strokes(tuple(strokes.values()), stem, guides, knots)
-        guided |= zip(strokes, solved, strict=True)
-    return guided
-
-
-@dataclass(frozen=True, eq=False)
-class _Bounds:
-    """Loads of turns at the bounds of their friction, all solved when the first are read."""
-
-    inputs: Sequence[TurnInput]
-    theta: Array
-    knots: int
-
-    def of(self, given: TurnInput, nominal: Loads) -> FrictionBounds:
-        """Bounds of one turn, whose loads at its nominal friction are known."""
-        guided = self._together
-        if guided is None:  # one of them at least cannot be solved: each on its own
-            guided = self._solved([given])
-
-        def loads(system: FollowerSystem) -> Loads:
-            known = system == given.machine.system
-            return nominal if known else guided[_key(given, system)].loads
-
-        return friction_bounds(loads, given.machine.system, given.machine.friction)
-
-    @cached_property
-    def _together(self) -> dict[_Key, Guided] | None:
-        try:
-            return self._solved(self.inputs)
-        except CamError:
-            return None
-
-    def _solved(self, inputs: Sequence[TurnInput]) -> dict[_Key, Guided]:
-        rubbed = []
-        for each in inputs:
-            system, friction = each.machine.system, each.machine.friction
-            bounds = friction.least, friction.nominal, friction.greatest
-            systems = [replace(system, friction_a=a, friction_b=b) for a, b in bounds]
-            rubbed += [(each, one) for one in systems if one != system]
-        return _guided(rubbed, self.theta, self.knots)
-
-
 def _turn(
     given: TurnInput,
     theta: Array,
-    nominal: Guided,
-    bounds: _Bounds,
+    strokes: _Strokes,
     before: Array | None,
     *,
     coarse: bool,
 ) -> Turn:
     """Turn of one load case; `before` (n,), N m, is the torque of the engine less its mean."""
     machine, contour, torque = given
-    loads, driving = nominal.loads, None if coarse else torque
+    nominal, driving = strokes.of(given, machine.system), None if coarse else torque
+    loads = nominal.loads
     after = None if before is None else before - loads.cam_torque / machine.gear_ratio
     return Turn(
         machine=machine,
         theta=theta,
         loads=loads,
-        bounds=lambda: bounds.of(given, loads),
+        bounds=lambda: friction_bounds(
+            lambda system: strokes.of(given, system).loads, machine.system, machine.friction
+        ),
         guides=nominal.reactions,
         friction_residual=nominal.residual,
         driven=driven_cam(machine, driving, contour.pitch, loads.rubbing),
