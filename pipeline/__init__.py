@@ -13,6 +13,7 @@ verdict; a failed trial is smoothed again. `results` writes the run folder, `rep
 | `engine`             | indicated cycle, torque, crankshaft                  | T, N m             |
 | `contact.elasticity` | plane-strain elasticity                              | u, m; sigma, Pa    |
 | `contact`            | contact of cam and follower, traction, oil film      | p0, Pa; a, m; h, m |
+| `contact.finite_length` | bodies of finite length: ends, crown, tilt        | K, -               |
 | `follower`           | forces, guides, spring, roller, flat face            | F_n, N; p, Pa      |
 | `case`               | case file, limits, `Machine`                         | SI                 |
 | `case.cards`         | materials, bushes, oils, spring wires, bearings      |                    |

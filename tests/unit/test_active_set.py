@@ -15,35 +15,58 @@ def problem(seed, size=6):
     return root @ root.T + 0.1 * np.eye(size), rng.normal(size=size), rng.uniform(0.5, 2, size)
 
 
-def by_trying_all_sets(compliance, gap, integrals, force):
-    """The one set of pressures whose signs and gaps are right."""
-    size = gap.size
+def by_trying_all_sets(compliance, gap, weights, resultants):
+    """The one set of pressures whose signs and gaps are right, with the rigid motion."""
+    size, columns = gap.size, np.reshape(weights, (gap.size, -1))
+    few = columns.shape[1]
     for chosen in product([False, True], repeat=size):
         active = np.array(chosen)
-        if not active.any():
-            continue
         count = int(active.sum())
-        system = np.zeros((count + 1, count + 1))
+        if count < few:
+            continue
+        system = np.zeros((count + few, count + few))
         system[:count, :count] = compliance[np.ix_(active, active)]
-        system[:count, count] = -integrals[active]
-        system[count, :count] = integrals[active]
-        found = np.linalg.solve(system, np.append(-gap[active], force))
+        system[:count, count:] = -columns[active]
+        system[count:, :count] = columns[active].T
+        found = np.linalg.solve(system, np.append(-gap[active], resultants))
         pressure = np.zeros(size)
         pressure[active] = found[:count]
-        gaps = compliance @ pressure + gap - found[count] * integrals
+        gaps = compliance @ pressure + gap - columns @ found[count:]
         if pressure.min() >= -1e-12 and gaps[~active].min(initial=0.0) >= -1e-12:
-            return pressure, found[count]
+            return pressure, found[count:]
     raise AssertionError("no set fits")
 
 
 @pytest.mark.parametrize("seed", range(12))
 def test_answer_is_the_one_that_trying_every_set_gives(seed):
     compliance, gap, integrals = problem(seed)
-    expected, approach = by_trying_all_sets(compliance, gap, integrals, 0.7)
+    expected, (approach,) = by_trying_all_sets(compliance, gap, integrals, 0.7)
     found = active_set.solve(compliance, gap, integrals, [0.7])
     np.testing.assert_allclose(found.pressure[0], expected, atol=1e-10 * expected.max())
     np.testing.assert_allclose(found.approach, approach, rtol=1e-9, atol=1e-11)
     assert found.equilibrium[0] < 1e-12
+
+
+@pytest.mark.parametrize("sweeps", [60, 0])
+@pytest.mark.parametrize("seed", range(8))
+def test_a_prescribed_moment_tilts_as_trying_every_set_gives(seed, sweeps, monkeypatch):
+    monkeypatch.setattr(active_set, "_SWEEPS", sweeps)
+    compliance, gap, integrals = problem(seed)
+    levers = integrals * np.linspace(-1.0, 1.0, gap.size)
+    moment = 0.7 * np.linspace(-0.8, 0.8, 8)[seed]
+    both = np.column_stack([integrals, levers])
+    expected, (approach, tilt) = by_trying_all_sets(compliance, gap, both, [0.7, moment])
+    found = active_set.solve(compliance, gap, integrals, [0.7], levers=levers, moment=[moment])
+    np.testing.assert_allclose(found.pressure[0], expected, atol=1e-9 * expected.max())
+    np.testing.assert_allclose([found.approach[0], found.tilt[0]], [approach, tilt], rtol=1e-8)
+    assert found.equilibrium[0] < 1e-12
+
+
+def test_a_force_beyond_the_last_lever_has_no_contact():
+    compliance, gap, integrals = problem(0)
+    levers = integrals * np.linspace(-1.0, 1.0, gap.size)
+    with pytest.raises(ContactError, match="tip over"):
+        active_set.solve(compliance, gap, integrals, [0.7], levers=levers, moment=[0.71])
 
 
 @pytest.mark.parametrize("seed", range(6))
@@ -71,7 +94,7 @@ def test_the_method_that_cannot_cycle_agrees(seed):
     compliance, gap, integrals = problem(seed)
     weight = integrals / integrals.sum()
     expected, _ = by_trying_all_sets(compliance, gap, weight, 1.0)
-    found, _ = active_set._primal(compliance, gap, weight)
+    found, _ = active_set._primal(compliance, gap, weight[:, None], np.ones(1))
     np.testing.assert_allclose(found, expected, atol=1e-10 * expected.max())
 
 

@@ -24,6 +24,7 @@ ORDER = (
     "pipeline.engine",
     "pipeline.contact.elasticity",
     "pipeline.contact",
+    "pipeline.contact.finite_length",
     "pipeline.follower",
     "pipeline.case",
     "pipeline.case.cards",

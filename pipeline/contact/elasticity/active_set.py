@@ -5,9 +5,10 @@ Pressures p and approach d satisfy
     gap = C p + g - d m >= 0,   p >= 0,   p . gap = 0,   m . p = F,
 
 where C is the pressure compliance (symmetric, positive definite on pressures of zero
-resultant), g the weighted initial gap and m the integrals of the pressure shapes. No penalty
-parameter enters. Problems that differ in gap and force alone are solved together: those with the
-same active set share one factorisation.
+resultant), g the weighted initial gap and m the integrals of the pressure shapes. Under a
+prescribed moment M the gap has a further term - t l, with the tilt t and the moments l of the
+shapes, and l . p = M. No penalty parameter enters. Problems that differ in gap, force and moment
+alone are solved together: those with the same active set share one factorisation.
 """
 
 from __future__ import annotations
@@ -30,19 +31,21 @@ _COMPLEMENTARITY = 1e-9
 class Complementarity:
     """Solution of `count` contact problems.
 
-    pressure (count, n) Pa, gap (count, n) weighted, approach (count,),
-    equilibrium (count,) |m.p - F| / F, complementarity (count,) worst violation of the signs
-    and of p.gap = 0, relative to the largest pressure and gap.
+    pressure (count, n) Pa, gap (count, n) weighted, approach (count,), tilt (count,), zero
+    without a prescribed moment; equilibrium (count,) |m.p - F| / F, of a moment |l.p - M| over
+    F and the longest lever where that is larger; complementarity (count,) worst violation of the
+    signs and of p.gap = 0, relative to the largest pressure and gap.
     """
 
     pressure: Array
     gap: Array
     approach: Array
+    tilt: Array
     equilibrium: Array
     complementarity: Array
 
     def __post_init__(self) -> None:
-        names = ("pressure", "gap", "approach", "equilibrium", "complementarity")
+        names = ("pressure", "gap", "approach", "tilt", "equilibrium", "complementarity")
         freeze(self, **{name: getattr(self, name) for name in names})
 
 
@@ -52,8 +55,11 @@ def solve(
     shape_integrals: ArrayLike,
     force: ArrayLike,
     guess: ArrayLike | None = None,
+    *,
+    levers: ArrayLike | None = None,
+    moment: ArrayLike = 0.0,
 ) -> Complementarity:
-    """Contact pressures under prescribed forces, by primal-dual active sets.
+    """Contact pressures under prescribed forces and moments, by primal-dual active sets.
 
     Parameters
     ----------
@@ -63,6 +69,8 @@ def solve(
     force : array (count,)              > 0
     guess : array (n,) of bool          initial active set; the solution does not depend on
                                         it
+    levers : array (n,)                 moments of the shapes; without them no moment is prescribed
+    moment : array (count,)             prescribed with `levers`
 
     Raises
     ------
@@ -82,12 +90,20 @@ def solve(
     pressure_scale = F / m.sum()
     softness = np.abs(np.diagonal(C)).max()
     gap_scale = softness * pressure_scale
-    C, g, weight = C / softness, g / gap_scale[:, None], m / m.sum()
+    C, g = C / softness, g / gap_scale[:, None]
+    weights, targets, lever = m[:, None] / m.sum(), np.ones((count, 1)), 1.0
+    if levers is not None:
+        arms = np.asarray(levers, dtype=float)
+        lever = float(np.abs(arms / m).max())
+        weights = np.column_stack([weights, arms / (lever * m.sum())])
+        targets = np.column_stack(
+            [targets, np.broadcast_to(np.asarray(moment, dtype=float), (count,)) / (F * lever)]
+        )
 
     start = np.ones(size, dtype=bool) if guess is None else np.asarray(guess, dtype=bool)
-    p, d = _together(C, g, weight, start)
+    p, d = _together(C, g, weights, targets, start)
     settlement = p @ C.T
-    residual_gap = settlement + g - np.outer(d, weight)
+    residual_gap = settlement + g - d @ weights.T
     largest = np.maximum(p.max(axis=1), 1e-300)
     # With all knots in contact the gap is the round-off of the terms that cancel in it.
     gap_largest = np.maximum(np.abs(residual_gap), 1e-3 * np.abs(settlement)).max(axis=1)
@@ -107,16 +123,19 @@ def solve(
     return Complementarity(
         pressure=p * pressure_scale[:, None],
         gap=residual_gap * gap_scale[:, None],
-        approach=d * gap_scale / m.sum(),
-        equilibrium=np.abs(p @ weight - 1),
+        approach=d[:, 0] * gap_scale / m.sum(),
+        tilt=d[:, 1:].sum(axis=1) * gap_scale / (m.sum() * lever),
+        equilibrium=np.abs(p @ weights - targets).max(axis=1),
         complementarity=violation,
     )
 
 
-def _together(C: Array, g: Array, m: Array, start: NDArray[np.bool_]) -> tuple[Array, Array]:
+def _together(
+    C: Array, g: Array, weights: Array, targets: Array, start: NDArray[np.bool_]
+) -> tuple[Array, Array]:
     """Active-set sweeps over all problems at once; those that do not settle by `_primal`."""
     count, size = g.shape
-    pressures, approaches = np.zeros((count, size)), np.zeros(count)
+    pressures, motions = np.zeros((count, size)), np.zeros(targets.shape)
     unsettled = np.arange(count)
     active = np.tile(start if start.any() else np.ones_like(start), (count, 1))
     seen: list[set[bytes]] = [set() for _ in range(count)]
@@ -125,54 +144,64 @@ def _together(C: Array, g: Array, m: Array, start: NDArray[np.bool_]) -> tuple[A
         if unsettled.size == 0:
             break
         current = active[unsettled]
-        p, d = _equality_solutions(C, g[unsettled], m, current)
-        gaps = p @ C.T + g[unsettled] - np.outer(d, m)
+        p, d = _equality_solutions(C, g[unsettled], weights, targets[unsettled], current)
+        gaps = p @ C.T + g[unsettled] - d @ weights.T
         tolerance_p = _ROUND_OFF * np.abs(p).max(axis=1, keepdims=True)
         tolerance_g = _ROUND_OFF * np.abs(gaps).max(axis=1, keepdims=True)
         updated = (current & (p > -tolerance_p)) | (~current & (gaps < -tolerance_g))
         changed = (updated != current).any(axis=1)
-        pressures[unsettled], approaches[unsettled] = p, d
+        pressures[unsettled], motions[unsettled] = p, d
         active[unsettled] = updated
         remaining = []
         for row in np.flatnonzero(changed):
             case, key = int(unsettled[row]), np.packbits(updated[row]).tobytes()
-            if key in seen[case] or not updated[row].any():
+            if key in seen[case] or not _determined(weights, updated[row]):
                 stragglers.append(case)
             else:
                 seen[case].add(key)
                 remaining.append(case)
         unsettled = np.array(remaining, dtype=int)
     for case in [*stragglers, *unsettled.tolist()]:
-        pressures[case], approaches[case] = _primal(C, g[case], m)
-    return np.maximum(pressures, 0), approaches
+        pressures[case], motions[case] = _primal(C, g[case], weights, targets[case])
+    return np.maximum(pressures, 0), motions
+
+
+def _determined(weights: Array, active: NDArray[np.bool_]) -> bool:
+    """Whether the active pressures can balance any force and moment."""
+    on = weights[active]
+    return bool(active.any() and np.linalg.matrix_rank(on) == weights.shape[1])
 
 
 def _equality_solutions(
-    C: Array, g: Array, m: Array, active: NDArray[np.bool_]
+    C: Array, g: Array, weights: Array, targets: Array, active: NDArray[np.bool_]
 ) -> tuple[Array, Array]:
-    """Zero gap on the active pressures, zero pressure elsewhere, unit force, of each problem."""
-    pressures, approaches = np.zeros_like(g), np.zeros(g.shape[0])
+    """Zero gap on the active pressures, zero pressure elsewhere, of each problem.
+
+    With the prescribed resultants `targets` (count, k), the first a unit force.
+    """
+    pressures, motions = np.zeros_like(g), np.zeros(targets.shape)
     for rows in alike(active.T):
         knots = np.flatnonzero(active[rows[0]])
-        system = np.zeros((knots.size + 1, knots.size + 1))
-        system[:-1, :-1] = C[np.ix_(knots, knots)]
-        system[:-1, -1], system[-1, :-1] = -m[knots], m[knots]
-        right = np.ones((knots.size + 1, rows.size))
-        right[:-1] = -g[np.ix_(rows, knots)].T
+        few, on = knots.size, weights[knots]
+        system = np.zeros((few + on.shape[1], few + on.shape[1]))
+        system[:few, :few] = C[np.ix_(knots, knots)]
+        system[:few, few:], system[few:, :few] = -on, on.T
+        right = np.concatenate([-g[np.ix_(rows, knots)].T, targets[rows].T])
         try:
             solution = np.linalg.solve(system, right)
         except np.linalg.LinAlgError as error:
             raise ContactError("the pressure compliance is singular") from error
-        pressures[np.ix_(rows, knots)], approaches[rows] = solution[:-1].T, solution[-1]
-    return pressures, approaches
+        pressures[np.ix_(rows, knots)], motions[rows] = solution[:few].T, solution[few:].T
+    return pressures, motions
 
 
-def _primal(C: Array, g: Array, m: Array) -> tuple[Array, float]:
+def _primal(C: Array, g: Array, weights: Array, targets: Array) -> tuple[Array, Array]:
     """One problem by the primal active-set method; the energy decreases, so no set recurs."""
-    p = np.full(g.size, 1 / m.sum())
+    p = _balanced(weights, targets)
     active = np.ones(g.size, dtype=bool)
     for _ in range(20 * g.size):
-        target, d = (v[0] for v in _equality_solutions(C, g[None], m, active[None]))
+        solved = _equality_solutions(C, g[None], weights, targets[None], active[None])
+        target, d = solved[0][0], solved[1][0]
         falling = active & (target < 0)
         if falling.any():
             steps = np.where(falling, p / np.where(falling, p - target, 1), np.inf)
@@ -182,10 +211,26 @@ def _primal(C: Array, g: Array, m: Array) -> tuple[Array, float]:
             active[first] = False
             continue
         p = target
-        gaps = C @ p + g - d * m
+        gaps = C @ p + g - weights @ d
         gaps[active] = 0.0
         worst = int(np.argmin(gaps))
         if gaps[worst] >= -_ROUND_OFF * max(np.abs(gaps).max(), 1e-300):
-            return p, float(d)
+            return p, d
         active[worst] = True
     raise ContactError("contact pressures: active set not converged")
+
+
+def _balanced(weights: Array, targets: Array) -> Array:
+    """Pressures (n,), >= 0, of the prescribed resultants: uniform, or raised towards one end."""
+    uniform = np.full(len(weights), 1 / weights[:, 0].sum())
+    if weights.shape[1] == 1:
+        return uniform
+    arms = weights[:, 1] / weights[:, 0]
+    centre = float(weights[:, 1] @ uniform)
+    end = int(np.argmax(arms if targets[1] >= centre else -arms))
+    share = (targets[1] - centre) / (arms[end] - centre)
+    if not share < 1:
+        raise ContactError("the force acts beyond the end of the contact: the bodies tip over")
+    p = (1 - share) * uniform
+    p[end] += share / weights[end, 0]
+    return np.asarray(p)

@@ -1,0 +1,15 @@
+"""Contact of two bodies of finite length: ends, crown, tilt.
+
+In the order of the calculation:
+
+| module           | responsibility                                          | symbol, unit |
+| ---------------- | ------------------------------------------------------- | ------------ |
+| `axial_drop`     | ends and crowns, gap of two bodies                      | y, m; gap, m |
+| `pressure_cells` | rectangular cells of constant pressure                  | x, y, m      |
+| `half_space`     | compliance of half-spaces with mirrored ends            | m3/Pa        |
+| `brick_body`     | compliance of a block by finite elements                | m3           |
+| `length_contact` | pressures under force, tilt or moment                   | p, Pa; F, N  |
+| `length_tiers`   | both tiers over plane strain, error bars, many contacts | K, -         |
+
+Imports `contact` and `base`.
+"""

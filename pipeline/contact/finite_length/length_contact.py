@@ -1,0 +1,128 @@
+"""Contact of two bodies of finite length on pressure cells, under a force and a tilt or moment."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from camwright.geometry.arrays import Array, freeze
+from camwright.geometry.errors import ContactError, InputError
+from camwright.pipeline.contact.elasticity import active_set
+from camwright.pipeline.contact.finite_length.pressure_cells import PressureCells
+
+
+@dataclass(frozen=True, eq=False)
+class LengthContact:
+    """Contact of `count` problems: pressure (count, m, k), Pa, on the cells; approach (count,), m.
+
+    tilt (count,), rad, closes the gap at y > 0; force (count,), N, and moment (count,), N m, of the
+    pressures about the middle; equilibrium and complementarity (count,), relative residuals.
+    """
+
+    cells: PressureCells
+    pressure: Array
+    approach: Array
+    tilt: Array
+    force: Array
+    moment: Array
+    equilibrium: Array
+    complementarity: Array
+
+    def __post_init__(self) -> None:
+        names = ("pressure", "approach", "tilt", "force", "moment")
+        freeze(self, **{name: getattr(self, name) for name in names})
+        freeze(self, equilibrium=self.equilibrium, complementarity=self.complementarity)
+
+    @property
+    def centre_line(self) -> Array:
+        """Pressure (count, m), Pa, at x = 0: the parabola of the two cells beside it."""
+        first, second = self.pressure[:, :, 0], self.pressure[:, :, 1]
+        return np.where(second > 0, (7.0 * first - second) / 6.0, first)
+
+    @property
+    def centre(self) -> Array:
+        """Pressure (count,), Pa, at x = 0 and y = 0."""
+        y, line = self.cells.centres_along, self.centre_line
+        return np.array([np.interp(0.0, y, row) for row in line])
+
+    @property
+    def greatest(self) -> Array:
+        """Greatest pressure (count,), Pa, on the centre line."""
+        return np.asarray(self.centre_line.max(axis=1))
+
+    def end_means(self, length: float) -> Array:
+        """Mean pressures (count, 2), Pa, over the last `length`, m, of contact at y < 0 and y > 0.
+
+        Of the centre line, from the last cell in contact.
+        """
+        edges, line = self.cells.y, self.centre_line
+        means = np.empty((len(line), 2))
+        for row, values in enumerate(line):
+            touching = np.flatnonzero(values > 0)
+            primitive = np.concatenate([[0.0], np.cumsum(values * np.diff(edges))])
+            first, last = edges[touching[0]], edges[touching[-1] + 1]
+            if not last - first >= length:
+                raise ContactError("the contact is shorter than the length of the mean at its end")
+            inner = np.interp([first, first + length, last - length, last], edges, primitive)
+            means[row] = np.diff(inner)[[0, 2]] / length
+        return means
+
+
+def solve(
+    cells: PressureCells,
+    compliance: Array,
+    gap: ArrayLike,
+    force: ArrayLike,
+    *,
+    tilt: ArrayLike | None = None,
+    moment: ArrayLike | None = None,
+) -> LengthContact:
+    """Pressures of contacts that differ in gap, force, and tilt or moment.
+
+    Parameters
+    ----------
+    compliance : array (n, n)   of the cells, m3/Pa
+    gap : array (count, n)      integrated over the cells, m3
+    force : array (count,)      N, > 0, of the whole contact
+    tilt : array (count,)       rad, prescribed between the supports of the compliance; default: 0
+    moment : array (count,)     N m, about y = 0, prescribed instead of the tilt
+
+    Raises
+    ------
+    InputError
+        If both tilt and moment are prescribed.
+    ContactError
+        If a problem has no solution, or the contact reaches the last cells across it.
+    """
+    if tilt is not None and moment is not None:
+        raise InputError("moment", "prescribed", "left out beside a tilt")
+    gaps = np.atleast_2d(np.asarray(gap, dtype=float))
+    count, areas = len(gaps), cells.areas
+    levers = areas * cells.centres[1]
+    forces = np.broadcast_to(np.asarray(force, dtype=float), (count,))
+    if moment is None:
+        turned = np.broadcast_to(np.asarray(0.0 if tilt is None else tilt, dtype=float), (count,))
+        solution = active_set.solve(
+            compliance, gaps - np.outer(turned, levers), areas, forces / 2.0
+        )
+    else:
+        moments = np.broadcast_to(np.asarray(moment, dtype=float), (count,))
+        solution = active_set.solve(
+            compliance, gaps, areas, forces / 2.0, levers=levers, moment=moments / 2.0
+        )
+        turned = solution.tilt
+    pressure = solution.pressure.reshape(count, *cells.shape)
+    if (pressure[:, :, -1] > 0).any():
+        raise ContactError("contact wider than the window of its pressure cells")
+    return LengthContact(
+        cells=cells,
+        pressure=pressure,
+        approach=solution.approach,
+        tilt=turned,
+        force=2.0 * solution.pressure @ areas,
+        moment=2.0 * solution.pressure @ levers,
+        equilibrium=solution.equilibrium,
+        complementarity=solution.complementarity,
+    )

@@ -1,0 +1,257 @@
+"""Axial pressure of two bodies of finite length over plane strain, by two tiers with error bars.
+
+`half_space`: half-spaces with mirrored ends, for every angle of a cycle. `finite_elements`: blocks
+of the length and depth of the bodies, their bases held; their compliance depends neither on
+curvature nor on load and is kept on disk.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Literal
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from camwright.geometry.arrays import Array, freeze
+from camwright.geometry.errors import InputError
+from camwright.pipeline.base import disk_cache
+from camwright.pipeline.contact import hertz
+from camwright.pipeline.contact.elasticity import elastic_body
+from camwright.pipeline.contact.elasticity.mesh_convergence import (
+    Convergence,
+    converged,
+    converged_on_two,
+)
+from camwright.pipeline.contact.finite_length import brick_body, length_contact
+from camwright.pipeline.contact.finite_length.axial_drop import FiniteBody, FinitePair
+from camwright.pipeline.contact.finite_length.brick_body import BrickGrid, QuarterCompliance
+from camwright.pipeline.contact.finite_length.half_space import half_space_compliance
+from camwright.pipeline.contact.finite_length.length_contact import LengthContact
+from camwright.pipeline.contact.finite_length.pressure_cells import (
+    CellSizes,
+    PressureCells,
+    graded,
+    pressure_cells,
+)
+
+TierName = Literal["half_space", "finite_elements"]
+
+MEAN_LENGTH = 1e-4
+"""Length of the mean pressure at an end, m."""
+
+SIZES = CellSizes()
+_REFINEMENT = 2.0
+# Growth of the elements into the block and beyond the contact, and their largest size, m.
+_BLOCK_GROWTH, _BLOCK_LARGEST = 2.0, np.inf
+# Contacts whose half-widths lie within this ratio share their cells.
+_SHARED = 1.1
+
+
+@dataclass(frozen=True, eq=False)
+class AxialFactors:
+    """Pressures of `count` contacts over the peak pressure of plane strain at the mean line load.
+
+    centre (count,); greatest (count,) of the centre line; end_means (count, 2) over the last
+    `mean_length` (m) of contact at y < 0 and y > 0.
+    """
+
+    centre: Array
+    greatest: Array
+    end_means: Array
+    mean_length: float
+
+    def __post_init__(self) -> None:
+        freeze(self, centre=self.centre, greatest=self.greatest, end_means=self.end_means)
+
+    @classmethod
+    def of(cls, contact: LengthContact, p0: ArrayLike, mean_length: float) -> AxialFactors:
+        """Factors of contacts over p0 (count,), Pa."""
+        peak = np.asarray(p0, dtype=float)
+        ends = contact.end_means(mean_length)
+        return cls(
+            contact.centre / peak, contact.greatest / peak, ends / peak[..., None], mean_length
+        )
+
+    @property
+    def all(self) -> Array:
+        """Columns (count, 4): centre, greatest, both means."""
+        return np.column_stack([self.centre, self.greatest, self.end_means])
+
+
+@dataclass(frozen=True, eq=False)
+class TierResult:
+    """One contact at one tier: finest contact, its factors, their convergence, the unknowns."""
+
+    tier: TierName
+    contact: LengthContact
+    factors: AxialFactors
+    convergence: tuple[Convergence, ...]
+    unknowns: int
+
+
+def plane_strain(pair: FinitePair, force: float) -> tuple[float, float]:
+    """Half-width, m, and peak pressure, Pa, at the mean line load of a force, N."""
+    half_width, p0 = hertz.line_contact(
+        force / pair.contact_length, 1.0 / pair.curvature, pair.contact_modulus
+    )
+    return float(half_width), float(p0)
+
+
+def both_tiers(
+    pair: FinitePair,
+    force: float,
+    *,
+    tilt: float | None = None,
+    moment: float | None = None,
+    mean_length: float = MEAN_LENGTH,
+    sizes: CellSizes = SIZES,
+) -> tuple[TierResult, TierResult]:
+    """One contact by half-spaces and by finite elements.
+
+    Parameters
+    ----------
+    force : float         N, > 0
+    tilt : float          rad, of the bases of the blocks; the half-spaces get its moment, as a
+                          half-space has no base
+    moment : float        N m, about y = 0, instead of the tilt
+    mean_length : float   of the means at the ends, m
+    sizes : CellSizes     of the finest cells
+
+    Raises
+    ------
+    InputError
+        If force, tilt or moment is out of bounds.
+    ContactError
+        If the bodies tip over or the contact leaves its cells.
+    """
+    _require_load(pair, force, tilt, moment)
+    half_width, p0 = plane_strain(pair, force)
+    ladder = [sizes.coarser(_REFINEMENT**k) for k in (2, 1, 0)]
+    meshes = [pressure_cells(pair, half_width, each) for each in ladder]
+
+    blocks, unknowns = [], 0
+    for cells in meshes[1:]:
+        compliance, unknowns = _block_compliance(cells, pair.bodies)
+        gap = cells.integrated_gap(pair)
+        blocks.append(length_contact.solve(cells, compliance, gap, force, tilt=tilt, moment=moment))
+    balanced = float(blocks[-1].moment[0])
+    halves = [
+        length_contact.solve(
+            cells,
+            half_space_compliance(cells, pair.bodies),
+            cells.integrated_gap(pair),
+            force,
+            moment=balanced,
+        )
+        for cells in meshes
+    ]
+    ladders = [
+        [AxialFactors.of(contact, [p0], mean_length) for contact in contacts]
+        for contacts in (halves, blocks)
+    ]
+    coarse_to_fine = [np.concatenate([f.all for f in steps]).T.tolist() for steps in ladders]
+    observed = tuple(converged(values, _REFINEMENT) for values in coarse_to_fine[0])
+    refined = tuple(
+        converged_on_two(values, _REFINEMENT, [seen])
+        for values, seen in zip(coarse_to_fine[1], observed, strict=True)
+    )
+    count = 2 * meshes[-1].areas.size
+    return (
+        TierResult("half_space", halves[-1], ladders[0][-1], observed, count),
+        TierResult("finite_elements", blocks[-1], ladders[1][-1], refined, unknowns),
+    )
+
+
+def half_space_factors(
+    pair: FinitePair,
+    curvature: ArrayLike,
+    force: ArrayLike,
+    moment: ArrayLike = 0.0,
+    *,
+    mean_length: float = MEAN_LENGTH,
+    sizes: CellSizes = SIZES,
+) -> AxialFactors:
+    """Factors of many contacts of the same bodies by half-spaces, at every angle of a cycle.
+
+    Parameters
+    ----------
+    pair : FinitePair           its curvature is not used
+    curvature : array (count,)  1/m
+    force : array (count,)      N, > 0
+    moment : array (count,)     N m, about y = 0
+    """
+    kappa, load, couple = np.broadcast_arrays(
+        *(np.atleast_1d(np.asarray(v, dtype=float)) for v in (curvature, force, moment))
+    )
+    if not (load > 0).all():
+        raise InputError("force", float(load.min()), "> 0 N")
+    half_width, p0 = hertz.line_contact(
+        load / pair.contact_length, 1.0 / kappa, pair.contact_modulus
+    )
+    group = np.ceil(np.log(half_width / half_width.min()) / np.log(_SHARED)).astype(int)
+    table = np.empty((load.size, 4))
+    for each in np.unique(group):
+        rows = np.flatnonzero(group == each)
+        widest = rows[np.argmax(half_width[rows])]
+        here = replace(pair, curvature=float(kappa[widest]))
+        cells = pressure_cells(here, float(half_width[widest]), sizes)
+        gaps = [
+            cells.integrated_gap(replace(pair, curvature=float(value))) for value in kappa[rows]
+        ]
+        contact = length_contact.solve(
+            cells, half_space_compliance(cells, pair.bodies), gaps, load[rows], moment=couple[rows]
+        )
+        table[rows] = AxialFactors.of(contact, p0[rows], mean_length).all
+    return AxialFactors(table[:, 0], table[:, 1], table[:, 2:], mean_length)
+
+
+def _require_load(pair: FinitePair, force: float, tilt: float | None, moment: float | None) -> None:
+    if not 0 < force < np.inf:
+        raise InputError("force", force, "> 0 N")
+    if tilt is not None and not np.isfinite(tilt):
+        raise InputError("tilt", tilt, "finite")
+    if moment is not None:
+        if tilt is not None:
+            raise InputError("moment", moment, "left out beside a tilt")
+        most = 0.5 * force * pair.contact_length
+        if not abs(moment) < most:
+            raise InputError("moment", moment, f"within {most:.4g} N m, the force at an end")
+
+
+def _block_compliance(
+    cells: PressureCells, bodies: tuple[FiniteBody, FiniteBody]
+) -> tuple[Array, int]:
+    """Compliance (n, n), m3/Pa, of the cells on both blocks, and their unknowns."""
+    total, unknowns = np.zeros((cells.areas.size, cells.areas.size)), 0
+    for body in bodies:
+        grid = block_grid(cells, body)
+        quarter = _condensed(grid, body.material.poisson)
+        total += quarter.both_sides(grid.cells[0]) / body.material.modulus
+        unknowns += 2 * grid.unknowns  # of both symmetries
+    return total, unknowns
+
+
+def block_grid(cells: PressureCells, body: FiniteBody) -> BrickGrid:
+    """Elements of a quarter of a block, as wide to each side as it is deep."""
+    middle = cells.shape[0] // 2
+    x, y = cells.x, cells.y[middle:]
+    half_length = 0.5 * body.length
+    beside = graded(body.depth - x[-1], x[-1] - x[-2], _BLOCK_GROWTH, _BLOCK_LARGEST)
+    deep = graded(body.depth, x[1], _BLOCK_GROWTH, _BLOCK_LARGEST)
+    if half_length - y[-1] > 0.5 * (y[-1] - y[-2]):
+        step = y[-1] - y[-2]
+        y = np.concatenate([y, y[-1] + graded(half_length - y[-1], step, SIZES.growth, 1.0)[1:]])
+    return BrickGrid(np.concatenate([x, x[-1] + beside[1:]]), y, deep, (cells.shape[1], middle))
+
+
+def _condensed(grid: BrickGrid, poisson: float) -> QuarterCompliance:
+    """Compliance of a block from the disk cache, or computed."""
+
+    def compute() -> dict[str, Array]:
+        quarter = brick_body.condensed(grid, poisson)
+        return {"symmetric": quarter.symmetric, "antisymmetric": quarter.antisymmetric}
+
+    inputs = (tuple(grid.x), tuple(grid.y), tuple(grid.z), grid.cells, poisson)
+    arrays = disk_cache.kept("block", inputs, compute, (brick_body, elastic_body))
+    return QuarterCompliance(**arrays)
