@@ -158,7 +158,7 @@ class GuideTable:
 _STATED = -(10**6)  # number of the spacing of the guides themselves
 
 
-@lru_cache(maxsize=8)
+@lru_cache(maxsize=32)
 def guide_table(stem: Stem, guides: GuidePair) -> GuideTable:
     """Tables of a stem in guides, kept by both."""
     return GuideTable(stem, guides)

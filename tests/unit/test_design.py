@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from dataclasses import replace
 from pathlib import Path
 
@@ -150,6 +151,24 @@ def test_the_case_states_given_and_assumed(tmp_path: Path) -> None:
     assert case.cam.prime_radius == pytest.approx(0.046)
     room = 0.15 - 0.046 - 9e-3 - frame.radius
     assert case.limits.cam_radius == pytest.approx(room, abs=1e-8)
+
+
+def test_a_relaxed_task_is_that_of_its_command_line(tmp_path: Path) -> None:
+    """The command line read again gives the same task; numbers in SI get their units."""
+    task = task_of(
+        table(tmp_path), speed="300 rpm", speeds=(30.0, 40.0), space=0.15, life="500 h", remove=0.6
+    )
+    relaxed = task.relaxed({"life": "240 h"})
+    assert relaxed.life == pytest.approx(240.0 * 3600.0)
+    assert relaxed.space == task.space
+    words = shlex.split(relaxed.command(tmp_path / "a case.toml"))
+    assert words[:2] == ["camwright", "design"]
+    options = dict(zip(words[3::2], words[4::2], strict=True))
+    assert options.pop("--out") == str(tmp_path / "a case.toml")
+    again = task_of(words[2], **{name[2:]: value for name, value in options.items()})
+    assert (again.life, again.remove, again.assumed) == (240.0 * 3600.0, 0.6, task.assumed)
+    assert again.space == pytest.approx(0.15, rel=1e-12)
+    assert again.speeds == pytest.approx((30.0, 40.0), rel=1e-12)
 
 
 def test_a_folder_of_something_else_is_refused(tmp_path: Path) -> None:

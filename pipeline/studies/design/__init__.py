@@ -9,6 +9,8 @@ In the order of the calculation:
 | `wound_springs`    | springs that store the energy, as arrays        | k, N/m; P, N; s, m  |
 | `design_case`      | case file of a design, with reasons and sources |                     |
 | `candidate_search` | screening over rollers, springs, base circles   | T, N m; m           |
+| `synthesised_points` | prime radius, preload and lift by the synthesis | r, m; P, N; s, m  |
+| `relaxation_search` | smallest change of one option that passes      |                     |
 | `design_study`     | front, choice, conflict and relaxations, files  |                     |
 
 Imported by `commands` alone.

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
+from math import ceil
 from pathlib import Path
 
 import numpy as np
@@ -18,12 +19,13 @@ from camwright.pipeline.case.cards.catalogue import better_roller, catalogue_of,
 from camwright.pipeline.case.cards.part_table import read_part
 from camwright.pipeline.case.cards.provenance import without_provenance
 from camwright.pipeline.case.cards.shaft_seats import seats
-from camwright.pipeline.case.case_file import parse_case, with_values
+from camwright.pipeline.case.case_file import parse_case
 from camwright.pipeline.case.toml_text import Tables
 from camwright.pipeline.follower.spring import HelicalSpring
 from camwright.pipeline.screening.design_screening import Column, screen_designs
 from camwright.pipeline.studies.design.design_case import (
     OIL_WARMER,
+    PROFILES,
     Machinery,
     case_text,
     oils_of,
@@ -39,12 +41,16 @@ _TRAVEL_LEAST = 2e-3  # m
 _TRAVEL_MOST = 0.12  # m
 _PRELOADS = (0.15, 0.3, 0.45, 0.6)  # of the greatest force
 _SHARES = 3
+_ALIKE = 0.2  # share of the torque that one camshaft is drawn for
 _RADII = 7
 _STEEP, _FLAT = np.radians((28.0, 6.0))  # pressure angles of the least and greatest base circle
+_RADIUS_MOST = 0.4  # m
 _REMOVED_MORE = 0.05  # of the ripple, above the requirement
 _PEAK = 1.25  # cam torque over that of the balanced ripple
 _FREE_ROOM = 5.0  # m, of a cam whose space is not limited
-_HARMONICS = 12.0
+_SMOOTHER = 'kind = "harmonic"\nharmonics = 12.0\n'
+_WAVINESS = "profile_waviness"
+_WAVY = 0.9  # utilisation above which the contour is ground finely
 POSITIONS = 90
 
 
@@ -77,28 +83,38 @@ def spring_wire(task: DesignTask, folder: Path | None) -> HelicalSpring:
     return replace(spring, temperature=task.ambient + OIL_WARMER)
 
 
-def candidates(task: DesignTask, folder: Path, file: str, progress: Progress) -> list[Candidate]:
+def candidates(
+    task: DesignTask,
+    folder: Path,
+    file: str,
+    progress: Progress,
+    names: Collection[str] | None = None,
+) -> list[Candidate]:
     """Screened designs of all rollers of the catalogue that can bear the force.
 
     Parameters
     ----------
     folder : Path   of the torque table, the user's cards and springs
     file : str      torque table in it
+    names : collection   of the rollers; None: all
     """
     parts = catalogue_of(folder)
     wire, oils, sizes = spring_wire(task, folder), oils_of(folder), seats()
     rollers = undominated(parts.rollers, better_roller)
-    order = sorted(rollers, key=lambda name: (rollers[name].outer_diameter, rollers[name].C))
+    order = sorted(
+        (name for name in rollers if names is None or name in names),
+        key=lambda name: (rollers[name].outer_diameter, rollers[name].C),
+    )
     screened: list[Candidate] = []
     for k, name in enumerate(order, start=1):
         card = rollers[name]
         springs = _springs(task, card, wire, list(parts.springs.values()))
-        if springs and card.balls is not None:
-            force = max(point.greatest for point in springs)
-            torque = _PEAK * task.ratio * task.demand.peak
+        for own in _alike(task, springs) if card.balls is not None else ():
+            force = max(point.greatest for point in own)
+            torque = _PEAK * task.ratio * task.demand.peak * max(_share(task, each) for each in own)
             frame = frame_of(name, card, torque, force, task.ratio, sizes)
             if frame is not None:
-                screened += _screened(task, frame, springs, oils, folder, file)
+                screened += _screened(task, frame, own, oils, folder, file)
         progress.advance(k, len(order))
     return screened
 
@@ -108,7 +124,8 @@ def _springs(
 ) -> list[SpringPoint]:
     """Springs that store the energy, with forces within the ratings of the roller."""
     swing = task.demand.energy_swing
-    shares = np.linspace(min(task.remove + _REMOVED_MORE, 1.0), 1.0, _SHARES)
+    least = min(task.remove + _REMOVED_MORE, 1.0)
+    shares = np.linspace(least, 1.0, max(_SHARES, ceil((1.0 - least) / _ALIKE) + 1))
     travels = np.geomspace(_TRAVEL_LEAST, _TRAVEL_MOST, _TRAVELS)
     most = 0.95 * min(
         card.C0 / 1.5, 0.5 * card.C, card.radial_limit or np.inf, card.static_radial_limit or np.inf
@@ -134,6 +151,19 @@ def _springs(
     return points
 
 
+def _share(task: DesignTask, point: SpringPoint) -> float:
+    """Share of the torque that the energy of a spring balances."""
+    return min(point.energy / task.demand.energy_swing, 1.0)
+
+
+def _alike(task: DesignTask, springs: Sequence[SpringPoint]) -> Iterator[list[SpringPoint]]:
+    """Springs in groups of nearly equal energy: their camshafts carry the same torque."""
+    groups: dict[int, list[SpringPoint]] = {}
+    for point in springs:
+        groups.setdefault(round(_share(task, point) / _ALIKE), []).append(point)
+    yield from groups.values()
+
+
 def _screened(
     task: DesignTask,
     frame: Frame,
@@ -152,9 +182,7 @@ def _screened(
         return []
     longest = max(designs, key=lambda each: each.lift)
     roomy = replace(longest, cam_radius=longest.prime_radius, task=replace(task, space=None))
-    text = case_text(roomy, "screening", file)
-    case = parse_case(text, folder)
-    case = with_values(case, {"smoothing.kind": "harmonic", "smoothing.harmonics": _HARMONICS})
+    case = parse_case(case_text(roomy, "screening", file, smoothing=_SMOOTHER), folder)
     try:
         columns = screen_designs(case, _factors(task, designs), positions=POSITIONS)
     except CamError:
@@ -165,9 +193,9 @@ def _screened(
 def _radii(task: DesignTask, frame: Frame, spring: SpringPoint) -> Array:
     """Prime radii from a steep to a flat pressure angle, not below the hub, within the space."""
     mean = 0.5 * (spring.preload + spring.greatest)
-    slope = task.ratio * task.demand.peak / mean
+    slope = _share(task, spring) * task.ratio * task.demand.peak / mean
     low = max(frame.least_radius, slope / np.tan(_STEEP) - 0.5 * spring.travel)
-    high = max(1.15 * low, slope / np.tan(_FLAT))
+    high = min(max(1.15 * low, slope / np.tan(_FLAT)), _RADIUS_MOST)
     if task.space is not None:
         # the cam reaches at least the base circle on its far side
         high = min(high, 0.5 * task.space - 0.5 * spring.travel)
@@ -186,7 +214,7 @@ def _factors(task: DesignTask, designs: list[Machinery]) -> dict[str, Array]:
         for name in windings
         if name in known
     }
-    energy = np.array([(e.preload + 0.5 * e.spring.rate * e.travel) * e.travel for e in springs])
+    share = np.array([_share(task, each.spring) for each in designs])
     return factors | {
         "spring.rate": np.array([each.spring.rate for each in springs]),
         "spring.preload": np.array([each.preload for each in springs]),
@@ -194,7 +222,7 @@ def _factors(task: DesignTask, designs: list[Machinery]) -> dict[str, Array]:
         "cam.prime_radius": np.array([each.prime_radius for each in designs]),
         "follower.mass": np.array([float(each.mass) for each in designs]),
         "guides.spacing": np.array([each.frame.spacing(each.lift) for each in designs]),
-        "mechanism.compensation": np.minimum(energy / task.demand.energy_swing, 1.0),
+        "mechanism.compensation": share,
         "limits.cam_radius": np.array([min(each.room, _FREE_ROOM) for each in designs]),
     }
 
@@ -206,6 +234,9 @@ def _judged(designs: list[Machinery], columns: Mapping[str, Column]) -> list[Can
         if name.endswith(".utilisation")
     ])  # fmt: skip
     names = [name.split(".")[0] for name in columns if name.endswith(".utilisation")]
+    wavy = names.index(_WAVINESS)  # proportional to the tolerance of the contour
+    finely = used[wavy] > _WAVY
+    used[wavy, finely] *= PROFILES[1] / PROFILES[0]
     excess = np.maximum(used - 1.0, 0.0).sum(axis=0)
     worst = used.argmax(axis=0)
     ripple = np.asarray(columns["headline.torque_std_after_Nm"], dtype=float)
@@ -214,7 +245,11 @@ def _judged(designs: list[Machinery], columns: Mapping[str, Column]) -> list[Can
     good &= np.asarray(columns["screen"] != "error")
     return [
         Candidate(
-            replace(designs[row], cam_radius=1e-3 * float(radius[row])),
+            replace(
+                designs[row],
+                cam_radius=1e-3 * float(radius[row]),
+                profile=PROFILES[int(finely[row])],
+            ),
             float(ripple[row]),
             1e-3 * float(radius[row]),
             float(excess[row]),

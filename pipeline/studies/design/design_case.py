@@ -15,6 +15,7 @@ from camwright.geometry.arrays import FULL_TURN
 from camwright.pipeline.base import units
 from camwright.pipeline.case.cards.card_filling import known_cards, viscosity
 from camwright.pipeline.case.cards.shaft_seats import seat_source
+from camwright.pipeline.case.limits import CHORD_SHARE
 from camwright.pipeline.case.toml_text import tables_of
 from camwright.pipeline.follower.bearing_life import rated_viscosity
 from camwright.pipeline.follower.spring import HelicalSpring
@@ -27,13 +28,23 @@ _KAPPA = 1.25  # viscosity ratio of the roller bearing at the least speed
 _CENTISTOKES = 1e-6
 _ROOM = "given: space less the height of the roller at maximum lift"
 _BALANCED = 3e-3  # m/s, residual unbalance of the bench
+PROFILES = (8e-6, 4e-6)  # m, tolerance of the contour: ground, finely ground
+_STEPS = (0.5, 0.25, 0.2, 0.1)  # deg, of the contour table
+SYNTHESIS = """\
+kind = "constrained"
+corners = true
+jerk_weight = 0.2
+rest_force_weight = 0.0
+"""
+"""Smoothing of a design: the lift of least ripple within all limits, at all tolerance ends."""
 
 
 @dataclass(frozen=True)
 class Machinery:
     """A design in numbers, SI: frame, spring, least radius of the roller's centre, its offset.
 
-    lift: greatest lift for which the frame has room; cam_radius: that of the cam expected.
+    lift: greatest lift for which the frame has room; cam_radius: that of the cam expected; profile:
+    tolerance of the ground contour.
     """
 
     task: DesignTask = field(repr=False)
@@ -44,7 +55,7 @@ class Machinery:
     cam_radius: float
     offset: float = 0.0
     bush: str = "ptfe_lined"
-    jerk_weight: float = 0.2
+    profile: float = PROFILES[0]
     oils: Mapping[str, tuple[float, float]] = field(default_factory=dict, repr=False)
 
     @property
@@ -96,14 +107,17 @@ def oils_of(folder: Path | None) -> dict[str, tuple[float, float]]:
     }
 
 
-def case_text(design: Machinery, name: str, file: str, head: str = "") -> str:
+def case_text(
+    design: Machinery, name: str, file: str, head: str = "", smoothing: str = SYNTHESIS
+) -> str:
     """Text of the case file of a design.
 
     Parameters
     ----------
-    name : str   of the case
-    file : str   of the torque table, in the folder of the case
-    head : str   comment lines at the top
+    name : str        of the case
+    file : str        of the torque table, in the folder of the case
+    head : str        comment lines at the top
+    smoothing : str   lines of its section
     """
     parts = (
         _HEAD.format(head=head, name=name, title=_title(design)),
@@ -113,7 +127,7 @@ def case_text(design: Machinery, name: str, file: str, head: str = "") -> str:
         _shaft(design),
         _roller(design),
         _follower(design),
-        _requirements(design),
+        _requirements(design, smoothing),
     )
     return "\n".join(parts)
 
@@ -156,14 +170,13 @@ def _spring(design: Machinery) -> str:
     point, task = design.spring, design.task
     spring = point.spring
     origin = f"catalogue: spring {spring.name}" if spring.name else "wound for this design"
-    energy = (point.preload + 0.5 * spring.rate * point.travel) * point.travel
     surge = spring.surge_frequency / (task.cam_speed / FULL_TURN)
     words = tables_of(spring)
     for key in ("source", "name"):
         words.pop(key, None)
     rows = tomli_w.dumps(words).rstrip("\n")
     return f"""\
-# --- Spring: {origin}. It stores {energy:.4g} J in {_mm(point.travel)} of lift, and its
+# --- Spring: {origin}. It stores {point.energy:.4g} J in {_mm(point.travel)} of lift, and its
 # coils surge at {surge:.3g} times the cam's frequency at over-speed.
 [spring]
 rate = {_text(units.format(spring.rate, "kN/m"))}
@@ -186,6 +199,7 @@ def _spring_source(spring: HelicalSpring) -> str:
 def _cam(design: Machinery) -> str:
     frame, seat = design.frame, design.frame.seat
     offset = f'offset = "{_mm(design.offset)}"\n' if design.offset else ""
+    ground = "ground" if design.profile == PROFILES[0] else "finely ground"
     return f"""\
 # --- Cam: the prime radius is that of the roller's CENTRE on the base circle.
 [cam]
@@ -194,7 +208,7 @@ prime_radius = "{_mm(design.prime_radius)}"
 bore_radius = "{_mm(0.5 * seat.bore)}"
 material = "case_hardened"
 roughness = "0.3 um"                 # ground
-profile_tolerance = "8 um"           # ground; for waves of 5 mm
+profile_tolerance = "{units.format(design.profile, "um")}"           # {ground}; for waves of 5 mm
 keyway = {{ width = "{_mm(seat.key_width)}", depth = "{_mm(seat.hub_depth)}" }}
 source = "assumed: case-hardened and ground"
 
@@ -327,7 +341,7 @@ c45 = {{ card = "c45" }}
 """
 
 
-def _requirements(design: Machinery) -> str:
+def _requirements(design: Machinery, smoothing: str) -> str:
     task = design.task
     life = units.format(task.life, "h")
     radius = 1e-3 * np.ceil(1.15e3 * design.cam_radius) if task.space is None else design.room
@@ -341,11 +355,7 @@ def _requirements(design: Machinery) -> str:
     return f"""\
 # --- The lift of least torque ripple within all limits, at the ends of all tolerances
 [smoothing]
-kind = "constrained"
-corners = true
-jerk_weight = {design.jerk_weight:g}
-rest_force_weight = 0.0
-
+{smoothing}
 [limits]
 overspeed = "{_round(task.overspeed, "rpm")}"
 torque_reduction = {task.remove!r}
@@ -370,10 +380,19 @@ cam_radius = "{room_words}"
 [tolerances]
 source = "assumed: ground profile; the rest: defaults"
 
+[workshop]
+table_step = "{_table_step(design):g} deg"              # chords within a quarter of the tolerance
+
 [solver]
 positions = 72                       # per cam turn; 720 for a sign-off
 
 {"".join(cases)}"""
+
+
+def _table_step(design: Machinery) -> float:
+    """Step of the contour table, deg: chords of a circle, twice as curved as that of the cam."""
+    radius, error = 2.0 * design.prime_radius, CHORD_SHARE.default * design.profile
+    return next((s for s in _STEPS if radius * np.radians(s) ** 2 / 8.0 <= error), _STEPS[-1])
 
 
 def _load_case(name: str, speed: float, weight: float, source: str) -> str:

@@ -4,11 +4,8 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
-from math import floor
+from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -24,67 +21,25 @@ from camwright.pipeline.case.section import SAFE_NAME
 from camwright.pipeline.preview import preview_case
 from camwright.pipeline.results.run_folder import versions
 from camwright.pipeline.studies.design.candidate_search import Candidate, candidates
-from camwright.pipeline.studies.design.design_case import Machinery, case_text
+from camwright.pipeline.studies.design.design_case import case_text
+from camwright.pipeline.studies.design.relaxation_search import relaxations
+from camwright.pipeline.studies.design.synthesised_points import (
+    Solved,
+    Study,
+    promising,
+    settled,
+    synthesised,
+)
 from camwright.pipeline.studies.design.torque_task import DesignTask, task_of
-from camwright.pipeline.studies.redesign.pareto_front import front, thinned
-from camwright.pipeline.studies.redesign.point_store import SOLVED, Record, Task, solved
+from camwright.pipeline.studies.redesign.pareto_front import front
+from camwright.pipeline.studies.redesign.point_store import SOLVED, Record
 
 RECORD = "design.json"
 PICTURE = "design.png"
 _POINTS = 4  # of the front of the screening, solved in full
-_NEAR = 0.5  # excess that a synthesis may remove
-_OPTIMISTIC = 1.1  # ripple of a screened design over that allowed
-_ALIKE = 0.02  # relative size within which the lesser ripple replaces
-_GAIN = 0.03  # of the ripple, between points
-_TRIED = 6  # points solved before a task is given up
-_FEWER = 2  # points solved of a relaxed task
-_REMOVED = (0.9, 0.7, 0.4)  # shares of the ripple to be removed that are tried
-_SLOWER = (0.85, 0.7, 0.5)  # of the speeds
-_SPARE = 1.005  # of the space of a design
 _OURS = re.compile(
     rf"design\.(json|png)|point_\d+\.toml|{SOLVED}|.*\.csv|cards\.toml|springs\.toml"
 )
-
-
-@dataclass(frozen=True)
-class Study:
-    """A task with the folder of its points and the name of the torque table in it."""
-
-    task: DesignTask
-    folder: Path
-    file: str
-    version: str
-
-    def text(self, design: Machinery, head: str = "") -> str:
-        """Case file of a design of the task."""
-        return case_text(design, "design", self.file, head)
-
-    def solved(self, design: Machinery, tier: Any) -> Record:
-        """Record of a design: cached or solved."""
-        return solved(Task(self.text(design), "", self.folder, self.version, tier))
-
-
-@dataclass(frozen=True)
-class Solved:
-    """A design with the record of its preview."""
-
-    design: Machinery
-    record: Record
-
-    @property
-    def passes(self) -> bool:
-        return self.record.get("verdict") == "pass"
-
-    @property
-    def size(self) -> float:
-        """From the far side of the cam to the top of the roller at maximum lift, m."""
-        lift = 1e-3 * float(self.record["lift_max_mm"])
-        radius = 1e-3 * float(self.record["cam_radius_mm"])
-        return radius + self.design.prime_radius + lift + self.design.frame.radius
-
-    @property
-    def ripple(self) -> float:
-        return float(self.record["ripple_left_Nm"])
 
 
 def design_from_torque(
@@ -154,8 +109,7 @@ def designed(task: DesignTask, out: Path, progress: Progress = SILENT) -> Record
     progress.stage("search rollers, springs and base circles")
     screened = candidates(task, folder, file, progress)
     progress.stage("solve the front")
-    points = _solved_front(study, screened, _TRIED, progress)
-    passing = _front([each for each in points if each.passes])
+    points, failing = _solved_front(study, screened, progress)
     document: Record = {
         "schema": 1,
         "torque": _demand_record(task),
@@ -172,15 +126,18 @@ def designed(task: DesignTask, out: Path, progress: Progress = SILENT) -> Record
         "chosen": None,
         "conflict": None,
     }
-    if passing:
-        best = _refined(study, passing[0])
-        document["points"] = _write_points(study, passing)
+    if points:
+        best = points[0]
+        document["points"] = _write_points(study, points)
         document["chosen"] = _row(best) | _drawing(study, best) | {"file": out.name}
-        head = _summary(study, best, passing)
+        head = _summary(study, best, points)
         write_atomic(out, case_text(best.design, out.stem, file, head))
     else:
         progress.stage("smallest relaxation")
-        document["conflict"] = _conflict(study, screened, points, progress)
+        document["conflict"] = {
+            "limits": _limits(task, screened, failing),
+            "relaxations": relaxations(study, screened, out, progress),
+        }
     write_atomic(folder / RECORD, json_text(document) + "\n")
     return document
 
@@ -208,51 +165,26 @@ def _prepare(task: DesignTask, folder: Path, out: Path) -> str:
     return name
 
 
-def _promising(task: DesignTask, screened: Sequence[Candidate], most: int) -> list[Candidate]:
-    """Designs of the front of the screening: within the limits, and near to them."""
-    ripple = (1.0 - task.remove) * task.demand.ripple * _OPTIMISTIC
-    chosen: list[Candidate] = []
-    for excess in (0.0, _NEAR):
-        good = [each for each in screened if each.excess <= excess and each.ripple <= ripple]
-        figures = [(each.size, each.ripple) for each in good]
-        places = front(figures, _ALIKE, _GAIN * task.demand.ripple)
-        kept = [good[k] for k in thinned(places, figures, min(_POINTS, most))]
-        chosen += [each for each in kept if each not in chosen]
-    return sorted(chosen[:most], key=lambda each: (each.size, each.ripple))
-
-
-def _rounded(candidate: Candidate) -> Machinery:
-    """The design of a candidate with lift and preload as a drawing states them."""
-    design = candidate.design
-    spring = replace(design.spring, preload=float(f"{design.spring.preload:.3g}"))
-    return replace(design, spring=spring, lift=2e-4 * np.ceil(design.lift / 2e-4))
-
-
 def _solved_front(
-    study: Study, screened: Sequence[Candidate], most: int, progress: Progress
-) -> list[Solved]:
-    chosen = _promising(study.task, screened, most)
-    points = []
+    study: Study, screened: Sequence[Candidate], progress: Progress
+) -> tuple[list[Solved], list[Solved]]:
+    """Designs of the front of the screening that pass, and those that do not."""
+    chosen = promising(study.task, screened, _POINTS)
+    passing: list[Solved] = []
+    failing: list[Solved] = []
     for k, candidate in enumerate(chosen, start=1):
-        own = _rounded(candidate)
-        record = study.solved(own, "corners")
-        if "why" not in record:
-            points.append(Solved(own, record))
+        point = synthesised(study, candidate)
+        if point.has_cam and point.passes:
+            point = settled(study, point)
+        if point.has_cam:
+            (passing if point.passes else failing).append(point)
         progress.advance(k, len(chosen))
-    return points
+    return _front(passing), failing
 
 
 def _front(points: Sequence[Solved]) -> list[Solved]:
     figures = [(each.size, each.ripple) for each in points]
     return [points[k] for k in front(figures)]
-
-
-def _refined(study: Study, point: Solved) -> Solved:
-    """The point with the cam radius of its synthesis as room and counterweight."""
-    own = replace(point.design, cam_radius=1e-3 * float(point.record["cam_radius_mm"]))
-    record = study.solved(own, "corners")
-    refined = Solved(own, record)
-    return refined if refined.passes else point
 
 
 def _sampled(screened: Sequence[Candidate], most: int = 400) -> list[Candidate]:
@@ -338,64 +270,11 @@ def _summary(study: Study, best: Solved, points: Sequence[Solved]) -> str:
     return "\n".join(lines) + "\n"
 
 
-def _conflict(
-    study: Study, screened: Sequence[Candidate], points: Sequence[Solved], progress: Progress
-) -> Record:
-    """Limits in conflict, and the smallest relaxations whose design passes, smallest first."""
-    relaxations: list[Record] = []
-    options = list(_relaxed(study.task))
-    for k, (name, changes) in enumerate(options, start=1):
-        for change in changes:
-            passing, relaxed = _passing(study, change), change
-            if passing and name == "--space":
-                relaxed = replace(change, space=_room_of(passing))
-                passing = _passing(study, relaxed)
-            if passing:
-                relaxations.append(_relaxation(name, study.task, relaxed))
-                break
-        progress.advance(k, len(options))
-    return {"limits": _limits(study.task, screened, points), "relaxations": relaxations}
-
-
-def _passing(study: Study, task: DesignTask) -> list[Solved]:
-    """Points of a relaxed task that pass."""
-    screened = candidates(task, study.folder, study.file, SILENT)
-    solved_points = _solved_front(replace(study, task=task), screened, _FEWER, SILENT)
-    return [each for each in solved_points if each.passes]
-
-
-def _room_of(points: Sequence[Solved]) -> float:
-    """Space of the smallest point, m, rounded up."""
-    smallest = min(points, key=lambda each: each.size)
-    radius = 1e-3 * float(smallest.record["cam_radius_mm"])
-    return float(1e-3 * np.ceil(1e3 * _SPARE * (radius + smallest.design.height)))
-
-
-def _relaxation(name: str, task: DesignTask, relaxed: DesignTask) -> Record:
-    """A change of an option of the command with which a design passes."""
-    before, after, unit = {
-        "--remove": (task.remove, relaxed.remove, "%"),
-        "--space": (task.space or 0.0, relaxed.space or 0.0, "mm"),
-        "--speed": (task.speed, relaxed.speed, "rpm"),
-    }[name]
-    record: Record = {
-        "option": name,
-        "from": units.shown(before, unit),
-        "to": units.shown(after, unit),
-    }
-    if name == "--speed":
-        record["overspeed"] = units.shown(relaxed.overspeed, "rpm")
-    return record
-
-
 def _limits(task: DesignTask, screened: Sequence[Candidate], points: Sequence[Solved]) -> list[str]:
     """What no design keeps together."""
     if points:
-        near = min(points, key=lambda each: sum(
-            float(s["utilisation"] or 99.0) for s in each.record["shortfalls"]
-        ))  # fmt: skip
-        names = [str(each["title"]) for each in near.record["shortfalls"]]
-        return names or ["the limits of the synthesis at the ends of the tolerances"]
+        near = min(points, key=lambda each: each.shortfall)
+        return near.failing or ["the limits of the synthesis at the ends of the tolerances"]
     if screened:
         counts = Counter(each.governing for each in screened if each.excess > 0.0)
         return [name for name, _ in counts.most_common(3)]
@@ -404,22 +283,3 @@ def _limits(task: DesignTask, screened: Sequence[Candidate], points: Sequence[So
         f"surge frequency of 13 times the cam's at {units.shown(task.cam_speed, 'rpm')}",
         "ratings of the rollers of the catalogue",
     ]
-
-
-def _relaxed(task: DesignTask) -> Iterator[tuple[str, list[DesignTask]]]:
-    """Options of the command, each with relaxed tasks, the smallest change first."""
-    removals = (floor(100.0 * task.remove * share) / 100.0 for share in _REMOVED)
-    yield "--remove", [replace(task, remove=value) for value in removals if value > 0.0]
-    if task.space is not None:
-        yield "--space", [replace(task, space=None)]
-    yield "--speed", [_slower(task, share) for share in _SLOWER]
-
-
-def _slower(task: DesignTask, share: float) -> DesignTask:
-    least, most = task.speeds
-    return replace(
-        task,
-        speed=share * task.speed,
-        speeds=(share * least, share * most),
-        overspeed=share * task.overspeed,
-    )

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import shlex
 from dataclasses import dataclass
 from math import inf, isfinite
 from pathlib import Path
+from typing import TypedDict, cast
 
 import numpy as np
 
@@ -22,6 +24,25 @@ _LIFE = "2000 h"
 _AMBIENT = "40 degC"
 _REMOVE = 0.5
 _WHOLE = 0.02  # of a turn: a span this near to whole turns is a cycle of them
+
+Number = str | float
+NAMES = ("speeds", "overspeed", "cycle", "ratio", "space", "life", "ambient", "remove")
+"""Options that are assumed where they are not given."""
+_UNITS = {"cycle": "deg", "space": "mm", "life": "h", "ambient": "K"}
+
+
+class Options(TypedDict, total=False):
+    """Options of a design, numbers in SI or text with a unit."""
+
+    speed: Number
+    speeds: str | tuple[Number, Number]
+    overspeed: Number
+    cycle: Number
+    ratio: Number
+    space: Number
+    life: Number
+    ambient: Number
+    remove: Number
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,7 +82,7 @@ class DesignTask:
     """A torque and the requirements on the cam that balances it, SI.
 
     space: from the far side of the cam to the top of the roller at maximum lift, None: not limited;
-    remove: share of the torque ripple to be removed; assumed: names of what was not given.
+    remove: share of the torque ripple to be removed; options: what was given, by name.
     """
 
     file: Path
@@ -74,7 +95,34 @@ class DesignTask:
     life: float
     ambient: float
     remove: float
-    assumed: frozenset[str]
+    options: Options
+
+    @property
+    def assumed(self) -> frozenset[str]:
+        """Names of the options that were not given."""
+        return frozenset(NAMES) - frozenset(self.options)
+
+    def relaxed(self, changes: Options) -> DesignTask:
+        """The task with other options beside those given."""
+        options: Options = {**self.options, **changes}
+        return task_of(self.file, **options)
+
+    def command(self, out: Path) -> str:
+        """The command line of the task.
+
+        Parameters
+        ----------
+        out : Path   case file
+        """
+        words = ["camwright", "design", str(self.file)]
+        for name, value in self.options.items():
+            words += [f"--{name}", _words(name, value)]
+        return shlex.join([*words, "--out", str(out)])
+
+    @property
+    def ripple_allowed(self) -> float:
+        """Torque ripple that may be left, standard deviation, N m."""
+        return (1.0 - self.remove) * self.demand.ripple
 
     def source(self, name: str, reason: str = "") -> str:
         """Source of a requirement for the case file."""
@@ -93,18 +141,29 @@ class DesignTask:
         return self.overspeed / self.ratio
 
 
+def _words(name: str, value: object) -> str:
+    """An option as text of the command line."""
+    if isinstance(value, tuple):
+        return "..".join(_words(name, each) for each in value)
+    if not isinstance(value, float | int):
+        return str(value)
+    if name in ("ratio", "remove"):
+        return f"{value:.12g}"
+    return units.format(value, _UNITS.get(name, "rpm"))
+
+
 def task_of(
     torque: str | Path,
     *,
-    speed: str | float,
-    speeds: str | tuple[str | float, str | float] | None = None,
-    overspeed: str | float | None = None,
-    cycle: str | float | None = None,
-    ratio: str | float | None = None,
-    space: str | float | None = None,
-    life: str | float | None = None,
-    ambient: str | float | None = None,
-    remove: str | float | None = None,
+    speed: Number,
+    speeds: str | tuple[Number, Number] | None = None,
+    overspeed: Number | None = None,
+    cycle: Number | None = None,
+    ratio: Number | None = None,
+    space: Number | None = None,
+    life: Number | None = None,
+    ambient: Number | None = None,
+    remove: Number | None = None,
 ) -> DesignTask:
     """Task of a torque table; numbers in SI, or text with a unit.
 
@@ -128,8 +187,6 @@ def task_of(
         file, no units, constant, not periodic, rows too coarse for its waves.
     """
     path = Path(torque)
-    given = {"overspeed": overspeed, "cycle": cycle, "ratio": ratio, "space": space, "life": life,
-             "ambient": ambient, "remove": remove, "speeds": speeds}  # fmt: skip
     running = _number(speed, "rpm", "--speed", above=0.0)
     least, most = _range(speeds, running)
     fastest = _OVER * most
@@ -149,8 +206,23 @@ def task_of(
         life=_number(_LIFE if life is None else life, "h", "--life", above=0.0),
         ambient=_number(_AMBIENT if ambient is None else ambient, "K", "--ambient", above=0.0),
         remove=share,
-        assumed=frozenset(name for name, value in given.items() if value is None),
+        options=_given(
+            speed=speed,
+            speeds=speeds,
+            overspeed=overspeed,
+            cycle=cycle,
+            ratio=ratio,
+            space=space,
+            life=life,
+            ambient=ambient,
+            remove=remove,
+        ),
     )
+
+
+def _given(**options: str | float | tuple[Number, Number] | None) -> Options:
+    """The options that are not None."""
+    return cast(Options, {name: value for name, value in options.items() if value is not None})
 
 
 def _number(

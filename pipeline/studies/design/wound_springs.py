@@ -38,6 +38,11 @@ class SpringPoint:
         """Force at the greatest lift, N."""
         return self.preload + self.spring.rate * self.travel
 
+    @property
+    def energy(self) -> float:
+        """Energy stored up to the greatest lift, J."""
+        return (self.preload + 0.5 * self.spring.rate * self.travel) * self.travel
+
 
 def wound(
     wire: HelicalSpring,

@@ -1,0 +1,155 @@
+"""Designs solved in full: prime radius and preload by the constrained synthesis, then rounded."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from math import ceil
+from pathlib import Path
+
+from camwright.pipeline.studies.design.candidate_search import Candidate
+from camwright.pipeline.studies.design.design_case import SYNTHESIS, Machinery, case_text
+from camwright.pipeline.studies.design.torque_task import DesignTask
+from camwright.pipeline.studies.redesign.pareto_front import front, thinned
+from camwright.pipeline.studies.redesign.point_store import Record, Task, solved
+
+_NEAR = 0.5  # excess that a synthesis may remove
+_OPTIMISTIC = 1.1  # ripple of a screened design over that allowed
+_ALIKE = 0.02  # relative size within which the lesser ripple replaces
+_GAIN = 0.03  # of the ripple, between points
+_FREE_RADIUS = (0.9, 1.1)  # of the prime radius of the screening
+_FREE_PRELOAD = (0.85, 1.1)  # of the preload of the screening: the spring has room for 1.05
+RESERVE = 0.01  # of the ripple allowed, for the corrections by finite elements
+
+
+@dataclass(frozen=True)
+class Study:
+    """A task with the folder of its points and the name of the torque table in it."""
+
+    task: DesignTask
+    folder: Path
+    file: str
+    version: str
+
+    def text(self, design: Machinery, smoothing: str = SYNTHESIS) -> str:
+        """Case file of a design of the task."""
+        return case_text(design, "design", self.file, smoothing=smoothing)
+
+    def solved(self, design: Machinery, smoothing: str = SYNTHESIS) -> Solved:
+        """A design with its record, cached or solved, at all tolerance ends."""
+        text = self.text(design, smoothing)
+        return Solved(design, solved(Task(text, "", self.folder, self.version, "corners")))
+
+
+@dataclass(frozen=True)
+class Solved:
+    """A design with the record of its preview."""
+
+    design: Machinery
+    record: Record
+
+    @property
+    def has_cam(self) -> bool:
+        """Whether there is a cam to judge."""
+        return "why" not in self.record
+
+    @property
+    def passes(self) -> bool:
+        """Whether all limits are kept, the ripple with a reserve for the finite elements."""
+        most = (1.0 - RESERVE) * self.design.task.ripple_allowed
+        return self.record.get("verdict") == "pass" and self.ripple <= most
+
+    @property
+    def size(self) -> float:
+        """From the far side of the cam to the top of the roller at maximum lift, m."""
+        lift, radius, prime = (
+            1e-3 * float(self.record[key])
+            for key in ("lift_max_mm", "cam_radius_mm", "prime_radius_mm")
+        )
+        return radius + prime + lift + self.design.frame.radius
+
+    @property
+    def ripple(self) -> float:
+        return float(self.record["ripple_left_Nm"])
+
+    @property
+    def failing(self) -> list[str]:
+        """Titles of the checks that fail."""
+        return [str(each["title"]) for each in self.record["shortfalls"]]
+
+    @property
+    def shortfall(self) -> float:
+        """Sum of the utilisations of the checks that fail; 99 for an infinite one."""
+        return sum(float(each["utilisation"] or 99.0) for each in self.record["shortfalls"])
+
+
+def promising(task: DesignTask, screened: Sequence[Candidate], most: int) -> list[Candidate]:
+    """Designs of the front of the screening: within the limits, near to them, and the likeliest."""
+    ripple = task.ripple_allowed * _OPTIMISTIC
+    chosen: list[Candidate] = []
+    for excess in (0.0, _NEAR):
+        good = [each for each in screened if each.excess <= excess and each.ripple <= ripple]
+        figures = [(each.size, each.ripple) for each in good]
+        places = front(figures, _ALIKE, _GAIN * task.demand.ripple)
+        kept = [good[k] for k in thinned(places, figures, most)]
+        chosen += [each for each in kept if each not in chosen]
+    likely = likeliest(task, screened)
+    if likely is not None and likely not in chosen:
+        chosen = [*chosen[: most - 1], likely]
+    return sorted(chosen[:most], key=lambda each: (each.size, each.ripple))
+
+
+def likeliest(task: DesignTask, screened: Sequence[Candidate]) -> Candidate | None:
+    """The screened design with the most room to ripple and limits; None: each is hopeless."""
+
+    def lack(each: Candidate) -> float:
+        return each.ripple / task.ripple_allowed + _NEAR * each.excess
+
+    best = min(screened, key=lack, default=None)
+    return best if best is not None and lack(best) <= _OPTIMISTIC + _NEAR**2 else None
+
+
+def synthesised(study: Study, candidate: Candidate) -> Solved:
+    """A screened design with the prime radius and preload of least ripple within all limits.
+
+    Both are free about the values of the screening; where the space is limited the roller does not
+    move outwards.
+    """
+    design = _rounded(candidate.design)
+    least, most = _FREE_RADIUS
+    low = max(design.frame.least_radius, least * design.prime_radius)
+    high = design.prime_radius * (1.0 if study.task.space is not None else most)
+    radii = 1e3 * min(low, 0.999 * high), 1e3 * high
+    forces = [share * design.spring.preload for share in _FREE_PRELOAD]
+    smoothing = SYNTHESIS + (
+        'free = ["initial_energy", "prime_radius", "preload"]\n'
+        f'prime_radius_range = ["{radii[0]:.6g} mm", "{radii[1]:.6g} mm"]\n'
+        f'preload_range = ["{forces[0]:.6g} N", "{forces[1]:.6g} N"]\n'
+    )
+    return study.solved(design, smoothing)
+
+
+def settled(study: Study, point: Solved) -> Solved:
+    """The design of a synthesis with its prime radius and preload as a drawing states them.
+
+    The cam radius of the synthesis is that of the room and of the counterweight.
+    """
+    record, design = point.record, point.design
+    prime = 1e-4 * ceil(10.0 * float(record["prime_radius_mm"]) - 1e-3)
+    if study.task.space is not None:
+        prime = min(prime, design.prime_radius)
+    spring = replace(design.spring, preload=float(f"{record['preload_N']:.3g}"))
+    return study.solved(
+        replace(
+            design,
+            prime_radius=prime,
+            spring=spring,
+            cam_radius=1e-3 * float(record["cam_radius_mm"]),
+        )
+    )
+
+
+def _rounded(design: Machinery) -> Machinery:
+    """The design with lift and preload as a drawing states them."""
+    spring = replace(design.spring, preload=float(f"{design.spring.preload:.3g}"))
+    return replace(design, spring=spring, lift=2e-4 * ceil(design.lift / 2e-4))
