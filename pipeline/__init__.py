@@ -16,7 +16,7 @@ verdict; a failed trial is smoothed again. `results` writes the run folder, `rep
 | `contact.finite_length` | bodies of finite length: ends, crown, tilt        | K, -               |
 | `follower`           | forces, guides, spring, roller, flat face            | F_n, N; p, Pa      |
 | `case`               | case file, limits, `Machine`                         | SI                 |
-| `case.cards`         | materials, bushes, oils, spring wires, bearings      |                    |
+| `case.cards`         | materials, bushes, oils, wires, springs, bearings    |                    |
 | `cycle`              | loads, contact and part loads over one cam turn      | theta, rad         |
 | `checks`             | one function per check: demand, limit                | utilisation, -     |
 | `smoothing`          | smoothers, constrained synthesis, shadow prices      | s, m               |

@@ -35,8 +35,8 @@ _RESOLVED: Mapping[str, str] = {
     "spring.catalogue": "`shipped`, or a file name",
     "lubricant.temperature": In("K", above=0, at_most=5000).limit,
     **dict.fromkeys(
-        ("spring.design.card", "roller.bearing.card", "guides.a.card", "guides.b.card",
-         "lubricant.card", "materials.NAME.card"), "name of a card",
+        ("spring.design.card", "spring.gas.card", "roller.bearing.card", "guides.a.card",
+         "guides.b.card", "lubricant.card", "materials.NAME.card"), "name of a card",
     ),
 }  # fmt: skip
 """Keys that the reader replaces by what they name: none is a field of `Case`."""

@@ -14,6 +14,7 @@ from camwright.geometry.arrays import uniform_turn
 from camwright.geometry.errors import InputError
 from camwright.geometry.lift import Lift
 from camwright.geometry.pitch_curve import PitchCurve
+from camwright.pipeline.case.cards.card_filling import known_cards
 from camwright.pipeline.case.case_file import case_of, parse_case
 from camwright.pipeline.case.case_values import replaced
 from camwright.pipeline.case.load_case_torque import engine_torques
@@ -47,11 +48,11 @@ volume = "6 cm^3"
 """
 
 
-def gas_case(extra="", table=TABLE):
+def gas_case(extra="", table=TABLE, folder=None):
     text = small_machine("gas").replace('rate = "24.2 kN/m"\n', "")
     old = 'preload = "400 N"                    # at the smallest cam radius\n'
     assert old in text
-    return parse_case(text.replace(old, table) + extra)
+    return parse_case(text.replace(old, table) + extra, folder)
 
 
 @cache
@@ -239,6 +240,35 @@ def test_bad_tables_are_refused_in_one_line(table, refusal):
 def test_preload_of_a_load_case_and_freed_springs_are_refused():
     with pytest.raises(InputError, match=r"load_case\[0\].preload"):
         gas_case('preload = "300 N"\n')
+
+
+@pytest.mark.parametrize("name", sorted(known_cards(None)["gas_springs"]))
+def test_card_of_a_gas_spring_has_its_rod_and_its_rise_of_force(name):
+    """Rod x stroke of its name; at a constant temperature the force rises by half over the stroke.
+
+    Force and limits of the resolved case are those of the card; the case states the pressure.
+    """
+    rod, stroke = (1e-3 * float(each) for each in name.removeprefix("nitrogen_").split("x"))
+    table = f'kind = "gas"\n\n[spring.gas]\ncard = "{name}"\npressure = "90 bar"\n'
+    gas = gas_case(table=table).spring.gas
+    assert gas.area == pytest.approx(np.pi / 4.0 * rod**2, rel=3e-4)  # four digits
+    assert gas.stroke == pytest.approx(stroke, rel=1e-12)
+    assert gas.volume / (gas.volume - gas.area * stroke) == pytest.approx(1.5, rel=3e-3)
+    assert gas.preload == pytest.approx(90e5 * gas.area, rel=1e-12)
+    assert (gas.pressure_limit, gas.temperature_limit, gas.speed_limit) == (250e5, 353.15, 1.6)
+    assert "verify" in gas.source
+
+
+def test_a_users_card_of_a_gas_spring(tmp_path):
+    card = '[gas_springs.own]\narea = "100 mm^2"\nvolume = "6 cm^3"\nsource = "data sheet"\n'
+    (tmp_path / "cards.toml").write_text(card, encoding="utf-8")
+    table = 'kind = "gas"\n\n[spring.gas]\ncard = "own"\npressure = "30 bar"\nvolume = "7 cm^3"\n'
+    gas = gas_case(table=table, folder=tmp_path).spring.gas
+    assert (gas.area, gas.volume, gas.stroke) == (pytest.approx(1e-4), pytest.approx(7e-6), None)
+    with pytest.raises(InputError, match=r"spring.gas.card = none, must be one of: nitrogen_15x25"):
+        gas_case(table=table.replace('"own"', '"none"'))
+    with pytest.raises(InputError, match=r"spring.gas.pressure = missing, must be given"):
+        gas_case(table='kind = "gas"\n\n[spring.gas]\ncard = "nitrogen_15x25"\n')
 
 
 LIMITS = """

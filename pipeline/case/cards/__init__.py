@@ -1,4 +1,4 @@
-"""Cards of materials, bushes, oils, wires and bearings; catalogues of springs and parts.
+"""Cards of materials, bushes, oils, wires, gas springs, bearings; catalogues of their parts.
 
 In the order of use; the values are in the TOML files of this folder.
 

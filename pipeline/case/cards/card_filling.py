@@ -26,7 +26,7 @@ from camwright.pipeline.case.cards.spring_selection import put_force, put_spring
 from camwright.pipeline.case.toml_text import Tables, TomlValue, tables_of
 from camwright.pipeline.case.value_sources import UNSTATED, put_sources
 
-KINDS = ("materials", "bushes", "oils", "wires", "bearings")
+KINDS = ("materials", "bushes", "oils", "wires", "gas_springs", "bearings")
 FOLDER = Path(__file__).parent
 USER_FILE = "cards.toml"
 USER_BYTES = 256 * 1024
@@ -49,7 +49,12 @@ def fill_cards(case: Tables, folder: Path | None) -> None:
         For an unknown card, or a file of cards that cannot be read.
     """
     put_spring(case, folder)
+    _fill_places(case, folder)
     put_force(case)
+
+
+def _fill_places(case: Tables, folder: Path | None) -> None:
+    """Complete each table that names a card."""
     named = [place for place in _places(case) if "card" in place[2]]
     if not named:
         return
@@ -145,6 +150,7 @@ def _places(case: Tables) -> Iterator[tuple[str, str, Tables]]:
         "guides.b": "bushes",
         "lubricant": "oils",
         "spring.design": "wires",
+        "spring.gas": "gas_springs",
         "roller.bearing": "bearings",
     }
     for field, kind in kinds.items():
