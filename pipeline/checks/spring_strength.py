@@ -9,13 +9,14 @@ from collections.abc import Callable
 from typing import Generic, NamedTuple
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from camwright.geometry.arrays import Array
 from camwright.geometry.errors import InputError
-from camwright.pipeline.base.units import shown
+from camwright.pipeline.base.units import celsius, shown
 from camwright.pipeline.case.limits import SPRING_FATIGUE, SPRING_SOLID, SPRING_SURGE, Limit, Sense
 from camwright.pipeline.checks.check import NONE, SPEED_RANGE, Declaration, Demand, check
-from camwright.pipeline.checks.extremes import Extreme
+from camwright.pipeline.checks.extremes import Extreme, greatest
 from camwright.pipeline.checks.missing_keys import lacking
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.solution import Solution
@@ -374,16 +375,21 @@ def _gas(solution: Solution) -> GasSpring:
     return gas
 
 
-def gas_pressure_at(spring: Spring, gas: GasSpring, travel: float) -> float:
-    """Pressure above the surroundings at a lift, m, of the hardest spring in tolerance, Pa."""
+def hardest_force(spring: Spring, travel: ArrayLike) -> Array:
+    """Force at lifts (...), m, of the hardest spring in tolerance, N."""
     preload = spring.preload * (1.0 + spring.preload_tolerance)
-    risen = float(spring.force(np.asarray(travel))) - spring.preload
-    return (preload + risen * (1.0 + spring.rate_tolerance)) / gas.area
+    risen = spring.force(np.asarray(travel)) - spring.preload
+    return np.asarray(preload + risen * (1.0 + spring.rate_tolerance))
+
+
+def gas_pressure_at(spring: Spring, gas: GasSpring, travel: ArrayLike) -> Array:
+    """Pressure above the surroundings at lifts (...), m, of the hardest spring in tolerance, Pa."""
+    return np.asarray(hardest_force(spring, travel) / gas.area)
 
 
 def _gas_check(
     name: str,
-    measure: Callable[[Solution, GasSpring], float | None],
+    measure: Callable[[Solution, GasSpring], float | Extreme | None],
     allowed: str,
     *,
     title: str,
@@ -396,6 +402,7 @@ def _gas_check(
     corner: str = "",
 ) -> Declaration:
     """Check of a gas spring against the limit of its maker, `spring.gas.<allowed>`."""
+    shown = celsius if unit == "degC" else float
 
     @check(
         id=name,
@@ -404,6 +411,7 @@ def _gas_check(
         source="data sheet of the maker",
         method=method,
         lift_can_help=lift_can_help,
+        tier=Tier.SCREENING,
         moved_by_tolerance=False,
         part="gas_spring",
         formula=formula,
@@ -412,9 +420,13 @@ def _gas_check(
     )
     def demand(solution: Solution) -> Demand:
         gas = _gas(solution)
+        measured, limit = measure(solution, gas), getattr(gas, allowed)
+        at = measured if isinstance(measured, Extreme) else None
+        value = measured.value if isinstance(measured, Extreme) else measured
         return Demand(
-            measure(solution, gas),
-            getattr(gas, allowed),
+            None if value is None else shown(value),
+            None if limit is None else shown(limit),
+            at,
             missing=lacking("spring.gas", gas, allowed, *needs),
             figures=(gas.source,),
             corner=_corner(solution.machine.spring, corner) if corner else "",
@@ -427,20 +439,20 @@ def _travel(solution: Solution) -> float:
     return float(solution.contour.pitch.lift.highest.value)
 
 
-def _greatest_speed(solution: Solution) -> float:
+def _greatest_speed(solution: Solution) -> Extreme:
     """Greatest speed of the follower over the load cases, m/s."""
-    return max(float(np.max(np.abs(cycle.loads.velocity))) for cycle in solution.cycles)
+    return greatest(solution.cycles, lambda cycle: np.abs(cycle.loads.velocity))
 
 
 gas_pressure = _gas_check(
     "gas_pressure",
-    lambda solution, gas: gas_pressure_at(solution.machine.spring, gas, _travel(solution)),
+    lambda solution, gas: float(gas_pressure_at(solution.machine.spring, gas, _travel(solution))),
     "pressure_limit",
     title="Maximum pressure of the gas spring",
     unit="MPa",
     method="force at maximum lift over the area, preload and rise of the force high",
-    formula="(P + F(h) - P) / A <= spring.gas.pressure_limit; P: preload, F(h): force at maximum"
-    " lift, both high in tolerance, A: area; above the pressure of the surroundings",
+    formula="F / A <= spring.gas.pressure_limit; F: force at maximum lift, preload and rise high in"
+    " tolerance, A: area; above the pressure of the surroundings",
     reason="beyond it seals and cylinder of the spring fail.",
     corner=HARDEST,
 )
@@ -470,7 +482,7 @@ gas_temperature = _gas_check(
     lambda _, gas: gas.temperature,
     "temperature_limit",
     title="Temperature of the gas spring",
-    unit="K",
+    unit="degC",
     method="spring.gas.temperature, at which the pressure is computed",
     formula="T <= spring.gas.temperature_limit; T: spring.gas.temperature",
     reason="seals and oil of the spring age above it.",
@@ -480,22 +492,20 @@ gas_temperature = _gas_check(
 
 
 def torsion_stress_at(
-    spring: Spring, torsion: TorsionSpring, travel: float
-) -> tuple[float, float] | None:
-    """Bending stress at zero lift and at a lift, m, of the hardest spring in tolerance, Pa.
+    spring: Spring, torsion: TorsionSpring, travel: ArrayLike
+) -> tuple[Array, Array] | None:
+    """Bending stress at zero lift and at lifts (...), m, of the hardest spring in tolerance, Pa.
 
     None without the wire.
     """
-    preload = spring.preload * (1.0 + spring.preload_tolerance)
-    risen = float(spring.force(np.asarray(travel))) - spring.preload
-    force = np.array([preload, preload + risen * (1.0 + spring.rate_tolerance)])
-    stress = torsion.bending_stress(torsion.moment_at(force, np.array([0.0, travel])))
-    return None if stress is None else (float(stress[0]), float(stress[1]))
+    lift = np.stack([np.zeros_like(travel, dtype=float), np.asarray(travel, dtype=float)])
+    stress = torsion.bending_stress(torsion.moment_at(hardest_force(spring, lift), lift))
+    return None if stress is None else (stress[0], stress[1])
 
 
 def _torsion_check(
     name: str,
-    measure: Callable[[float, float], float],
+    measure: Callable[[Array, Array], Array],
     allowed: Callable[[TorsionSpring], float | None],
     *,
     title: str,
@@ -514,6 +524,7 @@ def _torsion_check(
         source=source,
         method=method,
         lift_can_help=True,
+        tier=Tier.SCREENING,
         moved_by_tolerance=False,
         part="torsion_spring",
         formula=formula,
@@ -527,7 +538,7 @@ def _torsion_check(
             raise InputError("spring.torsion", "missing", "given for the checks of the spring")
         stress = torsion_stress_at(spring, torsion, _travel(solution))
         return Demand(
-            None if stress is None else measure(*stress),
+            None if stress is None else float(measure(*stress)),
             allowed(torsion),
             missing=lacking("spring.torsion", torsion, "wire_diameter", "mean_diameter", needs),
             figures=(torsion.source,),

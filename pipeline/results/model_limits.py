@@ -56,12 +56,13 @@ MODEL_LIMITS = (
         "shaft_deflection",
     ),
     ModelLimit(
-        "The loads are those of a rigid follower on a spring without mass. The surge of the spring"
-        " enters the contact force over the speed range, the stress of the spring and the life of"
-        " the roller bearing, with a damping ratio that is hardly known; coils that touch and the"
-        " motion after a loss of contact do not. One mass on bearing, pin, fork, stem and camshaft"
-        " in series, as far as the case describes them, with impacts after loss of contact, is"
-        " solved in addition.",
+        "The loads are those of a rigid follower on a spring without mass. The surge of a coil"
+        " spring enters the contact force over the speed range, the stress of the spring and the"
+        " life of the roller bearing, with a damping ratio that is hardly known; coils that touch"
+        " and the motion after a loss of contact do not. A gas or torsion spring has no surge; the"
+        " friction of its seal or pin is left out. One mass on bearing, pin, fork, stem and"
+        " camshaft in series, as far as the case describes them, with impacts after loss of"
+        " contact, is solved in addition.",
         "contact_over_speed",
     ),
     ModelLimit(

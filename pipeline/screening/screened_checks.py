@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from camwright.geometry.arrays import FULL_TURN, Array
 from camwright.geometry.extrema import sampled_greatest, sampled_least
+from camwright.pipeline.base.units import celsius
 from camwright.pipeline.case.limits import (
     CAM_RADIUS,
     CONTACT_FORCE_MARGIN,
@@ -51,9 +52,13 @@ from camwright.pipeline.checks.spring_strength import (
     PRELOAD_TOLERANCE,
     RATE_TOLERANCE,
     Work,
+    gas_pressure_at,
     hardest_work,
+    torsion_strength,
+    torsion_stress_at,
 )
 from camwright.pipeline.follower.roller_motion import rating_life, rolling_share
+from camwright.pipeline.follower.spring_kinds import GasSpring, TorsionSpring
 from camwright.pipeline.screening.design_arrays import Designs, Turns
 from camwright.pipeline.screening.design_factors import WoundSprings
 
@@ -435,6 +440,54 @@ def _spring_surge(designs: Designs, design: WoundSprings, _: Work[Array]) -> Jud
     return design.surge_frequency / turns_per_second, designs.limit(SPRING_SURGE)
 
 
+def _of_gas(
+    demand: Callable[[Designs, GasSpring], Array], allowed: str
+) -> Callable[[Designs], Judged | None]:
+    """Of a gas spring, against the limit of its maker."""
+
+    def of_designs(designs: Designs) -> Judged | None:
+        gas = designs.case.spring.gas
+        if gas is None:
+            return None
+        return demand(designs, gas), getattr(gas, allowed)
+
+    return of_designs
+
+
+def _gas_pressure(designs: Designs, gas: GasSpring) -> Array:
+    return gas_pressure_at(designs.case.spring, gas, designs.highest)
+
+
+def _gas_speed(designs: Designs, _: GasSpring) -> Array:
+    return _worst(designs, lambda turns: np.abs(turns.loads.velocity))
+
+
+def _gas_temperature(designs: Designs) -> Judged | None:
+    gas = designs.case.spring.gas
+    if gas is None:
+        return None
+    warm, limit = (
+        None if each is None else celsius(each) for each in (gas.temperature, gas.temperature_limit)
+    )
+    return np.full(designs.count, np.nan if warm is None else warm), limit
+
+
+def _of_torsion(
+    demand: Callable[[Array, Array], Array], allowed: Callable[[TorsionSpring], float | None]
+) -> Callable[[Designs], Judged | None]:
+    """Of the bending stress of a torsion spring at zero and maximum lift."""
+
+    def of_designs(designs: Designs) -> Judged | None:
+        spring = designs.case.spring
+        if spring.torsion is None:
+            return None
+        stress = torsion_stress_at(spring, spring.torsion, designs.highest)
+        figure = np.full(designs.count, np.nan) if stress is None else demand(*stress)
+        return figure, allowed(spring.torsion)
+
+    return of_designs
+
+
 SCREENED: tuple[Screened, ...] = (
     Screened("pressure_angle", _pressure_angle, 0.0001),
     Screened("curvature_ratio", _curvature_ratio, 0.0001),
@@ -480,5 +533,15 @@ SCREENED: tuple[Screened, ...] = (
     Screened("spring_rate", _of_spring(_spring_rate), 0.0001),
     Screened("spring_relaxation", _of_spring(_spring_relaxation), 0.0001),
     Screened("spring_surge", _of_spring(_spring_surge), 0.0001),
+    Screened("gas_pressure", _of_gas(_gas_pressure, "pressure_limit"), 0.0001),
+    Screened("gas_stroke", _of_gas(lambda designs, _: designs.highest, "stroke"), 0.0001),
+    Screened("gas_speed", _of_gas(_gas_speed, "speed_limit"), 0.002),
+    Screened("gas_temperature", _gas_temperature, 0.0),
+    Screened("torsion_stress", _of_torsion(lambda _, most: most, torsion_strength), 0.0001),
+    Screened(
+        "torsion_fatigue",
+        _of_torsion(lambda least, most: most - least, lambda torsion: torsion.stress_range),
+        0.0001,
+    ),
 )
 """Checks that screening judges, in the order of the calculation."""

@@ -432,7 +432,7 @@ def travel_limits(case: Case, surge: Surge | None = None) -> dict[str, float]:
 
 
 def _over_pressure(spring: Spring, gas: GasSpring, limit: float, travel: float) -> float:
-    return gas_pressure_at(spring, gas, travel) - limit
+    return float(gas_pressure_at(spring, gas, travel)) - limit
 
 
 def _travels_of_torsion(spring: Spring, torsion: TorsionSpring) -> dict[str, float]:
@@ -446,7 +446,7 @@ def _travels_of_torsion(spring: Spring, torsion: TorsionSpring) -> dict[str, flo
             stress = torsion_stress_at(spring, torsion, travel)
             if stress is None or limit is None:
                 return -1.0
-            return stress[1] - less * stress[0] - limit
+            return float(stress[1] - less * stress[0]) - limit
 
         if over(0.0) < 0.0 < over(torsion.reach):
             root = scipy.optimize.brentq(over, 0.0, torsion.reach, xtol=1e-12)

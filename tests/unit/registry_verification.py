@@ -121,22 +121,31 @@ tried(
     0.02 * by_hand.HARDEST / (1.05 * made.PRELOAD),
     "2 % of the greatest force over the preload",
 )
-for name, field, hand, how in (
+for name, field, zero, hand, how in (
     (
         "gas_pressure",
         "pressure_limit",
+        0.0,
         # the gas is warm: p (320 / 293.15), and preload and rise 5 % high
         1.05e-6 * ((3e6 + 101325.0) * 320.0 / 293.15 * (1.0 / 0.8) ** 1.3 - 101325.0),
         "p V^n constant over a fifth of the column",
     ),
-    ("gas_stroke", "stroke", 10.0, "the stroke"),
-    ("gas_speed", "speed_limit", 0.5 * made.STROKE * made.CAM_SPEED, "w h / 2 of a harmonic lift"),
-    ("gas_temperature", "temperature_limit", 320.0, "stated"),
+    ("gas_stroke", "stroke", 0.0, 10.0, "the stroke"),
+    (
+        "gas_speed",
+        "speed_limit",
+        0.0,
+        0.5 * made.STROKE * made.CAM_SPEED,
+        "w h / 2 of a harmonic lift",
+    ),
+    ("gas_temperature", "temperature_limit", 273.15, 46.85, "stated"),
 ):
     tried(
         name,
         limited(
-            name, lambda value, field=field: with_gas_spring(**{field: value}), with_gas_spring
+            name,
+            lambda value, field=field, zero=zero: with_gas_spring(**{field: value + zero}),
+            with_gas_spring,
         ),
         lambda field=field: with_gas_spring(**{field: None}),
         lambda field=field: with_gas_spring(**{field: np.nan}),

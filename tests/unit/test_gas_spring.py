@@ -14,6 +14,7 @@ from camwright.geometry.arrays import uniform_turn
 from camwright.geometry.errors import InputError
 from camwright.geometry.lift import Lift
 from camwright.geometry.pitch_curve import PitchCurve
+from camwright.pipeline.base.units import in_unit
 from camwright.pipeline.case.cards.card_filling import known_cards
 from camwright.pipeline.case.case_file import case_of, parse_case
 from camwright.pipeline.case.case_values import replaced
@@ -295,13 +296,33 @@ def test_limits_of_the_maker():
     assert checks["gas_stroke"].demand == pytest.approx(highest, rel=1e-9)
     speed = max(float(np.abs(c.loads.velocity).max()) for c in trial.cycles)
     assert checks["gas_speed"].demand == pytest.approx(speed, rel=1e-12)
-    assert checks["gas_temperature"].demand == 320.0
+    assert checks["gas_temperature"].demand == pytest.approx(46.85)
     assert checks["data_gas_spring"].missing == ("spring.travel_max",)
     assert not any(name.startswith("spring_") and name != "spring_travel" for name in checks)
     allowed = travel_limits(limited)
     assert allowed["gas_stroke"] == 0.02
     at_limit = gas_pressure_at(limited.spring, limited.spring.gas, allowed["gas_pressure"])
     assert at_limit == pytest.approx(60e5, rel=1e-9)
+
+
+def test_screening_judges_the_limits_of_the_maker():
+    """Of many designs, as the preview of one."""
+    limited = gas_case(table=TABLE + LIMITS)
+    masses = {"follower.mass": np.array([0.25, 0.3])}
+    columns = screen_designs(limited, masses)
+    checks = {each.id: each for each in preview_case(limited, corners=False).checks}
+    for name in ("gas_pressure", "gas_stroke", "gas_speed", "gas_temperature"):
+        demand = in_unit(checks[name].demand, checks[name].unit)
+        # the preview has samples, the screening vertices
+        rel = 1e-5 + (checks[name].error_share or 0.0)
+        assert columns[f"{name}.demand"] == pytest.approx([demand] * 2, rel=rel), name
+        assert set(columns[f"{name}.status"]) == {checks[name].status}, name
+    small = {"spring.gas.volume": np.array([6e-6, 4.2e-6])}
+    columns = screen_designs(limited, small, positions=72)
+    assert columns["gas_pressure.demand"][1] > 1.05 * columns["gas_pressure.demand"][0]
+    without = screen_designs(case(), masses, positions=72)
+    assert set(without["gas_pressure.status"]) == {"not_evaluated"}
+    assert "torsion_stress.status" not in without
 
 
 def test_figure_of_the_force_over_the_travel():

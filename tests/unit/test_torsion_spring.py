@@ -9,11 +9,13 @@ from small_machine import small_machine
 
 from camwright.geometry.arrays import uniform_turn
 from camwright.geometry.errors import InputError
+from camwright.pipeline.base.units import in_unit
 from camwright.pipeline.case.case_file import parse_case
 from camwright.pipeline.case.load_case_torque import engine_torques
 from camwright.pipeline.follower.spring import Spring, spring_energy, stored_lift
 from camwright.pipeline.follower.spring_kinds import TorsionSpring, rise
 from camwright.pipeline.preview import preview_case
+from camwright.pipeline.screening.design_screening import screen_designs
 from camwright.pipeline.smoothing.allowables import travel_limits
 from camwright.pipeline.smoothing.cam_state import lift_jet
 from camwright.pipeline.smoothing.problem_setup import problem_of
@@ -122,3 +124,13 @@ def test_stress_of_the_wire():
 def test_falling_force_is_refused():
     with pytest.raises(InputError, match="arm_angle"):
         TorsionSpring(moment=30.0, angular_rate=10.0, arm=0.07, arm_angle=np.radians(-40.0))
+
+
+def test_screening_judges_the_bending_stress():
+    columns = screen_designs(case(), {"follower.mass": np.array([0.25, 0.3])})
+    checks = {each.id: each for each in preview_case(case(), corners=False).checks}
+    for name in ("torsion_stress", "torsion_fatigue"):
+        demand = in_unit(checks[name].demand, checks[name].unit)
+        assert columns[f"{name}.demand"] == pytest.approx([demand] * 2, rel=1e-3), name
+        assert set(columns[f"{name}.status"]) == {checks[name].status}
+    assert "gas_pressure.status" not in columns
