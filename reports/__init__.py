@@ -3,6 +3,7 @@
 Modules in the order of use; each imports only those above it.
 
 ====================== ===========================================================================
+check_parts            part of the mechanism that a check judges
 report_tables          digits, units and text of a value; rows of checks, key figures and inputs
 machine_words          names of the machine's shaft, of the parts of its cycle
 verification_tables    certificate, benchmarks, tolerance corners, shadow prices, consistency
@@ -20,6 +21,7 @@ field_picture          von Mises stress below the contact and in both bodies, by
 stress_map             maximum stress of the turn below the contour, unrolled and in place
 guide_pressure_figure  pressure in both guides
 picture_list           pictures of a report with title and caption
+utilisation_chart      chart of the greatest utilisations by part
 report_content         sections, blocks, text and tables of a report (`Report`)
 page                   ``8_report.html`` and the pages of studies, by Jinja
 pdf                    ``8_report.pdf``: PDF/A on A4, by typst

@@ -7,6 +7,7 @@ from functools import lru_cache
 import numpy as np
 
 from camwright.geometry.arrays import median
+from camwright.pipeline.base.files import Json
 from camwright.reports.drawing import arrangement
 from camwright.reports.drawing.arrangement import FORCES, Bush, Mechanism, Motion
 from camwright.reports.drawing.drawing_shapes import Drawing
@@ -20,12 +21,31 @@ _SEAT = 0.22  # of the stem: thickness of a seat
 _COIL, _WIRE, _GUIDE, _OVERHANG, _SPACING = 2.6, 0.42, 2.0, 3.0, 7.0
 _PIN_SHARE = 0.5  # of the roller
 _TURNS = 7.0
+_STATIONS = 360
+"""Most cam angles at which a page draws the arrangement."""
 
 
 def arrangement_at(turn: Turn, row: int | None = None) -> Drawing:
     """The mechanism at a row of the cycle; None: at the maximum contact pressure."""
     return arrangement.drawing(mechanism_of(turn), motion_of(turn), turn.worst if row is None
                                else row)  # fmt: skip
+
+
+def moving_data(turn: Turn) -> dict[str, Json]:
+    """The arrangement over the turn for a page: poses, arrows, values, angles; see `moving_record`.
+
+    `at` is the place of the maximum contact pressure, `shaft` the angle of the machine's shaft.
+    """
+    count = turn.crank.size
+    stride = -(-count // _STATIONS)
+    rows = range(turn.worst % stride, count, stride)
+    motion = motion_of(turn)
+    return {
+        **arrangement.moving_record(mechanism_of(turn), motion, rows),
+        "at": turn.worst // stride,
+        "shaft": [round(float(motion.shaft_angle[row]), 3) for row in rows],
+        "lift": [f"{motion.lift[row]:.3f} mm" for row in rows],
+    }
 
 
 def motion_of(turn: Turn) -> Motion:

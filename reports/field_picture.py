@@ -192,13 +192,13 @@ def frame_contact(
     name: str = "roller",
     above: field_raster.Above | None = None,
 ) -> bytes:
-    """The contact raster in axes of half-widths; `name` is the upper body."""
+    """The contact raster in axes of half-widths and of mm; `name` is the upper body."""
     extent = tuple(edge / half_width_mm for edge in raster.view.window)
     return field_raster.framed(
         raster.pixels, (extent[0], extent[1], extent[2], extent[3]),
         ("along the contact, x / a", "along the normal, z / a"), "von Mises stress, MPa",
         COLOUR_MAP, raster.view.clim, raster.view.log, (1.0, f"a = {half_width_mm:.3g} mm"),
-        ((name, 0.97), ("cam", 0.40)), above,
+        ((name, 0.97), ("cam", 0.40)), above, half_width_mm,
     )  # fmt: skip
 
 

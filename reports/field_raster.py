@@ -22,6 +22,7 @@ from camwright.reports.figures import SERIES
 
 PRESSURE = "5_pressure.npz"
 _ABOVE, _GAP = 1.25, 0.1  # inches
+_SECOND = 0.46  # inches, of an axis in mm beside the first one
 _NEAR = 1e-6  # deg
 _ELLIPSE = np.linspace(-1.0, 1.0, 201)
 
@@ -64,20 +65,28 @@ def framed(
     image: Array, extent: tuple[float, float, float, float], labels: tuple[str, str], title: str,
     colour_map: str, clim: tuple[float, float], log: bool, bar: tuple[float, str] | None,
     notes: tuple[tuple[str, float], ...] = (), above: Above | None = None,
+    unit: float | None = None,
 ) -> bytes:  # fmt: skip
-    """PNG of a raster (rows, columns, 3) in axes with colour bar and scale bar."""
+    """PNG of a raster (rows, columns, 3) in axes with colour bar and scale bar.
+
+    unit : length of one on both axes, mm, for second axes in mm; None without them
+    """
     with style("picture"):
         width = 6.4
         tall = (extent[3] - extent[2]) / (extent[1] - extent[0])
-        inner = width - 0.62 - 1.05
-        height = inner * tall + 0.46 + 0.16 + (0.0 if above is None else _ABOVE + _GAP)
+        more = 0.0 if unit is None else _SECOND
+        left, bottom = 0.62 + more, 0.46 + more
+        inner = width - left - 1.05
+        height = inner * tall + bottom + 0.16 + (0.0 if above is None else _ABOVE + _GAP)
         canvas = Figure(figsize=(width, height))
-        ax = canvas.add_axes((0.62 / width, 0.46 / height, inner / width, inner * tall / height))
+        ax = canvas.add_axes((left / width, bottom / height, inner / width, inner * tall / height))
         ax.imshow(image, extent=extent, interpolation="antialiased", aspect="equal")
         ax.set_xlabel(labels[0], labelpad=2)
         ax.set_ylabel(labels[1], labelpad=2)
+        if unit is not None:
+            _in_millimetres(ax, unit, -_SECOND / inner, -_SECOND / (inner * tall))
         colour_axes = canvas.add_axes(
-            ((0.62 + inner + 0.14) / width, 0.46 / height, 0.14 / width, inner * tall / height)
+            ((left + inner + 0.14) / width, bottom / height, 0.14 / width, inner * tall / height)
         )
         norm = LogNorm(*clim) if log else Normalize(*clim)
         colour_bar = canvas.colorbar(ScalarMappable(norm, colour_map), cax=colour_axes)
@@ -93,10 +102,19 @@ def framed(
         if bar is not None:
             _scale_bar(ax, extent, bar)
         if above is not None:
-            low = 0.46 + inner * tall + _GAP
-            place = (0.62 / width, low / height, inner / width, _ABOVE / height)
+            low = bottom + inner * tall + _GAP
+            place = (left / width, low / height, inner / width, _ABOVE / height)
             _draw_above(canvas.add_axes(place), (extent[0], extent[1]), above)
         return png(canvas, 190)
+
+
+def _in_millimetres(ax: Axes, unit: float, left: float, bottom: float) -> None:
+    """Second axes in mm, left of the axes and below them, at shares of their size."""
+    scales = (lambda length: unit * length, lambda length: length / unit)
+    below = ax.secondary_xaxis(bottom, functions=scales)
+    below.set_xlabel("mm", labelpad=1)
+    beside = ax.secondary_yaxis(left, functions=scales)
+    beside.set_ylabel("mm", labelpad=1)
 
 
 def _draw_above(ax: Axes, span: tuple[float, float], above: Above) -> None:

@@ -176,6 +176,8 @@ def themed(svg: str, figure_id: str) -> str:
     svg = re.sub(r'id="(image|legend)[^"]*"', "", svg)
     svg = re.sub(r"<[^>]+>", lambda tag: re.sub(r"(\d\.\d\d)\d+", r"\1", tag.group()), svg)
     svg = re.sub(r"<!--.*?-->", "", svg, flags=re.DOTALL)
+    svg = re.sub(r" font-family: [^;\"]*;| transform=\"rotate\(-0 [^\"]*\"", "", svg)
+    svg = re.sub(r'(?<= d=")[MLz\d.\s-]+(?=")', lambda path: _compact(path.group()), svg)
     svg = re.sub(r'(<svg[^>]*?) width="[^"]*"', r"\1", svg, count=1)
     svg = re.sub(r'(<svg[^>]*?) height="[^"]*"', r"\1", svg, count=1)
     svg = svg.replace("<svg", f'<svg role="img" aria-labelledby="{figure_id}-alt"', 1)
@@ -183,6 +185,22 @@ def themed(svg: str, figure_id: str) -> str:
     for name, code in COLOURS.items():
         svg = svg.replace(code, f"var(--{name})")
     return re.sub(r"\n\s*", "\n", svg)
+
+
+def _compact(path: str) -> str:
+    """Straight lines with relative coordinates in tenths of a point; they do not drift."""
+    parts, here = [], (0, 0)
+    for command, x, y in re.findall(r"([MLz])(?:\s*(-?[\d.]+) (-?[\d.]+))?", path):
+        if command == "z":
+            parts.append("z")
+            continue
+        there = round(10.0 * float(x)), round(10.0 * float(y))
+        if command == "M":
+            parts.append(f"M{there[0] / 10:g} {there[1] / 10:g}")
+        elif there != here:
+            parts.append(f"l{(there[0] - here[0]) / 10:g} {(there[1] - here[1]) / 10:g}")
+        here = there
+    return "".join(parts)
 
 
 def _angles(figure: AngleFigure) -> Canvas:

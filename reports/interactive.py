@@ -39,9 +39,12 @@ from camwright.reports.figures import (
 Spec = dict[str, Json]
 
 _HERE = Path(__file__).parent
-_SCRIPTS = (_HERE / "vendor" / "plotly-basic.min.js", _HERE / "templates" / "report.js")
+_SCRIPTS = (
+    _HERE / "vendor" / "plotly-basic.min.js", _HERE / "templates" / "report.js",
+    _HERE / "templates" / "report_controls.js",
+)  # fmt: skip
 _PANEL_PIXELS, _TOP_PIXELS, _LEGEND_PIXELS, _BOTTOM_PIXELS, _GAP_PIXELS = 165, 54, 24, 46, 14
-_DIGITS, _STROKE_PIXELS = 6, 14
+_DIGITS, _BAND_DIGITS, _STROKE_PIXELS = 6, 3, 14
 _DASHES = {"solid": "solid", "dashed": "dash", "dashdot": "dashdot"}
 _MARKERS = {"dot": "circle", "cross": "cross-thin-open"}
 _HOVER_ANGLE, _HOVER_CAM = " %{x:.1f}°", " · cam %{customdata:.1f}°"
@@ -77,7 +80,11 @@ def scripts(sources: Iterable[Path]) -> tuple[tuple[Markup, ...], tuple[str, ...
 
 
 def specification(figure: Figure) -> Spec:
-    """Traces and layout of a figure for Plotly, colours by name."""
+    """Traces and layout of a figure for Plotly, colours by name.
+
+    A figure over the turn has one `x`, the angle of the machine's shaft, and one `cam` for all its
+    traces, deg.
+    """
     if isinstance(figure, OutlineFigure):
         return _outline(figure)
     return _angles(figure) if isinstance(figure, AngleFigure) else _sweep(figure)
@@ -113,20 +120,20 @@ def _angles(figure: AngleFigure) -> Spec:
                                     "traceorder": "normal"}  # fmt: skip
         legend = {"legend": f"legend{end}"} if figure.legends[number] else {}
         for curve in panel.curves:
-            common = {"type": "scatter", "mode": "lines", "x": crank, "xaxis": "x", "yaxis": axis}
+            common = {"type": "scatter", "mode": "lines", "xaxis": "x", "yaxis": axis}
             traces += [common | band for band in _band(curve)]
             # one curve of the figure shows the cam angle
             hover = _HOVER_CAM if not any("hovertemplate" in trace for trace in traces) else ""
             traces.append(
                 common | _curve(curve, panel, hover) | legend
-                | {"customdata": cam, "showlegend": figure.legends[number]}
+                | {"showlegend": figure.legends[number]}
             )  # fmt: skip
         lines_of, notes_of = _limits(panel, axis, low, high)
         shapes, notes = shapes + lines_of, notes + notes_of
     traces.append({"x": [0], "y": [None], "xaxis": "x2", "yaxis": "y", "type": "scatter",
                    "showlegend": False, "hoverinfo": "skip"})  # fmt: skip
     last = len(figure.panels)
-    return {"data": traces, "layout": {
+    return {"data": traces, "x": crank, "cam": cam, "layout": {
         "height": lines.height, "shapes": shapes, "annotations": notes, **axes,
         "margin": {"l": 68, "r": 14, "t": lines.top, "b": _BOTTOM_PIXELS},
         "xaxis": {"range": [0, figure.period], "dtick": figure.shaft_step, "fixedrange": True,
@@ -245,7 +252,7 @@ def _band(curve: Curve) -> list[Spec]:
         return []
     edge: Spec = {"showlegend": False, "hoverinfo": "skip",
                   "line": {"width": 0, "color": curve.colour}}  # fmt: skip
-    below, above = (edge | {"y": _numbers(closed(values))} for values in curve.band)
+    below, above = (edge | {"y": _numbers(closed(values), _BAND_DIGITS)} for values in curve.band)
     return [below, above | {"fill": "tonexty", "fillcolor": curve.colour}]
 
 
@@ -299,5 +306,5 @@ def _outline_curve(curve: OutlineCurve) -> Spec:
     }  # fmt: skip
 
 
-def _numbers(values: Array) -> list[float | None]:
-    return [float(f"{v:.{_DIGITS}g}") if np.isfinite(v) else None for v in values.tolist()]
+def _numbers(values: Array, digits: int = _DIGITS) -> list[float | None]:
+    return [float(f"{v:.{digits}g}") if np.isfinite(v) else None for v in values.tolist()]

@@ -7,16 +7,27 @@ from functools import partial
 from pathlib import Path
 
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
+from markupsafe import Markup
 
 from camwright.pipeline.base.files import write_atomic
 from camwright.reports import interactive
-from camwright.reports.figure_svg import drawn_groups
-from camwright.reports.report_content import SHORT, Section, report_content
+from camwright.reports.arrangement_data import arrangement_at, moving_data
+from camwright.reports.drawing.drawing_svg import svg_of
+from camwright.reports.figure_svg import COLOURS, drawn_groups
+from camwright.reports.report_content import SHORT, Section, failed_checks, report_content
 from camwright.reports.report_data import Material
 from camwright.reports.report_tables import plain, shortened
+from camwright.reports.utilisation_chart import LIMIT_SHARE, utilisation_chart
 
 PAGE = "8_report.html"
 LONG = 700
+LINKS = (
+    ("Sign-off sheet", "8_signoff.pdf"), ("Report as PDF", "8_report.pdf"),
+    ("Shop drawing", "shop/drawing.pdf"), ("3-D view", "scene.html"),
+    ("Stress field (VTK)", "fields/stress.vtkhdf"),
+)  # fmt: skip
+"""Other files of a run that the page links to where they are."""
+_PAGE_COLOURS = {name: f"var(--{name})" for name in COLOURS}
 
 
 def write(material: Material) -> list[Path]:
@@ -27,10 +38,22 @@ def write(material: Material) -> list[Path]:
 def text(material: Material) -> bytes:
     """The page in UTF-8."""
     figures = [drawn.figure for _, group in drawn_groups(material) for drawn in group]
+    drawing = arrangement_at(material.turn)
+    svg = svg_of(drawing, _PAGE_COLOURS, "inherit", 'aria-hidden="true" focusable="false"')
     page: str = environment().get_template("report.html").render(
-        report=report_content(material), live=interactive.bundle(figures)
+        report=report_content(material), live=interactive.bundle(figures),
+        arrangement=Markup(svg), arrangement_alt=drawing.alt,  # noqa: S704 - escapes its text
+        turn=Markup(interactive.script_safe_json(moving_data(material.turn))),  # noqa: S704
+        chart=utilisation_chart(material.run.final.checks), limit_share=LIMIT_SHARE,
+        failed=failed_checks(material), links=links(material),
     )  # fmt: skip
     return page.encode("utf-8", "replace")
+
+
+def links(material: Material) -> list[tuple[str, str]]:
+    """(words, relative address) of the files of the run that are there."""
+    places = (material.folder, material.run.path)
+    return [(words, name) for words, name in LINKS if any((p / name).is_file() for p in places)]
 
 
 def study_page(title: str, sections: Sequence[Section], lead: str = "") -> str:

@@ -14,10 +14,12 @@ from camwright.pipeline.results.check_records import CERTIFIED
 from camwright.pipeline.results.model_limits import MODEL_LIMITS
 from camwright.pipeline.results.run_reader import TrialRecord, load_end_words, results_sha256
 from camwright.reports import report_tables, verification_tables
+from camwright.reports.check_parts import PARTS
 from camwright.reports.figure_svg import Drawn, drawn_groups
 from camwright.reports.report_data import Material
 from camwright.reports.report_tables import (
     DASH,
+    STATUS,
     CheckRow,
     InputTable,
     Record,
@@ -45,21 +47,38 @@ MISSING = (
     "A required check without data leaves the verdict INCOMPLETE at best. Describe the part in the "
     "case, or leave it out of the sign-off in [scope]."
 )
+BAR_WORDS = (
+    "The tick on each bar marks the limit; ± is the numerical uncertainty, omitted below the last "
+    "digit shown."
+)
 EVIDENCE = (
-    "Verification of the solution and of the input, which no change of the design moves. A "
-    "required one decides the verdict when it fails; none governs."
+    "Evidence: verification of the solution and of the input, which no change of the design "
+    "moves. A required one decides the verdict when it fails; none governs."
 )
 CHECKS_HEAD = ("Check", "Status", "Demand", "Limit", "Utilisation", "Where")
 
 
 @dataclass(frozen=True)
 class Checks:
-    """Table of checks with utilisation bars."""
+    """Table of checks with utilisation bars; `filtered` by status and part in the page."""
 
     kind: ClassVar[str] = "checks"
     head: Sequence[str]
     rows: Sequence[CheckRow]
     label: str
+    filtered: bool = False
+
+    @property
+    def parts(self) -> list[str]:
+        """Parts that the rows judge, in the order of the flow of force."""
+        judged = {row.part for row in self.rows}
+        return [part for part in PARTS if part in judged]
+
+    @property
+    def statuses(self) -> list[Status]:
+        """Statuses that occur, in the order of the rows."""
+        return list({row.status.id: Status(row.status.id, STATUS[row.status.id])
+                     for row in self.rows}.values())  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -189,7 +208,7 @@ def report_content(material: Material) -> Report:
         ),
         report_tables.tiles(run.summary["headline"]),
         (
-            _checks(material), _numbers(material), _sheet(material),
+            _sheet(material), _numbers(material),
             Section(
                 "fields", "Stress fields",
                 (Block(Pictures(pictures(material))),),
@@ -206,7 +225,7 @@ def report_content(material: Material) -> Report:
                 (Block(Points([each.statement for each in MODEL_LIMITS])),),
                 brief="Assumptions",
             ),
-            _versions(material),
+            _versions(material), _checks(material),
         ),
         f"Camwright · {shortened(str(run.summary['case']), 60)}",
         "Cam sign-off" if final.depth == CERTIFIED else f"Cam, {final.depth} without sign-off",
@@ -234,32 +253,34 @@ def _facts(material: Material) -> list[tuple[str, str]]:
 
 
 def _checks(material: Material) -> Section:
-    """Required checks without data; required ones, failed first; evidence; optional ones."""
+    """All checks in one table: failed, without data, waived, passed."""
     rows = report_tables.check_rows(material.run.final.checks)
-    deeper = [row for row in rows if row.judged_at]
-    missing = [row for row in rows if row.status.id == "not_evaluated" and not row.judged_at]
-    known = [row for row in rows if row.status.id != "not_evaluated"]
-    evidence = [row for row in known if row.evidence]
-    required = [row for row in known if row.must_have and not row.evidence]
-    for each in (required, evidence):
-        each.sort(key=lambda row: row.status.id != "fail")
-    groups = (
-        ("Missing data", [row for row in missing if row.must_have], MISSING),
-        ("Required", required, ""),
-        ("Evidence", evidence, EVIDENCE),
-        ("Optional", [row for row in known if not (row.must_have or row.evidence)], ""),
-        ("Missing data of optional checks", [row for row in missing if not row.must_have], ""),
-        ("Judged by a deeper solution", deeper, ""),
-    )
+    order = ("fail", "not_evaluated", "waived", "pass")
+    rows.sort(key=lambda row: (bool(row.judged_at), order.index(row.status.id),
+                               row.evidence, not row.must_have))  # fmt: skip
     return Section(
-        "checks", "Checks",
-        [
-            Block(Checks(CHECKS_HEAD, part, f"Checks: {title.lower()}"), title, lead)
-            for title, part, lead in groups if part
-        ],
-        "Required checks: failed first, then passed, by decreasing utilisation. The tick on each "
-        "bar marks the limit; ± is the numerical uncertainty, omitted below the last digit shown.",
+        "checks", "All checks", [Block(Checks(CHECKS_HEAD, rows, "All checks", filtered=True))],
+        f"Failed, without data, waived, passed; by decreasing utilisation. {BAR_WORDS} {MISSING} "
+        f"{EVIDENCE}",
+        "All checks",
     )  # fmt: skip
+
+
+def failed_checks(material: Material) -> Section:
+    """Checks that fail, required ones first; required ones without data."""
+    rows = [row for row in report_tables.check_rows(material.run.final.checks) if not row.judged_at]
+    groups = (
+        ("", [row for row in rows if row.status.id == "fail" and row.must_have]),
+        ("Optional and evidence", [row for row in rows if row.status.id == "fail"
+                                   and not row.must_have]),
+    )  # fmt: skip
+    blocks = [
+        Block(Checks(CHECKS_HEAD, part, f"Failed checks: {title or 'required'}"), title)
+        for title, part in groups
+        if part
+    ]
+    lead = BAR_WORDS if groups[0][1] else "No required check fails."
+    return Section("failed", "Failed checks", blocks, lead)
 
 
 def _numbers(material: Material) -> Section:

@@ -14,6 +14,7 @@ from camwright.pipeline.base.units import used
 from camwright.pipeline.results.check_records import utilisation_of
 from camwright.pipeline.results.check_report import not_proven
 from camwright.pipeline.results.verdict_summary import body_stresses
+from camwright.reports.check_parts import part_of
 
 Scalar: TypeAlias = str | float | None
 Record: TypeAlias = Mapping[str, Any]
@@ -63,6 +64,8 @@ HEADLINES = {
     "p0_difference_max_percent": ("Maximum difference of p0, finite elements to Hertz", "%"),
     "residual_equilibrium_max": ("Maximum relative equilibrium residual", ""),
 }
+BAR_TOP = 1.5
+"""Utilisation at the right end of a bar."""
 LEAST_ERROR = 1e-4
 """Share of the demand below which an error bar is smaller than the last digit shown."""
 STATUS = {
@@ -186,7 +189,7 @@ class Table:
 
 @dataclass(frozen=True)
 class CheckRow:
-    """One check as text. `bar` is the utilisation clipped to 0 to 1.5; None if it is unknown."""
+    """One check as text. `bar` is the utilisation clipped to `BAR_TOP`; None if it is unknown."""
 
     id: str
     title: str
@@ -208,11 +211,17 @@ class CheckRow:
     judged_at: str = ""
     evidence: bool = False
     remedy: str = ""
+    part: str = ""
 
     @property
     def place(self) -> str:
         """Load case and cam angle of the demand; a dash without either."""
         return ", ".join(filter(None, (isolated(self.load_case), self.where))) or DASH
+
+    @property
+    def category(self) -> str:
+        """Part of the mechanism, and whether the check is optional."""
+        return self.part if self.must_have else f"{self.part}, optional"
 
     @property
     def remarks(self) -> list[tuple[str, bool]]:
@@ -265,7 +274,7 @@ def check_rows(checks: Sequence[Record]) -> list[CheckRow]:
             error=_error(check, unit), corner=": ".join(worst_corner(check) or ()),
             unproven=not_proven(check), judged_at=str(check["judged_at"]),
             evidence=bool(check["evidence"]),
-            remedy=str(check.get("remedy") or ""),
+            remedy=str(check.get("remedy") or ""), part=part_of(check),
         ))  # fmt: skip
     return rows
 
@@ -296,7 +305,7 @@ def worst_corner(check: Record) -> tuple[str, str] | None:
 
 
 def _bar(value: float | None) -> float | None:
-    return None if value is None or isnan(value) else min(max(value, 0.0), 1.5)
+    return None if value is None or isnan(value) else min(max(value, 0.0), BAR_TOP)
 
 
 def _waiver(check: Record, unit: str) -> str:

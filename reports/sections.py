@@ -43,9 +43,9 @@ PARTS = (
               partial(picture_list.write_pictures, picture_list.guide_pictures)),
     _pictures("envelope", "maps of the maximum stress below the contour",
               partial(picture_list.write_pictures, picture_list.envelope_pictures)),
-    Part("page", page.PAGE, page.write),
     Part("scene", f"{scene_page.FILE}, interactive 3-D view", scene_page.write),
     Part("pdf", pdf.PDF, pdf.write, on_request=True),
+    Part("page", page.PAGE, page.write),  # last: it links to the others
 )  # fmt: skip
 
 

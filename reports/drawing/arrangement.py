@@ -106,7 +106,7 @@ class Mechanism:
     @property
     def text(self) -> float:
         """Height of the text, mm."""
-        return 6.2 * self.scale
+        return 7.2 * self.scale
 
     @property
     def arrow_length(self) -> float:

@@ -3,7 +3,7 @@
 (function () {
   if (!window.Plotly) return;
   const specs = JSON.parse(document.getElementById("figure-data").textContent);
-  const config = { displayModeBar: false, responsive: true };
+  const config = { displayModeBar: false, responsive: false };
   const colour = (name) =>
     getComputedStyle(document.documentElement).getPropertyValue("--" + name).trim() || name;
   const faded = (name, share) => {
@@ -17,7 +17,8 @@
       const marker = trace.marker && { ...trace.marker, color: colour(trace.marker.color) };
       const fill = trace.fillcolor && /* areas opaque, ribbons pale */
         (trace.fill === "toself" ? colour(trace.fillcolor) : faded(trace.fillcolor, "2e"));
-      return { ...trace, ...(line && { line }), ...(marker && { marker }), ...(fill && { fillcolor: fill }) };
+      const over = spec.x && !trace.x && { x: spec.x, customdata: spec.cam }; /* the turn */
+      return { ...trace, ...over, ...(line && { line }), ...(marker && { marker }), ...(fill && { fillcolor: fill }) };
     });
     const ink = colour("ink"), muted = colour("muted"), grid = colour("grid");
     const layout = {
@@ -38,9 +39,9 @@
     return { data, layout };
   }
 
-  function readout(spec, index) {
+  function readout(spec, data, index) {
     const plain = (text) => new DOMParser().parseFromString(text, "text/html").body.textContent;
-    const curves = spec.data.filter((trace) => trace.hovertemplate && trace.x.length > index);
+    const curves = data.filter((trace) => trace.hovertemplate && trace.x.length > index);
     if (!curves.length) return "";
     const at = spec.at || { name: "cam angle", unit: "degrees" };
     const where = (at.name + " " + (spec.at ? curves[0].customdata[index] :
@@ -49,12 +50,12 @@
       (trace.y[index] === null ? "unknown" : trace.y[index] + " " + plain(trace.meta))).join("; ");
   }
 
-  function keyboard(place, spec) {
+  function keyboard(place, spec, data) {
     let index = 0;
-    const first = spec.data.findIndex((trace) => trace.hovertemplate);
+    const first = data.findIndex((trace) => trace.hovertemplate);
     const output = place.parentNode.querySelector(".readout");
     place.addEventListener("keydown", (event) => {
-      const count = spec.data[first].x.length;
+      const count = data[first].x.length;
       const steps = { ArrowRight: 1, ArrowLeft: -1, PageUp: 10, PageDown: -10 };
       if (event.key === "Home") index = 0;
       else if (event.key === "End") index = count - 1;
@@ -62,7 +63,7 @@
       else return;
       event.preventDefault();
       Plotly.Fx.hover(place, [{ curveNumber: first, pointNumber: index }]);
-      output.textContent = readout(spec, index);
+      output.textContent = readout(spec, data, index);
     });
     place.addEventListener("blur", () => Plotly.Fx.unhover(place));
   }
@@ -74,9 +75,20 @@
   /* Space for a legend that wraps on a narrow screen. */
   function fitLegend(place, layout) {
     const legend = place.querySelector(".infolayer > .legend");
-    const more = legend ? Math.ceil(legend.getBoundingClientRect().height) - 30 : 0;
-    if (more > 0) Plotly.relayout(place, { "margin.t": layout.margin.t + more,
-      height: layout.height + more });
+    const more = legend ? Math.max(Math.ceil(legend.getBoundingClientRect().height) - 30, 0) : 0;
+    const top = layout.margin.t + more;
+    if (place.layout.margin.t !== top)
+      return Plotly.relayout(place, { "margin.t": top, height: layout.height + more });
+  }
+
+  /* Line at the angle of the slider, beside the drawing of Plotly, which it does not redraw. */
+  let shaft = null;
+  function mark(place) {
+    const line = place.parentNode.querySelector(".cursor"), full = place._fullLayout;
+    if (!line || !full || shaft === null) return;
+    line.style.left = `${full._size.l + full.xaxis.d2p(shaft)}px`;
+    line.style.top = `${full._size.t}px`;
+    line.style.height = `${full._size.h}px`;
   }
 
   for (const hint of document.querySelectorAll(".pointing")) hint.hidden = false;
@@ -89,9 +101,14 @@
     Plotly.newPlot(place, made.data, made.layout, config).then(() => {
       place.parentNode.classList.add("interactive");
       fitLegend(place, made.layout);
+      if (spec.x) {
+        place.append(Object.assign(document.createElement("div"), { className: "cursor" }));
+        place.on("plotly_afterplot", () => mark(place));
+        mark(place);
+      }
       mute(...place.children, document.getElementById("js-plotly-tester"));
       place.dataset.drawn = "done";
-      keyboard(place, spec);
+      keyboard(place, spec, made.data);
     }).catch((error) => { place.hidden = true; console.error(error); });
   }
 
@@ -107,9 +124,26 @@
     const place = rest.shift();
     if (place) setTimeout(() => { drawn(place); next(); }, 0);
   })();
-  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () =>
-    places.filter((place) => place.dataset.drawn === "done").forEach((place) => {
+  const ready = () => places.filter((place) => place.dataset.drawn === "done");
+  document.addEventListener("cam-angle", (event) => {
+    shaft = event.detail;
+    ready().forEach(mark);
+  });
+  /* Colours and width, which may change together: one redraw after the last of both. */
+  let later = 0, recoloured = false;
+  function redraw() {
+    ready().forEach((place) => {
       const made = themed(specs[place.dataset.figure]);
-      Plotly.react(place, made.data, made.layout, config);
-    }));
+      const drawing = recoloured ? Plotly.react(place, made.data, made.layout, config) :
+        Promise.resolve();
+      drawing.then(() => Plotly.Plots.resize(place)).then(() => fitLegend(place, made.layout));
+    });
+    recoloured = false;
+  }
+  const soon = () => { clearTimeout(later); later = setTimeout(redraw, 200); };
+  addEventListener("resize", soon);
+  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {
+    recoloured = true;
+    soon();
+  });
 })();

@@ -213,8 +213,8 @@ def test_the_outline_has_equal_axes_and_holds_the_follower():
 
 def live_curves(made):
     """Points and label of what Plotly draws of a figure, but for the trace of the upper axis."""
-    traces = specification(made)["data"]
-    return [(t["x"], t["y"], t["name"]) for t in traces if "name" in t]
+    spec = specification(made)
+    return [(t.get("x", spec.get("x")), t["y"], t["name"]) for t in spec["data"] if "name" in t]
 
 
 def test_both_renderers_draw_the_same_curves():
