@@ -38,16 +38,22 @@ def write(material: Material) -> list[Path]:
 def text(material: Material) -> bytes:
     """The page in UTF-8."""
     figures = [drawn.figure for _, group in drawn_groups(material) for drawn in group]
-    drawing = arrangement_at(material.turn)
+    report, drawing = report_content(material), arrangement_at(material.turn)
     svg = svg_of(drawing, _PAGE_COLOURS, "inherit", 'aria-hidden="true" focusable="false"')
     page: str = environment().get_template("report.html").render(
-        report=report_content(material), live=interactive.bundle(figures),
+        report=report, live=interactive.bundle(figures),
         arrangement=Markup(svg), arrangement_alt=drawing.alt,  # noqa: S704 - escapes its text
         turn=Markup(interactive.script_safe_json(moving_data(material.turn))),  # noqa: S704
         chart=utilisation_chart(material.run.final.checks), limit_share=LIMIT_SHARE,
-        failed=failed_checks(material), links=links(material),
+        sections=[failed_checks(material), *sorted(report.sections, key=_is_check_table)],
+        links=links(material),
     )  # fmt: skip
     return page.encode("utf-8", "replace")
+
+
+def _is_check_table(section: Section) -> bool:
+    """Whether a section is the table of all checks, the last one of the page."""
+    return section.id == "checks"
 
 
 def links(material: Material) -> list[tuple[str, str]]:

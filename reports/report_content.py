@@ -225,7 +225,7 @@ def report_content(material: Material) -> Report:
                 (Block(Points([each.statement for each in MODEL_LIMITS])),),
                 brief="Assumptions",
             ),
-            _versions(material), _checks(material),
+            _checks(material), _versions(material),
         ),
         f"Camwright · {shortened(str(run.summary['case']), 60)}",
         "Cam sign-off" if final.depth == CERTIFIED else f"Cam, {final.depth} without sign-off",
