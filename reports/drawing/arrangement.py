@@ -359,7 +359,8 @@ def _values(m: Mechanism, motion: Motion, row: int) -> list[Shape]:
         stated = _round(0.5 * motion.greatest_force)
         length = stated * m.arrow_length / motion.greatest_force
         end = right - 0.4 * m.text
-        bar, y = segment((end - length, foot), (end, foot)), foot + 0.5 * m.text
+        low = foot + 1.6 * m.text  # above the line of the angle
+        bar, y = segment((end - length, low), (end, low)), low + 0.5 * m.text
         made += [
             Outline((bar,), Pen("ink", 1.5 * m.scale), closed=False),
             Text(f"{stated:g} N", (end, y), 0.82 * m.text, "muted", "end"),
