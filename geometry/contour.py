@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from camwright.geometry.arrays import Array, positive, readonly, uniform_turn
+from camwright.geometry.display import Displayed
 from camwright.geometry.errors import GeometryError, InputError, in_millimetres
 from camwright.geometry.extrema import Extremum, greatest, least
 from camwright.geometry.follower_height import roller_height
@@ -51,8 +52,8 @@ class Frame(NamedTuple):
     tangent: Array
 
 
-@dataclass(frozen=True, eq=False)
-class Contour(ABC):
+@dataclass(frozen=True, eq=False, repr=False)
+class Contour(Displayed, ABC):
     """Cam surface: at every cam angle the point that touches the follower then.
 
     A kind of follower is a class of its own that defines the abstract members: the contact point
@@ -312,7 +313,7 @@ class Contour(ABC):
         return step
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class RollerContour(Contour):
     """Cam surface under a roller: the pitch curve offset inwards by the roller radius.
 

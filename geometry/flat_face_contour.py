@@ -17,7 +17,7 @@ from camwright.geometry.follower_path import FollowerPath, reciprocal, require_o
 from camwright.geometry.lift import Lift
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class FacePath(FollowerPath):
     """Path of the contact point on a translating flat face, in the cam frame.
 
@@ -96,7 +96,7 @@ class FacePath(FollowerPath):
         return np.abs(radius), reciprocal(radius)
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class FlatFaceContour(Contour):
     """Cam surface under a flat face: the envelope of the face's line.
 

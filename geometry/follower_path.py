@@ -11,13 +11,14 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from camwright.geometry.arrays import Array, positive
+from camwright.geometry.display import Displayed
 from camwright.geometry.errors import InputError, in_millimetres
 from camwright.geometry.extrema import Extremum, greatest, least
 from camwright.geometry.lift import Lift
 
 
-@dataclass(frozen=True, eq=False)
-class FollowerPath(ABC):
+@dataclass(frozen=True, eq=False, repr=False)
+class FollowerPath(Displayed, ABC):
     """Path of a reference point of the follower in the cam frame.
 
     The follower's axes are u = (cos theta, sin theta), outwards along its line of travel, and

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -10,6 +11,7 @@ from numpy.typing import ArrayLike
 
 from camwright.geometry.acceleration_jump import Jump, acceleration_jump
 from camwright.geometry.arrays import FULL_TURN, Array, finite, freeze, readonly, uniform_turn
+from camwright.geometry.display import Displayed
 from camwright.geometry.errors import InputError
 from camwright.geometry.extrema import Extremum, greatest, least
 from camwright.geometry.periodic_spline import (
@@ -36,8 +38,8 @@ _SEARCH = 4
 """Search points per sample: a quintic has at most four extremes per part."""
 
 
-@dataclass(frozen=True, eq=False)
-class Lift:
+@dataclass(frozen=True, eq=False, repr=False)
+class Lift(Displayed):
     """Lift s of the follower against the cam angle: a periodic quintic (C4) spline.
 
     Parameters
@@ -58,6 +60,11 @@ class Lift:
     values: Array
     closure: float = 0.0
     spacing: float = 0.0
+
+    @property
+    def facts(self) -> Mapping[str, object]:
+        """Number of samples, greatest lift."""
+        return {"samples": self.values.size, "lift_max": f"{1e3 * self.highest.value:.4g} mm"}
 
     def __post_init__(self) -> None:
         theta, values = finite("lift.theta", self.theta), finite("lift.values", self.values)

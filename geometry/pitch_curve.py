@@ -19,7 +19,7 @@ from camwright.geometry.follower_path import FollowerPath, cam_axes, reciprocal,
 from camwright.geometry.lift import Lift
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class PitchCurve(FollowerPath):
     """Path of the centre of a translating roller follower, in the cam frame.
 

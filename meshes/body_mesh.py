@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from camwright.geometry.arrays import Array, finite, freeze, positive, rotation
 from camwright.geometry.cutouts import HoleLike, KeywayLike
+from camwright.geometry.display import Displayed
 from camwright.geometry.errors import InputError, MeshError
 from camwright.meshes.cam_outline import (
     ContourLike,
@@ -32,8 +33,8 @@ if TYPE_CHECKING:
     from skfem.assembly.basis import AbstractBasis
 
 
-@dataclass(frozen=True, eq=False)
-class BodyMesh:
+@dataclass(frozen=True, eq=False, repr=False)
+class BodyMesh(Displayed):
     """Body as curved quadratic triangles.
 
     Parameters

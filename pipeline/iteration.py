@@ -4,14 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from functools import cache
-from typing import Any, NamedTuple, Protocol
+from functools import cache, cached_property
+from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 
-from camwright.geometry.arrays import Array
+import numpy as np
+
+from camwright.geometry.arrays import Array, uniform_turn
 from camwright.geometry.contour import Contour
 from camwright.geometry.errors import GeometryError
 from camwright.geometry.lift import Lift
+from camwright.pipeline.base.columns import panels_of
 from camwright.pipeline.base.progress import SILENT, Progress
+from camwright.pipeline.base.tables import Table, Tabled, table
+from camwright.pipeline.base.units import in_unit, shown
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.given_lift import given_lift, lift_origin
 from camwright.pipeline.case.load_case_torque import engine_torques
@@ -21,6 +26,7 @@ from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.contact_store import NOT_STORED, ContactStore
 from camwright.pipeline.cycle.solution import is_body, solution
 from camwright.pipeline.preview import preview_case, smoothing_record
+from camwright.pipeline.results.run_records import contour_columns, lift_columns
 from camwright.pipeline.results.trial import (
     CONSTRAINED,
     GIVEN_LIFT,
@@ -52,6 +58,9 @@ from camwright.pipeline.smoothing.synthesis_problem import Design, Problem
 from camwright.pipeline.solver import solve
 from camwright.pipeline.torque.torque import Torque
 
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
 FORECAST_POSITIONS = 360
 _RESULT: Mapping[Verdict, str] = {
     "pass": "passes every must-have check",
@@ -60,8 +69,8 @@ _RESULT: Mapping[Verdict, str] = {
 }
 
 
-@dataclass(frozen=True, eq=False)
-class Synthesis:
+@dataclass(frozen=True, eq=False, repr=False)
+class Synthesis(Tabled):
     """Cam of a case.
 
     Parameters
@@ -74,6 +83,39 @@ class Synthesis:
     case: Case
     contour: Contour
     record: Mapping[str, Any] | None = None
+
+    @property
+    def facts(self) -> Mapping[str, object]:
+        """Name of the case, maximum lift, prime radius and pressure angle."""
+        pitch = self.contour.pitch
+        return {
+            "case": self.case.name,
+            "lift": shown(pitch.lift.highest.value, "mm"),
+            "prime_radius": shown(self.case.cam.prime_radius, "mm"),
+            "pressure_angle": shown(pitch.pressure_angle_max().value, "deg"),
+        }
+
+    @cached_property
+    def table(self) -> Table:
+        """The columns of ``2_lift.csv`` and ``3_contour.csv``, in the units of their headers."""
+        lift = lift_columns(self.case, self.contour.lift)
+        return table(lift | contour_columns(self.case, self.contour))
+
+    def plot(self, *headers: str) -> tuple[Axes, ...]:
+        """The cam with its bore and pitch curve; with headers curves, see `Columned.plot`."""
+        if headers:
+            return super().plot(*headers)
+        (axes,) = panels_of(1, (5.0, 4.4))
+        axes.plot(self["contour_x_mm"], self["contour_y_mm"], label="contour")
+        axes.plot(self["pitch_x_mm"], self["pitch_y_mm"], "--", linewidth=0.8, label="pitch curve")
+        turn = uniform_turn(181)
+        radius = in_unit(self.case.cam.bore_radius, "mm")
+        axes.plot(radius * np.cos(turn), radius * np.sin(turn), color="black", label="bore")
+        axes.set_aspect("equal")
+        axes.set_xlabel("x, mm: cam angle zero")
+        axes.set_ylabel("y, mm")
+        axes.legend(fontsize="small")
+        return (axes,)
 
 
 class Iteration(NamedTuple):

@@ -96,9 +96,9 @@ def _components(turn: Turn) -> Figure | None:
     if turn.torque is None:
         return None
     whole = ("crank_angle_deg", "total_Nm", "error_bar_Nm")
-    total, bar = turn.torque["total_Nm"], turn.torque.columns.get("error_bar_Nm")
+    total, bar = turn.torque["total_Nm"], turn.torque.numbers.get("error_bar_Nm")
     band = None if bar is None else (total - bar, total + bar)
-    parts = [name for name in turn.torque.columns if name not in whole][: len(SERIES)]
+    parts = [name for name in turn.torque.numbers if name not in whole][: len(SERIES)]
     curves = [
         Curve(words(name.removesuffix("_Nm"))[:24], turn.torque[name], colour)
         for name, colour in zip(parts, SERIES, strict=False)
@@ -352,7 +352,7 @@ def limits_strip(limits: Table | None, gear_ratio: float, machine: MachineWords)
     """
     if limits is None:
         return None
-    uses = {name: use for name, use in limits.columns.items() if name != "cam_angle_deg"}
+    uses = {name: use for name, use in limits.numbers.items() if name != "cam_angle_deg"}
     shown = [name for name, use in uses.items() if use.size and float(np.max(use)) >= _SHOWN]
     panels = tuple(_strip(name, uses[name]) for name in shown[:_MOST])
     if not panels:

@@ -10,6 +10,7 @@ In the order of use:
 | `external_force`   | force over the cam angle, linear between samples         | F_e, N           |
 | `fits`             | sizes with limit deviations: bores and keyways           | m                |
 | `files`            | files read, written in one step, hashed; JSON records    | SHA-256          |
+| `columns`          | data frame and figure of columns, for a notebook         |                  |
 | `tables`           | columns with unit and meaning; CSV files                 |                  |
 | `disk_cache`       | arrays that depend on their key alone, kept between runs |                  |
 | `worker_processes` | processes of one BLAS thread for independent tasks       |                  |

@@ -9,18 +9,23 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from types import MappingProxyType
-from typing import Any
+from typing import TYPE_CHECKING, Any, Literal, overload
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from camwright.geometry.arrays import Array, readonly
+from camwright.geometry.display import Displayed, html_table
 from camwright.geometry.errors import ResultError
 from camwright.pipeline.base import units
+from camwright.pipeline.base.columns import RANGE, Cells, Columned
 from camwright.pipeline.base.files import read_text
 
+if TYPE_CHECKING:
+    import pandas as pd
+    from matplotlib.axes import Axes
+
 Texts = NDArray[np.str_]
-Cells = Array | Texts
 
 
 @dataclass(frozen=True)
@@ -54,34 +59,53 @@ Values = Mapping[Column, Cells]
 """SI values (n,) by column; texts of `LOAD_CASE` alone."""
 
 
-@dataclass(frozen=True, eq=False)
-class Table:
+@dataclass(frozen=True, eq=False, repr=False)
+class Table(Columned):
     """Columns of one length by header, in the unit of the header.
 
-    rows_of is the load case of each row; None in a table of no load case.
+    numbers has those of numbers; rows_of is the load case of each row, None in a table of no load
+    case.
     """
 
-    columns: Mapping[str, Array]
+    numbers: Mapping[str, Array]
     rows_of: Texts | None = None
 
     def __reduce__(self) -> tuple[Any, ...]:
         """For a worker process: a read-only mapping cannot be pickled."""
-        return _restored, (dict(self.columns), self.rows_of)
+        return _restored, (dict(self.numbers), self.rows_of)
 
-    def __getitem__(self, header: str) -> Array:
-        if header not in self.columns:
-            raise ResultError(f"column {header} is missing; there is {', '.join(self.columns)}")
-        return self.columns[header]
+    @property
+    def columns(self) -> dict[str, Cells]:
+        """Read-only columns (n,) by header, that of the load cases first."""
+        owners = {} if self.rows_of is None else {LOAD_CASE.header: self.rows_of}
+        return {**owners, **self.numbers}
+
+    @property
+    def facts(self) -> Mapping[str, object]:
+        """Rows, columns and load cases."""
+        known = {"rows": len(self), "columns": len(self.columns)}
+        return known | ({"load_cases": ", ".join(self.load_cases)} if self.load_cases else {})
+
+    @overload
+    def __getitem__(self, header: Literal["load_case"]) -> Texts: ...  # type: ignore[overload-overlap]
+    @overload
+    def __getitem__(self, header: str) -> Array: ...
+    def __getitem__(self, header: str) -> Cells:
+        if header == LOAD_CASE.header and self.rows_of is not None:
+            return self.rows_of
+        if header not in self.numbers:
+            raise ResultError(f"column {header} is missing; there is {', '.join(self.keys())}")
+        return self.numbers[header]
 
     def __contains__(self, header: str) -> bool:
         return header in self.columns
 
     def get(self, header: str) -> Array | None:
-        """A column that not every run has; None without it."""
-        return self.columns.get(header)
+        """A column of numbers that not every run has; None without it."""
+        return self.numbers.get(header)
 
     def __len__(self) -> int:
-        return len(next(iter(self.columns.values()), ()))
+        return len(next(iter(self.numbers.values()), ()))
 
     @property
     def load_cases(self) -> tuple[str, ...]:
@@ -92,12 +116,12 @@ class Table:
         """The rows of a load case; none where there is no such load case."""
         owners = np.full(len(self), "") if self.rows_of is None else self.rows_of
         rows = owners == name
-        columns = {header: readonly(values[rows]) for header, values in self.columns.items()}
+        columns = {header: readonly(values[rows]) for header, values in self.numbers.items()}
         return Table(MappingProxyType(columns), _fixed_texts(owners[rows]))
 
     def to_csv(self) -> str:
         """CSV text; every float reads back bit for bit, NaN is an empty cell."""
-        cells = {header: _texts(values) for header, values in self.columns.items()}
+        cells = {header: _texts(values) for header, values in self.numbers.items()}
         if self.rows_of is not None:
             cells = {LOAD_CASE.header: self.rows_of.tolist(), **cells}
         buffer = io.StringIO()
@@ -105,6 +129,33 @@ class Table:
         writer.writerow(cells)
         writer.writerows(zip(*cells.values(), strict=True))
         return buffer.getvalue()
+
+
+class Tabled(Displayed):
+    """A result whose columns are those of its `table`; see `Table`."""
+
+    @property
+    def table(self) -> Table:
+        """Columns by header."""
+        raise NotImplementedError
+
+    def keys(self) -> tuple[str, ...]:
+        """Headers of the columns."""
+        return self.table.keys()
+
+    def __getitem__(self, header: str) -> Cells:
+        return self.table[header]
+
+    def to_pandas(self) -> pd.DataFrame:
+        """The columns as a data frame of pandas; see `Columned.to_pandas`."""
+        return self.table.to_pandas()
+
+    def plot(self, *headers: str) -> tuple[Axes, ...]:
+        """Curves of columns, one panel each; see `Columned.plot`."""
+        return self.table.plot(*headers)
+
+    def _repr_html_(self) -> str:
+        return html_table(repr(self), RANGE, self.table.ranges())
 
 
 def table(values: Values) -> Table:

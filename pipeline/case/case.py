@@ -4,16 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Literal
 
 from pydantic import AfterValidator, Field, PrivateAttr, ValidationError
 
 from camwright.geometry.arrays import FULL_TURN
 from camwright.geometry.contour import Contour
+from camwright.geometry.display import Displayed
 from camwright.geometry.errors import InputError
 from camwright.geometry.lift import Lift
+from camwright.pipeline.base.columns import data_frame
 from camwright.pipeline.base.files import hash_inputs
 from camwright.pipeline.base.material import Material
+from camwright.pipeline.base.units import shown
 from camwright.pipeline.case.engine_section import Engine, engine_files
 from camwright.pipeline.case.error_text import Written, first_error
 from camwright.pipeline.case.lift_section import GivenLift, LiftTable
@@ -43,13 +46,16 @@ from camwright.pipeline.follower.roller import Roller
 from camwright.pipeline.follower.spring import Spring
 from camwright.pipeline.torque.period import FOUR_STROKE, Period
 
+if TYPE_CHECKING:
+    import pandas as pd
+
 INPUTS = "inputs"
 Materials = Annotated[
     dict[Name, Table[Material]], Field(min_length=1, max_length=64), AfterValidator(named)
 ]
 
 
-class Case(Section):
+class Case(Displayed, Section):
     """A design and its load cases as a case file has them, resolved, SI; frozen.
 
     Made by `read_case`. Each field is a section of the case file; one that the case leaves out has
@@ -91,6 +97,33 @@ class Case(Section):
     _included: Mapping[str, bytes] = PrivateAttr(default_factory=dict)
     _folder: Path | None = PrivateAttr(default=None)
     _written: Written = PrivateAttr(default_factory=Written)
+
+    @property
+    def facts(self) -> Mapping[str, object]:
+        """Name, source of the lift, follower, size of the cam, positions and load cases."""
+        return {
+            "name": self.name,
+            "title": self.title,
+            "lift": "balances the torque" if self.balances else "stated",
+            "follower": self.follower.kind,
+            "prime_radius": shown(self.cam.prime_radius, "mm"),
+            "positions": self.solver.positions,
+            "load_cases": ", ".join(each.name for each in self.load_cases),
+        }
+
+    def __str__(self) -> str:
+        return repr(self)
+
+    def to_pandas(self) -> pd.DataFrame:
+        """A row per key of the resolved case, with its value as in `to_toml`.
+
+        Raises
+        ------
+        ResultError
+            If pandas is not installed.
+        """
+        values = dict(_keyed("", self.tables()))
+        return data_frame({"key": list(values), "value": list(values.values())})
 
     def to_toml(self) -> str:
         """The case with every default written out; reads back bit for bit.
@@ -216,6 +249,18 @@ class Case(Section):
         shop = self.workshop
         tool = self.largest_tool if shop.tool_radius is None else shop.tool_radius
         return WorkshopOrder(shop.table_step, tool, self.cam.profile_tolerance, shop.arc_error)
+
+
+def _keyed(key: str, value: object) -> Iterator[tuple[str, object]]:
+    """Dotted key and value of every entry of nested tables."""
+    if isinstance(value, Mapping):
+        for name, inner in value.items():
+            yield from _keyed(f"{key}.{name}" if key else str(name), inner)
+    elif isinstance(value, list) and value and isinstance(value[0], Mapping):
+        for k, inner in enumerate(value):
+            yield from _keyed(f"{key}[{k}]", inner)
+    else:
+        yield key, value
 
 
 def includes(case: Case) -> Iterator[tuple[str, str]]:

@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from camwright.geometry.display import Displayed
 from camwright.pipeline.base.external_force import ExternalForce
 from camwright.pipeline.base.material import Material
 from camwright.pipeline.case.case import Case
@@ -70,8 +71,8 @@ class Corner:
     profile: float = 0.0
 
 
-@dataclass(frozen=True)
-class Machine:
+@dataclass(frozen=True, repr=False)
+class Machine(Displayed):
     """The machine in one load case.
 
     Parameters

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Literal
 
+from camwright.geometry.display import Displayed
 from camwright.pipeline.base.units import in_unit, shown
 from camwright.pipeline.case.limits import TORQUE_REDUCTION, AnyLimit, Sense
 from camwright.pipeline.case.machine import Machine
@@ -261,8 +262,8 @@ def made_from_others(_: Solution) -> None:
     """None: the demand follows from other checks."""
 
 
-@dataclass(frozen=True)
-class Check:
+@dataclass(frozen=True, repr=False)
+class Check(Displayed):
     """Demand and limit of one check, SI.
 
     Parameters
@@ -314,6 +315,19 @@ class Check:
         )
         sign = "<=" if self.sense == "at_most" else ">="
         return f"{self.title}: {demand}, must be {sign} {limit}: {self.status}"
+
+    @property
+    def facts(self) -> Mapping[str, object]:
+        """Id and statement of the check, with where it is worst and what cures it."""
+        known = {
+            "id": self.id,
+            "says": str(self),
+            "load_case": self.load_case,
+            "corner": self.corner,
+            "note": self.note,
+            "remedy": self.remedy,
+        }
+        return {name: text for name, text in known.items() if text}
 
     @property
     def id(self) -> str:

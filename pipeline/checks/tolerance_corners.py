@@ -14,6 +14,7 @@ import numpy as np
 
 from camwright.geometry.arrays import uniform_turn
 from camwright.geometry.contour import Contour
+from camwright.geometry.display import Displayed
 from camwright.geometry.errors import CamError
 from camwright.geometry.lift import Lift
 from camwright.pipeline.base.files import Json
@@ -33,8 +34,8 @@ POSITIONS = 90
 """Cam angles per turn, enough for the ratio of two demands."""
 
 
-@dataclass(frozen=True)
-class Outcome:
+@dataclass(frozen=True, repr=False)
+class Outcome(Displayed):
     """Demands by check id at one corner, or the refusal in words.
 
     `bounds` are the ids of checks that rest on loads lost there, `lost` in words: their demand is

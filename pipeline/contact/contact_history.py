@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from camwright.geometry.arrays import Array, freeze
+from camwright.geometry.display import Displayed
 from camwright.pipeline.contact.elasticity.mesh_convergence import Convergence
 from camwright.pipeline.contact.tiers import Tier
 
@@ -26,8 +27,8 @@ QUANTITIES = {
 """Certified quantities in words."""
 
 
-@dataclass(frozen=True, eq=False)
-class ContactHistory:
+@dataclass(frozen=True, eq=False, repr=False)
+class ContactHistory(Displayed):
     """Contact quantities at n cam angles, SI; zero where the surfaces carry no load.
 
     line_load N/m; relative_radius m; p0_hertz, p0 Pa; half_width_hertz, half_width m; tau_max
@@ -115,8 +116,8 @@ class ContactHistory:
         return np.where(idle, 0.0, self.p0 / np.where(idle, 1.0, self.p0_hertz) - 1)
 
 
-@dataclass(frozen=True)
-class CertificatePoint:
+@dataclass(frozen=True, repr=False)
+class CertificatePoint(Displayed):
     """Both bodies by finite elements at one cam angle, and the values of the cycle.
 
     On three meshes; or on the two coarser ones by the orders observed at the cam angles

@@ -12,7 +12,16 @@ import numpy as np
 
 from camwright.geometry.arrays import Array
 from camwright.geometry.contour import Contour
-from camwright.pipeline.base.tables import CAM_ANGLE, CRANK_ANGLE, LOAD_CASE, Cells, Column
+from camwright.pipeline.base.tables import (
+    CAM_ANGLE,
+    CRANK_ANGLE,
+    LOAD_CASE,
+    Cells,
+    Column,
+    Table,
+    Tabled,
+    table,
+)
 from camwright.pipeline.case.machine import Machine
 from camwright.pipeline.contact.contact_history import ContactHistory
 from camwright.pipeline.contact.contact_pair import ContactPair
@@ -39,8 +48,8 @@ def least_spring_force(spring: Spring, contour: Contour) -> float:
     return float(spring.force(np.asarray(contour.pitch.lift.lowest.value)))
 
 
-@dataclass(frozen=True, eq=False)
-class Cycle:
+@dataclass(frozen=True, eq=False, repr=False)
+class Cycle(Tabled):
     """A turn with its contact; rolling, part loads and the response of an elastic follower are
     computed from both on first use.
 
@@ -56,6 +65,18 @@ class Cycle:
     bodies: CycleBodies | None
     contact: ContactHistory
     error_bars: bool = field(default=True, kw_only=True)
+
+    @property
+    def facts(self) -> Mapping[str, object]:
+        """Load case, positions and depth of the contact."""
+        tier = self.contact.tier
+        contact = "unknown" if tier is None else tier.word
+        return {"load_case": self.load_case, "positions": self.theta.size, "contact": contact}
+
+    @cached_property
+    def table(self) -> Table:
+        """The columns of ``5_cycle.csv``, in the units of their headers."""
+        return table(self.columns())
 
     @property
     def machine(self) -> Machine:
@@ -175,7 +196,10 @@ class Cycle:
         return _ThinnedCycle(turn, self.contour, self.pair, self.bodies, contact, self, step)
 
     def columns(self) -> dict[Column, Cells]:
-        """Columns of ``5_cycle.csv``; the contact of a contour that encloses no body is unknown."""
+        """Columns of ``5_cycle.csv``, SI; `table` has them in their units.
+
+        The contact of a contour that encloses no body is unknown.
+        """
 
         def contact_column(name: str, unit: str, meaning: str) -> Column:
             return Column(name, unit, meaning, unknown=True)
@@ -308,7 +332,7 @@ class Cycle:
         return columns | self.parts.columns(self.elastic) | self.shares.columns()
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class _ThinnedCycle(Cycle):
     """A cycle at every few positions of `whole`, with what is computed from it."""
 

@@ -9,6 +9,7 @@ import numpy as np
 
 from camwright.geometry.arrays import Array, freeze
 from camwright.geometry.contour import Contour
+from camwright.geometry.display import Displayed
 from camwright.pipeline.base.tables import Column
 from camwright.pipeline.case.machine import Machine
 from camwright.pipeline.contact.elasticity.radial_compliance import Bush, Pin
@@ -34,8 +35,8 @@ from camwright.pipeline.follower.roller_motion import RollerMotion, roller_motio
 from camwright.pipeline.follower.spring import natural_frequency, surge_force
 
 
-@dataclass(frozen=True, eq=False)
-class PartLoads:
+@dataclass(frozen=True, eq=False, repr=False)
+class PartLoads(Displayed):
     """One turn; arrays (n,) SI, None where the case does not describe the part.
 
     guide_edge_pressure_* are the pressures of the stem in the bore where its line load is greatest;

@@ -9,6 +9,7 @@ from functools import cached_property, partial
 import numpy as np
 
 from camwright.geometry.arrays import FULL_TURN, Array, freeze, uniform_turn
+from camwright.geometry.display import Displayed
 from camwright.pipeline.base.files import Json
 from camwright.pipeline.base.tables import Column
 from camwright.pipeline.case.machine import Machine
@@ -52,8 +53,8 @@ class SweptStress:
         return self._compute()
 
 
-@dataclass(frozen=True, eq=False)
-class RollingHistory:
+@dataclass(frozen=True, eq=False, repr=False)
+class RollingHistory(Displayed):
     """One turn; arrays (n,) SI. None where the case lacks the data.
 
     shear_range, Pa, of the orthogonal shear stress in the cam; bore, None in a preview; swept,

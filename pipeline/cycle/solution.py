@@ -10,6 +10,7 @@ import numpy as np
 
 from camwright.geometry.arrays import Array
 from camwright.geometry.contour import Contour
+from camwright.geometry.display import Displayed
 from camwright.meshes.body_mesh import BodyMesh
 from camwright.meshes.mesh_quality import Quality, gate, quality
 from camwright.pipeline.base.progress import SILENT, Progress
@@ -47,8 +48,8 @@ MESHING, CONTACT = "mesh", "cycle"
 CERTIFICATE, BENCHMARKS = "certificate", "benchmarks"
 
 
-@dataclass(frozen=True, eq=False)
-class ContactMesh:
+@dataclass(frozen=True, eq=False, repr=False)
+class ContactMesh(Displayed):
     """Cam and follower meshed for the contact at their worst angle, rad.
 
     `name` is that of the follower's body: roller or face.
@@ -62,8 +63,8 @@ class ContactMesh:
     quality: Quality
 
 
-@dataclass(frozen=True, eq=False)
-class Solution:
+@dataclass(frozen=True, eq=False, repr=False)
+class Solution(Displayed):
     """Solved cam in every load case; input of the checks and of the results.
 
     Parameters

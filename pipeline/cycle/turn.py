@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 from camwright.geometry.arrays import Array, freeze, uniform_turn
 from camwright.geometry.contour import Contour
+from camwright.geometry.display import Displayed
 from camwright.geometry.errors import CamError
 from camwright.pipeline.case.machine import Machine
 from camwright.pipeline.cycle.crank_speed import DrivenCam, driven_cam
@@ -22,8 +23,8 @@ from camwright.pipeline.torque.torque import Torque
 COARSE_KNOTS = 5  # of a guide, for ratios of demands
 
 
-@dataclass(frozen=True, eq=False)
-class Turn:
+@dataclass(frozen=True, eq=False, repr=False)
+class Turn(Displayed):
     """Loads over one turn of one load case.
 
     Arrays (n,) at equal cam angles theta, rad. The loads are in equilibrium with the guides,

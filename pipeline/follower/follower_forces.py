@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from camwright.geometry.arrays import FULL_TURN, Array, Values, finite, freeze
+from camwright.geometry.display import Displayed
 from camwright.geometry.errors import InputError
 from camwright.geometry.follower_path import FollowerPath
 from camwright.pipeline.base.external_force import NO_FORCE, ExternalForce
@@ -218,8 +219,8 @@ class FollowerSystem:
         return self.rubbing.at(theta)
 
 
-@dataclass(frozen=True, eq=False)
-class Loads:
+@dataclass(frozen=True, eq=False, repr=False)
+class Loads(Displayed):
     """Forces on the follower at each cam angle; arrays (n,), of many followers (..., n), SI.
 
     `applied_force`: weight and external force, positive towards the cam.

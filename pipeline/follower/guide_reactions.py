@@ -12,6 +12,7 @@ from numpy.polynomial.legendre import Legendre
 from numpy.typing import ArrayLike
 
 from camwright.geometry.arrays import Array, finite, freeze, readonly
+from camwright.geometry.display import Displayed
 from camwright.geometry.errors import ContactError, InputError
 from camwright.pipeline.base.material import ROOM, Material
 from camwright.pipeline.base.quantities import In, Length, Part, Pressure, Temperature
@@ -146,8 +147,8 @@ class GuidePair(Part):
         return ("A", self.a), ("B", self.b)
 
 
-@dataclass(frozen=True, eq=False)
-class GuideReactions:
+@dataclass(frozen=True, eq=False, repr=False)
+class GuideReactions(Displayed):
     """Reactions and pressures of the guides at each position; arrays (n,) unless stated, SI.
 
     Guide A acts against the side force F_t and guide B with it; both reactions are signed like

@@ -8,7 +8,14 @@ from __future__ import annotations
 import math
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
-from typing import Any, NamedTuple, TypedDict
+from typing import TYPE_CHECKING, Any, NamedTuple, Protocol, TypedDict, TypeVar
+
+from camwright.geometry.display import Displayed, html_table, in_brief
+from camwright.pipeline.base.columns import data_frame, panels_of
+
+if TYPE_CHECKING:
+    import pandas as pd
+    from matplotlib.axes import Axes
 
 STATUSES = ("pass", "waived", "not_evaluated", "fail")
 """Statuses of a check, from the best to the worst."""
@@ -66,6 +73,100 @@ class CheckRecord(CheckRecordOfAnyCheck, total=False):
 
 AnyCheck = Mapping[str, object]
 """A `CheckRecord`, also where it is read as plain JSON."""
+
+
+class Recorded(Protocol):
+    """A check with a record."""
+
+    def as_record(self) -> AnyCheck: ...
+
+
+Item = TypeVar("Item", bound=AnyCheck | Recorded)
+
+
+class CheckList(Displayed, tuple[Item, ...]):
+    """Checks or their records in order, displayed as a table."""
+
+    __slots__ = ()
+
+    @property
+    def records(self) -> list[AnyCheck]:
+        """Record of each check."""
+        return [each if isinstance(each, Mapping) else each.as_record() for each in self]
+
+    @property
+    def facts(self) -> Mapping[str, object]:
+        """Number of checks by status, the worst first."""
+        counts = Counter(str(record["status"]) for record in self.records)
+        return {"checks": len(self)} | {
+            status: counts[status] for status in reversed(STATUSES) if counts[status]
+        }
+
+    def to_pandas(self) -> pd.DataFrame:
+        """A row per check, in the units of the column ``unit``; see `Columned.to_pandas`."""
+        return data_frame({key: [record.get(key) for record in self.records] for key in _SHOWN})
+
+    def plot(self, most: int = 12) -> tuple[Axes, ...]:
+        """Bars of the greatest utilisations with their values; drawn to twice the limit.
+
+        Parameters
+        ----------
+        most : int   number of bars, at most
+        """
+        used = [(utilisation_of(record), record) for record in self.records]
+        ranked = sorted(
+            ((value, record) for value, record in used if value is not None),
+            key=lambda each: -each[0],
+        )[:most]
+        (axes,) = panels_of(1, (7.0, 0.3 * len(ranked) + 0.4))
+        colours = [_COLOURS[str(record["status"])] for _, record in ranked]
+        titles = [str(record["title"]) for _, record in ranked]
+        drawn = [min(value, _LONGEST) for value, _ in ranked]
+        bars = axes.barh(range(len(ranked)), drawn, color=colours)
+        axes.bar_label(bars, [f" {value:.3g}" for value, _ in ranked], fontsize="small")
+        axes.set_yticks(range(len(ranked)), titles, fontsize="small")
+        axes.invert_yaxis()
+        axes.axvline(1.0, color="black", linewidth=0.8)
+        axes.set_xlabel("utilisation")
+        return (axes,)
+
+    def _repr_html_(self) -> str:
+        return html_table(repr(self), _SHOWN[:8], map(_row_in_words, self.records))
+
+
+class WithChecks(Displayed):
+    """A result with checks: its data frame and its figure are those of the checks."""
+
+    checks: tuple[Any, ...]
+
+    def to_pandas(self) -> pd.DataFrame:
+        """A row per check; see `CheckList.to_pandas`."""
+        return CheckList(self.checks).to_pandas()
+
+    def plot(self, most: int = 12) -> tuple[Axes, ...]:
+        """Bars of the greatest utilisations; see `CheckList.plot`."""
+        return CheckList(self.checks).plot(most)
+
+    def _repr_html_(self) -> str:
+        worst = [each for each in CheckList(self.checks).records if each["status"] == "fail"]
+        facts = super()._repr_html_()
+        failing = html_table("failing checks", _SHOWN[:8], map(_row_in_words, worst))
+        return facts + failing if worst else facts
+
+
+_SHOWN = (
+    "id", "title", "demand", "limit", "unit", "utilisation", "status", "must_have", "load_case",
+    "cam_angle_deg", "corner", "corner_demand", "error", "not_proven", "missing", "note", "remedy",
+)  # fmt: skip
+"""Columns of a data frame of checks; the first eight in a notebook."""
+_LONGEST = 2.0
+"""Utilisation to which a bar is drawn."""
+_COLOURS = {"pass": "tab:green", "waived": "tab:olive", "fail": "tab:red"}
+
+
+def _row_in_words(record: AnyCheck) -> list[str]:
+    values = (record.get(key) for key in _SHOWN[:8])
+    return ["" if value is None else in_brief(value) for value in values]
 
 
 def binding_of(checks: Iterable[CheckRecord]) -> tuple[str, ...]:

@@ -60,11 +60,11 @@ def _compared(file: Path, other: Path, share: float, exact: bool) -> str:
 def _tables(file: Path, other: Path, share: float) -> str:
     """The first difference of two tables."""
     one, two = read_table(file), read_table(other)
-    if [*one.columns] != [*two.columns] or len(one) != len(two):
-        return f"has {len(one)} rows of {len(one.columns)} columns, not the {len(two)} of the case"
+    if one.keys() != two.keys() or len(one) != len(two):
+        return f"has {len(one)} rows of {len(one.keys())} columns, not the {len(two)} of the case"
     if one.load_cases != two.load_cases:
         return f"has the load cases {', '.join(one.load_cases)}"
-    for header, values in two.columns.items():
+    for header, values in two.numbers.items():
         k = _worst(one[header], values, _RESIDUAL in header, share)
         if k is not None:
             at = f"{header}{_place(two, k)}"

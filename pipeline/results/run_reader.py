@@ -24,8 +24,10 @@ from camwright.pipeline.base.tables import Table, read_table
 from camwright.pipeline.results.check_records import (
     STATUSES,
     AnyCheck,
+    CheckList,
     CheckRecord,
     CheckRecordOfAnyCheck,
+    WithChecks,
     binding_of,
     governing_id,
     judgement,
@@ -151,8 +153,8 @@ class Summary(SummaryOfAnyRun, total=False):
     load_ends: list[LoadEndRecord]
 
 
-@dataclass(frozen=True, eq=False)
-class TrialRecord:
+@dataclass(frozen=True, eq=False, repr=False)
+class TrialRecord(WithChecks):
     """A trial read from its folder: lift, contour, cycle, checks and record."""
 
     number: int
@@ -163,6 +165,17 @@ class TrialRecord:
     checks: tuple[CheckRecord, ...]
     record: TrialContents
     limits: Table | None = None
+
+    @property
+    def facts(self) -> Mapping[str, object]:
+        """Number, folder, depth, verdict or screen, and the checks by status."""
+        return {
+            "number": self.number,
+            "path": self.path,
+            "depth": self.depth,
+            **({"verdict": self.verdict} if self.verdict else {"screen": self.screen}),
+            **CheckList(self.checks).facts,
+        }
 
     @property
     def depth(self) -> str:
@@ -185,8 +198,8 @@ class TrialRecord:
         return binding_of(self.checks)
 
 
-@dataclass(frozen=True, eq=False)
-class Run:
+@dataclass(frozen=True, eq=False, repr=False)
+class Run(WithChecks):
     """A run read from its folder; the final trial is the result."""
 
     path: Path
@@ -195,6 +208,19 @@ class Run:
     torque: Table | None
     trials: tuple[TrialRecord, ...]
     speed: Table | None = None
+
+    @property
+    def facts(self) -> Mapping[str, object]:
+        """Case, folder, trials, and the facts of the final trial."""
+        run = {"case": self.summary["case"], "path": self.path, "trials": len(self.trials)}
+        own = ("number", "path")
+        final = {name: fact for name, fact in self.final.facts.items() if name not in own}
+        return run | {"final": self.final.number} | final
+
+    @property
+    def checks(self) -> tuple[CheckRecord, ...]:  # type: ignore[override]
+        """Checks of the final trial."""
+        return self.final.checks
 
     @property
     def final(self) -> TrialRecord:
@@ -420,7 +446,7 @@ def read_records(file: Path) -> tuple[CheckRecord, ...]:
             raise ResultError(
                 f"{file}: {record['id']} is marked {status}, its numbers say otherwise"
             )
-    return tuple(records)
+    return CheckList(records)
 
 
 def _require(file: Path, record: Mapping[str, object], keys: Iterable[str], what: str = "") -> None:

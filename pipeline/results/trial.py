@@ -30,6 +30,7 @@ from camwright.pipeline.contact.contact_history import CertificatePoint
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.cycle import Cycle
 from camwright.pipeline.cycle.solution import ContactMesh, Solution
+from camwright.pipeline.results.check_records import CheckList, WithChecks
 from camwright.pipeline.results.run_reader import LoadEndRecord, TrialPointRecord
 
 
@@ -100,8 +101,8 @@ class TrialPoint:
         }
 
 
-@dataclass(frozen=True, eq=False)
-class Trial:
+@dataclass(frozen=True, eq=False, repr=False)
+class Trial(WithChecks):
     """A cam with its solution and checks.
 
     Parameters
@@ -125,6 +126,20 @@ class Trial:
     synthesis: Mapping[str, Any] | None = None
     limits_in_use: tuple[Array, Mapping[str, Array]] | None = None
     corners: tuple[Outcome, ...] = ()
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "checks", CheckList(self.checks))
+
+    @property
+    def facts(self) -> Mapping[str, object]:
+        """Number, case, depth, verdict or screen, and the checks by status."""
+        return {
+            "number": self.number,
+            "case": self.case.name,
+            "depth": self.depth.word,
+            **({"verdict": self.verdict} if self.verdict else {"screen": self.screen}),
+            **CheckList(self.checks).facts,
+        }
 
     @property
     def case(self) -> Case:

@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Collection, Iterator, Mapping
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from camwright.geometry.arrays import FULL_TURN, Array
+from camwright.geometry.display import Displayed
 from camwright.geometry.errors import CamError, InputError
 from camwright.geometry.extrema import sampled_greatest, sampled_least
+from camwright.pipeline.base.columns import curves, data_frame
 from camwright.pipeline.base.units import in_unit
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_values import replaced
@@ -27,15 +31,46 @@ from camwright.pipeline.screening.design_factors import Factor, Group, count_of,
 from camwright.pipeline.screening.screened_checks import SCREENED, Screened, torque_after
 from camwright.pipeline.smoothing.smoothers import Smoother, smoothed
 
+if TYPE_CHECKING:
+    import pandas as pd
+    from matplotlib.axes import Axes
+
 BLOCK = 500
 """Designs solved at once: arrays of some megabytes."""
 KIND = "follower.kind"
 Column = NDArray[np.float64] | NDArray[np.object_]
 
 
+class ScreenedDesigns(Displayed, dict[str, Column]):
+    """Columns (n,) of n screened designs by name, displayed by their number."""
+
+    @property
+    def facts(self) -> Mapping[str, object]:
+        """Number of designs by screen, and of columns."""
+        screens = Counter(self["screen"].tolist())
+        return (
+            {"designs": len(self["screen"])}
+            | dict(sorted(screens.items()))
+            | {"columns": len(self)}
+        )
+
+    def to_pandas(self) -> pd.DataFrame:
+        """A row per design; see `Columned.to_pandas`."""
+        return data_frame(self)
+
+    def plot(self, *names: str) -> tuple[Axes, ...]:
+        """Columns over the number of the design, one panel each; see `Columned.plot`.
+
+        Without a name the first utilisation.
+        """
+        shown = names or tuple(name for name in self if name.endswith(".utilisation"))[:1]
+        count = np.arange(len(self["screen"]), dtype=float)
+        return curves({"design": count, **self}, shown)
+
+
 def screen_designs(
     case: Case, factors: Mapping[str, Factor], *, positions: int = 180
-) -> dict[str, Column]:
+) -> ScreenedDesigns:
     """Closed-form checks of many designs at once, from lift to spring and bearing.
 
     Designs that differ in the keys of `ARRAYS` alone, and in preload and speed of load cases, are
@@ -54,7 +89,8 @@ def screen_designs(
 
     Returns
     -------
-    dict   column -> (n,), in the units of the records: of each check that screening can judge
+    ScreenedDesigns
+           dict, column -> (n,), in the units of the records: of each check that screening can judge
            ``{id}.demand``, ``.limit``, ``.utilisation``, ``.error`` (NaN: missing or infinite) and
            ``.status``, "" where the check does not apply; ``headline.{key}`` as in ``run.json``;
            ``screen``: "fail", "open", or "error" for a refused design; ``governing``: must-have
@@ -70,9 +106,9 @@ def screen_designs(
     if not 36 <= positions <= 7200:
         raise InputError("positions", positions, "36 to 7200")
     count = count_of(factors)
-    columns: dict[str, Column] = {
-        name: np.full(count, "", dtype=object) for name in ("screen", "governing", "message")
-    }
+    columns = ScreenedDesigns(
+        {name: np.full(count, "", dtype=object) for name in ("screen", "governing", "message")}
+    )
     for group in groups(case, factors):
         if group.case is None:
             _put(columns, group.rows, {"screen": "error", "message": group.refused})

@@ -7,15 +7,12 @@ from collections.abc import Iterator
 import numpy as np
 
 from camwright.pipeline.base.files import Json
-from camwright.pipeline.base.quantities import In
 from camwright.pipeline.base.units import in_unit, shown
-from camwright.pipeline.case.case_values import quantity_of
 from camwright.pipeline.case.limits import SPRING_SURGE
 from camwright.pipeline.checks.check import Check
 from camwright.pipeline.sizing.open_case import GAPS, PRELOAD, RATE, ROLLER
 from camwright.pipeline.sizing.shapes import FaceShapes, Shape, Shapes
-from camwright.pipeline.sizing.size_chart import chart_record
-from camwright.pipeline.sizing.sizing import Sizing
+from camwright.pipeline.sizing.sizing import Sizing, unit_of
 from camwright.pipeline.sizing.spring_choice import greatest_coil_mass
 
 _MM, _DEG = "mm", "deg"
@@ -35,8 +32,8 @@ def size_record(sizing: Sizing) -> dict[str, Json]:
         "verdict": sizing.verdict,
         "sized": {
             key: {
-                "value": in_unit(value, _unit(key)),
-                "unit": _unit(key),
+                "value": in_unit(value, unit_of(key)),
+                "unit": unit_of(key),
                 "source": sizing.sources[key],
             }
             for key, value in sizing.values.items()
@@ -52,7 +49,7 @@ def size_record(sizing: Sizing) -> dict[str, Json]:
         },
         "checks": [each.as_record() for each in sizing.checks],
         "other_failures": list(sizing.others),
-        "chart": chart_record(case, sizing.shapes, sizing.shape),
+        "chart": sizing.chart,
     }
 
 
@@ -61,7 +58,7 @@ def size_lines(sizing: Sizing) -> Iterator[str]:
     if not sizing.values:
         yield f"no key is open; size finds {', '.join(GAPS)}"
     for key, value in sizing.values.items():
-        yield f"{key} = {shown(value, _unit(key), 6)}; {sizing.sources[key]}"
+        yield f"{key} = {shown(value, unit_of(key), 6)}; {sizing.sources[key]}"
     exact, drawn = sizing.exact, sizing.shape
     if exact.base_radius != drawn.base_radius:
         yield (
@@ -120,11 +117,6 @@ def _check_words(check: Check) -> str:
         lacks = f"; the case lacks {', '.join(check.missing)}" if check.missing else ""
         return f"not known: {check.title}{lacks}"
     return str(check)
-
-
-def _unit(key: str) -> str:
-    quantity = quantity_of(key)
-    return quantity.unit if isinstance(quantity, In) else ""
 
 
 def _stroke(sizing: Sizing) -> float:

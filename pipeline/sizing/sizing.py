@@ -5,14 +5,19 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from camwright.geometry.display import Displayed
 from camwright.geometry.errors import CamError, InputError
 from camwright.geometry.lift import Lift
+from camwright.pipeline.base.columns import data_frame, panels_of
 from camwright.pipeline.base.progress import SILENT, Progress
+from camwright.pipeline.base.quantities import In
+from camwright.pipeline.base.units import in_unit, shown
 from camwright.pipeline.case.case import Case
-from camwright.pipeline.case.case_values import refused_as_written, replaced
+from camwright.pipeline.case.case_values import quantity_of, refused_as_written, replaced
 from camwright.pipeline.case.given_lift import given_lift
 from camwright.pipeline.case.load_case_torque import engine_torques
 from camwright.pipeline.checks.check import Check, Verdict, verdict, within_depth
@@ -38,10 +43,15 @@ from camwright.pipeline.sizing.shapes import (
     shapes_of,
     values_of,
 )
+from camwright.pipeline.sizing.size_chart import chart_record
 from camwright.pipeline.sizing.spring_choice import ChosenSpring, more_preload, spring_of, stiffer
 from camwright.pipeline.smoothing.required_lift import cam_lift
 from camwright.pipeline.solver import solve
 from camwright.pipeline.torque.torque import Torque
+
+if TYPE_CHECKING:
+    import pandas as pd
+    from matplotlib.axes import Axes
 
 _SHAPE = ("pressure_angle", "curvature_ratio", "undercut", "concave_radius", "minimum_wall",
           "cam_radius", "self_intersection", "second_contact", "contact_pressure",
@@ -75,8 +85,8 @@ _STIFFER, _LARGER, _TRIES = 1.1, 1.01, 8
 """Factors of preload or rate and of radius by which a failing preview is repeated; how often."""
 
 
-@dataclass(frozen=True, eq=False)
-class Sizing:
+@dataclass(frozen=True, eq=False, repr=False)
+class Sizing(Displayed):
     """Sizes of an open case.
 
     Parameters
@@ -107,6 +117,46 @@ class Sizing:
     others: tuple[str, ...]
 
     @property
+    def facts(self) -> Mapping[str, object]:
+        """Case, verdict, and the sized values by key."""
+        values = {key: shown(value, unit_of(key), 6) for key, value in self.values.items()}
+        return {"case": self.case.name, "verdict": self.verdict} | values
+
+    @property
+    def chart(self) -> Mapping[str, Any]:
+        """Curves of pressure angle and curvature over the base radius; see `chart_record`."""
+        return chart_record(self.case, self.shapes, self.shape)
+
+    def to_pandas(self) -> pd.DataFrame:
+        """A row per open key: key, value, unit, source; see `Columned.to_pandas`."""
+        units = [unit_of(key) for key in self.values]
+        return data_frame(
+            {
+                "key": list(self.values),
+                "value": list(map(in_unit, self.values.values(), units)),
+                "unit": units,
+                "source": [self.sources[key] for key in self.values],
+            }
+        )
+
+    def plot(self) -> tuple[Axes, ...]:
+        """The `chart`, a panel per quantity with its limits."""
+        quantities = self.chart["panels"]
+        panels = panels_of(len(quantities))
+        for axes, panel in zip(panels, quantities, strict=True):
+            for curve in panel["curves"]:
+                style = "--" if curve["dashed"] else "-"
+                axes.plot(curve["x"], curve["y"], style, label=curve["label"])
+            for limit in panel["limits"].values():
+                axes.axhline(limit, color="tab:red", linewidth=0.9)
+            axes.axvline(self.chart["base_radius_mm"], color="black", linewidth=0.7)
+            axes.set_ylabel(f"{panel['quantity']}, {panel['unit'] or '-'}")
+            if len(panel["curves"]) > 1:
+                axes.legend(fontsize="small")
+        panels[-1].set_xlabel("base radius, mm")
+        return panels
+
+    @property
     def verdict(self) -> Verdict:
         """Verdict of the must-have checks that the open keys decide; pass without any."""
         return verdict(self.checks) if self.checks else "pass"
@@ -121,6 +171,12 @@ class Sizing:
     def greatest_tried(self) -> float:
         """Greatest prime or base radius that was tried, m."""
         return self.exact.prime_radius * _STEP**_STEPS
+
+
+def unit_of(key: str) -> str:
+    """Unit of an open key in records."""
+    quantity = quantity_of(key)
+    return quantity.unit if isinstance(quantity, In) else ""
 
 
 def size(

@@ -9,6 +9,7 @@ from types import MappingProxyType
 import numpy as np
 
 from camwright.geometry.arrays import FULL_TURN, Array, finite, freeze
+from camwright.geometry.display import Displayed
 from camwright.geometry.errors import InputError
 from camwright.geometry.periodic_spline import periodic_cubic
 from camwright.pipeline.base.units import shown
@@ -19,8 +20,8 @@ SAMPLES = 720
 _SAME = 1e-9  # of an angle
 
 
-@dataclass(frozen=True, eq=False)
-class Torque:
+@dataclass(frozen=True, eq=False, repr=False)
+class Torque(Displayed):
     """Torque of a machine on its shaft, positive when it drives the shaft.
 
     Parameters

@@ -132,7 +132,7 @@ def looked_up(trial: Trial, speed: Any) -> set[str]:
     names: set[str] = set()
 
     def noted(values: Any) -> Table:
-        return Table(Recorder(table(values).columns, names))
+        return Table(Recorder(table(values).numbers, names))
 
     torques, case = engine_torques(trial.case), tomllib.loads(trial.case.to_toml())
     cycle = noted(run_records.cycle_columns(trial.cycles[:1]))
