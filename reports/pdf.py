@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import dataclasses
-import importlib.util
 import json
 import re
 import shutil
@@ -18,9 +17,11 @@ from matplotlib.ft2font import FT2Font
 
 from camwright.geometry.errors import ResultError
 from camwright.pipeline.base.files import Json, write_atomic
+from camwright.reports.drawing import drawing_svg
+from camwright.reports.drawing.drawing_shapes import Drawing
 from camwright.reports.figure_svg import COLOURS, Drawn
 from camwright.reports.picture_list import Picture
-from camwright.reports.report_content import Report, report_content
+from camwright.reports.report_content import report_content
 from camwright.reports.report_data import Material
 from camwright.reports.report_tables import isolated, plain
 
@@ -30,8 +31,7 @@ if TYPE_CHECKING:
 Value: TypeAlias = "str | float | Sequence[Value] | DataclassInstance | None"
 
 PDF = "8_report.pdf"
-MISSING = "a PDF needs the package typst: pip install 'camwright[pdf]'"
-_TEMPLATE = Path(__file__).parent / "templates" / "report.typ"
+_TEMPLATES = Path(__file__).parent / "templates"
 _FONTS = Path(mpl.get_data_path()) / "fonts" / "ttf"
 _LONG_WORD = re.compile(r"(?![0-9a-f]{64}\b)\S{20,}")  # except SHA-256
 _BREAK = "\u200b"
@@ -43,37 +43,37 @@ def write(material: Material) -> list[Path]:
     Raises
     ------
     ResultError
-        If typst is not installed, or the file cannot be written.
+        If the file cannot be written.
     """
-    return [write_atomic(material.folder / PDF, typeset(report_content(material)))]
+    return [write_atomic(material.folder / PDF, typeset("report.typ", report_content(material)))]
 
 
-def typeset(report: Report) -> bytes:
-    """PDF of a report; equal reports give equal bytes.
+def typeset(template: str, document: DataclassInstance) -> bytes:
+    """PDF of a document by a template; equal documents give equal bytes.
 
-    All text is passed as data, never as source, and typst can read no file but the pictures of
-    the report. Fonts are those of the matplotlib package; system fonts are used only for
-    characters that DejaVu Sans lacks.
+    All text is passed as data, never as source, and typst can read no file but the templates and
+    the pictures of the document. Fonts are those of the matplotlib package; system fonts are used
+    only for characters that DejaVu Sans lacks.
 
     Raises
     ------
     ResultError
-        If typst is not installed or cannot set the document.
+        If typst cannot set the document.
     """
-    if importlib.util.find_spec("typst") is None:
-        raise ResultError(MISSING)
     import typst
 
     def compiled(words: str, folder: Path) -> bytes:
         return typst.compile(
-            folder / _TEMPLATE.name, root=folder, font_paths=[_FONTS],
+            folder / template, root=folder, font_paths=[_FONTS],
             ignore_system_fonts=_drawable(words) == words, sys_inputs={"report": words},
             format="pdf", pdf_standards=["a-2a", "ua-1"], timestamp=0,
         )  # fmt: skip
 
     with tempfile.TemporaryDirectory() as name:
-        folder = Path(shutil.copy(_TEMPLATE, name)).parent
-        record = {**_fields(report, folder), "colours": COLOURS}
+        folder = Path(name)
+        for source in _TEMPLATES.glob("*.typ"):
+            shutil.copy(source, folder)
+        record = {**_fields(document, folder), "colours": COLOURS}
         words = json.dumps(record, ensure_ascii=False, allow_nan=False)
         reason = ""
         for text in (words, _drawable(words)):  # PDF/A excludes private-use characters
@@ -90,6 +90,10 @@ def _fields(value: DataclassInstance, folder: Path) -> Mapping[str, Json]:
         figure = value.figure
         words = {"title": figure.title, "caption": figure.caption, "alt": figure.alt}
         return {name: _broken(text) for name, text in words.items()} | {"svg": plain(value.svg)}
+    if isinstance(value, Drawing):
+        width, height = value.size
+        svg = drawing_svg.svg_of(value, COLOURS, "DejaVu Sans")
+        return {"svg": plain(svg), "alt": _broken(value.alt), "width": width, "height": height}
     if isinstance(value, Picture):
         file = f"{value.name}.png" if value.png else ""
         if file:

@@ -198,14 +198,9 @@ def report_content(material: Material) -> Report:
 
     run = material.run
     final = run.final
-    statement = titled(str(run.summary["statement"]), final.checks)
     return Report(
         str(material.case.get("title") or run.summary["case"]), _facts(material),
-        verdict(
-            str(run.verdict or run.screen), final.checks, final.binding, statement,
-            str(run.summary["scope"]["statement"]), final.depth,
-            load_end_words(run.summary.get("load_ends", ())),
-        ),
+        verdict_of(material),
         report_tables.tiles(run.summary["headline"]),
         (
             _sheet(material), _numbers(material),
@@ -229,6 +224,17 @@ def report_content(material: Material) -> Report:
         ),
         f"Camwright · {shortened(str(run.summary['case']), 60)}",
         "Cam sign-off" if final.depth == CERTIFIED else f"Cam, {final.depth} without sign-off",
+    )  # fmt: skip
+
+
+def verdict_of(material: Material) -> Verdict:
+    """Verdict of a run in sentences."""
+    run, final = material.run, material.run.final
+    return verdict(
+        str(run.verdict or run.screen), final.checks, final.binding,
+        titled(str(run.summary["statement"]), final.checks),
+        str(run.summary["scope"]["statement"]), final.depth,
+        load_end_words(run.summary.get("load_ends", ())),
     )  # fmt: skip
 
 

@@ -1,0 +1,308 @@
+"""Views of the cam with dimensions: front view, section, detail of the bore; mm on paper."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from camwright.geometry.arrays import Array, rotation
+from camwright.pipeline.base.fits import Size
+from camwright.reports.drawing.drawing_shapes import (
+    GLYPH,
+    HEAD,
+    Arrow,
+    Drawing,
+    Group,
+    Outline,
+    Pen,
+    Shape,
+    Text,
+    bore_outline,
+    circle,
+    hatching,
+    rectangle,
+    segment,
+)
+
+WIDTH, HEIGHT = 236.0, 272.0
+"""Size of the views on paper, mm."""
+_FRONT = 186.0  # mm, square of the front view
+_LABELS = 9.0  # mm around the contour, for its angles
+_SECTION = WIDTH - _FRONT - 14.0  # mm, greatest width of the section
+_DETAIL = 40.0  # mm, greatest size of the detail
+_TEXT, _SMALL = 3.5, 2.5  # mm, heights of ISO 3098
+_EDGE, _THIN = 0.5, 0.25  # mm, lines of ISO 128
+_ARROW = 0.75  # mm, so that a head is 2.55 mm long; the line before it is thin
+_STEPS = (1.0, 2.0, 5.0)  # of scales, ISO 5455
+_EVERY = 30  # deg, between the labelled angles
+_PROFILE_AT, _ROUGH_AT = 105.0, 75.0  # deg, of the leaders: between two labels
+
+
+@dataclass(frozen=True, eq=False)
+class Part:
+    """A cam to draw; lengths in mm, angles in rad.
+
+    contour : array (2, n)   angle zero along x
+    keyway                   width, depth beyond the bore and angle of its middle; None: none
+    counter_hole             centre x, y and radius; None: none
+    bore, keyway_width, keyway_depth : Size   with their tolerances
+    roughness : str          of the contour; "": a field to fill by hand
+    """
+
+    contour: Array
+    keyway: tuple[float, float, float] | None
+    counter_hole: tuple[float, float, float] | None
+    thickness: float
+    bore: Size
+    keyway_width: Size | None
+    keyway_depth: Size | None
+    root_radius: float | None
+    profile_tolerance: str
+    datum: str
+    roughness: str
+
+    @property
+    def bore_radius(self) -> float:
+        """Radius of the bore, mm."""
+        return 0.5e3 * self.bore.nominal
+
+    @property
+    def hole(self) -> Array:
+        """Bore with keyway (2, n)."""
+        return bore_outline(self.bore_radius, self.keyway)
+
+    @property
+    def scale(self) -> float:
+        """Scale of front view and section."""
+        reach = float(np.abs(self.contour).max())
+        return min(standard_scale(0.5 * _FRONT - _LABELS, reach),
+                   standard_scale(_SECTION, self.thickness))  # fmt: skip
+
+    @property
+    def detail_scale(self) -> float:
+        """Scale of the detail of the bore."""
+        depth = 0.0 if self.keyway is None else self.keyway[1]
+        return standard_scale(_DETAIL, 2.0 * self.bore_radius + depth)
+
+
+def standard_scale(room: float, size: float) -> float:
+    """Greatest scale of ISO 5455 at which a size fits into a room."""
+    power = 10.0 ** np.floor(np.log10(room / size))
+    steps = (*_STEPS, 10.0)
+    return float(max(step * power for step in steps if step * power * size <= room * (1 + 1e-9)))
+
+
+def scale_words(scale: float) -> str:
+    """A scale as ``2:1`` or ``1:5``."""
+    return f"{scale:.6g}:1" if scale >= 1.0 else f"1:{1.0 / scale:.6g}"
+
+
+def views(part: Part) -> Drawing:
+    """Front view at the top left, section beside it, detail of the bore below."""
+    middle = (0.5 * _FRONT, HEIGHT - 0.5 * _FRONT - 12.0)
+    groups = (
+        Group("front", tuple(_front(part, *middle))),
+        Group("section", tuple(_section(part, _FRONT + 8.0, middle[1]))),
+        Group("detail", tuple(_detail(part, 62.0, 36.0))),
+    )
+    words = f"Cam in front view, section and detail of its bore; scale {scale_words(part.scale)}."
+    return Drawing("Cam", words, groups, (0.0, 0.0, WIDTH, HEIGHT))
+
+
+def _thin(*lines: Array, dash: str = "solid") -> Outline:
+    return Outline(lines, Pen("ink", _THIN, dash=dash), closed=False)
+
+
+def _arrow(tail: tuple[float, float], tip: tuple[float, float]) -> Iterator[Shape]:
+    """Thin line with a head."""
+    back = np.array(tail) - np.array(tip)
+    neck = np.array(tip) + 1.05 * HEAD * _ARROW * back / np.hypot(*back)
+    start = (float(neck[0]), float(neck[1]))
+    yield _thin(segment(tail, start))
+    yield Arrow("dimension", start, tip, "ink", _ARROW)
+
+
+def _from_polar(radius: float, degrees: float, x: float, y: float) -> tuple[float, float]:
+    turn = np.radians(degrees)
+    return float(x + radius * np.cos(turn)), float(y + radius * np.sin(turn))
+
+
+def _front(part: Part, x: float, y: float) -> Iterator[Shape]:
+    scale, centre = part.scale, np.array([[x], [y]])
+    edge = Pen("ink", _EDGE)
+    contour = scale * part.contour + centre
+    yield Outline((contour,), edge)
+    yield Outline((scale * part.hole + centre,), edge)
+    if part.counter_hole is not None:
+        hole_x, hole_y, radius = (scale * each for each in part.counter_hole)
+        yield Outline((circle(radius, (x + hole_x, y + hole_y)),), edge)
+    radii = scale * np.array([radius_at(part.contour, np.radians(k)) for k in range(0, 360, 5)])
+    for degrees in range(0, 360, _EVERY):
+        out = float(radii[degrees // 5])
+        ends = (_from_polar(out + gap, degrees, x, y) for gap in (0.8, 3.0))
+        yield _thin(segment(*ends))
+        at = _from_polar(out + 6.5, degrees, x, y)
+        yield Text(f"{degrees}°", (at[0], at[1] - 0.9), _SMALL, align="middle")
+    reach = float(radii[0])
+    yield _thin(segment((x, y), (x + reach, y)), dash="dashdot")
+    low, high = float(radii[270 // 5]), float(radii[90 // 5])
+    yield _thin(segment((x, y - low), (x, y + high)), dash="dashdot")
+    yield _thin(segment((x - float(radii[180 // 5]), y), (x, y)), dash="dashdot")
+    for sign, end in ((1.0, high), (-1.0, -low)):  # the plane of the section
+        at = y + end + sign * 9.0
+        yield Outline((segment((x, at), (x, at + sign * 4.0)),), Pen("ink", 0.7), closed=False)
+        yield Text("C", (x - 4.0, at + 2.0 * sign - 1.2), _TEXT, align="middle", bold=True)
+    yield from _turning(part, x, y, scale)
+    yield from _tolerance_frame(part, contour, x, y)
+    yield from _roughness(part, contour, x, y)
+
+
+def _turning(part: Part, x: float, y: float, scale: float) -> Iterator[Shape]:
+    """Arrow in the direction of turning, clockwise, between bore and contour."""
+    held = part.bore_radius + (0.0 if part.keyway is None else part.keyway[1])
+    least = float(np.hypot(*part.contour).min())
+    radius = scale * (0.45 * held + 0.55 * least)
+    turn = np.radians(np.linspace(130.0, 57.0, 40))
+    yield _thin(np.array([[x], [y]]) + radius * np.stack([np.cos(turn), np.sin(turn)]))
+    ends = (_from_polar(radius, degrees, x, y) for degrees in (57.0, 50.0))
+    yield from _arrow(*ends)
+
+
+def _tolerance_frame(part: Part, contour: Array, x: float, y: float) -> Iterator[Shape]:
+    """Profile of a line with its datums, ISO 1101, on a leader to the contour."""
+    touch = _on_contour(contour, _PROFILE_AT, x, y)
+    low, left, height = HEIGHT - 11.0, 10.0, 7.0
+    widths = (8.0, 4.0 + GLYPH * _TEXT * len(part.profile_tolerance),
+              4.0 + GLYPH * _TEXT * len(part.datum))  # fmt: skip
+    edges = left + np.concatenate([[0.0], np.cumsum(widths)])
+    for start, stop in zip(edges[:-1], edges[1:], strict=True):
+        yield Outline((rectangle(start, low, stop, low + height),), Pen("ink", _THIN))
+    around = np.linspace(0.0, np.pi, 25)
+    arc = np.array([[edges[0] + 4.0], [low + 2.4]]) + 2.6 * np.stack(
+        [np.cos(around), np.sin(around)]
+    )
+    yield _thin(arc)
+    for words, start, stop in ((part.profile_tolerance, *edges[1:3]), (part.datum, *edges[2:4])):
+        yield Text(words, (float(0.5 * (start + stop)), low + 2.2), _TEXT, align="middle")
+    knee = (float(edges[3]) + 8.0, low + 0.5 * height)
+    yield _thin(segment((float(edges[3]), knee[1]), knee))
+    yield from _arrow(knee, touch)
+
+
+def _roughness(part: Part, contour: Array, x: float, y: float) -> Iterator[Shape]:
+    """Surface texture of the contour, ISO 21920-1: material removed."""
+    touch = _on_contour(contour, _ROUGH_AT, x, y)
+    left, low = x + 34.0, HEIGHT - 12.0
+    yield from _arrow((left, low), touch)
+    words = f"Rq {part.roughness}" if part.roughness else "Rq ________"
+    yield _thin(segment((left, low), (left + 6.0, low)))
+    foot = left + 8.0
+    yield _thin(
+        np.array([[foot - 2.0, foot, foot + 3.6], [low + 3.5, low, low + 7.0]]),
+        segment((foot - 2.0, low + 3.5), (foot + 1.8, low + 3.5)),
+        segment((foot + 3.6, low + 7.0), (foot + 8.0 + GLYPH * _TEXT * len(words), low + 7.0)),
+    )
+    yield _thin(segment((left, low), (foot, low)))
+    yield Text(words, (foot + 5.0, low + 2.4), _TEXT)
+
+
+def _section(part: Part, left: float, y: float) -> Iterator[Shape]:
+    scale = part.scale
+    high, low = (scale * radius_at(part.contour, turn) for turn in (0.5 * np.pi, 1.5 * np.pi))
+    up, down = (scale * radius_at(part.hole, turn) for turn in (0.5 * np.pi, 1.5 * np.pi))
+    right = left + scale * part.thickness
+    for bottom, top in ((y + up, y + high), (y - low, y - down)):
+        box = (left, bottom, right, top)
+        yield _thin(*hatching(box, 2.5))
+        yield Outline((rectangle(*box),), Pen("ink", _EDGE))
+    yield Outline((rectangle(left, y - down, right, y + up),), Pen("ink", _EDGE))
+    yield _thin(segment((left - 3.0, y), (right + 3.0, y)), dash="dashdot")
+    yield from _dimension((left, right), y + high, y + high + 9.0, f"{part.thickness:.6g}", above=True)
+    yield Text("C–C", (0.5 * (left + right), y - low - 8.0), _TEXT, align="middle", bold=True)
+
+
+def _detail(part: Part, x: float, y: float) -> Iterator[Shape]:
+    """Bore with its keyway turned upwards, at its own scale."""
+    scale, radius = part.detail_scale, part.detail_scale * part.bore_radius
+    upright = None if part.keyway is None else (*part.keyway[:2], 0.5 * np.pi)
+    hole = scale * bore_outline(part.bore_radius, upright)
+    yield Outline((hole + np.array([[x], [y]]),), Pen("ink", _EDGE))
+    top = y + float(hole[1].max())
+    yield _thin(segment((x - radius - 3.0, y), (x + radius + 3.0, y)),
+                segment((x, y - radius - 3.0), (x, top + 3.0)), dash="dashdot")  # fmt: skip
+    yield from _dimension((x - radius, x + radius), y, y - radius - 8.0, f"⌀{_words(part.bore)}",
+                          flag="A")  # fmt: skip
+    title = f"Bore ({scale_words(scale)})"
+    yield Text(title, (x - 58.0, top + 4.0), _TEXT, bold=True)
+    if upright is None or part.keyway is None:
+        return
+    width, depth = part.keyway_width, part.keyway_depth
+    half = 0.5 * scale * part.keyway[0]
+    if width is not None:
+        yield from _dimension((x - half, x + half), top, top + 8.0, _words(width), flag="B")
+    if depth is not None:
+        beside = x + radius + 10.0
+        yield _thin(segment((x + half + 0.8, top), (beside + 2.0, top)),
+                    segment((x + 0.8, y - radius), (beside + 2.0, y - radius)))  # fmt: skip
+        middle = 0.5 * (top + y - radius)
+        yield from _arrow((beside, middle), (beside, top))
+        yield from _arrow((beside, middle), (beside, y - radius))
+        yield Text(_words(depth), (beside + 2.5, middle + 1.5), _TEXT)
+    lines = [f"middle of the keyway at {np.degrees(part.keyway[2]) % 360.0:.6g}°"]
+    if part.root_radius is not None:
+        lines.append(f"radius at its floor ≥ {part.root_radius:.4g}")
+    for k, line in enumerate(lines):
+        yield Text(line, (x + radius + 12.5, middle - 5.0 - 4.5 * k), _SMALL)
+
+
+def _dimension(
+    ends: tuple[float, float], edge: float, line: float, words: str, flag: str = "",
+    above: bool = False,
+) -> Iterator[Shape]:
+    """Horizontal dimension: extension lines from `edge`, arrows from outside, text behind or above.
+
+    A datum of this size stands in a frame behind the text, ISO 5459.
+    """
+    low, high = ends
+    beyond = 2.0 if line > edge else -2.0
+    yield _thin(segment((low, edge), (low, line + beyond)), segment((high, edge),
+                (high, line + beyond)))  # fmt: skip
+    yield from _arrow((low - 6.0, line), (low, line))
+    yield from _arrow((high + 6.0, line), (high, line))
+    width = GLYPH * _TEXT * len(words)
+    stop = high + (6.0 if above else 8.0 + width)
+    yield _thin(segment((low, line), (stop, line)))
+    if above:
+        yield Text(words, (0.5 * (low + high), line + 1.2), _TEXT, align="middle")
+    else:
+        yield Text(words, (high + 7.5, line + 1.2), _TEXT)
+    if flag:
+        yield Outline((rectangle(stop, line - 3.0, stop + 6.0, line + 3.0),), Pen("ink", _THIN))
+        yield Text(flag, (stop + 3.0, line - 1.3), _TEXT, align="middle", bold=True)
+
+
+def _words(size: Size) -> str:
+    """Size with its tolerance, deviations behind it."""
+    return " ".join((size.number, *(["/".join(size.bounds)] if size.bounds else [])))
+
+
+def _on_contour(contour: Array, degrees: float, x: float, y: float) -> tuple[float, float]:
+    """Outermost point of a contour on paper in a direction from its axis."""
+    centred = contour - np.array([[x], [y]])
+    return _from_polar(radius_at(centred, np.radians(degrees)), degrees, x, y)
+
+
+def radius_at(outline: Array, turn: float) -> float:
+    """Greatest distance from the origin at which a ray at `turn`, rad, meets a closed outline.
+
+    Parameters
+    ----------
+    outline : array (2, n)    polygon around the origin, first point not repeated
+    """
+    along, across = rotation(-turn) @ outline
+    to_along, to_across = np.roll(along, -1), np.roll(across, -1)
+    crosses = (across <= 0.0) != (to_across <= 0.0)
+    share = across[crosses] / (across[crosses] - to_across[crosses])
+    return float(np.max(along[crosses] + share * (to_along[crosses] - along[crosses])))

@@ -1,0 +1,183 @@
+"""Sign-off sheet: ``8_signoff.pdf``, one A4 page to sign."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from camwright.pipeline.base.files import write_atomic
+from camwright.pipeline.results.check_records import utilisation_of
+from camwright.pipeline.results.run_reader import results_sha256
+from camwright.reports import pdf
+from camwright.reports.arrangement_data import arrangement_at
+from camwright.reports.drawing.drawing_shapes import Drawing
+from camwright.reports.report_content import Signatures, verdict_of
+from camwright.reports.report_data import Material
+from camwright.reports.report_tables import (
+    DASH,
+    CheckRow,
+    Record,
+    check_rows,
+    number,
+    quantity,
+    shortened,
+    words,
+)
+from camwright.reports.title_block import title_block
+from camwright.reports.verdict_text import Verdict
+
+FILE = "8_signoff.pdf"
+MOST = 12
+"""Checks in the table of safeties: those of the least safety."""
+_LINE, _LONG = 84, 420
+"""Characters of a fact, and of the paragraphs below the facts."""
+_TEMPERATURES = (
+    (("lubricant",), "lubricant"),
+    (("spring", "design"), "spring"),
+    (("roller", "bearing"), "roller bearing"),
+)
+
+
+@dataclass(frozen=True)
+class Safety:
+    """Check with its actual value, the required one, and the safety factor against it."""
+
+    title: str
+    outcome: str
+    actual: str
+    required: str
+    safety: str
+    where: str
+
+
+@dataclass(frozen=True, eq=False)
+class SignoffSheet:
+    """Contents of the sheet.
+
+    block : sequence      title block; "" is a field to fill by hand
+    facts : sequence      life, lubricant, temperatures, mass of the verdict
+    first : sequence      scope, waivers and values to be confirmed, before the figures
+    hashes : sequence     of case, results and source
+    """
+
+    kicker: str
+    short_title: str
+    verdict: Verdict
+    block: Sequence[tuple[str, str]]
+    drawing: Drawing
+    facts: Sequence[tuple[str, str]]
+    first: Sequence[tuple[str, str]]
+    safeties: Sequence[Safety]
+    others: str
+    hashes: Sequence[tuple[str, str]]
+    footer: str
+    roles: Sequence[str] = Signatures.roles
+    lines: Sequence[str] = Signatures.lines
+
+
+def write(material: Material) -> list[Path]:
+    """Write the sheet.
+
+    Raises
+    ------
+    ResultError
+        If the file cannot be written.
+    """
+    content = pdf.typeset("signoff.typ", sheet_content(material))
+    return [write_atomic(material.folder / FILE, content)]
+
+
+def sheet_content(material: Material) -> SignoffSheet:
+    """Contents of the sheet of a run."""
+    run, verdict = material.run, verdict_of(material)
+    rows = [row for row in check_rows(run.final.checks) if row.must_have and not row.judged_at]
+    used = {str(c["id"]): utilisation_of(c) for c in run.final.checks}
+    known = [row for row in rows if not row.evidence and used[row.id] is not None]
+    summary = run.summary
+    versions = summary["versions"]
+    code = " · ".join(filter(None, (str(versions.get(k, "")) for k in ("camwright", "source"))))
+    return SignoffSheet(
+        "Cam sign-off" if run.verdict else "Cam, without sign-off",
+        shortened(str(material.case.get("title") or summary["case"]), 110), verdict,
+        title_block(material.case), arrangement_at(material.turn),
+        list(_facts(material)), list(_first(verdict)),
+        [_safety(row, used[row.id]) for row in known[:MOST]], _others(rows, known),
+        [("case", str(summary["input_sha256"])), ("results", results_sha256(summary["files"])),
+         ("Camwright", code)],
+        f"Camwright · {shortened(str(summary['case']), 60)}",
+    )  # fmt: skip
+
+
+def _safety(row: CheckRow, used: float | None) -> Safety:
+    """Row of the table; the safety is the reciprocal of the utilisation."""
+    safety = DASH if used is None or used <= 0.0 else number(1.0 / used, 3)
+    return Safety(shortened(row.title, 64), row.status.id, row.demand, row.limit, safety,
+                  shortened(row.place, 34))  # fmt: skip
+
+
+def _others(rows: Sequence[CheckRow], known: Sequence[CheckRow]) -> str:
+    """Number of the required checks that the table leaves out, by status."""
+    left = [row for row in rows if row not in known[:MOST]]
+    counts = [
+        (sum(row.status.id == status for row in left), text)
+        for status, text in (("pass", "pass"), ("waived", "waived"), ("fail", "fail"),
+                             ("not_evaluated", "lack data"))
+    ]  # fmt: skip
+    listed = ", ".join(f"{count} {text}" for count, text in counts if count)
+    return f"Further required checks: {listed}." if listed else ""
+
+
+def _facts(material: Material) -> Iterator[tuple[str, str]]:
+    """Load case, life, lubricant, temperatures, key figures."""
+    case, checks = material.case, material.run.final.checks
+    yield "Drawn load case", shortened(material.turn.load_case, 40)
+    lives = [c for c in checks if c["unit"] == "h" and c["demand"] is not None]
+    for check in lives[:4]:
+        limit = "" if check["limit"] is None else f", required {quantity(check['limit'], 'h', 3)}"
+        yield shortened(str(check["title"]), 44), f"{quantity(check['demand'], 'h', 3)}{limit}"
+    if not lives:
+        yield "Life in hours", "not evaluated"
+    yield "Lubricant", shortened(_lubricant(case), _LINE)
+    yield "Temperature", shortened(_temperatures(case) or "not stated", _LINE)
+    head = material.run.summary["headline"]
+    before, after = (head.get(f"torque_std_{when}_Nm") for when in ("before", "after"))
+    if before is not None and after is not None:
+        yield "Torque ripple", f"{number(before, 3)} to {quantity(after, 'N m', 3)}"
+    if head.get("p0_max_MPa") is not None:
+        yield "Peak contact pressure", quantity(head["p0_max_MPa"], "MPa")
+
+
+def _lubricant(case: Record) -> str:
+    """Card and viscosity of the oil; lubrication of the roller bearing."""
+    oil = case.get("lubricant", {})
+    parts = [str(oil[key]) for key in ("card", "viscosity") if key in oil]
+    bearing = case.get("roller", {}).get("bearing", {}).get("lubrication")
+    parts += [f"roller bearing: {words(str(bearing))}"] if bearing else []
+    return ", ".join(parts) or "not stated"
+
+
+def _temperatures(case: Record) -> str:
+    """Temperatures in operation that the case states."""
+    stated = [("guides, ambient", case.get("guides", {}).get("ambient_temperature"))]
+    for path, name in _TEMPERATURES:
+        table: Record = case
+        for key in path:
+            table = table.get(key, {})
+        stated.append((name, table.get("temperature")))
+    return ", ".join(f"{name} {value}" for name, value in stated if value)
+
+
+def _first(verdict: Verdict) -> Iterator[tuple[str, str]]:
+    """Scope, waivers and values to be confirmed."""
+    yield "Scope", shortened(verdict.scope or "All parts are covered by this sign-off.", _LONG)
+    yield "Waivers", shortened("; ".join(verdict.waived) or "none", _LONG)
+    names = verdict.confirm
+    listed = "; ".join(names)
+    if len(listed) > _LONG:
+        shown = 0
+        while len("; ".join(names[: shown + 1])) <= _LONG - 30:
+            shown += 1
+        listed = f"{'; '.join(names[:shown])}; and {len(names) - shown} more"
+    title = f"Values to be confirmed ({len(names)})" if names else "Values to be confirmed"
+    yield title, listed or "none"
