@@ -1,4 +1,4 @@
-"""Bore, keyway and counter-hole of the cam."""
+"""Bore, keyway and counter-hole of the cam; radius of an outline by polar angle."""
 
 from __future__ import annotations
 
@@ -50,3 +50,17 @@ def keyway_corners(bore_radius: float, keyway: KeywayLike) -> Array:
     mouth, floor = np.sqrt(bore_radius**2 - half**2), bore_radius + keyway.depth
     local = np.array([[mouth, floor, floor, mouth], [-half, -half, half, half]])
     return readonly(rotation(keyway.angle) @ local)
+
+
+def radius_at(outline: Array, turn: float) -> float:
+    """Greatest distance from the origin at which a ray at `turn`, rad, meets a closed outline.
+
+    Parameters
+    ----------
+    outline : array (2, n)    polygon around the origin, m, first point not repeated
+    """
+    along, across = rotation(-turn) @ outline
+    to_along, to_across = np.roll(along, -1), np.roll(across, -1)
+    crosses = (across <= 0.0) != (to_across <= 0.0)
+    share = across[crosses] / (across[crosses] - to_across[crosses])
+    return float(np.max(along[crosses] + share * (to_along[crosses] - along[crosses])))

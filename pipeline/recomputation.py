@@ -66,8 +66,8 @@ _BY_THE_SEARCH = ("prices", "machine_prices", "trial_points", "trials", "stateme
 _LAST = ("run.json", signoff.NAME, signoff.SIGNATURES)
 _BY_ENTRY = ("6_checks.json", "trial.json")
 """Files of a trial that are compared entry by entry."""
-PAGES = ("8_report.html", "scene.html")
-"""Pages that are drawn again and compared."""
+PAGES = ("8_report.html", "scene.html", "8_signoff.pdf", "workshop/drawing.pdf")
+"""Pages and sheets that are drawn again and compared."""
 _LISTED = 5
 """Differences of a record that are listed."""
 _OF_A_CHECK = ("demand", "corner_demand", "error", "utilisation", "margin")
@@ -411,7 +411,7 @@ def _shown_fields(folder: Path, trial: Trial) -> Shown:
 
 def _drawn_again(folder: Path, copy: Path, present: Callable[[Path], object]) -> Path:
     """Copy of a run with its pages drawn again."""
-    left_out = (*PAGES, *_LAST[1:])
+    left_out = {Path(name).name for name in (*PAGES, *_LAST[1:])}
     shutil.copytree(folder, copy, ignore=lambda _, names: [n for n in names if n in left_out])
     present(copy)
     return copy

@@ -8,25 +8,19 @@ from pathlib import Path
 
 import numpy as np
 
-from camwright.geometry.arrays import Array
-from camwright.geometry.contour import Contour
-from camwright.geometry.errors import CamError, ResultError
-from camwright.pipeline.base.files import write_atomic
-from camwright.pipeline.base.units import in_unit
-from camwright.pipeline.results.drawn_cam import drawn_cam
+from camwright.geometry.errors import ResultError
+from camwright.pipeline.base.files import read_json, write_atomic
+from camwright.pipeline.base.fits import size_of
 from camwright.pipeline.results.run_reader import results_sha256
-from camwright.pipeline.results.workshop_files import WORKSHOP, CamDimensions, dimensions_of
 from camwright.reports import pdf
 from camwright.reports.drawing.drawing_shapes import Drawing
-from camwright.reports.drawing.part_view import Part, radius_at, scale_words, views
+from camwright.reports.drawing.part_view import Part, scale_words, views
 from camwright.reports.report_data import Material
-from camwright.reports.report_tables import number, quantity, shortened
+from camwright.reports.report_tables import Record, number, quantity, shortened
 from camwright.reports.title_block import title_block
 
-FILE = f"{WORKSHOP}/drawing.pdf"
-STEP = 10
-"""deg, between the rows of the table of radii."""
-_POINTS, _FINE = 1440, 36_000  # of the contour as drawn, and for its radii
+FILE = "workshop/drawing.pdf"
+DIMENSIONS = "workshop/dimensions.json"
 _MM = 1e3
 
 
@@ -39,7 +33,6 @@ class ShopDrawing:
     """
 
     short_title: str
-    name: str
     drawing: Drawing
     radii: Sequence[tuple[str, str]]
     extremes: Sequence[tuple[str, str]]
@@ -64,71 +57,78 @@ def write(material: Material) -> list[Path]:
 
 
 def drawing_content(material: Material) -> ShopDrawing | None:
-    """Contents of the drawing of a run; None if its contour encloses no body."""
-    case, contour = drawn_cam(material.run.path)
-    try:
-        contour.require_no_undercut()
-    except ResultError:
-        raise
-    except CamError:
+    """Contents of the drawing of a run; None if its contour encloses no body.
+
+    Raises
+    ------
+    ResultError
+        If the dimensions of the run are not as `workshop_files` writes them.
+    """
+    file = material.run.path / DIMENSIONS
+    if not file.is_file():
         return None
-    size, hole = dimensions_of(case), material.turn.counter_hole
-    part = _part(contour, size, material)
+    record = read_json(file)
+    try:
+        return _content(material, record)
+    except (KeyError, TypeError, ValueError, AttributeError) as error:
+        raise ResultError(f"{file}: {type(error).__name__}: {error}") from None
+
+
+def _content(material: Material, record: Record) -> ShopDrawing:
+    part, case = _part(material, record), material.case
+    title = str(case.get("title") or case["name"])
+    roughness, thickness = record["roughness_rq_um"], record["thickness_mm"]
+    profile, hole = record["profile_tolerance_mm"], record["counter_hole"]
     facts = [
-        ("Title", shortened(case.title or case.name, 70)), ("Case", case.name),
-        ("Thickness", quantity(_MM * size.thickness, "mm")), ("Card", shortened(size.material, 70)),
-        ("Hardness", shortened(size.hardness, 60)),
-        ("Roughness", "" if size.roughness is None
-         else f"Rq {quantity(in_unit(size.roughness, 'um'), 'µm')}"),
+        ("Title", shortened(title, 70)), ("Case", shortened(str(case["name"]), 40)),
+        ("Thickness", quantity(thickness, "mm")), ("Card", shortened(record["material"], 70)),
+        ("Hardness", shortened(record["hardness"], 60)),
+        ("Roughness", "" if roughness is None else f"Rq {quantity(roughness, 'µm')}"),
         ("Scale", scale_words(part.scale)), ("General tolerances", ""),
     ]  # fmt: skip
+    keyed = " Datum B: middle plane of the keyway; it sets angle zero." if part.keyway else ""
     notes = [
-        f"Contour: workshop/contour.dxf, layer cut, arcs within "
-        f"{quantity(in_unit(case.workshop.arc_error, 'um'), 'µm')}; points in contour.csv.",
-        f"Profile of a line, ISO 1101: zone {quantity(_MM * size.profile_tolerance, 'mm')} wide, "
-        "half of it to each side of the nominal contour.",
-        "Datum A: axis of the bore." + (" Datum B: middle plane of the keyway; it sets angle "
-                                        "zero." if size.keyway_width is not None else ""),
+        "Contour: workshop/contour.dxf, layer cut, arcs within "
+        f"{quantity(record['arc_error_um'], 'µm')}; points in contour.csv.",
+        f"Profile of a line, ISO 1101: zone {quantity(profile, 'mm')} wide, half of it to each "
+        "side of the nominal contour.",
+        f"Datum A: axis of the bore.{keyed}",
         "Angles grow counter-clockwise from the line marked 0°. In this view the cam turns "
         "clockwise.",
+    ]
+    if hole is not None:
+        notes.append(
+            f"Counter-hole of {quantity(2.0 * hole['radius_mm'], 'mm')} diameter through the cam "
+            f"at x {quantity(hole['x_mm'], 'mm')}, y {quantity(hole['y_mm'], 'mm')}."
+        )
+    extremes = [
+        (f"{words}, at {number(record[name]['polar_angle_deg'])}°",
+         f"{record[name]['radius_mm']:.4f}")
+        for words, name in (("greatest", "radius_max"), ("least", "radius_min"))
     ]  # fmt: skip
-    if hole is not None and hole[3]:
-        x, y, radius, _ = hole
-        notes.append(f"Counter-hole of {quantity(2.0 * radius, 'mm')} diameter through the cam at "
-                     f"x {quantity(x, 'mm')}, y {quantity(y, 'mm')}.")  # fmt: skip
+    radii = [(f"{degrees}°", f"{radius:.4f}") for degrees, radius in record["radii_mm"].items()]
     return ShopDrawing(
-        f"Drawing of the cam, {shortened(case.title or case.name, 100)}", case.name, views(part),
-        radii_of(contour), _extremes(contour), notes, title_block(material.case), facts,
-        results_sha256(material.run.summary["files"]),
+        f"Drawing of the cam, {shortened(title, 100)}", views(part), radii, extremes, notes,
+        title_block(case), facts, results_sha256(material.run.summary["files"]),
     )  # fmt: skip
 
 
-def radii_of(contour: Contour) -> list[tuple[str, str]]:
-    """Radius, mm, of the contour by polar angle, every `STEP` deg."""
-    polygon = _MM * contour.polygon(_FINE)
-    return [
-        (f"{degrees}°", f"{radius_at(polygon, np.radians(degrees)):.4f}")
-        for degrees in range(0, 360, STEP)
-    ]
-
-
-def _extremes(contour: Contour) -> list[tuple[str, str]]:
-    """Greatest and least radius with their polar angles."""
-    rows = []
-    for words, extreme in (("greatest", contour.radius_max()), ("least", contour.radius_min())):
-        x, y = contour.points(np.array([extreme.theta]))[:, 0]
-        polar = float(np.degrees(np.arctan2(y, x))) % 360.0
-        rows.append((f"{words}, at {number(polar)}°", f"{_MM * extreme.value:.4f}"))
-    return rows
-
-
-def _part(contour: Contour, size: CamDimensions, material: Material) -> Part:
-    hole = material.turn.counter_hole
-    roughness = "" if size.roughness is None else number(in_unit(size.roughness, "um"))
-    polygon: Array = _MM * contour.polygon(_POINTS)
+def _part(material: Material, record: Record) -> Part:
+    contour = material.turn.contour
+    keyway, hole, roughness = record["keyway"], record["counter_hole"], record["roughness_rq_um"]
+    bore = size_of(record["bore"])
+    width = depth = None
+    if keyway is not None:
+        width, depth = size_of(keyway["width"]), size_of(keyway["depth"])
     return Part(
-        polygon, material.turn.keyway, None if hole is None or not hole[3] else hole[:3],
-        _MM * size.thickness, size.bore, size.keyway_width, size.keyway_depth,
-        None if size.root_radius is None else _MM * size.root_radius,
-        number(_MM * size.profile_tolerance), size.datum, roughness,
+        np.array([contour["contour_x_mm"], contour["contour_y_mm"]]),
+        None if width is None or depth is None else (
+            _MM * width.nominal, _MM * (depth.nominal - bore.nominal),
+            float(np.radians(keyway["angle_deg"])),
+        ),
+        None if hole is None else (hole["x_mm"], hole["y_mm"], hole["radius_mm"]),
+        float(record["thickness_mm"]), bore, width, depth,
+        None if keyway is None else keyway["root_radius_mm"],
+        number(record["profile_tolerance_mm"]), str(record["datum"]),
+        "" if roughness is None else number(roughness),
     )  # fmt: skip

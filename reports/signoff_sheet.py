@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from camwright.pipeline.base.files import write_atomic
+from camwright.pipeline.base.units import celsius, parse
 from camwright.pipeline.results.check_records import utilisation_of
 from camwright.pipeline.results.run_reader import results_sha256
 from camwright.reports import pdf
@@ -30,7 +31,7 @@ from camwright.reports.verdict_text import Verdict
 FILE = "8_signoff.pdf"
 MOST = 12
 """Checks in the table of safeties: those of the least safety."""
-_LINE, _LONG = 84, 420
+_LINE, _LONG = 110, 330
 """Characters of a fact, and of the paragraphs below the facts."""
 _TEMPERATURES = (
     (("lubricant",), "lubricant"),
@@ -56,7 +57,7 @@ class SignoffSheet:
     """Contents of the sheet.
 
     block : sequence      title block; "" is a field to fill by hand
-    facts : sequence      life, lubricant, temperatures, mass of the verdict
+    facts : sequence      life, lubricant, temperatures, key figures
     first : sequence      scope, waivers and values to be confirmed, before the figures
     hashes : sequence     of case, results and source
     """
@@ -149,11 +150,11 @@ def _facts(material: Material) -> Iterator[tuple[str, str]]:
 
 
 def _lubricant(case: Record) -> str:
-    """Card and viscosity of the oil; lubrication of the roller bearing."""
+    """Viscosity of the oil with its source; lubrication of the roller bearing."""
     oil = case.get("lubricant", {})
-    parts = [str(oil[key]) for key in ("card", "viscosity") if key in oil]
+    parts = [str(oil[key]) for key in ("viscosity", "source") if key in oil]
     bearing = case.get("roller", {}).get("bearing", {}).get("lubrication")
-    parts += [f"roller bearing: {words(str(bearing))}"] if bearing else []
+    parts = [*([f"roller bearing: {words(str(bearing))}"] if bearing else []), *parts]
     return ", ".join(parts) or "not stated"
 
 
@@ -165,19 +166,21 @@ def _temperatures(case: Record) -> str:
         for key in path:
             table = table.get(key, {})
         stated.append((name, table.get("temperature")))
-    return ", ".join(f"{name} {value}" for name, value in stated if value)
+    return ", ".join(
+        f"{name} {number(round(celsius(parse(value, 'K', name)), 6))} °C"
+        for name, value in stated if value
+    )  # fmt: skip
 
 
 def _first(verdict: Verdict) -> Iterator[tuple[str, str]]:
     """Scope, waivers and values to be confirmed."""
-    yield "Scope", shortened(verdict.scope or "All parts are covered by this sign-off.", _LONG)
-    yield "Waivers", shortened("; ".join(verdict.waived) or "none", _LONG)
-    names = verdict.confirm
+    scope = shortened(verdict.scope or "All parts are covered by this sign-off.", _LONG)
+    waivers = shortened("; ".join(verdict.waived) or "none", _LONG)
+    yield "Scope", scope
+    yield "Waivers", waivers
+    names, room = verdict.confirm, 3 * _LONG - len(scope) - len(waivers)
     listed = "; ".join(names)
-    if len(listed) > _LONG:
-        shown = 0
-        while len("; ".join(names[: shown + 1])) <= _LONG - 30:
-            shown += 1
+    if len(listed) > room:
+        shown = sum(len("; ".join(names[: k + 1])) <= room - 30 for k in range(len(names)))
         listed = f"{'; '.join(names[:shown])}; and {len(names) - shown} more"
-    title = f"Values to be confirmed ({len(names)})" if names else "Values to be confirmed"
-    yield title, listed or "none"
+    yield f"Values to be confirmed{f' ({len(names)})' if names else ''}", listed or "none"

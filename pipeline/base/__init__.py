@@ -8,9 +8,9 @@ In the order of use:
 | `quantities`       | quantities of an input: unit and bounds of a field       | SI               |
 | `material`         | material card: elastic constants, strengths, source      | E, Pa; nu; S, Pa |
 | `external_force`   | force over the cam angle, linear between samples         | F_e, N           |
-| `fits`             | sizes with limit deviations: bores and keyways           | m                |
 | `files`            | files read, written in one step, hashed; JSON records    | SHA-256          |
 | `columns`          | data frame and figure of columns, for a notebook         |                  |
+| `fits`             | sizes with limit deviations: bores and keyways           | m                |
 | `tables`           | columns with unit and meaning; CSV files                 |                  |
 | `disk_cache`       | arrays that depend on their key alone, kept between runs |                  |
 | `worker_processes` | processes of one BLAS thread for independent tasks       |                  |

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from bisect import bisect_left
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Literal, NamedTuple
+from typing import Any, Literal, NamedTuple
 
 from camwright.geometry.arrays import positive
+from camwright.pipeline.base.files import Json
 from camwright.pipeline.base.units import in_unit
 
 BoreFit = Literal["H6", "H7", "H8"]
@@ -63,6 +65,25 @@ class Size:
     def words(self) -> str:
         """Such as ``17 H7 (+0.018/0)``."""
         return f"{self.number} ({'/'.join(self.bounds)})" if self.bounds else self.number
+
+    def as_record(self) -> dict[str, Json]:
+        """The size for a JSON record, mm."""
+        lower, upper = self.deviations or (None, None)
+        return {
+            "nominal_mm": in_unit(self.nominal, "mm"),
+            "class": self.fit,
+            "lower_mm": None if lower is None else in_unit(lower, "mm"),
+            "upper_mm": None if upper is None else in_unit(upper, "mm"),
+        }
+
+
+def size_of(record: Mapping[str, Any]) -> Size:
+    """Size of a record as `Size.as_record` writes it; KeyError or TypeError of any other."""
+    lower, upper = record["lower_mm"], record["upper_mm"]
+    known = None
+    if lower is not None:
+        known = Deviations(lower * _MILLIMETRE, upper * _MILLIMETRE)
+    return Size(record["nominal_mm"] * _MILLIMETRE, str(record["class"]), known)
 
 
 def size_deviations(size: float, fit: BoreFit | KeywayFit) -> Deviations | None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from math import radians
 from pathlib import Path
 
 import numpy as np
@@ -11,15 +12,16 @@ import numpy as np
 from camwright.geometry.arrays import Array
 from camwright.geometry.cad_drawing import Outline, write_dxf
 from camwright.geometry.contour import Contour
+from camwright.geometry.cutouts import radius_at
 from camwright.geometry.cutter_path import cutter_path
 from camwright.geometry.errors import CamError, ResultError
 from camwright.meshes.step_solid import write_step
 from camwright.meshes.step_text import PartTitle, stamped
-from camwright.pipeline.base.files import read_text, write_atomic
+from camwright.pipeline.base.files import Json, json_text, read_text, write_atomic
 from camwright.pipeline.base.fits import Size, keyway_depth_deviations, size_deviations
 from camwright.pipeline.base.material import Material
 from camwright.pipeline.base.tables import CAM_ANGLE, Column, table
-from camwright.pipeline.base.units import shown
+from camwright.pipeline.base.units import in_unit, shown
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.cycle.cam_balance import drilled_hole
 from camwright.pipeline.cycle.cycle import LIFT, PRESSURE_ANGLE
@@ -32,6 +34,10 @@ _INSPECTION = (
 
 WORKSHOP = "workshop"
 SOLID = "cam.step"
+DIMENSIONS = "dimensions.json"
+RADII_STEP = 10
+"""deg, between the radii of the dimensions."""
+_RADII_POINTS = 36_000  # of the contour: its chords are within a nanometre
 
 
 @dataclass(frozen=True)
@@ -76,6 +82,49 @@ def dimensions_of(case: Case) -> CamDimensions:
         ", ".join(filter(None, (cam.material.name, " ".join(cam.material.condition.split())))),
         _hardness(cam.material), cam.roughness, cam.profile_tolerance,
     )  # fmt: skip
+
+
+def dimensions_record(case: Case, contour: Contour) -> dict[str, Json]:
+    """Contents of ``dimensions.json``: sizes, tolerances, material, radii by polar angle."""
+    size, keyway, hole = dimensions_of(case), case.cam.keyway, drilled_hole(case.cam, contour)
+    polygon = contour.polygon(_RADII_POINTS)
+    record: dict[str, Json] = {
+        "thickness_mm": in_unit(size.thickness, "mm"),
+        "bore": size.bore.as_record(),
+        "keyway": None,
+        "counter_hole": None,
+        "profile_tolerance_mm": in_unit(size.profile_tolerance, "mm"),
+        "datum": size.datum,
+        "roughness_rq_um": None if size.roughness is None else in_unit(size.roughness, "um"),
+        "material": size.material,
+        "hardness": size.hardness,
+        "arc_error_um": in_unit(case.workshop.arc_error, "um"),
+        "radii_mm": {
+            str(degrees): in_unit(radius_at(polygon, radians(degrees)), "mm")
+            for degrees in range(0, 360, RADII_STEP)
+        },
+    }
+    if keyway is not None and size.keyway_width is not None and size.keyway_depth is not None:
+        root = size.root_radius
+        record["keyway"] = {
+            "width": size.keyway_width.as_record(),
+            "depth": size.keyway_depth.as_record(),
+            "angle_deg": in_unit(keyway.angle, "deg"),
+            "root_radius_mm": None if root is None else in_unit(root, "mm"),
+        }
+    if hole is not None:
+        x, y = (in_unit(float(each), "mm") for each in hole.centre)
+        record["counter_hole"] = {"x_mm": x, "y_mm": y, "radius_mm": in_unit(hole.radius, "mm")}
+    for name, extreme in (
+        ("radius_max", contour.radius_max()),
+        ("radius_min", contour.radius_min()),
+    ):
+        x, y = contour.points(np.array([extreme.theta]))[:, 0]
+        record[name] = {
+            "radius_mm": in_unit(extreme.value, "mm"),
+            "polar_angle_deg": float(np.round(np.degrees(np.arctan2(y, x)), 6) % 360.0),
+        }
+    return record
 
 
 def notes_of(case: Case) -> Iterator[str]:
@@ -135,7 +184,7 @@ def write_workshop(
     contour: Contour,
     note: Callable[[str], None] = lambda _: None,
 ) -> None:
-    """Write ``contour.csv``, ``contour.dxf``, ``cam.step``, ``cutter.csv``, ``inspection.csv``.
+    """Write dimensions, contour, drawing, solid, path of the cutter and inspection sheet.
 
     A file that the contour does not allow, such as the path of a tool larger than the minimum
     concave radius, is left out with a `note`; all others are written.
@@ -145,6 +194,7 @@ def write_workshop(
     tool = order.tool_radius or contour.fitting_tool
     jobs: dict[str, Callable[[Path], object]] = {
         "contour.csv": lambda path: write_atomic(path, contour_table(contour, order.theta)),
+        DIMENSIONS: lambda path: write_atomic(path, dimensions_text(case, contour)),
         "contour.dxf": lambda path: write_dxf(
             path, outline, order.arc_error, tuple(notes_of(case))
         ),
@@ -172,6 +222,12 @@ def stamp_solid(folder: Path, case_sha256: str, results_sha256: str) -> None:
     file = folder / SOLID
     if file.is_file():
         write_atomic(file, stamped(read_text(file), case_sha256, results_sha256))
+
+
+def dimensions_text(case: Case, contour: Contour) -> str:
+    """JSON of the dimensions; GeometryError of a contour that is undercut."""
+    contour.require_no_undercut()
+    return json_text(dimensions_record(case, contour)) + "\n"
 
 
 def contour_table(contour: Contour, theta: Array) -> str:

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
-from camwright.geometry.arrays import Array, rotation
+from camwright.geometry.arrays import Array
+from camwright.geometry.cutouts import radius_at
 from camwright.pipeline.base.fits import Size
 from camwright.reports.drawing.drawing_shapes import (
     GLYPH,
@@ -151,9 +153,9 @@ def _front(part: Part, x: float, y: float) -> Iterator[Shape]:
     yield _thin(segment((x, y - low), (x, y + high)), dash="dashdot")
     yield _thin(segment((x - float(radii[180 // 5]), y), (x, y)), dash="dashdot")
     for sign, end in ((1.0, high), (-1.0, -low)):  # the plane of the section
-        at = y + end + sign * 9.0
-        yield Outline((segment((x, at), (x, at + sign * 4.0)),), Pen("ink", 0.7), closed=False)
-        yield Text("C", (x - 4.0, at + 2.0 * sign - 1.2), _TEXT, align="middle", bold=True)
+        mark = y + end + sign * 9.0
+        yield Outline((segment((x, mark), (x, mark + sign * 4.0)),), Pen("ink", 0.7), closed=False)
+        yield Text("C", (x - 4.0, mark + 2.0 * sign - 1.2), _TEXT, align="middle", bold=True)
     yield from _turning(part, x, y, scale)
     yield from _tolerance_frame(part, contour, x, y)
     yield from _roughness(part, contour, x, y)
@@ -177,7 +179,7 @@ def _tolerance_frame(part: Part, contour: Array, x: float, y: float) -> Iterator
     widths = (8.0, 4.0 + GLYPH * _TEXT * len(part.profile_tolerance),
               4.0 + GLYPH * _TEXT * len(part.datum))  # fmt: skip
     edges = left + np.concatenate([[0.0], np.cumsum(widths)])
-    for start, stop in zip(edges[:-1], edges[1:], strict=True):
+    for start, stop in pairwise(edges.tolist()):
         yield Outline((rectangle(start, low, stop, low + height),), Pen("ink", _THIN))
     around = np.linspace(0.0, np.pi, 25)
     arc = np.array([[edges[0] + 4.0], [low + 2.4]]) + 2.6 * np.stack(
@@ -219,7 +221,9 @@ def _section(part: Part, left: float, y: float) -> Iterator[Shape]:
         yield Outline((rectangle(*box),), Pen("ink", _EDGE))
     yield Outline((rectangle(left, y - down, right, y + up),), Pen("ink", _EDGE))
     yield _thin(segment((left - 3.0, y), (right + 3.0, y)), dash="dashdot")
-    yield from _dimension((left, right), y + high, y + high + 9.0, f"{part.thickness:.6g}", above=True)
+    yield from _dimension(
+        (left, right), y + high, y + high + 9.0, f"{part.thickness:.6g}", above=True
+    )
     yield Text("C–C", (0.5 * (left + right), y - low - 8.0), _TEXT, align="middle", bold=True)
 
 
@@ -258,7 +262,11 @@ def _detail(part: Part, x: float, y: float) -> Iterator[Shape]:
 
 
 def _dimension(
-    ends: tuple[float, float], edge: float, line: float, words: str, flag: str = "",
+    ends: tuple[float, float],
+    edge: float,
+    line: float,
+    words: str,
+    flag: str = "",
     above: bool = False,
 ) -> Iterator[Shape]:
     """Horizontal dimension: extension lines from `edge`, arrows from outside, text behind or above.
@@ -292,17 +300,3 @@ def _on_contour(contour: Array, degrees: float, x: float, y: float) -> tuple[flo
     """Outermost point of a contour on paper in a direction from its axis."""
     centred = contour - np.array([[x], [y]])
     return _from_polar(radius_at(centred, np.radians(degrees)), degrees, x, y)
-
-
-def radius_at(outline: Array, turn: float) -> float:
-    """Greatest distance from the origin at which a ray at `turn`, rad, meets a closed outline.
-
-    Parameters
-    ----------
-    outline : array (2, n)    polygon around the origin, first point not repeated
-    """
-    along, across = rotation(-turn) @ outline
-    to_along, to_across = np.roll(along, -1), np.roll(across, -1)
-    crosses = (across <= 0.0) != (to_across <= 0.0)
-    share = across[crosses] / (across[crosses] - to_across[crosses])
-    return float(np.max(along[crosses] + share * (to_along[crosses] - along[crosses])))

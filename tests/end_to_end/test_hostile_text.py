@@ -97,7 +97,7 @@ def test_workshop_files_lie_in_a_folder_of_any_name_and_read_back(tmp_path: Path
     write_workshop(folder, of, contour, said.append)
     assert said == []
     assert sorted(path.name for path in folder.iterdir()) == [
-        "cam.step", "contour.csv", "contour.dxf", "cutter.csv", "inspection.csv"
+        "cam.step", "contour.csv", "contour.dxf", "cutter.csv", "dimensions.json", "inspection.csv"
     ]  # fmt: skip
     document = ezdxf.readfile(folder / "contour.dxf")
     assert not document.audit().has_errors

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import importlib.util
 import io
 import re
 import sys
@@ -16,13 +15,11 @@ import pytest
 sys.path.insert(0, str(Path(__file__).parents[1]))
 import report_fixture
 
-from camwright.geometry.errors import ResultError
 from camwright.pipeline.results.model_limits import MODEL_LIMITS
-from camwright.reports import figure_svg, pdf, report_content, sections
+from camwright.reports import figure_svg, pdf, report_content
 from camwright.reports.figure_svg import drawn_groups
 from camwright.reports.report_data import Material, read_material
 
-pytest.importorskip("typst", reason="typst is not installed (extra pdf)")
 HOSTILE = "<script>window.broken=1</script>\"'&../\u202eעברית\U0001f600 </script><!--"
 TYPST = (
     '#read("/etc/passwd")', "#panic()", '#import "@preview/a:0.1.0": *', "$ x^2 $", "]#[", "`raw`",
@@ -214,18 +211,6 @@ def test_the_same_run_gives_the_same_bytes(material: Material, printed: pypdf.Pd
     assert pdf.write(read_material(material.folder))[0].read_bytes() == first
 
 
-@pytest.mark.usefixtures("undrawn")
-def test_without_typst_it_says_what_to_install(
-    material: Material, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    real = importlib.util.find_spec
-    monkeypatch.setattr(
-        importlib.util, "find_spec", lambda name: None if name == "typst" else real(name)
-    )
-    with pytest.raises(ResultError, match=r"typst: pip install 'camwright\[pdf\]'"):
-        sections.report(material.folder, sections.chosen(["pdf"]))
-
-
 def test_the_first_page_states_scope_missing_data_and_values_to_be_confirmed(
     tmp_path: Path, undrawn: None
 ) -> None:
@@ -239,7 +224,7 @@ def test_the_first_page_states_scope_missing_data_and_values_to_be_confirmed(
         tmp_path / "run", positions=36, records=records, field=False,
         scope={"not_covered": ["key"], "reason": f"rig {source}"},
     )  # fmt: skip
-    made = pdf.typeset(report_content.report_content(read_material(folder)))
+    made = pdf.typeset("report.typ", report_content.report_content(read_material(folder)))
     said = squeezed(pypdf.PdfReader(io.BytesIO(made)).pages[0].extract_text())
     expected = (
         "INCOMPLETE", "INCOMPLETE: 1 check without data, 1 waived, 1 value to be confirmed",

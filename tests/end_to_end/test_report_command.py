@@ -192,7 +192,7 @@ def test_a_figure_that_has_changed_is_drawn_again(
 
 @pytest.mark.usefixtures("quick")
 def test_pdf_comes_beside_the_rest_when_asked(run: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(printing, "typeset", lambda report: b"%PDF")
+    monkeypatch.setattr(printing, "typeset", lambda template, document: b"%PDF")
     assert report(run, "--pdf") == PASSED
     assert (run / page.PAGE).is_file()
     assert (run / printing.PDF).is_file()

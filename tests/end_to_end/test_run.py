@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import printed_text
 import pytest
 from record_validation import schema_errors
 from run_recomputed import RECOMPUTED, RunFiles, line_contact_by_quadrature
@@ -96,7 +97,7 @@ def test_resumed_run_equals_a_straight_one_to_the_byte(
     """All files but the page, the clock figures of run.json, and signoff.json, which signs them."""
     _, out, summary = finished
     clock = {"run.json", "signoff.json"}
-    pages = {"8_report.html", "scene.html"}
+    pages = {"8_report.html", "scene.html", "8_signoff.pdf", "workshop/drawing.pdf"}
     whole, other = (
         file_hashes(folder, lambda name: name not in clock) for folder in (out, straight)
     )
@@ -126,6 +127,21 @@ def test_page_says_what_finite_elements_add_to_hertz(
     page = (out / "8_report.html").read_text(encoding="utf-8").replace("\xa0", " ")
     words = f"finite elements change p0 of Hertz theory by {low} to {high} %: bending of the ring"
     assert page.count(words) == 3
+
+
+def test_sheet_and_drawing_are_one_page_each_without_text_on_text(
+    finished: tuple[Case, Path, dict[str, Any]],
+) -> None:
+    _, out, summary = finished
+    for name, wanted in (
+        ("8_signoff.pdf", ("FAIL", "Prepared", "Approved", "Lubricant", "Partnumber")),
+        ("workshop/drawing.pdf", ("⌀17H7", "5JS9", "Revision", "350°", "Hardness")),
+    ):
+        (page,) = printed_text.pages(out / name)
+        assert printed_text.covered(page) == []
+        words = printed_text.words_on(page)
+        assert run_reader.results_sha256(summary["files"]) in words
+        assert [text for text in wanted if text not in words] == []
 
 
 def test_records_keep_their_schemas(finished: tuple[Case, Path, dict[str, Any]]) -> None:

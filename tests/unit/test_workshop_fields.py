@@ -5,10 +5,12 @@ from __future__ import annotations
 import csv
 import datetime as dt
 import io
+import json
 from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.interpolate import CubicSpline
 from small_machine import small_machine
 
 from camwright.geometry.arrays import uniform_turn
@@ -209,3 +211,26 @@ def test_sizes_beyond_the_standard_have_no_deviations() -> None:
     assert upper == pytest.approx({6: 1e-4, 8: 2e-4, 32: 2e-4, 36: 3e-4})
     with pytest.raises(InputError):
         size_deviations(float("nan"), "H7")
+
+
+def test_radii_of_the_dimensions_are_those_of_the_contour_table(tmp_path: Path) -> None:
+    """Between the points of the table by a periodic spline, 0.25 deg apart."""
+    of = case()
+    write_workshop(tmp_path, of, contour(of))
+    record = json.loads((tmp_path / "dimensions.json").read_text())
+    table = rows(tmp_path / "contour.csv")
+    polar = np.unwrap(np.radians([float(row["polar_angle_deg"]) for row in table]))
+    radius = np.array([float(row["radius_mm"]) for row in table])
+    start = polar[0]
+    turn = CubicSpline(
+        np.append(polar, start + 2 * np.pi), np.append(radius, radius[0]), bc_type="periodic"
+    )
+    stated = {np.radians(float(key)): value for key, value in record["radii_mm"].items()}
+    assert len(stated) == 36
+    at = np.array(list(stated))
+    np.testing.assert_allclose(
+        turn(start + (at - start) % (2 * np.pi)), list(stated.values()), rtol=1e-7
+    )
+    assert record["radius_max"]["radius_mm"] == pytest.approx(radius.max(), rel=1e-5)
+    assert record["bore"]["nominal_mm"] == pytest.approx(2e3 * of.cam.bore_radius)
+    assert record["arc_error_um"] == pytest.approx(2.0)
