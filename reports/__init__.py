@@ -24,10 +24,8 @@ picture_list           pictures of a report with title and caption
 utilisation_chart      chart of the greatest utilisations by part
 report_content         sections, blocks, text and tables of a report (`Report`)
 page                   ``8_report.html`` and the pages of studies, by Jinja
-title_block            title block of sheet and drawing
 pdf                    ``8_report.pdf``; documents as PDF/A, by typst
-signoff_sheet          ``8_signoff.pdf``: one page to sign
-shop_drawing           ``workshop/drawing.pdf``: dimensioned drawing of the cam
+documents              ``8_signoff.pdf``: one page to sign; ``workshop/drawing.pdf``
 scene_solids           rings, boxes and rods as triangles
 scene_page             ``scene.html``: interactive 3-D view over the turn
 sections               parts of a report by name; `report` writes them

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -10,12 +10,20 @@ from camwright.geometry.errors import ResultError
 from camwright.pipeline.base.files import parse_toml
 from camwright.pipeline.base.worker_processes import Task
 from camwright.pipeline.results.run_reader import Run, read_run
-from camwright.reports.report_tables import Record
+from camwright.reports.report_tables import Record, shortened
 from camwright.reports.sheet_turn import Turn
 from camwright.reports.verdict_text import governing_load_case
 
 FIGURES = "figures"
 """Folder of the pictures in a run folder."""
+_ENTRIES = {
+    "project": "Project",
+    "part_number": "Part number",
+    "revision": "Revision",
+    "author": "Author",
+    "date": "Date",
+    "material": "Material",
+}
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,3 +72,9 @@ def governing_turn(run: Run, case: Record) -> Turn:
         final.checks, case, final.record["balance"], drawn, run.speed, final.limits,
         run.summary["trial_points"], run.summary["ripple_map"],
     )  # fmt: skip
+
+
+def title_block(case: Record) -> Sequence[tuple[str, str]]:
+    """Names and values of the entries; "" is a field to fill by hand."""
+    stated = case.get("document", {})
+    return [(words, shortened(str(stated.get(key, "")), 60)) for key, words in _ENTRIES.items()]

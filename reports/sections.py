@@ -13,13 +13,12 @@ from camwright.pipeline.base.worker_processes import Crew, Task
 from camwright.pipeline.results.folder_exchange import amended
 from camwright.pipeline.results.run_reader import require_own_case
 from camwright.reports import (
+    documents,
     figure_svg,
     page,
     pdf,
     picture_list,
     scene_page,
-    shop_drawing,
-    signoff_sheet,
 )
 from camwright.reports.report_data import Material, read_material
 
@@ -52,8 +51,8 @@ PARTS = (
     _pictures("envelope", "maps of the maximum stress below the contour",
               partial(picture_list.write_pictures, picture_list.envelope_pictures)),
     Part("scene", f"{scene_page.FILE}, interactive 3-D view", scene_page.write),
-    Part("sheet", f"{signoff_sheet.FILE}, one page to sign", signoff_sheet.write),
-    Part("drawing", f"{shop_drawing.FILE}, dimensioned drawing of the cam", shop_drawing.write),
+    Part("sheet", f"{documents.SIGNOFF}, one page to sign", documents.write_signoff),
+    Part("drawing", f"{documents.DRAWING}, dimensioned drawing", documents.write_drawing),
     Part("pdf", pdf.PDF, pdf.write, on_request=True),
     Part("page", page.PAGE, page.write),  # last: it links to the others
 )  # fmt: skip

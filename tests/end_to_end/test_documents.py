@@ -21,7 +21,7 @@ from camwright.geometry.errors import ResultError
 from camwright.geometry.lift import Lift
 from camwright.pipeline.case.case_file import parse_case
 from camwright.pipeline.results.workshop_files import dimensions_record
-from camwright.reports import shop_drawing, signoff_sheet
+from camwright.reports import documents
 from camwright.reports.drawing.part_view import scale_words, standard_scale
 from camwright.reports.report_data import Material, read_material
 
@@ -56,7 +56,7 @@ def longest(folder: Path) -> Material:
 
 def test_the_longest_sheet_is_one_page(tmp_path: Path) -> None:
     material = longest(tmp_path / "run")
-    (page,) = printed_text.pages(signoff_sheet.write(material)[0])
+    (page,) = printed_text.pages(documents.write_signoff(material)[0])
     assert printed_text.covered(page) == []
     words = printed_text.words_on(page)
     for text in ("Checked", "Signature", "Valuestobeconfirmed(90)", "more", "2026-03-02"):
@@ -68,7 +68,7 @@ def test_the_longest_sheet_is_one_page(tmp_path: Path) -> None:
 def test_text_on_text_is_found(tmp_path: Path) -> None:
     """On the same page, with one glyph moved on another."""
     report_fixture.write_run(tmp_path / "run", 36, field=False)
-    (page,) = printed_text.pages(signoff_sheet.write(read_material(tmp_path / "run"))[0])
+    (page,) = printed_text.pages(documents.write_signoff(read_material(tmp_path / "run"))[0])
     assert printed_text.covered(page) == []
     every = printed_text.glyphs(page)
     every[0].x0, every[0].x1 = every[9].x0, every[9].x1
@@ -79,19 +79,19 @@ def test_text_on_text_is_found(tmp_path: Path) -> None:
 def test_entries_left_out_are_fields_to_fill_and_bytes_repeat(tmp_path: Path) -> None:
     report_fixture.write_run(tmp_path / "run", 36, field=False)
     material = read_material(tmp_path / "run")
-    content = signoff_sheet.sheet_content(material)
+    content = documents.sheet_content(material)
     assert dict(content.block) == dict.fromkeys(
         ("Project", "Part number", "Revision", "Author", "Date", "Material"), ""
     )
-    first = signoff_sheet.write(material)[0].read_bytes()
-    assert signoff_sheet.write(read_material(tmp_path / "run"))[0].read_bytes() == first
-    stated = signoff_sheet.sheet_content(with_document(material))
+    first = documents.write_signoff(material)[0].read_bytes()
+    assert documents.write_signoff(read_material(tmp_path / "run"))[0].read_bytes() == first
+    stated = documents.sheet_content(with_document(material))
     assert dict(stated.block)["Date"] == "2026-03-02"
 
 
 def test_the_table_of_safeties_states_required_beside_actual(tmp_path: Path) -> None:
     report_fixture.write_run(tmp_path / "run", 36, field=False)
-    content = signoff_sheet.sheet_content(read_material(tmp_path / "run"))
+    content = documents.sheet_content(read_material(tmp_path / "run"))
     by_title = {row.title: row for row in content.safeties}
     angle = by_title["Pressure angle"]
     assert (angle.actual, angle.required, angle.safety) == (
@@ -124,7 +124,7 @@ def drawing(folder: Path, scale: float, *, keyed: bool) -> Material:
 @pytest.mark.parametrize("scale", [0.01, 1.0, 12.0])
 @pytest.mark.parametrize("keyed", [True, False])
 def test_the_drawing_is_one_sheet(tmp_path: Path, scale: float, keyed: bool) -> None:
-    (path,) = shop_drawing.write(drawing(tmp_path / "run", scale, keyed=keyed))
+    (path,) = documents.write_drawing(drawing(tmp_path / "run", scale, keyed=keyed))
     (page,) = printed_text.pages(path)
     assert printed_text.covered(page) == []
     size = np.array([page.width, page.height]) * printed_text.POINT
@@ -139,7 +139,7 @@ def test_the_drawing_is_one_sheet(tmp_path: Path, scale: float, keyed: bool) -> 
 
 def test_no_drawing_of_a_contour_that_encloses_no_body(tmp_path: Path) -> None:
     report_fixture.write_run(tmp_path / "run", 36, field=False)
-    assert shop_drawing.write(read_material(tmp_path / "run")) == []
+    assert documents.write_drawing(read_material(tmp_path / "run")) == []
 
 
 @pytest.mark.parametrize("text", ["[]", "{}", '{"bore": 1}', "nothing"])
@@ -148,7 +148,7 @@ def test_dimensions_of_another_form_are_refused(tmp_path: Path, text: str) -> No
     (tmp_path / "run" / "workshop").mkdir()
     (tmp_path / "run" / "workshop" / "dimensions.json").write_text(text)
     with pytest.raises(ResultError, match=r"dimensions\.json"):
-        shop_drawing.write(read_material(tmp_path / "run"))
+        documents.write_drawing(read_material(tmp_path / "run"))
 
 
 @pytest.mark.parametrize(
