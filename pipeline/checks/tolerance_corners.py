@@ -85,7 +85,7 @@ def outcomes(
     if corners is None:
         corners = NOMINAL, *corners_of(case)
     try:
-        solved = _turns_at(case, torques, contour, corners)
+        solved = _turns_at(case, torques, contour, corners, declarations)
     except CamError:  # of one corner at least: each on its own
         return tuple(_alone(case, torques, contour, each, declarations) for each in corners)
     return tuple(_outcome(case, torques, *each, declarations) for each in solved)
@@ -105,7 +105,7 @@ def checks_at(
     CamError
         If a corner cannot be solved.
     """
-    solved = _turns_at(case, torques, contour, corners)
+    solved = _turns_at(case, torques, contour, corners, declarations)
     return tuple(_checks(case, torques, *each, declarations) for each in solved)
 
 
@@ -212,11 +212,21 @@ class _Tried:
 
 
 def _turns_at(
-    case: Case, torques: Mapping[str, Torque], contour: Contour, corners: Sequence[Corner]
+    case: Case,
+    torques: Mapping[str, Torque],
+    contour: Contour,
+    corners: Sequence[Corner],
+    declarations: Sequence[Declaration],
 ) -> list[tuple[_Tried, tuple[Turn, ...]]]:
-    """Turns of every load case at each corner, solved at once."""
+    """Turns of every load case at each corner, solved at once.
+
+    The bounds of the friction as well, where every check is made there.
+    """
     tried = [_Tried.at(case, torques, contour, each) for each in corners]
-    every = turns([state for each in tried for state in each.inputs], POSITIONS, coarse=True)
+    bounds = declarations is TOLERANCED
+    every = turns(
+        [state for each in tried for state in each.inputs], POSITIONS, coarse=True, bounds=bounds
+    )
     count = len(tried[0].inputs)
     return [(each, every[k * count : (k + 1) * count]) for k, each in enumerate(tried)]
 
@@ -229,7 +239,7 @@ def _alone(
     declarations: Sequence[Declaration],
 ) -> Outcome:
     try:
-        ((tried, solved),) = _turns_at(case, torques, contour, (corner,))
+        ((tried, solved),) = _turns_at(case, torques, contour, (corner,), declarations)
     except CamError as error:
         return Outcome(corner, {}, str(error))
     return _outcome(case, torques, tried, solved, declarations)

@@ -159,6 +159,7 @@ def solution(
     torques: Mapping[str, Torque] | None = None,
     positions: int | None = None,
     coarse: bool = False,
+    bounds: bool = True,
     store: ContactStore = NOT_STORED,
     progress: Progress = SILENT,
 ) -> Solution:
@@ -169,6 +170,7 @@ def solution(
     torques : mapping     engine torque by load case; None: computed from the case
     positions : int       per cam turn; None: those of the case
     coarse : bool         coarse guide mesh, constant crank speed: for ratios of demands
+    bounds : bool         see `turns`
     store : ContactStore  of the pieces of the contact, to resume an interrupted solution
 
     Raises
@@ -177,7 +179,6 @@ def solution(
         If a mesh, the contact or the guides cannot be solved.
     """
     states = machines(case)
-    bounds = tier >= Tier.CYCLE  # which every check is made of
     turns = turns_of(states, contour, case, torques, positions, coarse=coarse, bounds=bounds)
     return solved_turns(
         case, contour, turns, tier, torques, coarse=coarse, store=store, progress=progress
@@ -192,7 +193,7 @@ def turns_of(
     positions: int | None = None,
     *,
     coarse: bool = False,
-    bounds: bool = False,
+    bounds: bool = True,
 ) -> tuple[Turn, ...]:
     """Loads of the machine in every load case, before the contact is solved; see `turns`."""
     known = engine_torques(case) if torques is None else torques

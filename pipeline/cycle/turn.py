@@ -90,13 +90,13 @@ def turn(
 
 
 def turns(
-    inputs: Sequence[TurnInput], positions: int, *, coarse: bool = False, bounds: bool = False
+    inputs: Sequence[TurnInput], positions: int, *, coarse: bool = False, bounds: bool = True
 ) -> tuple[Turn, ...]:
     """As `turn` of each load case; those in the same guides are solved at once.
 
     Parameters
     ----------
-    bounds : bool   the bounds of the friction as well, instead of when they are first read
+    bounds : bool   solve the bounds of the friction at once, too, not when they are first read
     """
     theta, knots = uniform_turn(positions), COARSE_KNOTS if coarse else KNOTS
     strokes = _Strokes(inputs, theta, knots)

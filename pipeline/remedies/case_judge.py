@@ -165,7 +165,7 @@ class Judge:
             If the case has no such cam, or it cannot be solved.
         """
         contour = self._contour(case, undercut=undercut)
-        solved = solution(case, contour, Tier.PREVIEW, torques=self.torques)
+        solved = solution(case, contour, Tier.PREVIEW, torques=self.torques, bounds=False)
         of_wanted = [self.corners.get(name, ()) for name in wanted]
         of_any = {names[0] for names in self.corners.values() if names}
         return Preview(

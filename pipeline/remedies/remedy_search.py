@@ -348,11 +348,15 @@ class _Search:
         for way in ways:
             if best is not None and (best[0] == 0 or way.size > _ALIKE * best[1]):
                 break
-            confirmed = self._confirmed(name, way)
-            if confirmed is not None:
+            try:
+                confirmed = self._confirmed(name, way)
+                if confirmed is None:
+                    continue
                 fails = len(newly_failing(self.base, confirmed.preview))
-                if best is None or fails < best[0]:
-                    best = fails, confirmed.step.size, self._remedy(name, way.lever, confirmed)
+            except CamError:  # the guides at a bound of their friction
+                continue
+            if best is None or fails < best[0]:
+                best = fails, confirmed.step.size, self._remedy(name, way.lever, confirmed)
         return None if best is None else best[2]
 
     def _confirmed(self, name: str, way: _Crossing) -> _Confirmed | None:

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from camwright.geometry.errors import InputError
+from camwright.geometry.errors import ContactError, InputError
 from camwright.pipeline.case.case_file import parse_case
 from camwright.pipeline.case.load_case_torque import engine_torques
 from camwright.pipeline.case.machine import CREEP, Corner, machine, machines
@@ -15,10 +15,11 @@ from camwright.pipeline.checks import guide_strength, jump_and_jamming, roller_b
 from camwright.pipeline.checks.jump_and_jamming import contact_force_margin
 from camwright.pipeline.contact.contact_history import ContactHistory
 from camwright.pipeline.contact.tiers import Tier
+from camwright.pipeline.cycle import turn as turning
 from camwright.pipeline.cycle.contact_setup import contact_pair
 from camwright.pipeline.cycle.cycle import Cycle
 from camwright.pipeline.cycle.solution import Solution, solved_turns
-from camwright.pipeline.cycle.turn import turn
+from camwright.pipeline.cycle.turn import TurnInput, turn, turns
 from camwright.pipeline.preview import preview_case
 from camwright.pipeline.smoothing.required_lift import cam_lift
 from camwright.pipeline.smoothing.smoothers import Smoother
@@ -99,6 +100,39 @@ def test_the_machine_of_a_case_by_hand():
     assert found.system.spring is found.spring
     assert found.system.face_friction == 0.0
     assert (found.roller, found.face) == (case.roller, None)
+
+
+def test_bounds_of_the_friction_are_those_solved_at_once(torques):
+    case = parse_case(GX120)
+    contour = case.contour(cam_lift(case, torques))
+    inputs = [TurnInput(each, contour, torques["idle"]) for each in machines(case)]
+    for early, late in zip(turns(inputs, 72), turns(inputs, 72, bounds=False), strict=True):
+        for name in ("least", "nominal", "greatest"):
+            one, other = (getattr(each.friction, name).normal_force for each in (early, late))
+            np.testing.assert_allclose(one, other, rtol=1e-10)
+
+
+def test_a_load_case_without_bounds_of_the_friction_leaves_those_of_the_others(
+    torques, monkeypatch
+):
+    case = parse_case(GX120)
+    contour = case.contour(cam_lift(case, torques))
+    inputs = [TurnInput(each, contour, torques["idle"]) for each in machines(case)]
+    refused = inputs[1].machine.cam_speed
+
+    def refusing(strokes, *rest):
+        nominal = [each.machine.system.friction_a for each in inputs]
+        if any(s.cam_speed == refused and s.system.friction_a not in nominal for s in strokes):
+            raise ContactError("guides: too rough")
+        return guided_strokes(strokes, *rest)
+
+    guided_strokes = turning.guided_strokes
+    monkeypatch.setattr(turning, "guided_strokes", refusing)
+    solved = turns(inputs, 72, bounds=False)
+    with pytest.raises(ContactError, match="too rough"):
+        solved[1].friction  # noqa: B018 - solved when it is read
+    assert (solved[0].friction.greatest.normal_force > 0.0).any()
+    assert solved[1].loads.normal_force.max() > 0.0
 
 
 def test_a_corner_of_the_preload_moves_that_of_every_load_case():

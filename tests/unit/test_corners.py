@@ -213,10 +213,10 @@ def test_a_corner_without_a_solution_is_refused_alone(monkeypatch, demands):
     """The others have the demands that they have where every corner is solved."""
     heaviest = 1.05 * machines(case())[0].mass
 
-    def refusing(inputs, positions, *, coarse):
+    def refusing(inputs, positions, *, coarse, bounds):
         if any(each.machine.mass > heaviest for each in inputs):
             raise ContactError("guides: too heavy")
-        return turns(inputs, positions, coarse=coarse)
+        return turns(inputs, positions, coarse=coarse, bounds=bounds)
 
     monkeypatch.setattr(tolerance_corners, "turns", refusing)
     seen = {one.corner.name: one for one in outcomes(case(), {}, cam())}

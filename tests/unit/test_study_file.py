@@ -12,6 +12,7 @@ import pytest
 from scipy import stats
 
 from camwright.geometry.errors import InputError
+from camwright.pipeline.base import disk_cache
 from camwright.pipeline.case.case_file import read_case
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.studies.batch.case_template import read_templates
@@ -19,7 +20,7 @@ from camwright.pipeline.studies.batch.design_plan import SHARD_OF, Plan
 from camwright.pipeline.studies.batch.design_solver import DesignSolver
 from camwright.pipeline.studies.batch.design_task import Settings
 from camwright.pipeline.studies.batch.factor_axes import Axis, axis_of
-from camwright.pipeline.studies.batch.sampling import Designs, designs_of
+from camwright.pipeline.studies.batch.sampling import Designs, designs_of, unit_cube
 from camwright.pipeline.studies.batch.study_file import (
     Correlation,
     Factor,
@@ -217,6 +218,19 @@ def test_the_same_seed_gives_the_same_designs(method: str) -> None:
         assert np.isfinite(np.asarray(values)).all()
     assert np.any(one.columns["spring.rate"] != other.columns["spring.rate"])
     assert set(np.asarray(one.columns["cam.width"]).tolist()) == {5.0, 6.0}
+
+
+@pytest.mark.parametrize("method", ["latin_hypercube", "sobol"])
+def test_a_sample_kept_on_disk_is_that_of_scipy(
+    method: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv(disk_cache.FOLDER, str(tmp_path))
+    draw = {"sobol": stats.qmc.Sobol, "latin_hypercube": stats.qmc.LatinHypercube}[method]
+    wanted = draw(3, rng=np.random.default_rng(5)).random(16)
+    sampling = Sampling.model_validate({"method": method, "count": 16, "seed": 5})
+    for _ in ("drawn", "read"):
+        np.testing.assert_array_equal(unit_cube(3, sampling), wanted)
+    assert len(list(tmp_path.glob("cube-*.npz"))) == 1
 
 
 def test_correlated_factors_have_the_stated_correlation() -> None:

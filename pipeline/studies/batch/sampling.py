@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import sys
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
@@ -11,9 +12,11 @@ from numpy.typing import NDArray
 
 from camwright.geometry.arrays import Array
 from camwright.geometry.errors import InputError
+from camwright.pipeline.base import disk_cache
 from camwright.pipeline.studies.batch.factor_axes import Axis, Levels
 from camwright.pipeline.studies.batch.study_file import DESIGNS_MAX, Correlation, Sampling
 
+_KEPT_MOST = 1_000_000  # values of a sample that the disk cache keeps
 _EDGE = 2.0**-53  # a share of 0 or 1 has no normal value
 VALUES_MAX = 100_000_000
 """Maximum number of designs times factors: 0.8 GB of samples."""
@@ -105,12 +108,21 @@ def unit_cube(dimensions: int, sampling: Sampling) -> Array:
         if whole != count:
             raise InputError("sampling.count", count, f"a power of two, such as {whole}")
         return np.asarray(sobol.sample(problem, count, calc_second_order=False, seed=sampling.seed))
-    from scipy.stats import qmc
+    drawn = dimensions, sampling.method, count, sampling.seed
+    if count * dimensions > _KEPT_MOST:
+        return _spread(*drawn)
+    recipe = (sys.modules[__name__],)
+    return disk_cache.kept("cube", drawn, lambda: {"points": _spread(*drawn)}, recipe)["points"]
 
-    if sampling.method == "latin_hypercube":
-        points = qmc.LatinHypercube(dimensions, rng=np.random.default_rng(sampling.seed))
+
+def _spread(dimensions: int, method: str, count: int, seed: int) -> Array:
+    """Points (n, dimensions) of a latin hypercube or a Sobol sequence."""
+    from scipy.stats import qmc  # as long to import as ten designs to preview
+
+    if method == "latin_hypercube":
+        points = qmc.LatinHypercube(dimensions, rng=np.random.default_rng(seed))
         return np.asarray(points.random(count))
-    sequence = qmc.Sobol(dimensions, rng=np.random.default_rng(sampling.seed))
+    sequence = qmc.Sobol(dimensions, rng=np.random.default_rng(seed))
     # whole powers of two are balanced; the first `count` of them
     return np.asarray(sequence.random_base2((count - 1).bit_length()))[:count]
 
