@@ -16,7 +16,7 @@ from camwright.geometry.errors import MeshError, ResultError
 from camwright.meshes.body_mesh import BodyMesh
 from camwright.meshes.element_size import MILLIMETRE
 from camwright.meshes.gmsh_mesher import Index, session
-from camwright.meshes.vtu import QUADRATIC_TRIANGLE, Grid, vtu
+from camwright.meshes.vtu import QUADRANGLE, QUADRATIC_TRIANGLE, Grid, vtu
 
 UNITS = "units_mm_N_MPa"
 """Field data that names the units of every VTU file."""
@@ -146,6 +146,29 @@ def _joined(bodies: Mapping[str, BodyMesh], data: Mapping[str, Fields]) -> dict[
                 values = np.vstack([values, np.zeros(values.shape[1])])
             parts[name].append(values.T)
     return {name: np.concatenate(values) for name, values in parts.items()}
+
+
+def write_rectangles(path: str | Path, x: Array, y: Array, cell_data: Mapping[str, Array]) -> None:
+    """VTU file of rectangles in the plane z = 0 with values of each.
+
+    Parameters
+    ----------
+    x, y : array (k + 1,), (m + 1,)   edges, m
+    cell_data : mapping               name, unit included -> (m, k)
+
+    Raises
+    ------
+    ResultError
+        If the file cannot be written; one already there is left as it was.
+    """
+    along, across = np.meshgrid(y / MILLIMETRE, x / MILLIMETRE, indexing="ij")
+    points = np.stack([across.ravel(), along.ravel(), np.zeros(across.size)], axis=1)
+    first = np.arange(across.size).reshape(across.shape)[:-1, :-1].ravel()
+    cells = np.stack([first, first + 1, first + x.size + 1, first + x.size], axis=1)
+    values = {name: np.ascontiguousarray(field).ravel() for name, field in cell_data.items()}
+    grid = Grid(points, cells, QUADRANGLE, {}, values, {UNITS: 1.0})
+    with replacing(path) as temporary:
+        temporary.write_bytes(vtu(grid))
 
 
 @contextmanager

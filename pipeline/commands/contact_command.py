@@ -45,21 +45,52 @@ def contact(
     depth2: Annotated[
         str | None, typer.Option(help="Depth of the reference point in body 2, mm.")
     ] = None,
+    length1: Annotated[str | None, typer.Option(help="Length of body 1, mm.")] = None,
+    length2: Annotated[str | None, typer.Option(help="Length of body 2, mm.")] = None,
+    end1: Annotated[
+        str | None, typer.Option(help="Ends of body 1: sharp, chamfer:0.3, radius:0.3 (mm).")
+    ] = None,
+    end2: Annotated[str | None, typer.Option(help="Ends of body 2.")] = None,
+    crown: Annotated[
+        str | None,
+        typer.Option(
+            help='johns-gohar:"200 N/mm", lundberg:"200 N/mm", iso16281, circular:500 or a '
+            "CSV file of y_mm and drop_um."
+        ),
+    ] = None,
+    tilt: Annotated[
+        str | None, typer.Option(help="Tilt of the bases, mrad; closes the gap at y > 0.")
+    ] = None,
+    moment: Annotated[
+        str | None, typer.Option(help="Moment about the middle, N mm, instead of the tilt.")
+    ] = None,
+    mean_length: Annotated[
+        str | None, typer.Option(help="Length of the mean pressure at the ends, mm; 0.1.")
+    ] = None,
     field: Annotated[
-        Path | None, typer.Option(metavar="FILE.vtu", help="Write the stress of both bodies.")
+        Path | None,
+        typer.Option(
+            metavar="FILE.vtu",
+            help="Write the stress of both bodies; with lengths, the pressure on the contact.",
+        ),
     ] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print the results as JSON.")] = False,
     no_cache: NoCacheOption = False,
 ) -> int:
     """Solve the line contact of two cylinders.
 
-    By Hertz and by finite elements with an error bar. Quantities may have a unit, such as
-    "12.5 mm", "210 GPa", "80 kN/m".
+    By Hertz and by finite elements with an error bar; with lengths, the pressure along the line
+    over that of plane strain, too. Quantities may have a unit, such as "12.5 mm", "210 GPa",
+    "80 kN/m".
     """
+    from camwright.pipeline.studies.finite_length_document import LengthOptions
     from camwright.pipeline.studies.two_cylinders_document import Options, lines, solved
 
     use_cache(not no_cache)
-    options = Options(r1, r2, e1, e2, nu1, nu2, line_load, load, width, friction, depth1, depth2)
+    lengths = LengthOptions(length1, length2, end1, end2, crown, tilt, moment, mean_length)
+    options = Options(
+        r1, r2, e1, e2, nu1, nu2, line_load, load, width, friction, depth1, depth2, lengths
+    )
     with progress_shown() as progress:
         progress.stage("contact")
         document = solved(options, with_approach=approach, field=field)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import time
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -18,6 +19,12 @@ from camwright.pipeline.base.units import in_unit, shown
 from camwright.pipeline.contact import hertz
 from camwright.pipeline.contact.elasticity import plane_stress_measures
 from camwright.pipeline.contact.elasticity.elastic_body import Elastic
+from camwright.pipeline.studies.finite_length_document import (
+    LengthOptions,
+    finite_length,
+    quantity,
+)
+from camwright.pipeline.studies.finite_length_document import lines as length_lines
 from camwright.pipeline.studies.two_cylinders import (
     HALF_ANGLE_MAX,
     ConformingContact,
@@ -57,6 +64,7 @@ class Options:
     friction: float = 0.0
     depth_1: str | None = None
     depth_2: str | None = None
+    lengths: LengthOptions = dataclasses.field(default_factory=LengthOptions)
 
     def pair(self) -> TwoCylinders:
         """The contact in SI.
@@ -66,9 +74,9 @@ class Options:
         InputError
             Naming the option.
         """
-        first = Elastic(_quantity(self.e1, "MPa", "--e1"), self.nu1)
+        first = Elastic(quantity(self.e1, "MPa", "--e1"), self.nu1)
         second = Elastic(
-            first.modulus if self.e2 is None else _quantity(self.e2, "MPa", "--e2"),
+            first.modulus if self.e2 is None else quantity(self.e2, "MPa", "--e2"),
             self.nu1 if self.nu2 is None else self.nu2,
         )
         for number, body in ((1, first), (2, second)):
@@ -91,7 +99,7 @@ class Options:
     def depths(self) -> tuple[float | None, float | None]:
         """Depths of the reference points of the approach, m; None: the centre."""
         first, second = (
-            None if text is None else _quantity(text, "mm", name)
+            None if text is None else quantity(text, "mm", name)
             for text, name in ((self.depth_1, "--depth1"), (self.depth_2, "--depth2"))
         )
         return first, second
@@ -100,14 +108,11 @@ class Options:
         if self.line_load is not None:
             if self.load is not None:
                 raise InputError("--load", self.load, "left out beside --line-load")
-            line_load = _quantity(self.line_load, "N/mm", "--line-load")
+            line_load = quantity(self.line_load, "N/mm", "--line-load")
         else:
-            if self.load is None or self.width is None:
+            if self.load is None or (self.width is None and not self.lengths.stated):
                 raise InputError("--line-load", "missing", "specified, or --load and --width")
-            width = _quantity(self.width, "mm", "--width")
-            if not width > 0:
-                raise InputError("--width", _as_read(self.width, "mm"), "> 0 mm")
-            line_load = _quantity(self.load, "N", "--load") / width
+            line_load = quantity(self.load, "N", "--load") / self._width()
         if not line_load >= 0:
             unit = "N/mm" if self.load is None else "N"
             text = self.load or self.line_load or ""
@@ -117,6 +122,17 @@ class Options:
                 f">= 0 {unit}",
             )
         return line_load
+
+    def _width(self) -> float:
+        """Width of the contact, m: with lengths, the one on which both bodies are without ends."""
+        if self.width is None:
+            return self.lengths.contact_length()
+        if self.lengths.stated:
+            raise InputError("--width", _as_read(self.width, "mm"), "left out beside --length1")
+        width = quantity(self.width, "mm", "--width")
+        if not width > 0:
+            raise InputError("--width", _as_read(self.width, "mm"), "> 0 mm")
+        return width
 
 
 def solved(options: Options, *, with_approach: bool = False, field: Path | None = None) -> Document:
@@ -141,11 +157,20 @@ def solved(options: Options, *, with_approach: bool = False, field: Path | None 
     if is_conforming(pair):
         if field is not None:
             raise InputError("--field", str(field), "left out: the contact is conforming")
+        if options.lengths.stated:
+            raise InputError("--length1", "stated", "left out: the contact is conforming")
         document |= {"fe": None, "conforming": _conforming(conforming(pair), pair)}
     else:
         contact = finite_elements(pair)
         document |= {"fe": _finite_elements(contact), "finite_body": _finite_body(pair)}
-        if field is not None:
+        axial = None
+        if options.lengths.stated:
+            axial = finite_length(options.lengths, pair, options.depths())
+            document["finite_length"] = axial.records()
+        if field is not None and axial is not None:
+            axial.write(field)
+            document["field"] = str(field)
+        elif field is not None:
             _write_field(field, contact, (pair.body_1.poisson, pair.body_2.poisson))
             document["field"] = str(field)
     if with_approach:
@@ -184,20 +209,13 @@ def lines(document: Document) -> Iterator[str]:
                     f"{title}: peak pressure {solution['p0_MPa']:.6g} MPa, "
                     f"half contact angle {solution['half_angle_deg']:.4g} deg"
                 )
+    if "finite_length" in document:
+        yield from length_lines(document["finite_length"])
     if abs(beta := document["dundurs_beta"]) > _ALIKE:
         yield f"unlike materials, Dundurs' beta {beta:.4g}: pressure of a frictionless contact"
     if "approach_mm" in document:
         yield f"approach {document['approach_mm']:.6g} mm"
     yield f"{document['seconds']:.2f} s"
-
-
-def _quantity(text: str, unit: str, option: str) -> float:
-    """SI value of a number with a unit, or in `unit`."""
-    try:
-        float(text)
-    except ValueError:
-        return units.parse(text, unit, option)
-    return units.parse(f"{text.strip()} {unit}", unit, option)
 
 
 def _as_read(text: str, unit: str) -> str:
@@ -212,7 +230,7 @@ def _as_read(text: str, unit: str) -> str:
 def _radius(text: str, option: str) -> float:
     if text.strip().lower() in ("inf", "+inf", "infinity", "flat"):
         return float("inf")
-    radius = _quantity(text, "mm", option)
+    radius = quantity(text, "mm", option)
     if radius == 0:
         raise InputError(option, text, "other than 0; inf: flat, negative: concave")
     return radius

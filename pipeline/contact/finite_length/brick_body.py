@@ -17,7 +17,7 @@ import scipy
 from numpy.typing import NDArray
 
 from camwright.geometry.arrays import Array, freeze
-from camwright.geometry.errors import InputError
+from camwright.geometry.errors import ContactError, InputError
 from camwright.pipeline.contact.elasticity.elastic_body import lame_parameters
 
 Index = NDArray[np.intp]
@@ -302,7 +302,10 @@ def _element_stiffness(
 
 
 def _cholesky(matrix: Array) -> Array:
-    return np.asarray(scipy.linalg.cholesky(matrix, lower=True, check_finite=False))
+    try:
+        return np.asarray(scipy.linalg.cholesky(matrix, lower=True, check_finite=False))
+    except scipy.linalg.LinAlgError as error:
+        raise ContactError("stiffness of the block: not positive definite") from error
 
 
 def _forward(factor: Array, right: Array) -> Array:

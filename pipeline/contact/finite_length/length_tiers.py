@@ -41,7 +41,7 @@ MEAN_LENGTH = 1e-4
 """Length of the mean pressure at an end, m."""
 
 SIZES = CellSizes()
-_REFINEMENT = 2.0
+_REFINEMENT = 1.5
 # Growth of the elements into the block and beyond the contact, and their largest size, m.
 _BLOCK_GROWTH, _BLOCK_LARGEST = 2.0, np.inf
 # Contacts whose half-widths lie within this ratio share their cells.
@@ -81,13 +81,19 @@ class AxialFactors:
 
 @dataclass(frozen=True, eq=False)
 class TierResult:
-    """One contact at one tier: finest contact, its factors, their convergence, the unknowns."""
+    """One contact at one tier: on the cells of both tiers; finest factors, their convergence."""
 
     tier: TierName
     contact: LengthContact
     factors: AxialFactors
     convergence: tuple[Convergence, ...]
     unknowns: int
+
+    @property
+    def greatest_is_at_an_end(self) -> bool:
+        """Whether the greatest pressure is in the first or last cell of the centre line."""
+        line = self.contact.centre_line[0]
+        return int(line.argmax()) in (0, line.size - 1)
 
 
 def plane_strain(pair: FinitePair, force: float) -> tuple[float, float]:
@@ -116,7 +122,7 @@ def both_tiers(
                           half-space has no base
     moment : float        N m, about y = 0, instead of the tilt
     mean_length : float   of the means at the ends, m
-    sizes : CellSizes     of the finest cells
+    sizes : CellSizes     of the cells; error bars by coarser ones, of the half-spaces by finer ones
 
     Raises
     ------
@@ -127,11 +133,13 @@ def both_tiers(
     """
     _require_load(pair, force, tilt, moment)
     half_width, p0 = plane_strain(pair, force)
-    ladder = [sizes.coarser(_REFINEMENT**k) for k in (2, 1, 0)]
-    meshes = [pressure_cells(pair, half_width, each) for each in ladder]
+    meshes = [
+        pressure_cells(pair, half_width, sizes.coarser(ratio))
+        for ratio in (_REFINEMENT, 1.0, 1.0 / _REFINEMENT)
+    ]
 
     blocks, unknowns = [], 0
-    for cells in meshes[1:]:
+    for cells in meshes[:2]:
         compliance, unknowns = _block_compliance(cells, pair.bodies)
         gap = cells.integrated_gap(pair)
         blocks.append(length_contact.solve(cells, compliance, gap, force, tilt=tilt, moment=moment))
@@ -156,9 +164,9 @@ def both_tiers(
         converged_on_two(values, _REFINEMENT, [seen])
         for values, seen in zip(coarse_to_fine[1], observed, strict=True)
     )
-    count = 2 * meshes[-1].areas.size
+    count = 2 * meshes[1].areas.size
     return (
-        TierResult("half_space", halves[-1], ladders[0][-1], observed, count),
+        TierResult("half_space", halves[1], ladders[0][-1], observed, count),
         TierResult("finite_elements", blocks[-1], ladders[1][-1], refined, unknowns),
     )
 
@@ -233,7 +241,15 @@ def _block_compliance(
 
 
 def block_grid(cells: PressureCells, body: FiniteBody) -> BrickGrid:
-    """Elements of a quarter of a block, as wide to each side as it is deep."""
+    """Elements of a quarter of a block, as wide to each side as it is deep.
+
+    Raises
+    ------
+    InputError
+        If the block is not deeper than the cells are wide.
+    """
+    if not body.depth > 2.0 * cells.x[-1]:
+        raise InputError("depth", body.depth, f"> {2.0 * cells.x[-1]:.4g} m, width of the cells")
     middle = cells.shape[0] // 2
     x, y = cells.x, cells.y[middle:]
     half_length = 0.5 * body.length

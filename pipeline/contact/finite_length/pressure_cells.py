@@ -25,16 +25,20 @@ _ROUNDED, _PER_RADIUS = 4.0, 32
 
 @dataclass(frozen=True)
 class CellSizes:
-    """Cells per half-width; size at the ends and range of that size, growth inwards, largest, m."""
+    """Cells per half-width; size at the ends, m, of `uniform` cells, and growth from there.
+
+    The largest size is that in m or, if larger, the share of the length of contact.
+    """
 
     per_half_width: float = 6.0
     at_end: float = 20e-6
-    end_range: float = 100e-6
+    uniform: int = 5
     growth: float = 1.6
     largest: float = 4e-4
+    largest_share: float = 1.0 / 12.0
 
     def __post_init__(self) -> None:
-        for name in ("per_half_width", "at_end", "end_range", "largest"):
+        for name in ("per_half_width", "at_end", "uniform", "largest", "largest_share"):
             if not getattr(self, name) > 0:
                 raise InputError(name, getattr(self, name), "> 0")
         if not self.growth >= 1:
@@ -46,7 +50,9 @@ class CellSizes:
             self,
             per_half_width=self.per_half_width / ratio,
             at_end=self.at_end * ratio,
+            uniform=int(np.ceil(self.uniform / ratio)),
             largest=self.largest * ratio,
+            largest_share=self.largest_share * ratio,
         )
 
 
@@ -111,10 +117,11 @@ def pressure_cells(pair: FinitePair, half_width: float, sizes: CellSizes) -> Pre
         at_end = min(at_end, min(radii) / _PER_RADIUS)
         drop = _ROUNDED * half_width**2 * pair.curvature
         cells_beyond = int(np.ceil(min(np.sqrt(2.0 * min(radii) * drop), *radii) / at_end))
-    fine = min(sizes.end_range, 0.5 * flat)
-    count = int(np.ceil(fine / at_end * (1.0 - 1e-9)))
-    inwards = graded(flat - fine, fine / count * sizes.growth, sizes.growth, sizes.largest)
-    inside = flat - np.concatenate([np.linspace(0.0, fine, count + 1)[:-1], fine + inwards])
+    fine = min(sizes.uniform * at_end, 0.5 * flat)
+    steps = np.linspace(0.0, fine, sizes.uniform + 1)
+    largest = max(sizes.largest, sizes.largest_share * 2.0 * flat)
+    inwards = graded(flat - fine, steps[1] * sizes.growth, sizes.growth, largest)
+    inside = flat - np.concatenate([steps[:-1], fine + inwards])
     beyond = at_end * np.arange(1, cells_beyond + 1)
     half = np.concatenate([[0.0], inside[-2::-1], flat + beyond])
     return PressureCells(np.array(x), np.concatenate([-half[:0:-1], half]))

@@ -1,0 +1,302 @@
+"""Ends, crown and tilt in `camwright contact`: from options to a document."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from camwright.geometry.errors import InputError, ResultError
+from camwright.pipeline.base import units
+from camwright.pipeline.base.tables import read_table
+from camwright.pipeline.base.units import in_unit, shown
+from camwright.pipeline.contact import hertz
+from camwright.pipeline.contact.finite_length.axial_drop import (
+    BodyEnd,
+    CircularCrown,
+    Crown,
+    FiniteBody,
+    FinitePair,
+    Straight,
+    TabulatedCrown,
+    iso16281,
+    johns_gohar,
+    lundberg,
+)
+from camwright.pipeline.contact.finite_length.length_tiers import (
+    MEAN_LENGTH,
+    TierResult,
+    both_tiers,
+)
+from camwright.pipeline.studies.two_cylinders import TwoCylinders
+
+Document = dict[str, Any]
+
+_ENDS = "sharp, chamfer:SIZE or radius:SIZE"
+_CROWNS = (
+    "johns-gohar:LOAD, lundberg:LOAD, iso16281, circular:RADIUS or a CSV file of y_mm and drop_um"
+)
+_FACTORS = ("centre", "greatest", "end1_mean", "end2_mean")
+_TITLES = {"half_space": "half-space", "finite_elements": "finite elements"}
+# Moment over force and length of contact: round-off.
+_ROUND_OFF = 1e-12
+# Depth of a body without one, in the shorter length, by Saint-Venant.
+_DEPTH = 2.0
+
+
+def quantity(text: str, unit: str, option: str) -> float:
+    """SI value of a number with a unit, or in `unit`."""
+    try:
+        float(text)
+    except ValueError:
+        return units.parse(text, unit, option)
+    return units.parse(f"{text.strip()} {unit}", unit, option)
+
+
+@dataclass(frozen=True)
+class LengthOptions:
+    """Options of the bodies' lengths as text; numbers without unit in mm, N/mm, mrad, N mm."""
+
+    length_1: str | None = None
+    length_2: str | None = None
+    end_1: str | None = None
+    end_2: str | None = None
+    crown: str | None = None
+    tilt: str | None = None
+    moment: str | None = None
+    mean_length: str | None = None
+
+    @property
+    def stated(self) -> bool:
+        """Whether a length or anything that needs one is given."""
+        return self != LengthOptions()
+
+    def bodies(
+        self, pair: TwoCylinders, depths: Sequence[float | None]
+    ) -> tuple[FiniteBody, FiniteBody]:
+        """Both bodies in SI; without a depth the radius, at most twice the shorter length.
+
+        Raises
+        ------
+        InputError
+            Naming the option.
+        """
+        self.contact_length()
+        shorter = min(self.lengths())
+        bodies = [
+            FiniteBody(material, length, end, _DEPTH * shorter if depth is None else depth)
+            for material, length, end, depth in zip(
+                (pair.body_1, pair.body_2), self.lengths(), self.ends(), depths, strict=True
+            )
+        ]
+        for number, radius in enumerate((pair.radius_1, pair.radius_2)):
+            if depths[number] is None and radius > 0:
+                body = bodies[number]
+                bodies[number] = replace(body, depth=min(radius, body.depth))
+        return bodies[0], bodies[1]
+
+    def lengths(self) -> tuple[float, float]:
+        """Lengths of both bodies, m."""
+        first, second = (
+            self._positive(text, "mm", option)
+            for text, option in ((self.length_1, "--length1"), (self.length_2, "--length2"))
+        )
+        return first, second
+
+    def ends(self) -> tuple[BodyEnd, BodyEnd]:
+        """Ends of both bodies."""
+        return self._end(self.end_1, "--end1"), self._end(self.end_2, "--end2")
+
+    def contact_length(self) -> float:
+        """Length on which both bodies are without ends, m."""
+        ends = self.ends()
+        flat = [length - 2.0 * end.size for length, end in zip(self.lengths(), ends, strict=True)]
+        if not min(flat) > 0:
+            worst = int(np.argmin(flat))
+            raise InputError(f"--end{worst + 1}", shown(ends[worst].size, "mm"), "< half a length")
+        return min(flat)
+
+    def finite_pair(self, pair: TwoCylinders, depths: Sequence[float | None]) -> FinitePair:
+        """Both bodies with their crown."""
+        straight = FinitePair(self.bodies(pair, depths), pair.curvature, Straight())
+        return replace(straight, crown=self._crown(straight, pair))
+
+    def tilt_or_moment(self) -> tuple[float | None, float | None]:
+        """Tilt, rad, or moment, N m; the other is None."""
+        if self.moment is None:
+            return 0.0 if self.tilt is None else quantity(self.tilt, "mrad", "--tilt"), None
+        if self.tilt is not None:
+            raise InputError("--moment", self.moment, "left out beside --tilt")
+        return None, quantity(self.moment, "N mm", "--moment")
+
+    def mean(self) -> float:
+        """Length of the mean at an end, m."""
+        if self.mean_length is None:
+            return MEAN_LENGTH
+        return self._positive(self.mean_length, "mm", "--mean-length")
+
+    def _crown(self, straight: FinitePair, pair: TwoCylinders) -> Crown:
+        if self.crown is None:
+            return Straight()
+        kind, _, value = self.crown.partition(":")
+        length, modulus = straight.contact_length, straight.contact_modulus
+        if kind in ("johns-gohar", "lundberg"):
+            load = self._positive(value, "N/mm", "--crown")
+            half_width, _ = hertz.line_contact(load, 1.0 / straight.curvature, modulus)
+            if kind == "lundberg":
+                return lundberg(load, length, modulus)
+            if not float(half_width) < length:
+                raise InputError("--crown", self.crown, "a load of less half-width than length")
+            return johns_gohar(load, length, modulus, float(half_width))
+        if kind == "circular":
+            return CircularCrown(self._positive(value, "mm", "--crown"))
+        if self.crown == "iso16281":
+            if not np.isfinite(pair.smaller_radius):
+                raise InputError("--crown", self.crown, "on a round body")
+            return iso16281(2.0 * pair.smaller_radius, length)
+        return _tabulated(self.crown)
+
+    @staticmethod
+    def _positive(text: str | None, unit: str, option: str) -> float:
+        if not text:
+            raise InputError(option, "missing", f"specified, > 0 {unit}")
+        value = quantity(text, unit, option)
+        if not value > 0:
+            raise InputError(option, units.rounded(text), f"> 0 {unit}")
+        return value
+
+    @classmethod
+    def _end(cls, text: str | None, option: str) -> BodyEnd:
+        kind, _, size = (text or "sharp").partition(":")
+        if kind == "sharp" and not size:
+            return BodyEnd()
+        if kind == "chamfer":
+            return BodyEnd("chamfer", cls._positive(size, "mm", option))
+        if kind == "radius":
+            return BodyEnd("radius", cls._positive(size, "mm", option))
+        raise InputError(option, text, _ENDS)
+
+
+def _tabulated(text: str) -> TabulatedCrown:
+    path = Path(text)
+    if not path.is_file():
+        raise InputError("--crown", text, _CROWNS)
+    rows = read_table(path)
+    for header in ("y_mm", "drop_um"):
+        if header not in rows:
+            raise ResultError(f"{path}: column {header} is missing")
+    try:
+        return TabulatedCrown(
+            rows["y_mm"] * units.factor("mm"), rows["drop_um"] * units.factor("um")
+        )
+    except InputError as error:
+        raise InputError(f"--crown {path}: {error.field}", error.value, error.limit) from None
+
+
+@dataclass(frozen=True, eq=False)
+class FiniteLength:
+    """A contact of finite length at both tiers."""
+
+    pair: FinitePair
+    tiers: tuple[TierResult, TierResult]
+
+    def records(self) -> list[Document]:
+        """One object per tier; factors over plane-strain p0, error bars in percent."""
+        return [self._record(tier) for tier in self.tiers]
+
+    def _record(self, tier: TierResult) -> Document:
+        factors = dict(zip(_FACTORS, tier.factors.all[0].tolist(), strict=True))
+        contact, cells = tier.contact, tier.contact.cells
+        is_singular = self.pair.has_singular_end and tier.greatest_is_at_an_end
+        bars: dict[str, float | None] = {
+            f"{name}_error_percent": in_unit(each.gci, "%")
+            for name, each in zip(_FACTORS, tier.convergence, strict=True)
+        }
+        if is_singular:
+            bars["greatest_error_percent"] = None
+        moment, scale = float(contact.moment[0]), float(contact.force[0]) * self.pair.contact_length
+        place = int(contact.centre_line[0].argmax())
+        record: Document = {
+            "tier": tier.tier,
+            **factors,
+            "mean_length_mm": in_unit(tier.factors.mean_length, "mm"),
+            **bars,
+            "greatest_at_mm": in_unit(float(cells.centres_along[place]), "mm"),
+            "greatest_is_singular": is_singular,
+            "moment_Nmm": in_unit(moment, "N mm") if abs(moment) > _ROUND_OFF * scale else 0.0,
+        }
+        if tier.tier == "finite_elements":
+            depths = [in_unit(body.depth, "mm") for body in self.pair.bodies]
+            record |= {
+                "tilt_mrad": in_unit(float(contact.tilt[0]), "mrad"),
+                "held_at_depth_mm": depths,
+            }
+        return record | {
+            "unknowns": tier.unknowns,
+            "residual": float(max(contact.equilibrium[0], contact.complementarity[0])),
+        }
+
+    def write(self, path: Path) -> None:
+        """VTU file of the pressure cells with the pressure of each tier, MPa."""
+        from camwright.meshes.mesh_files import write_rectangles
+
+        cells = self.tiers[0].contact.cells
+        x = np.concatenate([-cells.x[:0:-1], cells.x])
+        values = {}
+        for tier in self.tiers:
+            half = tier.contact.pressure[0]
+            whole = np.concatenate([half[:, ::-1], half], axis=1)
+            values[units.column(f"pressure_{tier.tier}", "MPa")] = whole / units.factor("MPa")
+        write_rectangles(path, x, cells.y, values)
+
+
+def finite_length(
+    options: LengthOptions, pair: TwoCylinders, depths: Sequence[float | None]
+) -> FiniteLength:
+    """Both tiers of the contact of the options.
+
+    Raises
+    ------
+    InputError
+        If an option is out of bounds, named.
+    ContactError
+        If the bodies tip over or the contact leaves its cells.
+    """
+    finite = options.finite_pair(pair, depths)
+    if not pair.line_load > 0:
+        raise InputError("--line-load", shown(pair.line_load, "N/mm"), "> 0 N/mm beside --length1")
+    force = pair.line_load * finite.contact_length
+    tilt, moment = options.tilt_or_moment()
+    try:
+        tiers = both_tiers(finite, force, tilt=tilt, moment=moment, mean_length=options.mean())
+    except InputError as error:
+        known = {"moment": "--moment", "tilt": "--tilt", "depth": "--depth1 or --depth2"}
+        field = known.get(error.field, f"--crown: {error.field}")
+        raise InputError(field, error.value, error.limit) from None
+    return FiniteLength(finite, tiers)
+
+
+def lines(records: Sequence[Document]) -> Iterator[str]:
+    """Lines of text of both tiers."""
+    mean = f"{records[0]['mean_length_mm']:g} mm"
+    titles = ("centre", "greatest", f"last {mean}, y < 0", f"last {mean}, y > 0")
+    yield f"{'over plane strain':22}" + "".join(f"{_TITLES[r['tier']]:>24}" for r in records)
+    for name, title in zip(_FACTORS, titles, strict=True):
+        bars = [record[f"{name}_error_percent"] for record in records]
+        yield f"{title:22}" + "".join(
+            f"{record[name]:15.4f} " + (f"{'unbounded':>8}" if bar is None else f"± {bar:4.2g} %")
+            for record, bar in zip(records, bars, strict=True)
+        )
+    blocks = records[1]
+    for depth, number in zip(blocks["held_at_depth_mm"], (1, 2), strict=True):
+        yield f"body {number} held at a depth of {depth:.4g} mm"
+    moment, tilt = blocks["moment_Nmm"], blocks["tilt_mrad"]
+    yield f"moment {moment:.4g} N mm, tilt of the bases {tilt:.4g} mrad"
+    where = f"greatest at y = {blocks['greatest_at_mm']:.4g} mm"
+    if blocks["greatest_is_singular"]:
+        yield f"{where}, at a corner: it grows with the mesh, the mean over {mean} does not"
+    else:
+        yield f"{where}: a bounded peak"
