@@ -21,16 +21,17 @@ from camwright.reports.figures import (
 )
 from camwright.reports.machine_words import MachineWords
 from camwright.reports.part_figures import PART_FIGURES
-from camwright.reports.report_tables import number, quantity, words
+from camwright.reports.report_tables import isolated, number, quantity, words
 from camwright.reports.sheet_turn import Turn, angle_figure, curves_of
 
 GROUPS = (
-    ("Torque", ("torque", "torque-components", "crank-speed", "ripple-map")),
+    ("Torque", ("torque", "torque-spectrum", "torque-components", "crank-speed", "ripple-map")),
     ("Shape", ("outline", "pressure-angle", "face", "lift", "radii")),
     ("Limits", ("limits",)),
     ("Contact", ("pressure", "half-width", "stress")),
-    ("Forces and guides", ("normal-force", "forces", "spring-force", "guides", "jamming", "speed")),
-    ("Parts", ("edge-pressure", "elastic", "roller", "film", "parts")),
+    ("Forces and guides", ("normal-force", "forces", "guides", "jamming", "speed")),
+    ("Energy, speed and load cases", ("energy", "load-cases", "speed-sweep")),
+    ("Parts", ("spring-force", "edge-pressure", "elastic", "roller", "film", "parts")),
     ("Trials", ("trial-points",)),
 )
 LARGEST_RADIUS_MM = 150.0
@@ -38,14 +39,15 @@ HARD_STOP_DEG = 45.0
 """Upper bound of the pressure angle of translating followers; Rothbart (2004), ch. 6."""
 BINDS = 0.997
 """Utilisation from which a limit is active; the synthesis keeps a small margin."""
+_ORDERS = 24  # harmonics of a cam turn
 _SHOWN, _MOST = 0.5, 6  # utilisation from which a limit is shown, and the number of limits
 
 
 def groups(turn: Turn) -> tuple[tuple[str, tuple[Figure, ...]], ...]:
     """Figures for which the run has columns, by group."""
     makers: tuple[Callable[[Turn], Figure | None], ...] = (
-        _torque, _components, _crank_speed, _lift, _outline, _pressure_angle, _face, _radii,
-        _limits_strip, _pressure, _half_width, _stress, *PART_FIGURES,
+        _torque, _spectrum, _components, _crank_speed, _lift, _outline, _pressure_angle, _face,
+        _radii, _limits_strip, _pressure, _half_width, _stress, *PART_FIGURES,
         _ripple_map, _trial_points,
     )  # fmt: skip
     made = (maker(turn) for maker in makers)
@@ -55,6 +57,7 @@ def groups(turn: Turn) -> tuple[tuple[str, tuple[Figure, ...]], ...]:
 
 
 def _torque(turn: Turn) -> Figure | None:
+    turn = turn.balanced
     curves = curves_of(
         turn, ("torque_before_Nm", turn.words.alone), ("torque_after_Nm", "with the cam"),
     )  # fmt: skip
@@ -65,8 +68,30 @@ def _torque(turn: Turn) -> Figure | None:
     return angle_figure(
         turn, "torque", f"{turn.words.title} torque",
         f"Deviation of the {turn.words.shaft} torque from its mean, without and with the cam; "
-        "guide friction and follower inertia included.",
+        f"guide friction and follower inertia included. Load case {isolated(turn.load_case)}.",
         Panel("torque", "N m", curves, height=1.25), mark=False,
+    )  # fmt: skip
+
+
+def _spectrum(turn: Turn) -> Figure | None:
+    """Amplitudes of the torque by harmonic order of the machine's shaft."""
+    turn = turn.balanced
+    names = (("torque_before_Nm", turn.words.alone), ("torque_after_Nm", "with the cam"))
+    count = min(_ORDERS, turn.crank.size // 2 - 1)
+    curves = []
+    for (name, label), colour in zip(names, SERIES, strict=False):
+        values = turn.columns.get(name)
+        if values is not None and np.isfinite(values).all() and count > 0:
+            amplitude = 2.0 * np.abs(np.fft.rfft(values))[1 : count + 1] / values.size
+            curves.append(Curve(label, amplitude, colour))
+    if not curves:
+        return None
+    return LineFigure(
+        "torque-spectrum", "Torque spectrum",
+        f"Amplitude of each harmonic of the {turn.words.shaft} torque, by its order: periods in a "
+        f"turn of the {turn.words.shaft}. Load case {isolated(turn.load_case)}.",
+        "harmonic order", "", np.arange(1, count + 1) / turn.gear_ratio,
+        (Panel("amplitude", "N m", tuple(curves), height=1.1, from_zero=True),), bars=True,
     )  # fmt: skip
 
 
@@ -208,8 +233,9 @@ def _face(turn: Turn) -> Figure | None:
 def _pressure_angle(turn: Turn) -> Figure | None:
     if not turn.rolls:  # zero at every angle
         return None
-    limits = (*turn.limit("limit", "deg", "pressure_angle"), LimitLine(HARD_STOP_DEG, "hard stop"))
-    both = limits + tuple(LimitLine(-line.value, line.label) for line in limits)
+    limits = turn.limit("limit", "deg", "pressure_angle")
+    both = (*limits, *(LimitLine(-line.value, line.label) for line in limits),
+            LimitLine(HARD_STOP_DEG, "hard stop"))  # fmt: skip
     return angle_figure(
         turn, "pressure-angle", "Pressure angle",
         "Angle between the contact normal and the direction of follower motion, positive in the "

@@ -160,18 +160,24 @@ def png_of(figure: Figure) -> bytes:
 
 
 def png(canvas: Canvas, dpi: int = 150) -> bytes:
-    """PNG file of a canvas on white; equal drawings give equal bytes."""
-    stream = io.BytesIO()
+    """PNG file of a canvas on white, of 256 colours; equal drawings give equal bytes."""
+    from PIL import Image
+
+    stream, small = io.BytesIO(), io.BytesIO()
     canvas.savefig(
         stream, format="png", dpi=dpi, facecolor=COLOURS["card"], metadata={"Software": None}
     )
-    return stream.getvalue()
+    with Image.open(stream) as picture:
+        few = picture.convert("RGB").quantize(256, dither=Image.Dither.NONE)
+    few.save(small, format="png", optimize=True, dpi=(dpi, dpi))
+    return small.getvalue()
 
 
 def themed(svg: str, figure_id: str) -> str:
     """SVG for inclusion in a page: no header, unique ids, two decimals, colours by name."""
     svg = svg[svg.index("<svg") :]
     svg = re.sub(r"<metadata>.*?</metadata>", "", svg, flags=re.DOTALL)
+    svg = re.sub(r"<defs>\s*<style.*?</style>\s*</defs>", "", svg, count=1, flags=re.DOTALL)
     svg = re.sub(r'<g id="[^"]*"', "<g", svg)
     svg = re.sub(r'id="(image|legend)[^"]*"', "", svg)
     svg = re.sub(r"<[^>]+>", lambda tag: re.sub(r"(\d\.\d\d)\d+", r"\1", tag.group()), svg)
@@ -227,11 +233,8 @@ def _lines(figure: LineFigure) -> Canvas:
 
     canvas, axes = _stacked(figure)
     for ax, panel in zip(axes, figure.panels, strict=True):
-        for curve in panel.curves:
-            ax.plot(
-                figure.x, curve.values, "o-", color=COLOURS[curve.colour], label=curve.label,
-                linewidth=1.5, markersize=2.6, zorder=3,
-            )  # fmt: skip
+        for number, curve in enumerate(panel.curves):
+            _points(ax, figure, panel, number)
             for note, x, y in zip(curve.notes, figure.x, curve.values, strict=False):
                 if not np.isfinite(y):
                     continue
@@ -239,12 +242,35 @@ def _lines(figure: LineFigure) -> Canvas:
                     note, (x, y), xytext=(0, 4), textcoords="offset points", ha="center",
                     va="bottom", fontsize=7.0, color=COLOURS["muted"], zorder=4,
                 )  # fmt: skip
-        _vertical(ax, panel, named=False)
+        for at, _ in figure.marks:
+            ax.axvline(at, color=COLOURS["muted"], linewidth=0.8, linestyle=(0, (1, 2)), zorder=2)
+        _vertical(ax, panel, named=bool(figure.marks))
         ax.set_xlim(*figure.span)
         ax.xaxis.set_major_locator(MaxNLocator(nbins=8, integer=figure.whole))
     _legends(figure, axes)
+    for at, name in figure.marks:
+        axes[0].annotate(
+            name, (at, 1.0), xycoords=("data", "axes fraction"), xytext=(-2, -3),
+            textcoords="offset points", ha="right", va="top", fontsize=7.0, rotation=90,
+            color=COLOURS["muted"], bbox=BACKING, zorder=4,
+        )  # fmt: skip
     axes[-1].set_xlabel(figure.axis, labelpad=2)
     return canvas
+
+
+def _points(ax: Axes, figure: LineFigure, panel: Panel, number: int) -> None:
+    """One curve of a panel as a line or as bars."""
+    curve = panel.curves[number]
+    colour = COLOURS[curve.colour]
+    if figure.bars:
+        width = figure.bar_width / len(panel.curves)
+        shift = (number - 0.5 * (len(panel.curves) - 1)) * width
+        ax.bar(figure.x + shift, curve.values, width, color=colour, label=curve.label, zorder=3)
+        return
+    ax.plot(
+        figure.x, curve.values, "o-" if figure.dotted else "-", color=colour, label=curve.label,
+        linewidth=1.5, markersize=2.6, zorder=3,
+    )  # fmt: skip
 
 
 def _canvas(height: float) -> Canvas:

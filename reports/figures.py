@@ -23,6 +23,8 @@ CAM_AXIS = "cam angle, deg"
 CRANK_STEP, CAM_STEP = 90, 45
 """Spacing of the tick labels on the angle axes, deg."""
 X_AXIS, Y_AXIS = "x, mm (cam angle 0 points along x)", "y, mm"
+MOST_POINTS = 40
+"""Most points of a line that are marked."""
 _ROUND = 121  # points of a circle
 
 
@@ -63,8 +65,8 @@ class LimitLine:
 class Panel:
     """One pair of axes: quantity, unit, curves, limits.
 
-    `span` are the limits of the vertical axis; None derives them from the curves. `height` is
-    relative to the other panels.
+    `span` are the limits of the vertical axis; None derives them from the curves, with zero if
+    `from_zero`, as bars need it. `height` is relative to the other panels.
     """
 
     quantity: str
@@ -73,6 +75,7 @@ class Panel:
     limits: tuple[LimitLine, ...] = ()
     height: float = 1.0
     span: tuple[float, float] | None = None
+    from_zero: bool = False
 
     @property
     def title(self) -> str:
@@ -98,7 +101,7 @@ def vertical_span(panel: Panel, named: bool) -> tuple[float, float]:
     values = np.concatenate(held or [np.zeros(1)])
     values = values[np.isfinite(values)]
     low, high = (float(values.min()), float(values.max())) if values.size else (0.0, 1.0)
-    if low > 0 and low < 0.5 * high:
+    if low > 0 and (low < 0.5 * high or panel.from_zero):
         low = 0.0
     size = max(high - low, 1e-12 + 1e-3 * max(abs(low), abs(high)))
     for line in panel.limits:
@@ -219,7 +222,11 @@ class AngleFigure:
 
 @dataclass(frozen=True, eq=False)
 class LineFigure:
-    """Panels over a common quantity: x (n,), ascending; `whole`: a count. Points are marked."""
+    """Panels over a common quantity: x (n,), ascending; `whole`: a count.
+
+    Points are marked, unless there are many, or drawn as `bars`. `marks` are values of x with a
+    name each.
+    """
 
     id: str
     title: str
@@ -229,6 +236,18 @@ class LineFigure:
     x: Array
     panels: tuple[Panel, ...]
     whole: bool = False
+    bars: bool = False
+    marks: tuple[tuple[float, str], ...] = ()
+
+    @property
+    def dotted(self) -> bool:
+        """Whether points are marked."""
+        return self.x.size <= MOST_POINTS
+
+    @property
+    def bar_width(self) -> float:
+        """Width of the bars of all curves at one x together."""
+        return 0.8 * float(np.min(np.diff(self.x), initial=1.0 if self.whole else np.inf))
 
     @property
     def axis(self) -> str:
@@ -239,7 +258,9 @@ class LineFigure:
     def span(self) -> tuple[float, float]:
         """Limits of the horizontal axis."""
         low, high = float(self.x[0]), float(self.x[-1])
-        margin = 0.5 if self.whole else 0.03 * (high - low)
+        margin = 0.03 * (high - low)
+        if self.whole or self.bars:
+            margin = 0.5 if self.whole else 0.7 * self.bar_width
         return low - margin, high + margin
 
     @property

@@ -154,16 +154,28 @@ def _sweep(figure: LineFigure) -> Spec:
     for number, panel in enumerate(figure.panels):
         end = "" if number == 0 else str(number + 1)
         axis, (bottom, top) = f"y{end}", lines.domains[number]
-        low, high = vertical_span(panel, named=False)
+        low, high = vertical_span(panel, bool(figure.marks))
         axes[f"yaxis{end}"] = {
             "domain": [bottom, top], "fixedrange": True, "range": [low, high],
             "title": {"text": html.escape(panel.title), "standoff": 8},
         }  # fmt: skip
+        if figure.legends[number] and number:
+            axes[f"legend{end}"] = {"orientation": "h", "x": 0, "y": top, "yanchor": "bottom",
+                                    "traceorder": "normal"}  # fmt: skip
+        legend = {"legend": f"legend{end}"} if figure.legends[number] else {}
         for curve in panel.curves:
-            trace: Spec = {"type": "scatter", "mode": "lines+markers", "x": x, "xaxis": "x",
-                     "yaxis": axis, "marker": {"size": 5, "color": curve.colour},
-                     "customdata": x, "showlegend": figure.legends[number]}  # fmt: skip
-            traces.append(trace | _curve(curve, panel, "") | {"y": _numbers(curve.values)})
+            kind = (
+                {"type": "bar"}
+                if figure.bars
+                else {"type": "scatter", "mode": "lines+markers" if figure.dotted else "lines"}
+            )
+            trace: Spec = kind | legend | {"x": x, "xaxis": "x", "yaxis": axis, "customdata": x,
+                     "marker": {"size": 5, "color": curve.colour},
+                     "showlegend": figure.legends[number]}  # fmt: skip
+            drawn = _curve(curve, panel, "") | {"y": _numbers(curve.values)}
+            traces.append(
+                trace | {k: v for k, v in drawn.items() if k != "line" or not figure.bars}
+            )
             notes += [
                 {"xref": "x", "x": at, "yref": axis, "y": value, "yshift": 4, "yanchor": "bottom",
                  "showarrow": False, "text": html.escape(note),
@@ -173,6 +185,17 @@ def _sweep(figure: LineFigure) -> Spec:
             ]  # fmt: skip
         lines_of, notes_of = _limits(panel, axis, low, high)
         shapes, notes = shapes + lines_of, notes + notes_of
+    shapes += [
+        {"xref": "x", "yref": "paper", "y0": 0, "y1": 1, "type": "line", "x0": at, "x1": at,
+         "line": {"color": "muted", "width": 1, "dash": "dot"}}
+        for at, _ in figure.marks
+    ]  # fmt: skip
+    notes += [
+        {"xref": "x", "x": at, "yref": "paper", "y": 1, "xanchor": "right", "yanchor": "top",
+         "textangle": -90, "showarrow": False, "text": html.escape(name),
+         "font": {"color": "muted", "size": 10}, "bgcolor": "card"}
+        for at, name in figure.marks
+    ]  # fmt: skip
     last = len(figure.panels)
     horizontal: Spec = {"range": list(figure.span), "fixedrange": True,
                         "title": {"text": html.escape(figure.axis)},
@@ -182,6 +205,7 @@ def _sweep(figure: LineFigure) -> Spec:
     return {"data": traces, "at": {"name": figure.quantity, "unit": figure.unit}, "layout": {
         "height": lines.height, "shapes": shapes, "annotations": notes, **axes,
         "margin": {"l": 68, "r": 14, "t": lines.top, "b": _BOTTOM_PIXELS}, "xaxis": horizontal,
+        "barmode": "group", "bargap": 0.2,
     }}  # fmt: skip
 
 
@@ -202,7 +226,8 @@ class _Lines:
         for height, gap in zip(heights, [*gaps, 0], strict=True):
             domains.append((max(edge - height, 0.0) / whole, edge / whole))
             edge -= height + gap
-        top = _TOP_PIXELS + (_LEGEND_PIXELS if figure.legends[0] else 0)
+        axis = _TOP_PIXELS if isinstance(figure, AngleFigure) else _GAP_PIXELS
+        top = axis + (_LEGEND_PIXELS if figure.legends[0] else 0)
         return cls(round(whole) + top + _BOTTOM_PIXELS, top, tuple(domains))
 
 

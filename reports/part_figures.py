@@ -6,10 +6,13 @@ from collections.abc import Callable
 
 import numpy as np
 
-from camwright.reports.figures import Curve, Figure, LimitLine, LineFigure, Panel
+from camwright.geometry.arrays import Array
+from camwright.reports.figures import SERIES, Curve, Figure, LimitLine, LineFigure, Panel
 from camwright.reports.sheet_turn import Turn, angle_figure, curves_of
 
 _TRAVEL_POINTS = 31
+_DEAD_COILS = 2.0  # of squared and ground ends
+_PROMINENCE = 0.1
 
 
 def _forces(turn: Turn) -> Figure | None:
@@ -30,17 +33,142 @@ def _forces(turn: Turn) -> Figure | None:
 
 
 def _spring_force(turn: Turn) -> Figure | None:
-    """Of a spring that is not linear."""
-    if turn.case.get("spring", {}).get("kind", "coil") == "coil":
-        return None
+    """Over the travel in use; of a coil spring with its force at solid length."""
+    spring = turn.case.get("spring", {})
     lift, first = np.unique(turn.columns["lift_mm"], return_index=True)
+    if lift.size < 2:
+        return None
+    force = turn.columns["spring_force_N"][first]
     at = np.linspace(lift[0], lift[-1], _TRAVEL_POINTS)
-    force = np.interp(at, lift, turn.columns["spring_force_N"][first])
+    used = np.interp(at, lift, force)
+    limits: tuple[LimitLine, ...] = ()
+    rate = (force[-1] - force[0]) / (lift[-1] - lift[0])
+    free, wire = (turn.length("spring", "design", key) for key in ("free_length", "wire_diameter"))
+    coils = spring.get("design", {}).get("coils")
+    if free and wire and isinstance(coils, (int, float)) and spring.get("kind", "coil") == "coil":
+        solid = wire * (coils + _DEAD_COILS)
+        limits = (LimitLine(float(rate * (free - solid)), "all coils closed"),)
     return LineFigure(
         "spring-force", "Spring force over the travel",
-        "Force of the spring at the lifts of the turn, without friction.",
-        "lift", "mm", at, (Panel("force", "N", (Curve("", force, "blue"),)),),
+        "Force of the spring at the lifts of the turn, without friction and surge.",
+        "lift", "mm", at, (Panel("force", "N", (Curve("", used, "blue"),), limits,
+                                 from_zero=True),),
     )  # fmt: skip
+
+
+def _energy(turn: Turn) -> Figure | None:
+    """Energies of spring and follower, and what cam and guides have exchanged since the angle 0."""
+    c = turn.columns
+    mass = turn.length("follower", "mass", unit="kg")
+    if mass is None:
+        return None
+    theta, lift = np.radians(c["cam_angle_deg"]), 1e-3 * c["lift_mm"]
+    spring = _summed(c["spring_force_N"], lift)
+    speed = c["follower_velocity_m_per_s"]
+    friction = c["guide_friction_A_N"] + c["guide_friction_B_N"]
+    rubbing = _summed(np.abs(friction * speed) / c["cam_speed_rad_per_s"], theta)
+    drag = _summed(np.abs(c["viscous_force_N"] * speed) / c["cam_speed_rad_per_s"], theta)
+    rest = turn.case.get("follower", {}).get("face") is not None
+    curves = [Curve("spring, above zero lift", spring - spring[np.argmin(lift)], "blue"),
+              Curve("kinetic, of the follower", 0.5 * mass * speed**2, "green")]  # fmt: skip
+    work = [Curve("work of the cam", _summed(c["cam_torque_Nm"], theta), "vermillion"),
+            Curve("guide friction", rubbing + drag, "muted")]  # fmt: skip
+    note = " The face rubs on the cam as well." if rest else ""
+    return angle_figure(
+        turn, "energy", "Energy flow over the cycle",
+        "Energy stored in the spring and in the motion of the follower; work that the cam has put "
+        f"into the follower and heat of the guides since cam angle 0.{note}",
+        Panel("energy", "J", tuple(curves)), Panel("since angle 0", "J", tuple(work)), mark=False,
+    )  # fmt: skip
+
+
+def _summed(values: Array, over: Array) -> Array:
+    """Integral (n,) by the trapezoidal rule from the first point."""
+    steps = 0.5 * (values[1:] + values[:-1]) * np.diff(over)
+    return np.concatenate([[0.0], np.cumsum(np.nan_to_num(steps))])
+
+
+def _load_cases(turn: Turn) -> Figure | None:
+    """Extremes of the load cases side by side; None of a single one."""
+    if len(turn.others) < 2:
+        return None
+    names = tuple(name for each in turn.others for name in each.load_cases)
+    x = np.arange(1.0, len(names) + 1.0)
+
+    def extreme(column: str, measure: Callable[[Array], float]) -> Array:
+        known = (np.nan_to_num(each[column]) for each in turn.others)
+        return np.array([measure(values) for values in known])
+
+    def largest(values: Array) -> float:
+        return float(np.max(np.abs(values)))
+
+    def bars(title: str, unit: str, *rows: tuple[str, str], limits: tuple[LimitLine, ...] = (),
+             notes: tuple[str, ...] = ()) -> Panel:  # fmt: skip
+        curves = tuple(
+            Curve(label, extreme(column, largest), colour, notes=notes if not k else ())
+            for k, ((column, label), colour) in enumerate(zip(rows, SERIES, strict=False))
+        )
+        return Panel(title, unit, curves, limits, height=0.75, from_zero=True)
+
+    pressure = "p0_fe_MPa" if np.isfinite(turn.columns["p0_fe_MPa"]).any() else "p0_hertz_MPa"
+    ended = " Loads of a case in which the follower leaves the cam or locks do not occur."
+    panels = (
+        bars("normal force", "N", ("normal_force_N", ""), notes=names),
+        bars(
+            "p0", "MPa", (pressure, ""), limits=turn.limit("endurance", "MPa", "contact_pressure")
+        ),
+        bars("guides", "N", ("guide_reaction_A_N", "guide A"), ("guide_reaction_B_N", "guide B")),
+        bars("cam torque", "N m", ("cam_torque_Nm", "")),
+    )
+    return LineFigure(
+        "load-cases", "Load cases side by side",
+        f"Greatest values over the turn in each load case: {', '.join(names)}.{ended}",
+        "load case", "", x, panels, whole=True, bars=True,
+    )  # fmt: skip
+
+
+def _speed_sweep(turn: Turn) -> Figure | None:
+    """Contact force and surge over the speed, with the resonances of the spring."""
+    sweep = turn.sweep
+    if sweep is None:
+        return None
+    rows = sweep["preload_N"] == sweep["preload_N"][0]
+    speed, surge = sweep["crank_speed_rpm"][rows], sweep["surge_force_N"][rows]
+    speed, first = np.unique(speed, return_index=True)
+    if speed.size < 3:
+        return None
+    columns = (("contact_force_max_N", "greatest"), ("contact_force_min_N", "least"),
+               ("elastic_force_min_N", "least, elastic stem"))  # fmt: skip
+    forces = tuple(Curve(label, sweep[name][rows][first], colour)
+                   for (name, label), colour in zip(columns, SERIES, strict=False))  # fmt: skip
+    surge = surge[first]
+    marks = tuple((float(speed[k]), f"resonance {speed[k]:.0f} rpm") for k in _peaks(surge))
+    panels = [Panel("contact force", "N", forces, (LimitLine(0.0, "contact lost at"),))]
+    if np.any(surge):
+        panels.append(Panel("spring surge", "N", (Curve("", surge, "blue"),), height=0.8))
+    return LineFigure(
+        "speed-sweep", "Speed sweep",
+        f"Extremes over a turn at constant speeds of the {turn.words.shaft}, surge of the spring "
+        "included; resonances of the spring with the harmonics of the lift.",
+        f"{turn.words.shaft} speed", "rpm", speed, tuple(panels), marks=marks,
+    )  # fmt: skip
+
+
+def _peaks(values: Array) -> list[int]:
+    """Rows of the maxima that stand out by `_PROMINENCE` of the greatest value, at most three."""
+    inner = range(1, values.size - 1)
+    highest = [k for k in inner if values[k] > values[k - 1] and values[k] >= values[k + 1]]
+
+    def stands_out(k: int) -> float:
+        left, right = values[:k], values[k + 1 :]
+        higher = np.flatnonzero(left > values[k])
+        low_left = left[higher[-1] + 1 if higher.size else 0 :].min()
+        higher = np.flatnonzero(right > values[k])
+        low_right = right[: higher[0] if higher.size else None].min()
+        return float(values[k] - max(low_left, low_right))
+
+    clear = [k for k in highest if stands_out(k) > _PROMINENCE * float(values.max())]
+    return sorted(sorted(clear, key=lambda k: -values[k])[:3])
 
 
 def _normal_force(turn: Turn) -> Figure | None:
@@ -104,6 +232,7 @@ def _jamming(turn: Turn) -> Figure | None:
 def _speed(turn: Turn) -> Figure | None:
     velocity = turn.columns["follower_velocity_m_per_s"]
     curves: list[Curve] = []
+    means: list[Curve] = []
     limits: list[LimitLine] = []
     for name, colour in (("A", "blue"), ("B", "vermillion")):
         length = turn.length("guides", name.lower(), "length")
@@ -112,12 +241,16 @@ def _speed(turn: Turn) -> Figure | None:
         if length and diameter:
             pv = np.abs(load * velocity) / (length * diameter)
             curves.append(Curve(f"guide {name}", pv, colour))
-            limits += turn.limit(f"mean PV limit {name}", "MPa m/s", f"guide_pv_{name}")
+            means.append(Curve(f"guide {name}", np.full_like(pv, pv.mean()), colour))
+            limits += turn.limit(f"limit {name}", "MPa m/s", f"guide_pv_{name}")
     return angle_figure(
         turn, "speed", "Follower velocity and guide PV",
-        "PV: guide force over projected area, times sliding speed.",
+        "PV: guide force over projected area, times sliding speed; its limit is one of the mean "
+        "over the turn.",
         Panel("velocity", "m/s", curves_of(turn, ("follower_velocity_m_per_s", "")), height=0.8),
-        Panel("PV", "MPa m/s", tuple(curves), tuple(dict.fromkeys(limits)), height=0.9),
+        Panel("PV", "MPa m/s", tuple(curves), height=0.9),
+        Panel("mean PV", "MPa m/s", tuple(means), tuple(dict.fromkeys(limits)), height=0.7,
+              from_zero=True),
     )  # fmt: skip
 
 
@@ -204,6 +337,6 @@ def _parts(turn: Turn) -> Figure | None:
 
 
 PART_FIGURES: tuple[Callable[[Turn], Figure | None], ...] = (
-    _forces, _spring_force, _normal_force, _guides, _jamming, _speed, _edge_pressure, _elastic,
-    _roller, _film, _parts,
+    _forces, _spring_force, _energy, _load_cases, _speed_sweep, _normal_force, _guides, _jamming,
+    _speed, _edge_pressure, _elastic, _roller, _film, _parts,
 )  # fmt: skip

@@ -70,7 +70,7 @@ def governing_turn(run: Run, case: Record) -> Turn:
     return Turn(
         by_name[drawn], tuple(by_name.values()), final.lift, final.contour, run.torque,
         final.checks, case, final.record["balance"], drawn, run.speed, final.limits,
-        run.summary["trial_points"], run.summary["ripple_map"],
+        run.summary["trial_points"], run.summary["ripple_map"], final.sweep,
     )  # fmt: skip
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -15,6 +15,10 @@ from camwright.pipeline.base.tables import Table
 from camwright.reports.figures import SERIES, AngleFigure, Curve, Figure, LimitLine, Panel
 from camwright.reports.machine_words import MachineWords, words_of
 from camwright.reports.report_tables import Record, in_unit
+
+_FLAT = 0.02
+"""Share of the greatest curve of a panel below which another one looks like zero."""
+_LOW_HEIGHT = 0.6  # of a panel for small curves
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,6 +38,7 @@ class Turn:
     limits : Table or None     2_limits.csv
     points : sequence          trial_points of run.json
     ripple_map : mapping       ripple_map of run.json; None without one
+    sweep : Table or None      5_speed_sweep.csv
     """
 
     columns: Table
@@ -49,6 +54,7 @@ class Turn:
     limits: Table | None = None
     points: Sequence[Record] = ()
     ripple_map: Record | None = None
+    sweep: Table | None = None
 
     @property
     def counter_hole(self) -> tuple[float, float, float, bool] | None:
@@ -78,6 +84,16 @@ class Turn:
     def words(self) -> MachineWords:
         """Words of the machine."""
         return words_of(self.case, self.gear_ratio, balances=self.torque is not None)
+
+    @property
+    def balanced(self) -> Turn:
+        """The same of the first load case with a torque of the machine; itself without one."""
+        for table in (self.columns, *self.others):
+            torque = table.get("torque_before_Nm")
+            if torque is not None and np.isfinite(torque).all():
+                names = table.load_cases
+                return replace(self, columns=table, load_case=names[0] if names else self.load_case)
+        return self
 
     @property
     def worst(self) -> int:
@@ -160,12 +176,41 @@ def angle_figure(
     crank: Array | None = None,
 ) -> Figure | None:  # fmt: skip
     """Figure of the panels that have curves; None without any."""
-    full = tuple(panel for panel in panels if panel.curves)
+    full = tuple(part for panel in panels for part in _apart(panel))
+    zero = [curve.label for panel in panels for curve in panel.curves if _is_zero(curve)]
     if not full:
         return None
+    named = ", ".join(name for name in zero if name)
     return AngleFigure(
-        figure_id, title, caption, turn.crank if crank is None else crank, full, turn.gear_ratio,
+        figure_id, title, f"{caption} Zero at all angles: {named}." if named else caption,
+        turn.crank if crank is None else crank, full, turn.gear_ratio,
         marks=turn.words.marks,
         shaft=turn.words.shaft,
         worst=float(turn.crank[turn.worst]) if mark else None,
     )  # fmt: skip
+
+
+def _is_zero(curve: Curve) -> bool:
+    """Whether a curve beside others is zero at all angles, in its ribbon too."""
+    shown = (curve.values, *(curve.band or ()))
+    return bool(curve.label) and not any(np.any(np.nan_to_num(part)) for part in shown)
+
+
+def _apart(panel: Panel) -> tuple[Panel, ...]:
+    """Panel without curves that are zero; those that look flat beside the greatest one follow.
+
+    A panel in which all curves are zero is left out.
+    """
+    curves = tuple(curve for curve in panel.curves if not _is_zero(curve))
+    if not curves:
+        return ()
+    sizes = [max(float(np.max(np.abs(np.nan_to_num(part))))
+                 for part in (curve.values, *(curve.band or ()))) for curve in curves]  # fmt: skip
+    flat = [size < _FLAT * max(sizes) for size in sizes]
+    large = tuple(curve for curve, small in zip(curves, flat, strict=True) if not small)
+    little = tuple(curve for curve, small in zip(curves, flat, strict=True) if small)
+    if not little:
+        return (replace(panel, curves=curves),)
+    name = little[0].label if len(little) == 1 else panel.quantity
+    below = Panel(name, panel.unit, little, height=_LOW_HEIGHT)
+    return replace(panel, curves=large), below

@@ -52,6 +52,7 @@ HEADLINE = (
 )
 LIMITS_FILE = "2_limits.csv"
 SPLINE_FILE = "2_spline.csv"
+SWEEP_FILE = "5_speed_sweep.csv"
 
 
 class TrialContents(TypedDict):
@@ -155,7 +156,7 @@ class Summary(SummaryOfAnyRun, total=False):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class TrialRecord(WithChecks):
-    """A trial read from its folder: lift, contour, cycle, checks and record."""
+    """A trial read from its folder: lift, contour, cycle, checks, record, speed sweep."""
 
     number: int
     path: Path
@@ -165,6 +166,7 @@ class TrialRecord(WithChecks):
     checks: tuple[CheckRecord, ...]
     record: TrialContents
     limits: Table | None = None
+    sweep: Table | None = None
 
     @property
     def facts(self) -> Mapping[str, object]:
@@ -400,7 +402,7 @@ def _require_judgement(
 
 def _read_trial(run: Path, number: int) -> TrialRecord:
     path = run / f"trial_{number}"
-    limits = path / LIMITS_FILE
+    limits, sweep = path / LIMITS_FILE, path / SWEEP_FILE
     return TrialRecord(
         number=number,
         path=path,
@@ -410,6 +412,7 @@ def _read_trial(run: Path, number: int) -> TrialRecord:
         checks=read_checks(path),
         record=read_trial_record(path),
         limits=read_table(limits) if limits.is_file() else None,
+        sweep=read_table(sweep) if sweep.is_file() else None,
     )
 
 

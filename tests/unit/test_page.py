@@ -128,8 +128,8 @@ def test_the_outline_tells_of_the_counter_hole(html):
 
 
 def test_every_figure_of_the_sheet_is_there_with_words_for_it(html):
-    # the run has a roller, a coil spring, and no synthesis within limits
-    without = {"face", "limits", "spring-force"}
+    # the run has a roller, one load case, no sweep, and no synthesis within limits
+    without = {"face", "limits", "load-cases", "speed-sweep"}
     wanted = [name for _, names in analysis_sheet.GROUPS for name in names if name not in without]
     assert not any(f'<figure id="{name}">' in html for name in without)
     for name in wanted:
@@ -262,8 +262,9 @@ def test_an_incomplete_run_says_first_what_to_confirm_and_what_is_missing(tmp_pa
     top = html[html.index('id="verdict"') : html.index('id="sheet"')]
     said = [
         "<b>1 check without data, 1 waived, 1 value to be confirmed",
-        "Not covered by this sign-off: key: &lt;script&gt;", "required checks pass, 1 lacks data",
-        "Missing data:</b> 1", "Shaft stress: \u2068&lt;script&gt;", "Waived:", "accepted up to 2",
+        "Not covered by this sign-off: key: &lt;script&gt;", "State the missing data.",
+        "Shaft stress: \u2068&lt;script&gt;", "required checks pass, 1 lacks data",
+        "Missing data:</b> 1", "Waived:", "accepted up to 2",
         "Values to be confirmed:</b> 1",
     ]  # fmt: skip
     places = [top.index(text) for text in said]

@@ -1,0 +1,132 @@
+"""Figures of the sheet: spectrum, energy flow, load cases, speed sweep, limits beside means."""
+
+from __future__ import annotations
+
+import sys
+from dataclasses import replace
+from pathlib import Path
+from types import MappingProxyType
+
+import numpy as np
+import pytest
+
+sys.path.insert(0, str(Path(__file__).parents[1]))
+import report_fixture
+
+from camwright.pipeline.base.tables import Table
+from camwright.reports import figure_svg, interactive
+from camwright.reports.analysis_sheet import groups
+from camwright.reports.figures import AngleFigure, Curve, LimitLine, Panel
+from camwright.reports.report_data import read_material
+from camwright.reports.sheet_turn import angle_figure
+
+ROWS = 72
+
+
+@pytest.fixture(scope="module")
+def turn(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("sheet") / "run"
+    report_fixture.write_run(folder, positions=ROWS, field=False)
+    return read_material(folder).turn
+
+
+def with_columns(turn, **more):
+    """The turn with other columns in its load case."""
+    table = Table(
+        MappingProxyType({**turn.columns.columns, **more}), turn.columns.rows_of
+    )  # fmt: skip
+    return replace(turn, columns=table, others=(table,))
+
+
+def figure_of(turn, name):
+    (made,) = [each for _, figures in groups(turn) for each in figures if each.id == name]
+    return made
+
+
+def test_a_pure_harmonic_is_one_bar_of_its_amplitude(turn):
+    wave = 5.0 * np.cos(3.0 * turn.columns["cam_angle_deg"] * np.pi / 180.0 + 0.4)
+    made = figure_of(with_columns(turn, torque_before_Nm=wave + 2.0), "torque-spectrum")
+    amplitude = made.panels[0].curves[0].values
+    order = np.argmax(amplitude)
+    assert amplitude[order] == pytest.approx(5.0)
+    assert made.x[order] == pytest.approx(3.0 / turn.gear_ratio)
+    assert np.delete(amplitude, order) == pytest.approx(0.0, abs=1e-12)
+
+
+def test_the_energy_of_a_linear_spring_is_that_of_its_formula(turn):
+    """The integral of the force over the lift against P s + k s^2/2."""
+    lift = 4.0 - 3.0 * np.cos(np.radians(turn.columns["cam_angle_deg"]))  # mm
+    force = 200.0 + 30.0 * lift
+    made = figure_of(with_columns(turn, lift_mm=lift, spring_force_N=force), "energy")
+    spring = next(c.values for p in made.panels for c in p.curves if c.label.startswith("spring"))
+    low = lift.min()
+    expected = 1e-3 * (200.0 * (lift - low) + 15.0 * (lift**2 - low**2))
+    assert spring == pytest.approx(expected, abs=1e-12)
+
+
+def test_load_cases_stand_side_by_side(turn):
+    first = turn.columns
+    other = Table(
+        MappingProxyType({**first.columns, "normal_force_N": 2.0 * first["normal_force_N"]}),
+        np.full(len(first), "over-speed"),
+    )
+    made = figure_of(replace(turn, others=(first, other)), "load-cases")
+    force = made.panels[0].curves[0]
+    assert force.values[1] == pytest.approx(2.0 * force.values[0])
+    assert force.notes[1] == "over-speed"
+    assert not any(each.id == "load-cases" for _, figures in groups(turn) for each in figures)
+
+
+def test_the_sweep_marks_the_peaks_of_the_surge(turn):
+    speed = np.linspace(0.0, 4000.0, 201)
+    surge = 20.0 / (1.0 + ((speed - 3000.0) / 50.0) ** 2) + 4.0 * speed / 4000.0
+    surge += 0.2 * np.sin(speed / 40.0)  # does not stand out
+    forces = ("contact_force_max_N", "contact_force_min_N", "elastic_force_min_N")
+    columns = dict.fromkeys(forces, speed + 100.0)
+    sweep = Table(MappingProxyType(
+        columns | {"preload_N": 0.0 * speed, "crank_speed_rpm": speed, "surge_force_N": surge}
+    ))  # fmt: skip
+    made = figure_of(replace(turn, sweep=sweep), "speed-sweep")
+    assert [at for at, _ in made.marks] == [pytest.approx(3000.0, abs=20.0)]
+    spec = interactive.specification(made)
+    assert [s["x0"] for s in spec["layout"]["shapes"] if s["xref"] == "x"] == [made.marks[0][0]]
+    assert made.marks[0][1] in figure_svg.svg_of(made)
+
+
+def test_bars_are_those_of_both_renderers(turn):
+    wave = np.cos(np.radians(turn.columns["cam_angle_deg"]))
+    made = figure_of(with_columns(turn, torque_before_Nm=wave, torque_after_Nm=0.5 * wave),
+                     "torque-spectrum")  # fmt: skip
+    with figure_svg.style("bars"):
+        axes = figure_svg.draw(made).axes[0]
+    spec = interactive.specification(made)
+    for still, live, curve in zip(
+        axes.containers, spec["data"], made.panels[0].curves, strict=True
+    ):
+        assert [bar.get_height() for bar in still] == pytest.approx(list(curve.values))
+        assert live["type"] == "bar"
+        assert live["y"] == pytest.approx(list(curve.values), rel=1e-5, abs=1e-12)
+    assert axes.get_ylim()[0] == 0.0
+
+
+def test_a_limit_of_a_mean_stands_beside_the_mean(turn):
+    made = figure_of(turn, "speed")
+    limited = [panel for panel in made.panels if panel.limits]
+    assert all(panel.quantity == "mean PV" for panel in limited)
+    for panel in made.panels:
+        if panel.quantity == "mean PV":
+            instant = next(p for p in made.panels if p.quantity == "PV")
+            for mean, curve in zip(panel.curves, instant.curves, strict=True):
+                assert mean.values == pytest.approx(curve.values.mean())
+
+
+def test_flat_and_zero_curves_leave_the_axis_of_large_ones(turn):
+    wave = np.cos(np.radians(turn.crank))
+    curves = (Curve("large", 100.0 * wave), Curve("small", wave), Curve("none", 0.0 * wave))
+    limit = (LimitLine(120.0, "limit"),)
+    made = angle_figure(turn, "x", "X", "Some forces.", Panel("force", "N", curves, limit))
+    assert isinstance(made, AngleFigure)
+    assert [[c.label for c in panel.curves] for panel in made.panels] == [["large"], ["small"]]
+    assert made.panels[0].limits == limit
+    assert made.panels[1].quantity == "small"
+    assert made.caption == "Some forces. Zero at all angles: none."
