@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property, partial
 
 import numpy as np
@@ -15,6 +15,9 @@ from camwright.geometry.motion_laws import DWELL, LAWS, Motion, Segment
 
 LiftFunction = Callable[[Array, Array, Array], Array]
 """Lift s, s' and s'' (...) -> value (...)."""
+
+AngleFunction = Callable[[Array], Array]
+"""Cam angle (...), rad -> value (...)."""
 
 _SAMPLES = 33
 """Per half of a segment: extremes of a law are further apart than a step."""
@@ -89,12 +92,23 @@ class LiftParts:
                 parts.append(LiftPart(float(start) + k * half, half, law, count))
         return cls(tuple(parts))
 
-    def greatest(self, function: LiftFunction) -> Extremum:
+    def finer(self, spacing: float) -> LiftParts:
+        """The lift with samples no further apart than a spacing, rad."""
+        counts = [max(part.count, int(np.ceil(part.span / spacing)) + 1) for part in self.parts]
+        return LiftParts(
+            tuple(replace(part, count=n) for part, n in zip(self.parts, counts, strict=True))
+        )
+
+    def greatest(self, function: LiftFunction, added: AngleFunction | None = None) -> Extremum:
         """Maximum of a function of the lift over the continuous turn, and its cam angle, rad.
 
         Local maxima among the samples are refined to round-off.
+
+        Parameters
+        ----------
+        added : callable   of the cam angle, added to the function; None: nothing
         """
-        sampled = [function(*part.samples) for part in self.parts]
+        sampled = [_at(part, function, added, part.places, part.samples) for part in self.parts]
         best = max(float(values.max()) for values in sampled)
         top = Extremum(-np.inf, 0.0)
         for part, values in zip(self.parts, sampled, strict=True):
@@ -104,7 +118,7 @@ class LiftParts:
             rises = (values > before) & (values >= after) & (3.0 * values - 2.0 * low >= best)
             if not rises.any():
                 continue
-            evaluate = partial(_minus_at, part, function)
+            evaluate = partial(_minus_at, part, function, added)
             least, at = refined(evaluate, part.places[rises], 1.0 / (part.count - 1), _ZOOMS)
             k = int(np.argmin(least))
             theta = part.start + part.span * float(np.clip(at[k], 0.0, 1.0))
@@ -122,8 +136,19 @@ class LiftParts:
         return self.greatest(lambda s, *_: s).value - self.least(lambda s, *_: s).value
 
 
-def _minus_at(part: LiftPart, function: LiftFunction, x: Array) -> Array:
-    return -function(*part.derivatives(np.clip(x, 0.0, 1.0)))
+def _at(
+    part: LiftPart, function: LiftFunction, added: AngleFunction | None, x: Array, lift: Array
+) -> Array:
+    """Values (...) at places x, where the lift and its derivatives are (3, ...)."""
+    values = function(*lift)
+    return values if added is None else values + added(part.start + part.span * x)
+
+
+def _minus_at(
+    part: LiftPart, function: LiftFunction, added: AngleFunction | None, x: Array
+) -> Array:
+    inside = np.clip(x, 0.0, 1.0)
+    return -_at(part, function, added, inside, part.derivatives(inside))
 
 
 def _half(segment: Segment, level: float, half: int, x: Array) -> Array:

@@ -60,6 +60,11 @@ class ExternalForce:
         return bool(np.ptp(self.force) > 0.0)
 
     @property
+    def spacing(self) -> float:
+        """Least distance of its samples, rad."""
+        return float(np.diff(self.theta, append=self.theta[0] + FULL_TURN).min())
+
+    @property
     def mean(self) -> float:
         """Mean over the turn, N: exact integral of the linear parts."""
         steps = np.diff(self.theta, append=self.theta[0] + FULL_TURN)

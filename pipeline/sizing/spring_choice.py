@@ -9,6 +9,7 @@ import numpy as np
 
 from camwright.geometry.lift_parts import LiftParts
 from camwright.pipeline.case.case import Case
+from camwright.pipeline.case.external_load import external_force
 from camwright.pipeline.case.limits import CONTACT_FORCE_MARGIN, JUMP_SPEED, SPRING_SURGE
 from camwright.pipeline.case.machine import machines
 from camwright.pipeline.cycle.speed_sweep import highest_speed
@@ -82,18 +83,19 @@ def spring_of(
         If nothing throws the follower off the cam and no rate is given.
     """
     design, rate, rate_by = case.spring.design, case.spring.rate, ""
-    conditions = conditions_of(case)
+    conditions, force = conditions_of(case), external_force(case)
+    lift = lift.finer(force.spacing)
     if stiff is not None:
         rate, rate_by = stiff.rate, stiff.rate_by
     elif RATE in gaps and design is not None:
         rate, rate_by = _to_digits(design.rate), "rate of spring.design"
     elif RATE in gaps:
-        rate = _to_digits(smallest_spring(lift, conditions).rate)
+        rate = _to_digits(smallest_spring(lift, conditions, force=force).rate)
         rate_by = "least energy of the spring at full lift without follower jump"
     if PRELOAD not in gaps:
         return ChosenSpring(rate, case.spring.preload, rate_by)
-    spring = smallest_spring(lift, conditions, rate=rate)
-    share = spring.preload > preload_needed(lift, rate, conditions).value
+    spring = smallest_spring(lift, conditions, rate=rate, force=force)
+    share = spring.preload > preload_needed(lift, rate, conditions, force).value
     preload_by = (
         f"share of {PRELOAD_SHARE:g} of the force at full lift"
         if share

@@ -13,6 +13,7 @@ from camwright.geometry.arrays import Array, positive
 from camwright.geometry.errors import InputError
 from camwright.geometry.extrema import Extremum, least_argument
 from camwright.geometry.lift_parts import LiftParts
+from camwright.pipeline.base.external_force import NO_FORCE, ExternalForce
 
 PRELOAD_SHARE = 0.25
 """Least preload over the force at full lift: a spring works from 20 to 80 % of its travel,
@@ -26,13 +27,15 @@ _RANGE = 6.0
 class HoldingCondition:
     """The spring holds the follower at a speed: P + k s + F + m w^2 s'' + c w s' >= share P.
 
+    F is `held` and the force of the machine over the cam angle.
+
     Parameters
     ----------
     mass : float             m, that moves with the follower, kg, >= 0
     cam_speed : float        w, rad/s, >= 0
     share : float            least contact force over the preload, 0 <= share < 1
     damping : float          c, viscous, N s/m, >= 0
-    held : float             F, of weight and others, N, towards the cam positive
+    held : float             of weight and others at every angle, N, towards the cam positive
     rate_factor : float      least rate over the nominal one, > 0
     preload_factor : float   least preload over the nominal one, > 0
 
@@ -69,8 +72,15 @@ class HoldingCondition:
         """Preload (...), N, that a cam angle needs at a rate, N/m."""
         w = self.cam_speed
         throw = -self.mass * w**2 * s2 - self.damping * w * s1 - self.held
-        spring = self.rate_factor * rate * s
-        share: Array = (throw - spring) / ((1.0 - self.share) * self.preload_factor)
+        return self._of_force(self.rate_factor * rate * s - throw)
+
+    def preload_under(self, force: ExternalForce, theta: Array) -> Array:
+        """Preload (...), N, that the force of the machine takes at cam angles (...), rad."""
+        return self._of_force(force.at(theta))
+
+    def _of_force(self, towards: Array) -> Array:
+        """Preload (...), N, that a force towards the cam, N, leaves to be had."""
+        share: Array = -towards / ((1.0 - self.share) * self.preload_factor)
         return share
 
 
@@ -90,7 +100,10 @@ class SpringSize(NamedTuple):
 
 
 def preload_needed(
-    lift: LiftParts, rate: float, conditions: Sequence[HoldingCondition]
+    lift: LiftParts,
+    rate: float,
+    conditions: Sequence[HoldingCondition],
+    force: ExternalForce = NO_FORCE,
 ) -> Extremum:
     """Least preload that holds the follower in all conditions, N, and its cam angle, rad.
 
@@ -98,11 +111,16 @@ def preload_needed(
 
     Parameters
     ----------
-    rate : float   k, N/m, >= 0
+    lift : LiftParts        its samples no further apart than those of the force
+    rate : float            k, N/m, >= 0
+    force : ExternalForce   of the machine on the follower
     """
     if not 0.0 <= rate < np.inf:
         raise InputError("spring.rate", rate, ">= 0 N/m")
-    return max(lift.greatest(partial(each.preload, rate)) for each in conditions)
+    return max(
+        lift.greatest(partial(each.preload, rate), partial(each.preload_under, force))
+        for each in conditions
+    )
 
 
 def smallest_spring(
@@ -111,6 +129,7 @@ def smallest_spring(
     *,
     preload_share: float = PRELOAD_SHARE,
     rate: float | None = None,
+    force: ExternalForce = NO_FORCE,
 ) -> SpringSize:
     """Spring of the least energy at full lift, hence of the least wire at a given stress.
 
@@ -121,6 +140,7 @@ def smallest_spring(
     ----------
     preload_share : float   least preload over the force at full lift, > 0 and < 1
     rate : float            N/m, where it is fixed; None: of the least energy
+    force : ExternalForce   of the machine on the follower, as of `preload_needed`
 
     Raises
     ------
@@ -133,12 +153,12 @@ def smallest_spring(
     stroke, least = lift.stroke, preload_share / (1.0 - preload_share)
 
     def spring(each: float) -> SpringSize:
-        needed = preload_needed(lift, each, conditions).value
+        needed = preload_needed(lift, each, conditions, force).value
         return SpringSize(each, max(needed, least * each * stroke))
 
     if rate is not None:
         return spring(rate)
-    throw = preload_needed(lift, 0.0, conditions).value
+    throw = preload_needed(lift, 0.0, conditions, force).value
     if not throw > 0.0:
         limit = "> 0 N at the greatest speed, or spring.rate given"
         raise InputError("force that throws the follower off the cam", throw, limit)

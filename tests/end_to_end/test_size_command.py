@@ -276,3 +276,15 @@ def test_a_spring_of_the_catalogue_is_stiff_enough_for_its_surge() -> None:
     assert checks["spring_surge"].status == "pass"
     assert "surge" in sizing.sources["spring.rate"].lower()
     assert sizing.case.spring.design is not None
+
+
+def test_the_preload_holds_against_a_force_of_the_machine() -> None:
+    """600 N pull the follower off, of which a fifth of the preload is left: 750 N or more.
+
+    The preload grows by steps of 10 %, its tolerance is 5 %; it is rounded up to four digits.
+    """
+    case = without(first(), "spring.preload")
+    case["follower"]["external_force"] = "-600 N"
+    found = sized(parse_open_case(tomli_w.dumps(case)))
+    assert found.verdict == "pass"
+    assert 750.0 <= found.spring.preload <= 750.0 * 1.1 / 0.95 * 1.001

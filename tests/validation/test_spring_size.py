@@ -8,6 +8,7 @@ import pytest
 from camwright.geometry.errors import InputError
 from camwright.geometry.lift_parts import LiftParts
 from camwright.geometry.motion_laws import LAWS, Motion, Segment
+from camwright.pipeline.base.external_force import ExternalForce
 from camwright.pipeline.sizing.spring_size import (
     PRELOAD_SHARE,
     HoldingCondition,
@@ -80,6 +81,31 @@ def test_no_other_rate_stores_less(law: str) -> None:
     assert min(each.min() for each in left) >= -1e-6 * best.preload
     if best.preload > 1.001 * best.force(stroke) * PRELOAD_SHARE:
         assert min(each.min() for each in left) == pytest.approx(0.0, abs=1e-5 * best.preload)
+
+
+@pytest.mark.parametrize("samples", [1, 8, 90])
+def test_a_force_of_the_machine_is_held_too(samples: int) -> None:
+    """At 40 001 angles: held everywhere, touched by one condition; kinks and dwell included."""
+    lift = rise_and_return("cycloidal", 0.012, 100 * DEG)
+    theta = np.arange(samples) * (2.0 * math.pi / samples)
+    force = ExternalForce(theta, -60.0 + 40.0 * np.sin(theta + 0.7))
+    states = [
+        HoldingCondition(mass=0.8, cam_speed=60.0, share=0.2, rate_factor=0.95),
+        HoldingCondition(mass=0.8, cam_speed=70.0, preload_factor=0.95),
+    ]
+    rate = 9000.0
+    needed = preload_needed(lift.finer(force.spacing), rate, states, force)
+    angle = np.linspace(0.0, 2.0 * math.pi, 40_001)
+    half = np.clip(np.minimum(angle, 200 * DEG - angle) / (100 * DEG), 0.0, 1.0)
+    rows = [0.012 / (100 * DEG) ** k * LAWS["cycloidal"](half, k) for k in range(3)]
+    pressed = np.interp(angle, theta, force.force, period=2.0 * math.pi)
+    left = [
+        pressed + share_left * needed.value + factor * rate * rows[0] + 0.8 * speed**2 * rows[2]
+        for share_left, factor, speed in ((0.8, 0.95, 60.0), (0.95, 1.0, 70.0))
+    ]
+    assert min(each.min() for each in left) == pytest.approx(0.0, abs=1e-3)
+    freer = preload_needed(lift, rate, states).value
+    assert needed.value > freer + 20.0
 
 
 def test_a_heavy_follower_needs_no_spring() -> None:
