@@ -246,7 +246,7 @@ def elastic_contact(solution: Solution) -> Demand:
         worst,
         note="; ".join(each for each in (note, _flights(histories)) if each),
         method="one mass on the stiffness of the stem, without friction: harmonic response with the"
-        f" surge of the spring over the speed range; load cases by {methods}",
+        f" surge of a coil spring over the speed range; load cases by {methods}",
     )
 
 

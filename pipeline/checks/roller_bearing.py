@@ -148,7 +148,7 @@ def roller_load_share(solution: Solution) -> Demand:
     ROLLER_LIFE,
     title="L10 rating life of the roller bearing",
     method="(C / P_m)^3 million revolutions, P_m the cube mean of the normal force,"
-    " surge of the spring included",
+    " surge of a coil spring included",
     lift_can_help=True,
     tier=Tier.SCREENING,
     forecast=True,

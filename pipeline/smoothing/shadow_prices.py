@@ -134,8 +134,8 @@ def machine_prices(
     below `FLOOR` listed.
 
     The phase of the cam on the shaft is last, with a price of zero, unless it is free: the lift of
-    a new optimum shifts with the engine torque, and no limit depends on the angle on the shaft
-    (the wall at bore and keyway is limited at every angle as at the keyway).
+    a new optimum shifts with the torque and an external force, and no limit depends on the angle on
+    the shaft (the wall at bore and keyway is limited at every angle as at the keyway).
 
     Parameters
     ----------
@@ -206,7 +206,7 @@ def _of_phase(design: Design, of: str) -> MachinePriceRecord:
         "ripple_per_unit_Nm": 0.0,
         "ripple_per_percent_Nm": 0.0,
         "of": of,
-        "sentence": f"{words}: no price, as the lift shifts with the engine torque and no limit"
+        "sentence": f"{words}: no price, as the lift shifts with the torque and no limit"
         " depends on the angle on the shaft",
     }
 
