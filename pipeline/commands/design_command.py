@@ -56,8 +56,9 @@ def design(
     the constrained synthesis. Writes the smallest case that passes by closed forms, the front of
     ripple against size in CASE_design, and a picture of the choice. Where none passes, the limits
     in conflict and the smallest relaxations. What is not given is assumed, and marked so. Exit
-    code 0: a case passes, 1: none does, 2: error. Solved points are cached; run the command again
-    to resume.
+    code 0: a case passes, 1: none does, 2: error; with --run that of the verdict. Solved points are
+    cached in CASE_design/solved; run the same command again to resume. The table, and cards.toml
+    and springs.toml beside it, are copied beside the case.
     """
     from camwright.pipeline.studies.design.design_study import PICTURE, designed, points_folder
     from camwright.pipeline.studies.design.torque_task import task_of
@@ -93,11 +94,15 @@ def _show(document: dict[str, Any], out: Path) -> None:
             f"({100 * row['removed']:.0f} % removed), {row['roller']}, spring {row['spring']}",
             markup=False,
         )
+    if document["copied"]:
+        stdout.print(f"copied beside the case: {', '.join(document['copied'])}", markup=False)
     chosen, assumed = document["chosen"], ", ".join(document["assumed"]) or "nothing"
     if chosen is not None:
         stdout.print(
             f"chosen: {out}: {chosen['size_mm']:.4g} mm, {100 * chosen['removed']:.0f} % removed; "
-            f"passes by closed forms; assumed: {assumed}\n"
+            f"passes by closed forms\n"
+            f"options not given, so assumed: {assumed}; values to be confirmed in all: "
+            f"{len(chosen['to_be_confirmed'])}, listed by camwright check\n"
             f"next: camwright run {out} --out runs/{out.stem}",
             markup=False,
         )

@@ -5,19 +5,25 @@ from __future__ import annotations
 import shlex
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from torque_tables import MACHINES, write_table
 
 from camwright.geometry.errors import InputError, ResultError
+from camwright.pipeline.base.progress import SILENT
 from camwright.pipeline.case.cards.catalogue import catalogue_of
 from camwright.pipeline.case.cards.shaft_seats import seats
 from camwright.pipeline.case.cards.spring_catalogue import SpringDemand
 from camwright.pipeline.case.case_file import parse_case
-from camwright.pipeline.studies.design.candidate_search import spring_wire
+from camwright.pipeline.studies.design import relaxation_search
+from camwright.pipeline.studies.design.candidate_search import candidates, spring_wire
 from camwright.pipeline.studies.design.design_case import Machinery, case_text, oils_of
-from camwright.pipeline.studies.design.design_study import designed
+from camwright.pipeline.studies.design.design_study import _prepare, designed
 from camwright.pipeline.studies.design.machine_frame import frame_of
+from camwright.pipeline.studies.design.relaxation_search import WIDTH, Lever, _levers, _smallest
+from camwright.pipeline.studies.design.synthesised_points import Study, likeliest, synthesised
 from camwright.pipeline.studies.design.torque_task import DesignTask, task_of
 from camwright.pipeline.studies.design.wound_springs import wound
 
@@ -169,6 +175,67 @@ def test_a_relaxed_task_is_that_of_its_command_line(tmp_path: Path) -> None:
     assert (again.life, again.remove, again.assumed) == (240.0 * 3600.0, 0.6, task.assumed)
     assert again.space == pytest.approx(0.15, rel=1e-12)
     assert again.speeds == pytest.approx((30.0, 40.0), rel=1e-12)
+
+
+@pytest.mark.parametrize("name", MACHINES)
+def test_tables_of_machines_are_read_with_their_energy_swing(tmp_path: Path, name: str) -> None:
+    machine = MACHINES[name]
+    demand = task_of(write_table(tmp_path, name), speed=machine.speed).demand
+    assert demand.cycle == pytest.approx(np.radians(machine.cycle))
+    assert demand.energy_swing == pytest.approx(machine.swing, rel=2e-3)
+
+
+@pytest.mark.parametrize("most", [290.0, 200.0, 125.0])
+def test_bisection_of_a_relaxation(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, most: float
+) -> None:
+    """A task that passes up to a speed: within 2 % below it; one that never does: None."""
+    study = Study(task_in(tmp_path), tmp_path, "torque.csv", "")
+    lever = next(each for each in _levers(study.task) if each.name == "--speed")
+
+    def passing(_study: object, _lever: Lever, value: float, _rollers: object) -> object:
+        return object() if value <= most * RPM else None
+
+    monkeypatch.setattr(relaxation_search, "_passing", passing)
+    monkeypatch.setattr(relaxation_search, "settled", lambda *_: SimpleNamespace(passes=True))
+    value = _smallest(study, lever, frozenset())
+    assert value is not None
+    assert most * RPM / (1.0 + WIDTH) <= value <= most * RPM
+    most = 0.0
+    assert _smallest(study, lever, frozenset()) is None
+
+
+def test_a_pump_is_synthesised_with_free_radius_and_preload(tmp_path: Path) -> None:
+    """One roller: the free synthesis leaves no more ripple than that at the screened values."""
+    table_of_pump = write_table(tmp_path, "pump")
+    task = task_of(table_of_pump, speed=MACHINES["pump"].speed)
+    screened = candidates(task, tmp_path, table_of_pump.name, SILENT, {"track_roller_28x8"})
+    candidate = likeliest(task, screened)
+    assert candidate is not None
+    study = Study(task, tmp_path, table_of_pump.name, "")
+    free = synthesised(study, candidate, "whole")
+    fixed = study.solved(free.design, tier="whole")
+    assert free.passes
+    assert free.ripple <= fixed.ripple * 1.001
+    assert free.record["prime_radius_mm"] <= 1e3 * free.design.prime_radius * 1.0001
+    assert free.record["preload_N"] != pytest.approx(free.design.spring.preload)
+
+
+def test_cards_beside_the_case_are_copies_or_refused(tmp_path: Path) -> None:
+    """A file of such a name beside the case that is not a copy is kept."""
+    source, beside = tmp_path / "source", tmp_path / "case"
+    source.mkdir()
+    beside.mkdir()
+    task = task_in(source)
+    (source / "cards.toml").write_text("# mine\n", encoding="utf-8")
+    file, copied = _prepare(task, beside / "x_design", beside / "x.toml")
+    assert (file, copied) == ("torque.csv", ["torque.csv", "cards.toml"])
+    assert (beside / "cards.toml").read_text(encoding="utf-8") == "# mine\n"
+    (beside / "cards.toml").write_text("# another\n", encoding="utf-8")
+    with pytest.raises(ResultError, match=r"cards\.toml: differs"):
+        _prepare(task, beside / "x_design", beside / "x.toml")
+    assert (beside / "cards.toml").read_text(encoding="utf-8") == "# another\n"
+    assert _prepare(task, source / "x_design", source / "x.toml") == ("torque.csv", [])
 
 
 def test_a_folder_of_something_else_is_refused(tmp_path: Path) -> None:

@@ -18,7 +18,9 @@ from camwright.pipeline.case.cards.card_filling import USER_FILE
 from camwright.pipeline.case.cards.catalogue import SPRINGS_FILE
 from camwright.pipeline.case.case_file import parse_case
 from camwright.pipeline.case.section import SAFE_NAME
+from camwright.pipeline.checks.registry import DECLARED
 from camwright.pipeline.preview import preview_case
+from camwright.pipeline.results.check_records import to_be_confirmed
 from camwright.pipeline.results.run_folder import versions
 from camwright.pipeline.studies.design.candidate_search import Candidate, candidates
 from camwright.pipeline.studies.design.design_case import case_text
@@ -104,7 +106,7 @@ def designed(task: DesignTask, out: Path, progress: Progress = SILENT) -> Record
     if out.suffix != ".toml" or not SAFE_NAME.fullmatch(out.stem):
         raise InputError("--out", out.name, "a file NAME.toml of letters, digits, '_', '-' or '.'")
     folder = points_folder(out).absolute()
-    file = _prepare(task, folder, out)
+    file, copied = _prepare(task, folder, out)
     study = Study(task, folder, file, versions()["source"])
     progress.stage("search rollers, springs and base circles")
     screened = candidates(task, folder, file, progress)
@@ -114,6 +116,7 @@ def designed(task: DesignTask, out: Path, progress: Progress = SILENT) -> Record
         "schema": 1,
         "torque": _demand_record(task),
         "assumed": sorted(task.assumed),
+        "copied": copied,
         "remove": task.remove,
         "space_mm": None if task.space is None else 1e3 * task.space,
         "screened": len(screened),
@@ -142,8 +145,17 @@ def designed(task: DesignTask, out: Path, progress: Progress = SILENT) -> Record
     return document
 
 
-def _prepare(task: DesignTask, folder: Path, out: Path) -> str:
-    """Prepare both folders with the torque table and the user's cards; the name of the table."""
+def _prepare(task: DesignTask, folder: Path, out: Path) -> tuple[str, list[str]]:
+    """Copy the torque table and the user's cards to the points and beside the case.
+
+    Returns the name of the table, and the names of the files beside the case that are copies.
+
+    Raises
+    ------
+    ResultError
+        If the folder of the points holds something else, or a file of such a name beside the case
+        differs.
+    """
     if folder.exists():
         strangers = [] if not folder.is_dir() else [
             entry.name for entry in folder.iterdir() if not _OURS.fullmatch(entry.name)
@@ -151,18 +163,20 @@ def _prepare(task: DesignTask, folder: Path, out: Path) -> str:
         if not folder.is_dir() or strangers:
             raise ResultError(f"{folder}: holds something other than a design")
     name = task.file.name if task.file.suffix == ".csv" else f"{out.stem}_torque.csv"
-    source = task.file.resolve().parent
-    copies = {name: task.file}
-    copies |= {each: source / each for each in (USER_FILE, SPRINGS_FILE)}
-    for kept, path in copies.items():
-        if not path.is_file():
-            continue
-        content = path.read_bytes()
-        for place in (folder, out.absolute().parent):
-            target = place / kept
-            if not target.is_file() or target.read_bytes() != content:
-                write_atomic(target, content)
-    return name
+    source, beside = task.file.resolve().parent, out.resolve().parent
+    sources = {name: task.file}
+    sources |= {each: source / each for each in (USER_FILE, SPRINGS_FILE)}
+    contents = {kept: path.read_bytes() for kept, path in sources.items() if path.is_file()}
+    for kept, content in contents.items():
+        target = beside / kept
+        if target.is_file() and target.read_bytes() != content:
+            raise ResultError(f"{target}: differs from {sources[kept]}, its source; remove either")
+    copied = [kept for kept in contents if (beside / kept) != sources[kept].resolve()]
+    for kept, content in contents.items():
+        write_atomic(folder / kept, content)
+        if kept in copied:
+            write_atomic(beside / kept, content)
+    return name, copied
 
 
 def _solved_front(
@@ -228,7 +242,7 @@ def _row(point: Solved) -> Record:
 
 
 def _drawing(study: Study, point: Solved) -> Record:
-    """Contour, roller and torque left of a design, for its picture."""
+    """Contour, roller and torque left of a design, for its picture; its values to be confirmed."""
     trial = preview_case(parse_case(study.text(point.design), study.folder), corners=False)
     after, contour = trial.cycles[0].turn.torque_after, trial.contour
     rest = np.zeros(0) if after is None else np.asarray(after)
@@ -241,6 +255,7 @@ def _drawing(study: Study, point: Solved) -> Record:
         "roller_radius_mm": 1e3 * trial.case.roller.radius,
         "roller_centre_mm": [round(1e3 * float(v), 4) for v in centre],
         "torque_after_Nm": [round(float(v), 6) for v in rest - rest.mean()],
+        "to_be_confirmed": to_be_confirmed([check.as_record() for check in trial.checks]),
     }
 
 
@@ -277,7 +292,7 @@ def _limits(task: DesignTask, screened: Sequence[Candidate], points: Sequence[So
         return near.failing or ["the limits of the synthesis at the ends of the tolerances"]
     if screened:
         counts = Counter(each.governing for each in screened if each.excess > 0.0)
-        return [name for name, _ in counts.most_common(3)]
+        return [DECLARED[name].title for name, _ in counts.most_common(3)]
     return [
         f"energy of {units.shown((task.remove) * task.demand.energy_swing, 'J')} in one spring",
         f"surge frequency of 13 times the cam's at {units.shown(task.cam_speed, 'rpm')}",

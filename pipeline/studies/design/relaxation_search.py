@@ -22,7 +22,7 @@ from camwright.pipeline.studies.design.torque_task import DesignTask, Options
 from camwright.pipeline.studies.redesign.point_store import Record
 
 WIDTH = 0.02  # relative width of the bisection
-_ROLLERS = 3  # of the nearest designs, to which the search is limited between its ends
+_ROLLERS = 3  # of the nearest designs, to which the search is limited
 _LEAST_REMOVED = 0.1  # of the ripple
 _SLOWEST = 0.4  # of the speeds
 _SHORTEST = 0.05  # of the life
@@ -130,10 +130,9 @@ def _rollers(task: DesignTask, screened: Sequence[Candidate]) -> frozenset[str]:
 
 def _smallest(study: Study, lever: Lever, rollers: frozenset[str]) -> float | None:
     """The value nearest to that of the task at which a design passes; None: none does."""
-    point = _passing(study, lever, lever.loosest, None)
+    point = _passing(study, lever, lever.loosest, rollers)
     if point is None:
         return None
-    rollers |= {point.design.frame.roller}
     low, best = lever.given, lever.reached(point, lever.loosest)
     while abs(log(best / low)) > WIDTH:
         middle = sqrt(low * best)
@@ -160,16 +159,17 @@ def _relaxed(study: Study, lever: Lever, value: float) -> Study:
     return replace(study, task=study.task.relaxed(lever.options(value)))
 
 
-def _passing(
-    study: Study, lever: Lever, value: float, rollers: frozenset[str] | None
-) -> Solved | None:
-    """The likeliest design at a value of an option, solved; None where it does not pass."""
+def _passing(study: Study, lever: Lever, value: float, rollers: frozenset[str]) -> Solved | None:
+    """The likeliest design at a value of an option, solved; None where it does not pass.
+
+    The tolerance ends are those of the synthesis; the checks at them are left to `settled`.
+    """
     own = _relaxed(study, lever, value)
     screened = candidates(own.task, study.folder, study.file, SILENT, rollers)
     candidate = likeliest(own.task, screened)
     if candidate is None:
         return None
-    point = synthesised(own, candidate)
+    point = synthesised(own, candidate, tier="whole")
     return point if point.has_cam and point.passes else None
 
 

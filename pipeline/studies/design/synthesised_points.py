@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from math import ceil
 from pathlib import Path
+from typing import Literal
 
 from camwright.pipeline.studies.design.candidate_search import Candidate
 from camwright.pipeline.studies.design.design_case import SYNTHESIS, Machinery, case_text
@@ -13,11 +14,14 @@ from camwright.pipeline.studies.design.torque_task import DesignTask
 from camwright.pipeline.studies.redesign.pareto_front import front, thinned
 from camwright.pipeline.studies.redesign.point_store import Record, Task, solved
 
+Tier = Literal["whole", "corners"]
+
 _NEAR = 0.5  # excess that a synthesis may remove
 _OPTIMISTIC = 1.1  # ripple of a screened design over that allowed
 _ALIKE = 0.02  # relative size within which the lesser ripple replaces
+_FAR = 1.8  # of the size of the smallest design
 _GAIN = 0.03  # of the ripple, between points
-_FREE_RADIUS = (0.9, 1.1)  # of the prime radius of the screening
+_SHRUNK, _GROWN = 0.9, 1.1  # of the prime radius of the screening
 _FREE_PRELOAD = (0.85, 1.1)  # of the preload of the screening: the spring has room for 1.05
 RESERVE = 0.01  # of the ripple allowed, for the corrections by finite elements
 
@@ -35,10 +39,15 @@ class Study:
         """Case file of a design of the task."""
         return case_text(design, "design", self.file, smoothing=smoothing)
 
-    def solved(self, design: Machinery, smoothing: str = SYNTHESIS) -> Solved:
-        """A design with its record, cached or solved, at all tolerance ends."""
+    def solved(
+        self, design: Machinery, smoothing: str = SYNTHESIS, tier: Tier = "corners"
+    ) -> Solved:
+        """A design with its record, cached or solved.
+
+        tier: whether its checks are judged at all tolerance ends, or at the nominal values alone.
+        """
         text = self.text(design, smoothing)
-        return Solved(design, solved(Task(text, "", self.folder, self.version, "corners")))
+        return Solved(design, solved(Task(text, "", self.folder, self.version, tier)))
 
 
 @dataclass(frozen=True)
@@ -84,19 +93,31 @@ class Solved:
 
 
 def promising(task: DesignTask, screened: Sequence[Candidate], most: int) -> list[Candidate]:
-    """Designs of the front of the screening: within the limits, near to them, and the likeliest."""
+    """Designs of the screening that may be on the front, by increasing size.
+
+    The front of those within the limits and the smallest one near to them; where none is within,
+    the front of those near to them and the likeliest.
+    """
+    within, near = (_screened_front(task, screened, excess, most - 1) for excess in (0.0, _NEAR))
+    further = near[:1]
+    if not within:
+        likely = likeliest(task, screened)
+        within, further = near, [] if likely is None else [likely]
+    chosen = within + [each for each in further if each not in within]
+    return sorted(chosen, key=lambda each: (each.size, each.ripple))
+
+
+def _screened_front(
+    task: DesignTask, screened: Sequence[Candidate], excess: float, most: int
+) -> list[Candidate]:
+    """Front of ripple and size of designs up to an excess, not far above the smallest one."""
     ripple = task.ripple_allowed * _OPTIMISTIC
-    chosen: list[Candidate] = []
-    for excess in (0.0, _NEAR):
-        good = [each for each in screened if each.excess <= excess and each.ripple <= ripple]
-        figures = [(each.size, each.ripple) for each in good]
-        places = front(figures, _ALIKE, _GAIN * task.demand.ripple)
-        kept = [good[k] for k in thinned(places, figures, most)]
-        chosen += [each for each in kept if each not in chosen]
-    likely = likeliest(task, screened)
-    if likely is not None and likely not in chosen:
-        chosen = [*chosen[: most - 1], likely]
-    return sorted(chosen[:most], key=lambda each: (each.size, each.ripple))
+    good = [each for each in screened if each.excess <= excess and each.ripple <= ripple]
+    largest = _FAR * min((each.size for each in good), default=0.0)
+    good = [each for each in good if each.size <= largest]
+    figures = [(each.size, each.ripple) for each in good]
+    places = front(figures, _ALIKE, _GAIN * task.demand.ripple)
+    return [good[k] for k in thinned(places, figures, most)]
 
 
 def likeliest(task: DesignTask, screened: Sequence[Candidate]) -> Candidate | None:
@@ -109,16 +130,23 @@ def likeliest(task: DesignTask, screened: Sequence[Candidate]) -> Candidate | No
     return best if best is not None and lack(best) <= _OPTIMISTIC + _NEAR**2 else None
 
 
-def synthesised(study: Study, candidate: Candidate) -> Solved:
+def synthesised(study: Study, candidate: Candidate, tier: Tier = "corners") -> Solved:
     """A screened design with the prime radius and preload of least ripple within all limits.
 
-    Both are free about the values of the screening; where the space is limited the roller does not
-    move outwards.
+    Both are free about the values of the screening. The cam grows where it would not pass
+    otherwise, unless the space is limited.
     """
     design = _rounded(candidate.design)
-    least, most = _FREE_RADIUS
-    low = max(design.frame.least_radius, least * design.prime_radius)
-    high = design.prime_radius * (1.0 if study.task.space is not None else most)
+    point = _free(study, design, 1.0, tier)
+    if study.task.space is not None or not point.has_cam or point.passes:
+        return point
+    return _free(study, design, _GROWN, tier)
+
+
+def _free(study: Study, design: Machinery, growth: float, tier: Tier) -> Solved:
+    """Synthesis with the prime radius free up to some growth, and the preload."""
+    high = growth * design.prime_radius
+    low = max(design.frame.least_radius, _SHRUNK * design.prime_radius)
     radii = 1e3 * min(low, 0.999 * high), 1e3 * high
     forces = [share * design.spring.preload for share in _FREE_PRELOAD]
     smoothing = SYNTHESIS + (
@@ -126,7 +154,7 @@ def synthesised(study: Study, candidate: Candidate) -> Solved:
         f'prime_radius_range = ["{radii[0]:.6g} mm", "{radii[1]:.6g} mm"]\n'
         f'preload_range = ["{forces[0]:.6g} N", "{forces[1]:.6g} N"]\n'
     )
-    return study.solved(design, smoothing)
+    return study.solved(design, smoothing, tier)
 
 
 def settled(study: Study, point: Solved) -> Solved:
