@@ -213,8 +213,8 @@ def test_a_pump_is_synthesised_with_free_radius_and_preload(tmp_path: Path) -> N
     candidate = likeliest(task, screened)
     assert candidate is not None
     study = Study(task, tmp_path, table_of_pump.name, "")
-    free = synthesised(study, candidate, "whole")
-    fixed = study.solved(free.design, tier="whole")
+    free = synthesised(study, candidate)
+    fixed = study.solved(free.design)
     assert free.passes
     assert free.ripple <= fixed.ripple * 1.001
     assert free.record["prime_radius_mm"] <= 1e3 * free.design.prime_radius * 1.0001

@@ -14,9 +14,9 @@ from camwright.pipeline.studies.design.synthesised_points import (
     RESERVE,
     Solved,
     Study,
+    grown,
     likeliest,
     settled,
-    synthesised,
 )
 from camwright.pipeline.studies.design.torque_task import DesignTask, Options
 from camwright.pipeline.studies.redesign.point_store import Record
@@ -160,16 +160,13 @@ def _relaxed(study: Study, lever: Lever, value: float) -> Study:
 
 
 def _passing(study: Study, lever: Lever, value: float, rollers: frozenset[str]) -> Solved | None:
-    """The likeliest design at a value of an option, solved; None where it does not pass.
-
-    The tolerance ends are those of the synthesis; the checks at them are left to `settled`.
-    """
+    """The likeliest design at a value of an option, solved; None where it does not pass."""
     own = _relaxed(study, lever, value)
     screened = candidates(own.task, study.folder, study.file, SILENT, rollers)
     candidate = likeliest(own.task, screened)
     if candidate is None:
         return None
-    point = synthesised(own, candidate, tier="whole")
+    point = grown(own, candidate)
     return point if point.has_cam and point.passes else None
 
 

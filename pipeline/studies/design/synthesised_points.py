@@ -6,15 +6,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from math import ceil
 from pathlib import Path
-from typing import Literal
 
 from camwright.pipeline.studies.design.candidate_search import Candidate
 from camwright.pipeline.studies.design.design_case import SYNTHESIS, Machinery, case_text
 from camwright.pipeline.studies.design.torque_task import DesignTask
 from camwright.pipeline.studies.redesign.pareto_front import front, thinned
 from camwright.pipeline.studies.redesign.point_store import Record, Task, solved
-
-Tier = Literal["whole", "corners"]
 
 _NEAR = 0.5  # excess that a synthesis may remove
 _OPTIMISTIC = 1.1  # ripple of a screened design over that allowed
@@ -39,15 +36,10 @@ class Study:
         """Case file of a design of the task."""
         return case_text(design, "design", self.file, smoothing=smoothing)
 
-    def solved(
-        self, design: Machinery, smoothing: str = SYNTHESIS, tier: Tier = "corners"
-    ) -> Solved:
-        """A design with its record, cached or solved.
-
-        tier: whether its checks are judged at all tolerance ends, or at the nominal values alone.
-        """
+    def solved(self, design: Machinery, smoothing: str = SYNTHESIS) -> Solved:
+        """A design with its record, cached or solved, its checks judged at all tolerance ends."""
         text = self.text(design, smoothing)
-        return Solved(design, solved(Task(text, "", self.folder, self.version, tier)))
+        return Solved(design, solved(Task(text, "", self.folder, self.version, "corners")))
 
 
 @dataclass(frozen=True)
@@ -130,21 +122,26 @@ def likeliest(task: DesignTask, screened: Sequence[Candidate]) -> Candidate | No
     return best if best is not None and lack(best) <= _OPTIMISTIC + _NEAR**2 else None
 
 
-def synthesised(study: Study, candidate: Candidate, tier: Tier = "corners") -> Solved:
+def synthesised(study: Study, candidate: Candidate) -> Solved:
     """A screened design with the prime radius and preload of least ripple within all limits.
 
     Both are free about the values of the screening. The cam grows where it would not pass
     otherwise, unless the space is limited.
     """
-    design = _rounded(candidate.design)
-    point = _free(study, design, 1.0, tier)
+    point = _free(study, candidate, 1.0)
     if study.task.space is not None or not point.has_cam or point.passes:
         return point
-    return _free(study, design, _GROWN, tier)
+    return grown(study, candidate)
 
 
-def _free(study: Study, design: Machinery, growth: float, tier: Tier) -> Solved:
-    """Synthesis with the prime radius free up to some growth, and the preload."""
+def grown(study: Study, candidate: Candidate) -> Solved:
+    """As `synthesised`, of a cam that may grow from the start, unless the space is limited."""
+    return _free(study, candidate, 1.0 if study.task.space is not None else _GROWN)
+
+
+def _free(study: Study, candidate: Candidate, growth: float) -> Solved:
+    """Synthesis with the preload and, up to some growth, the prime radius free."""
+    design = _rounded(candidate.design)
     high = growth * design.prime_radius
     low = max(design.frame.least_radius, _SHRUNK * design.prime_radius)
     radii = 1e3 * min(low, 0.999 * high), 1e3 * high
@@ -154,7 +151,7 @@ def _free(study: Study, design: Machinery, growth: float, tier: Tier) -> Solved:
         f'prime_radius_range = ["{radii[0]:.6g} mm", "{radii[1]:.6g} mm"]\n'
         f'preload_range = ["{forces[0]:.6g} N", "{forces[1]:.6g} N"]\n'
     )
-    return study.solved(design, smoothing, tier)
+    return study.solved(design, smoothing)
 
 
 def settled(study: Study, point: Solved) -> Solved:
