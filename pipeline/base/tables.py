@@ -214,7 +214,7 @@ def _in_unit(column: Column, values: Array) -> Array:
         values = values / units.factor(column.unit)
     if column in (CAM_ANGLE, CRANK_ANGLE):
         values = np.round(values, 10)  # 0.5, not 0.49999999999999994
-    return readonly(values)
+    return readonly(values + 0.0)  # no -0.0, which spreadsheets show
 
 
 def _parsed(path: Path, header: str, cells: Iterable[str]) -> Array:

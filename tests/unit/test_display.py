@@ -156,6 +156,11 @@ def test_columns_of_a_table_are_a_data_frame_with_the_load_case_of_each_row() ->
     assert "load_case" not in table({CAM_ANGLE: [0.0]})
 
 
+def test_a_table_has_no_negative_zero() -> None:
+    text = table({CAM_ANGLE: [-0.0, -1e-300], Column("force", "N"): [-0.0, -5e-324]}).to_csv()
+    assert text == "cam_angle_deg,force_N\n0.0,0.0\n0.0,-5e-324\n"
+
+
 def test_a_figure_has_a_panel_a_column_and_a_curve_a_load_case() -> None:
     made = of_two_load_cases()
     panels = made.plot("force_N", "cam_angle_deg")
