@@ -231,6 +231,7 @@ class CheckRow:
         lines = [
             (" · ".join(filter(None, (self.method, limit))), False), (self.note, True),
             (self.unproven, True), (corner, False),
+            (f"Judged at the depth {self.judged_at}" if self.judged_at else "", True),
             (f"Waiver: {self.waiver}" if self.waiver else "", True),
             (f"Remedy: {self.remedy}" if self.remedy else "", True),
         ]  # fmt: skip

@@ -89,7 +89,7 @@ def test_the_page_of_a_shallow_run_states_its_screen(shallow: Path) -> None:
     report(shallow)
     page = (shallow / "8_report.html").read_text(encoding="utf-8")
     assert "Screen, no verdict" in page
-    assert "Judged by a deeper solution" in page
+    assert "Judged at the depth certified" in page
     assert ">PASS<" not in page
     assert f"{shallow.name} without sign-off" in page
 
