@@ -7,7 +7,9 @@ and the cost of meshing and solving every position in full over that of the cycl
 
 The normal contact of a turn, with its corrections known, has a budget in solutions of 1000 dense
 equations on the same core, so that it holds on another machine: 0.2 s where one takes 20 ms. Beyond
-it the exit code is 1.
+it the exit code is 1. The mortar contact of Kratos Multiphysics, whose own Hertz example has p0
+within 1.3 %, took 0.153 s a position on a core that takes 20 ms for a dense solution: the ratio to
+it, and the error of p0 here, against the extrapolated one of the certificate, are printed as well.
 """
 
 import os
@@ -44,6 +46,7 @@ POSITIONS = 720
 ANGLES = 8
 SAMPLED = (0, 90, 200)
 BUDGET = 10.0  # dense solutions, for the contact of 720 positions
+KRATOS = 0.153 / 0.020  # dense solutions, for the contact of one position
 
 
 def balancing_cam() -> tuple[ContactPair, np.ndarray, np.ndarray]:
@@ -106,6 +109,7 @@ def main() -> int:
     print(f"cycle tier, {POSITIONS} positions        {cycle:8.2f} s")
     print(f"  corrections known              {known:8.2f} s")
     print(f"  in dense solutions             {known / unit:8.1f}, budget {BUDGET:.0f}")
+    print(f"  Kratos / it, per position      {POSITIONS * KRATOS * unit / known:8.0f} times")
     print(f"  per position                   {1e3 * per_position:8.2f} ms")
     print(f"  peak memory                    {memory:8.2f} GiB")
     print(f"certificate at a/8, with meshing {np.mean(full):8.2f} s")
@@ -120,6 +124,8 @@ def main() -> int:
     signed, seconds = cpu(lambda: [certified(int(k)) for k in worst])
     spread = max(spread, *(point.spread for point in signed))
     print(f"certificate, {ANGLES} angles x 3 meshes {seconds:7.2f} s")
+    error = max(abs(point.p0_cycle / point.p0.extrapolated - 1) for point in signed)
+    print(f"error of p0 of the cycle tier    {100 * error:8.3f} %, Kratos 1.3 %")
     print(f"tier spread at {len(SAMPLED) + ANGLES} positions      {100 * spread:8.3f} %")
     print(f"remesh and solve / cycle tier    {np.mean(full) / per_position:8.0f} times")
     return 0 if known <= BUDGET * unit else 1

@@ -33,7 +33,7 @@ from camwright.pipeline.studies.batch.dataset import read_dataset, table_from
 from camwright.pipeline.studies.batch.design_plan import SHARD_OF
 from camwright.pipeline.studies.batch.design_rows import encoded
 from camwright.pipeline.studies.batch.design_solver import DesignSolver
-from camwright.pipeline.studies.batch.design_task import Task
+from camwright.pipeline.studies.batch.design_task import Task, Wanted
 from camwright.pipeline.studies.batch.study_file import read_study
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -417,7 +417,7 @@ def test_a_refused_design_has_a_row_and_no_run(folder: Path) -> None:
     task = next(plan.tasks(Tier.CYCLE)).alone(0)
     task = replace(task, values={"spring.preload": np.array([-1.0])})
     sent: list[object] = []
-    DesignSolver(templates, plan.settings).solved_and_run(task, 0, "open", sent.append)
+    DesignSolver(templates, plan.settings).solved_and_run(task, 0, Wanted("open"), sent.append)
     row, files = sent
     assert isinstance(row, dict) and "spring.preload = -1" in str(row["message"])
     assert row["screen"] == "error" and files == {}

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Mapping
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -26,8 +27,8 @@ from camwright.pipeline.studies.batch.dataset import (
     table_of,
     values_of,
 )
-from camwright.pipeline.studies.batch.row_selection import Figures, kept_at_once, states_in
-from camwright.pipeline.studies.batch.study_file import Objective, Study
+from camwright.pipeline.studies.batch.row_selection import Figures, states_in
+from camwright.pipeline.studies.batch.study_file import Objective
 from camwright.pipeline.studies.batch.study_folder import Shard, StudyFolder
 
 UNITS = {"spring.rate": "kN/m", "cam.material": None}
@@ -288,22 +289,54 @@ def test_selection() -> None:
     assert figures.best(2) == ["a"]
 
 
+def _solved(values: Mapping[str, tuple[float, float]], depth: str = "cycle") -> Figures:
+    goals = (Objective(column="headline.lift_max_mm"), Objective(column="mesh.nodes", goal="max"))
+    figures = Figures(goals)
+    lifts, nodes = zip(*values.values(), strict=True)
+    count = len(values)
+    columns = {"headline.lift_max_mm": list(lifts), "mesh.nodes": list(nodes)}
+    made = rows("".join(values), screen=["open"] * count, depth=[depth] * count, **columns)
+    figures.add(table_of(made, UNITS))
+    return figures
+
+
 @pytest.mark.parametrize(
-    ("keep", "depth", "screen"),
+    ("kind", "count", "screen", "cells", "takes"),
     [
-        ("", Tier.CYCLE, None),
-        ("failed", Tier.CYCLE, "fail"),
-        ("failed", Tier.PREVIEW, None),
-        ("best:3", Tier.CERTIFIED, "open"),
-        ("best:2", Tier.CERTIFIED, None),
-        ("pareto", Tier.CERTIFIED, None),
+        ("failed", 0, "fail", {}, True),
+        ("failed", 0, "open", {}, False),
+        ("best", 3, "open", {"headline.lift_max_mm": 9.0}, True),  # there are two so far
+        ("best", 2, "open", {"headline.lift_max_mm": 1.9}, True),
+        ("best", 2, "open", {"headline.lift_max_mm": 2.0}, True),  # as good as the last
+        ("best", 2, "open", {"headline.lift_max_mm": 2.1}, False),
+        ("best", 2, "fail", {"headline.lift_max_mm": 1.0}, False),
+        ("best", 2, "open", {"headline.lift_max_mm": None}, False),
+        ("best", 2, "open", {}, True),  # a factor, which is no cell
+        ("pareto", 0, "open", {"headline.lift_max_mm": 1.5, "mesh.nodes": 6.0}, True),
+        ("pareto", 0, "open", {"headline.lift_max_mm": 1.5, "mesh.nodes": 4.0}, False),
+        ("pareto", 0, "open", {"headline.lift_max_mm": 2.0, "mesh.nodes": 9.0}, True),  # equal
     ],
 )
-def test_runs_are_made_with_the_rows_where_most_are_kept(
-    keep: str, depth: Tier, screen: str | None
+def test_runs_are_made_of_designs_that_none_before_excludes(
+    kind: str, count: int, screen: str, cells: dict[str, Any], takes: bool
 ) -> None:
-    study = Study.model_construct(keep=keep)
-    assert kept_at_once(study, depth, 3) == screen
+    figures = _solved({"a": (1.0, 5.0), "b": (2.0, 9.0)})
+    assert figures.of(Tier.CYCLE).wanted(kind, count).takes(screen, cells) is takes
+    earlier = figures.of(Tier.PREVIEW).wanted(kind, count)  # rows of another depth exclude none
+    assert earlier.bars == ()
+
+
+def test_every_design_kept_in_the_end_was_wanted_when_it_was_solved() -> None:
+    draw = np.random.default_rng(7)
+    for kind, count in (("best", 3), ("pareto", 0)):
+        values = {chr(97 + k): tuple(draw.integers(0, 8, 2).astype(float)) for k in range(26)}
+        made, seen = set(), {}
+        for name, (lift, nodes) in values.items():
+            wanted = _solved(seen).wanted(kind, count) if seen else Figures(()).wanted("best", 1)
+            if wanted.takes("open", {"headline.lift_max_mm": lift, "mesh.nodes": nodes}):
+                made.add(name)
+            seen[name] = (lift, nodes)
+        assert set(_solved(values).kept(kind, count)) <= made < set(values)
 
 
 @pytest.mark.parametrize("start", [0, 3, 9])

@@ -12,7 +12,7 @@ from distributed import WorkerPlugin, get_worker
 
 from camwright.pipeline.studies.batch.case_template import Template
 from camwright.pipeline.studies.batch.design_rows import Files
-from camwright.pipeline.studies.batch.design_task import Settings, Task
+from camwright.pipeline.studies.batch.design_task import Settings, Task, Wanted
 from camwright.pipeline.studies.batch.solver_process import SolverProcess
 
 Shard = tuple[bytes, bytes, Mapping[str, Files]]
@@ -35,10 +35,10 @@ class StudyPlugin(WorkerPlugin):
         self.process.close()
 
 
-def solve_shard(task: Task, plugin: str, screen: str | None) -> Shard:
-    """Rows of a task, in the process of this worker; `screen` as of `SolverProcess.rows`."""
+def solve_shard(task: Task, plugin: str, wanted: Wanted | None) -> Shard:
+    """Rows of a task, in the process of this worker; `wanted` as of `SolverProcess.rows`."""
     study = cast(StudyPlugin, get_worker().plugins[plugin])
-    return study.process.rows(task, screen)
+    return study.process.rows(task, wanted)
 
 
 def solve_run(task: Task, plugin: str) -> Files:

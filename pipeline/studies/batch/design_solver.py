@@ -41,7 +41,7 @@ from camwright.pipeline.studies.batch.design_rows import (
     lost,
     out_of_memory,
 )
-from camwright.pipeline.studies.batch.design_task import Settings, Task
+from camwright.pipeline.studies.batch.design_task import Settings, Task, Wanted
 from camwright.pipeline.torque.torque import Torque
 
 UNEXPECTED = "unexpected {kind}: {text}"
@@ -180,13 +180,13 @@ class DesignSolver:
         return encoded(task, columns, walls, self.settings.outputs)
 
     def solved_and_run(
-        self, task: Task, row: int, screen: str, send: Callable[[Row | Files], object]
+        self, task: Task, row: int, wanted: Wanted, send: Callable[[Row | Files], object]
     ) -> None:
         """Send the cells of one design, then the files of its run, made from the same solution.
 
         Parameters
         ----------
-        screen : str      of the designs that are kept; of others no files are made
+        wanted : Wanted   designs that may be kept; of others no files are made
         send : callable   receives the cells, then the files; none where there is no run
         """
         from camwright.pipeline.results.run_records import headline
@@ -196,7 +196,7 @@ class DesignSolver:
         def judged(torques: Mapping[str, Torque], trial: Trial) -> None:
             cells.update(row_of(trial, headline(torques, trial)))
             send(cells)
-            if cells[SCREEN.name] != screen:
+            if not wanted.takes(screen(trial.checks), cells):
                 raise _NotKeptError
 
         files: Files = {}

@@ -1,12 +1,13 @@
-"""Task of a study: designs of one case solved together, and the settings of all.
+"""Task of a study: designs of one case solved together, the settings of all, the runs wanted.
 
-A worker of the cluster reads both; neither needs a case.
+A worker of the cluster reads them; none needs a case.
 """
 
 from __future__ import annotations
 
 import hashlib
 import json
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -41,6 +42,32 @@ class Settings:
         """Hash of all settings."""
         text = json.dumps(vars(self), sort_keys=True, default=dict)
         return hashlib.sha256(text.encode()).hexdigest()
+
+
+@dataclass(frozen=True)
+class Wanted:
+    """Designs whose run folder is made from the solution of their row.
+
+    Parameters
+    ----------
+    screen : str         of these designs
+    objectives : tuple   column and sign of each value that is minimised
+    bars : tuple         values of designs that are solved: what one of them dominates is not kept
+    """
+
+    screen: str
+    objectives: tuple[tuple[str, float], ...] = ()
+    bars: tuple[tuple[float, ...], ...] = ()
+
+    def takes(self, screen: str, cells: Mapping[str, object]) -> bool:
+        """Whether the run of a design of these cells may be kept."""
+        if screen != self.screen or any(name not in cells for name, _ in self.objectives):
+            return screen == self.screen  # a factor is no cell of a solution
+        values = [(sign, cells[name]) for name, sign in self.objectives]
+        point = [sign * value if isinstance(value, float) else math.nan for sign, value in values]
+        return all(map(math.isfinite, point)) and not any(
+            all(map(float.__le__, bar, point)) and bar != tuple(point) for bar in self.bars
+        )
 
 
 @dataclass(frozen=True, eq=False)

@@ -11,7 +11,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from camwright.pipeline.base.files import Json
-from camwright.pipeline.checks.check import Screen
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.studies.batch.answers_yield import states_of
 from camwright.pipeline.studies.batch.dataset import (
@@ -24,7 +23,8 @@ from camwright.pipeline.studies.batch.dataset import (
     values_of,
 )
 from camwright.pipeline.studies.batch.design_rows import FAILED, NO_RESULT
-from camwright.pipeline.studies.batch.study_file import Objective, Study
+from camwright.pipeline.studies.batch.design_task import Wanted
+from camwright.pipeline.studies.batch.study_file import Objective
 from camwright.pipeline.studies.redesign.pareto_front import front
 
 if TYPE_CHECKING:
@@ -60,8 +60,7 @@ class Figures:
         wanted = []
         for each in self.objectives:
             values = values_of(table[each.column]) if each.column in names else None
-            sign = 1.0 if each.goal == "min" else -1.0
-            wanted.append(np.full(len(table), np.nan) if values is None else sign * values)
+            wanted.append(np.full(len(table), np.nan) if values is None else _sign(each) * values)
         for row, name in enumerate(texts[ID.name]):
             ruling = texts[GOVERNING.name][row]
             use = float(used[ruling][row]) if ruling in used else np.nan
@@ -103,6 +102,26 @@ class Figures:
             return self.best(count)
         return self.front() if kind == "pareto" else self.failed() if kind == "failed" else []
 
+    def of(self, tier: Tier) -> Figures:
+        """Those of the rows of one depth."""
+        rows = {name: row for name, row in self._rows.items() if row[0] == tier.word}
+        return Figures(self.objectives, rows)
+
+    def wanted(self, kind: str, count: int) -> Wanted:
+        """Designs that `Study.keep` may name, whatever rows follow.
+
+        A design that one on the front dominates, or that is worse than the last of the best, is
+        not kept in the end either.
+        """
+        if kind == "failed":
+            return Wanted(FAILED)
+        names = self.kept(kind, count)
+        if kind == "best":
+            names = names[count - 1 :]
+        goals = self.objectives[: 1 if kind == "best" else 2]
+        bars = tuple(self._rows[name][5][: len(goals)] for name in names)
+        return Wanted("open", tuple((each.column, _sign(each)) for each in goals), bars)
+
     def record(self) -> dict[str, Json]:
         """Counts of the unique designs for ``study.json``."""
         rows = list(self._rows.values())
@@ -118,25 +137,8 @@ class Figures:
         }
 
 
-def kept_at_once(study: Study, tier: Tier, count: int) -> Screen | None:
-    """Value of `screen` of the designs of a stage whose run folder is made with their row.
-
-    Parameters
-    ----------
-    tier : Tier   depth of the stage
-    count : int   designs of the stage
-
-    Returns
-    -------
-    Screen or None   None: few of the designs are kept, or solving them again takes less time than
-                     writing their run
-    """
-    kind, most = study.kept
-    if tier < Tier.CYCLE:
-        return None
-    if kind == "failed":
-        return "fail"
-    return "open" if kind == "best" and count <= most else None
+def _sign(objective: Objective) -> float:
+    return 1.0 if objective.goal == "min" else -1.0
 
 
 def _in(row: tuple[str, str, str, str, float, tuple[float, ...]]) -> bool:

@@ -25,7 +25,7 @@ from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.studies.batch import design_rows
 from camwright.pipeline.studies.batch.case_template import Template
 from camwright.pipeline.studies.batch.design_rows import Files, Row
-from camwright.pipeline.studies.batch.design_task import Settings, Task
+from camwright.pipeline.studies.batch.design_task import Settings, Task, Wanted
 
 DEATHS_MAX = 3
 """Deaths of the process after which a design is a row."""
@@ -85,13 +85,14 @@ class SolverProcess:
         self._pipe, self._process = ours, process
         return ours, process
 
-    def rows(self, task: Task, screen: str | None = None) -> tuple[bytes, bytes, dict[str, Files]]:
+    def rows(
+        self, task: Task, wanted: Wanted | None = None
+    ) -> tuple[bytes, bytes, dict[str, Files]]:
         """Rows and clock figures of a task as Parquet files, and files of runs by id.
 
         Parameters
         ----------
-        screen : str   of the designs whose run is made from the solution of their row; None: of
-                       none
+        wanted : Wanted   designs whose run is made from the solution of their row; None: none
         """
         with self._lock:
             if task.tier is Tier.SCREENING:
@@ -104,10 +105,10 @@ class SolverProcess:
             made, walls, runs = [], [], {}
             for row, name in enumerate(task.ids):
                 start = time.perf_counter()
-                cells = self._row(task, row, screen)
+                cells = self._row(task, row, wanted)
                 walls.append(time.perf_counter() - start)
                 made.append(cells)
-                if screen is not None and self._ready:
+                if wanted is not None and self._ready:
                     runs[name] = self._files(self._reply)
             kept = {name: files for name, files in runs.items() if files}
             return *self._encoded(task, design_rows.columns_of(made), walls), kept
@@ -144,14 +145,14 @@ class SolverProcess:
         self._process = self._pipe = None
         self._ready = False
 
-    def _row(self, task: Task, row: int, screen: str | None) -> Row:
-        """Cells of a design; the files of its run follow where `screen` is not None."""
+    def _row(self, task: Task, row: int, wanted: Wanted | None) -> Row:
+        """Cells of a design; the files of its run follow where `wanted` is not None."""
         for _ in range(DEATHS_MAX):
             try:
                 solved: Row = (
                     self._asked("solved", task, row)
-                    if screen is None
-                    else self._asked("solved_and_run", task, row, screen)
+                    if wanted is None
+                    else self._asked("solved_and_run", task, row, wanted)
                 )
             except _OutOfTimeError:
                 return design_rows.out_of_time(self.settings)
@@ -236,8 +237,8 @@ def serve(pipe: Connection) -> None:
     while True:
         method, arguments = pipe.recv()
         if method == "solved_and_run":
-            task, row, screen = arguments
-            solver.solved_and_run(task, row, screen, pipe.send)
+            task, row, wanted = arguments
+            solver.solved_and_run(task, row, wanted, pipe.send)
         else:
             pipe.send(_answer(getattr(solver, method), arguments))
 

@@ -182,6 +182,11 @@ class StudyFolder:
         except OSError as error:
             raise ResultError(f"{final}: {error.strerror or error}") from None
 
+    def delete_run(self, name: str) -> None:
+        """Delete the run folder of a design and its clock figures."""
+        shutil.rmtree(self.path / RUNS / name, ignore_errors=True)
+        (self.path / TIMINGS / f"{name}.json").unlink(missing_ok=True)
+
     def write_summary(self, record: Mapping[str, Json]) -> None:
         """Write the record of the study; last, as it tells a finished one."""
         write_atomic(self.path / SUMMARY, json_text(record) + "\n")

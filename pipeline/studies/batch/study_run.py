@@ -32,9 +32,9 @@ from camwright.pipeline.studies.batch.dataset import (
     table_from,
 )
 from camwright.pipeline.studies.batch.design_plan import Plan, study_versions
-from camwright.pipeline.studies.batch.design_task import Settings, Task
+from camwright.pipeline.studies.batch.design_task import Settings, Task, Wanted
 from camwright.pipeline.studies.batch.factor_axes import Axis, axis_of
-from camwright.pipeline.studies.batch.row_selection import Figures, kept_at_once, states_in
+from camwright.pipeline.studies.batch.row_selection import Figures, states_in
 from camwright.pipeline.studies.batch.sampling import Designs, designs_of
 from camwright.pipeline.studies.batch.study_file import Stop, Study
 from camwright.pipeline.studies.batch.study_folder import Shard, StudyFolder
@@ -230,13 +230,16 @@ class _Run:
         pending = missing()
         start = next(pending, None)
         if start is not None:
-            waiting = chain([start], pending)
-            screen = kept_at_once(self.study, tier, count)
-            for task, (rows, clock, runs) in self.scheduler.shards(waiting, screen):
+            waiting, made = chain([start], pending), set[str]()
+            for task, (rows, clock, runs) in self.scheduler.shards(
+                waiting, lambda: self._wanted(tier)
+            ):
                 for name, files in runs.items():  # before their rows, by which they are known
                     self.home.write_run(name, files)
                 self.home.write_shard(task.name, rows, clock)
                 watch.take(Shard(task.name, task.ids), table_from(rows))
+                if runs:
+                    made = self._still_kept(made | set(runs), tier)
                 if watch.stopped:
                     break
         shards = watch.shards()
@@ -244,6 +247,23 @@ class _Run:
             self.stopped = watch.stopped
             self.figures.keep({name for shard in shards for name in shard.ids})
         return shards
+
+    def _wanted(self, tier: Tier) -> Wanted | None:
+        """Designs of a depth whose run is made with their row, by those that are solved.
+
+        None where no run is kept, or a run takes longer to write than to solve.
+        """
+        kind, most = self.study.kept
+        if not kind or tier < Tier.CYCLE:
+            return None
+        return self.figures.of(tier).wanted(kind, most)
+
+    def _still_kept(self, made: set[str], tier: Tier) -> set[str]:
+        """Runs made so far that may be kept; the others are deleted."""
+        kept = made.intersection(self.figures.of(tier).kept(*self.study.kept))
+        for name in made - kept:
+            self.home.delete_run(name)
+        return kept
 
     def _keep(self, kept: Sequence[str], deeper: set[str]) -> None:
         """Write the run folders of the designs kept, at the depth of their rows."""

@@ -25,7 +25,7 @@ from camwright.pipeline.studies.batch.design_rows import (
     died,
     encoded,
 )
-from camwright.pipeline.studies.batch.design_task import Settings, Task
+from camwright.pipeline.studies.batch.design_task import Settings, Task, Wanted
 from camwright.pipeline.studies.batch.solver_process import DEATHS_MAX
 
 if TYPE_CHECKING:
@@ -161,15 +161,20 @@ class TaskScheduler:
         return client
 
     def shards(
-        self, tasks: Iterable[Task], screen: str | None = None
+        self, tasks: Iterable[Task], wanted: Callable[[], Wanted | None] = lambda: None
     ) -> Iterator[tuple[Task, Shard]]:
-        """Tasks with their shards, as they complete; `screen` as of `SolverProcess.rows`."""
+        """Tasks with their shards, as they complete.
+
+        Parameters
+        ----------
+        wanted : callable   designs whose run is made with their row, when a task is handed out
+        """
         from camwright.pipeline.studies.batch.cluster_worker import solve_shard
 
         def apart(task: Task) -> Shard:
-            return self._apart(task, screen)
+            return self._apart(task, wanted)
 
-        return self._completed(solve_shard, tasks, apart, screen)
+        return self._completed(solve_shard, tasks, apart, wanted)
 
     def runs(self, tasks: Iterable[Task]) -> Iterator[tuple[Task, Files]]:
         """Tasks of one design each with the files of its run; none where it has no result."""
@@ -182,7 +187,7 @@ class TaskScheduler:
         method: Callable[..., Result],
         tasks: Iterable[Task],
         killed: Callable[[Task], Result],
-        *arguments: str | None,
+        *arguments: Callable[[], object],
     ) -> Iterator[tuple[Task, Result]]:
         """Results as they complete; a few tasks a worker are known to the scheduler at once."""
         from distributed import as_completed
@@ -196,7 +201,8 @@ class TaskScheduler:
             task = next(waiting, None)
             if task is None:
                 return False
-            future = self._client.submit(method, task, self._plugin, *arguments, pure=False)
+            values = [each() for each in arguments]
+            future = self._client.submit(method, task, self._plugin, *values, pure=False)
             running[future] = task
             finished.add(future)
             return True
@@ -226,7 +232,7 @@ class TaskScheduler:
             with contextlib.suppress(Exception):  # a cluster that is lost
                 self._client.cancel(list(running), force=True)
 
-    def _apart(self, task: Task, screen: str | None) -> Shard:
+    def _apart(self, task: Task, wanted: Callable[[], Wanted | None]) -> Shard:
         """Shard of a task that ended its worker too often: each design on its own."""
         import pyarrow as pa
 
@@ -234,7 +240,7 @@ class TaskScheduler:
             columns = columns_of([died(DEATHS_MAX)])
             return *encoded(task, columns, [0.0], self._settings.outputs), {}
         alone = [task.alone(row) for row in range(len(task.ids))]
-        parts = {each.ids[0]: shard for each, shard in self.shards(alone, screen)}
+        parts = {each.ids[0]: shard for each, shard in self.shards(alone, wanted)}
         rows = joined([table_from(parts[name][0]) for name in task.ids])
         clocks = pa.concat_tables([table_from(parts[name][1]) for name in task.ids])
         runs = {name: files for part in parts.values() for name, files in part[2].items()}
