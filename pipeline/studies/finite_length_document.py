@@ -145,9 +145,10 @@ class LengthOptions:
         length, modulus = straight.contact_length, straight.contact_modulus
         if kind in ("johns-gohar", "lundberg"):
             load = self._positive(value, "N/mm", "--crown")
-            half_width, _ = hertz.line_contact(load, 1.0 / straight.curvature, modulus)
+            even = lundberg(load, length, modulus)
             if kind == "lundberg":
-                return lundberg(load, length, modulus)
+                return even
+            half_width, _ = hertz.line_contact(load, 1.0 / straight.curvature, modulus)
             if not float(half_width) < length:
                 raise InputError("--crown", self.crown, "a load of less half-width than length")
             return johns_gohar(load, length, modulus, float(half_width))
@@ -265,15 +266,17 @@ def finite_length(
     ContactError
         If the bodies tip over or the contact leaves its cells.
     """
-    finite = options.finite_pair(pair, depths)
     if not pair.line_load > 0:
         raise InputError("--line-load", shown(pair.line_load, "N/mm"), "> 0 N/mm beside --length1")
-    force = pair.line_load * finite.contact_length
     tilt, moment = options.tilt_or_moment()
     try:
+        finite = options.finite_pair(pair, depths)
+        force = pair.line_load * finite.contact_length
         tiers = both_tiers(finite, force, tilt=tilt, moment=moment, mean_length=options.mean())
     except InputError as error:
         known = {"moment": "--moment", "tilt": "--tilt", "depth": "--depth1 or --depth2"}
+        if error.field.startswith("--"):
+            raise
         field = known.get(error.field, f"--crown: {error.field}")
         raise InputError(field, error.value, error.limit) from None
     return FiniteLength(finite, tiers)

@@ -105,7 +105,12 @@ def test_table_of_drop(tmp_path):
     path.write_text("y_mm,drop_um\n0,0\n0.5,0\n1,4\n")
     finite = options(crown=str(path)).lengths.finite_pair(options().pair(), (2e-3, 2e-3))
     np.testing.assert_allclose(finite.crown.drop(np.array([-0.75e-3, 0.2e-3])), [2e-6, 0])
-    for text in ("y_mm\n0\n", "y_mm,drop_um\n0,0\n0,1\n", "y_mm,drop_um\n0,0\n1,x\n", ""):
+    for text in (
+        "y_mm\n0\n",
+        "y_mm,drop_um\n0,0\n0,1\n",
+        "y_mm,drop_um\n0,0\n1,x\n",
+        "y_mm,drop_um\n0,0\n1,2e3\n",
+    ):
         path.write_text(text)
         with pytest.raises(CamError, match="drop"):
             options(crown=str(path)).lengths.finite_pair(options().pair(), (2e-3, 2e-3))
@@ -127,6 +132,9 @@ def test_table_of_drop(tmp_path):
         ({"crown": "johns-gohar:1e9"}, "--crown"),
         ({"tilt": "1", "moment": "1"}, "--moment = 1"),
         ({"tilt": "1 mm"}, "--tilt = 1 mm"),
+        ({"tilt": "1e300"}, "--tilt"),
+        ({"line_load": "1e-9"}, "--depth1 or --depth2 = 0.002"),
+        ({"crown": "lundberg:1e300"}, "--crown"),
         ({"moment": "400"}, "--moment = 0.4"),
         ({"mean_length": "0"}, "--mean-length = 0"),
         ({"width": "2", "load": "100", "line_load": None}, "--width = 2"),

@@ -20,7 +20,11 @@ from camwright.pipeline.contact.finite_length.half_space import (
     influence,
     mirror_factor,
 )
-from camwright.pipeline.contact.finite_length.length_tiers import half_space_factors, plane_strain
+from camwright.pipeline.contact.finite_length.length_tiers import (
+    block_grid,
+    half_space_factors,
+    plane_strain,
+)
 from camwright.pipeline.contact.finite_length.pressure_cells import (
     CellSizes,
     PressureCells,
@@ -214,7 +218,7 @@ def test_a_cycle_is_its_contacts_one_by_one():
 
 
 def test_mirror_factor_of_steel():
-    assert mirror_factor(0.3) == pytest.approx(1.5)
+    assert mirror_factor(0.3) == pytest.approx(1.51)
 
 
 def test_a_contact_beyond_its_cells_is_refused():
@@ -238,8 +242,8 @@ def test_a_contact_beyond_its_cells_is_refused():
         (lambda: CircularCrown(np.inf), "crown.radius"),
         (lambda: CircularCrown(1e-3).drop(np.array([2e-3])), "crown.radius"),
         (lambda: LogarithmicCrown(0.0, 1.0), "crown.scale"),
-        (lambda: LogarithmicCrown(1.0, 1.0, share=1.1), "crown.share"),
-        (lambda: LogarithmicCrown(1.0, 1.0, straight=1.0), "crown.straight"),
+        (lambda: LogarithmicCrown(1e-3, 1.0, share=1.1), "crown.share"),
+        (lambda: LogarithmicCrown(1e-3, 1.0, straight=1.0), "crown.straight"),
         (lambda: pair(curvature=np.nan), "curvature"),
         (lambda: CellSizes(growth=0.5), "growth"),
         (lambda: CellSizes(at_end=np.nan), "at_end"),
@@ -248,3 +252,14 @@ def test_a_contact_beyond_its_cells_is_refused():
 def test_bad_geometry_is_named(make, field):
     with pytest.raises(InputError, match=field):
         make()
+
+
+def test_a_very_long_body_has_few_elements_beyond_the_contact():
+    finite = pair(1e6)
+    cells = pressure_cells(finite, 0.1e-3, CellSizes())
+    grid = block_grid(cells, finite.bodies[0])
+    assert grid.y[-1] == pytest.approx(5e5)
+    assert grid.y.size < 80
+    assert grid.z[-1] == 8e-3
+    with pytest.raises(InputError, match="depth"):
+        block_grid(cells, FiniteBody(STEEL, 5e-3, SHARP, 0.2e-3))

@@ -101,7 +101,8 @@ class CircularCrown:
         """Drop (...), m, of the arc."""
         if not np.abs(y).max() < self.radius:
             raise InputError("crown.radius", self.radius, "> half the length of the contact")
-        return np.asarray(y**2 / (self.radius + np.sqrt(self.radius**2 - y**2)))
+        share = y / self.radius
+        return np.asarray(y * share / (1.0 + np.sqrt(1.0 - share**2)))
 
 
 @dataclass(frozen=True)
@@ -117,8 +118,8 @@ class LogarithmicCrown:
     straight: float = 0.0
 
     def __post_init__(self) -> None:
-        if not 0 < self.scale < np.inf:
-            raise InputError("crown.scale", self.scale, "> 0 m")
+        if not 0 < self.scale < self.length:
+            raise InputError("crown.scale", self.scale, "> 0 m and less than the length")
         if not 0 < self.share <= 1:
             raise InputError("crown.share", self.share, "in (0, 1]")
         if not 0 <= self.straight < self.length < np.inf:
@@ -146,6 +147,9 @@ class TabulatedCrown:
             raise InputError("crown.y", self.y.size, "two or more rows of y and drop")
         if not (np.diff(self.y) > 0).all():
             raise InputError("crown.y", "not ascending", "ascending")
+        deepest = float(np.abs(self.table).max())
+        if not deepest < self.y[-1] - self.y[0]:
+            raise InputError("crown.drop", deepest, "less than the range of y, m")
 
     def drop(self, y: Array) -> Array:
         """Drop (...), m, interpolated."""

@@ -16,7 +16,7 @@ from camwright.pipeline.contact.finite_length.pressure_cells import PressureCell
 # loses digits.
 _FAR = 20.0
 # Mirror factor less that of Guilbault, by the finite elements of this package at nu = 0.3.
-_MIRROR_EXCESS = 0.11
+_MIRROR_EXCESS = 0.12
 
 
 def mirror_factor(poisson: float) -> float:
@@ -25,7 +25,7 @@ def mirror_factor(poisson: float) -> float:
     References
     ----------
     Guilbault, J. Tribol. 133 (2011) 031404: 1.29 - (0.08 - 0.5 nu)/(1 - nu), verify; raised by
-    0.11 to the axial pressure of the finite elements here.
+    0.12 to the axial pressure of the finite elements here.
     """
     return 1.29 - (0.08 - 0.5 * poisson) / (1.0 - poisson) + _MIRROR_EXCESS
 

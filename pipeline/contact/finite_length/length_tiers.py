@@ -42,8 +42,10 @@ MEAN_LENGTH = 1e-4
 
 SIZES = CellSizes()
 _REFINEMENT = 1.5
-# Growth of the elements into the block and beyond the contact, and their largest size, m.
-_BLOCK_GROWTH, _BLOCK_LARGEST = 2.0, np.inf
+# Growth of the elements into the block and beside the contact.
+_BLOCK_GROWTH = 2.0
+# Greatest depth of a block over its first element, by memory; greatest tilt, rad.
+_DEEPEST, _TILT = 2e4, 0.1
 # Contacts whose half-widths lie within this ratio share their cells.
 _SHARED = 1.1
 
@@ -140,7 +142,7 @@ def both_tiers(
 
     blocks, unknowns = [], 0
     for cells in meshes[:2]:
-        compliance, unknowns = _block_compliance(cells, pair.bodies)
+        compliance, unknowns = block_compliance(cells, pair.bodies)
         gap = cells.integrated_gap(pair)
         blocks.append(length_contact.solve(cells, compliance, gap, force, tilt=tilt, moment=moment))
     balanced = float(blocks[-1].moment[0])
@@ -217,8 +219,8 @@ def half_space_factors(
 def _require_load(pair: FinitePair, force: float, tilt: float | None, moment: float | None) -> None:
     if not 0 < force < np.inf:
         raise InputError("force", force, "> 0 N")
-    if tilt is not None and not np.isfinite(tilt):
-        raise InputError("tilt", tilt, "finite")
+    if tilt is not None and not abs(tilt) < _TILT:
+        raise InputError("tilt", tilt, f"within {_TILT:g} rad, small rotations")
     if moment is not None:
         if tilt is not None:
             raise InputError("moment", moment, "left out beside a tilt")
@@ -227,7 +229,7 @@ def _require_load(pair: FinitePair, force: float, tilt: float | None, moment: fl
             raise InputError("moment", moment, f"within {most:.4g} N m, the force at an end")
 
 
-def _block_compliance(
+def block_compliance(
     cells: PressureCells, bodies: tuple[FiniteBody, FiniteBody]
 ) -> tuple[Array, int]:
     """Compliance (n, n), m3/Pa, of the cells on both blocks, and their unknowns."""
@@ -246,18 +248,19 @@ def block_grid(cells: PressureCells, body: FiniteBody) -> BrickGrid:
     Raises
     ------
     InputError
-        If the block is not deeper than the cells are wide.
+        If the block is not deeper than the cells are wide, or too deep for elements of that size.
     """
+    if not body.depth < _DEEPEST * cells.x[1]:
+        raise InputError("depth", body.depth, f"< {_DEEPEST * cells.x[1]:.4g} m at this half-width")
     if not body.depth > 2.0 * cells.x[-1]:
         raise InputError("depth", body.depth, f"> {2.0 * cells.x[-1]:.4g} m, width of the cells")
     middle = cells.shape[0] // 2
     x, y = cells.x, cells.y[middle:]
-    half_length = 0.5 * body.length
-    beside = graded(body.depth - x[-1], x[-1] - x[-2], _BLOCK_GROWTH, _BLOCK_LARGEST)
-    deep = graded(body.depth, x[1], _BLOCK_GROWTH, _BLOCK_LARGEST)
-    if half_length - y[-1] > 0.5 * (y[-1] - y[-2]):
-        step = y[-1] - y[-2]
-        y = np.concatenate([y, y[-1] + graded(half_length - y[-1], step, SIZES.growth, 1.0)[1:]])
+    beside = graded(body.depth - x[-1], x[-1] - x[-2], _BLOCK_GROWTH, np.inf)
+    deep = graded(body.depth, x[1], _BLOCK_GROWTH, np.inf)
+    step, overhang = y[-1] - y[-2], 0.5 * body.length - y[-1]
+    if overhang > 0.5 * step:
+        y = np.concatenate([y, y[-1] + graded(overhang, step, SIZES.growth, np.inf)[1:]])
     return BrickGrid(np.concatenate([x, x[-1] + beside[1:]]), y, deep, (cells.shape[1], middle))
 
 

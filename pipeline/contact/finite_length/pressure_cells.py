@@ -131,10 +131,11 @@ def graded(length: float, first: float, growth: float, largest: float) -> Array:
     """Edges (k,) from 0 to `length`, their distances growing from `first` to `largest` at most."""
     if first >= length:
         return np.array([0.0, length])
-    steps = [first]
-    while sum(steps) < length:
-        steps.append(min(steps[-1] * growth, largest))
-    edges = np.concatenate([[0.0], np.cumsum(steps)])
+    step, ends = first, [0.0, first]
+    while ends[-1] < length:
+        step = min(step * growth, largest)
+        ends.append(ends[-1] + step)
+    edges = np.array(ends)
     # The first step is kept, the others are scaled to end at `length`.
     scaled = first + (edges[1:] - first) * (length - first) / (edges[-1] - first)
     return np.concatenate([[0.0], scaled])
