@@ -66,8 +66,11 @@ _BY_THE_SEARCH = ("prices", "machine_prices", "trial_points", "trials", "stateme
 _LAST = ("run.json", signoff.NAME, signoff.SIGNATURES)
 _BY_ENTRY = ("6_checks.json", "trial.json")
 """Files of a trial that are compared entry by entry."""
-PAGES = ("8_report.html", "scene.html", "8_signoff.pdf", "workshop/drawing.pdf")
-"""Pages and sheets that are drawn again and compared."""
+PAGES = (
+    "8_report.html", "scene.html", "8_signoff.pdf", "workshop/drawing.pdf",
+    "workshop/contour.xlsx", "workshop/inspection.xlsx", "5_cycle.xlsx",
+)  # fmt: skip
+"""Pages, sheets and spreadsheets that are drawn again and compared; the last of the final trial."""
 _LISTED = 5
 """Differences of a record that are listed."""
 _OF_A_CHECK = ("demand", "corner_demand", "error", "utilisation", "margin")
@@ -348,10 +351,11 @@ def _of_files(
             compared = [name for name, _ in files_in(again.path) if not name.endswith(_BY_ENTRY)]
             differences = list(file_differences(run.path, again.path, compared, share, exact))
             again.discard()
-        pages = [name for name in PAGES if (run.path / name).is_file()]
+        cycle = f"{run.final.path.name}/{PAGES[-1]}"
+        pages = [name for name in (*PAGES[:-1], cycle) if (run.path / name).is_file()]
         if exact and present is not None and pages:
             drawn = _drawn_again(run.path, Path(home) / "drawn", present)
-            pages = [name for name in PAGES if (drawn / name).is_file()]
+            pages = [name for name in pages if (drawn / name).is_file()]
             differences += file_differences(run.path, drawn, pages, share, exact)
             compared += pages
     left_out = () if exact else ("sha256",)

@@ -1,4 +1,4 @@
-"""Documents of one page: ``8_signoff.pdf`` to sign, ``workshop/drawing.pdf`` for the shop."""
+"""Documents beside the page: ``8_signoff.pdf``, ``workshop/drawing.pdf``, spreadsheets."""
 
 from __future__ import annotations
 
@@ -11,7 +11,10 @@ import numpy as np
 from camwright.geometry.errors import ResultError
 from camwright.pipeline.base.files import read_json, write_atomic
 from camwright.pipeline.base.fits import size_of
+from camwright.pipeline.base.spreadsheets import SUFFIX, Excerpt, spreadsheet
+from camwright.pipeline.base.tables import CAM_ANGLE
 from camwright.pipeline.base.units import celsius, parse
+from camwright.pipeline.base.worker_processes import Crew, Task
 from camwright.pipeline.results.check_records import utilisation_of
 from camwright.pipeline.results.run_reader import results_sha256
 from camwright.reports import pdf
@@ -304,3 +307,41 @@ def _part(material: Material, record: Record) -> Part:
         number(record["profile_tolerance_mm"]), str(record["datum"]),
         "" if roughness is None else number(roughness),
     )  # fmt: skip
+
+
+# --- spreadsheets
+
+
+def write_tables(material: Material) -> list[Path]:
+    """Write the spreadsheets, beside the tables of the run that they show.
+
+    Raises
+    ------
+    ResultError
+        If a table cannot be read or a file not be written.
+    """
+    written = []
+    for name, excerpt in _tables(material).items():
+        task = material.ahead.get(name)
+        file = material.run.path / name
+        content = spreadsheet(file, excerpt) if task is None else task.result()
+        written.append(write_atomic((material.folder / name).with_suffix(SUFFIX), content))
+    return written
+
+
+def begun(material: Material, workers: Crew) -> dict[str, Task]:
+    """Spreadsheets handed to worker processes, by their table."""
+    return {
+        name: workers.submit(spreadsheet, material.run.path / name, excerpt)
+        for name, excerpt in _tables(material).items()
+    }
+
+
+def _tables(material: Material) -> dict[str, Excerpt | None]:
+    """Tables of the run that people read; of the inspection sheet an excerpt to print."""
+    files: dict[str, Excerpt | None] = {
+        f"{material.run.final.path.name}/5_cycle.csv": None,
+        "workshop/contour.csv": None,
+        "workshop/inspection.csv": Excerpt("every 10 deg", CAM_ANGLE.header, 10.0),
+    }
+    return {name: each for name, each in files.items() if (material.run.path / name).is_file()}

@@ -53,6 +53,7 @@ PARTS = (
     Part("scene", f"{scene_page.FILE}, interactive 3-D view", scene_page.write),
     Part("sheet", f"{documents.SIGNOFF}, one page to sign", documents.write_signoff),
     Part("drawing", f"{documents.DRAWING}, dimensioned drawing", documents.write_drawing),
+    Part("tables", "tables as spreadsheets", documents.write_tables),
     Part("pdf", pdf.PDF, pdf.write, on_request=True),
     Part("page", page.PAGE, page.write),  # last: it links to the others
 )  # fmt: skip
@@ -98,6 +99,7 @@ class Ahead:
             material = read_material(folder)
             self._begun |= picture_list.begun(material, workers)
             self._begun |= figure_svg.begun(material, workers)
+            self._begun |= documents.begun(material, workers)
 
     def write(self, folder: Path) -> dict[str, Sequence[Path]]:
         """Write the parts; see `report`."""

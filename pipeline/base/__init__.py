@@ -12,6 +12,7 @@ In the order of use:
 | `columns`          | data frame and figure of columns, for a notebook         |                  |
 | `fits`             | sizes with limit deviations: bores and keyways           | m                |
 | `tables`           | columns with unit and meaning; CSV files                 |                  |
+| `spreadsheets`     | CSV tables as .xlsx, rounded and ready to print          |                  |
 | `disk_cache`       | arrays that depend on their key alone, kept between runs |                  |
 | `worker_processes` | processes of one BLAS thread for independent tasks       |                  |
 | `progress`         | progress of a run on the terminal                        | s                |

@@ -278,7 +278,7 @@ def inspection_sheet(contour: Contour, theta: Array, tolerance: float) -> str:
     angle = np.round(np.degrees(theta), 10)
     columns = (angle, polar, np.hypot(x, y), x, y, normal[0], normal[1], -half, half)
     rows = [
-        ",".join([*(repr(float(value)) for value in row), "", "", ""])
+        ",".join([*(repr(float(value) + 0.0) for value in row), "", "", ""])
         for row in zip(*columns, strict=True)
     ]
     return "\n".join([",".join(_INSPECTION), *rows]) + "\n"
