@@ -24,8 +24,8 @@ picture_list           pictures of a report with title and caption
 utilisation_chart      chart of the greatest utilisations by part
 report_content         sections, blocks, text and tables of a report (`Report`)
 page                   ``8_report.html`` and the pages of studies, by Jinja
-pdf                    ``8_report.pdf``; documents as PDF/A, by typst
-documents              ``8_signoff.pdf``, ``workshop/drawing.pdf``, spreadsheets
+pdf                    documents as PDF/A, by typst
+documents              ``8_signoff.pdf``, ``8_report.pdf``, shop drawing, spreadsheets
 scene_solids           rings, boxes and rods as triangles
 scene_page             ``scene.html``: interactive 3-D view over the turn
 sections               parts of a report by name; `report` writes them

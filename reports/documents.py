@@ -1,4 +1,4 @@
-"""Documents beside the page: ``8_signoff.pdf``, ``workshop/drawing.pdf``, spreadsheets."""
+"""Documents beside the page: sheet to sign, report as PDF, shop drawing, spreadsheets."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from camwright.reports import pdf
 from camwright.reports.arrangement_data import arrangement_at
 from camwright.reports.drawing.drawing_shapes import Drawing
 from camwright.reports.drawing.part_view import Part, scale_words, views
-from camwright.reports.report_content import Signatures, verdict_of
+from camwright.reports.report_content import Report, Signatures, report_content, verdict_of
 from camwright.reports.report_data import Material, title_block
 from camwright.reports.report_tables import (
     DASH,
@@ -36,6 +36,7 @@ from camwright.reports.report_tables import (
 from camwright.reports.verdict_text import Verdict
 
 SIGNOFF = "8_signoff.pdf"
+PDF = "8_report.pdf"
 MOST = 12
 """Checks in the table of safeties: those of the least safety."""
 _LINE, _LONG = 110, 330
@@ -97,6 +98,26 @@ def write_signoff(material: Material) -> list[Path]:
     """
     content = pdf.typeset("signoff.typ", sheet_content(material))
     return [write_atomic(material.folder / SIGNOFF, content)]
+
+
+@dataclass(frozen=True, eq=False)
+class PrintedReport:
+    """The report as PDF: the sheet to sign is its first page."""
+
+    sheet: SignoffSheet
+    report: Report
+
+
+def write_report(material: Material) -> list[Path]:
+    """Write ``8_report.pdf``.
+
+    Raises
+    ------
+    ResultError
+        If the file cannot be written.
+    """
+    printed = PrintedReport(sheet_content(material), report_content(material))
+    return [write_atomic(material.folder / PDF, pdf.typeset("report.typ", printed))]
 
 
 def sheet_content(material: Material) -> SignoffSheet:

@@ -131,21 +131,40 @@ def placed_limits(panel: Panel, low: float, high: float) -> PlacedLimits:
     beyond = [line for line in panel.limits if not low <= line.value <= high]
     inside = [line for line in panel.limits if line not in beyond]
     heights = [(line.value - low) / (high - low) for line in inside]
-    slots = [{True: height, False: height - WORDS_HEIGHT} for height in heights]
-    taken: list[float] = []
-    above: dict[int, bool] = {}
-    # labels with only one possible place first
-    for k in sorted(range(len(inside)), key=lambda k: sum(_free(s, ()) for s in slots[k].values())):
-        wanted = heights[k] < 0.12 or (inside[k].value >= 0 and heights[k] < 0.78)
-        swap = not _free(slots[k][wanted], taken) and _free(slots[k][not wanted], taken)
-        above[k] = wanted != swap
-        taken.append(slots[k][above[k]])
-    placed = [(line, above[k]) for k, line in enumerate(inside)]
+    wanted = [h < 0.12 or (each.value >= 0 and h < 0.78)
+              for h, each in zip(heights, inside, strict=True)]  # fmt: skip
+    upper, clear = _sides(heights, wanted, sign=-1.0)
+    if not clear:
+        upper, _ = _sides(heights, wanted, sign=1.0)
+    placed = list(zip(inside, upper, strict=True))
     upwards = bool(beyond) and beyond[0].value > high
     words = "; ".join(line.words(panel.unit) for line in beyond)
     if words:
         words = f"{words} ({'above' if upwards else 'below'} this axis)"
     return PlacedLimits(tuple(placed), words, upwards)
+
+
+def _sides(
+    heights: Sequence[float], wanted: Sequence[bool], sign: float
+) -> tuple[list[bool], bool]:
+    """Whether each label stands above its line, and whether all are clear of one another.
+
+    Labels with only one possible place come first, of others the lowest (sign 1) or highest (-1).
+    """
+    slots = [{True: height, False: height - WORDS_HEIGHT} for height in heights]
+    taken: list[float] = []
+    above = list(wanted)
+
+    def order(k: int) -> tuple[int, float]:
+        return sum(_free(slot, ()) for slot in slots[k].values()), sign * heights[k]
+
+    clear = True
+    for k in sorted(range(len(heights)), key=order):
+        if not _free(slots[k][above[k]], taken):
+            above[k] = above[k] != _free(slots[k][not above[k]], taken)
+        clear &= all(abs(slots[k][above[k]] - other) >= WORDS_HEIGHT - 1e-9 for other in taken)
+        taken.append(slots[k][above[k]])
+    return above, clear
 
 
 def _free(bottom: float, taken: Sequence[float]) -> bool:

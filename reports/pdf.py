@@ -1,4 +1,4 @@
-"""The report as PDF/A on A4, set by typst."""
+"""Documents as PDF/A, set by typst."""
 
 from __future__ import annotations
 
@@ -16,13 +16,11 @@ import matplotlib as mpl
 from matplotlib.ft2font import FT2Font
 
 from camwright.geometry.errors import ResultError
-from camwright.pipeline.base.files import Json, write_atomic
+from camwright.pipeline.base.files import Json
 from camwright.reports.drawing import drawing_svg
 from camwright.reports.drawing.drawing_shapes import Drawing
 from camwright.reports.figure_svg import COLOURS, Drawn
 from camwright.reports.picture_list import Picture
-from camwright.reports.report_content import report_content
-from camwright.reports.report_data import Material
 from camwright.reports.report_tables import isolated, plain
 
 if TYPE_CHECKING:
@@ -30,22 +28,10 @@ if TYPE_CHECKING:
 
 Value: TypeAlias = "str | float | Sequence[Value] | DataclassInstance | None"
 
-PDF = "8_report.pdf"
 _TEMPLATES = Path(__file__).parent / "templates"
 _FONTS = Path(mpl.get_data_path()) / "fonts" / "ttf"
 _LONG_WORD = re.compile(r"(?![0-9a-f]{64}\b)\S{20,}")  # except SHA-256
 _BREAK = "\u200b"
-
-
-def write(material: Material) -> list[Path]:
-    """Write ``8_report.pdf``.
-
-    Raises
-    ------
-    ResultError
-        If the file cannot be written.
-    """
-    return [write_atomic(material.folder / PDF, typeset("report.typ", report_content(material)))]
 
 
 def typeset(template: str, document: DataclassInstance) -> bytes:

@@ -16,7 +16,6 @@ from camwright.reports import (
     documents,
     figure_svg,
     page,
-    pdf,
     picture_list,
     scene_page,
 )
@@ -54,7 +53,7 @@ PARTS = (
     Part("sheet", f"{documents.SIGNOFF}, one page to sign", documents.write_signoff),
     Part("drawing", f"{documents.DRAWING}, dimensioned drawing", documents.write_drawing),
     Part("tables", "tables as spreadsheets", documents.write_tables),
-    Part("pdf", pdf.PDF, pdf.write, on_request=True),
+    Part("pdf", documents.PDF, documents.write_report, on_request=True),
     Part("page", page.PAGE, page.write),  # last: it links to the others
 )  # fmt: skip
 
