@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import datetime as dt
 import re
 import unicodedata
 from collections.abc import Iterator, Mapping, Sequence
@@ -431,7 +432,9 @@ def _is_section(value: Json) -> bool:
     )
 
 
-def _value(value: Json) -> str:
+def _value(value: Json | dt.date) -> str:
+    if isinstance(value, dt.date):
+        return value.isoformat()
     if isinstance(value, str):
         return re.sub(r"^-?\d+\.\d{12,}(?=\s)", lambda n: f"{float(n.group()):.12g}", value)
     if value is None or isinstance(value, (int, float)):

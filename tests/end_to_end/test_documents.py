@@ -24,6 +24,7 @@ from camwright.pipeline.results.workshop_files import dimensions_record
 from camwright.reports import documents
 from camwright.reports.drawing.part_view import scale_words, standard_scale
 from camwright.reports.report_data import Material, read_material
+from camwright.reports.report_tables import input_tables
 
 LONG = "W" * 60
 DOCUMENT = {
@@ -87,6 +88,16 @@ def test_entries_left_out_are_fields_to_fill_and_bytes_repeat(tmp_path: Path) ->
     assert documents.write_signoff(read_material(tmp_path / "run"))[0].read_bytes() == first
     stated = documents.sheet_content(with_document(material))
     assert dict(stated.block)["Date"] == "2026-03-02"
+
+
+def test_the_report_prints_the_title_block_with_its_date(tmp_path: Path) -> None:
+    folder = report_fixture.write_run(tmp_path / "run", 36, field=False)
+    (table,) = input_tables({"document": DOCUMENT})
+    assert ("date", "2026-03-02", "") in table.rows
+    printed = documents.write_report(with_document(read_material(folder)))[0]
+    pages = printed_text.pages(printed)
+    assert "2026-03-02" in printed_text.words_on(pages[0])
+    assert sum("2026-03-02" in printed_text.words_on(page) for page in pages) == 2  # and inputs
 
 
 def test_the_table_of_safeties_states_required_beside_actual(tmp_path: Path) -> None:
