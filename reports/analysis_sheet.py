@@ -31,7 +31,19 @@ GROUPS = (
     ("Contact", ("pressure", "half-width", "stress")),
     ("Forces and guides", ("normal-force", "forces", "guides", "jamming", "speed")),
     ("Energy, speed and load cases", ("energy", "load-cases", "speed-sweep")),
-    ("Parts", ("spring-force", "edge-pressure", "elastic", "roller", "film", "parts")),
+    (
+        "Parts",
+        (
+            "spring-force",
+            "goodman-spring",
+            "goodman-camshaft",
+            "edge-pressure",
+            "elastic",
+            "roller",
+            "film",
+            "parts",
+        ),
+    ),
     ("Trials", ("trial-points",)),
 )
 LARGEST_RADIUS_MM = 150.0

@@ -268,8 +268,8 @@ def _points(ax: Axes, figure: LineFigure, panel: Panel, number: int) -> None:
         ax.bar(figure.x + shift, curve.values, width, color=colour, label=curve.label, zorder=3)
         return
     ax.plot(
-        figure.x, curve.values, "o-" if figure.dotted else "-", color=colour, label=curve.label,
-        linewidth=1.5, markersize=2.6, zorder=3,
+        figure.x, curve.values, "o-" if figure.dotted(curve) else "-", color=colour,
+        label=curve.label, linewidth=1.5, markersize=2.6 if figure.dots else 5.0, zorder=3,
     )  # fmt: skip
 
 

@@ -243,8 +243,8 @@ class AngleFigure:
 class LineFigure:
     """Panels over a common quantity: x (n,), ascending; `whole`: a count.
 
-    Points are marked, unless there are many, or drawn as `bars`. `marks` are values of x with a
-    name each.
+    Points are marked as `dots`, unless there are many, or drawn as `bars`. `marks` are values of x
+    with a name each.
     """
 
     id: str
@@ -256,12 +256,12 @@ class LineFigure:
     panels: tuple[Panel, ...]
     whole: bool = False
     bars: bool = False
+    dots: bool = True
     marks: tuple[tuple[float, str], ...] = ()
 
-    @property
-    def dotted(self) -> bool:
-        """Whether points are marked."""
-        return self.x.size <= MOST_POINTS
+    def dotted(self, curve: Curve) -> bool:
+        """Whether the points of a curve are marked; a single one always is."""
+        return (self.dots and self.x.size <= MOST_POINTS) or np.isfinite(curve.values).sum() == 1
 
     @property
     def bar_width(self) -> float:

@@ -167,10 +167,13 @@ def _sweep(figure: LineFigure) -> Spec:
             kind = (
                 {"type": "bar"}
                 if figure.bars
-                else {"type": "scatter", "mode": "lines+markers" if figure.dotted else "lines"}
+                else {
+                    "type": "scatter",
+                    "mode": "lines+markers" if figure.dotted(curve) else "lines",
+                }
             )
             trace: Spec = kind | legend | {"x": x, "xaxis": "x", "yaxis": axis, "customdata": x,
-                     "marker": {"size": 5, "color": curve.colour},
+                     "marker": {"size": 5 if figure.dots else 9, "color": curve.colour},
                      "showlegend": figure.legends[number]}  # fmt: skip
             drawn = _curve(curve, panel, "") | {"y": _numbers(curve.values)}
             traces.append(

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
+from itertools import cycle
 
 import numpy as np
 
 from camwright.geometry.arrays import Array
 from camwright.reports.figures import SERIES, Curve, Figure, LimitLine, LineFigure, Panel
+from camwright.reports.report_tables import Record, number
 from camwright.reports.sheet_turn import Turn, angle_figure, curves_of
 
 _TRAVEL_POINTS = 31
@@ -336,7 +339,40 @@ def _parts(turn: Turn) -> Figure | None:
     )  # fmt: skip
 
 
+def _relative(point: Record) -> tuple[str, float, float]:
+    """Name, mean over strength and amplitude over endurance of a point."""
+    mean, amplitude = point["mean_MPa"], point["amplitude_MPa"]
+    return str(point["name"]), mean / point["strength_MPa"], amplitude / point["endurance_MPa"]
+
+
+def _goodman(turn: Turn, part: str) -> Figure | None:
+    """Goodman diagram of a part, stresses over its strengths."""
+    record = turn.fatigue.get(part)
+    if record is None:
+        return None
+    required, points = float(record["required_safety"]), list(map(_relative, record["points"]))
+    x = np.array(sorted({0.0, 1.0, 1.0 / required} | {mean for _, mean, _ in points}))
+    curves = [
+        Curve("Goodman line", 1.0 - x, "fail"),
+        Curve(f"safety {required:.3g}", np.clip(1.0 / required - x, 0.0, None), "muted"),
+    ]
+    for (label, mean, amplitude), colour in zip(points, cycle(SERIES), strict=False):
+        curves.append(Curve(label, np.where(x == mean, amplitude, np.nan), colour))
+    first = record["points"][0]
+    return LineFigure(
+        f"goodman-{part}", f"Goodman diagram of the {part}",
+        "Amplitude of the stress over the endurance strength, by mean stress over the static "
+        "strength, where it is used most; safe below the grey line. Endurance of the "
+        f"{first['name']} {number(first['endurance_MPa'])} MPa, strength "
+        f"{number(first['strength_MPa'])} MPa.",
+        "mean stress / strength", "", x,
+        (Panel("amplitude / endurance", "", tuple(curves), height=1.3, from_zero=True),),
+        dots=False,
+    )  # fmt: skip
+
+
 PART_FIGURES: tuple[Callable[[Turn], Figure | None], ...] = (
     _forces, _spring_force, _energy, _load_cases, _speed_sweep, _normal_force, _guides, _jamming,
-    _speed, _edge_pressure, _elastic, _roller, _film, _parts,
+    _speed, partial(_goodman, part="spring"), partial(_goodman, part="camshaft"), _edge_pressure,
+    _elastic, _roller, _film, _parts,
 )  # fmt: skip

@@ -71,6 +71,7 @@ def governing_turn(run: Run, case: Record) -> Turn:
         by_name[drawn], tuple(by_name.values()), final.lift, final.contour, run.torque,
         final.checks, case, final.record["balance"], drawn, run.speed, final.limits,
         run.summary["trial_points"], run.summary["ripple_map"], final.sweep,
+        final.record.get("fatigue") or {},
     )  # fmt: skip
 
 

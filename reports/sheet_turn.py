@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -18,6 +18,7 @@ from camwright.reports.report_tables import Record, in_unit
 
 _FLAT = 0.02
 """Share of the greatest curve of a panel below which another one looks like zero."""
+_UNDERFLOW = 1e-12  # in the unit of the panel
 _LOW_HEIGHT = 0.6  # of a panel for small curves
 
 
@@ -39,6 +40,7 @@ class Turn:
     points : sequence          trial_points of run.json
     ripple_map : mapping       ripple_map of run.json; None without one
     sweep : Table or None      5_speed_sweep.csv
+    fatigue : mapping          fatigue of trial.json, by part
     """
 
     columns: Table
@@ -55,6 +57,7 @@ class Turn:
     points: Sequence[Record] = ()
     ripple_map: Record | None = None
     sweep: Table | None = None
+    fatigue: Record = field(default_factory=dict)
 
     @property
     def counter_hole(self) -> tuple[float, float, float, bool] | None:
@@ -176,11 +179,14 @@ def angle_figure(
     crank: Array | None = None,
 ) -> Figure | None:  # fmt: skip
     """Figure of the panels that have curves; None without any."""
-    full = tuple(part for panel in panels for part in _apart(panel))
-    zero = [curve.label for panel in panels for curve in panel.curves if _is_zero(curve)]
-    if not full:
+    drawn = tuple(panel for panel in panels if panel.curves)
+    if not drawn:
         return None
-    named = ", ".join(name for name in zero if name)
+    full = tuple(part for panel in drawn for part in _apart(panel))
+    zero = [curve.label or panel.quantity
+            for panel in drawn for curve in panel.curves if _is_zero(curve)]  # fmt: skip
+    named = ", ".join(zero) if full else ""
+    full = full or drawn
     return AngleFigure(
         figure_id, title, f"{caption} Zero at all angles: {named}." if named else caption,
         turn.crank if crank is None else crank, full, turn.gear_ratio,
@@ -191,9 +197,9 @@ def angle_figure(
 
 
 def _is_zero(curve: Curve) -> bool:
-    """Whether a curve beside others is zero at all angles, in its ribbon too."""
+    """Whether a curve is zero at all angles, up to underflow, in its ribbon too."""
     shown = (curve.values, *(curve.band or ()))
-    return bool(curve.label) and not any(np.any(np.nan_to_num(part)) for part in shown)
+    return all(np.max(np.abs(np.nan_to_num(part)), initial=0.0) < _UNDERFLOW for part in shown)
 
 
 def _apart(panel: Panel) -> tuple[Panel, ...]:

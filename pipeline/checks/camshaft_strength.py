@@ -26,6 +26,7 @@ from camwright.pipeline.case.limits import (
 )
 from camwright.pipeline.case.machine import Machine
 from camwright.pipeline.checks.check import BY_DUTY, Demand, check
+from camwright.pipeline.checks.demands import FatiguePoint
 from camwright.pipeline.checks.extremes import Extreme, greatest, over_duty, worst_case
 from camwright.pipeline.checks.missing_keys import lacking, lacking_of_card, unset
 from camwright.pipeline.contact.hertz import contact_modulus
@@ -44,6 +45,7 @@ from camwright.pipeline.follower.shaft_strength import (
     ShaftBending,
     bending_moment,
     fatigue_safety,
+    fibre_stresses,
     greatest_stress,
     judged_sections,
     reliability_factor,
@@ -135,13 +137,10 @@ def shaft_fatigue(solution: Solution) -> Demand:
     loads = cache(_loads)  # common to the sections
 
     def least(section: ShaftSection) -> Extreme:
-        strength = finish * size_factor(section.diameter) * rest * endurance
-        notches = (section.notch_bending, section.notch_torsion)
-        notched = Section(section.diameter, *notches, strength, tensile)
+        notched = _notched(section, finish * rest * endurance, tensile)
 
         def safety(cycle: Cycle) -> float:
-            moment = bending_moment(loads(cycle), shaft.camshaft, section.position)
-            torque = torque_at(cycle.loads.cam_torque, shaft.camshaft, section.position)
+            moment, torque = _at_section(loads(cycle), cycle, shaft, section)
             return fatigue_safety(cycle.theta, moment, torque, notched)
 
         return worst_case(solution.cycles, safety, at_least=True)
@@ -162,6 +161,50 @@ def shaft_fatigue(solution: Solution) -> Demand:
         f" fatigue notch factors {section.notch_bending:g} and {section.notch_torsion:g},"
         f" k_a {finish:.3f} ({shaft.camshaft.surface}), k_b {size:.3f}, k_e {rest:.3f}",
     )
+
+
+def _notched(section: ShaftSection, endurance: float, tensile: float) -> Section:
+    """A section with its notch factors; endurance without the factor of size, Pa."""
+    strength = size_factor(section.diameter) * endurance
+    return Section(
+        section.diameter, section.notch_bending, section.notch_torsion, strength, tensile
+    )
+
+
+def _at_section(
+    loads: ShaftLoads, cycle: Cycle, shaft: _Shaft, section: ShaftSection
+) -> tuple[Array, Array]:
+    """Bending moment (2, n) and torque (n,) at a section, N m."""
+    moment = bending_moment(loads, shaft.camshaft, section.position)
+    return moment, torque_at(cycle.loads.cam_torque, shaft.camshaft, section.position)
+
+
+def shaft_fatigue_points(solution: Solution) -> list[FatiguePoint]:
+    """Most used fibre of each named section of the camshaft over all load cases, if described."""
+    machine = solution.machine
+    if machine.camshaft is None or isinstance(shaft := _described(machine), tuple):
+        return []
+    endurance, tensile = shaft.material.fatigue_bending, shaft.material.tensile_strength
+    if endurance is None or tensile is None:
+        return []
+    factors = surface_factor(shaft.camshaft.surface, tensile)
+    factors *= reliability_factor(machine.limits[SHAFT_RELIABILITY])
+    loads, used, points = cache(_loads), dict[str, float](), dict[str, FatiguePoint]()
+    for section in shaft.sections:
+        notched = _notched(section, factors * endurance, tensile)
+        fibres = [
+            fibre_stresses(cycle.theta, *_at_section(loads(cycle), cycle, shaft, section), notched)
+            for cycle in solution.cycles
+        ]
+        amplitude, mean = (np.concatenate(each) for each in zip(*fibres, strict=True))
+        use = amplitude / notched.endurance + mean / tensile
+        k = int(np.argmax(np.nan_to_num(use)))
+        if use[k] > used.get(section.name, 0.0):
+            used[section.name] = float(use[k])
+            points[section.name] = FatiguePoint(
+                section.name, float(amplitude[k]), float(mean[k]), notched.endurance, tensile
+            )
+    return list(points.values())
 
 
 @check(

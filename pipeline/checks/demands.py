@@ -5,10 +5,25 @@ The synthesis differentiates them by complex steps. All arrays (...), SI.
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
 from camwright.geometry.arrays import FULL_TURN, Array
 from camwright.geometry.pitch_curve import magnitude
+
+
+class FatiguePoint(NamedTuple):
+    """Stress of a part in its Goodman diagram, Pa.
+
+    Amplitude and mean; endurance: amplitude without mean; strength: mean without amplitude.
+    """
+
+    name: str
+    amplitude: float
+    mean: float
+    endurance: float
+    strength: float
 
 
 def ripple_reduction(before: Array, after: Array) -> Array:

@@ -16,6 +16,7 @@ from camwright.geometry.errors import InputError
 from camwright.pipeline.base.units import celsius, shown
 from camwright.pipeline.case.limits import SPRING_FATIGUE, SPRING_SOLID, SPRING_SURGE, Limit, Sense
 from camwright.pipeline.checks.check import NONE, SPEED_RANGE, Declaration, Demand, check
+from camwright.pipeline.checks.demands import FatiguePoint
 from camwright.pipeline.checks.extremes import Extreme, greatest
 from camwright.pipeline.checks.missing_keys import lacking
 from camwright.pipeline.contact.tiers import Tier
@@ -231,6 +232,21 @@ def spring_fatigue(solution: Solution) -> Demand:
         figures=(design.source,),
         corner=_corner(solution.machine.spring, HARDEST),
     )
+
+
+def spring_fatigue_points(solution: Solution) -> list[FatiguePoint]:
+    """Stress of the wire where it is fatigued most over the speed range; none without a design."""
+    design, sweep = solution.machine.spring.design, solution.hardest_spring
+    if design is None or sweep is None or not np.isfinite(sweep.greatest).all():
+        return []
+    amplitude, mean = design.fatigue_stress(sweep.least, sweep.greatest)
+    worst = np.unravel_index(
+        np.argmax(design.fatigue_use(sweep.least, sweep.greatest)), amplitude.shape
+    )
+    endurance, strength = design.fatigue_strengths
+    if not endurance > 0.0:
+        return []
+    return [FatiguePoint("wire", float(amplitude[worst]), float(mean[worst]), endurance, strength)]
 
 
 spring_solid = _slow(

@@ -150,11 +150,12 @@ def reliability_factor(reliability: float) -> float:
     return float(1.0 - 0.08 * scipy.special.ndtri(reliability))
 
 
-def fatigue_safety(theta: ArrayLike, moment: Array, torque: ArrayLike, section: Section) -> float:
-    """Fatigue safety factor of a rotating shaft under the loads of a turn.
+def fibre_stresses(
+    theta: ArrayLike, moment: Array, torque: ArrayLike, section: Section
+) -> tuple[Array, Array]:
+    """Von Mises amplitude and mean (m,), Pa, of the fibres of a rotating shaft over a turn.
 
-    Loads are in the engine frame, fibres rotate with the shaft: bending and torsion of each fibre
-    over one turn give an amplitude and a mean.
+    Loads are in the engine frame, fibres rotate with the shaft.
 
     Parameters
     ----------
@@ -165,15 +166,15 @@ def fatigue_safety(theta: ArrayLike, moment: Array, torque: ArrayLike, section: 
 
     Returns
     -------
-    float    minimum over the fibres; infinite without load, NaN with an unknown load
+    amplitude, mean : array (m,)    with the notch factors; NaN with an unknown load
 
     References
     ----------
-    Shigley's Mechanical Engineering Design, sec. 7-4: distortion energy and Goodman's line.
+    Shigley's Mechanical Engineering Design, sec. 7-4: distortion energy.
     """
     angle, twist = finite("theta", theta), np.asarray(torque, dtype=float)
     if not (np.isfinite(moment).all() and np.isfinite(twist).all()):
-        return float(np.nan)
+        return np.full(_FIBRES, np.nan), np.full(_FIBRES, np.nan)
     cosine, sine = np.cos(angle), np.sin(angle)
     on_shaft = np.stack(
         [moment[0] * cosine + moment[1] * sine, moment[1] * cosine - moment[0] * sine]
@@ -190,6 +191,21 @@ def fatigue_safety(theta: ArrayLike, moment: Array, torque: ArrayLike, section: 
     high, low = bend.max(axis=1), bend.min(axis=1)
     amplitude = equivalent(0.5 * (high - low), 0.5 * float(np.ptp(shear)))
     mean = equivalent(0.5 * (high + low), 0.5 * float(shear.max() + shear.min()))
+    return amplitude, mean
+
+
+def fatigue_safety(theta: ArrayLike, moment: Array, torque: ArrayLike, section: Section) -> float:
+    """Fatigue safety factor of a rotating shaft by Goodman's line; see `fibre_stresses`.
+
+    Returns
+    -------
+    float    minimum over the fibres; infinite without load, NaN with an unknown load
+
+    References
+    ----------
+    Shigley's Mechanical Engineering Design, sec. 7-4: Goodman's line.
+    """
+    amplitude, mean = fibre_stresses(theta, moment, torque, section)
     used = float(np.max(amplitude / section.endurance + mean / section.tensile))
     return np.inf if used == 0.0 else 1.0 / used
 

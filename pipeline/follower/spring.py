@@ -172,31 +172,54 @@ class WoundWire(Generic[Number]):
         """Permissible shear stress under a static load and at solid length, 0.56 R_m, Pa."""
         return STATIC_STRENGTH * self.tensile_strength
 
-    def fatigue_use(self, force_min: ArrayLike, force_max: ArrayLike) -> Array:
-        """Utilisation (...) by the Goodman line through the point of Zimmerli.
+    @property
+    def fatigue_strengths(self) -> tuple[Number, Number]:
+        """Ends of the Goodman line: amplitude without mean, mean without amplitude, Pa.
 
         The line passes the shear strength 0.67 R_m on the axis of mean stress and the amplitude and
-        mean of Zimmerli for infinite life. Infinite for a shear strength below the mean stress of
-        Zimmerli. A mean below zero counts as zero.
-
-        Raises
-        ------
-        InputError
-            If a minimum is above its maximum, or a force is not finite.
+        mean of Zimmerli for infinite life. The first is below zero for a shear strength below the
+        mean stress of Zimmerli.
 
         References
         ----------
         Shigley's Mechanical Engineering Design, ch. 10: Zimmerli's data, torsional Goodman.
         """
+        shear_strength, left = self._goodman
+        return ZIMMERLI[self.treatment][0] / left, shear_strength
+
+    def fatigue_stress(self, force_min: ArrayLike, force_max: ArrayLike) -> tuple[Array, Array]:
+        """Amplitude and mean (...) of the shear stress, Pa; a mean below zero counts as zero.
+
+        Raises
+        ------
+        InputError
+            If a minimum is above its maximum, or a force is not finite.
+        """
         low, high = self.stress(force_min), self.stress(force_max)
         if not (low <= high).all():
             raise InputError("spring.force", float(np.max(force_min)), "minimum <= maximum, N")
-        amplitude, mean = 0.5 * (high - low), np.maximum(0.5 * (high + low), 0.0)
-        shear_strength = SHEAR_STRENGTH_SHARE * self.tensile_strength
-        zimmerli_amplitude, zimmerli_mean = ZIMMERLI[self.treatment]
-        left = 1.0 - zimmerli_mean / shear_strength
-        use = amplitude * left / zimmerli_amplitude + mean / shear_strength
+        return 0.5 * (high - low), np.maximum(0.5 * (high + low), 0.0)
+
+    def fatigue_use(self, force_min: ArrayLike, force_max: ArrayLike) -> Array:
+        """Utilisation (...) by the Goodman line of `fatigue_strengths`.
+
+        Infinite for a shear strength below the mean stress of Zimmerli.
+
+        Raises
+        ------
+        InputError
+            If a minimum is above its maximum, or a force is not finite.
+        """
+        amplitude, mean = self.fatigue_stress(force_min, force_max)
+        shear_strength, left = self._goodman
+        use = amplitude * left / ZIMMERLI[self.treatment][0] + mean / shear_strength
         return np.where(left > 0.0, use, np.inf)
+
+    @property
+    def _goodman(self) -> tuple[Number, Number]:
+        """Shear strength 0.67 R_m, Pa, and one less the mean stress of Zimmerli over it."""
+        shear_strength = SHEAR_STRENGTH_SHARE * self.tensile_strength
+        return shear_strength, 1.0 - ZIMMERLI[self.treatment][1] / shear_strength
 
     @property
     def buckling_deflection(self) -> Number:

@@ -55,8 +55,8 @@ SPLINE_FILE = "2_spline.csv"
 SWEEP_FILE = "5_speed_sweep.csv"
 
 
-class TrialContents(TypedDict):
-    """Contents of ``trial.json``."""
+class ContentsOfAnyTrial(TypedDict):
+    """Contents of ``trial.json`` that every trial has."""
 
     number: int
     why: str
@@ -74,6 +74,12 @@ class TrialContents(TypedDict):
     balance: dict[str, Json]
     mesh: dict[str, Json] | None
     certificate: list[dict[str, Json]]
+
+
+class TrialContents(ContentsOfAnyTrial, total=False):
+    """Contents of ``trial.json``; fatigue: points of the Goodman diagrams by part."""
+
+    fatigue: dict[str, Json]
 
 
 class ScopeRecord(TypedDict):
@@ -420,7 +426,7 @@ def read_trial_record(trial: Path) -> TrialContents:
     """Contents of ``trial.json`` in the folder of a trial."""
     file = trial / "trial.json"
     record: TrialContents = read_json(file)
-    _require(file, record, TrialContents.__annotations__)
+    _require(file, record, ContentsOfAnyTrial.__annotations__)
     return record
 
 

@@ -15,7 +15,10 @@ from camwright.pipeline.base.files import Json
 from camwright.pipeline.base.tables import CAM_ANGLE, CRANK_ANGLE, Cells, Column, Values
 from camwright.pipeline.base.units import in_unit
 from camwright.pipeline.case.case import Case
+from camwright.pipeline.case.limits import SHAFT_SAFETY, SPRING_FATIGUE
 from camwright.pipeline.case.plausibility import implausible
+from camwright.pipeline.checks.camshaft_strength import shaft_fatigue_points
+from camwright.pipeline.checks.spring_strength import spring_fatigue_points
 from camwright.pipeline.contact.contact_history import CertificatePoint, ContactHistory
 from camwright.pipeline.contact.elasticity.mesh_convergence import Convergence
 from camwright.pipeline.contact.hertz import von_mises_peak
@@ -30,6 +33,7 @@ from camwright.pipeline.cycle.cycle import (
     Cycle,
 )
 from camwright.pipeline.cycle.rolling_history import rolling_record
+from camwright.pipeline.cycle.solution import Solution
 from camwright.pipeline.cycle.speed_sweep import SpeedSweep
 from camwright.pipeline.engine.crankshaft import CrankMotion
 from camwright.pipeline.results.trial import Trial
@@ -279,7 +283,34 @@ def trial_record(trial: Trial) -> dict[str, Json]:
             **asdict(mesh.quality),
         },
         "certificate": [certificate_record(point) for point in trial.certificate],
+        "fatigue": fatigue_record(trial.solution),
         "rolling": rolling_record({cycle.load_case: cycle.rolling for cycle in trial.cycles}),
+    }
+
+
+def fatigue_record(solution: Solution) -> dict[str, Json]:
+    """Points of the Goodman diagrams of spring and camshaft, with the safety required, MPa."""
+    limits = solution.machine.limits
+    parts = {
+        "spring": (spring_fatigue_points(solution), limits[SPRING_FATIGUE]),
+        "camshaft": (shaft_fatigue_points(solution), limits[SHAFT_SAFETY]),
+    }
+    return {
+        part: {
+            "required_safety": required,
+            "points": [
+                {
+                    "name": point.name,
+                    "amplitude_MPa": _MPA * point.amplitude,
+                    "mean_MPa": _MPA * point.mean,
+                    "endurance_MPa": _MPA * point.endurance,
+                    "strength_MPa": _MPA * point.strength,
+                }
+                for point in points
+            ],
+        }
+        for part, (points, required) in parts.items()
+        if points
     }
 
 

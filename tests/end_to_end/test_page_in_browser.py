@@ -199,7 +199,7 @@ def test_figures_survive_a_change_of_colour_scheme_and_size_together(
              const low = legend ? legend.getBoundingClientRect().bottom : 0;
              const tick = place.querySelector('.xtick text, .x2tick text');
              return { id: place.dataset.figure, over: svg.width - place.clientWidth,
-                      curves: place.querySelectorAll('.scatterlayer .trace').length,
+                      curves: place.querySelectorAll('.trace').length,
                       clear: plot.top - low, fill: getComputedStyle(tick).fill }; })"""
     )
     page.emulate_media(color_scheme="light")

@@ -14,6 +14,9 @@ sys.path.insert(0, str(Path(__file__).parents[1]))
 import report_fixture
 
 from camwright.pipeline.base.tables import Table
+from camwright.pipeline.case.case_file import read_case
+from camwright.pipeline.preview import preview_case
+from camwright.pipeline.results.run_records import fatigue_record
 from camwright.reports import figure_svg, interactive
 from camwright.reports.analysis_sheet import groups
 from camwright.reports.figures import AngleFigure, Curve, LimitLine, Panel
@@ -130,3 +133,30 @@ def test_flat_and_zero_curves_leave_the_axis_of_large_ones(turn):
     assert made.panels[0].limits == limit
     assert made.panels[1].quantity == "small"
     assert made.caption == "Some forces. Zero at all angles: none."
+
+
+def test_the_goodman_diagram_has_each_part_over_its_strengths(turn):
+    point = {"name": "wire", "amplitude_MPa": 200.0, "mean_MPa": 450.0, "endurance_MPa": 800.0,
+             "strength_MPa": 1000.0}  # fmt: skip
+    fatigue = {"spring": {"required_safety": 1.25, "points": [point]}}
+    (panel,) = figure_of(replace(turn, fatigue=fatigue), "goodman-spring").panels
+    made = figure_of(replace(turn, fatigue=fatigue), "goodman-spring")
+    line, safe, wire = panel.curves
+    assert line.values == pytest.approx(1.0 - made.x)
+    assert safe.values[made.x == 0.8] == pytest.approx(0.0)
+    (at,) = np.flatnonzero(np.isfinite(wire.values))
+    assert (made.x[at], wire.values[at]) == pytest.approx((0.45, 0.25))
+
+
+def test_the_points_of_the_goodman_diagrams_give_the_safeties_of_the_checks():
+    """Spring and camshaft of a case that describes every part."""
+    trial = preview_case(read_case(Path(__file__).parents[1] / "data" / "every_part.toml"))
+    record = fatigue_record(trial.solution)
+    checks = {check.id: check for check in trial.checks}
+    for part, name in (("spring", "spring_fatigue"), ("camshaft", "shaft_fatigue")):
+        worst = max(
+            p["amplitude_MPa"] / p["endurance_MPa"] + p["mean_MPa"] / p["strength_MPa"]
+            for p in record[part]["points"]
+        )
+        assert 1.0 / worst == pytest.approx(checks[name].demand, rel=1e-9)
+        assert record[part]["required_safety"] == checks[name].limit
