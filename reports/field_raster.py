@@ -44,7 +44,9 @@ def over_the_contact(path: Path, cycle: Table, angle: float, half_width: float) 
     try:
         with np.load(path, allow_pickle=False) as entry:
             rows = np.flatnonzero(np.abs(entry["cam_angle_deg"] - angle) < _NEAR)
-            along, pressure = entry["xi_mm"][rows], entry["pressure_MPa"][rows]
+            along, pressure = (
+                entry[name][rows] for name in ("distance_from_contact_mm", "contact_pressure_MPa")
+            )
     except (OSError, ValueError, KeyError, EOFError, IndexError):
         return None
     if not rows.size or not np.isfinite(pressure).any():

@@ -20,7 +20,10 @@ from camwright.reports.figure_svg import COLOURS, png, style
 
 FILE = "5_guides.npz"
 COLOUR_MAP = "viridis"
-_FIELDS = ("along_mm", "line_N_per_mm", "row", "slices_mm", "round_deg", "pressure_MPa")
+_FIELDS = (
+    "position_mm", "line_load_N_per_mm", "worst_row", "slice_position_mm", "bore_angle_deg",
+    "bore_pressure_MPa",
+)  # fmt: skip
 _DECADES = 3.0
 _ROWS = 201
 _LOBE = 0.75  # of the bore's radius, in the cross-section
@@ -68,7 +71,7 @@ def read_guides(path: Path, load_case: str) -> tuple[GuidePressure, GuidePressur
     try:
         with np.load(path, allow_pickle=False) as entry:
             cases, angle = entry["load_case"], entry["cam_angle_deg"]
-            guides = {side: {n: entry[f"{side}_{n}"] for n in _FIELDS} for side in "AB"}
+            guides = {side: {n: entry[f"guide_{side}_{n}"] for n in _FIELDS} for side in "AB"}
     except (OSError, ValueError, EOFError, KeyError) as error:
         raise ResultError(f"{path}: {error}") from None
     rows = cases == load_case
@@ -76,9 +79,9 @@ def read_guides(path: Path, load_case: str) -> tuple[GuidePressure, GuidePressur
         raise ResultError(f"{path}: load case {load_case} is missing")
     a, b = (
         GuidePressure(
-            side, one["along_mm"], angle[rows], one["line_N_per_mm"][rows], one["slices_mm"],
-            one["round_deg"], one["pressure_MPa"], float(angle[int(one["row"])]),
-            str(cases[int(one["row"])]),
+            side, one["position_mm"], angle[rows], one["line_load_N_per_mm"][rows],
+            one["slice_position_mm"], one["bore_angle_deg"], one["bore_pressure_MPa"],
+            float(angle[int(one["worst_row"])]), str(cases[int(one["worst_row"])]),
         ) for side, one in guides.items()
     )  # fmt: skip
     return a, b

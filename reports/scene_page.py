@@ -22,8 +22,8 @@ from camwright.reports.scene_solids import Solid, box, joined, pin, ring, rod, t
 FILE = "scene.html"
 TURN = Path("fields") / "turn.npz"
 _NAMES = (
-    *("position", "cam_angle_deg", "cam_mm", "follower_mm", "follower_origin_mm"),
-    "follower_turn_deg",
+    *("cycle_row", "cam_angle_deg", "cam_outline_mm", "follower_nodes_mm"),
+    *("follower_origin_mm", "follower_rotation_deg"),
 )
 MAP = "von_mises_MPa"
 _DIGITS = 5
@@ -94,9 +94,10 @@ def read_turn_view(folder: Path) -> TurnView:
     except (OSError, ValueError, EOFError, KeyError) as error:
         raise ResultError(f"{path}: {error}") from None
     return TurnView(
-        str(arrays["load_case"]), arrays["position"], arrays["cam_angle_deg"],
-        arrays["cam_mm"][:, :, 0], arrays["cam_mm"][:, :, -1], arrays["follower_mm"],
-        arrays["follower_origin_mm"], np.radians(arrays["follower_turn_deg"]),
+        str(arrays["load_case"]), arrays["cycle_row"], arrays["cam_angle_deg"],
+        arrays["cam_outline_mm"][:, :, 0], arrays["cam_outline_mm"][:, :, -1],
+        arrays["follower_nodes_mm"], arrays["follower_origin_mm"],
+        np.radians(arrays["follower_rotation_deg"]),
     )  # fmt: skip
 
 

@@ -26,10 +26,13 @@ from camwright.pipeline.case.requirements_section import Smoothing
 from camwright.pipeline.checks.check import Declaration
 from camwright.pipeline.checks.registry import CHECKS, DECLARED, MODULES
 from camwright.pipeline.contact.tiers import Tier
+from camwright.pipeline.cycle.guide_pressure import GUIDE_ARRAYS
+from camwright.pipeline.cycle.rolling_history import ENVELOPE_ARRAYS
 from camwright.pipeline.preview import preview_case
 from camwright.pipeline.results.check_text import check_text, default_of, sentence
+from camwright.pipeline.results.field_output import TURN_ARRAYS
 from camwright.pipeline.results.model_limits import MODEL_LIMITS
-from camwright.pipeline.results.run_records import column_table
+from camwright.pipeline.results.run_records import PRESSURE_ARRAYS, column_table
 from camwright.pipeline.screening.screened_checks import SCREENED
 from camwright.pipeline.smoothing.objective import COSTS, SPEED, TORQUE, harmonics
 from camwright.pipeline.studies.batch.dataset import (
@@ -121,6 +124,22 @@ def columns() -> str:
         if other == file
     )
     return markdown(("column", "file", "content"), rows)
+
+
+def arrays() -> str:
+    files = {
+        "5_pressure.npz": PRESSURE_ARRAYS,
+        "5_guides.npz": GUIDE_ARRAYS,
+        "5_envelope.npz": ENVELOPE_ARRAYS,
+        "fields/turn.npz": TURN_ARRAYS,
+    }
+    rows = (
+        (f"`{'LOAD_CASE.' * (listed is ENVELOPE_ARRAYS)}{column.header}`", f"`{file}`",
+         column.meaning)
+        for file, listed in files.items()
+        for column in listed
+    )  # fmt: skip
+    return markdown(("array", "file", "shape and content"), rows)
 
 
 def model_limits() -> str:
@@ -223,6 +242,7 @@ TABLES: Mapping[str, Callable[[], str]] = {
     "limits": limits,
     "checks": checks,
     "columns": columns,
+    "arrays": arrays,
     "objective": objective,
     "model_limits": model_limits,
     "dataset": dataset,

@@ -26,9 +26,10 @@ def add_turn(folder: Path, positions: int, load_case: str = "idle") -> Path:
     normal = g["normal"][:, shown]
     facing = np.arctan2(-normal[1], -normal[0]) - 0.5 * np.pi
     np.savez(
-        folder / "fields" / "turn.npz", load_case=np.array(load_case), position=shown,
-        cam_angle_deg=np.degrees(t["theta"])[shown], cam_mm=np.stack([outer, inner], axis=-1),
-        follower_mm=1e3 * roller.points, follower_origin_mm=1e3 * g["pitch"][:, shown].T,
-        follower_turn_deg=np.degrees(facing),
+        folder / "fields" / "turn.npz", load_case=np.array(load_case), cycle_row=shown,
+        cam_angle_deg=np.degrees(t["theta"])[shown],
+        cam_outline_mm=np.stack([outer, inner], axis=-1),
+        follower_nodes_mm=1e3 * roller.points, follower_origin_mm=1e3 * g["pitch"][:, shown].T,
+        follower_rotation_deg=np.degrees(facing),
     )  # fmt: skip
     return folder

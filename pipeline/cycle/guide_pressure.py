@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike
 
 from camwright.geometry.arrays import Array
 from camwright.geometry.errors import ContactError
+from camwright.pipeline.base.tables import Column
 from camwright.pipeline.case.machine import Machine
 from camwright.pipeline.contact.pin_in_hole import Conforming, pin_in_hole
 from camwright.pipeline.cycle.cycle import Cycle
@@ -27,17 +28,31 @@ _LOADS, _LEAST = 8, 0.01
 _SHARES = np.sin(np.linspace(0.0, 0.5 * np.pi, 65))  # densest where the pressure falls
 
 
+GUIDE_ARRAYS = (
+    Column("load_case", "", "(n,) load case of each row of `5_cycle.csv`"),
+    Column("cam_angle", "deg", "(n,) cam angle of the row"),
+    *(
+        Column(f"guide_{name}_{what}", unit, meaning)
+        for name in "AB"
+        for what, unit, meaning in (
+            ("position", "mm", "(k,) from the middle of the guide, away from the roller"),
+            ("line_load", "N/mm", "(n, k) on the stem there, positive against the side force"),
+            ("worst_row", "", "row of the maximum line load"),
+            ("slice_position", "mm", "(s,) along the loaded part of the guide in that row"),
+            ("bore_angle", "deg", "(m,) from the line of action of a positive line load"),
+            ("bore_pressure", "MPa", "(s, m) in the bore in that row"),
+        )
+    ),
+)
+"""Arrays of ``5_guides.npz``."""
+
+
 def guide_arrays(cycles: Sequence[Cycle]) -> Mapping[str, ArrayLike]:
     """Arrays of ``5_guides.npz``.
 
     Returns
     -------
-    mapping   load_case (n,) and cam_angle_deg (n,), a row per position of each load case; for
-              the guides A and B: A_along_mm (k,) from the middle of the guide, away from the
-              roller; A_line_N_per_mm (n, k), line load on the stem, positive against the side
-              force; A_row the row of its maximum; A_round_deg (m,) from the line of action of a
-              positive line load; A_pressure_MPa (s, m) in the bore at that row, at A_slices_mm
-              (s,) along the loaded part of the guide
+    mapping   by the headers of `GUIDE_ARRAYS`
     """
     arrays: dict[str, ArrayLike] = {
         "load_case": np.repeat([c.load_case for c in cycles], [c.theta.size for c in cycles]),
@@ -50,14 +65,14 @@ def guide_arrays(cycles: Sequence[Cycle]) -> Mapping[str, ArrayLike]:
         knots = getattr(cycles[0].guides, f"knots_{side}")
         slices = loaded_length(knots, lines[:, row])
         loads = np.interp(slices, knots, lines[:, row])
-        name = side.upper()
+        name = f"guide_{side.upper()}"
         arrays |= {
-            f"{name}_along_mm": _MM * knots,
-            f"{name}_line_N_per_mm": _N_PER_MM * lines.T,
-            f"{name}_row": np.array(row),
-            f"{name}_slices_mm": _MM * slices,
-            f"{name}_round_deg": np.degrees(_round()),
-            f"{name}_pressure_MPa": _MPA * bore_pressure(machine, guide, loads),
+            f"{name}_position_mm": _MM * knots,
+            f"{name}_line_load_N_per_mm": _N_PER_MM * lines.T,
+            f"{name}_worst_row": np.array(row),
+            f"{name}_slice_position_mm": _MM * slices,
+            f"{name}_bore_angle_deg": np.degrees(_round()),
+            f"{name}_bore_pressure_MPa": _MPA * bore_pressure(machine, guide, loads),
         }
     return arrays
 

@@ -33,7 +33,21 @@ from camwright.pipeline.follower.follower_forces import Loads, follower_loads
 # The stress that the real body adds is taken at every so many contact angles.
 _THINNED = 4
 _MM, _MPA = 1e3, 1e-6
-MAPS = ("von_mises", "tau_max", "shear_range", "crossland", "dang_van")
+MAPS = {
+    "von_mises": "von Mises stress",
+    "tau_max": "in-plane shear stress",
+    "shear_range": "range of the orthogonal shear stress",
+    "crossland": "equivalent shear stress of Crossland",
+    "dang_van": "equivalent shear stress of Dang Van",
+}
+"""Maps of the maximum stresses of a turn; the last two with the fatigue limits of the material."""
+ENVELOPE_ARRAYS = (
+    Column("cam_angle", "deg", "(n,) cam angle of a station on the contour"),
+    Column("arc_length", "mm", "(n,) along the contour from the first station"),
+    Column("depth", "mm", "(n, k) below the contour"),
+    *(Column(name, "MPa", f"(n, k) maximum over the turn: {what}") for name, what in MAPS.items()),
+)
+"""Arrays of ``5_envelope.npz``, each by load case: ``LOAD_CASE.HEADER``."""
 
 
 class SweptStress:
@@ -216,7 +230,7 @@ def envelope_arrays(turns: Mapping[str, RollingHistory]) -> dict[str, Array]:
     for load_case, turn in turns.items():
         map_ = turn.envelope
         arrays[f"{load_case}.cam_angle_deg"] = np.degrees(map_.theta)
-        arrays[f"{load_case}.arc_mm"] = _MM * map_.arc
+        arrays[f"{load_case}.arc_length_mm"] = _MM * map_.arc
         arrays[f"{load_case}.depth_mm"] = _MM * map_.depth
         for name in MAPS:
             values = getattr(map_, name)

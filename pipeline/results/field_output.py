@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike
 from camwright.geometry.arrays import Array, uniform_turn
 from camwright.geometry.cutouts import KeywayLike
 from camwright.pipeline.base.files import npz_bytes, write_atomic
+from camwright.pipeline.base.tables import Column
 from camwright.pipeline.contact.contact_pair import ContactPair
 from camwright.pipeline.contact.elasticity import plane_stress_measures
 from camwright.pipeline.contact.two_scale import CycleBodies
@@ -173,27 +174,36 @@ def _write(
     file.write(name, first, data, field.hidden.T, points)
 
 
+TURN_ARRAYS = (
+    Column("load_case", "", "the design load case"),
+    Column("cycle_row", "", "(f,) row of the load case in `5_cycle.csv`"),
+    Column("cam_angle", "deg", "(f,) cam angle of the row"),
+    Column("cam_outline", "mm", "(2, s, 2) contour, then bore with keyway, in the cam frame"),
+    Column("follower_nodes", "mm", "(2, n) nodes of the follower mesh in its own frame"),
+    Column("follower_origin", "mm", "(f, 2) origin of that frame in the cam frame"),
+    Column("follower_rotation", "deg", "(f,) rotation of that frame in the cam frame"),
+)
+"""Arrays of ``fields/turn.npz``."""
+
+
 def turn_view(pair: ContactPair, bodies: CycleBodies, cycle: Cycle) -> Mapping[str, ArrayLike]:
     """Arrays of ``fields/turn.npz``.
 
     Returns
     -------
-    mapping   load_case; position (f,) rows of the cycle and cam_angle_deg (f,); cam_mm
-              (2, stations, 2) contour, then bore with keyway, in the cam frame; follower_mm
-              (2, n) nodes of the follower mesh in its own frame; origin of that frame
-              follower_origin_mm (f, 2) and its rotation follower_turn_deg (f,) in the cam frame
+    mapping   by the headers of `TURN_ARRAYS`
     """
     count = cycle.theta.size
     shown = np.arange(0, count, -(-count // FRAMES))
     places = follower_places(pair, cycle.theta[shown])
     return {
         "load_case": np.array(cycle.load_case),
-        "position": shown,
+        "cycle_row": shown,
         "cam_angle_deg": np.degrees(cycle.theta[shown]),
-        "cam_mm": _TO_MM * cam_outlines(pair, 2 * shown.size),
-        "follower_mm": _TO_MM * bodies.follower.body.mesh.points,
+        "cam_outline_mm": _TO_MM * cam_outlines(pair, 2 * shown.size),
+        "follower_nodes_mm": _TO_MM * bodies.follower.body.mesh.points,
         "follower_origin_mm": _TO_MM * places.origin,
-        "follower_turn_deg": np.degrees(places.angle),
+        "follower_rotation_deg": np.degrees(places.angle),
     }
 
 

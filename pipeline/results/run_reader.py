@@ -38,7 +38,7 @@ from camwright.pipeline.results.check_records import (
 if TYPE_CHECKING:
     from camwright.pipeline.smoothing.fe_correction import SynthesisRecord
 
-SCHEMA = 6
+SCHEMA = 7
 """Number of the form of a run folder; a folder of another form is refused."""
 HEADLINE = (
     *("torque_std_before_Nm", "torque_std_after_Nm", "torque_p2p_before_Nm", "torque_p2p_after_Nm"),

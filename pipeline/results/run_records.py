@@ -48,6 +48,13 @@ SPLINE = (
     ),
 )
 """Coefficients of the lift from one knot to the next, in SI units: they read back bit for bit."""
+PRESSURE_ARRAYS = (
+    Column("load_case", "", "(n,) load case of each row of `5_cycle.csv`"),
+    Column("cam_angle", "deg", "(n,) cam angle of the row"),
+    Column("distance_from_contact", "mm", "(n, k) distance from the contact along its tangent"),
+    Column("contact_pressure", "MPa", "(n, k) contact pressure there"),
+)
+"""Arrays of ``5_pressure.npz``."""
 _MM, _MPA = 1e3, 1e-6
 _DRAWN = 720  # least number of angles at which lift and contour are listed
 
@@ -151,12 +158,15 @@ def column_table(trial: Trial) -> dict[str, tuple[Column, ...]]:
 
 
 def pressure_arrays(cycles: tuple[Cycle, ...]) -> dict[str, Array]:
-    """Arrays of ``5_pressure.npz``: rows as in ``5_cycle.csv``, a column per knot."""
+    """Arrays of ``5_pressure.npz``: rows as in ``5_cycle.csv``, a column per knot.
+
+    Their names are those of `PRESSURE_ARRAYS`.
+    """
     return {
         "load_case": np.concatenate([np.full(c.theta.size, c.load_case) for c in cycles]),
         "cam_angle_deg": np.degrees(np.concatenate([c.theta for c in cycles])),
-        "xi_mm": _MM * np.concatenate([c.contact.pressure_xi for c in cycles]),
-        "pressure_MPa": _MPA * np.concatenate([c.contact.pressure for c in cycles]),
+        "distance_from_contact_mm": _MM * np.concatenate([c.contact.pressure_xi for c in cycles]),
+        "contact_pressure_MPa": _MPA * np.concatenate([c.contact.pressure for c in cycles]),
     }
 
 

@@ -191,6 +191,24 @@ def test_run_folder_holds_what_was_promised(
     assert cycle.load_cases == ("idle", "standstill", "over-speed")
 
 
+def test_every_array_of_the_run_is_documented(finished: tuple[Case, Path, dict[str, Any]]) -> None:
+    case, out, _ = finished
+    page = (Path(__file__).parents[2] / "docs" / "run-folder.md").read_text(encoding="utf-8")
+    table = page.partition("<!-- table: arrays -->")[2].partition("<!-- end -->")[0]
+    listed: dict[str, set[str]] = {}
+    for name, file in re.findall(r"^\| `([\w.]+)` \| `([\w/]+\.npz)` \|", table, re.MULTILINE):
+        listed.setdefault(Path(file).name, set()).add(name.removeprefix("LOAD_CASE."))
+    made: dict[str, set[str]] = {}
+    for path in sorted(out.rglob("*.npz")):
+        with np.load(path, allow_pickle=False) as stored:
+            keys = {key.rpartition(".")[2] for key in stored.files}
+        made.setdefault(path.name, set()).update(keys)
+    by_fatigue_limits = {"crossland_MPa", "dang_van_MPa"}
+    if case.cam.material.fatigue_bending is None:
+        listed["5_envelope.npz"] -= by_fatigue_limits
+    assert made == listed
+
+
 @pytest.mark.parametrize("name", RECOMPUTED)
 def test_demands_by_the_files_of_the_run(straight: Path, name: str) -> None:
     """Each by a formulation of its own, see `run_recomputed`."""
@@ -291,10 +309,12 @@ def test_pressure_of_every_position_carries_the_load(
     _, out, _ = finished
     cycle = run_reader.read_run(out).final.cycle
     with np.load(out / "trial_1" / "5_pressure.npz") as stored:
-        assert stored["pressure_MPa"].shape == stored["xi_mm"].shape
+        assert stored["contact_pressure_MPa"].shape == stored["distance_from_contact_mm"].shape
     with np.load(run_reader.read_run(out).final.path / "5_pressure.npz") as stored:
-        carried = np.trapezoid(stored["pressure_MPa"], stored["xi_mm"], axis=1)
-        assert (stored["pressure_MPa"] >= 0).all()
+        carried = np.trapezoid(
+            stored["contact_pressure_MPa"], stored["distance_from_contact_mm"], axis=1
+        )
+        assert (stored["contact_pressure_MPa"] >= 0).all()
         # The end knots carry nothing, so straight lines between the knots hold it all.
         np.testing.assert_allclose(carried, cycle["line_load_N_per_mm"], rtol=1e-9)
 

@@ -24,9 +24,9 @@ def path(tmp_path):
     values = {"load_case": np.array(["idle"] * ROWS), "cam_angle_deg": 45.0 * np.arange(ROWS)}
     for side, pressure in (("A", near), ("B", np.abs(far))):
         values |= {
-            f"{side}_along_mm": along, f"{side}_line_N_per_mm": line, f"{side}_row": np.array(7),
-            f"{side}_slices_mm": along, f"{side}_round_deg": angle,
-            f"{side}_pressure_MPa": pressure,
+            f"guide_{side}_position_mm": along, f"guide_{side}_line_load_N_per_mm": line,
+            f"guide_{side}_worst_row": np.array(7), f"guide_{side}_slice_position_mm": along,
+            f"guide_{side}_bore_angle_deg": angle, f"guide_{side}_bore_pressure_MPa": pressure,
         }  # fmt: skip
     np.savez(tmp_path / guide_pressure_figure.FILE, **values)
     return tmp_path / guide_pressure_figure.FILE
@@ -63,7 +63,8 @@ def test_pressure_over_the_contact_is_that_of_the_angle_and_of_the_harder_case(t
     xi = np.linspace(-0.2, 0.2, 9)
     np.savez(
         tmp_path / "p.npz", cam_angle_deg=np.array([0.0, 90.0, 0.0, 90.0]),
-        xi_mm=np.tile(xi, (4, 1)), pressure_MPa=np.outer([1.0, 5.0, 2.0, 7.0], np.ones(9)),
+        distance_from_contact_mm=np.tile(xi, (4, 1)),
+        contact_pressure_MPa=np.outer([1.0, 5.0, 2.0, 7.0], np.ones(9)),
     )  # fmt: skip
     cycle = Table({"p0_hertz_MPa": np.array([1.0, 5.1, 2.1, 7.1]),
                    "half_width_hertz_mm": np.full(4, 0.1)})  # fmt: skip

@@ -359,7 +359,7 @@ def test_a_folder_of_another_schema_is_refused(
     run = write_run(tmp_path / "run")
     for name in ("run.json", "signoff.json"):
         (run / name).write_text(json.dumps({"schema": 1, "case": "small"}))
-    with pytest.raises(ResultError, match=r"\.json: schema = 1, must be 6: run the case again$"):
+    with pytest.raises(ResultError, match=r"\.json: schema = 1, must be 7: run the case again$"):
         read(run)
 
 

@@ -288,8 +288,8 @@ def view(series):
 
 def test_view_of_the_turn_has_the_contour_and_the_bore(series, view) -> None:
     _, pair, _, cycle = series
-    assert view["position"].tolist() == list(range(POSITIONS))
-    surface, bore = np.moveaxis(view["cam_mm"], -1, 0)
+    assert view["cycle_row"].tolist() == list(range(POSITIONS))
+    surface, bore = np.moveaxis(view["cam_outline_mm"], -1, 0)
     np.testing.assert_allclose(surface[:, ::2], 1e3 * pair.contour.points(cycle.theta), rtol=1e-12)
     reach = bore_reach(pair.bore_radius, pair.keyway, np.arctan2(bore[1], bore[0]))
     np.testing.assert_allclose(np.hypot(*bore), 1e3 * reach, rtol=1e-12)
@@ -302,7 +302,9 @@ def test_view_lays_the_follower_against_the_cam(series, view) -> None:
     radius = pair.contour.roller_radius
     expected = pair.contour.points(cycle.theta) + radius * pair.contour.normal(cycle.theta)
     np.testing.assert_allclose(centre, expected, atol=1e-12)
-    assert np.abs(np.hypot(*view["follower_mm"])).max() == pytest.approx(1e3 * radius, rel=1e-6)
+    assert np.abs(np.hypot(*view["follower_nodes_mm"])).max() == pytest.approx(
+        1e3 * radius, rel=1e-6
+    )
 
 
 def test_edge_of_bore_and_keyway() -> None:
@@ -327,13 +329,18 @@ def bushes(series):
 def test_pressure_in_a_bush_adds_up_to_the_reaction(series, bushes, side) -> None:
     cycle = series[-1]
     guides = cycle.guides
-    along, line = bushes[f"{side}_along_mm"], bushes[f"{side}_line_N_per_mm"]
+    along, line = (bushes[f"guide_{side}_{name}"] for name in ("position_mm", "line_load_N_per_mm"))
     weights = lobatto(along.size)[1] * along.max()
     reaction = guides.reaction_a if side == "A" else -guides.reaction_b
     np.testing.assert_allclose(line @ weights, reaction, rtol=1e-9, atol=1e-9)
     # Round the bore: what presses along the line of action is the push of the slice.
-    angle, row = np.radians(bushes[f"{side}_round_deg"]), int(bushes[f"{side}_row"])
-    pressure, slices = bushes[f"{side}_pressure_MPa"], bushes[f"{side}_slices_mm"]
+    angle, row = (
+        np.radians(bushes[f"guide_{side}_bore_angle_deg"]),
+        int(bushes[f"guide_{side}_worst_row"]),
+    )
+    pressure, slices = (
+        bushes[f"guide_{side}_{name}"] for name in ("bore_pressure_MPa", "slice_position_mm")
+    )
     force = np.trapezoid(pressure * np.cos(angle), angle, axis=1)
     force *= 0.5e3 * cycle.machine.stem.diameter
     pushes = np.interp(slices, along, line[row])
