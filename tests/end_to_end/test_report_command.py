@@ -19,7 +19,7 @@ import report_fixture
 from camwright.geometry.errors import InputError, ResultError
 from camwright.pipeline.cli import PASSED, app
 from camwright.pipeline.results import signoff
-from camwright.reports import figure_svg, page, sections
+from camwright.reports import documents, figure_svg, page, sections
 from camwright.reports import pdf as printing
 
 ROOT = Path(__file__).parents[2]
@@ -130,7 +130,7 @@ def test_a_report_has_all_parts_but_those_to_ask_for(run: Path) -> None:
     made = sections.report(run)
     assert list(made) == [part.name for part in sections.PARTS if not part.on_request]
     assert not (run / "figures").exists()
-    assert not (run / printing.PDF).exists()
+    assert not (run / documents.PDF).exists()
 
 
 @pytest.mark.usefixtures("quick")
@@ -195,7 +195,7 @@ def test_pdf_comes_beside_the_rest_when_asked(run: Path, monkeypatch: pytest.Mon
     monkeypatch.setattr(printing, "typeset", lambda template, document: b"%PDF")
     assert report(run, "--pdf") == PASSED
     assert (run / page.PAGE).is_file()
-    assert (run / printing.PDF).is_file()
+    assert (run / documents.PDF).is_file()
 
 
 def test_a_part_nobody_knows_brings_the_list(run: Path) -> None:
