@@ -129,14 +129,14 @@ class Smoother:
         words = {
             "none": "no smoothing",
             "moving_average": f"centred moving average of {self.points} values "
-            f"{spacing:.4g} deg apart: a window of {degrees:.4g} deg of crank",
-            "gaussian": f"gaussian with the variance of a window of {degrees:.4g} deg of crank",
+            f"{spacing:.4g} deg apart: a window of {degrees:.4g} deg of the shaft",
+            "gaussian": f"gaussian with the variance of a window of {degrees:.4g} deg of the shaft",
             "harmonic": f"harmonics of the cycle up to {self.harmonics / self.strength:.4g}: "
-            f"the last one kept is {degrees:.4g} deg of crank long",
+            f"the last one kept is {degrees:.4g} deg of the shaft long",
             "savitzky_golay": f"Savitzky-Golay fit of degree {self.degree}: "
-            f"a window of {degrees:.4g} deg of crank",
+            f"a window of {degrees:.4g} deg of the shaft",
             "smoothing_spline": f"smoothing spline of curvature weight {self.curvature_weight:.3g} "
-            f"rad^4: a wave of {degrees:.4g} deg of crank is halved",
+            f"rad^4: a wave of {degrees:.4g} deg of the shaft is halved",
         }
         return words[self.kind]
 
