@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import io
 from collections.abc import Mapping, Sequence
+from itertools import cycle
 from pathlib import Path
 
 import numpy as np
@@ -12,7 +13,8 @@ from matplotlib.figure import Figure
 
 from camwright.geometry.arrays import Array
 from camwright.pipeline.base.files import write_atomic
-from camwright.reports.figure_svg import png
+from camwright.reports.figure_svg import COLOURS, png, style
+from camwright.reports.figures import CAM_STEP, SERIES
 from camwright.reports.page import study_page
 from camwright.reports.picture_list import Picture
 from camwright.reports.report_content import Block, Note, Pictures, Section, Tabular
@@ -83,14 +85,19 @@ def write(
 
 def drawn(lifts: Mapping[str, Array]) -> bytes:
     """Lifts over one cam turn, PNG."""
-    canvas = Figure(figsize=(8.0, 4.0), layout="constrained")
-    axes = canvas.add_subplot()
-    for label, lift in lifts.items():
-        angle = np.arange(lift.size) * (360.0 / lift.size)
-        axes.plot(angle, 1e3 * lift, lw=2.2 if label == "constrained" else 1.0, label=label)
-    axes.set(xlabel="cam angle, deg", ylabel="lift, mm", xlim=(0.0, 360.0))
-    axes.legend(fontsize=7.5, frameon=False)
-    return png(canvas)
+    with style("smoothers"):
+        canvas = Figure(figsize=(8.0, 3.6), layout="constrained")
+        axes = canvas.add_subplot()
+        for (label, lift), colour in zip(lifts.items(), cycle(SERIES), strict=False):
+            angle = np.arange(lift.size) * (360.0 / lift.size)
+            width = 2.2 if label == "constrained" else 1.2
+            axes.plot(angle, 1e3 * lift, linewidth=width, color=COLOURS[colour], label=label)
+        axes.set(xlabel="cam angle, deg", ylabel="lift, mm", xlim=(0.0, 360.0))
+        axes.set_xticks(np.arange(0.0, 361.0, CAM_STEP))
+        axes.grid(visible=True, axis="y")
+        axes.spines[["top", "right"]].set_visible(False)
+        axes.legend(frameon=False)
+        return png(canvas)
 
 
 def _as_text(value: Cells) -> str:
