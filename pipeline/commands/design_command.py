@@ -102,7 +102,7 @@ def _show(document: dict[str, Any], out: Path) -> None:
             f"chosen: {out}: {chosen['size_mm']:.4g} mm, {100 * chosen['removed']:.0f} % removed; "
             f"passes by closed forms\n"
             f"options not given, so assumed: {assumed}; values to be confirmed in all: "
-            f"{len(chosen['to_be_confirmed'])}, listed by camwright check\n"
+            f"{len(chosen['to_be_confirmed'])}, listed by camwright check after the run\n"
             f"next: camwright run {out} --out runs/{out.stem}",
             markup=False,
         )
