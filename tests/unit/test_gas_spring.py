@@ -1,9 +1,9 @@
 """Gas spring: force, energy, lift from energy, derivatives, case, synthesis and screening."""
 
 import tomllib
+from dataclasses import replace
 from functools import cache
 from itertools import pairwise
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -14,6 +14,7 @@ from camwright.geometry.arrays import uniform_turn
 from camwright.geometry.errors import InputError
 from camwright.geometry.lift import Lift
 from camwright.geometry.pitch_curve import PitchCurve
+from camwright.pipeline.base.tables import Table
 from camwright.pipeline.base.units import in_unit
 from camwright.pipeline.case.cards.card_filling import known_cards
 from camwright.pipeline.case.case_file import case_of, parse_case
@@ -36,6 +37,7 @@ from camwright.pipeline.smoothing.sampled_problem import Search
 from camwright.pipeline.smoothing.scenario import stacked
 from camwright.pipeline.smoothing.smoothers import Smoother
 from camwright.reports import part_figures
+from camwright.reports.sheet_turn import Turn
 
 GAS = GasSpring(pressure=30e5, area=113e-6, volume=6e-6, exponent=1.3)
 SPRING = Spring(kind="gas", gas=GAS, rate=GAS.rate, preload=GAS.preload)
@@ -326,16 +328,21 @@ def test_screening_judges_the_limits_of_the_maker():
 
 
 def test_figure_of_the_force_over_the_travel():
-    """Of a spring that is not linear alone."""
+    """Of a gas spring without a limit, of a coil spring with its force at solid length."""
     lift = 0.015 * (1.0 - np.cos(np.linspace(0.0, np.pi, 40)))
-    columns = {"lift_mm": 1e3 * lift, "spring_force_N": SPRING.force(lift)}
-    turn = SimpleNamespace(case={"spring": {"kind": "gas"}}, columns=columns)
+    columns = Table({"lift_mm": 1e3 * lift, "spring_force_N": SPRING.force(lift)})
+    turn = Turn(columns, (columns,), columns, columns, None, (), {"spring": {"kind": "gas"}}, {})
     figure = part_figures._spring_force(turn)
-    (curve,) = figure.panels[0].curves
+    (panel,) = figure.panels
     exact = SPRING.force(1e-3 * figure.x)
-    assert curve.values == pytest.approx(exact, rel=0.02)  # linear between the angles of the turn
-    turn.case = {"spring": {}}
-    assert part_figures._spring_force(turn) is None
+    # linear between the angles of the turn
+    assert panel.curves[0].values == pytest.approx(exact, rel=0.02)
+    assert panel.limits == ()
+    linear = Table({"lift_mm": 1e3 * lift, "spring_force_N": 100.0 + 5e3 * lift})
+    design = {"free_length": "60 mm", "wire_diameter": "3 mm", "coils": 6}
+    turn = replace(turn, columns=linear, case={"spring": {"design": design}})
+    (limit,) = part_figures._spring_force(turn).panels[0].limits
+    assert limit.value == pytest.approx(5.0 * (60.0 - 3.0 * (6 + 2)), rel=1e-12)
 
 
 @pytest.mark.slow
