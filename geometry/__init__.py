@@ -5,7 +5,7 @@ In the order of the calculation:
 | module              | responsibility                              | symbol, unit                 |
 | ------------------- | ------------------------------------------- | ---------------------------- |
 | `errors`            | exceptions of the project                   |                              |
-| `display`           | a result in one line, as a table in HTML    |                              |
+| `display`           | a result in one line, as a table, a figure  |                              |
 | `arrays`            | read-only arrays, checks of input values    | theta, rad                   |
 | `extrema`           | extremes of a periodic function             |                              |
 | `periodic_spline`   | periodic quintic (C4), cubic, and integral  |                              |

@@ -5,13 +5,13 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from functools import cached_property
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from camwright.geometry.arrays import Array, positive, readonly, uniform_turn
-from camwright.geometry.display import Displayed
+from camwright.geometry.arrays import FULL_TURN, Array, positive, readonly, uniform_turn
+from camwright.geometry.display import Displayed, panels_of
 from camwright.geometry.errors import GeometryError, InputError, in_millimetres
 from camwright.geometry.extrema import Extremum, greatest, least
 from camwright.geometry.follower_height import roller_height
@@ -20,12 +20,17 @@ from camwright.geometry.interference import SecondContact, crossings, second_con
 from camwright.geometry.lift import Lift
 from camwright.geometry.pitch_curve import PitchCurve
 
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
 _OFFSET_TOLERANCE = 1e-14
 """Over the path's radius at zero lift: round-off in the coordinates of a contour point."""
 
 _OFFSET_STEPS_MAX = 20
 _OFFSET_STEP_MAX = 0.5
 """rad: a longer step of Newton's method has left the neighbourhood of the contact."""
+
+_DRAWN = 721
 
 
 class Undercut(NamedTuple):
@@ -292,6 +297,25 @@ class Contour(Displayed, ABC):
     def perimeter(self) -> float:
         """Length of the contour, m."""
         return float(np.sum(np.hypot(*self._ring_step)))
+
+    def plot(self) -> tuple[Axes, ...]:
+        """Contour in the cam frame: under a roller with pitch curve and prime circle, under a flat
+        face with the base circle; see `Columned.plot`."""
+        theta = np.linspace(0.0, FULL_TURN, _DRAWN)
+        x, y = 1e3 * self.points(theta)
+        (axes,) = panels_of(1, (5.0, 4.4))
+        axes.plot(x, y, label="contour")
+        if self.rolls:
+            x, y = 1e3 * self.pitch.points(theta)
+            axes.plot(x, y, "--", linewidth=0.8, label="pitch curve")
+        x, y = 1e3 * cam_axes(theta, np.asarray(self.pitch.radius_base), 0.0)
+        name = "prime circle" if self.rolls else "base circle"
+        axes.plot(x, y, ":", color="grey", linewidth=0.8, label=name)
+        axes.set_aspect("equal")
+        axes.set_xlabel("x, mm: cam angle zero")
+        axes.set_ylabel("y, mm")
+        axes.legend(fontsize="small")
+        return (axes,)
 
     @cached_property
     def _radius_max(self) -> Extremum:

@@ -5,13 +5,14 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from camwright.geometry.acceleration_jump import Jump, acceleration_jump
 from camwright.geometry.arrays import FULL_TURN, Array, finite, freeze, readonly, uniform_turn
-from camwright.geometry.display import Displayed
+from camwright.geometry.display import Displayed, panels_of
 from camwright.geometry.errors import InputError
 from camwright.geometry.extrema import Extremum, greatest, least
 from camwright.geometry.periodic_spline import (
@@ -21,6 +22,9 @@ from camwright.geometry.periodic_spline import (
     interpolant,
     periodic_quintic,
 )
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 ANGLE_TOLERANCE = 1e-9
 """rad: angles closer than this are equal, the round-off of a table in degrees."""
@@ -34,6 +38,7 @@ CLOSURE_LIMIT = 1e-6
 GAP_MAX = np.radians(30.0)
 
 _RESAMPLED = 720
+_DRAWN = 721
 _SEARCH = 4
 """Search points per sample: a quintic has at most four extremes per part."""
 
@@ -177,6 +182,18 @@ class Lift(Displayed):
     def stroke(self) -> float:
         """Maximum less minimum lift, m."""
         return self.highest.value - self.lowest.value
+
+    def plot(self) -> tuple[Axes, ...]:
+        """Lift s, s' and s'' over the cam angle, a panel each; see `Columned.plot`."""
+        theta = np.linspace(0.0, FULL_TURN, _DRAWN)
+        labels = ("s, mm", "s′, mm/rad", "s″, mm/rad²")
+        panels = panels_of(len(labels))
+        for axes, values, label in zip(panels, self.derivatives(theta, 2), labels, strict=True):
+            axes.plot(np.degrees(theta), 1e3 * values)
+            axes.set_ylabel(label)
+            axes.grid(alpha=0.3)
+        panels[-1].set_xlabel("cam angle, deg")
+        return panels
 
 
 def require_uniform_turn(field: str, theta: Array) -> None:

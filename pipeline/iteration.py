@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 
 import numpy as np
 
-from camwright.geometry.arrays import Array, uniform_turn
+from camwright.geometry.arrays import FULL_TURN, Array
 from camwright.geometry.contour import Contour
 from camwright.geometry.errors import GeometryError
+from camwright.geometry.follower_path import cam_axes
 from camwright.geometry.lift import Lift
-from camwright.pipeline.base.columns import panels_of
 from camwright.pipeline.base.progress import SILENT, Progress
 from camwright.pipeline.base.tables import Table, Tabled, table
 from camwright.pipeline.base.units import in_unit, shown
@@ -102,18 +102,13 @@ class Synthesis(Tabled):
         return table(lift | contour_columns(self.case, self.contour))
 
     def plot(self, *headers: str) -> tuple[Axes, ...]:
-        """The cam with its bore and pitch curve; with headers curves, see `Columned.plot`."""
+        """The contour with its bore; with headers curves, see `Columned.plot`."""
         if headers:
             return super().plot(*headers)
-        (axes,) = panels_of(1, (5.0, 4.4))
-        axes.plot(self["contour_x_mm"], self["contour_y_mm"], label="contour")
-        axes.plot(self["pitch_x_mm"], self["pitch_y_mm"], "--", linewidth=0.8, label="pitch curve")
-        turn = uniform_turn(181)
+        (axes,) = self.contour.plot()
         radius = in_unit(self.case.cam.bore_radius, "mm")
-        axes.plot(radius * np.cos(turn), radius * np.sin(turn), color="black", label="bore")
-        axes.set_aspect("equal")
-        axes.set_xlabel("x, mm: cam angle zero")
-        axes.set_ylabel("y, mm")
+        x, y = cam_axes(np.linspace(0.0, FULL_TURN, 181), np.asarray(radius), 0.0)
+        axes.plot(x, y, color="black", label="bore")
         axes.legend(fontsize="small")
         return (axes,)
 

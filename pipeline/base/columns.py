@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from camwright.geometry.display import Displayed, html_table
+from camwright.geometry.display import Displayed, html_table, panels_of
 from camwright.geometry.errors import InputError, ResultError
 
 if TYPE_CHECKING:
@@ -18,7 +18,6 @@ if TYPE_CHECKING:
 Cells = NDArray[np.float64] | NDArray[np.str_]
 RANGE = ("column", "least", "greatest")
 """Head of the table of a result with columns."""
-_PANEL = (7.0, 2.4)  # inches
 
 
 class Columned(Displayed):
@@ -81,21 +80,6 @@ def data_frame(columns: Mapping[str, object]) -> pd.DataFrame:
             "a data frame needs the package pandas: pip install 'camwright[notebook]'"
         ) from None
     return pd.DataFrame(dict(columns))
-
-
-def panels_of(count: int, size: tuple[float, float] = _PANEL) -> tuple[Axes, ...]:
-    """Axes of a new figure of pyplot, one below the other.
-
-    Parameters
-    ----------
-    count : int    number of panels
-    size : tuple   width and height of a panel, inches
-    """
-    import matplotlib.pyplot as plt
-
-    shape = (size[0], count * size[1] + 0.6)
-    _, axes = plt.subplots(count, sharex=True, squeeze=False, figsize=shape, layout="constrained")
-    return tuple(axes[:, 0])
 
 
 def curves(columns: Mapping[str, NDArray[Any]], headers: Sequence[str]) -> tuple[Axes, ...]:

@@ -10,8 +10,8 @@ from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple, Protocol, TypedDict, TypeVar
 
-from camwright.geometry.display import Displayed, html_table, in_brief
-from camwright.pipeline.base.columns import data_frame, panels_of
+from camwright.geometry.display import Displayed, html_table, in_brief, panels_of
+from camwright.pipeline.base.columns import data_frame
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from camwright.geometry.display import Displayed
+from camwright.geometry.display import Displayed, panels_of
 from camwright.geometry.errors import CamError, InputError
 from camwright.geometry.lift import Lift
-from camwright.pipeline.base.columns import data_frame, panels_of
+from camwright.pipeline.base.columns import data_frame
 from camwright.pipeline.base.progress import SILENT, Progress
 from camwright.pipeline.base.quantities import In
 from camwright.pipeline.base.units import in_unit, shown

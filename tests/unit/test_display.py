@@ -9,6 +9,7 @@ import subprocess
 import sys
 from collections.abc import Iterator
 from html.parser import HTMLParser
+from itertools import pairwise
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -21,8 +22,11 @@ import small_run
 from small_machine import small_machine
 
 import camwright as cw
+from camwright.geometry.arrays import uniform_turn
 from camwright.geometry.display import Displayed, html_table, in_brief
 from camwright.geometry.errors import InputError, ResultError
+from camwright.geometry.flat_face_contour import FacePath, FlatFaceContour
+from camwright.geometry.lift import Lift
 from camwright.pipeline.base.tables import CAM_ANGLE, LOAD_CASE, Column, table
 from camwright.pipeline.case.case_file import parse_case
 from camwright.pipeline.results.check_records import CheckList
@@ -183,6 +187,48 @@ def test_text_of_a_case_is_escaped() -> None:
     assert "&lt;b&gt;full&lt;/b&gt;" in text
     assert "<script>" not in html_table("<script>", ["<script>"], [["<script>"]])
     assert "load_cases" in repr(of_two_load_cases())
+
+
+def test_a_lift_is_drawn_with_its_derivatives(made: SimpleNamespace) -> None:
+    """Against the columns of the synthesis, and each panel the slope of that above it."""
+    panels = made.lift.plot()
+    assert [axes.get_ylabel() for axes in panels] == ["s, mm", "s′, mm/rad", "s″, mm/rad²"]
+    assert panels[-1].get_xlabel() == "cam angle, deg"
+    curves = [axes.lines[0].get_xydata().T for axes in panels]
+    angle = curves[0][0]
+    assert (angle[0], angle[-1]) == (0.0, 360.0)
+    columns = made.synthesis
+    listed = np.append(columns["cam_angle_deg"], 360.0)
+    for k, header in enumerate(("lift_mm", "lift_d1_mm_per_rad", "lift_d2_mm_per_rad2")):
+        values = np.append(columns[header], columns[header][0])
+        drawn = np.interp(listed, *curves[k])
+        np.testing.assert_allclose(drawn, values, atol=1e-3 * np.ptp(values))
+    for upper, lower in pairwise(curves):
+        slope = np.gradient(upper[1], np.radians(angle), edge_order=2)
+        np.testing.assert_allclose(slope, lower[1], atol=1e-2 * np.ptp(lower[1]))
+
+
+def test_a_contour_is_drawn_with_its_circle_to_one_scale(made: SimpleNamespace) -> None:
+    (axes,) = made.contour.plot()
+    assert axes.get_aspect() == 1.0
+    assert (axes.get_xlabel(), axes.get_ylabel()) == ("x, mm: cam angle zero", "y, mm")
+    drawn = {line.get_label(): np.hypot(*line.get_xydata().T) for line in axes.lines}
+    assert list(drawn) == ["contour", "pitch curve", "prime circle"]
+    prime, roller = 1e3 * made.case.cam.prime_radius, 1e3 * made.case.roller.radius
+    np.testing.assert_allclose(drawn["prime circle"], prime)
+    assert drawn["pitch curve"].min() >= prime - 1e-9
+    assert drawn["contour"].min() == pytest.approx(drawn["pitch curve"].min() - roller, abs=1e-2)
+    (axes,) = made.synthesis.plot()
+    assert axes.lines[-1].get_label() == "bore"
+    bore = np.hypot(*axes.lines[-1].get_xydata().T)
+    np.testing.assert_allclose(bore, 1e3 * made.case.cam.bore_radius)
+
+
+def test_under_a_flat_face_the_circle_is_the_base_circle() -> None:
+    lift = Lift.from_samples(uniform_turn(36), 0.002 * (1 - np.cos(uniform_turn(36))))
+    (axes,) = FlatFaceContour(FacePath(lift, 0.02)).plot()
+    assert [line.get_label() for line in axes.lines] == ["contour", "base circle"]
+    np.testing.assert_allclose(np.hypot(*axes.lines[1].get_xydata().T), 20.0)
 
 
 def test_checks_as_a_table_and_as_bars(made: SimpleNamespace) -> None:
