@@ -50,12 +50,24 @@
     return lines;
   }
 
+  /* Colour bar beside the bodies, in a narrow window below them, and the share left to them. */
+  const narrow = matchMedia("(max-width: 640px)");
+  const BAR_WIDTH = 150, BAR_HEIGHT = 84; // px
+  function arranged() {
+    const below = narrow.matches, title = ["maximum von Mises", "of the turn, MPa"].join(below ? " " : "<br>");
+    const bar = { title: { text: title, font: { size: 12 }, side: "top" }, thickness: 14,
+      ...(below ? { orientation: "h", len: 0.9, x: 0.5, xanchor: "center", y: 0, yanchor: "bottom" }
+        : { orientation: "v", len: 0.7, x: 1, xanchor: "right", y: 0.5, yanchor: "middle" }) };
+    const domain = { x: [0, 1], y: [0, 1] };
+    if (data.bodies.flank.values && below) domain.y[0] = BAR_HEIGHT / place.clientHeight;
+    else if (data.bodies.flank.values) domain.x[1] = 1 - BAR_WIDTH / place.clientWidth;
+    return { bar, domain };
+  }
+
   function traces() {
     const { flank, cam, follower, guide } = data.bodies;
     const valued = flank.values && { intensity: flank.values, colorscale: "Viridis", lighting: EVEN,
-      hovertext: flank.words, hoverinfo: "text", flatshading: false,
-      colorbar: { title: { text: "maximum von Mises<br>of the turn, MPa", font: { size: 12 } },
-        thickness: 14, len: 0.7, x: 0.99, xanchor: "right" } };
+      hovertext: flank.words, hoverinfo: "text", flatshading: false, colorbar: arranged().bar };
     const made = [solid(flank, valued || {}), solid(cam, { color: STEEL, lighting: PLAIN })];
     made.push(solid(data.roller || follower, { color: "#e3e8ed" }));
     made.push({ type: "scatter3d", mode: "lines", x: [], y: [], z: [], hoverinfo: "skip",
@@ -112,7 +124,7 @@
   const layout = () => ({
     margin: { l: 0, r: 0, t: 0, b: 0 }, showlegend: false, uirevision: "fixed",
     paper_bgcolor: "rgba(0,0,0,0)", font: { color: colour("ink"), family: "system-ui, sans-serif" },
-    scene: { xaxis: axis([-side, side]), yaxis: axis([-side, top]), zaxis: axis([-deep, deep]),
+    scene: { domain: arranged().domain, xaxis: axis([-side, side]), yaxis: axis([-side, top]), zaxis: axis([-deep, deep]),
       aspectmode: "manual",
       aspectratio: { x: (2 * side) / unit, y: (side + top) / unit, z: (2 * deep) / unit }, dragmode: "orbit", uirevision: "fixed",
       camera: camera("oblique") },
@@ -157,10 +169,10 @@
     slider.addEventListener("input", () => say(Number(slider.value)));
     return;
   }
+  const draw = () => Plotly.newPlot(place, all, layout(), { displaylogo: false, responsive: true, displayModeBar: false });
+  say(0);  // before the drawing: its lines take height from it
   placed(0);
-  Plotly.newPlot(place, all, layout(), { displaylogo: false, responsive: true, displayModeBar: false })
-    .then(() => { place.dataset.shown = "0"; });
-  say(0);
+  draw().then(() => { place.dataset.shown = "0"; });
   slider.addEventListener("input", () => show(Number(slider.value)));
   play.addEventListener("click", () => {
     const on = !playing;
@@ -168,6 +180,11 @@
     play.textContent = on ? "Pause" : "Play";
     if (on) playing = requestAnimationFrame(step);
     else { cancelAnimationFrame(playing); playing = 0; }
+  });
+  addEventListener("resize", () => Plotly.relayout(place, { "scene.domain": arranged().domain }));
+  narrow.addEventListener("change", () => {
+    if (all[0].colorbar) all[0].colorbar = arranged().bar;
+    draw();
   });
   for (const button of document.querySelectorAll("[data-view]"))
     button.addEventListener("click", () => Plotly.relayout(place, { "scene.camera": camera(button.dataset.view) }));

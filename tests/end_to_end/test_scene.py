@@ -17,7 +17,7 @@ import turn_fixture
 from browser_fixture import Tab, chromium
 
 from camwright.geometry.errors import ResultError
-from camwright.reports import scene_page, sections
+from camwright.reports import scene_page, sections, stress_map
 from camwright.reports.report_data import read_material
 from camwright.reports.scene_page import TurnView, read_turn_view
 from camwright.reports.scene_solids import Solid, box, joined, ring, tube
@@ -33,6 +33,12 @@ def page(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("scene") / "run"
     report_fixture.write_run(folder, POSITIONS, title=HOSTILE, field=False)
     turn_fixture.add_turn(folder, POSITIONS)
+    below = {"cam_angle_deg": [0.0, 180.0], "depth_mm": [[0.0, 0.5], [0.0, 0.5]]}
+    below |= {name: [[200.0, 250.0], [400.0, 350.0]] for name, _ in stress_map.MAPS}
+    np.savez(
+        folder / "trial_2" / stress_map.FILE,
+        **{f"idle.{name}": np.array(values) for name, values in below.items()},
+    )
     (made,) = sections.report(folder, sections.chosen(["scene"]))["scene"]
     return made
 
@@ -117,6 +123,38 @@ def test_slider_and_keys_turn_the_cam(page: Path, view: TurnView, tab: Tab) -> N
     assert tab.outside == []
     assert tab.evaluate("window.broken") is None
     assert "עברית" in tab.page.locator("h1").text_content()
+
+
+BOXES = """["#scene", "#scene .colorbar", "#scene .gl-container > div"].map((name) => {
+    const box = document.querySelector(name).getBoundingClientRect();
+    return [box.left, box.top, box.right, box.bottom]; })"""
+DRAWN = "Boolean(document.querySelector('#scene .colorbar'))"
+
+
+def test_the_colour_bar_lies_beside_the_bodies(page: Path, tab: Tab) -> None:
+    def is_clear() -> bool:
+        if not tab.evaluate(DRAWN):
+            return False
+        place, bar, bodies = (np.array(box) for box in tab.evaluate(BOXES))
+        inside = (bar[:2] >= place[:2] - 1).all() and (bar[2:] <= place[2:] + 1).all()
+        large = (bodies[2:] - bodies[:2] > 0.6 * (place[2:] - place[:2])).all()
+        return bool(inside and large and (bar[:2] >= bodies[2:]).any())
+
+    def stands_clear() -> None:
+        for _ in range(50):  # the page forbids what Playwright's own waiting evaluates
+            if is_clear():
+                return
+            tab.page.wait_for_timeout(100.0)
+        pytest.fail(f"scene, colour bar, bodies: {tab.evaluate(BOXES)}")
+
+    for width, height in ((400, 800), (1300, 900), (800, 500)):
+        tab.open(page, width, height)
+        tab.page.wait_for_selector(SHOWN.format(0))
+        stands_clear()
+    for width, height in ((400, 800), (1000, 700)):  # the same page, its window resized
+        tab.page.set_viewport_size({"width": width, "height": height})
+        stands_clear()
+    assert tab.errors == []
 
 
 def test_scene_says_what_the_run_found(page: Path) -> None:
