@@ -6,11 +6,12 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal
 
+import numpy as np
 from pydantic import AfterValidator, Field, PrivateAttr, ValidationError
 
 from camwright.geometry.arrays import FULL_TURN
 from camwright.geometry.contour import Contour
-from camwright.geometry.display import Displayed
+from camwright.geometry.display import Displayed, panels_of
 from camwright.geometry.errors import InputError
 from camwright.geometry.lift import Lift
 from camwright.pipeline.base.columns import data_frame
@@ -19,6 +20,7 @@ from camwright.pipeline.base.material import Material
 from camwright.pipeline.base.units import shown
 from camwright.pipeline.case.engine_section import Engine, engine_files
 from camwright.pipeline.case.error_text import Written, first_error
+from camwright.pipeline.case.given_lift import given_lift
 from camwright.pipeline.case.lift_section import GivenLift, LiftTable
 from camwright.pipeline.case.limits import TOOL_RADIUS, Limits
 from camwright.pipeline.case.parts_section import Follower, ValveTrain
@@ -48,6 +50,7 @@ from camwright.pipeline.torque.period import FOUR_STROKE, Period
 
 if TYPE_CHECKING:
     import pandas as pd
+    from matplotlib.axes import Axes
 
 INPUTS = "inputs"
 Materials = Annotated[
@@ -124,6 +127,30 @@ class Case(Displayed, Section):
         """
         values = dict(_keyed("", self.tables()))
         return data_frame({"key": list(values), "value": list(values.values())})
+
+    def plot(self) -> tuple[Axes, ...]:
+        """Torque that the cam balances, a curve a load case, over the shaft angle of a cam turn;
+        of a case that states its lift the lift, see `Lift.plot`.
+
+        Raises
+        ------
+        InputError
+            If a file cannot be read or has wrong contents.
+        """
+        # The engine models, which reading a case does without.
+        from camwright.pipeline.case.load_case_torque import engine_torques
+
+        if not self.balances:
+            return given_lift(self).plot()
+        (axes,) = panels_of(1)
+        for name, torque in engine_torques(self).items():
+            angle = np.degrees(np.append(torque.theta, torque.span))
+            axes.plot(angle, np.append(torque.total, torque.total[0]), label=name)
+        axes.set_xlabel("shaft angle, deg")
+        axes.set_ylabel("torque, N m")
+        axes.grid(alpha=0.3)
+        axes.legend(fontsize="small")
+        return (axes,)
 
     def to_toml(self) -> str:
         """The case with every default written out; reads back bit for bit.

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from pathlib import Path
+from typing import Protocol
 
 from camwright.geometry.arrays import FULL_TURN
 from camwright.geometry.eccentric import Eccentric, face_lift
@@ -10,25 +11,40 @@ from camwright.geometry.errors import InputError
 from camwright.geometry.lift import Lift
 from camwright.geometry.lift_fit import FittedLift, fitted_lift, lift_through
 from camwright.pipeline.case.lift_section import (
+    GivenLift,
     LiftEccentric,
     LiftPoints,
     LiftSegments,
     LiftTable,
     motion_of,
 )
+from camwright.pipeline.case.parts_section import Follower
+from camwright.pipeline.contact.cam_body import CamBody
 from camwright.pipeline.torque.angle_trace import read_trace
 
-if TYPE_CHECKING:
-    from camwright.pipeline.case.case import Case
+
+class LiftSource(Protocol):
+    """The sections of a case that determine its stated lift."""
+
+    @property
+    def lift(self) -> GivenLift | None: ...
+
+    @property
+    def cam(self) -> CamBody: ...
+
+    @property
+    def follower(self) -> Follower: ...
+
+    def path(self, name: str) -> Path: ...
 
 
-def eccentric_of(case: Case, section: LiftEccentric) -> Eccentric:
+def eccentric_of(case: LiftSource, section: LiftEccentric) -> Eccentric:
     """Eccentric disc of a case, its minimum pitch radius the prime radius."""
     rod = case.cam.prime_radius + section.eccentricity
     return Eccentric(section.eccentricity, rod, case.cam.offset)
 
 
-def given_lift(case: Case) -> Lift:
+def given_lift(case: LiftSource) -> Lift:
     """Lift of a case without engine.
 
     Raises
@@ -56,7 +72,7 @@ def given_lift(case: Case) -> Lift:
     return Lift.from_samples(trace.angle, trace.values)
 
 
-def lift_origin(case: Case) -> str:
+def lift_origin(case: LiftSource) -> str:
     """Origin of the lift in one line, with the residual of a fitted table."""
     section, fit = case.lift, _fitted(case)
     if fit is not None:
@@ -73,7 +89,7 @@ def lift_origin(case: Case) -> str:
     return "the lift is given"
 
 
-def _fitted(case: Case) -> FittedLift | None:
+def _fitted(case: LiftSource) -> FittedLift | None:
     section = case.lift
     if not isinstance(section, LiftTable) or section.noise is None:
         return None

@@ -4,17 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
-from typing import Any
+from pathlib import Path
+from typing import Any, Protocol
 
 import numpy as np
 
 from camwright.geometry.arrays import Array
 from camwright.geometry.errors import InputError
 from camwright.pipeline.base import disk_cache
-from camwright.pipeline.case.case import Case
+from camwright.pipeline.case.engine_section import Engine
 from camwright.pipeline.case.requirements_section import LoadCase
 from camwright.pipeline.case.speed_notes import calibration_record, speed_notes
-from camwright.pipeline.case.torque_section import shaft_torque
+from camwright.pipeline.case.torque_section import ShaftTorque, shaft_torque
 from camwright.pipeline.engine import (
     combustion,
     cylinder,
@@ -26,6 +27,7 @@ from camwright.pipeline.engine import (
 )
 from camwright.pipeline.engine import engine_torque as engine_torque_module
 from camwright.pipeline.engine.brake_balance import BrakeBalance, brake_balance
+from camwright.pipeline.engine.crankshaft import Crankshaft
 from camwright.pipeline.engine.cylinder import CylinderEngine
 from camwright.pipeline.engine.engine_torque import (
     TorqueTable,
@@ -45,6 +47,7 @@ from camwright.pipeline.engine.pressure_trace import (
 from camwright.pipeline.engine.speed_file import SpeedTable, speed_from_csv
 from camwright.pipeline.engine.speed_trace import SpeedTrace
 from camwright.pipeline.torque import torque as torque_module
+from camwright.pipeline.torque.period import Period
 from camwright.pipeline.torque.tabled_torque import TabledTorqueFile
 from camwright.pipeline.torque.torque import Torque, over_cam_turn, together
 
@@ -57,7 +60,31 @@ CRANKING = SPEED_RANGE[0]
 """Cranking speed of an engine at rest, rad/s."""
 
 
-def engine_torques(case: Case) -> dict[str, Torque]:
+class TorqueSource(Protocol):
+    """The sections of a case that determine its torque."""
+
+    @property
+    def engine(self) -> Engine | None: ...
+
+    @property
+    def torque(self) -> ShaftTorque | None: ...
+
+    @property
+    def crankshaft(self) -> Crankshaft | None: ...
+
+    @property
+    def load_cases(self) -> tuple[LoadCase, ...]: ...
+
+    @property
+    def balances(self) -> bool: ...
+
+    @property
+    def period(self) -> Period: ...
+
+    def path(self, name: str) -> Path: ...
+
+
+def engine_torques(case: TorqueSource) -> dict[str, Torque]:
     """Torque of each load case by name; empty for a case that starts at the lift.
 
     A load case at speed 0 has a torque only from a file, or of a cylinder model cranked unfired.
@@ -71,7 +98,7 @@ def engine_torques(case: Case) -> dict[str, Torque]:
     }
 
 
-def engine_torque(case: Case, state: LoadCase) -> Torque:
+def engine_torque(case: TorqueSource, state: LoadCase) -> Torque:
     """Torque of engine and machine in one load case, over a cam turn.
 
     Raises
@@ -82,7 +109,7 @@ def engine_torque(case: Case, state: LoadCase) -> Torque:
     return over_cam_turn(_torque_of_cycle(case, state), case.period)
 
 
-def _torque_of_cycle(case: Case, state: LoadCase) -> Torque:
+def _torque_of_cycle(case: TorqueSource, state: LoadCase) -> Torque:
     """Torque over a cycle; a file of the load case replaces that of engine and machine."""
     machine = case.torque
     if state.torque is not None:
@@ -96,7 +123,7 @@ def _torque_of_cycle(case: Case, state: LoadCase) -> Torque:
     return own if case.engine is None else together(own, _of_engine(case, state))
 
 
-def _of_engine(case: Case, state: LoadCase) -> Torque:
+def _of_engine(case: TorqueSource, state: LoadCase) -> Torque:
     engine = case.engine
     if isinstance(engine, TorqueTable):
         return torque_from_csv(case.path(engine.file))
@@ -129,7 +156,7 @@ def _cylinder_torque(engine: CylinderEngine, speed: float) -> Torque:
     return Torque(kept["theta"], parts, kept.get("varying_inertia"))
 
 
-def has_torque(case: Case, state: LoadCase) -> bool:
+def has_torque(case: TorqueSource, state: LoadCase) -> bool:
     """Whether a load case has an engine torque: not at rest, unless it is cranked."""
     cranked = isinstance(case.engine, CylinderEngine) and not state.fired
     return state.speed > 0 or state.torque is not None or cranked
@@ -146,7 +173,7 @@ def _loaded(engine: CylinderEngine, state: LoadCase) -> CylinderEngine:
     return replace(engine, combustion_efficiency=0.0, friction_pressure=friction)
 
 
-def pressure(case: Case, engine: PressureTable) -> tuple[BrakeBalance, PressureTrace]:
+def pressure(case: TorqueSource, engine: PressureTable) -> tuple[BrakeBalance, PressureTrace]:
     """Measured cycles of a case at their dead centre, pegged and checked, with their balance.
 
     A brake power is that at the speed of the first load case.
@@ -182,7 +209,7 @@ def pressure(case: Case, engine: PressureTable) -> tuple[BrakeBalance, PressureT
     return balance.guarded(field), trace
 
 
-def crank_speed(case: Case, engine: SpeedTable | VoltageTable) -> SpeedTrace:
+def crank_speed(case: TorqueSource, engine: SpeedTable | VoltageTable) -> SpeedTrace:
     """Measured crank speed of a case."""
     if case.crankshaft is None:
         raise InputError("crankshaft.inertia", "missing", "given")
@@ -201,7 +228,7 @@ def crank_speed(case: Case, engine: SpeedTable | VoltageTable) -> SpeedTrace:
     )
 
 
-def measurement_record(case: Case) -> Mapping[str, Any] | None:
+def measurement_record(case: TorqueSource) -> Mapping[str, Any] | None:
     """Statistics of a measurement for ``run.json``; None for a model."""
     engine = case.engine
     if isinstance(engine, PressureTable):
@@ -247,7 +274,7 @@ def measurement_record(case: Case) -> Mapping[str, Any] | None:
     return None
 
 
-def measurement_words(case: Case) -> Iterator[str]:
+def measurement_words(case: TorqueSource) -> Iterator[str]:
     """Lines on the indicated torque of a measured pressure, on wheel and cycle of a measured speed;
     none for another engine."""
     engine = case.engine

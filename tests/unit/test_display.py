@@ -29,8 +29,10 @@ from camwright.geometry.flat_face_contour import FacePath, FlatFaceContour
 from camwright.geometry.lift import Lift
 from camwright.pipeline.base.tables import CAM_ANGLE, LOAD_CASE, Column, table
 from camwright.pipeline.case.case_file import parse_case
+from camwright.pipeline.case.load_case_torque import engine_torques
 from camwright.pipeline.results.check_records import CheckList
 
+CASES = Path(__file__).parents[2] / "cases"
 LINE, SHOWN = 500, 50_000  # characters: of a line, and of anything in a notebook
 
 
@@ -66,7 +68,10 @@ NAMES = (
     "turn", "machine", "loads", "guides", "parts", "contact", "rolling", "record", "records",
     "table", "screened",
 )  # fmt: skip
-TABLES = ("synthesis", "trial", "checks", "cycle", "run", "record", "records", "table", "screened")
+TABLES = (
+    "case", "synthesis", "trial", "checks", "cycle", "run", "record", "records", "table",
+    "screened",
+)  # fmt: skip
 
 
 class Cells(HTMLParser):
@@ -187,6 +192,27 @@ def test_text_of_a_case_is_escaped() -> None:
     assert "&lt;b&gt;full&lt;/b&gt;" in text
     assert "<script>" not in html_table("<script>", ["<script>"], [["<script>"]])
     assert "load_cases" in repr(of_two_load_cases())
+
+
+def test_a_case_is_drawn_by_the_torque_of_its_load_cases(made: SimpleNamespace) -> None:
+    (axes,) = made.case.plot()
+    assert (axes.get_xlabel(), axes.get_ylabel()) == ("shaft angle, deg", "torque, N m")
+    torques = engine_torques(made.case)
+    assert [line.get_label() for line in axes.lines] == list(torques)
+    for line, torque in zip(axes.lines, torques.values(), strict=True):
+        angle, value = line.get_xydata().T
+        assert angle[-1] == pytest.approx(360.0 * made.case.mechanism.gear_ratio)
+        assert value[-1] == value[0]
+        area = np.trapezoid(value, angle) / angle[-1]
+        assert area == pytest.approx(torque.mean, abs=1e-9 * torque.peak)
+
+
+def test_a_case_that_states_its_lift_is_drawn_by_it() -> None:
+    case = cw.read_case(CASES / "papers" / "eccentric.toml")
+    top = case.plot()[0]
+    assert top.get_ylabel() == "s, mm"
+    height = top.lines[0].get_ydata()
+    assert np.ptp(height) == pytest.approx(2e3 * case.lift.eccentricity, rel=1e-4)
 
 
 def test_a_lift_is_drawn_with_its_derivatives(made: SimpleNamespace) -> None:
