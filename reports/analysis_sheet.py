@@ -22,7 +22,7 @@ from camwright.reports.figures import (
 from camwright.reports.machine_words import MachineWords
 from camwright.reports.part_figures import PART_FIGURES
 from camwright.reports.report_tables import isolated, number, quantity, words
-from camwright.reports.sheet_turn import Turn, angle_figure, curves_of
+from camwright.reports.sheet_turn import Turn, angle_figure, both_ways, curves_of
 
 GROUPS = (
     ("Torque", ("torque", "torque-spectrum", "torque-components", "crank-speed", "ripple-map")),
@@ -152,13 +152,14 @@ def _components(turn: Turn) -> Figure | None:
 
 def _lift(turn: Turn) -> Figure | None:
     columns = turn.lift
+    travel = turn.limit("spring travel", "mm", "spring_travel")
     rows = (
-        ("lift_mm", "s", "mm"), ("lift_d1_mm_per_rad", "s′", "mm/rad"),
-        ("lift_d2_mm_per_rad2", "s″", "mm/rad²"), ("lift_d3_mm_per_rad3", "s‴", "mm/rad³"),
+        ("lift_mm", "s", "mm", travel), ("lift_d1_mm_per_rad", "s′", "mm/rad", ()),
+        ("lift_d2_mm_per_rad2", "s″", "mm/rad²", ()), ("lift_d3_mm_per_rad3", "s‴", "mm/rad³", ()),
     )  # fmt: skip
     panels = [
-        Panel(label, unit, (Curve("", columns[name], "blue"),), height=0.62)
-        for name, label, unit in rows
+        Panel(label, unit, (Curve("", columns[name], "blue"),), limits, height=0.62)
+        for name, label, unit, limits in rows
     ]
     return angle_figure(
         turn, "lift", "Lift and its derivatives",
@@ -245,8 +246,7 @@ def _face(turn: Turn) -> Figure | None:
 def _pressure_angle(turn: Turn) -> Figure | None:
     if not turn.rolls:  # zero at every angle
         return None
-    limits = turn.limit("limit", "deg", "pressure_angle")
-    both = (*limits, *(LimitLine(-line.value, line.label) for line in limits),
+    both = (*both_ways(turn.limit("limit", "deg", "pressure_angle")),
             LimitLine(HARD_STOP_DEG, "hard stop"))  # fmt: skip
     return angle_figure(
         turn, "pressure-angle", "Pressure angle",

@@ -244,7 +244,7 @@ def _lines(figure: LineFigure) -> Canvas:
                 )  # fmt: skip
         for at, _ in figure.marks:
             ax.axvline(at, color=COLOURS["muted"], linewidth=0.8, linestyle=(0, (1, 2)), zorder=2)
-        _vertical(ax, panel, named=bool(figure.marks))
+        _vertical(ax, figure, panel)
         ax.set_xlim(*figure.span)
         ax.xaxis.set_major_locator(MaxNLocator(nbins=8, integer=figure.whole))
     _legends(figure, axes)
@@ -337,20 +337,21 @@ def _panel(ax: Axes, figure: AngleFigure, panel: Panel) -> None:
         ax.axvline(
             figure.mark, color=COLOURS["ink"], linewidth=0.7, linestyle=(0, (1, 2)), zorder=2
         )
-    _vertical(ax, panel, named=bool(figure.marks))
+    _vertical(ax, figure, panel)
     ax.set_xlim(0.0, figure.period)
     ax.set_xticks(np.arange(0.0, figure.period + 1.0, figure.shaft_step))
 
 
-def _vertical(ax: Axes, panel: Panel, *, named: bool) -> None:
+def _vertical(ax: Axes, figure: AngleFigure | LineFigure, panel: Panel) -> None:
     """Vertical axis of a panel with its limits; frame and grid."""
     from matplotlib.ticker import MaxNLocator
 
+    named = bool(figure.marks)
     low, high = vertical_span(panel, named)
     ax.set_ylim(low, high)
     if low < 0 < high:
         ax.axhline(0.0, color=COLOURS["muted"], linewidth=0.6, zorder=1)
-    _limits(ax, panel, low, high)
+    _limits(ax, panel, low, high, below_names=named and panel is figure.panels[0])
     ax.yaxis.set_major_locator(MaxNLocator(nbins=5, steps=[1, 2, 2.5, 5, 10]))
     ax.grid(True, axis="y", zorder=0)
     ax.set_axisbelow(True)
@@ -360,8 +361,8 @@ def _vertical(ax: Axes, panel: Panel, *, named: bool) -> None:
         ax.spines[side].set_visible(False)
 
 
-def _limits(ax: Axes, panel: Panel, low: float, high: float) -> None:
-    """Limit lines; limits outside the axes are written at their edge."""
+def _limits(ax: Axes, panel: Panel, low: float, high: float, *, below_names: bool) -> None:
+    """Limit lines; limits outside the axes are written at their edge, below names of marks."""
     placed = placed_limits(panel, low, high)
     for line, above in placed.inside:
         ax.axhline(
@@ -375,9 +376,10 @@ def _limits(ax: Axes, panel: Panel, low: float, high: float) -> None:
         )  # fmt: skip
     if placed.beyond:
         above = placed.above
+        shift = -13 if below_names else -3
         ax.annotate(
             placed.beyond, (1.0, 1.0 if above else 0.0),
-            xycoords="axes fraction", xytext=(-2, -13 if above else 3), zorder=4,
+            xycoords="axes fraction", xytext=(-2, shift if above else 3), zorder=4,
             textcoords="offset points", ha="right", va="top" if above else "bottom",
             color=COLOURS["fail"], fontsize=7.2,
             bbox=BACKING,

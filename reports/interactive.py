@@ -128,7 +128,8 @@ def _angles(figure: AngleFigure) -> Spec:
                 common | _curve(curve, panel, hover) | legend
                 | {"showlegend": figure.legends[number]}
             )  # fmt: skip
-        lines_of, notes_of = _limits(panel, axis, low, high)
+        below_names = bool(figure.marks) and number == 0
+        lines_of, notes_of = _limits(panel, axis, low, high, below_names=below_names)
         shapes, notes = shapes + lines_of, notes + notes_of
     traces.append({"x": [0], "y": [None], "xaxis": "x2", "yaxis": "y", "type": "scatter",
                    "showlegend": False, "hoverinfo": "skip"})  # fmt: skip
@@ -186,7 +187,8 @@ def _sweep(figure: LineFigure) -> Spec:
                 for note, at, value in zip(curve.notes, x, _numbers(curve.values), strict=False)
                 if value is not None
             ]  # fmt: skip
-        lines_of, notes_of = _limits(panel, axis, low, high)
+        below_names = bool(figure.marks) and number == 0
+        lines_of, notes_of = _limits(panel, axis, low, high, below_names=below_names)
         shapes, notes = shapes + lines_of, notes + notes_of
     shapes += [
         {"xref": "x", "yref": "paper", "y0": 0, "y1": 1, "type": "line", "x0": at, "x1": at,
@@ -234,7 +236,9 @@ class _Lines:
         return cls(round(whole) + top + _BOTTOM_PIXELS, top, tuple(domains))
 
 
-def _limits(panel: Panel, axis: str, low: float, high: float) -> tuple[list[Spec], list[Spec]]:
+def _limits(
+    panel: Panel, axis: str, low: float, high: float, *, below_names: bool
+) -> tuple[list[Spec], list[Spec]]:
     """Lines and labels of the limits of a panel."""
     placed = placed_limits(panel, low, high)
     shapes: list[Spec] = [
@@ -242,10 +246,10 @@ def _limits(panel: Panel, axis: str, low: float, high: float) -> tuple[list[Spec
          "y1": line.value, "line": {"color": "fail", "width": 1.2, "dash": "dash"}}
         for line, _ in placed.inside
     ]  # fmt: skip
-    # a limit outside the axes is written at the edge; the upper edge has the stroke names
+    # a limit outside the axes is written at the edge; the upper one may have names of marks
     words = [(line.words(panel.unit), line.value, above, 0) for line, above in placed.inside]
     if placed.beyond:
-        shift = -_STROKE_PIXELS if placed.above else 0
+        shift = -_STROKE_PIXELS if placed.above and below_names else 0
         words.append((placed.beyond, high if placed.above else low, not placed.above, shift))
     notes: list[Spec] = [
         {"xref": "paper", "x": 1, "xanchor": "right", "yref": axis, "showarrow": False,

@@ -11,11 +11,12 @@ import numpy as np
 from camwright.geometry.arrays import Array
 from camwright.reports.figures import SERIES, Curve, Figure, LimitLine, LineFigure, Panel
 from camwright.reports.report_tables import Record, number
-from camwright.reports.sheet_turn import Turn, angle_figure, curves_of
+from camwright.reports.sheet_turn import Turn, angle_figure, both_ways, curves_of, lowest
 
 _TRAVEL_POINTS = 31
 _DEAD_COILS = 2.0  # of squared and ground ends
 _PROMINENCE = 0.1
+_LOST = LimitLine(0.0, "contact lost at")
 
 
 def _forces(turn: Turn) -> Figure | None:
@@ -116,7 +117,7 @@ def _load_cases(turn: Turn) -> Figure | None:
     pressure = "p0_fe_MPa" if np.isfinite(turn.columns["p0_fe_MPa"]).any() else "p0_hertz_MPa"
     ended = " Loads of a case in which the follower leaves the cam or locks do not occur."
     panels = (
-        bars("normal force", "N", ("normal_force_N", ""), notes=names),
+        bars("normal force", "N", ("normal_force_N", ""), limits=_force_limits(turn), notes=names),
         bars(
             "p0", "MPa", (pressure, ""), limits=turn.limit("endurance", "MPa", "contact_pressure")
         ),
@@ -146,7 +147,7 @@ def _speed_sweep(turn: Turn) -> Figure | None:
                    for (name, label), colour in zip(columns, SERIES, strict=False))  # fmt: skip
     surge = surge[first]
     marks = tuple((float(speed[k]), f"resonance {speed[k]:.0f} rpm") for k in _peaks(surge))
-    panels = [Panel("contact force", "N", forces, (LimitLine(0.0, "contact lost at"),))]
+    panels = [Panel("contact force", "N", forces, (_LOST,))]
     if np.any(surge):
         panels.append(Panel("spring surge", "N", (Curve("", surge, "blue"),), height=0.8))
     return LineFigure(
@@ -174,11 +175,17 @@ def _peaks(values: Array) -> list[int]:
     return sorted(sorted(clear, key=lambda k: -values[k])[:3])
 
 
+def _force_limits(turn: Turn) -> tuple[LimitLine, ...]:
+    """Greatest normal force that both the roller bearing and its outer ring carry."""
+    return lowest(
+        *turn.static_rating("static rating of the roller", "roller_static", "roller", "bearing",
+                            "C0"),
+        *turn.limit("dynamic limit of the outer ring", "N", "roller_radial"),
+        *turn.limit("static limit of the outer ring", "N", "roller_static_radial"),
+    )  # fmt: skip
+
+
 def _normal_force(turn: Turn) -> Figure | None:
-    limits: tuple[LimitLine, ...] = ()
-    rating, safety = turn.length("roller", "bearing", "C0", unit="N"), turn.bound("roller_static")
-    if rating and safety:
-        limits = (LimitLine(rating / safety, "static rating of the roller"),)
     curves = curves_of(
         turn, ("normal_force_N", "normal force"), ("axial_force_N", "axial force"),
         ("normal_force_statics_N", "normal force, point guides"), dashed=(2,),
@@ -192,7 +199,7 @@ def _normal_force(turn: Turn) -> Figure | None:
         "Contact force between cam and follower and its component along the stem, guide friction "
         "included; change by the finite length and by the clearance of the guides. Contact is lost "
         "where the normal force reaches zero.",
-        Panel("force", "N", curves, (LimitLine(0.0, "contact lost at"), *limits)),
+        Panel("force", "N", curves, (_LOST, *_force_limits(turn))),
         Panel("change", "N", curves_of(turn, *shares), height=0.6),
     )  # fmt: skip
 
@@ -237,6 +244,8 @@ def _speed(turn: Turn) -> Figure | None:
     curves: list[Curve] = []
     means: list[Curve] = []
     limits: list[LimitLine] = []
+    fastest = lowest(*turn.limit("limit", "m/s", "guide_speed_A"),
+                     *turn.limit("limit", "m/s", "guide_speed_B"))  # fmt: skip
     for name, colour in (("A", "blue"), ("B", "vermillion")):
         length = turn.length("guides", name.lower(), "length")
         diameter = turn.length("guides", name.lower(), "diameter")
@@ -250,7 +259,8 @@ def _speed(turn: Turn) -> Figure | None:
         turn, "speed", "Follower velocity and guide PV",
         "PV: guide force over projected area, times sliding speed; its limit is one of the mean "
         "over the turn.",
-        Panel("velocity", "m/s", curves_of(turn, ("follower_velocity_m_per_s", "")), height=0.8),
+        Panel("velocity", "m/s", curves_of(turn, ("follower_velocity_m_per_s", "")),
+              both_ways(fastest), height=0.8),
         Panel("PV", "MPa m/s", tuple(curves), height=0.9),
         Panel("mean PV", "MPa m/s", tuple(means), tuple(dict.fromkeys(limits)), height=0.7,
               from_zero=True),
@@ -258,17 +268,14 @@ def _speed(turn: Turn) -> Figure | None:
 
 
 def _roller(turn: Turn) -> Figure | None:
-    friction = turn.case.get("roller", {}).get("friction")
-    limits = (
-        (LimitLine(float(friction), "coefficient of friction"),)
-        if isinstance(friction, (int, float))
-        else ()
-    )
+    limits = lowest(*turn.limit("limit with reserve", "", "traction_reserve"),
+                    *turn.limit("coefficient of friction", "", "traction_demand"))  # fmt: skip
     return angle_figure(
         turn, "roller", "Roller: speed, traction and slip",
         "Speed and acceleration of a roller without slip, traction coefficient that its rotation "
         "requires, creepage, and slip speed where the available friction is too small.",
-        Panel("speed", "rpm", curves_of(turn, ("roller_speed_rpm", "")), height=0.7),
+        Panel("speed", "rpm", curves_of(turn, ("roller_speed_rpm", "")),
+              turn.limit("limit", "rpm", "roller_speed"), height=0.7),
         Panel("acceleration", "rad/s²", curves_of(turn, ("roller_acceleration_rad_per_s2", "")),
               height=0.7),
         Panel("traction", "", curves_of(turn, ("traction_demand", "")), limits, height=0.7),
@@ -317,25 +324,36 @@ def _elastic(turn: Turn) -> Figure | None:
         turn, "elastic", "Contact force: elastic stem, friction bounds",
         "Contact force with an elastic stem at the computed cam speed, and with minimum and "
         "maximum guide friction.",
-        Panel("contact force", "N", curves_of(turn, *forces)),
+        Panel("contact force", "N", curves_of(turn, *forces), (_LOST,)),
         Panel("shortening", "um", curves_of(turn, ("stem_shortening_um", "")), height=0.7),
         Panel("cam speed", "rad/s", curves_of(turn, ("cam_speed_rad_per_s", "")), height=0.6),
     )  # fmt: skip
 
 
 def _parts(turn: Turn) -> Figure | None:
+    """Each stress on its own axes, with its limit where a check has one of the same stress."""
     stresses = (
-        ("spring_stress_MPa", "spring wire, shear"), ("pin_stress_MPa", "roller pin, bending"),
-        ("ring_stress_amplitude_MPa", "outer ring, amplitude"),
-        ("key_pressure_MPa", "key, pressure"), ("bore_pressure_MPa", "bore, pressure"),
-    )  # fmt: skip
+        ("spring_stress_MPa", "spring wire", ()),
+        ("pin_stress_MPa", "roller pin", turn.limit("limit", "MPa", "roller_pin")),
+        ("ring_stress_amplitude_MPa", "outer ring", ()),
+        ("key_pressure_MPa", "key", turn.limit("limit", "MPa", "key_pressure")),
+        ("bore_pressure_MPa", "bore", turn.limit("limit", "MPa", "bore_pressure")),
+    )
+    panels = [
+        Panel(part, "MPa", curves_of(turn, (column, "")), limits, height=0.6)
+        for column, part, limits in stresses
+    ]
+    rating = turn.static_rating(
+        "static rating", "shaft_bearing_static", "camshaft", "bearing_static_rating"
+    )
     bearings = (("shaft_bearing_load_1_N", "bearing 1"), ("shaft_bearing_load_2_N", "bearing 2"))
     return angle_figure(
         turn, "parts", "Spring, roller pin, outer ring, key and camshaft",
-        "Stresses of the parts that the case describes.",
-        Panel("stress", "MPa", curves_of(turn, *stresses)),
+        "Of the parts that the case describes: shear stress of the spring wire, bending stress of "
+        "the roller pin, stress amplitude of the outer ring, pressure on key and bore.",
+        *panels,
         Panel("spring surge", "N", curves_of(turn, ("spring_surge_force_N", "")), height=0.6),
-        Panel("bearing load", "N", curves_of(turn, *bearings), height=0.8),
+        Panel("bearing load", "N", curves_of(turn, *bearings), rating, height=0.8),
     )  # fmt: skip
 
 

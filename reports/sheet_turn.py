@@ -156,6 +156,21 @@ class Turn:
         value = None if bound is None else in_unit(bound, unit_of[check_id], unit)
         return () if value is None or not np.isfinite(value) else (LimitLine(value, label),)
 
+    def static_rating(self, label: str, check_id: str, *path: str) -> tuple[LimitLine, ...]:
+        """Static rating of the case, N, over the safety that a check requires of it."""
+        rating, safety = self.length(*path, unit="N"), self.bound(check_id)
+        return (LimitLine(rating / safety, label),) if rating and safety else ()
+
+
+def both_ways(limits: Sequence[LimitLine]) -> tuple[LimitLine, ...]:
+    """Limits of a magnitude, above and below zero."""
+    return (*limits, *(LimitLine(-line.value, line.label) for line in limits))
+
+
+def lowest(*limits: LimitLine) -> tuple[LimitLine, ...]:
+    """The limit that is reached first; empty without any."""
+    return tuple(sorted(limits, key=lambda line: line.value)[:1])
+
 
 def curves_of(
     turn: Turn, *wanted: tuple[str, str], dashed: Sequence[int] = ()

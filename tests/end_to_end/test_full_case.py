@@ -13,6 +13,8 @@ from camwright.pipeline.base.progress import Silent
 from camwright.pipeline.case.case_file import read_case
 from camwright.pipeline.case.machine import machines
 from camwright.pipeline.run import run_case
+from camwright.reports.analysis_sheet import groups
+from camwright.reports.report_data import read_material
 
 COLUMNS = (
     "tau_max_with_traction_MPa",
@@ -68,6 +70,38 @@ def test_every_part_that_is_described_is_judged(run):
         assert checks[name]["status"] in ("pass", "fail"), name
         assert checks[name]["missing"] == [], name
         assert checks[name]["source"], name
+
+
+LIMITED = (
+    ("parts", "roller pin", "roller_pin"), ("parts", "key", "key_pressure"),
+    ("parts", "bore", "bore_pressure"), ("roller", "speed", "roller_speed"),
+    ("roller", "traction", "traction_reserve"), ("lift", "s", "spring_travel"),
+    ("speed", "velocity", "guide_speed_A"),
+)  # fmt: skip
+
+
+def test_the_limit_of_a_figure_is_that_of_the_check_of_its_greatest_value(run):
+    """The greatest value that is drawn against the demand of the check, which is found apart."""
+    turn = read_material(run).turn
+    panels = {(each.id, panel.quantity): panel for _, figures in groups(turn) for each in figures
+              for panel in getattr(each, "panels", ())}  # fmt: skip
+    checks = {check["id"]: check for check in turn.checks}
+    for figure, quantity, name in LIMITED:
+        panel, check = panels[figure, quantity], checks[name]
+        limits = [] if check["limit"] is None else [check["limit"]]
+        assert [line.value for line in panel.limits if line.value > 0] == limits, name
+        drawn = [part for c in panel.curves for part in (c.values, *(c.band or ()))]
+        greatest = np.nanmax(np.abs(drawn))
+        assert greatest == pytest.approx(check["demand"], rel=1e-3), name  # between samples too
+
+
+def test_the_bearings_of_the_camshaft_have_the_rating_over_the_required_safety(run):
+    turn = read_material(run).turn
+    (panel,) = [p for _, figures in groups(turn) for each in figures if each.id == "parts"
+                for p in each.panels if p.quantity == "bearing load"]  # fmt: skip
+    check = next(each for each in turn.checks if each["id"] == "shaft_bearing_static")
+    greatest = max(float(np.max(curve.values)) for curve in panel.curves)
+    assert panel.limits[0].value / greatest * check["limit"] == pytest.approx(check["demand"])
 
 
 def test_the_method_says_how_the_roller_is_taken(run):
