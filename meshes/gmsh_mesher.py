@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import ctypes
+import signal
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -48,6 +50,25 @@ TRIANGLES_MAX = 60_000
 _GRID_BITS = 12  # of the shortest edge of the outline, whose coordinates are rounded for gmsh
 
 
+_IGNORED = 1  # SIG_IGN of C
+
+
+@contextmanager
+def _broken_pipes_as_before() -> Iterator[None]:
+    """Keeps what a broken pipe does in this process.
+
+    gmsh sets it back to the default on starting: a write to a process that has ended would end this
+    one without a word. By C, since Python allows the main thread alone.
+    """
+    handle = ctypes.CDLL(None).signal
+    handle.argtypes, handle.restype = (ctypes.c_int, ctypes.c_void_p), ctypes.c_void_p
+    before = handle(signal.SIGPIPE, _IGNORED)
+    try:
+        yield
+    finally:
+        handle(signal.SIGPIPE, before)
+
+
 @contextmanager
 def session() -> Iterator[ModuleType]:
     """gmsh with an empty model of its own and the options above.
@@ -59,7 +80,8 @@ def session() -> Iterator[ModuleType]:
 
     running = bool(gmsh.isInitialized())
     if not running:
-        gmsh.initialize(readConfigFiles=False, interruptible=False)
+        with _broken_pipes_as_before():
+            gmsh.initialize(readConfigFiles=False, interruptible=False)
     kept_options = {option: gmsh.option.getNumber(option) for option in _OPTIONS}
     kept_model = gmsh.model.getCurrent()
     own_model = f"camwright {len(gmsh.model.list())}"

@@ -1,6 +1,7 @@
 """A cam's balance: a hole left out or drilled, in check, record and workshop."""
 
 import json
+import signal
 from dataclasses import replace
 from types import SimpleNamespace
 
@@ -160,6 +161,7 @@ def test_the_workshop_drills_it(tmp_path):
     import gmsh
 
     gmsh.initialize(interruptible=False)
+    signal.signal(signal.SIGPIPE, signal.SIG_IGN)  # as Python does; gmsh resets it
     try:
         gmsh.option.setNumber("General.Terminal", 0)
         gmsh.merge(str(tmp_path / "cam.step"))

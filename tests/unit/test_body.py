@@ -1,5 +1,6 @@
 """Meshes of the bodies: boundaries, numbering, limits and repeatability."""
 
+import signal
 import subprocess
 import sys
 from concurrent.futures import ThreadPoolExecutor
@@ -299,6 +300,7 @@ def test_a_running_gmsh_is_left_as_it_was(roller):
     import gmsh
 
     gmsh.initialize(readConfigFiles=False, interruptible=False)
+    signal.signal(signal.SIGPIPE, signal.SIG_IGN)  # as Python does; gmsh resets it
     try:
         gmsh.option.setNumber("General.Terminal", 0)
         gmsh.option.setNumber("Mesh.Algorithm", 5)
@@ -324,6 +326,24 @@ def test_a_worker_thread_can_mesh(roller):
     with ThreadPoolExecutor(1) as pool:
         found = pool.submit(roller_mesh, 0.008, 0.003, 0.7, fine()).result()
     assert found.sha256 == roller.sha256
+
+
+def test_a_broken_pipe_is_an_error_after_meshing():
+    """gmsh would have the process ended by SIGPIPE, as when a worker process dies."""
+    script = (
+        "import os\n"
+        "from camwright.meshes.body_mesh import roller_mesh\n"
+        "from camwright.meshes.element_size import Sizing\n"
+        "roller_mesh(0.008, 0.003, 0.0, Sizing(far_size=2e-3))\n"
+        "reader, writer = os.pipe()\n"
+        "os.close(reader)\n"
+        "try:\n    os.write(writer, b'0')\n"
+        "except BrokenPipeError:\n    print('an error')\n"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", script], capture_output=True, text=True, check=False, timeout=120
+    )
+    assert (done.returncode, done.stdout) == (0, "an error\n"), done.stderr
 
 
 def test_gmsh_ends_with_the_mesh():
