@@ -180,7 +180,13 @@ def _fitted(
     # Steps far above the integration error at sign changes of the speed: steps smaller by a factor
     # of 100 halved the intervals.
     fit = least_squares(
-        miss, start, diff_step=np.full(start.size, 1e-3), x_scale=scale, xtol=1e-9, ftol=1e-9
+        miss,
+        start,
+        "3-point",
+        x_scale=scale,
+        xtol=1e-9,
+        ftol=1e-9,
+        diff_step=np.full(start.size, 1e-3),
     )
     if not fit.success:
         raise InputError("decay", str(fit.message), "a decay by viscous and dry friction")
