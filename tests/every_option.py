@@ -41,7 +41,7 @@ OPTIONS = {
     "roller": {
         "roughness": "0.1 um",
         "friction": 0.1,
-        "crown_radius": "200 mm",
+        "crown": {"kind": "circular", "radius": "200 mm"},
         "axial_offset": "0 mm",
         "inertia": "0.3 kg mm^2",
         "pin": {"diameter": "5 mm", "span": "9 mm", "material": "bearing_steel"},

@@ -298,6 +298,9 @@ def includes(case: Case) -> Iterator[tuple[str, str]]:
         yield "lift.file", case.lift.file
     if case.follower.external_force_file is not None:
         yield "follower.external_force_file", case.follower.external_force_file
+    for part in (case.cam, case.facing):
+        if part.crown is not None and part.crown.file is not None:
+            yield f"{part.table}.crown.file", part.crown.file
     for k, load_case in enumerate(case.load_cases):
         if load_case.torque is not None:
             yield f"load_case[{k}].torque", load_case.torque

@@ -217,6 +217,7 @@ def _check_film(case: Case) -> None:
 
 def _check_geometry(case: Case) -> None:
     cam, roller, face = case.cam, case.roller_given, case.follower.face
+    _check_ends(case)
     if roller is not None:
         _check_roller(case, roller)
     smaller = "smaller than {cam.prime_radius}"
@@ -240,6 +241,19 @@ def _check_geometry(case: Case) -> None:
     part = "roller" if face is None else "face"
     limit = f">= {{}}, half of {{guides.a.length}}, or the {part} enters guide A"
     _require(case, "follower.overhang_at_max_lift", overhang >= least, limit, least)
+
+
+def _check_ends(case: Case) -> None:
+    """Each body keeps a flat between its ends, and each crown fits the contact."""
+    other = case.facing
+    width = "roller.width" if case.roller_given is not None else "follower.face.depth"
+    for part, key in ((case.cam, "cam.width"), (other, width)):
+        if part.end is not None:
+            most = 0.5 * part.line_width + part.end.size
+            limit = f"< {{}}, half of {{{key}}}"
+            _require(case, f"{part.table}.end.size", part.line_width > 0.0, limit, most)
+        if part.crown is not None and part.crown.kind == "iso16281" and case.roller_given is None:
+            raise InputError(f"{part.table}.crown.kind", "iso16281", "that of a cam with a roller")
 
 
 def _check_ring(case: Case) -> None:
@@ -278,8 +292,9 @@ def _check_roller(case: Case, roller: Roller) -> None:
     radius, width = roller.radius, roller.width
     _require(case, "roller.radius", radius < case.cam.prime_radius, "< {cam.prime_radius}")
     _require(case, "roller.hub_radius", roller.hub_radius < radius, "< {roller.radius}")
-    limit = "< {}, half of {roller.width}"
-    _require(case, "roller.chamfer", 2 * roller.chamfer < width, limit, 0.5 * width)
+    reach = 0.5 * (case.cam.line_width + roller.line_width)
+    limit = "< {}, beyond which the roller runs beside the cam"
+    _require(case, "roller.axial_offset", (roller.axial_offset or 0.0) < reach, limit, reach)
     ring = roller.bearing.ring
     if ring is not None:
         # A ring is stated to a micrometre; a tyre on it may be larger.

@@ -29,7 +29,11 @@ TABLE = "table"
 """What a key that is a table accepts."""
 DIGITS = 6
 """Digits of a default."""
-_SAME_TEXTS = {"guides.b": "guides.a"}
+_SAME_TEXTS = {
+    "guides.b": "guides.a",
+    **{f"{part}.{table}": f"cam.{table}"
+       for part in ("roller", "follower.face") for table in ("end", "crown")},
+}  # fmt: skip
 _RESOLVED: Mapping[str, str] = {
     "added": "list of tables",
     "spring.catalogue": "`shipped`, or a file name",

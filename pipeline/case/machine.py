@@ -20,7 +20,19 @@ from camwright.pipeline.case.limits import (
 )
 from camwright.pipeline.case.requirements_section import OVER_SPEED, STANDSTILL, LoadCase
 from camwright.pipeline.case.scope_section import PartName, Scope
+from camwright.pipeline.contact.axial_shape import AxialCrown, BodyEnd
 from camwright.pipeline.contact.cam_body import CamBody
+from camwright.pipeline.contact.elasticity.elastic_body import Elastic
+from camwright.pipeline.contact.finite_length.axial_drop import (
+    Crown,
+    CrownPlace,
+    FiniteBody,
+    FinitePair,
+    Straight,
+    SummedCrown,
+    TabulatedCrown,
+    crown_of,
+)
 from camwright.pipeline.contact.hertz import contact_modulus
 from camwright.pipeline.contact.oil_film import Lubricant
 from camwright.pipeline.engine.crankshaft import Crankshaft
@@ -52,6 +64,8 @@ _UNLOADED = {
     SPEED_REDUCTION.id: None,
     "source": "every case is judged at standstill and over-speed",
 }
+# Greatest depth of a body under the contact, over the length of contact.
+_DEPTH = 2.0
 # Crank speed of a load case at rest, rad/s: inertia, film and heat are negligible.
 CREEP = 1e-3
 
@@ -85,6 +99,7 @@ class Machine(Displayed):
     duty : float               share of the operating time; None: not known
     cam : CamBody
     follower : FollowerKind    the part that touches the cam, roller or flat face
+    cam_drops, follower_drops : TabulatedCrown   of their crowns by a table; None: of no table
     mass : float               that moves with the follower, kg, spring_mass of it of the spring
     viscous_damping : float    of the guides, N s/m
     gravity_along_axis : float component of g towards the cam, m/s2
@@ -110,6 +125,8 @@ class Machine(Displayed):
     duty: float | None
     cam: CamBody
     follower: FollowerKind
+    cam_drops: TabulatedCrown | None
+    follower_drops: TabulatedCrown | None
     mass: float
     spring_mass: float
     viscous_damping: float
@@ -178,14 +195,89 @@ class Machine(Displayed):
 
     @property
     def contact_width(self) -> float:
-        """Width of the line contact, m: the smaller of cam and follower."""
-        return min(self.cam.width, self.follower.line_width)
+        """Width of the line contact, m: the overlap of the flats of cam and follower."""
+        low, high = self._overlap
+        return high - low
 
     @property
     def contact_modulus(self) -> float:
         """E* of the contact, Pa."""
         cam, other = self.cam.material, self.follower.material
         return contact_modulus(cam.E, cam.nu, other.E, other.nu)
+
+    @property
+    def _axial_offset(self) -> float:
+        return self.follower.axial_offset or 0.0
+
+    @property
+    def _overlap(self) -> tuple[float, float]:
+        """Ends of the line contact, m, from the middle of the cam."""
+        cam, other = 0.5 * self.cam.line_width, 0.5 * self.follower.line_width
+        return max(-cam, self._axial_offset - other), min(cam, self._axial_offset + other)
+
+    @property
+    def crown_radius(self) -> float | None:
+        """Radius of circular crowns, those of cam and follower in one, m; None of any other."""
+        shapes = [each.crown for each in (self.cam, self.follower) if each.crown is not None]
+        radii = [shape.radius for shape in shapes if shape.radius is not None]
+        if not radii or len(radii) < len(shapes):
+            return None
+        return 1.0 / sum(1.0 / radius for radius in radii)
+
+    @property
+    def finite_pairs(self) -> tuple[FinitePair, ...]:
+        """Contact of cam and follower with their ends: one, or one for each end at an axial offset.
+
+        Empty where the case lacks an end. The curvature is that of the base circle.
+
+        Raises
+        ------
+        InputError
+            If a crown does not fit the contact.
+        """
+        parts: tuple[CamBody | FollowerKind, ...] = (self.cam, self.follower)
+        if any(part.end is None for part in parts):
+            return ()
+        low, high = self._overlap
+        length, offset = high - low, self._axial_offset
+        depths = self.base_radius - self.cam.held_radius, self.follower.body_depth
+        pairs = []
+        for side in (-1, 1) if offset else (1,):
+            reach = high if side > 0 else -low
+            bodies = []
+            for part, depth, middle in zip(parts, depths, (0.0, offset), strict=True):
+                end = replace(part.end or BodyEnd(), source="")
+                overhang = 0.5 * part.line_width + side * middle - reach
+                whole = length + 2.0 * (overhang + end.size)
+                material = Elastic(part.material.E, part.material.nu)
+                bodies.append(FiniteBody(material, whole, end, min(depth, _DEPTH * length)))
+            crown = self._crown(0.5 * (low + high), side)
+            pairs.append(FinitePair((bodies[0], bodies[1]), self._base_curvature, crown))
+        return tuple(pairs)
+
+    @property
+    def _base_curvature(self) -> float:
+        """1/R of the base circle and the follower, 1/m."""
+        radius = self.follower.contact_radius
+        return 1.0 / self.base_radius + (0.0 if radius is None else 1.0 / radius)
+
+    def _crown(self, middle: float, side: int) -> Crown:
+        """Crowns of both bodies about the middle of the contact, m from that of the cam."""
+        radius = self.follower.contact_radius
+        place = CrownPlace(
+            length=self.contact_width,
+            curvature=self._base_curvature,
+            modulus=self.contact_modulus,
+            diameter=None if radius is None else 2.0 * radius,
+        )
+        crowns = []
+        for shape, drops, at in (
+            (self.cam.crown, self.cam_drops, 0.0),
+            (self.follower.crown, self.follower_drops, self._axial_offset),
+        ):
+            if shape is not None:
+                crowns.append((crown_of(shape, place, drops), at - middle))
+        return SummedCrown(tuple(crowns), side) if crowns else Straight()
 
     @property
     def base_radius(self) -> float:
@@ -312,6 +404,8 @@ def machine(case: Case, state: LoadCase) -> Machine:
         duty=state.duty,
         cam=case.cam,
         follower=case.facing,
+        cam_drops=_drops(case, case.cam.crown),
+        follower_drops=_drops(case, case.facing.crown),
         mass=follower.mass,
         spring_mass=case.spring_mass,
         viscous_damping=follower.viscous_damping,
@@ -329,6 +423,13 @@ def machine(case: Case, state: LoadCase) -> Machine:
         lubricant=case.lubricant,
         limits=case.limits,
         scope=case.scope,
+    )
+
+
+def _drops(case: Case, crown: AxialCrown | None) -> TabulatedCrown | None:
+    """Table of a crown; None of a crown without one."""
+    return (
+        None if crown is None or crown.file is None else TabulatedCrown.read(case.path(crown.file))
     )
 
 

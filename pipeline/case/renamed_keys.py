@@ -25,9 +25,13 @@ def with_new_keys(tables: Tables) -> Tables:
     Raises
     ------
     InputError
-        If a table has a key under its old and its new name.
+        If a table has a key under its old and its new name, or a key that is replaced.
     """
     case = deepcopy(tables)
+    for old, form in _words(renamed_names()["replaced"]).items():
+        table, key = _parent(case, old), old.rpartition(".")[2]
+        if table is not None and key in table:
+            raise InputError(old, str(table[key]), form)
     for old, new in _words(renamed_names()["case"]).items():
         table, key = _parent(case, old), old.rpartition(".")[2]
         if table is not None:

@@ -298,6 +298,7 @@ relaxation = 0.005                   # share of the force lost: ask the maker
 [cam]
 prime_radius = "60 mm"               # smallest radius of the roller's CENTRE
 width = "17.5 mm"
+end = { kind = "sharp" }
 bore_radius = "15 mm"
 material = "case_hardened"
 roughness = "0.3 um"
@@ -331,7 +332,7 @@ source = "ISO 6336-5, case-hardened steel, quality MQ, recalled: verify"
 [roller]
 radius = "23.5 mm"
 width = "17.5 mm"
-chamfer = "0.6 mm"
+end = { kind = "chamfer", size = "0.6 mm" }
 hub_radius = "11.5 mm"               # shoulder of the inner ring
 axial_offset = "0.3 mm"
 friction = 0.10                      # oiled steel on steel

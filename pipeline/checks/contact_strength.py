@@ -187,7 +187,7 @@ def least_poisson(machine: Machine) -> float:
 
 def applied_edge_factor(machine: Machine) -> float:
     """Edge factor on the plane-strain pressure; 1 for a crowned follower."""
-    crowned = machine.follower.crown_radius is not None
+    crowned = machine.crown_radius is not None
     return 1.0 if crowned else machine.limits[EDGE_FACTOR]
 
 
@@ -250,7 +250,7 @@ def _judged(
 
 def _pressure_note(solution: Solution) -> str:
     """Model of the pressure under a crowned follower."""
-    radius = solution.machine.follower.crown_radius
+    radius = solution.machine.crown_radius
     if radius is None:
         return ""
     note = f"elliptic Hertz contact of a crown radius of {shown(radius, 'mm')}"
@@ -370,7 +370,7 @@ def shakedown(solution: Solution) -> Demand:
     """Maximum contact pressure, Pa, against elastic shakedown of free rolling."""
     limit = _times(shear_yield(solution.machine), SHAKEDOWN)
     note = "without traction; that of an ellipse is higher, 4.7 k under a circle"
-    if solution.machine.follower.crown_radius is None:
+    if solution.machine.crown_radius is None:
         note = "without traction; sliding at the surface lowers the limit"
     return _judged(peak_pressure(solution), limit, note=note)
 
@@ -463,7 +463,7 @@ def edge_shakedown(solution: Solution) -> Demand:
 
 def _edge_method(solution: Solution) -> str:
     machine = solution.machine
-    if machine.follower.crown_radius is not None and not truncated(solution):
+    if machine.crown_radius is not None and not truncated(solution):
         return "greatest pressure of the ellipse, which lies within the width of the contact"
     factor = machine.limits[EDGE_FACTOR]
     return f"greatest contact pressure times {factor:g}, a flat derating: the ends are not solved"
@@ -493,13 +493,13 @@ def shakedown_traction(solution: Solution) -> Demand:
 @check(
     title="Axial offset of the roller vs. half of the difference of widths",
     unit="mm",
-    source="the contact is calculated over the whole smaller width of cam and roller",
-    method="axial offset of the case; widths of cam and roller without chamfers",
+    source="up to it the contact has the whole smaller width of cam and roller",
+    method="axial offset of the case; widths of cam and roller without ends",
     moved_by_tolerance=False,
     needs="roller",
     formula="e <= |w_c - w_r| / 2; e: roller.axial_offset, w_c: width of the cam, w_r: of the"
-    " roller without chamfers",
-    reason="beyond it the roller overhangs, and carries the force on less width than calculated",
+    " roller, both without ends",
+    reason="beyond it the contact is shorter and beside the middle of both bodies",
     load_cases=NONE,
 )
 def roller_overlap(solution: Solution) -> Demand | None:
@@ -508,11 +508,11 @@ def roller_overlap(solution: Solution) -> Demand | None:
     roller = machine.roller
     if roller is None:
         return None
-    spare, offset = 0.5 * abs(machine.cam.width - roller.line_width), roller.axial_offset
+    spare, offset = 0.5 * abs(machine.cam.line_width - roller.line_width), roller.axial_offset
     if offset is None:
         return Demand(None, spare, missing=lacking(roller.table, roller, "axial_offset"))
-    overlap = machine.contact_width - max(offset - spare, 0.0)
-    return Demand(offset, spare, note=f"roller and cam overlap over {shown(overlap, 'mm')}")
+    overlap = shown(machine.contact_width, "mm")
+    return Demand(offset, spare, note=f"roller and cam overlap over {overlap}")
 
 
 @lru_cache(maxsize=512)

@@ -38,7 +38,7 @@ SUBSURFACE = 0.3  # half-widths: a shallower maximum is a singularity or an elem
 def edge_factor(solution: Solution) -> Demand:
     """Factor on the plane-strain pressure for the ends of the contact."""
     machine = solution.machine
-    ends = machine.follower.crown_radius is None or truncated(solution)
+    ends = machine.crown_radius is None or truncated(solution)
     factor = machine.limits[EDGE_FACTOR] if ends else 1.0
     note = "plane strain includes neither the ends of the contact nor a tilt of the axes"
     return Demand(factor, LEAST_EDGE_FACTOR if ends else 1.0, note=note)

@@ -93,7 +93,7 @@ def film_ratio(solution: Solution) -> Demand:
     machine = solution.machine
     oil, kind = machine.lubricant, machine.follower
     running = [cycle for cycle in solution.cycles if cycle.machine.speed > 0]
-    worst, crowned = least(running or solution.cycles, _lambda), kind.crown_radius is not None
+    worst, crowned = least(running or solution.cycles, _lambda), machine.crown_radius is not None
     missing = lacking(machine.cam.table, machine.cam, "roughness")
     missing += lacking(kind.table, kind, "roughness")
     return Demand(

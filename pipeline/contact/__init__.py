@@ -6,6 +6,7 @@ In the order of the calculation:
 | -------------------- | ---------------------------------------------- | -------------------- |
 | `elasticity`         | plane-strain elasticity of bodies and surfaces |                      |
 | `tiers`              | tiers of a solution: preview, finite elements  |                      |
+| `axial_shape`        | ends and crown of a body, as a case has them   | m                    |
 | `cam_body`           | cam disc: radii, width, bore, key, material    | m                    |
 | `hertz`              | line contact, subsurface stress                | a, m; p0, Pa; E*, Pa |
 | `follower_body`      | roller or flat face in contact with the cam    | m                    |

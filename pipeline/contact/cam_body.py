@@ -8,6 +8,7 @@ from typing import Annotated, ClassVar, Literal, NamedTuple
 
 from camwright.pipeline.base.material import Material
 from camwright.pipeline.base.quantities import Angle, In, Length, Part
+from camwright.pipeline.contact.axial_shape import AxialCrown, BodyEnd, flat_width
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -128,8 +129,15 @@ class CamBody(Part):
     roughness: Annotated[float, In("um", above=0, at_most=1000)] | None = None
     profile_tolerance: Annotated[float, In("mm", above=0, at_most=10)] = 1e-4
     waviness_length: Length = 0.005
+    end: BodyEnd | None = None
+    crown: AxialCrown | None = None
     counter_hole: BalanceHole | None = None
     source: str = ""
+
+    @property
+    def line_width(self) -> float:
+        """Maximum width of the line contact, m: without the ends."""
+        return flat_width(self.width, self.end)
 
     @property
     def held_radius(self) -> float:

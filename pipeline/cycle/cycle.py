@@ -130,7 +130,7 @@ class Cycle(Tabled):
 
         The plane contact is that of the same forces without the crown.
         """
-        radius = self.machine.follower.crown_radius
+        radius = self.machine.crown_radius
         if radius is None or self.contact.tier is None:
             return None
         return crowned_contact(

@@ -12,6 +12,7 @@ from camwright.geometry.flat_face_contour import FacePath, FlatFaceContour
 from camwright.geometry.lift import Lift
 from camwright.pipeline.base.material import Material
 from camwright.pipeline.base.quantities import In, Length, Part
+from camwright.pipeline.contact.axial_shape import AxialCrown, BodyEnd, flat_width
 from camwright.pipeline.contact.cam_body import CamBody
 from camwright.pipeline.contact.contact_history import ContactHistory
 from camwright.pipeline.contact.elasticity.elastic_body import Elastic
@@ -32,7 +33,7 @@ class FlatFace(Part):
     table: ClassVar[str] = "follower.face"
     word: ClassVar[str] = "face"
     slides: ClassVar[bool] = True
-    crown_radius: ClassVar[None] = None
+    axial_offset: ClassVar[None] = None
     defaults: ClassVar[Mapping[str, str]] = {
         "roughness": "unknown: the film ratio, which is advisory, is not evaluated",
     }
@@ -44,12 +45,14 @@ class FlatFace(Part):
     roughness: Annotated[float, In("um", above=0, at_most=1000)] | None = None
     pv_limit: Annotated[float, In("MPa m/s", above=0, at_most=1e9)] | None = None
     material: Material
+    end: BodyEnd | None = None
+    crown: AxialCrown | None = None
     source: str = ""
 
     @property
     def line_width(self) -> float:
-        """Maximum width of the line contact, m."""
-        return self.depth
+        """Maximum width of the line contact, m: without the ends."""
+        return flat_width(self.depth, self.end)
 
     @property
     def side_friction(self) -> float:
@@ -70,6 +73,11 @@ class FlatFace(Part):
     def held_depth(self) -> None:
         """None: the block is held at the stem."""
         return None
+
+    @property
+    def body_depth(self) -> float:
+        """Thickness of the block, m."""
+        return self.thickness
 
     @property
     def body_model(self) -> str:

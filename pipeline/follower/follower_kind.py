@@ -9,6 +9,7 @@ from camwright.geometry.arrays import Array
 from camwright.geometry.contour import Contour
 from camwright.geometry.lift import Lift
 from camwright.pipeline.base.material import Material
+from camwright.pipeline.contact.axial_shape import AxialCrown, BodyEnd
 from camwright.pipeline.contact.cam_body import CamBody
 from camwright.pipeline.contact.contact_history import ContactHistory
 from camwright.pipeline.contact.follower_body import FollowerBody
@@ -38,8 +39,9 @@ class FollowerKind(Protocol):
 
     `word`: its name in files and texts; `table`: in the case file; `line_width`: maximum width of
     the line contact, m; `friction`: coefficient of sliding on the cam; `roughness`: rms, m;
-    `slides`: whether its surface slides on the cam, not rolls; `crown_radius`: of its surface in
-    the axial direction, m, None for a straight one.
+    `slides`: whether its surface slides on the cam, not rolls; `end`: of its surface, None where it
+    is not stated; `crown`: None for a straight one; `axial_offset`: of its middle from that of the
+    cam, m, None where it is not stated.
     """
 
     @property
@@ -57,7 +59,11 @@ class FollowerKind(Protocol):
     @property
     def slides(self) -> bool: ...
     @property
-    def crown_radius(self) -> float | None: ...
+    def end(self) -> BodyEnd | None: ...
+    @property
+    def crown(self) -> AxialCrown | None: ...
+    @property
+    def axial_offset(self) -> float | None: ...
 
     @property
     def side_friction(self) -> float:
@@ -77,6 +83,11 @@ class FollowerKind(Protocol):
     @property
     def held_depth(self) -> float | None:
         """Distance of contact surface and held or supported surface, m; None for a flat face."""
+        ...
+
+    @property
+    def body_depth(self) -> float:
+        """Distance of contact surface and opposite surface, m."""
         ...
 
     @property

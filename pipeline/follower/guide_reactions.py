@@ -142,6 +142,14 @@ class GuidePair(Part):
             raise InputError("guides.spacing", shown(self.spacing, "mm"), limit)
 
     @property
+    def tilt_max(self) -> float:
+        """Greatest tilt of the stem in its clearances, rad: both diametral clearances over twice
+        the length from the outer end of one guide to that of the other.
+        """
+        length = self.spacing + 0.5 * (self.a.length + self.b.length)
+        return 0.5 * (self.a.clearance + self.b.clearance) / length
+
+    @property
     def both(self) -> tuple[tuple[Literal["A", "B"], Guide], ...]:
         """The guides by name."""
         return ("A", self.a), ("B", self.b)

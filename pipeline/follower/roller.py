@@ -14,6 +14,7 @@ from camwright.geometry.lift import Lift
 from camwright.geometry.pitch_curve import PitchCurve
 from camwright.pipeline.base.material import Material
 from camwright.pipeline.base.quantities import In, Length, Mass, Part
+from camwright.pipeline.contact.axial_shape import AxialCrown, BodyEnd, flat_width
 from camwright.pipeline.contact.cam_body import CamBody
 from camwright.pipeline.contact.contact_history import ContactHistory
 from camwright.pipeline.contact.elasticity.elastic_body import Elastic
@@ -34,16 +35,15 @@ _NO_SLIP = 1e6  # friction coefficient of rolling without slip
 class Roller(Part):
     """Roller of the follower.
 
-    hub_radius: of its pin or inner ring; crown_radius: of the surface in the axial direction;
-    axial_offset: of the middle of its width from that of the cam; friction: coefficient of sliding
-    on the cam; roughness: rms; mass: with its bearing, without the pin.
+    hub_radius: of its pin or inner ring; axial_offset: of the middle of its width from that of
+    the cam; friction: coefficient of sliding on the cam; roughness: rms; mass: with its bearing,
+    without the pin.
     """
 
     table: ClassVar[str] = "roller"
     word: ClassVar[str] = "roller"
     slides: ClassVar[bool] = False
     defaults: ClassVar[Mapping[str, str]] = {
-        "crown_radius": "straight: the ends are derated by a flat factor, limits.edge_factor",
         "inertia": "that of a solid ring from hub to surface, an upper bound",
         "mass": "that of a solid ring from pin, or else hub, to surface",
         "roughness": "unknown: the film ratio, which is advisory, is not evaluated",
@@ -51,23 +51,23 @@ class Roller(Part):
 
     radius: Length
     width: Length
-    chamfer: Annotated[float, In("mm", at_least=0, at_most=1000)] = 0.0
     hub_radius: Length
     inertia: Annotated[float, In("kg mm^2", above=0, at_most=1e9)] | None = None
     mass: Mass | None = None
-    crown_radius: Length | None = None
     axial_offset: Annotated[float, In("mm", at_least=0, at_most=1000)] | None = None
     friction: Annotated[float, In(above=0, below=2)] | None = None
     roughness: Annotated[float, In("um", above=0, at_most=1000)] | None = None
     material: Material
+    end: BodyEnd | None = None
+    crown: AxialCrown | None = None
     bearing: Bearing
     pin: Pin | None = None
     fork: Fork | None = None
 
     @property
     def line_width(self) -> float:
-        """Maximum width of the line contact, m: without the chamfers."""
-        return self.width - 2.0 * self.chamfer
+        """Maximum width of the line contact, m: without the ends."""
+        return flat_width(self.width, self.end)
 
     @property
     def side_friction(self) -> float:
@@ -91,6 +91,11 @@ class Roller(Part):
         if ring is not None and not self.solid_reason:
             return ring.thickness
         return self.radius - self.hub_radius
+
+    @property
+    def body_depth(self) -> float:
+        """As `held_depth`, m."""
+        return self.held_depth
 
     @property
     def solid_reason(self) -> str:

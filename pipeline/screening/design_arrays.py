@@ -424,9 +424,13 @@ class Designs:
 
     @cached_property
     def contact_width(self) -> Array:
-        """Width of the line contact (m, 1), m."""
-        chamfers = 2.0 * self.value("roller.chamfer")
-        return np.minimum(self.value("cam.width"), self.value("roller.width") - chamfers)
+        """Width of the line contact (m, 1), m: the overlap of the flats of cam and roller."""
+        cam, roller = (
+            self.value(f"{part}.width") - 2.0 * np.nan_to_num(self.value(f"{part}.end.size"))
+            for part in ("cam", "roller")
+        )
+        offset = np.nan_to_num(self.value("roller.axial_offset"))
+        return np.asarray(np.minimum(np.minimum(cam, roller), 0.5 * (cam + roller) - offset))
 
     @cached_property
     def _relative_curvature(self) -> Array:
@@ -438,9 +442,10 @@ class Designs:
     @cached_property
     def _ellipse(self) -> Ellipse | None:
         """Contact of the crowned rollers under 1 N (m, n); None of straight ones."""
-        crown = self.value("roller.crown_radius")
-        if np.isnan(crown).all():
+        if self.machine.crown_radius is None:
             return None
+        radii = (self.value(f"{part}.crown.radius") for part in ("cam", "roller"))
+        crown = 1.0 / sum(np.nan_to_num(1.0 / radius) for radius in radii)
         curvature = self._relative_curvature
         radius = 1.0 / np.where(np.isnan(curvature), 1.0, curvature)
         modulus = self.machine.contact_modulus

@@ -35,7 +35,7 @@ ARRAYS: tuple[str, ...] = (
     "spring.rate", "spring.preload", "spring.travel_max",
     *(f"spring.design.{name}" for name in WIRE),
     "cam.prime_radius", "cam.offset", "cam.width", "cam.bore_radius", "cam.profile_tolerance",
-    "roller.radius", "roller.width", "roller.crown_radius", "roller.bearing.C", "roller.bearing.C0",
+    "roller.radius", "roller.width", "roller.crown.radius", "roller.bearing.C", "roller.bearing.C0",
     "roller.bearing.speed_limit", "roller.bearing.radial_limit",
     "roller.bearing.static_radial_limit",
     "follower.mass", "follower.overhang_at_max_lift", "follower.viscous_damping",
@@ -267,7 +267,12 @@ def _suspects(case: Case, values: Mapping[str, Array], highest: Array) -> NDArra
         wrong |= (inside >= surface) | (at("cam.keyway.width") >= 1.8 * at("cam.bore_radius"))
         wrong |= at("roller.hub_radius") >= at("roller.radius")
         wrong |= at("roller.radius") < 0.5 * at("roller.bearing.ring.outer_diameter")
-        wrong |= 2.0 * at("roller.chamfer") >= at("roller.width")
+        flats = [
+            at(f"{part}.width") - 2.0 * np.nan_to_num(at(f"{part}.end.size"))
+            for part in ("cam", "roller")
+        ]
+        wrong |= (flats[0] <= 0.0) | (flats[1] <= 0.0)
+        wrong |= at("roller.axial_offset") >= 0.5 * (flats[0] + flats[1])
         wrong |= at("roller.pin.span") < at("roller.width")
         if (wound := wound_spring(case, at)) is not None:
             index = wound.index

@@ -112,7 +112,7 @@ def ratings_of(case: Case) -> Ratings:
         pressure_by=pressure_by,
         contact_width=machine.contact_width,
         contact_modulus=machine.contact_modulus,
-        crown_radius=machine.follower.crown_radius,
+        crown_radius=machine.crown_radius,
         overspeed=over,
         fastest=over,
         jump_speed=limits[JUMP_SPEED] * over,

@@ -9,13 +9,12 @@ from typing import Any
 
 import numpy as np
 
-from camwright.geometry.errors import InputError, ResultError
+from camwright.geometry.errors import InputError
 from camwright.pipeline.base import units
-from camwright.pipeline.base.tables import read_table
 from camwright.pipeline.base.units import in_unit, shown
 from camwright.pipeline.contact import hertz
+from camwright.pipeline.contact.axial_shape import BodyEnd
 from camwright.pipeline.contact.finite_length.axial_drop import (
-    BodyEnd,
     CircularCrown,
     Crown,
     FiniteBody,
@@ -185,14 +184,8 @@ def _tabulated(text: str) -> TabulatedCrown:
     path = Path(text)
     if not path.is_file():
         raise InputError("--crown", text, _CROWNS)
-    rows = read_table(path)
-    for header in ("y_mm", "drop_um"):
-        if header not in rows:
-            raise ResultError(f"{path}: column {header} is missing")
     try:
-        return TabulatedCrown(
-            rows["y_mm"] * units.factor("mm"), rows["drop_um"] * units.factor("um")
-        )
+        return TabulatedCrown.read(path)
     except InputError as error:
         raise InputError(f"--crown {path}: {error.field}", error.value, error.limit) from None
 

@@ -8,10 +8,10 @@ import pytest
 import scipy
 
 from camwright.geometry.errors import InputError
+from camwright.pipeline.contact.axial_shape import BodyEnd
 from camwright.pipeline.contact.elasticity.elastic_body import Elastic
 from camwright.pipeline.contact.finite_length import length_contact
 from camwright.pipeline.contact.finite_length.axial_drop import (
-    BodyEnd,
     CircularCrown,
     FiniteBody,
     FinitePair,

@@ -84,7 +84,7 @@ def test_the_machine_of_a_case_by_hand():
     case = parse_case(GX120)
     found = machines(case)[0]
     cam, roller = case.cam.material, case.roller.material
-    assert found.contact_width == min(case.cam.width, case.roller.width - 2 * case.roller.chamfer)
+    assert found.contact_width == min(case.cam.width, case.roller.width - 2 * case.roller.end.size)
     assert found.base_radius == pytest.approx(0.050 - 0.008)
     compliance = (1 - cam.nu**2) / cam.E + (1 - roller.nu**2) / roller.E
     assert found.contact_modulus == pytest.approx(1 / compliance, rel=1e-12)

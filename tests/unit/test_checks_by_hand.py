@@ -18,6 +18,7 @@ from camwright.pipeline.checks import (
 from camwright.pipeline.checks.contact_strength import pressure_at_life, shakedown_factor
 from camwright.pipeline.checks.plane_strain_validity import edge_factor
 from camwright.pipeline.checks.registry import all_checks
+from camwright.pipeline.contact.axial_shape import AxialCrown
 
 RPM = 30.0 / np.pi
 MODULUS = 210e9 / (2.0 * (1.0 - 0.3**2))
@@ -71,12 +72,14 @@ def test_edges_raise_the_pressure_of_a_roller_without_a_crown():
 
 
 def test_a_crown_within_the_width_needs_no_edge_factor():
-    roller = made.changed(made.case().roller, crown_radius=0.05)
+    roller = made.changed(made.case().roller, crown=AxialCrown(kind="circular", radius=0.05))
     check = edge_factor(
         with_case(roller=roller, limits=made.changed(made.case().limits, edge_factor=1.2))
     )
     assert (check.demand, check.limit, check.status) == (1.0, 1.0, "pass")
-    flatter = edge_factor(with_part("roller", crown_radius=10.0))  # longer than 10 mm
+    flatter = edge_factor(
+        with_part("roller", crown=AxialCrown(kind="circular", radius=10.0))
+    )  # longer than 10 mm
     assert (flatter.demand, flatter.limit) == (1.3, 1.3)
 
 

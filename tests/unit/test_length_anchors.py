@@ -10,10 +10,10 @@ from functools import cache
 import numpy as np
 import pytest
 
+from camwright.pipeline.contact.axial_shape import BodyEnd
 from camwright.pipeline.contact.elasticity.elastic_body import Elastic
 from camwright.pipeline.contact.finite_length import length_contact
 from camwright.pipeline.contact.finite_length.axial_drop import (
-    BodyEnd,
     FiniteBody,
     FinitePair,
     Straight,

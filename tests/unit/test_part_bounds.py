@@ -19,6 +19,7 @@ from camwright.pipeline.case.case_file import read_case
 from camwright.pipeline.case.error_text import first_error
 from camwright.pipeline.case.section import section_of
 from camwright.pipeline.case.toml_text import tables_of
+from camwright.pipeline.contact.axial_shape import AxialCrown
 from camwright.pipeline.contact.cam_body import BalanceHole
 from camwright.pipeline.engine.crankshaft import Crankshaft
 from camwright.pipeline.engine.cylinder import CylinderEngine, LiftPoint
@@ -83,6 +84,7 @@ def every_part() -> dict[type[Part], Part]:
     steel = case().materials["steel"]
     rest = (
         steel,
+        AxialCrown(kind="circular", radius=0.5),
         FlatFace(width=0.02, depth=0.01, thickness=0.005, material=steel),
         Crankshaft(inertia=0.01),
         GasSpring(pressure=3e6, area=1e-4, volume=5e-6),

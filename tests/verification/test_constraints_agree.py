@@ -24,6 +24,7 @@ from camwright.pipeline.checks.contact_strength import (
 from camwright.pipeline.checks.key_strength import KeywayRoot
 from camwright.pipeline.checks.registry import CHECKS, checks_of
 from camwright.pipeline.checks.roller_bearing import Grease
+from camwright.pipeline.contact.axial_shape import AxialCrown
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.contact.traction import Drag
 from camwright.pipeline.cycle.solution import Solution, solution
@@ -241,7 +242,7 @@ def test_pressure_limit_is_that_of_each_check(case, judged):
 def test_pressure_of_a_crowned_roller_is_that_of_its_check(case, judged):
     """At the pressure of the check the constraint is reached, by the ellipse and not the line."""
     solved, _, problem = judged
-    roller = replace(case.roller, crown_radius=0.1)
+    roller = replace(case.roller, crown=AxialCrown(kind="circular", radius=0.1))
     crowned = case.model_copy(update={"roller_given": roller})
     states = {machine.load_case: machine for machine in machines(crowned)}
     cycles = tuple(

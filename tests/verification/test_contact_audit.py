@@ -55,7 +55,7 @@ def tables(cam="case_hardened", other="induction_hardened", *, face=False, **rol
 @cache
 def solved(cam="case_hardened", other="induction_hardened", face=False, crown=""):
     """A preview of the harmonic cam, with its checks by id."""
-    roller = {"crown_radius": crown} if crown else {}
+    roller = {"crown": {"kind": "circular", "radius": crown}} if crown else {}
     case = case_of(tables(cam, other, face=face, **roller))
     theta = uniform_turn(720)
     lift = Lift(theta, 0.5 * STROKE * (1.0 - np.cos(theta)))
@@ -610,11 +610,11 @@ def test_a_crown_raises_the_pressure_to_that_of_its_ellipse():
     assert crowned["hardened_case"].demand > 1.3 * plain["hardened_case"].demand
 
 
-def test_a_tick_for_a_crown_is_refused_and_its_radius_suggested():
+def test_a_tick_for_a_crown_is_refused_and_its_table_suggested():
     with pytest.raises(InputError) as found:
         case_of(tables(crowned=True))
     assert found.value.field == "roller.crowned"
-    assert "crown_radius" in str(found.value)
+    assert "did you mean crown?" in str(found.value)
 
 
 def test_a_truncated_ellipse_is_derated_and_says_so():

@@ -15,7 +15,7 @@ from camwright.geometry.lift import Lift
 from camwright.geometry.periodic_spline import knot_derivatives, knot_integrals, periodic_quintic
 from camwright.pipeline.base.units import in_unit
 from camwright.pipeline.case.case import Case
-from camwright.pipeline.case.case_file import read_case
+from camwright.pipeline.case.case_file import read_case, with_values
 from camwright.pipeline.case.case_values import replaced
 from camwright.pipeline.case.load_case_torque import engine_torques
 from camwright.pipeline.case.machine import machine
@@ -44,7 +44,7 @@ RANGES: Mapping[str, Mapping[str, tuple[float, float]]] = {
         "guides.spacing": (0.06, 0.12), "guides.a.friction": (0.02, 0.07),
         "guides.b.friction": (0.1, 0.16), "mechanism.compensation": (0.5, 1.0),
         "limits.pressure_angle": (0.3, 0.8), "limits.overspeed": (200.0, 420.0),
-        "roller.crown_radius": (0.05, 3.0),
+        "roller.crown.radius": (0.05, 3.0),
     },
     "gx120-redesign": {
         "spring.rate": (160e3, 200e3), "spring.preload": (800.0, 1400.0),
@@ -60,6 +60,15 @@ RANGES: Mapping[str, Mapping[str, tuple[float, float]]] = {
 }  # fmt: skip
 
 
+CROWN = {"roller.crown.kind": "circular", "roller.crown.radius": "200 mm"}
+
+
+def stated(name: str) -> Case:
+    """A shipped case, with a crown where its radius is a factor."""
+    case = read_case(CASES / f"{name}.toml")
+    return with_values(case, CROWN) if "roller.crown.radius" in RANGES[name] else case
+
+
 def drawn(name: str, count: int, without: tuple[str, ...] = ()) -> dict[str, Array]:
     """Factors of random designs about a shipped case."""
     draw = np.random.default_rng(20)
@@ -69,7 +78,7 @@ def drawn(name: str, count: int, without: tuple[str, ...] = ()) -> dict[str, Arr
 
 def previewed(name: str, factors: Mapping[str, Array]) -> Iterator[Trial]:
     """Each design solved on its own by closed forms."""
-    case, energy = read_case(CASES / f"{name}.toml"), None
+    case, energy = stated(name), None
     if case.smoothing.kind == "constrained":
         case, energy = synthesis(case)
     torques = engine_torques(case)
@@ -87,7 +96,7 @@ def _lift(case: Case, energy: Array) -> Lift:
 def deviations(name: str, count: int, without: tuple[str, ...] = ()) -> dict[str, float]:
     """Greatest deviation of each check over the greater of demand and limit; `screen` agrees."""
     factors = drawn(name, count, without)
-    columns = screen_designs(read_case(CASES / f"{name}.toml"), factors)
+    columns = screen_designs(stated(name), factors)
     worst: dict[str, float] = defaultdict(float)
     for k, trial in enumerate(previewed(name, factors)):
         assert columns["message"][k] == ""
@@ -137,8 +146,8 @@ def _deviation(check: Check, mine: float) -> float:
 
 def exceeded(worst: Mapping[str, float]) -> dict[str, tuple[float, float]]:
     """Deviations beyond those stated: of the checks, of p0 1e-3 and of the normal force 2 %."""
-    stated = {each.check: each.deviation for each in SCREENED} | {"p0": 1e-3, "force": 0.02}
-    return {key: (value, stated[key]) for key, value in worst.items() if not value <= stated[key]}
+    most = {each.check: each.deviation for each in SCREENED} | {"p0": 1e-3, "force": 0.02}
+    return {key: (value, most[key]) for key, value in worst.items() if not value <= most[key]}
 
 
 def test_a_few_designs_agree_with_their_previews() -> None:

@@ -57,7 +57,7 @@ def cycle(of: Machine) -> Cycle:
 
 
 def wider(of: Machine, factor: float) -> Machine:
-    roller = replace(of.follower, width=factor * of.follower.width, chamfer=0.0)
+    roller = replace(of.follower, width=factor * of.follower.width, end=None)
     return replace(of, follower=roller, cam=replace(of.cam, width=1.0))
 
 

@@ -56,7 +56,7 @@ def at(corner: Corner, width: float) -> Machine:
     return replace(
         machine,
         cam=replace(machine.cam, width=width * machine.cam.width),
-        follower=replace(roller, width=width * roller.width, chamfer=0.0),
+        follower=replace(roller, width=width * roller.width, end=None),
     )
 
 

@@ -26,7 +26,7 @@ from camwright.pipeline.follower.spring import HelicalSpring
 AS_GIVEN = "as given"
 WIDEST_PRIME = 1.5  # upper end of a search over the prime radius of the case
 _MARGIN = 1.002
-_CHAMFER_MOST = 0.05  # of the roller's width
+_END_MOST = 0.05  # of the roller's width
 _FORK = 2e-3  # m between roller and fork if the case has no pin
 
 
@@ -166,15 +166,16 @@ def _put_roller(data: Tables, case: Case, card: BearingCard, name: str) -> None:
     for replaced in ("roller.bearing", "roller.inertia"):
         forget_sources(data, replaced)
     inside = card.bore if card.pitch_diameter is None else card.pitch_diameter
-    chamfer = min(old.chamfer, _CHAMFER_MOST * card.width)
     roller |= {
         "radius": _mm(radius),
         "width": _mm(card.width),
-        "chamfer": _mm(chamfer),
         "hub_radius": _mm(0.25 * (card.bore + inside)),
         "bearing": {"card": name},
     }
     roller.pop("inertia", None)
+    if old.end is not None and old.end.size:
+        size = min(old.end.size, _END_MOST * card.width)
+        roller["end"] = {"kind": old.end.kind, "size": _mm(size)}
     pin: Tables = {
         "material": case.follower.stem_material.name,
         "source": "as wide as the roller's bore",

@@ -6,46 +6,26 @@ y is the axial coordinate from the middle of both bodies.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal, Protocol
+from pathlib import Path
+from typing import Protocol
 
 import numpy as np
 
 from camwright.geometry.arrays import Array, finite, freeze
-from camwright.geometry.errors import InputError
+from camwright.geometry.errors import InputError, ResultError
+from camwright.pipeline.base import units
+from camwright.pipeline.base.tables import read_table
+from camwright.pipeline.contact import hertz
+from camwright.pipeline.contact.axial_shape import AxialCrown, BodyEnd, flat_width
 from camwright.pipeline.contact.elasticity.elastic_body import Elastic
 
-EndKind = Literal["sharp", "chamfer", "radius"]
-
+# Half of the distance over which the slope of a crown is taken, m.
+_SLOPE_STEP = 1e-6
 # Share of the half-width over half the length that a Johns-Gohar crown leaves at its end.
 _JOHNS_GOHAR = 0.3033
 # Scales of ISO/TS 16281 over the roller diameter, and the longest roller, in diameters, that is
 # crowned over all of its length.
 _ISO_SHORT, _ISO_LONG, _ISO_LENGTH = 0.00035, 0.0005, 2.5
-
-
-@dataclass(frozen=True)
-class BodyEnd:
-    """Both ends of a body: a sharp edge, a chamfer of 45 deg or a radius of `size` (m).
-
-    The radius is tangent to the flat and ends at the end face.
-    """
-
-    kind: EndKind = "sharp"
-    size: float = 0.0
-
-    def __post_init__(self) -> None:
-        if self.kind == "sharp" and self.size != 0:
-            raise InputError("end.size", self.size, "0 m at a sharp end")
-        if self.kind != "sharp" and not 0 < self.size < np.inf:
-            raise InputError("end.size", self.size, "> 0 m")
-
-    def drop(self, beyond: Array) -> Array:
-        """Distance (...), m, of the end from the flat at distances (...), m, beyond the flat."""
-        reach = np.maximum(beyond, 0.0)
-        if self.kind == "radius":
-            inside = np.minimum(reach / self.size, 1.0)
-            return np.asarray(self.size * (1.0 - np.sqrt(1.0 - inside**2)))
-        return reach if self.kind == "chamfer" else np.zeros_like(reach)
 
 
 @dataclass(frozen=True)
@@ -67,7 +47,7 @@ class FiniteBody:
     @property
     def flat_length(self) -> float:
         """Length without the ends, m."""
-        return self.length - 2.0 * self.end.size
+        return flat_width(self.length, self.end)
 
 
 class Crown(Protocol):
@@ -151,6 +131,23 @@ class TabulatedCrown:
         if not deepest < self.y[-1] - self.y[0]:
             raise InputError("crown.drop", deepest, "less than the range of y, m")
 
+    @classmethod
+    def read(cls, path: Path) -> TabulatedCrown:
+        """Table of a CSV file with the columns y_mm and drop_um.
+
+        Raises
+        ------
+        ResultError
+            If the file cannot be read or lacks a column.
+        InputError
+            If y does not ascend, or a drop is out of bounds.
+        """
+        rows = read_table(path)
+        for header in ("y_mm", "drop_um"):
+            if header not in rows:
+                raise ResultError(f"{path}: column {header} is missing")
+        return cls(rows["y_mm"] * units.factor("mm"), rows["drop_um"] * units.factor("um"))
+
     def drop(self, y: Array) -> Array:
         """Drop (...), m, interpolated."""
         place = np.abs(y) if self.y[0] == 0 else y
@@ -193,6 +190,72 @@ def iso16281(diameter: float, length: float) -> LogarithmicCrown:
     straight = max(0.0, length - _ISO_LENGTH * diameter)
     scale = _ISO_LONG if straight > 0 else _ISO_SHORT
     return LogarithmicCrown(scale * diameter, length, straight=straight)
+
+
+@dataclass(frozen=True)
+class CrownPlace:
+    """Cylinders that a crown of a case refers to.
+
+    length: of the contact, m; curvature: at which its half-width counts, 1/m; modulus: E*, Pa;
+    diameter: of the roller, m, None without one.
+    """
+
+    length: float
+    curvature: float
+    modulus: float
+    diameter: float | None
+
+
+def crown_of(shape: AxialCrown, place: CrownPlace, drops: TabulatedCrown | None) -> Crown:
+    """Crown that a case states; `drops` is that of its table.
+
+    Raises
+    ------
+    InputError
+        If it does not fit the contact, by the key within the crown.
+    """
+    length = shape.length or place.length
+    if shape.kind == "circular" and shape.radius is not None:
+        return CircularCrown(shape.radius)
+    if shape.kind == "lundberg" and shape.line_load is not None:
+        return lundberg(shape.line_load, length, place.modulus)
+    if shape.kind == "johns_gohar" and shape.line_load is not None:
+        half_width, _ = hertz.line_contact(shape.line_load, 1.0 / place.curvature, place.modulus)
+        if not float(half_width) < length:
+            raise InputError("crown.line_load", shape.line_load, "of less half-width than length")
+        return johns_gohar(shape.line_load, length, place.modulus, float(half_width))
+    if shape.kind == "iso16281":
+        if place.diameter is None:
+            raise InputError("crown.kind", shape.kind, "of a roller")
+        return iso16281(place.diameter, place.length)
+    if drops is None:
+        raise InputError("crown.file", shape.file, "a file of y_mm and drop_um")
+    return drops
+
+
+@dataclass(frozen=True)
+class SummedCrown:
+    """Crowns of two bodies, each with the place of its middle, m, from that of the contact.
+
+    Crowns beside the middle count on both sides by their drop on one, -1 or 1, less the slope in
+    the middle, to which the bodies align.
+    """
+
+    crowns: tuple[tuple[Crown, float], ...]
+    side: int = 1
+
+    def drop(self, y: Array) -> Array:
+        """Drop (...), m, of all crowns."""
+        total = np.zeros_like(y)
+        for crown, middle in self.crowns:
+            total = total + (self._beside(crown, middle, y) if middle else crown.drop(y))
+        return np.asarray(total)
+
+    def _beside(self, crown: Crown, middle: float, y: Array) -> Array:
+        before, level, after = crown.drop(np.array([-_SLOPE_STEP, 0.0, _SLOPE_STEP]) - middle)
+        slope = (after - before) / (2.0 * _SLOPE_STEP)
+        along = self.side * np.abs(y)
+        return np.asarray(crown.drop(along - middle) - level - slope * along)
 
 
 @dataclass(frozen=True, eq=False)

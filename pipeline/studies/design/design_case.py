@@ -205,6 +205,7 @@ def _cam(design: Machinery) -> str:
 [cam]
 prime_radius = "{_mm(design.prime_radius)}"
 {offset}width = "{_mm(frame.card.width)}"                     # as wide as the roller
+end = {{ kind = "sharp" }}
 bore_radius = "{_mm(0.5 * seat.bore)}"
 material = "case_hardened"
 roughness = "0.3 um"                 # ground
@@ -267,7 +268,7 @@ def _roller(design: Machinery) -> str:
 [roller]
 radius = "{_mm(frame.radius)}"
 width = "{_mm(card.width)}"
-chamfer = "0.6 mm"
+end = {{ kind = "chamfer", size = "0.6 mm" }}
 hub_radius = "{_mm(0.25 * (card.bore + inside))}"              # shoulder of the inner ring
 axial_offset = "0.3 mm"
 friction = 0.10                      # oiled steel on steel

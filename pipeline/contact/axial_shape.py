@@ -1,0 +1,93 @@
+"""Axial shape of a body in contact as a case states it: its ends and its crown."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Annotated, ClassVar, Literal
+
+import numpy as np
+
+from camwright.geometry.arrays import Array
+from camwright.geometry.errors import InputError
+from camwright.pipeline.base.quantities import FileName, In, Length, Part
+
+EndKind = Literal["sharp", "chamfer", "radius"]
+CrownKind = Literal["circular", "lundberg", "johns_gohar", "iso16281", "table"]
+
+# Keys of each kind of crown, and whether it needs them.
+_KEYS: Mapping[CrownKind, Mapping[str, bool]] = {
+    "circular": {"radius": True},
+    "lundberg": {"line_load": True, "length": False},
+    "johns_gohar": {"line_load": True, "length": False},
+    "iso16281": {},
+    "table": {"file": True},
+}
+
+
+@dataclass(frozen=True)
+class BodyEnd(Part):
+    """Both ends of a body: a sharp edge, a chamfer of 45 deg or a radius of `size` (m).
+
+    The radius is tangent to the flat and ends at the end face.
+    """
+
+    table: ClassVar[str] = "end"
+
+    kind: EndKind = "sharp"
+    size: Annotated[float, In("mm", at_least=0, at_most=1000)] = 0.0
+    source: str = ""
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if self.kind == "sharp" and self.size != 0:
+            raise InputError("end.size", self.size, "0 m at a sharp end")
+        if self.kind != "sharp" and not 0 < self.size < np.inf:
+            raise InputError("end.size", self.size, "> 0 m")
+
+    def drop(self, beyond: Array) -> Array:
+        """Distance (...), m, of the end from the flat at distances (...), m, beyond the flat."""
+        reach = np.maximum(beyond, 0.0)
+        if self.kind == "radius":
+            inside = np.minimum(reach / self.size, 1.0)
+            return np.asarray(self.size * (1.0 - np.sqrt(1.0 - inside**2)))
+        return reach if self.kind == "chamfer" else np.zeros_like(reach)
+
+
+def flat_width(width: float, end: BodyEnd | None) -> float:
+    """Width of a body without its ends, m; of the whole width where they are not stated."""
+    return width - 2.0 * (0.0 if end is None else end.size)
+
+
+@dataclass(frozen=True, kw_only=True)
+class AxialCrown(Part):
+    """Crown of a body along the axis.
+
+    circular: radius of the arc; lundberg, johns_gohar: line load of uniform pressure and length of
+    the crown; iso16281: reference geometry of a roller; table: drop over the axial coordinate.
+    """
+
+    table: ClassVar[str] = "crown"
+    defaults: ClassVar[Mapping[str, str]] = {
+        "radius": "of a circular crown alone",
+        "line_load": "of a logarithmic crown alone",
+        "length": "length of the contact",
+        "file": "of a table alone",
+    }
+
+    kind: CrownKind
+    radius: Length | None = None
+    line_load: Annotated[float, In("N/mm", above=0, at_most=1e6)] | None = None
+    length: Length | None = None
+    file: FileName | None = None
+    source: str = ""
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        known = _KEYS[self.kind]
+        for name in ("radius", "line_load", "length", "file"):
+            value = getattr(self, name)
+            if value is None and known.get(name):
+                raise InputError(f"crown.{name}", "missing", f'given with kind = "{self.kind}"')
+            if value is not None and name not in known:
+                raise InputError(f"crown.{name}", value, f'left out with kind = "{self.kind}"')
