@@ -300,7 +300,7 @@ class Contour(Displayed, ABC):
 
     def plot(self) -> tuple[Axes, ...]:
         """Contour in the cam frame: under a roller with pitch curve and prime circle, under a flat
-        face with the base circle; see `Columned.plot`."""
+        face with the base circle; see `Table.plot`."""
         theta = np.linspace(0.0, FULL_TURN, _DRAWN)
         x, y = 1e3 * self.points(theta)
         (axes,) = panels_of(1, (5.0, 4.4))

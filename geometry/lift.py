@@ -184,7 +184,7 @@ class Lift(Displayed):
         return self.highest.value - self.lowest.value
 
     def plot(self) -> tuple[Axes, ...]:
-        """Lift s, s' and s'' over the cam angle, a panel each; see `Columned.plot`."""
+        """Lift s, s' and s'' over the cam angle, a panel each; see `Table.plot`."""
         theta = np.linspace(0.0, FULL_TURN, _DRAWN)
         labels = ("s, mm", "s′, mm/rad", "s″, mm/rad²")
         panels = panels_of(len(labels))

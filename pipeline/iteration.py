@@ -102,7 +102,7 @@ class Synthesis(Tabled):
         return table(lift | contour_columns(self.case, self.contour))
 
     def plot(self, *headers: str) -> tuple[Axes, ...]:
-        """The contour with its bore; with headers curves, see `Columned.plot`."""
+        """The contour with its bore; with headers curves, see `Table.plot`."""
         if headers:
             return super().plot(*headers)
         (axes,) = self.contour.plot()

@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import math
+from abc import ABC, abstractmethod
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -18,7 +19,7 @@ from camwright.geometry.arrays import Array, readonly
 from camwright.geometry.display import Displayed, html_table
 from camwright.geometry.errors import ResultError
 from camwright.pipeline.base import units
-from camwright.pipeline.base.columns import RANGE, Cells, Columned
+from camwright.pipeline.base.columns import Cells, curves, data_frame
 from camwright.pipeline.base.files import read_text
 
 if TYPE_CHECKING:
@@ -26,6 +27,8 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 Texts = NDArray[np.str_]
+RANGE = ("column", "least", "greatest")
+"""Head of the table of a result with columns."""
 
 
 @dataclass(frozen=True)
@@ -60,7 +63,7 @@ Values = Mapping[Column, Cells]
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Table(Columned):
+class Table(Displayed):
     """Columns of one length by header, in the unit of the header.
 
     numbers has those of numbers; rows_of is the load case of each row, None in a table of no load
@@ -119,6 +122,45 @@ class Table(Columned):
         columns = {header: readonly(values[rows]) for header, values in self.numbers.items()}
         return Table(MappingProxyType(columns), _fixed_texts(owners[rows]))
 
+    def keys(self) -> tuple[str, ...]:
+        """Headers of the columns."""
+        return tuple(self.columns)
+
+    def to_pandas(self) -> pd.DataFrame:
+        """The columns as a data frame of pandas, with the headers of the CSV files.
+
+        Raises
+        ------
+        ResultError
+            If pandas is not installed.
+        """
+        return data_frame(self.columns)
+
+    def plot(self, *headers: str) -> tuple[Axes, ...]:
+        """Curves of columns over the first column of numbers, one panel each, by load case.
+
+        Parameters
+        ----------
+        headers : str   one or more of `keys`; without one the first after the angles
+
+        Returns
+        -------
+        tuple   axes of the panels, in a figure of pyplot
+
+        Raises
+        ------
+        InputError
+            If there is no such column of numbers.
+        """
+        return curves(self.columns, headers)
+
+    def ranges(self) -> list[tuple[str, str, str]]:
+        """Header, least and greatest value of each column in words; see `RANGE`."""
+        return [(header, *_range(cells)) for header, cells in self.columns.items()]
+
+    def _repr_html_(self) -> str:
+        return html_table(repr(self), RANGE, self.ranges())
+
     def to_csv(self) -> str:
         """CSV text; every float reads back bit for bit, NaN is an empty cell."""
         cells = {header: _texts(values) for header, values in self.numbers.items()}
@@ -131,13 +173,13 @@ class Table(Columned):
         return buffer.getvalue()
 
 
-class Tabled(Displayed):
+class Tabled(Displayed, ABC):
     """A result whose columns are those of its `table`; see `Table`."""
 
     @property
+    @abstractmethod
     def table(self) -> Table:
         """Columns by header."""
-        raise NotImplementedError
 
     def keys(self) -> tuple[str, ...]:
         """Headers of the columns."""
@@ -147,11 +189,11 @@ class Tabled(Displayed):
         return self.table[header]
 
     def to_pandas(self) -> pd.DataFrame:
-        """The columns as a data frame of pandas; see `Columned.to_pandas`."""
+        """The columns as a data frame of pandas; see `Table.to_pandas`."""
         return self.table.to_pandas()
 
     def plot(self, *headers: str) -> tuple[Axes, ...]:
-        """Curves of columns, one panel each; see `Columned.plot`."""
+        """Curves of columns, one panel each; see `Table.plot`."""
         return self.table.plot(*headers)
 
     def _repr_html_(self) -> str:
@@ -244,3 +286,12 @@ def _fixed_texts(values: ArrayLike) -> Texts:
 
 def _texts(values: Array) -> list[str]:
     return ["" if math.isnan(value) else repr(value) for value in values.tolist()]
+
+
+def _range(cells: Cells) -> tuple[str, str]:
+    """Least and greatest value of a column, first and last text; "" where none is known."""
+    if cells.dtype.kind != "f":
+        names = cells.tolist()
+        return (str(names[0]), str(names[-1])) if names else ("", "")
+    known = cells[~np.isnan(cells.astype(float))].astype(float)
+    return (f"{known.min():.6g}", f"{known.max():.6g}") if known.size else ("", "")

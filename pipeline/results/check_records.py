@@ -103,7 +103,7 @@ class CheckList(Displayed, tuple[Item, ...]):
         }
 
     def to_pandas(self) -> pd.DataFrame:
-        """A row per check, in the units of the column ``unit``; see `Columned.to_pandas`."""
+        """A row per check, in the units of the column ``unit``; see `Table.to_pandas`."""
         return data_frame({key: [record.get(key) for record in self.records] for key in _SHOWN})
 
     def plot(self, most: int = 12) -> tuple[Axes, ...]:

@@ -55,11 +55,11 @@ class ScreenedDesigns(Displayed, dict[str, Column]):
         )
 
     def to_pandas(self) -> pd.DataFrame:
-        """A row per design; see `Columned.to_pandas`."""
+        """A row per design; see `Table.to_pandas`."""
         return data_frame(self)
 
     def plot(self, *names: str) -> tuple[Axes, ...]:
-        """Columns over the number of the design, one panel each; see `Columned.plot`.
+        """Columns over the number of the design, one panel each; see `Table.plot`.
 
         Without a name the first utilisation.
         """

@@ -128,7 +128,7 @@ class Sizing(Displayed):
         return chart_record(self.case, self.shapes, self.shape)
 
     def to_pandas(self) -> pd.DataFrame:
-        """A row per open key: key, value, unit, source; see `Columned.to_pandas`."""
+        """A row per open key: key, value, unit, source; see `Table.to_pandas`."""
         units = [unit_of(key) for key in self.values]
         return data_frame(
             {
