@@ -374,11 +374,10 @@ def _limits(ax: Axes, panel: Panel, low: float, high: float, *, below_names: boo
             va="bottom" if above else "top", color=COLOURS["fail"], fontsize=7.2,
             bbox=BACKING, zorder=4,
         )  # fmt: skip
-    if placed.beyond:
-        above = placed.above
-        shift = -13 if below_names else -3
+    shift = -13 if below_names else -3
+    for words, above in placed.beyond:
         ax.annotate(
-            placed.beyond, (1.0, 1.0 if above else 0.0),
+            words, (1.0, 1.0 if above else 0.0),
             xycoords="axes fraction", xytext=(-2, shift if above else 3), zorder=4,
             textcoords="offset points", ha="right", va="top" if above else "bottom",
             color=COLOURS["fail"], fontsize=7.2,

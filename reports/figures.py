@@ -117,43 +117,43 @@ def vertical_span(panel: Panel, named: bool) -> tuple[float, float]:
 class PlacedLimits:
     """Limits on a pair of axes.
 
-    `inside` are limits within the axes, each with whether its label is above the line; `beyond`
-    describes those outside, empty without any, and is written at the upper edge if `above`.
+    `inside` are limits within the axes, each with whether its label is above the line; `beyond` are
+    words on those outside, at the upper edge (True) and at the lower one.
     """
 
     inside: tuple[tuple[LimitLine, bool], ...]
-    beyond: str
-    above: bool
+    beyond: tuple[tuple[str, bool], ...]
 
 
 def placed_limits(panel: Panel, low: float, high: float) -> PlacedLimits:
     """Places of the limits and their labels on axes from `low` to `high`, without overlap."""
-    beyond = [line for line in panel.limits if not low <= line.value <= high]
-    inside = [line for line in panel.limits if line not in beyond]
+    inside = [line for line in panel.limits if low <= line.value <= high]
+    beyond = []
+    for upwards, way in ((True, "above"), (False, "below")):
+        words = [line.words(panel.unit) for line in panel.limits
+                 if (line.value > high if upwards else line.value < low)]  # fmt: skip
+        if words:
+            beyond.append((f"{'; '.join(words)} ({way} this axis)", upwards))
+    taken = [0.0 for _, upwards in beyond if not upwards]  # the upper edge is kept free for words
     heights = [(line.value - low) / (high - low) for line in inside]
     wanted = [h < 0.12 or (each.value >= 0 and h < 0.78)
               for h, each in zip(heights, inside, strict=True)]  # fmt: skip
-    upper, clear = _sides(heights, wanted, sign=-1.0)
+    upper, clear = _sides(heights, wanted, taken, sign=-1.0)
     if not clear:
-        upper, _ = _sides(heights, wanted, sign=1.0)
-    placed = list(zip(inside, upper, strict=True))
-    upwards = bool(beyond) and beyond[0].value > high
-    words = "; ".join(line.words(panel.unit) for line in beyond)
-    if words:
-        words = f"{words} ({'above' if upwards else 'below'} this axis)"
-    return PlacedLimits(tuple(placed), words, upwards)
+        upper, _ = _sides(heights, wanted, taken, sign=1.0)
+    return PlacedLimits(tuple(zip(inside, upper, strict=True)), tuple(beyond))
 
 
 def _sides(
-    heights: Sequence[float], wanted: Sequence[bool], sign: float
+    heights: Sequence[float], wanted: Sequence[bool], taken: Sequence[float], sign: float
 ) -> tuple[list[bool], bool]:
     """Whether each label stands above its line, and whether all are clear of one another.
 
-    Labels with only one possible place come first, of others the lowest (sign 1) or highest (-1).
+    `taken` are the places of other words. Labels with only one possible place come first, of
+    others the lowest (sign 1) or highest (-1).
     """
     slots = [{True: height, False: height - WORDS_HEIGHT} for height in heights]
-    taken: list[float] = []
-    above = list(wanted)
+    taken, above = list(taken), list(wanted)
 
     def order(k: int) -> tuple[int, float]:
         return sum(_free(slot, ()) for slot in slots[k].values()), sign * heights[k]

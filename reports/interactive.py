@@ -248,9 +248,9 @@ def _limits(
     ]  # fmt: skip
     # a limit outside the axes is written at the edge; the upper one may have names of marks
     words = [(line.words(panel.unit), line.value, above, 0) for line, above in placed.inside]
-    if placed.beyond:
-        shift = -_STROKE_PIXELS if placed.above and below_names else 0
-        words.append((placed.beyond, high if placed.above else low, not placed.above, shift))
+    for text, above in placed.beyond:
+        shift = -_STROKE_PIXELS if above and below_names else 0
+        words.append((text, high if above else low, not above, shift))
     notes: list[Spec] = [
         {"xref": "paper", "x": 1, "xanchor": "right", "yref": axis, "showarrow": False,
          "font": {"color": "fail", "size": 10}, "bgcolor": "card", "borderpad": 1, "y": value,

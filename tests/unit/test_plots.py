@@ -102,6 +102,14 @@ def test_a_near_limit_is_in_view_and_a_far_one_in_words():
     assert "limit −50 MPa (below this axis)" in words(drawn(figure(below)))
 
 
+@pytest.mark.parametrize("far", [False, True])
+def test_a_label_is_clear_of_the_words_at_the_lower_edge(far):
+    near = LimitLine(-18.5, "limit")
+    limits = (near, LimitLine(-50.0, "far")) if far else (near,)
+    placed = placed_limits(Panel("x", "mm", (Curve("", WAVE),), limits), -20.0, -10.0)
+    assert placed.inside == ((near, far),)
+
+
 @pytest.mark.parametrize(
     "values", [np.zeros(72), np.full(72, 7.0), np.full(72, np.nan), -(WAVE**2)]
 )
@@ -153,10 +161,13 @@ def test_words_of_near_limits_stand_clear_of_each_other():
         (line.value + 50.0) / 110.0 - (0.0 if above else WORDS_HEIGHT)
         for line, above in placed.inside
     )
-    assert len(bottoms) == 4 and placed.beyond == ""
+    assert len(bottoms) == 4 and placed.beyond == ()
     assert min(np.diff(bottoms)) >= WORDS_HEIGHT - 1e-9
     far = placed_limits(Panel("angle", "deg", (), lines), -40.0, 40.0)
-    assert far.beyond.startswith("limit 45 deg; limit \N{MINUS SIGN}45 deg") and far.above
+    assert far.beyond == (
+        ("limit 45 deg (above this axis)", True),
+        ("limit \N{MINUS SIGN}45 deg (below this axis)", False),
+    )
 
 
 def test_trimming_coordinates_leaves_numbers_to_read_alone():
