@@ -111,8 +111,8 @@ def test_the_table_of_safeties_states_required_beside_actual(tmp_path: Path) -> 
         "0.668",
     )
     assert "Contact pressure, endurance" not in by_title  # optional
-    given = [float(row.safety) for row in content.safeties]
-    assert given == sorted(given)
+    safeties = [float(row.safety) for row in content.safeties]
+    assert safeties == sorted(safeties)
 
 
 def drawing(folder: Path, scale: float, *, keyed: bool) -> Material:

@@ -6,7 +6,6 @@ The page, its scripts, the PDF and the scene have such tests beside their own.
 from __future__ import annotations
 
 import json
-import signal
 import sys
 import tomllib
 import xml.etree.ElementTree as ET
@@ -22,6 +21,7 @@ from small_machine import small_machine
 from camwright.geometry.arrays import uniform_turn
 from camwright.geometry.errors import InputError
 from camwright.geometry.lift import Lift
+from camwright.meshes.gmsh_mesher import session
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_file import parse_case
 from camwright.pipeline.results import run_reader, signoff
@@ -90,7 +90,6 @@ def test_junit_is_whole_xml() -> None:
 
 def test_workshop_files_lie_in_a_folder_of_any_name_and_read_back(tmp_path: Path) -> None:
     import ezdxf
-    import gmsh
 
     of, folder, said = case(), tmp_path / FOLDER, []
     theta = uniform_turn(180)
@@ -103,15 +102,10 @@ def test_workshop_files_lie_in_a_folder_of_any_name_and_read_back(tmp_path: Path
     document = ezdxf.readfile(folder / "contour.dxf")
     assert not document.audit().has_errors
     assert b"script" not in (folder / "cam.step").read_bytes()  # no word of the case
-    gmsh.initialize(interruptible=False)
-    signal.signal(signal.SIGPIPE, signal.SIG_IGN)  # as Python does; gmsh resets it
-    try:
-        gmsh.option.setNumber("General.Terminal", 0)
+    with session() as gmsh:
         gmsh.model.occ.importShapes(str(folder / "cam.step"))
         gmsh.model.occ.synchronize()
         assert len(gmsh.model.getEntities(3)) == 1
-    finally:
-        gmsh.finalize()
 
 
 @pytest.mark.parametrize("letter", ["\x00", "\x07", "\x1b", "\u202e", "\u2066", "\ufeff", "\x85"])

@@ -178,9 +178,9 @@ def test_axe_finds_nothing(report: Path, tab: Tab, scheme: str, width: int) -> N
     page = context.new_page()
     page.goto(report.resolve().as_uri())
     page.locator(UNDRAWN).first.wait_for(state="detached")
-    found = axe.run(page).response["violations"]
+    violations = axe.run(page).response["violations"]
     context.close()
-    assert [(each["id"], each["nodes"][0]["html"]) for each in found] == []
+    assert [(each["id"], each["nodes"][0]["html"]) for each in violations] == []
 
 
 def test_figures_survive_a_change_of_colour_scheme_and_size_together(

@@ -285,6 +285,6 @@ def test_the_preload_holds_against_a_force_of_the_machine() -> None:
     """
     case = without(first(), "spring.preload")
     case["follower"]["external_force"] = "-600 N"
-    found = sized(parse_open_case(tomli_w.dumps(case)))
-    assert found.verdict == "pass"
-    assert 750.0 <= found.spring.preload <= 750.0 * 1.1 / 0.95 * 1.001
+    size = sized(parse_open_case(tomli_w.dumps(case)))
+    assert size.verdict == "pass"
+    assert 750.0 <= size.spring.preload <= 750.0 * 1.1 / 0.95 * 1.001

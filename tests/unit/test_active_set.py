@@ -28,12 +28,12 @@ def by_trying_all_sets(compliance, gap, weights, resultants):
         system[:count, :count] = compliance[np.ix_(active, active)]
         system[:count, count:] = -columns[active]
         system[count:, :count] = columns[active].T
-        found = np.linalg.solve(system, np.append(-gap[active], resultants))
+        unknowns = np.linalg.solve(system, np.append(-gap[active], resultants))
         pressure = np.zeros(size)
-        pressure[active] = found[:count]
-        gaps = compliance @ pressure + gap - columns @ found[count:]
+        pressure[active] = unknowns[:count]
+        gaps = compliance @ pressure + gap - columns @ unknowns[count:]
         if pressure.min() >= -1e-12 and gaps[~active].min(initial=0.0) >= -1e-12:
-            return pressure, found[count:]
+            return pressure, unknowns[count:]
     raise AssertionError("no set fits")
 
 
@@ -41,10 +41,10 @@ def by_trying_all_sets(compliance, gap, weights, resultants):
 def test_answer_is_the_one_that_trying_every_set_gives(seed):
     compliance, gap, integrals = problem(seed)
     expected, (approach,) = by_trying_all_sets(compliance, gap, integrals, 0.7)
-    found = active_set.solve(compliance, gap, integrals, [0.7])
-    np.testing.assert_allclose(found.pressure[0], expected, atol=1e-10 * expected.max())
-    np.testing.assert_allclose(found.approach, approach, rtol=1e-9, atol=1e-11)
-    assert found.equilibrium[0] < 1e-12
+    solution = active_set.solve(compliance, gap, integrals, [0.7])
+    np.testing.assert_allclose(solution.pressure[0], expected, atol=1e-10 * expected.max())
+    np.testing.assert_allclose(solution.approach, approach, rtol=1e-9, atol=1e-11)
+    assert solution.equilibrium[0] < 1e-12
 
 
 @pytest.mark.parametrize("sweeps", [60, 0])
@@ -56,10 +56,12 @@ def test_a_prescribed_moment_tilts_as_trying_every_set_gives(seed, sweeps, monke
     moment = 0.7 * np.linspace(-0.8, 0.8, 8)[seed]
     both = np.column_stack([integrals, levers])
     expected, (approach, tilt) = by_trying_all_sets(compliance, gap, both, [0.7, moment])
-    found = active_set.solve(compliance, gap, integrals, [0.7], levers=levers, moment=[moment])
-    np.testing.assert_allclose(found.pressure[0], expected, atol=1e-9 * expected.max())
-    np.testing.assert_allclose([found.approach[0], found.tilt[0]], [approach, tilt], rtol=1e-8)
-    assert found.equilibrium[0] < 1e-12
+    solution = active_set.solve(compliance, gap, integrals, [0.7], levers=levers, moment=[moment])
+    np.testing.assert_allclose(solution.pressure[0], expected, atol=1e-9 * expected.max())
+    np.testing.assert_allclose(
+        [solution.approach[0], solution.tilt[0]], [approach, tilt], rtol=1e-8
+    )
+    assert solution.equilibrium[0] < 1e-12
 
 
 def test_a_force_beyond_the_last_lever_has_no_contact():
@@ -72,10 +74,10 @@ def test_a_force_beyond_the_last_lever_has_no_contact():
 @pytest.mark.parametrize("seed", range(6))
 def test_guess_does_not_change_the_answer(seed):
     compliance, gap, integrals = problem(seed)
-    found = active_set.solve(compliance, gap, integrals, [0.7]).pressure
+    pressure = active_set.solve(compliance, gap, integrals, [0.7]).pressure
     for guess in ([True] + 5 * [False], [False] * 6, [True, False] * 3):
         other = active_set.solve(compliance, gap, integrals, [0.7], guess=guess).pressure
-        np.testing.assert_allclose(other, found, atol=1e-11 * found.max())
+        np.testing.assert_allclose(other, pressure, atol=1e-11 * pressure.max())
 
 
 def test_problems_solved_together_are_those_solved_alone():
@@ -94,8 +96,8 @@ def test_the_method_that_cannot_cycle_agrees(seed):
     compliance, gap, integrals = problem(seed)
     weight = integrals / integrals.sum()
     expected, _ = by_trying_all_sets(compliance, gap, weight, 1.0)
-    found, _ = active_set._primal(compliance, gap, weight[:, None], np.ones(1))
-    np.testing.assert_allclose(found, expected, atol=1e-10 * expected.max())
+    pressure, _ = active_set._primal(compliance, gap, weight[:, None], np.ones(1))
+    np.testing.assert_allclose(pressure, expected, atol=1e-10 * expected.max())
 
 
 def test_a_set_met_twice_goes_to_the_method_that_cannot_cycle(monkeypatch):
@@ -103,8 +105,8 @@ def test_a_set_met_twice_goes_to_the_method_that_cannot_cycle(monkeypatch):
     monkeypatch.setattr(active_set, "_SWEEPS", 0)
     compliance, gap, integrals = problem(0)
     expected, _ = by_trying_all_sets(compliance, gap, integrals, 0.7)
-    found = active_set.solve(compliance, gap, integrals, [0.7])
-    np.testing.assert_allclose(found.pressure[0], expected, atol=1e-10 * expected.max())
+    solution = active_set.solve(compliance, gap, integrals, [0.7])
+    np.testing.assert_allclose(solution.pressure[0], expected, atol=1e-10 * expected.max())
 
 
 def test_units_do_not_matter():
@@ -123,19 +125,19 @@ def test_contact_at_every_knot_leaves_no_gap_and_no_violation():
     compliance, _, integrals = problem(3)
     pressure = np.linspace(1.0, 2.0, 6)
     gap = -compliance @ pressure
-    found = active_set.solve(compliance, gap, integrals, [integrals @ pressure])
-    np.testing.assert_allclose(found.pressure[0], pressure, rtol=1e-9)
-    assert found.complementarity[0] < 1e-9
+    solution = active_set.solve(compliance, gap, integrals, [integrals @ pressure])
+    np.testing.assert_allclose(solution.pressure[0], pressure, rtol=1e-9)
+    assert solution.complementarity[0] < 1e-9
 
 
 def test_residual_is_that_of_signs_and_products():
     compliance, gap, integrals = problem(2)
-    found = active_set.solve(compliance, gap, integrals, [0.7])
-    gaps = compliance @ found.pressure[0] + gap - found.approach[0] * integrals
-    np.testing.assert_allclose(found.gap[0], gaps, atol=1e-12 * abs(gaps).max())
-    assert (found.pressure >= 0).all()
-    assert abs(found.pressure * found.gap).max() < 1e-10
-    assert found.complementarity[0] < 1e-10
+    solution = active_set.solve(compliance, gap, integrals, [0.7])
+    gaps = compliance @ solution.pressure[0] + gap - solution.approach[0] * integrals
+    np.testing.assert_allclose(solution.gap[0], gaps, atol=1e-12 * abs(gaps).max())
+    assert (solution.pressure >= 0).all()
+    assert abs(solution.pressure * solution.gap).max() < 1e-10
+    assert solution.complementarity[0] < 1e-10
 
 
 def test_a_compliance_without_an_inverse_is_refused():

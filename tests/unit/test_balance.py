@@ -1,7 +1,6 @@
 """A cam's balance: a hole left out or drilled, in check, record and workshop."""
 
 import json
-import signal
 from dataclasses import replace
 from types import SimpleNamespace
 
@@ -18,6 +17,7 @@ from camwright.geometry.lift import Lift
 from camwright.geometry.pitch_curve import PitchCurve
 from camwright.meshes.body_mesh import cam_mesh
 from camwright.meshes.element_size import Sizing
+from camwright.meshes.gmsh_mesher import session
 from camwright.pipeline.case.case_file import parse_case
 from camwright.pipeline.case.machine import machines
 from camwright.pipeline.checks.part_strength import cam_unbalance
@@ -158,17 +158,10 @@ def test_the_workshop_drills_it(tmp_path):
     assert circles[0].dxf.radius == pytest.approx(1e3 * hole.radius, rel=1e-12)
     np.testing.assert_allclose(tuple(circles[0].dxf.center)[:2], 1e3 * hole.centre, rtol=1e-12)
     assert outline_of(case_of(), SLIGHT).counter_hole is None
-    import gmsh
-
-    gmsh.initialize(interruptible=False)
-    signal.signal(signal.SIGPIPE, signal.SIG_IGN)  # as Python does; gmsh resets it
-    try:
-        gmsh.option.setNumber("General.Terminal", 0)
+    with session() as gmsh:
         gmsh.merge(str(tmp_path / "cam.step"))
         volume = gmsh.model.occ.getMass(3, gmsh.model.getEntities(3)[0][1])
         centre = gmsh.model.occ.getCenterOfMass(3, gmsh.model.getEntities(3)[0][1])
-    finally:
-        gmsh.finalize()
     drilled = balance(case.cam, SLIGHT)
     assert volume == pytest.approx(1e9 * drilled.left.area * case.cam.width, rel=1e-6)
     assert np.hypot(*centre[:2]) < 1e-4  # mm; before the hole it was a hundred times that

@@ -290,10 +290,10 @@ def test_another_process_gives_the_same_mesh(roller):
         "from camwright.meshes.element_size import Sizing;"
         f"print(roller_mesh(0.008, 0.003, 0.7, Sizing.from_half_width({HALF_WIDTH}, 4e-3)).sha256)"
     )
-    done = subprocess.run(
+    process = subprocess.run(
         [sys.executable, "-c", script], capture_output=True, text=True, check=True, timeout=120
     )
-    assert done.stdout.strip() == roller.sha256
+    assert process.stdout.strip() == roller.sha256
 
 
 def test_a_running_gmsh_is_left_as_it_was(roller):
@@ -324,8 +324,8 @@ def test_a_running_gmsh_is_left_as_it_was(roller):
 def test_a_worker_thread_can_mesh(roller):
     """gmsh's signal handler would only allow the main thread."""
     with ThreadPoolExecutor(1) as pool:
-        found = pool.submit(roller_mesh, 0.008, 0.003, 0.7, fine()).result()
-    assert found.sha256 == roller.sha256
+        mesh = pool.submit(roller_mesh, 0.008, 0.003, 0.7, fine()).result()
+    assert mesh.sha256 == roller.sha256
 
 
 def test_a_broken_pipe_is_an_error_after_meshing():
@@ -340,10 +340,10 @@ def test_a_broken_pipe_is_an_error_after_meshing():
         "try:\n    os.write(writer, b'0')\n"
         "except BrokenPipeError:\n    print('an error')\n"
     )
-    done = subprocess.run(
+    process = subprocess.run(
         [sys.executable, "-c", script], capture_output=True, text=True, check=False, timeout=120
     )
-    assert (done.returncode, done.stdout) == (0, "an error\n"), done.stderr
+    assert (process.returncode, process.stdout) == (0, "an error\n"), process.stderr
 
 
 def test_gmsh_ends_with_the_mesh():
@@ -371,9 +371,9 @@ def test_keyway_reaching_the_contour_names_the_wall():
 
 def test_widest_fillet_still_makes_a_good_mesh():
     rounded = Keyway(6e-3, 3e-3, 1.0, 0.8 * 3e-3)
-    found = quality(cam_mesh(CONTOUR, BORE, rounded, Sizing(far_size=3e-3)))
-    assert found.min_angle_deg > 20
-    assert found.min_scaled_jacobian > 0.4
+    shape = quality(cam_mesh(CONTOUR, BORE, rounded, Sizing(far_size=3e-3)))
+    assert shape.min_angle_deg > 20
+    assert shape.min_scaled_jacobian > 0.4
 
 
 def test_undercut_contour_is_refused_with_its_angle():

@@ -1,7 +1,5 @@
 """Mesh and field files, read back by the programs they are for."""
 
-import signal
-
 import meshio
 import numpy as np
 import pytest
@@ -9,6 +7,7 @@ import pytest
 from camwright.geometry.errors import MeshError, ResultError
 from camwright.meshes.body_mesh import block_mesh, roller_mesh
 from camwright.meshes.element_size import Sizing
+from camwright.meshes.gmsh_mesher import session
 from camwright.meshes.mesh_files import write_msh, write_vtu
 from camwright.meshes.vtu import QUADRATIC_TRIANGLE, Grid, vtu
 
@@ -22,13 +21,8 @@ def bodies():
 
 
 def test_gmsh_reads_names_and_second_order_back(tmp_path, bodies):
-    import gmsh
-
     write_msh(tmp_path / "mesh.msh", bodies)
-    gmsh.initialize(readConfigFiles=False, interruptible=False)
-    signal.signal(signal.SIGPIPE, signal.SIG_IGN)  # as Python does; gmsh resets it
-    try:
-        gmsh.option.setNumber("General.Terminal", 0)
+    with session() as gmsh:
         gmsh.open(str(tmp_path / "mesh.msh"))
         nodes = {
             gmsh.model.getPhysicalName(*group): gmsh.model.mesh.getNodesForPhysicalGroup(*group)[1]
@@ -37,8 +31,6 @@ def test_gmsh_reads_names_and_second_order_back(tmp_path, bodies):
         kinds = set(gmsh.model.mesh.getElementTypes())
         triangles, _ = gmsh.model.mesh.getElementsByType(9)
         worst = min(gmsh.model.mesh.getElementQualities(triangles, "minSJ"))
-    finally:
-        gmsh.finalize()
     assert kinds == {8, 9}  # three-node lines, six-node triangles
     assert worst > 0
     assert set(nodes) == {

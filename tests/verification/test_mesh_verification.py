@@ -1,7 +1,5 @@
 """Meshes against exact figures: areas, curves, constant strain and element counts."""
 
-import signal
-
 import numpy as np
 import pytest
 from cam_parts import Keyway, mesh_area
@@ -14,6 +12,7 @@ from camwright.geometry.lift import Lift
 from camwright.geometry.pitch_curve import PitchCurve
 from camwright.meshes.body_mesh import block_mesh, cam_mesh, half_disc_mesh, roller_mesh
 from camwright.meshes.element_size import Sizing
+from camwright.meshes.gmsh_mesher import session
 from camwright.meshes.mesh_quality import gate, quality
 
 HALF_WIDTH = 1e-4
@@ -137,21 +136,14 @@ def test_constant_strain_is_in_equilibrium_on_curved_triangles(cam):
 
 def test_contour_nodes_lie_on_an_independent_interpolating_spline(cam):
     """OpenCASCADE's spline through 1440 contour points passes within 1e-9 m of every node."""
-    import gmsh
-
     nodes = cam.points[:, cam.boundary_nodes("contour")][:, ::5] * 1e3
-    gmsh.initialize(readConfigFiles=False, interruptible=False)
-    signal.signal(signal.SIGPIPE, signal.SIG_IGN)  # as Python does; gmsh resets it
-    try:
-        gmsh.option.setNumber("General.Terminal", 0)
+    with session() as gmsh:
         x, y = CONTOUR.points(np.arange(1440) * (2 * np.pi / 1440)) * 1e3
         tags = [gmsh.model.occ.addPoint(a, b, 0) for a, b in zip(x, y, strict=True)]
         curve = gmsh.model.occ.addSpline([*tags, tags[0]])
         gmsh.model.occ.synchronize()
         flat = np.vstack([nodes, np.zeros(nodes.shape[1])]).T.ravel()
         closest, _ = gmsh.model.getClosestPoint(1, curve, flat)
-    finally:
-        gmsh.finalize()
     apart = np.reshape(closest, (-1, 3))[:, :2].T - nodes
     assert np.hypot(*apart).max() < 1e-6  # mm
 
