@@ -15,7 +15,7 @@ from camwright.pipeline.base.spreadsheets import SUFFIX, Excerpt, spreadsheet
 from camwright.pipeline.base.tables import CAM_ANGLE
 from camwright.pipeline.base.units import celsius, parse
 from camwright.pipeline.base.worker_processes import Crew, Task
-from camwright.pipeline.results.check_records import utilisation_of
+from camwright.pipeline.results.check_records import judged, utilisation_of
 from camwright.pipeline.results.run_reader import results_sha256
 from camwright.reports import pdf
 from camwright.reports.arrangement_data import arrangement_at
@@ -53,7 +53,7 @@ _MM = 1e3
 
 @dataclass(frozen=True)
 class Safety:
-    """Check with its actual value, the required one, and the safety factor against it."""
+    """Actual value of a check at its worst corner, the required one, and the safety factor."""
 
     title: str
     outcome: str
@@ -124,8 +124,9 @@ def sheet_content(material: Material) -> SignoffSheet:
     """Contents of the sheet of a run."""
     run, verdict = material.run, verdict_of(material)
     rows = [row for row in check_rows(run.final.checks) if row.must_have and not row.judged_at]
-    used = {str(c["id"]): utilisation_of(c) for c in run.final.checks}
-    known = [row for row in rows if not row.evidence and used[row.id] is not None]
+    records = {str(c["id"]): c for c in run.final.checks}
+    known = [row for row in rows
+             if not row.evidence and utilisation_of(records[row.id]) is not None]  # fmt: skip
     summary = run.summary
     versions = summary["versions"]
     code = " · ".join(filter(None, (str(versions.get(k, "")) for k in ("camwright", "source"))))
@@ -134,17 +135,19 @@ def sheet_content(material: Material) -> SignoffSheet:
         shortened(str(material.case.get("title") or summary["case"]), 110), verdict,
         title_block(material.case), arrangement_at(material.turn),
         list(_facts(material)), list(_first(verdict)),
-        [_safety(row, used[row.id]) for row in known[:MOST]], _others(rows, known),
+        [_safety(row, records[row.id]) for row in known[:MOST]], _others(rows, known),
         [("case", str(summary["input_sha256"])), ("results", results_sha256(summary["files"])),
          ("Camwright", code)],
         f"Camwright · {shortened(str(summary['case']), 60)}",
     )  # fmt: skip
 
 
-def _safety(row: CheckRow, used: float | None) -> Safety:
+def _safety(row: CheckRow, check: Record) -> Safety:
     """Row of the table; the safety is the reciprocal of the utilisation."""
+    used, worst = utilisation_of(check), judged(check)
     safety = DASH if used is None or used <= 0.0 else number(1.0 / used, 3)
-    return Safety(shortened(row.title, 64), row.status.id, row.demand, row.limit, safety,
+    actual = quantity(None if worst is None else worst.demand, str(check["unit"]))
+    return Safety(shortened(row.title, 64), row.status.id, actual, row.limit, safety,
                   shortened(row.place, 34))  # fmt: skip
 
 

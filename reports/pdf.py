@@ -30,7 +30,9 @@ Value: TypeAlias = "str | float | Sequence[Value] | DataclassInstance | None"
 
 _TEMPLATES = Path(__file__).parent / "templates"
 _FONTS = Path(mpl.get_data_path()) / "fonts" / "ttf"
-_LONG_WORD = re.compile(r"(?![0-9a-f]{64}\b)\S{20,}")  # except SHA-256
+_LONG = 20  # characters of a word that may be broken
+_LONG_WORD = re.compile(rf"(?<!\S)(?![0-9a-f]{{64}}\b)\S{{{_LONG},}}")  # except SHA-256
+_MARKED = re.compile(r"[^./_,;-]*[./_,;-]+|[^./_,;-]+")
 _BREAK = "\u200b"
 
 
@@ -107,7 +109,13 @@ def _json(value: Value, folder: Path) -> Json:
 def _broken(text: str) -> str:
     """Text on one line, with break opportunities in long words, bidirectionally isolated."""
     line = re.sub(r"[ \t\r\n]+", " ", plain(text))
-    return isolated(_LONG_WORD.sub(lambda word: _BREAK.join(word.group()), line))
+    return isolated(_LONG_WORD.sub(_parted, line))
+
+
+def _parted(word: re.Match[str]) -> str:
+    """A long word with break opportunities: behind its marks, else anywhere."""
+    parts = _MARKED.findall(word.group())
+    return _BREAK.join(part if len(part) < _LONG else _BREAK.join(part) for part in parts)
 
 
 def _drawable(text: str) -> str:

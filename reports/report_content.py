@@ -48,6 +48,7 @@ MISSING = (
     "case, or leave it out of the sign-off in [scope]."
 )
 BAR_WORDS = (
+    "The utilisation is that of the worst tolerance corner, the demand that of the nominal design. "
     "The tick on each bar marks the limit; ± is the numerical uncertainty, omitted below the last "
     "digit shown."
 )

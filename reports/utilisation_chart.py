@@ -23,17 +23,13 @@ LIMIT_SHARE = 1.0 / BAR_TOP
 
 @dataclass(frozen=True)
 class Bar:
-    """A check in the chart: title, status, utilisation in words, share of the axis; whether beyond.
-
-    `angle` is the cam angle of the demand, "" where it has none.
-    """
+    """A check: title, status, utilisation in words, share of the axis; whether beyond it."""
 
     title: str
     status: str
     utilisation: str
     share: float
     beyond: bool
-    angle: str
 
 
 @dataclass(frozen=True)
@@ -73,4 +69,4 @@ def utilisation_chart(checks: Sequence[Record]) -> tuple[BarGroup, ...]:
 
 def _bar(row: CheckRow) -> Bar:
     share = (row.bar or 0.0) / BAR_TOP
-    return Bar(isolated(row.title), row.status.id, row.utilisation, share, share >= 1.0, row.where)
+    return Bar(isolated(row.title), row.status.id, row.utilisation, share, share >= 1.0)

@@ -76,7 +76,7 @@ class Verdict:
     def lines(self) -> list[tuple[str, str]]:
         """(label, text) of the lines below the sentence."""
         lines = (
-            ("The follower", f"{self.ends}: loads there are not evaluated." if self.ends else ""),
+            ("Loads", f"the follower {self.ends}: not evaluated there." if self.ends else ""),
             ("Governing", self.governing),
         )
         return [line for line in lines if line[1]]
@@ -89,7 +89,7 @@ class Verdict:
             ("Missing data", self.missing),
             ("Not proven", self.unproven),
             ("Waived", self.waived),
-            ("Stopping criterion", self.stopped),
+            ("Reasons to end the trials", self.stopped),
         )
         return [each for each in lists if each[1]]
 

@@ -62,14 +62,14 @@ travel_max = "45 mm"
 prime_radius = "50 mm"
 offset = "0 mm"
 width = "5 mm"
-end = { kind = "sharp" }
+end = {{ kind = "sharp" }}
 bore_radius = "10 mm"
 material = "S355"
 
 [roller]
 radius = "8 mm"
 width = "5 mm"
-end = { kind = "chamfer", size = "0.3 mm" }
+end = {{ kind = "chamfer", size = "0.3 mm" }}
 hub_radius = "2.5 mm"
 material = "100Cr6"
 

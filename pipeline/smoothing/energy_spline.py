@@ -152,7 +152,7 @@ def fitted_energy(cam_torque: ArrayLike, count: int, lobes: int = 1) -> Array:
 def lowest(coefficients: Array) -> float:
     """Minimum of the energy, J: on a grid finer than the knots, refined between its angles.
 
-    A lobe is stretched to the turn, which leaves the minimum as it is.
+    The angle of one lobe is scaled to a turn, which does not change the minimum.
     """
     theta = uniform_turn(max(_FIT_ANGLES, 16 * coefficients.size))
     values = basis_matrix(theta, coefficients.size) @ coefficients

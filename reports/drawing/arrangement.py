@@ -49,7 +49,7 @@ class Bush:
 
     @property
     def wall(self) -> float:
-        """Wall as it is drawn, mm."""
+        """Thickness of the drawn wall, mm."""
         return 0.16 * self.bore
 
 

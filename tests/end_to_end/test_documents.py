@@ -115,6 +115,18 @@ def test_the_table_of_safeties_states_required_beside_actual(tmp_path: Path) -> 
     assert safeties == sorted(safeties)
 
 
+def test_the_table_of_safeties_is_of_the_worst_tolerance_corner(tmp_path: Path) -> None:
+    records = [
+        record | ({"corner": "friction high", "corner_demand": 50.0, "utilisation": 50.0 / 30.0}
+                  if record["id"] == "pressure_angle" else {})
+        for record in report_fixture.checks()
+    ]  # fmt: skip
+    report_fixture.write_run(tmp_path / "run", 36, records=records, field=False)
+    content = documents.sheet_content(read_material(tmp_path / "run"))
+    row = next(row for row in content.safeties if row.title == "Pressure angle")
+    assert (row.actual, row.safety) == ("50\N{NO-BREAK SPACE}deg", "0.6")
+
+
 def drawing(folder: Path, scale: float, *, keyed: bool) -> Material:
     """A run of the fixture with the dimensions of a small machine's cam, changed by a factor."""
     keyway = '\n[cam.keyway]\nwidth = "6 mm"\ndepth = "2.8 mm"\nangle = "35 deg"\n\n[roller]\n'

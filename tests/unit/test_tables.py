@@ -131,7 +131,7 @@ def test_the_page_lists_what_is_missing_not_proven_waived_and_to_be_confirmed():
     )
     assert [label for label, _ in said.lists] == ["Binding", "Missing data", "Not proven", "Waived"]
     assert verdict("fail", checks, (), "no room; a").lists[-1] == (
-        "Stopping criterion", ("no room", "a"),
+        "Reasons to end the trials", ("no room", "a"),
     )  # fmt: skip
     assert said.worst == (("B: 1.95 MPa, limit <= 2 MPa (98 %), idle 12.5 deg", ""),)
     row = next(row for row in report_tables.check_rows(checks) if row.id == "b")

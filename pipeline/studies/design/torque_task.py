@@ -82,7 +82,7 @@ class DesignTask:
     """A torque and the requirements on the cam that balances it, SI.
 
     space: from the far side of the cam to the top of the roller at maximum lift, None: not limited;
-    remove: share of the torque ripple to be removed; options: what was given, by name.
+    remove: share of the torque ripple to be removed; options: stated options by name.
     """
 
     file: Path
