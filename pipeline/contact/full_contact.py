@@ -28,6 +28,11 @@ from camwright.pipeline.contact.elasticity.elastic_body import (
     StressRecovery,
     elements_near,
 )
+from camwright.pipeline.contact.elasticity.fitted_stress import (
+    FittedStress,
+    fitted_stress,
+    greatest_fitted,
+)
 from camwright.pipeline.contact.elasticity.plane_stress_measures import (
     PeakFinder,
     shear_in_plane,
@@ -49,6 +54,8 @@ from camwright.pipeline.contact.elasticity.surface_integrals import (
 _WINDOW = 1.4
 # Radius of stress recovery about the contact, in Hertz half-widths.
 _STRESS_REACH = 2.0
+# Radius of the nodes to which the stress about its maximum is fitted, in half-widths.
+_FIT_REACH = 0.6
 _EQUILIBRIUM = 1e-8
 # The error of the second moment is of second order in that of the edges.
 _EDGE_UPDATES = 2
@@ -284,13 +291,20 @@ def _peak_stress(
     """Maximum in-plane shear, its depth, maximum von Mises stress, its depth; Pa, m."""
     recovery = StressRecovery(body, elements_near(body, frame.origin, _STRESS_REACH * half_width))
     nodal = recovery(displacement[:, :, None])
-    points = body.mesh.points[:, recovery.nodes]
-    find = PeakFinder(np.stack([frame.along(points), -frame.above(points)]) / half_width)
-    shear, shear_place = find(shear_in_plane(nodal))
-    mises, mises_place = find(von_mises(nodal, body.poisson))
-    return (
-        float(shear[0]),
-        float(shear_place[1, 0]) * half_width,
-        float(mises[0]),
-        float(mises_place[1, 0]) * half_width,
-    )
+    nodes = body.mesh.points[:, recovery.nodes]
+    points = np.stack([frame.along(nodes), frame.above(nodes)])
+    own = np.stack([frame.tangent, frame.normal]) @ displacement[:, recovery.nodes]
+    find = PeakFinder(points * [[1.0], [-1.0]] / half_width)
+
+    def fit_about(place: Array) -> FittedStress | None:
+        elastic = body.modulus, body.poisson
+        return fitted_stress(points, own, elastic, place, _FIT_REACH * half_width)
+
+    def peak(measure: Callable[[Array], Array]) -> tuple[float, float]:
+        recovered, (along, depth) = find(measure(nodal))
+        place = half_width * np.array([along[0], -depth[0]])
+        fitted = greatest_fitted(fit_about, measure, place)
+        value, place = (float(recovered[0]), place) if fitted is None else fitted
+        return value, -float(place[1])
+
+    return *peak(shear_in_plane), *peak(lambda stress: von_mises(stress, body.poisson))

@@ -1,8 +1,10 @@
 """Scalar measures of stress, and peaks between scattered points."""
 
 import numpy as np
+import pytest
 
 from camwright.pipeline.contact import hertz
+from camwright.pipeline.contact.elasticity.fitted_stress import fitted_stress, greatest_fitted
 from camwright.pipeline.contact.elasticity.plane_stress_measures import (
     PeakFinder,
     all_measures,
@@ -109,3 +111,68 @@ def test_peaks_where_they_are_likely_are_those_over_all_points():
         np.testing.assert_array_equal(top, expected)
         np.testing.assert_array_equal(where, place)
     assert len(evaluated) < 0.8 * points.shape[1]
+
+
+MODULUS, NU = 210e9, 0.3
+Polynomial = np.polynomial.Polynomial
+
+
+def moved(z, phi, slope, psi):
+    """Displacement (2, n), m, of complex potentials."""
+    u = ((3 - 4 * NU) * phi - z * np.conj(slope) - np.conj(psi)) * (1 + NU) / MODULUS
+    return np.stack([u.real, u.imag])
+
+
+def below_the_surface(count):
+    points = np.random.default_rng(3).uniform((-1.2, -1.7), (1.2, 0.0), (count, 2)).T
+    return points, points[0] + 1j * points[1]
+
+
+def test_stress_of_cubic_potentials_is_fitted_exactly():
+    phi, psi = Polynomial([0, 2 + 1j, 0.3 - 0.2j, 0.1j]), Polynomial([0, 1j, -0.4, 0.2])
+    points, z = below_the_surface(500)
+    own = moved(z, phi(z), phi.deriv()(z), psi(z))
+    fit = fitted_stress(points, own, (MODULUS, NU), np.array([0.1, -0.8]), 0.6)
+    middle = 2 * phi.deriv()(z).real
+    across = np.conj(z) * phi.deriv(2)(z) + psi.deriv()(z)
+    exact = np.stack([middle - across.real, middle + across.real, across.imag])
+    np.testing.assert_allclose(fit(points), exact, atol=1e-9 * np.abs(exact).max())
+
+
+def under_a_unit_ellipse(count):
+    """Nodes and displacements of a half-plane y < 0 under the pressure sqrt(1 - x^2).
+
+    Muskhelishvili (1953), half-plane: phi' = i (z - sqrt(z^2 - 1))/2, psi = phi - z phi'.
+    """
+    points, z = below_the_surface(count)
+    root = np.sqrt(z - 1) * np.sqrt(z + 1)
+    phi = 0.25j * (z**2 - z * root + np.log(z + root))
+    slope = 0.5j * (z - root)
+    return points, moved(z, phi, slope, phi - z * slope)
+
+
+@pytest.mark.parametrize("start", [(0.0, -0.6), (0.2, -0.9)])
+def test_fitted_maxima_are_those_of_hertz(start):
+    points, own = under_a_unit_ellipse(260)  # as many as on four edges per half-width
+
+    def about(place):
+        return fitted_stress(points, own, (MODULUS, NU), place, 0.6)
+
+    top, place = greatest_fitted(about, shear_in_plane, np.array(start))
+    np.testing.assert_allclose(top, hertz.SHEAR_MAX, rtol=2e-4)
+    np.testing.assert_allclose(place, [0.0, -hertz.SHEAR_MAX_DEPTH], atol=0.01)
+    mises, _ = greatest_fitted(about, lambda stress: von_mises(stress, NU), np.array(start))
+    np.testing.assert_allclose(mises, hertz.von_mises_peak(NU)[0], rtol=2e-4)
+
+
+def test_no_fit_without_nodes_and_no_maximum_of_a_stress_that_grows():
+    points, own = under_a_unit_ellipse(260)
+    place = np.array([0.0, -0.8])
+    assert fitted_stress(points, own, (MODULUS, NU), place, 0.1) is None
+    z = points[0] + 1j * points[1]
+    bent = moved(z, 0.1j * z**2, 0.2j * z, 0.0 * z)  # shear grows with the distance
+
+    def about(place):
+        return fitted_stress(points, bent, (MODULUS, NU), place, 0.6)
+
+    assert greatest_fitted(about, shear_in_plane, place) is None

@@ -9,6 +9,7 @@ In the order of the calculation:
 | `radial_compliance`     | pin and bush under harmonic pressures     | w_n, 1/Pa               |
 | `sparse_factor`         | factorisation of sparse matrices          |                         |
 | `elastic_body`          | finite-element body, condensation, stress | u, m; sigma, Pa         |
+| `fitted_stress`         | stress fitted to displacements    | sigma, Pa               |
 | `pressure_distribution` | pressure shapes, fitted ellipse           | p, Pa; p0, Pa; a, m     |
 | `surface_integrals`     | contact frame, nodal loads                | xi, m; m                |
 | `active_set`            | frictionless contact by complementarity   | p, Pa; d, m             |
