@@ -278,7 +278,7 @@ def forecast_checks(
 def _constrained(task: _Task) -> Iteration:
     """Synthesis and finite elements in turn, until they agree; the best trial is the final one."""
     case, torques = task.case, task.torques
-    problem = problem_of(case, torques)
+    problem, margin = problem_of(case, torques), case.smoothing.correction_margin
     why = "least ripple within all limits"
     first: Explored | None = None
     comparisons: list[Comparison] = []
@@ -310,14 +310,14 @@ def _constrained(task: _Task) -> Iteration:
             uses=limits_in_use(design),
             gain=design.gain,
         )
-        comparisons.append(compared(problem, design, trial.solution))
+        judged = trial.checks if margin > 0.0 else ()
+        comparisons.append(compared(problem, design, trial.solution, judged))
         unmeshed = task.tier is Tier.CYCLE and trial.mesh is None
         ends = conflicts or unmeshed or comparisons[-1].settled
         last = ends or number == case.solver.max_trials
         conflict = None
         if last and not design.feasible:
             task.progress.stage("conflicting limits")
-            margin = case.smoothing.correction_margin
             after = corrected(problem, design, comparisons) if margin > 0.0 else problem
             rollers = roller_problems(case, torques, after)
             conflict = infeasibility(problem, rollers, after, margin)

@@ -55,7 +55,8 @@ class Smoothing(Section):
     local optima. coefficients is the number of splines of the turn, the same in each lobe; where it
     is missing it rises until the ripple changes by less than ripple_convergence. Where limits
     conflict, the relaxations keep them with the corrections of the nearest solved cam, greater by
-    correction_margin; with a margin of 0 those of the closed form alone are stated.
+    correction_margin, and failed checks are kept at the tolerance corners and with their error
+    bars; with a margin of 0 relaxations of the closed form alone are stated, for nominal values.
     """
 
     kind: Literal[

@@ -402,9 +402,16 @@ class Check(Displayed):
         At <= 1 the demand is within its limit. Infinite for a demand <= 0 against a positive least
         value, and for a positive demand against a limit of zero.
         """
-        if not self.evaluated:
-            return None
-        demand, limit = float(self.worst or 0.0), float(self.limit or 0.0)
+        return self._use_of(float(self.worst or 0.0)) if self.evaluated else None
+
+    @property
+    def upper_utilisation(self) -> float | None:
+        """Utilisation at the end of the error bar towards the limit; None if one is missing."""
+        worst = float(self.worst or 0.0)
+        return self._use_of(self._upper(worst)) if self.evaluated else None
+
+    def _use_of(self, demand: float) -> float:
+        limit = float(self.limit or 0.0)
         part, whole = (demand, limit) if self.sense == "at_most" else (limit, demand)
         if whole > 0:
             return part / whole

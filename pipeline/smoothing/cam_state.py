@@ -325,12 +325,13 @@ class Total(NamedTuple):
 class Mean(NamedTuple):
     """Utilisations from means over the turn; terms (..., n) at equally spaced angles.
 
-    Of each scenario the power of its mean, or of several scenarios the total.
+    Of each scenario the power of its mean, or of several scenarios the total; times a factor.
     """
 
     terms: Array
     power: float = 1.0
     total: Total | None = None
+    factor: float = 1.0
 
     @property
     def means(self) -> Array:
@@ -366,9 +367,8 @@ class Mean(NamedTuple):
         return np.imag(self._of(means[..., None, :] + steps)) / _STEP
 
     def _of(self, means: Array) -> Array:
-        if self.total is None:
-            return positive(means) ** self.power
-        return self.total.of(means)
+        of_one = positive(means) ** self.power if self.total is None else self.total.of(means)
+        return np.asarray(self.factor * of_one)
 
 
 _STEP = 1e-30  # complex step of a mean

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, field, fields, replace
 from typing import NamedTuple, NotRequired, TypedDict
 
 import numpy as np
@@ -13,6 +13,7 @@ from camwright.geometry.arrays import Array
 from camwright.pipeline.base.material import ROOM
 from camwright.pipeline.base.units import in_unit
 from camwright.pipeline.case.case import Case
+from camwright.pipeline.case.limits import TORQUE_REDUCTION
 from camwright.pipeline.checks.check import Check, depends_on_lift, within_depth
 from camwright.pipeline.checks.guide_strength import GUIDES, Side, hottest
 from camwright.pipeline.cycle.cycle import Cycle
@@ -39,6 +40,7 @@ SETTLED_RIPPLE = 2e-3  # of the residual ripple: maximum change by a further tri
 _LOADED = 0.05  # of the maximum: least load of a meaningful ratio
 _RUBBING = 1e-6  # the same for friction, which also acts at low guide loads
 _USED = 0.5  # utilisation below which a limit does not count
+_JUDGED_MOST = 3.0  # utilisation at a tolerance corner over that of the synthesis
 _LATEST = 0.25  # least share of the latest corrections in those of the next trial
 _SUM = 1e3  # weight of the sum of the shares in their least squares
 
@@ -95,6 +97,7 @@ class Comparison:
     ----------
     applied : tuple of Correction       in the synthesis, by scenario
     corrections : tuple of Correction   by scenario, of this cam alone
+    judged : mapping                    see `Problem`, of this cam
     ratings : Ratings                   with the limits that follow from this cam
     shifts : tuple of LimitShift        of each limit
     ripple_shift : float                change of ripple and costs by a further trial, relative, to
@@ -108,6 +111,7 @@ class Comparison:
     shifts: tuple[LimitShift, ...]
     ripple_shift: float
     converged: bool = True
+    judged: Mapping[str, float] = field(default_factory=dict)
 
     @property
     def used(self) -> tuple[LimitShift, ...]:
@@ -175,8 +179,16 @@ def rank(checks: Sequence[Check], ripple: float) -> Rank:
     return Rank(len(uses) - len(over), max(over, default=0.0), ripple)
 
 
-def compared(problem: Problem, design: Design, solved: Solution) -> Comparison:
-    """Solved cam of a design against its synthesis."""
+def compared(
+    problem: Problem, design: Design, solved: Solution, checks: Sequence[Check] = ()
+) -> Comparison:
+    """Solved cam of a design against its synthesis.
+
+    Parameters
+    ----------
+    checks : sequence   of the solved cam, judged at the tolerance corners; none: the synthesis is
+                        not corrected for corners and error bars
+    """
     by_load_case = corrections_of(solved)
     applied = tuple(each.correction for each in problem.scenarios)
     # A tolerance corner takes the correction of its load case.
@@ -184,14 +196,45 @@ def compared(problem: Problem, design: Design, solved: Solution) -> Comparison:
         by_load_case.get(each.name.split(",")[0], each.correction) for each in problem.scenarios
     )
     ratings = corrected_ratings(problem.ratings, solved)
-    after = replace(_with_corrections(problem, corrections), ratings=ratings)
+    after = replace(_with_corrections(problem, corrections), ratings=ratings, judged={})
     uses = [_utilisation(each, design) for each in (problem, after)]
+    judged = judged_over(uses[1], checks, problem.judged if design.feasible else None)
+    if judged:
+        after = replace(after, judged=judged)
+        uses[1] = _utilisation(after, design)
     shifts = tuple(LimitShift(name, use, uses[1][name]) for name, use in uses[0].items())
     ripple_shift = np.inf
     if design.lagrangian is not None:
         now, then = (design.lagrangian.at(each) for each in (problem, after))
         ripple_shift = (then - now) / max(design.objective, NEGLIGIBLE)
-    return Comparison(applied, corrections, ratings, shifts, ripple_shift, design.converged)
+    return Comparison(applied, corrections, ratings, shifts, ripple_shift, design.converged, judged)
+
+
+def judged_over(
+    uses: Mapping[str, float], checks: Sequence[Check], known: Mapping[str, float] | None
+) -> dict[str, float]:
+    """Utilisation by which a check is judged over that of the corrected synthesis, by limit.
+
+    The check is judged at its worst tolerance corner, at the end of its error bar. Of failed
+    checks and those known before, by which a growing ratio is extrapolated; known None: of all, as
+    the limits conflict.
+    """
+    ratios = {}
+    for one in checks:
+        use, own = one.upper_utilisation, uses.get(one.id)
+        if use is None or own is None or not one.must_have:
+            continue
+        if known is not None and one.id not in known and one.status != "fail":
+            continue
+        if one.id == TORQUE_REDUCTION.id:  # the synthesis limits what is left, at its nominal
+            nominal = replace(one, corner="", corner_demand=None)
+            use, own = (1.0 - float(each.worst or 0.0) for each in (one, nominal))
+        if not (own > 0.0 and np.isfinite(use / own)):
+            continue
+        ratio = use / own
+        growth = max(ratio / known[one.id], 1.0) if known and one.id in known else 1.0
+        ratios[one.id] = float(np.clip(ratio * growth, 1.0, _JUDGED_MOST))
+    return ratios
 
 
 def corrected(problem: Problem, design: Design, cams: Sequence[Comparison]) -> Problem:
@@ -222,6 +265,7 @@ def corrected(problem: Problem, design: Design, cams: Sequence[Comparison]) -> P
         problem,
         scenarios=scenarios,
         ratings=cams[-1].ratings,
+        judged=cams[-1].judged,
         seed=design.coefficients,
         variables=design.variables,
     )

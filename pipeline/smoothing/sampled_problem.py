@@ -220,7 +220,7 @@ class Search:
 
     def shape(self, names: frozenset[str] | None = None) -> Function:
         """Limits on the shape of the cam."""
-        return partial(_shape, self.problem.ratings, names)
+        return partial(self._shape, names)
 
     def function(
         self, names: frozenset[str], variables: DesignVariables, take: Callable[[Array], Array]
@@ -238,7 +238,24 @@ class Search:
         """Limits and costs of those names, of stacked scenarios of these weights (s, 1)."""
         loads = loaded(jet, top, variables, self.problem.ratings, stack)
         charged = self._charged(names, weights, loads, variables)
-        return {**utilisations_of(loads, names), **charged}
+        return {**self._judged(utilisations_of(loads, names)), **charged}
+
+    def _shape(
+        self, names: frozenset[str] | None, jet: Jet, _top: float, variables: DesignVariables
+    ) -> Mapping[str, Array | Mean]:
+        return self._judged(shape_utilisations(jet, variables, self.problem.ratings, names))
+
+    def _judged(self, uses: Mapping[str, Array | Mean]) -> Mapping[str, Array | Mean]:
+        """Utilisations as a run judges them, see `Problem`."""
+        ratios = self.problem.judged
+        return {
+            name: use
+            if name not in ratios
+            else use._replace(factor=ratios[name])
+            if isinstance(use, Mean)
+            else ratios[name] * use
+            for name, use in uses.items()
+        }
 
     def _charged(
         self, names: frozenset[str], weights: Array, loads: Loads, variables: DesignVariables
@@ -310,7 +327,8 @@ class Search:
         charged = self._charged(self.costs, self._weights, loads, variables)
         pointwise: dict[str, Array] = {}
         means: dict[str, Mean] = {}
-        for name, value in (*shape.items(), *utilisations_of(loads).items(), *charged.items()):
+        uses = self._judged(utilisations_of(loads))
+        for name, value in (*shape.items(), *uses.items(), *charged.items()):
             if name in self.problem.left_out:
                 continue
             if isinstance(value, Mean):
@@ -641,10 +659,3 @@ def _torque(
     scenario: Scenario, ratings: Ratings, jet: Jet, top: float, variables: DesignVariables
 ) -> Mapping[str, Array | Mean]:
     return {"torque": delivered_torque(jet, top, variables, scenario, ratings)}
-
-
-def _shape(
-    ratings: Ratings, names: frozenset[str] | None, jet: Jet, _top: float,
-    variables: DesignVariables,
-) -> Mapping[str, Array | Mean]:  # fmt: skip
-    return shape_utilisations(jet, variables, ratings, names)

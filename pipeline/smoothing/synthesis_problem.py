@@ -52,6 +52,9 @@ class Problem:
     objective : tuple of Weighted   terms that are minimised
     jerk_weight : float             of the lift jerk over that of the exact energy
     left_out : frozenset            checks whose limits are not kept
+    judged : mapping                utilisation by which a run judges, at the worst tolerance corner
+                                    and the end of the error bar, over that of the scenarios, by
+                                    limit; of a limit that is not named 1
     seed : array (coefficients,)    start, J; None: convex optimum or exact energy
     """
 
@@ -68,6 +71,7 @@ class Problem:
     objective: Objective = (Weighted(TORQUE, 1.0),)
     jerk_weight: float = 1e-5
     left_out: frozenset[str] = frozenset()
+    judged: Mapping[str, float] = field(default_factory=dict)
     seed: Array | None = None
 
     def grid(self, theta: Array) -> Grid:
@@ -94,7 +98,8 @@ class Problem:
         """Greatest residual ripple of a scenario over that of the engine; None: not limited."""
         if item.torque_reduction is None or TORQUE_REDUCTION.id in self.left_out:
             return None
-        return (1.0 - item.torque_reduction) * (1.0 - RESERVE)
+        judged = self.judged.get(TORQUE_REDUCTION.id, 1.0)
+        return (1.0 - item.torque_reduction) * (1.0 - RESERVE) / judged
 
     @property
     def ceiling(self) -> float | None:

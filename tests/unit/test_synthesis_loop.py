@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from made_check import made_check
+from synthesis_problems import measured
 from synthesis_ratings import rated
 
 from camwright.pipeline.checks.check import Check
@@ -14,9 +15,12 @@ from camwright.pipeline.smoothing.fe_correction import (
     Comparison,
     LimitShift,
     corrected,
+    judged_over,
     rank,
     shares,
 )
+from camwright.pipeline.smoothing.linear_model import Linear
+from camwright.pipeline.smoothing.sampled_problem import Search
 from camwright.pipeline.smoothing.scenario import Correction, DesignVariables, Scenario
 from camwright.pipeline.smoothing.synthesis_problem import RESERVE, Design, Problem
 
@@ -160,3 +164,75 @@ def test_part_of_the_way_from_one_correction_to_another():
 def test_sentence_names_the_limit_and_both_shares():
     assert "guide_pv_A from 0.95 to 1 of" in comparison(guide_pv_A=0.05, jump=-0.01).sentence
     assert "no utilisation" in comparison().sentence
+
+
+def test_failed_checks_are_judged_over_the_synthesis_at_corner_and_error_bar():
+    """A corner 4 % above the nominal, which the synthesis sees, with an error bar of 1 %."""
+    at_corner = {"lift_can_help": True, "corner": "rate high", "corner_demand": 1.04}
+    failed = made_check("guide_pressure_A", 1.0, 1.0, error_share=0.01, **at_corner)
+    passed = made_check("jump", 0.5, 1.0, lift_can_help=True, corner="m", corner_demand=0.6)
+    uses = {"guide_pressure_A": 0.999, "jump": 0.5, "travel": 0.9}
+    ratios = judged_over(uses, [failed, passed], known={})
+    assert ratios == {"guide_pressure_A": pytest.approx(1.04 * 1.01 / 0.999)}
+    # one that was known stays so where it passes by it; all are known where limits conflict
+    assert judged_over(uses, [passed], known={"jump": 1.5}) == {"jump": pytest.approx(1.2)}
+    assert judged_over(uses, [passed], known={"jump": 1.1}) == {"jump": pytest.approx(1.2**2 / 1.1)}
+    assert set(judged_over(uses, [failed, passed], known=None)) == {"guide_pressure_A", "jump"}
+    # a least value; the ripple by what is left of it; none below the synthesis
+    least = made_check("margin", 1.2, 1.0, sense="at_least", corner="m", corner_demand=0.8)
+    assert judged_over({"margin": 1 / 1.2}, [least], known={}) == {"margin": pytest.approx(1.5)}
+    ripple = made_check(
+        "torque_reduction", 0.5, 0.5, sense="at_least", corner="phase", corner_demand=0.4
+    )
+    assert judged_over({"torque_reduction": 1.0}, [ripple], known={}) == {
+        "torque_reduction": pytest.approx(1.2)
+    }
+    assert judged_over({"guide_pressure_A": 2.0}, [failed], known={}) == {"guide_pressure_A": 1.0}
+    assert judged_over(uses, [], known=None) == {}
+
+
+def test_utilisations_and_their_slopes_are_those_by_which_a_run_judges():
+    problem = replace(measured("v10"), coefficients=36, points=240)
+    problem = replace(
+        problem,
+        scenarios=tuple(replace(one, torque=one.torque[::3]) for one in problem.scenarios),
+    )
+    plain = Search(problem)
+    before = plain.state(plain.exact, problem.variables)
+    ratios = {name: 1.1 + 0.01 * k for k, name in enumerate(sorted(before.utilisation))}
+    ratios["torque_reduction"] = 1.25
+    search = Search(replace(problem, judged=ratios))
+    state = search.state(plain.exact, problem.variables)
+    assert len(before.pointwise) > 5 and before.means
+    for name, use in (before.pointwise | before.means).items():
+        now = (state.pointwise | state.means)[name]
+        np.testing.assert_allclose(now, ratios[name] * use, rtol=1e-12)
+
+    def entries(own: Search, at) -> dict[str, np.ndarray]:
+        summit = own.summit(at)
+        one = np.ones(1, dtype=bool)
+        rows = {name: np.ones_like(use, dtype=bool) for name, use in at.pointwise.items()}
+        means, _ = own.means(
+            at, summit, {name: np.repeat(one, use.size) for name, use in at.means.items()}
+        )
+        models: list[Linear] = [*own.rows(at, summit, rows), *means]
+        return {f"{each.name} {k}": each.entries for k, each in enumerate(models)}
+
+    slopes = entries(plain, before)
+    for key, now in entries(search, state).items():
+        np.testing.assert_allclose(now, ratios[key.split()[0]] * slopes[key], rtol=1e-9, atol=1e-12)
+    assert search.problem.ceiling == pytest.approx(problem.ceiling / 1.25)
+
+
+def test_no_ratio_leaves_a_synthesis_as_it_was():
+    problem = replace(measured("v08"), coefficients=36, points=240)
+    problem = replace(
+        problem,
+        scenarios=tuple(replace(one, torque=one.torque[::3]) for one in problem.scenarios),
+    )
+    one = dict.fromkeys(Search(problem).state(Search(problem).exact, problem.variables).utilisation)
+    for judged in ({}, dict.fromkeys(one, 1.0)):
+        search = Search(replace(problem, judged=judged))
+        state = search.state(search.exact, problem.variables)
+        plain = Search(problem).state(search.exact, problem.variables)
+        assert state.utilisation == plain.utilisation

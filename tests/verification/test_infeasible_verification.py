@@ -139,11 +139,23 @@ def test_published_engine_behind_the_published_roller():
 
 
 @pytest.mark.slow
-def test_smallest_relaxation_passes_by_finite_elements():
-    """The redesigned GX120 cannot remove 62 % of the ripple; what the run offers instead it can."""
-    settings = {"smoothing.coefficients": 48, "smoothing.starts": 1}
-    case = read_case(CASES / "gx120-redesign.toml").with_positions(72)
-    case = with_values(case, {**settings, "limits.torque_reduction": 0.62})
+@pytest.mark.parametrize(
+    ("path", "corners"),
+    [
+        ("cases/gx120-redesign.toml", True),
+        ("tests/data/v10.toml", True),
+        ("tests/data/v10.toml", False),
+    ],
+)
+def test_smallest_relaxation_passes_by_finite_elements(path, corners):
+    """A machine that cannot remove 62 % of its ripple; what the run offers instead it can.
+
+    Judged at the tolerance corners with error bars, also where the synthesis has no corners.
+    """
+    settings = {"coefficients": 48, "starts": 1, "corners": corners}
+    case = read_case(CASES.parent / path).with_positions(72)
+    case = with_values(case, {f"smoothing.{name}": value for name, value in settings.items()})
+    case = with_values(case, {"limits.torque_reduction": 0.62})
 
     def last_trial(case):
         return trials_of(case, engine_torques(case), tier=Tier.CYCLE).final
@@ -157,4 +169,5 @@ def test_smallest_relaxation_passes_by_finite_elements():
         with_values(case, {"limits.torque_reduction": float(f"{smallest['to']:.4g}")})
     )
     assert trial.synthesis["feasible"]
-    assert rank(trial.checks, solved_ripple(trial.cycles)).violation == 0.0
+    ranked = rank(trial.checks, solved_ripple(trial.cycles))
+    assert (ranked.infinite, ranked.violation) == (0, 0.0)

@@ -2,24 +2,29 @@
 
 from __future__ import annotations
 
+import json
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
+from stored_cams import CONSTRAINED, SMOOTHED, STORED, lifts, utilisations
 
 from camwright.geometry.arrays import uniform_turn
 from camwright.geometry.errors import InputError
 from camwright.pipeline.case.case import Case
-from camwright.pipeline.case.case_file import parse_case
+from camwright.pipeline.case.case_file import parse_case, read_case, with_values
 from camwright.pipeline.case.load_case_torque import engine_torques
+from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.engine.crankshaft import energy_swing
+from camwright.pipeline.iteration import trials_of
 from camwright.pipeline.smoothing.multistart import explored
 from camwright.pipeline.smoothing.problem_setup import problem_of
 from camwright.pipeline.smoothing.required_lift import cam_lift
 from camwright.pipeline.smoothing.synthesis_problem import Design, Problem
 
-GX120 = (Path(__file__).parents[2] / "cases" / "gx120.toml").read_text(encoding="utf-8")
+CASES = Path(__file__).parents[2] / "cases"
+GX120 = (CASES / "gx120.toml").read_text(encoding="utf-8")
 MACHINE = GX120[GX120.index("[mechanism]") :]
 PRESS = """[torque]
 kind = "press"
@@ -197,3 +202,27 @@ def test_a_torque_needs_its_ratio() -> None:
 def test_too_few_positions_a_lobe_are_refused() -> None:
     with pytest.raises(InputError, match=r"solver.positions = 72, must be >= 108, 36 per cycle"):
         case_of(PRESS, "3.0", **{"positions = 720": "positions = 72"})
+
+
+@pytest.mark.parametrize("name", [*SMOOTHED, *CONSTRAINED])
+def test_four_stroke_cases_are_those_of_the_time_when_a_cycle_had_720_degrees(name):
+    """Bitwise equal where they were stored; another processor may round differently."""
+    stored = json.loads(STORED.read_text(encoding="utf-8"))[name]
+    figures = lifts(name) if name in SMOOTHED else utilisations(name)
+    assert figures.keys() == stored.keys()
+    for key, value in figures.items():
+        np.testing.assert_allclose(value, stored[key], rtol=1e-11, atol=1e-12, err_msg=key)
+
+
+@pytest.mark.slow
+def test_a_cam_that_keeps_its_limits_does_not_depend_on_the_margin():
+    """Without a conflict, and without a failed check, the margin of the corrections has no use."""
+    case = read_case(CASES / "gx120-redesign.toml").with_positions(72)
+    case = with_values(case, {"smoothing.coefficients": 48, "smoothing.starts": 1})
+    finals = [
+        trials_of(own, engine_torques(own), tier=Tier.CYCLE).final
+        for own in (with_values(case, {"smoothing.correction_margin": m}) for m in (0.0, 0.03))
+    ]
+    lifts_of = [final.contour.pitch.lift.values for final in finals]
+    np.testing.assert_array_equal(*lifts_of)
+    assert finals[0].checks == finals[1].checks
