@@ -189,19 +189,19 @@ def test_tilt_of_the_moment_gives_the_moment_of_the_tilt():
 # Finite elements of blocks 8 and 10 mm deep give 0.989, 1.017, 0.976, 1.059 in the middle, and
 # 1.139, 0.823, 1.577 over the last 0.1 mm.
 @pytest.mark.parametrize(
-    ("finite", "centre", "end"),
+    ("finite", "centre", "end", "tolerance"),
     [
-        (pair(8e-3), 0.989, 1.139),
-        (pair(5e-3), 1.017, 0.823),
-        (pair(5e-3, end=BodyEnd("chamfer", 0.3e-3)), 0.976, 1.577),
-        (pair(5e-3, crown=crown()), 1.059, None),
+        (pair(8e-3), 0.989, 1.139, 0.005),
+        (pair(5e-3), 1.017, 0.823, 0.045),  # the mirror is least exact where both bodies end
+        (pair(5e-3, end=BodyEnd("chamfer", 0.3e-3)), 0.976, 1.577, 0.005),
+        (pair(5e-3, crown=crown()), 1.059, None, 0.0),
     ],
 )
-def test_mirrored_ends_have_the_pressure_of_finite_elements(finite, centre, end):
+def test_mirrored_ends_have_the_pressure_of_finite_elements(finite, centre, end, tolerance):
     contact, p0 = solved(finite)
-    assert contact.centre[0] / p0 == pytest.approx(centre, abs=0.01)
+    assert contact.centre[0] / p0 == pytest.approx(centre, abs=0.005)
     if end is not None:
-        np.testing.assert_allclose(contact.end_means(1e-4) / p0, end, rtol=0.05)
+        np.testing.assert_allclose(contact.end_means(1e-4) / p0, end, rtol=tolerance)
     assert abs(contact.moment[0]) < 1e-10 * contact.force[0] * finite.contact_length
 
 

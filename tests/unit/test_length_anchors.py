@@ -84,25 +84,25 @@ def test_johns_gohar_crown_and_tilt():
 
 
 @pytest.mark.parametrize(
-    ("ends", "crown", "tilt"),
+    ("ends", "crown", "tilt", "tolerance"),
     [
-        ("overhang", None, 0.0),
-        ("flush", None, 0.0),
-        ("flush", None, 1e-3),
-        ("flush", CROWN, 0.0),
-        ("chamfer", None, 0.0),
+        ("overhang", None, 0.0, 0.005),
+        ("flush", None, 0.0, 0.045),  # the mirror is least exact where both bodies end
+        ("flush", None, 1e-3, 0.025),
+        ("flush", CROWN, 0.0, 0.0),
+        ("chamfer", None, 0.0, 0.02),
     ],
 )
-def test_mirrored_ends_at_the_same_moment(ends, crown, tilt):
+def test_mirrored_ends_at_the_same_moment(ends, crown, tilt, tolerance):
     blocks, halves, p0 = solved(ends, crown, tilt)
     half_width, _ = plane_strain(pair(ends), LINE_LOAD * pair(ends).contact_length)
     inner = np.abs(blocks.cells.centres_along) <= pair(ends).contact_length / 2 - half_width
     apart = np.abs(halves.centre_line - blocks.centre_line)[0] / p0
     assert apart[inner].max() < 0.02
     if tilt:
-        np.testing.assert_allclose(halves.greatest, blocks.greatest, rtol=0.025)
+        np.testing.assert_allclose(halves.greatest, blocks.greatest, rtol=tolerance)
     elif crown is None:
-        np.testing.assert_allclose(halves.end_means(1e-4), blocks.end_means(1e-4), rtol=0.05)
+        np.testing.assert_allclose(halves.end_means(1e-4), blocks.end_means(1e-4), rtol=tolerance)
 
 
 @pytest.mark.parametrize(

@@ -132,8 +132,9 @@ def test_a_second_record_corrects_the_wheel(tmp_path):
     record, lines = measurement_record(case), list(measurement_words(case))
     assert record is not None
     assert record["notes"] == lines
-    assert record["pitch_errors_rms_deg"] == pytest.approx(np.degrees(made.errors.std()), rel=0.2)
-    assert record["pitch_errors_left_deg"] < 0.03
+    # 0.011 deg rms remain; uncorrelated with 0.047 deg, they change its rms by 2.8 %
+    assert record["pitch_errors_rms_deg"] == pytest.approx(np.degrees(made.errors.std()), rel=0.05)
+    assert record["pitch_errors_left_deg"] < 0.015
     assert 0.0 < record["torque_wheel_bar_max_Nm"] < record["torque_error_bar_max_Nm"]
     assert f"{record['pitch_errors_left_deg']:.2g} deg rms remain" in lines[0]
     bare = REFERENCE.partition("[")[0]
