@@ -92,15 +92,22 @@ def sampled_greatest(values: Array) -> Array:
     """Maxima (...) of smooth periodic functions sampled at equal angles (..., n).
 
     Vertex of the parabola through the greatest sample and its neighbours: the error is of order
-    h^3 for a spacing h, below that of the sample itself at a kink. NaN if any sample is NaN.
+    h^3 for a spacing h. At a kink or a step it is at most the intersection of the lines through the
+    two samples on either side. NaN if any sample is NaN.
     """
     at = np.argmax(values, axis=-1)[..., None]
-    before, here, after = (
+    first, before, here, after, last = (
         np.take_along_axis(values, (at + step) % values.shape[-1], axis=-1)[..., 0]
-        for step in (-1, 0, 1)
+        for step in (-2, -1, 0, 1, 2)
     )
     bend = before - 2.0 * here + after
     rise = np.divide((after - before) ** 2, -8.0 * bend, out=np.zeros_like(bend), where=bend < 0.0)
+    up, down = before - first, last - after
+    turn = up - down
+    place = np.divide(after - before - up - down, turn, out=np.zeros_like(turn), where=turn > 0.0)
+    place = np.clip(place, -1.0, 1.0)
+    above = np.minimum(before + up * (place + 1.0), after + down * (place - 1.0)) - here
+    rise = np.minimum(rise, np.maximum(above, 0.0))
     return np.asarray(here + rise)
 
 

@@ -179,15 +179,18 @@ class FlatFaceContour(Contour):
         return 2.0 * max(high.value, -low.value)
 
     def require_face(self, width: float) -> None:
-        """Check that the contact stays on a face of `width`, m.
+        """Check that the contact stays on a face of `width`, m; see `require_face_width`."""
+        require_face_width(width, self.face_width_min())
 
-        Raises
-        ------
-        InputError
-            If the face is not wider than the travel of the contact requires.
-        """
-        needed = self.face_width_min()
-        if not width > needed:
-            shown, least = in_millimetres(width, needed)
-            limit = f"> {least}, twice the greatest |s' - cam.offset|"
-            raise InputError("follower.face.width", shown, limit)
+
+def require_face_width(width: float, needed: float) -> None:
+    """Check that a face of `width` is wider than `needed`, the travel of the contact, m.
+
+    Raises
+    ------
+    InputError
+    """
+    if not width > needed:
+        shown, least = in_millimetres(width, needed)
+        limit = f"> {least}, twice the greatest |s' - cam.offset|"
+        raise InputError("follower.face.width", shown, limit)

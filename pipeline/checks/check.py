@@ -139,7 +139,7 @@ class Declaration:
         None where it does not apply, its part is not described, or its tier is a deeper one.
         Whether a part is described has a check of its own, see `part_data`.
         """
-        if solution.tier < self.fails_from or not self._concerns(solution.machine):
+        if solution.tier < self.fails_from or not self.concerns(solution.machine):
             return None
         demand = self.demand(solution)
         if demand is None:
@@ -154,13 +154,13 @@ class Declaration:
 
     def deeper(self, solution: Solution) -> Check | None:
         """The check, not evaluated, of a solution below its tier; None at or above it."""
-        if solution.tier >= self.tier or not self._concerns(solution.machine):
+        if solution.tier >= self.tier or not self.concerns(solution.machine):
             return None
         word = self.tier.word
         missing = Demand(None, None, note=f"judged at the depth {word}")
         return replace(self.judged(solution.machine, missing), judged_at=word)
 
-    def _concerns(self, machine: Machine) -> bool:
+    def concerns(self, machine: Machine) -> bool:
         """Whether a machine has the kind of follower and describes the part of the check."""
         if self.needs not in ("", machine.follower.word):
             return False

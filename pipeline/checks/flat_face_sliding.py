@@ -8,12 +8,14 @@ from camwright.geometry.arrays import Array
 from camwright.pipeline.checks.check import Demand, check
 from camwright.pipeline.checks.extremes import greatest
 from camwright.pipeline.checks.missing_keys import lacking
+from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.cycle import Cycle
 from camwright.pipeline.cycle.solution import Solution
 
 
 @check(
     title="Required face width",
+    tier=Tier.SCREENING,
     unit="mm",
     source="contact inside the face, Norton (2009) ch. 7",
     method="twice the sum of |s' - e| and contact half-width, greatest over the turn",
@@ -39,6 +41,7 @@ def face_width(solution: Solution) -> Demand | None:
 
 @check(
     title="PV value of the flat face",
+    tier=Tier.SCREENING,
     unit="MPa m/s",
     source="PV limit of the face",
     method="greatest pi/4 p0 w (r + s) over the turn",

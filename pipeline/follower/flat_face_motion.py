@@ -55,6 +55,11 @@ def face_motion(path: FollowerPath, cam_speed: float, theta: ArrayLike) -> FaceM
     return FaceMotion(path.push_arm(angle), speed * height, passing)
 
 
+def sliding_pv(peak: Array, speed: Array) -> Array:
+    """PV value of a face, Pa m/s: mean contact pressure times sliding speed; arrays (...)."""
+    return MEAN_SHARE * peak * speed
+
+
 @dataclass(frozen=True, eq=False)
 class FaceSliding:
     """Sliding of a face over one turn, arrays (n,) at equal angles.
@@ -80,7 +85,7 @@ class FaceSliding:
         """From peak pressures (n,) Pa and normal forces (n,) N."""
         power = friction * np.maximum(force, 0.0) * motion.sliding
         loss = float(power.mean()) * FULL_TURN / cam_speed
-        return cls(motion.place, motion.sliding, MEAN_SHARE * peak * motion.sliding, power, loss)
+        return cls(motion.place, motion.sliding, sliding_pv(peak, motion.sliding), power, loss)
 
     def columns(self) -> dict[Column, Array]:
         """Columns of ``5_cycle.csv``."""

@@ -1,11 +1,15 @@
-"""Reactions of the guides as tables of side force and overhang, for many followers at once.
+"""Loads of the guides as tables over load and place, for many followers at once.
 
-Stem and guides fixed, the guides' reactions over those of point supports are functions of side
-force, overhang and spacing: they are solved at nodes and interpolated.
+Stem and guides fixed, the guides know of the cam a side force and its moment about the middle of
+guide A. Under a roller their loads over those of point supports are functions of side force,
+overhang and spacing; under a flat face, whose axial force bends the stem by its couple as well,
+their loads over the size of side force and moment are functions of that size, of the ratio of both
+and of the spacing. They are solved at nodes and interpolated.
 """
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from typing import NamedTuple
@@ -14,20 +18,26 @@ import numpy as np
 from numpy.typing import NDArray
 
 from camwright.geometry.arrays import Array
-from camwright.pipeline.follower.follower_forces import levers
-from camwright.pipeline.follower.guide_reactions import GuidePair, guide_reactions
+from camwright.pipeline.follower.follower_forces import Push, levers
+from camwright.pipeline.follower.guide_reactions import (
+    GuidePair,
+    GuideReactions,
+    guide_reactions,
+)
 from camwright.pipeline.follower.stem_beam import Stem
 
 _FORCES = np.geomspace(0.1, 1e6, 106)
-"""Nodes of the side force, N: 15 a decade. Below the first the stem only tilts in its clearance."""
+"""Nodes of the load, N: 15 a decade. Below the first the stem only tilts in its clearance."""
 _OVERHANG_STEP = 0.03  # of the overhang over the spacing
+_DIRECTION_STEP = np.pi / 120.0  # of the angle of moment over spacing against side force
 _SPACING_STEP = 0.03  # of the logarithm of the spacing
 
 
-class GuideRatios(NamedTuple):
-    """Loads of guides A and B over the reactions of point supports, arrays (...).
+class GuideLoads(NamedTuple):
+    """Loads of guides A and B, N, or over a unit of them, arrays (...).
 
-    rubbing: sum of the pushes on both sides; bearing: see `GuideReactions`; net: the reaction.
+    rubbing: sum of the pushes on both sides; bearing: see `GuideReactions`; net: the magnitude of
+    the reaction.
     """
 
     rubbing_a: Array
@@ -51,19 +61,19 @@ class Place(NamedTuple):
         return Place(rows[:, positions], weights[:, positions])
 
 
-def _between_forces(side_force: Array) -> tuple[NDArray[np.intp], Array]:
-    """Node below each side force, and the part of the way to the next one."""
-    bounded = np.clip(side_force, _FORCES[0], _FORCES[-1])
+def _between_forces(load: Array) -> tuple[NDArray[np.intp], Array]:
+    """Node below each load, and the part of the way to the next one."""
+    bounded = np.clip(load, _FORCES[0], _FORCES[-1])
     at = np.log(bounded / _FORCES[0]) / np.log(_FORCES[1] / _FORCES[0])
     below = np.minimum(at.astype(np.intp), _FORCES.size - 2)
     return below, at - below
 
 
 @dataclass(frozen=True, eq=False)
-class GuideTable:
-    """Tables of a stem in guides, rows added where an overhang or a spacing needs them.
+class GuideTable(ABC):
+    """Tables of a stem in guides, rows added where a place or a spacing needs them.
 
-    The values depend on the stem and the guides alone, not on the positions looked up before.
+    The values depend on the stem and the guides alone, not on the places looked up before.
     """
 
     stem: Stem
@@ -72,18 +82,21 @@ class GuideTable:
     _tables: list[Array] = field(default_factory=list)
     _flats: dict[int, Array] = field(default_factory=dict)
 
-    def place(self, overhang: Array, spacing: Array) -> Place:
-        """Nodes about overhangs and spacings (...), m, for `ratios`."""
-        reach, width = np.broadcast_arrays(overhang, spacing)
-        if (spacing == self.guides.spacing).all():
-            across, share = np.full(reach.shape, _STATED), np.zeros(reach.shape)
+    @abstractmethod
+    def _node(self, along: int, guides: GuidePair) -> GuideLoads:
+        """Loads over their units (forces,) at a node of the place, in guides of a spacing."""
+
+    def between(self, along: Array, spacing: float | Array) -> Place:
+        """Nodes about places (...), in steps, and spacings (...), m, for `ratios`."""
+        steps, width = np.broadcast_arrays(along, spacing)
+        if np.all(spacing == self.guides.spacing):
+            across, share = np.full(steps.shape, _STATED), np.zeros(steps.shape)
         else:
             logarithm = np.log(width) / _SPACING_STEP
             across = np.floor(logarithm).astype(np.intp)
             share = logarithm - across
-        along = reach / width / _OVERHANG_STEP
-        below = np.floor(along).astype(np.intp)
-        part = along - below
+        below = np.floor(steps).astype(np.intp)
+        part = steps - below
         rows, weights = [], []
         for up, weight in ((0, 1.0 - part), (1, part)):
             for beside, other in ((0, 1.0 - share), (1, share)):
@@ -93,20 +106,20 @@ class GuideTable:
                 weights.append(weight * other)
         return Place(np.stack(rows), np.stack(weights))
 
-    def ratios(self, side_force: Array, place: Place) -> GuideRatios:
-        """Ratios at side forces (...), N, >= 0, and their places."""
-        return GuideRatios(*self._interpolated(side_force, place, 6))
+    def ratios(self, load: Array, place: Place) -> GuideLoads:
+        """Loads over their units at loads (...), N, >= 0, and their places."""
+        return GuideLoads(*self._interpolated(load, place, 6))
 
-    def rubbing(self, side_force: Array, place: Place) -> tuple[Array, Array]:
+    def rubbing(self, load: Array, place: Place) -> tuple[Array, Array]:
         """Ratios of the rubbing loads alone."""
-        on_a, on_b = self._interpolated(side_force, place, 2)
+        on_a, on_b = self._interpolated(load, place, 2)
         return on_a, on_b
 
-    def _interpolated(self, side_force: Array, place: Place, count: int) -> list[Array]:
-        """Values (...) of the first ratios, linear in the logarithm of the force."""
-        below, part = _between_forces(side_force)
+    def _interpolated(self, load: Array, place: Place, count: int) -> list[Array]:
+        """Values (...) of the first ratios, linear in the logarithm of the load."""
+        below, part = _between_forces(load)
         tables = [self._flat(q) for q in range(count)]
-        results = [np.zeros(side_force.shape) for _ in tables]
+        results = [np.zeros(load.shape) for _ in tables]
         for rows, weights in zip(place.rows, place.weights, strict=True):
             at = rows * _FORCES.size + below
             for q, table in enumerate(tables):
@@ -138,27 +151,111 @@ class GuideTable:
 
     def _solved(self, along: int, across: int) -> Array:
         """Ratios at a node (6, forces)."""
-        guides, stem = self.guides, self.stem
+        guides = self.guides
         if across != _STATED:
             guides = replace(guides, spacing=float(np.exp(across * _SPACING_STEP)))
+        return np.stack(self._node(along, guides))
+
+    @property
+    def _long(self) -> Stem:
+        return replace(self.stem, length=np.inf)
+
+
+class OverhangTable(GuideTable):
+    """Over side force and overhang; units: the reactions of point supports."""
+
+    def _node(self, along: int, guides: GuidePair) -> GuideLoads:
         # The roller does not enter guide A: positions just outside take the node at its mouth.
         overhang = max(along * _OVERHANG_STEP * guides.spacing, 0.5 * guides.a.length)
-        long = replace(stem, length=np.inf)
-        reactions = guide_reactions(_FORCES, np.full(_FORCES.size, overhang), long, guides)
+        reactions = guide_reactions(_FORCES, np.full(_FORCES.size, overhang), self._long, guides)
         on_a, on_b = (_FORCES * each for each in levers(np.asarray(overhang), guides.spacing))
-        return np.stack(
-            [
-                reactions.rubbing_load_a / on_a, reactions.rubbing_load_b / on_b,
-                reactions.bearing_load_a / on_a, reactions.bearing_load_b / on_b,
-                np.abs(reactions.reaction_a) / on_a, np.abs(reactions.reaction_b) / on_b,
-            ]
-        )  # fmt: skip
+        return _over(reactions, on_a, on_b)
+
+
+class MomentTable(GuideTable):
+    """Over size and direction of side force and moment over spacing; unit: the size."""
+
+    def _node(self, along: int, guides: GuidePair) -> GuideLoads:
+        angle = along * _DIRECTION_STEP
+        side, moment = _FORCES * np.cos(angle), _FORCES * np.sin(angle) * guides.spacing
+        mouth = 0.5 * guides.a.length
+        reach = np.full(_FORCES.size, mouth)
+        reactions = guide_reactions(side, reach, self._long, guides, side * mouth - moment)
+        return _over(reactions, _FORCES, _FORCES)
+
+
+def _over(reactions: GuideReactions, on_a: Array, on_b: Array) -> GuideLoads:
+    """Loads (forces,) over their units, N."""
+    return GuideLoads(
+        rubbing_a=reactions.rubbing_load_a / on_a,
+        rubbing_b=reactions.rubbing_load_b / on_b,
+        bearing_a=reactions.bearing_load_a / on_a,
+        bearing_b=reactions.bearing_load_b / on_b,
+        net_a=np.abs(reactions.reaction_a) / on_a,
+        net_b=np.abs(reactions.reaction_b) / on_b,
+    )
 
 
 _STATED = -(10**6)  # number of the spacing of the guides themselves
 
 
 @lru_cache(maxsize=32)
-def guide_table(stem: Stem, guides: GuidePair) -> GuideTable:
+def _table(kind: type[GuideTable], stem: Stem, guides: GuidePair) -> GuideTable:
     """Tables of a stem in guides, kept by both."""
-    return GuideTable(stem, guides)
+    return kind(stem, guides)
+
+
+@dataclass(frozen=True, eq=False)
+class SupportOfMany:
+    """Guides under the push of many cams; arrays (...).
+
+    load: that of the table over the axial force; factor: side-load factor; shares: units of the
+    loads of guides A and B over axial force and side-load factor; on_points: rubbing loads of point
+    supports over the same, those without load.
+    """
+
+    table: GuideTable
+    place: Place
+    load: Array
+    factor: Array
+    shares: tuple[Array, Array]
+    on_points: tuple[Array, Array]
+
+    @classmethod
+    def of(cls, stem: Stem, guides: GuidePair, push: Push, overhang: Array) -> SupportOfMany:
+        """Of a stem in guides, the spacing of which is that of the push.
+
+        Parameters
+        ----------
+        overhang : array (...)   m
+        """
+        factor, on_points = push.side_factor, push.rubbing_on_points(overhang)
+        if not push.arm.any():
+            table = _table(OverhangTable, stem, guides)
+            place = table.between(overhang / push.spacing / _OVERHANG_STEP, push.spacing)
+            return cls(table, place, factor, factor, on_points, on_points)
+        _, moment = push.on_points(*levers(overhang, push.spacing))
+        table = _table(MomentTable, stem, guides)
+        place = table.between(np.arctan2(moment, push.side) / _DIRECTION_STEP, push.spacing)
+        size = np.hypot(push.side, moment)
+        share = np.divide(size, factor, out=np.ones_like(size), where=factor > 0.0)
+        return cls(table, place, size, factor, (share, share), on_points)
+
+    def rubbing(self, axial_force: Array) -> tuple[Array, Array]:
+        """Rubbing loads over axial force and side-load factor at axial forces (...), N, >= 0."""
+        ratios = self.table.rubbing(axial_force * self.load, self.place)
+        on_a, on_b = (
+            np.where(axial_force > 0.0, ratio * share, unloaded)
+            for ratio, share, unloaded in zip(ratios, self.shares, self.on_points, strict=True)
+        )
+        return on_a, on_b
+
+    def loads(self, axial_force: Array) -> GuideLoads:
+        """Loads (...), N, at axial forces (...), N, >= 0."""
+        ratios = self.table.ratios(axial_force * self.load, self.place)
+        on_a, on_b = (share * (axial_force * self.factor) for share in self.shares)
+        return GuideLoads(
+            ratios.rubbing_a * on_a, ratios.rubbing_b * on_b,
+            ratios.bearing_a * on_a, ratios.bearing_b * on_b,
+            ratios.net_a * on_a, ratios.net_b * on_b,
+        )  # fmt: skip

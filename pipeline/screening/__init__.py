@@ -5,11 +5,16 @@ In the order of the calculation:
 | module              | responsibility                                      | symbol, unit         |
 | ------------------- | --------------------------------------------------- | -------------------- |
 | `design_factors`    | factors of the designs, their bounds; groups        |                      |
+| `cam_shapes`        | contour and contact under a roller or a flat face   | rho, m; kappa, 1/m   |
 | `design_arrays`     | lift, contour, loads and contact of many designs    | s, m; F_n, N; p0, Pa |
-| `screened_checks`   | demand and limit of each check of many designs      | SI                   |
+| `screened_shape`    | checks of the cam shape                             | m, rad               |
+| `screened_loads`    | checks of forces, guides and torque                 | N, N m, Pa           |
+| `screened_contact`  | checks of contact, roller bearing and flat face     | p0, Pa; h            |
+| `screened_springs`  | checks of wound, gas and torsion springs            | Pa, m                |
+| `screened_checks`   | the checks that screening judges                    |                      |
 | `design_screening`  | columns of the screening: demands, status, `screen` | as in the record     |
 
 The formulas are those of the checks: `checks`, `follower` and `contact` on arrays (designs, cam
-angles). Guides are point supports, the crank speed is constant, no corner and no speed sweep is
-solved. Imports `solver`, `preview` and what they import.
+angles). Loads of the guides are interpolated in tables, the crank speed is constant, no corner and
+no speed sweep is solved. Imports `solver`, `preview` and what they import.
 """

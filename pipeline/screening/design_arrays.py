@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import copy
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Literal, NamedTuple
@@ -15,7 +15,6 @@ from numpy.typing import NDArray
 from camwright.geometry.arrays import Array, uniform_turn
 from camwright.geometry.extrema import sampled_greatest, sampled_least
 from camwright.geometry.periodic_spline import knot_derivatives, knot_integrals
-from camwright.geometry.pitch_curve import speed_and_curvature
 from camwright.pipeline.base.external_force import ExternalForce
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_values import value_of
@@ -35,12 +34,15 @@ from camwright.pipeline.follower.follower_forces import (
     share_left,
 )
 from camwright.pipeline.follower.guide_friction import friction_limits
-from camwright.pipeline.follower.guide_table import GuideRatios, GuideTable, Place, guide_table
+from camwright.pipeline.follower.guide_table import GuideLoads, SupportOfMany
 from camwright.pipeline.follower.spring import spring_force, stored_lift
 from camwright.pipeline.follower.spring_kinds import SpringShape
+from camwright.pipeline.screening.cam_shapes import CamShape, FaceShape, RollerShape
 from camwright.pipeline.screening.design_factors import WoundSprings, wound_spring
 
 Columns = Mapping[str, Array]
+Judged = tuple[Array, Array | float | None]
+"""Demand (m,) and limit (m,) of a check, SI; NaN and None are missing."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,8 +64,8 @@ class FollowerOfDesigns:
     gravity_along_axis: float
     external: ExternalForce
     shape: SpringShape | None
+    face_friction: Array
     rubbing: tuple[Array, Array] | None = None
-    face_friction: float = 0.0
 
     def spring_force(self, lift: Array) -> Array:
         """Force (m, n) of the springs at a lift (m, n), N."""
@@ -102,16 +104,15 @@ class State(NamedTuple):
 class Turns:
     """Loads of a load case of many designs, arrays (m, 1) and (m, n).
 
-    guides: loads of the guides over those of point supports; jam_index_max: at the maximum friction
-    on the rise; p0_line: of the line contact; p0: of the ellipse under a crowned roller; edged:
-    where the contact ends at an edge.
+    guides: their loads, N; jam_index_max: at the maximum friction on the rise; p0_line: of the line
+    contact; p0: of the ellipse under a crowned roller; edged: where the contact ends at an edge.
     """
 
     state: State
     crank_speed: Array
     cam_speed: Array
     loads: Loads
-    guides: GuideRatios
+    guides: GuideLoads
     jam_index_max: Array
     p0_line: Array
     p0: Array
@@ -196,51 +197,10 @@ class Designs:
         return sampled_greatest(self.jets[0])
 
     @cached_property
-    def along(self) -> Array:
-        """Velocity of the roller centre along the follower axis (m, N), m/rad."""
-        return np.asarray(self.jets[1] - self.value("cam.offset"))
-
-    @cached_property
-    def across(self) -> Array:
-        """Height of the roller centre over the cam axis (m, N), m."""
-        prime, offset = self.value("cam.prime_radius"), self.value("cam.offset")
-        return np.asarray(np.sqrt(prime**2 - offset**2) + self.jets[0])
-
-    @cached_property
-    def _path(self) -> tuple[Array, Array]:
-        return speed_and_curvature(self.along, self.across, self.jets[1], self.jets[2])
-
-    @property
-    def pitch_speed(self) -> Array:
-        """Path length of the roller centre per cam angle (m, N), m/rad."""
-        return self._path[0]
-
-    @property
-    def pitch_curvature(self) -> Array:
-        """Curvature of the pitch curve (m, N), 1/m, positive where convex."""
-        return self._path[1]
-
-    @cached_property
-    def undercut_factor(self) -> Array:
-        """1 - r kappa (m, N): zero at a cusp."""
-        return np.asarray(1.0 - self.value("roller.radius") * self.pitch_curvature)
-
-    @cached_property
-    def least_factor(self) -> Array:
-        """Minimum undercut factor (m,)."""
-        return sampled_least(self.undercut_factor)
-
-    @cached_property
-    def contour_radius(self) -> Array:
-        """Distance of the contour from the cam axis (m, N), m."""
-        inset = self.value("roller.radius") / self.pitch_speed
-        offset = self.value("cam.offset")
-        return demands.contour_radius(self.along, self.across, offset, inset)
-
-    @cached_property
-    def pressure_angle(self) -> Array:
-        """Pressure angle (m, N), rad."""
-        return np.asarray(np.arctan2(self.along, self.across))
+    def shape(self) -> CamShape:
+        """Contour and contact under the follower of the designs."""
+        kind = RollerShape if self.case.follower.face is None else FaceShape
+        return kind(self.jets, self.value)
 
     @cached_property
     def theta(self) -> Array:
@@ -256,16 +216,16 @@ class Designs:
         """Motion at the cam angles of the loads."""
         lift, slope, bend = (self.at_loads(each) for each in self.jets)
         stroke = (self.highest - sampled_least(self.jets[0]))[:, None]
-        angle = self.at_loads(self.pressure_angle)
-        push = Push(np.tan(angle), np.zeros_like(angle), self.value("guides.spacing"))
+        shape = self.shape
+        side, arm = self.at_loads(shape.side), self.at_loads(shape.arm)
         return FollowerMotion(
             lift=lift,
             slope=np.where(np.abs(slope) > REST * stroke, slope, 0.0),
             bend=bend,
             highest=self.highest[:, None],
-            pressure_angle=angle,
-            height=self.at_loads(self.across),
-            push=push,
+            pressure_angle=self.at_loads(shape.pressure_angle),
+            height=self.at_loads(shape.height),
+            push=Push(side, arm, self.value("guides.spacing")),
         )
 
     @cached_property
@@ -283,6 +243,7 @@ class Designs:
             gravity_along_axis=self.machine.gravity_along_axis,
             external=self.machine.external,
             shape=self.case.spring.shape,
+            face_friction=np.nan_to_num(self.value("follower.face.friction")),
         )
 
     @cached_property
@@ -319,6 +280,14 @@ class Designs:
             return self.limit(TORQUE_REDUCTION)
         return np.asarray(state.torque_reduction) if state.torque_reduction else None
 
+    def worst(self, measure: Callable[[Turns], Array]) -> Array:
+        """Greatest over load cases and cam angles (m,) of a measure (m, n)."""
+        return np.max([sampled_greatest(measure(turns)) for turns in self.turns], axis=0)
+
+    def least(self, measure: Callable[[Turns], Array]) -> Array:
+        """Least over load cases and cam angles (m,) of a measure (m, n)."""
+        return np.min([sampled_least(measure(turns)) for turns in self.turns], axis=0)
+
     def in_load_cases(self, kept: Sequence[bool]) -> Designs:
         """The designs in some of their load cases; figures without loads are not computed again."""
         part = copy.copy(self)
@@ -335,20 +304,19 @@ class Designs:
         crank = np.maximum(state.speed, CREEP)
         speed = crank / self.case.mechanism.gear_ratio
         system = replace(self.follower, preload=state.preload)
-        motion, theta, table = self.motion, self.theta, self._table
+        motion, theta = self.motion, self.theta
         free = loads_of(motion, system, speed, theta)
         # without guide friction: the share that friction leaves is taken out
         force = free.axial_force * share_left(motion.slope, free.jam_index)
         system = replace(system, rubbing=self._settled(force, system))
         loads = loads_of(motion, system, speed, theta)
-        guides = table.ratios(np.abs(loads.tangential_force), self._place)
         p0_line, p0, edged = self._pressures(loads.normal_force)
         return Turns(
             state=state,
             crank_speed=crank,
             cam_speed=speed,
             loads=loads,
-            guides=guides,
+            guides=self._supports.loads(loads.axial_force),
             jam_index_max=self._jam_index_max(force, system),
             p0_line=p0_line,
             p0=p0,
@@ -356,21 +324,11 @@ class Designs:
         )
 
     @cached_property
-    def _table(self) -> GuideTable:
-        return guide_table(self.machine.stem, self.machine.guides)
-
-    @cached_property
-    def _place(self) -> Place:
-        return self._table.place(self._overhang, self.value("guides.spacing"))
-
-    @property
-    def _overhang(self) -> Array:
-        motion = self.motion
-        return np.asarray(self.follower.overhang_at_max_lift + (motion.highest - motion.lift))
-
-    @cached_property
-    def _on_points(self) -> tuple[Array, Array]:
-        return self.motion.push.rubbing_on_points(self._overhang)
+    def _supports(self) -> SupportOfMany:
+        """Guides of the designs."""
+        motion, known = self.motion, self.machine
+        overhang = self.follower.overhang_at_max_lift + (motion.highest - motion.lift)
+        return SupportOfMany.of(known.stem, known.guides, motion.push, np.asarray(overhang))
 
     def _settled(self, force: Array, system: FollowerOfDesigns) -> tuple[Array, Array]:
         """Rubbing load of the guides over axial force and side-load factor at equilibrium (m, n).
@@ -382,30 +340,25 @@ class Designs:
         ----------
         force : array (m, n)   axial force without guide friction, N
         """
-        slope = self.motion.slope
-        shape, factor = force.shape, np.broadcast_to(self._side_factor, force.shape).ravel()
+        slope, supports = self.motion.slope, self._supports
+        shape, load = force.shape, np.broadcast_to(supports.load, force.shape).ravel()
         rubs = tuple(
-            np.broadcast_to(friction * on, shape).ravel() * factor
-            for friction, on in zip(
-                (system.friction_a, system.friction_b), self._on_points, strict=True
+            np.broadcast_to(friction * share * supports.factor, shape).ravel()
+            for friction, share in zip(
+                (system.friction_a, system.friction_b), supports.shares, strict=True
             )
         )
-        force, direction = force.ravel(), np.broadcast_to(np.sign(slope), shape).ravel()
-        axial, left = force.copy(), np.flatnonzero((force * factor > 0.0) & (direction != 0.0))
+        free, direction = force.ravel(), np.broadcast_to(np.sign(slope), shape).ravel()
+        axial, left = free.copy(), np.flatnonzero((free * load > 0.0) & (direction != 0.0))
         for _ in range(_ROUNDS):
             if not left.size:
                 break
-            now, place = axial[left], self._place.of(left)
-            ratios = self._table.rubbing(now * factor[left], place)
+            now, place = axial[left], supports.place.of(left)
+            ratios = supports.table.rubbing(now * load[left], place)
             jam = ratios[0] * rubs[0][left] + ratios[1] * rubs[1][left]
-            axial[left] = force[left] / share_left(direction[left], jam)
+            axial[left] = free[left] / share_left(direction[left], jam)
             left = left[np.abs(axial[left] - now) > _SETTLED * now]
-        ratios = self._table.rubbing((axial * factor).reshape(shape), self._place)
-        return ratios[0] * self._on_points[0], ratios[1] * self._on_points[1]
-
-    @cached_property
-    def _side_factor(self) -> Array:
-        return self.motion.push.side_factor
+        return supports.rubbing(axial.reshape(shape))
 
     def _jam_index_max(self, force: Array, system: FollowerOfDesigns) -> Array:
         """Jam index on the rise at the maximum friction (m, n)."""
@@ -414,7 +367,7 @@ class Designs:
         )
         rubbing_a, rubbing_b = self._settled(force, most)
         index = most.friction_a * rubbing_a + most.friction_b * rubbing_b
-        return demands.jam_outward(self.motion.slope, index * self._side_factor)
+        return demands.jam_outward(self.motion.slope, index * self._supports.factor)
 
     def greatest_friction(self, side: Literal["a", "b"]) -> Array:
         """Maximum friction coefficient of a guide (m, 1)."""
@@ -424,30 +377,25 @@ class Designs:
 
     @cached_property
     def contact_width(self) -> Array:
-        """Width of the line contact (m, 1), m: the overlap of the flats of cam and roller."""
-        cam, roller = (
-            self.value(f"{part}.width") - 2.0 * np.nan_to_num(self.value(f"{part}.end.size"))
-            for part in ("cam", "roller")
-        )
-        offset = np.nan_to_num(self.value("roller.axial_offset"))
-        return np.asarray(np.minimum(np.minimum(cam, roller), 0.5 * (cam + roller) - offset))
+        """Width of the line contact (m, 1), m: the overlap of the flats of cam and follower."""
+        cam = self.value("cam.width") - 2.0 * np.nan_to_num(self.value("cam.end.size"))
+        other, offset = self.shape.line_width, np.nan_to_num(self.value("roller.axial_offset"))
+        return np.asarray(np.minimum(np.minimum(cam, other), 0.5 * (cam + other) - offset))
 
     @cached_property
-    def _relative_curvature(self) -> Array:
-        """1/R (m, n), 1/m: 1/r + kappa/(1 - r kappa) of roller and contour; NaN if undercut."""
-        factor = self.at_loads(self.undercut_factor)
-        bounded = np.where(self.least_factor[:, None] > 0.0, factor, np.nan)
-        return np.asarray(1.0 / (self.value("roller.radius") * bounded))
+    def relative_radius(self) -> Array:
+        """Relative radius R of cam and follower (m, n), m; NaN if undercut."""
+        radius = self.at_loads(self.shape.relative_radius)
+        return np.where(self.shape.least_factor[:, None] > 0.0, radius, np.nan)
 
     @cached_property
     def _ellipse(self) -> Ellipse | None:
-        """Contact of the crowned rollers under 1 N (m, n); None of straight ones."""
+        """Contact of the crowned bodies under 1 N (m, n); None of straight ones."""
         if self.machine.crown_radius is None:
             return None
-        radii = (self.value(f"{part}.crown.radius") for part in ("cam", "roller"))
+        radii = (self.value(f"{part}.crown.radius") for part in ("cam", self.shape.part))
         crown = 1.0 / sum(np.nan_to_num(1.0 / radius) for radius in radii)
-        curvature = self._relative_curvature
-        radius = 1.0 / np.where(np.isnan(curvature), 1.0, curvature)
+        radius = np.where(np.isnan(self.relative_radius), 1.0, self.relative_radius)
         modulus = self.machine.contact_modulus
         return elliptic_contact(1.0, radius, crown, modulus, interpolated=True)
 
@@ -457,14 +405,14 @@ class Designs:
         NaN where the contour bounds no body. As `crowned_contact`: an ellipse longer than the width
         has at least the pressure of the line.
         """
-        force, curvature = np.maximum(normal_force, 0.0), self._relative_curvature
+        force, radius = np.maximum(normal_force, 0.0), self.relative_radius
         modulus, width = self.machine.contact_modulus, self.contact_width
-        line = np.sqrt(peak_pressure_square(force / width, curvature, modulus))
+        line = np.sqrt(peak_pressure_square(force / width, 1.0 / radius, modulus))
         if self._ellipse is None:
             return line, line, np.ones(line.shape, dtype=bool)
         scale = np.cbrt(force)
         longer = 2.0 * scale * self._ellipse.half_length > width
-        crowned = np.where(np.isnan(curvature), np.nan, scale * self._ellipse.p0)
+        crowned = np.where(np.isnan(radius), np.nan, scale * self._ellipse.p0)
         return line, np.where(longer, np.maximum(crowned, line), crowned), longer
 
     @cached_property

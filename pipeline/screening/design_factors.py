@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from camwright.geometry.arrays import Array
 from camwright.geometry.errors import CamError, InputError
+from camwright.geometry.flat_face_contour import require_face_width
 from camwright.pipeline.base import units
 from camwright.pipeline.base.quantities import In
 from camwright.pipeline.case.case import Case
@@ -39,6 +40,7 @@ ARRAYS: tuple[str, ...] = (
     "roller.bearing.speed_limit", "roller.bearing.radial_limit",
     "roller.bearing.static_radial_limit",
     "follower.mass", "follower.overhang_at_max_lift", "follower.viscous_damping",
+    *(f"follower.face.{name}" for name in ("width", "depth", "thickness", "friction", "pv_limit")),
     "guides.spacing",
     "guides.a.friction", "guides.a.friction_min", "guides.a.friction_max",
     "guides.b.friction", "guides.b.friction_min", "guides.b.friction_max",
@@ -213,7 +215,9 @@ def _number(quantity: In, value: TomlValue) -> float:
         return np.nan
 
 
-def refusals(case: Case, values: Mapping[str, Array], highest: Array) -> list[str]:
+def refusals(
+    case: Case, values: Mapping[str, Array], highest: Array, travel: Array | None = None
+) -> list[str]:
     """Refusal of each design in words, "" where it is accepted.
 
     Suspects are found on arrays; the case of each is then made, and names field, value and limit.
@@ -222,14 +226,17 @@ def refusals(case: Case, values: Mapping[str, Array], highest: Array) -> list[st
     ----------
     values : mapping       by key of an array path, SI, each (m,)
     highest : array (m,)   maximum lift, m; NaN where it is not known
+    travel : array (m,)    of the contact on a flat face, m; None: a roller, or not known
     """
     words = [""] * highest.size
-    for row in np.flatnonzero(_suspects(case, values, highest)):
+    for row in np.flatnonzero(_suspects(case, values, highest, travel)):
         numbers = {key: float(column[row]) for key, column in values.items()}
         try:
             own = replaced(case, numbers)
             check_numbers(own)
             _require_guided(own, float(highest[row]))
+            if travel is not None and own.follower.face is not None:
+                require_face_width(own.follower.face.width, float(travel[row]))
         except CamError as error:
             words[row] = str(error)
     return words
@@ -244,7 +251,9 @@ def _require_guided(case: Case, highest: float) -> None:
     require_fit(state.stem, state.guides, np.array([least, least + highest]), knots=3)
 
 
-def _suspects(case: Case, values: Mapping[str, Array], highest: Array) -> NDArray[np.bool_]:
+def _suspects(
+    case: Case, values: Mapping[str, Array], highest: Array, travel: Array | None
+) -> NDArray[np.bool_]:
     """Designs that may be refused (m,): out of bounds, or against one another."""
     count = highest.size
 
@@ -261,6 +270,8 @@ def _suspects(case: Case, values: Mapping[str, Array], highest: Array) -> NDArra
         if isinstance(quantity, In):
             wrong |= ~quantity.holds_each(column)
     with np.errstate(invalid="ignore"):  # a comparison with NaN, of a missing value, is false
+        if travel is not None:
+            wrong |= at("follower.face.width") <= travel
         surface = at("cam.prime_radius") - np.nan_to_num(at("roller.radius"))
         inside = at("cam.bore_radius") + np.nan_to_num(at("cam.keyway.depth"))
         wrong |= (np.abs(at("cam.offset")) >= at("cam.prime_radius")) | (surface <= 0.0)
@@ -268,10 +279,10 @@ def _suspects(case: Case, values: Mapping[str, Array], highest: Array) -> NDArra
         wrong |= at("roller.hub_radius") >= at("roller.radius")
         wrong |= at("roller.radius") < 0.5 * at("roller.bearing.ring.outer_diameter")
         flats = [
-            at(f"{part}.width") - 2.0 * np.nan_to_num(at(f"{part}.end.size"))
-            for part in ("cam", "roller")
+            at(f"{part}.{width}") - 2.0 * np.nan_to_num(at(f"{part}.end.size"))
+            for part, width in (("cam", "width"), ("roller", "width"), ("follower.face", "depth"))
         ]
-        wrong |= (flats[0] <= 0.0) | (flats[1] <= 0.0)
+        wrong |= (flats[0] <= 0.0) | (flats[1] <= 0.0) | (flats[2] <= 0.0)
         wrong |= at("roller.axial_offset") >= 0.5 * (flats[0] + flats[1])
         wrong |= at("roller.pin.span") < at("roller.width")
         if (wound := wound_spring(case, at)) is not None:

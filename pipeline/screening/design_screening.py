@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Collection, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -26,9 +26,11 @@ from camwright.pipeline.checks.registry import DECLARED, accepted
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.follower.spring import spring_energy
 from camwright.pipeline.preview import preview_case
+from camwright.pipeline.screening.cam_shapes import FaceShape
 from camwright.pipeline.screening.design_arrays import Designs, Source, TorqueOfSpeed, Turns
 from camwright.pipeline.screening.design_factors import Factor, Group, count_of, groups, refusals
-from camwright.pipeline.screening.screened_checks import SCREENED, Screened, torque_after
+from camwright.pipeline.screening.screened_checks import SCREENED, Screened
+from camwright.pipeline.screening.screened_loads import torque_after
 from camwright.pipeline.smoothing.smoothers import Smoother, smoothed
 
 if TYPE_CHECKING:
@@ -37,7 +39,6 @@ if TYPE_CHECKING:
 
 BLOCK = 500
 """Designs solved at once: arrays of some megabytes."""
-KIND = "follower.kind"
 Column = NDArray[np.float64] | NDArray[np.object_]
 
 
@@ -75,11 +76,11 @@ def screen_designs(
 
     Designs that differ in the keys of `ARRAYS` alone, and in preload and speed of load cases, are
     solved as arrays: rate, preload, travel and winding of the spring, prime and roller radius,
-    offset, widths, bore, bearing ratings, follower mass, overhang and damping, spacing and friction
-    of the guides, inertia, share of compensation, width of a smoother and every limit. Others are
-    grouped by their values, with one case each. The rate is `spring.rate`, not that of the winding:
-    a check compares them. The lift of a constrained synthesis is that of the case: every design
-    keeps its stored energy.
+    offset, widths, bore, bearing ratings, sizes, friction and PV limit of a flat face, follower
+    mass, overhang and damping, spacing and friction of the guides, inertia, share of compensation,
+    width of a smoother and every limit. Others are grouped by their values, with one case each. The
+    rate is `spring.rate`, not that of the winding: a check compares them. The lift of a constrained
+    synthesis is that of the case: every design keeps its stored energy.
 
     Parameters
     ----------
@@ -100,9 +101,8 @@ def screen_designs(
     Raises
     ------
     InputError
-        If a key is unknown, the factors differ in length, or the follower has no roller.
+        If a key is unknown, or the factors differ in length.
     """
-    require_roller(case, factors)
     if not 36 <= positions <= 7200:
         raise InputError("positions", positions, "36 to 7200")
     count = count_of(factors)
@@ -121,22 +121,6 @@ def screen_designs(
         for rows, own in blocks.screened():
             _put(columns, rows, own)
     return columns
-
-
-def require_roller(case: Case, factors: Collection[str] = ()) -> None:
-    """Refuse a flat face, whose contour and width are not solved as arrays.
-
-    Parameters
-    ----------
-    factors : collection   keys that vary: the kind of the follower may be one
-
-    Raises
-    ------
-    InputError
-    """
-    if case.roller_given is None and KIND not in factors:
-        limit = '"roller" at the depth screening; a flat face needs the depth preview'
-        raise InputError(KIND, case.follower.kind, limit)
 
 
 def _put(
@@ -163,14 +147,13 @@ class _Blocks:
 
     @classmethod
     def of(cls, case: Case, group: Group, positions: int) -> _Blocks:
-        require_roller(case)
         energy = None
         if case.lift is None and case.smoothing.kind == "constrained":
             case, energy = synthesis(case)
         torques = {
             k: TorqueOfSpeed.of(case, k, group.values.get(f"load_case[{k}].speed"))
             for k, state in enumerate(case.load_cases)
-            if has_torque(case, state)
+            if case.balances and has_torque(case, state)
         }
         return cls(case, group, energy, torques, positions)
 
@@ -204,7 +187,8 @@ class _Blocks:
     def _columns(self, values: Mapping[str, Array]) -> dict[str, Column]:
         designs = self._designs(values)
         columns = judged_columns(designs) | headline_columns(designs)
-        refused = np.array(refusals(self.case, values, designs.highest), dtype=object)
+        travel = designs.shape.face_width if isinstance(designs.shape, FaceShape) else None
+        refused = np.array(refusals(self.case, values, designs.highest, travel), dtype=object)
         away = refused != ""
         if away.any():
             for column in columns.values():
@@ -294,8 +278,7 @@ def judged_columns(designs: Designs) -> dict[str, Column]:
     lost = _lost_loads(designs)
     for each in sorted(SCREENED, key=lambda one: one.check):  # the first governs among equal ones
         declared = DECLARED[each.check]
-        part = declared.part
-        if part and not (machine.scope.covers(part) and machine.describes(part)):
+        if not declared.concerns(machine):
             continue
         judged = _without_lost_loads(designs, each, lost.get(declared.rests_on))
         if judged is None:
@@ -308,7 +291,7 @@ def judged_columns(designs: Designs) -> dict[str, Column]:
                 greater = (used > most) & (figures["status"] != "waived")  # NaN is not
                 governing[greater], most[greater] = each.check, used[greater]
             fails |= figures["status"] == "fail"
-    cut = designs.least_factor
+    cut = designs.shape.least_factor
     return columns | {
         "screen": _SCREEN[fails.astype(int)],
         "governing": governing,
@@ -417,19 +400,16 @@ def headline_columns(designs: Designs) -> dict[str, Column]:
 
     p0 = over(lambda each: each.p0_line)
     least = np.min([sampled_least(each.loads.normal_force) for each in turns], axis=0)
+    steepest = sampled_greatest(np.abs(designs.shape.pressure_angle))
     figures = {
         "lift_max_mm": 1e3 * designs.highest,
-        "pressure_angle_max_deg": np.degrees(sampled_greatest(np.abs(designs.pressure_angle))),
-        "pitch_radius_of_curvature_min_mm": 1e3 / sampled_greatest(designs.pitch_curvature),
+        "pressure_angle_max_deg": np.degrees(steepest),
+        "pitch_radius_of_curvature_min_mm": 1e3 * designs.shape.least_convex_radius,
         "normal_force_min_N": np.maximum(least, 0.0),
         "normal_force_max_N": over(lambda each: each.loads.normal_force),
         "p0_hertz_max_MPa": 1e-6 * p0,
-        "guide_reaction_A_max_N": over(
-            lambda each: np.abs(each.guides.net_a * each.loads.reaction_a)
-        ),
-        "guide_reaction_B_max_N": over(
-            lambda each: np.abs(each.guides.net_b * each.loads.reaction_b)
-        ),
+        "guide_reaction_A_max_N": over(lambda each: each.guides.net_a),
+        "guide_reaction_B_max_N": over(lambda each: each.guides.net_b),
         "friction_loss_J_per_cam_turn": np.where(lost, np.nan, _friction_loss(first)),
     }
     if before is not None:
@@ -445,7 +425,7 @@ def headline_columns(designs: Designs) -> dict[str, Column]:
 
 
 def _friction_loss(turns: Turns) -> Array:
-    """Friction loss of the guides over one cam turn (m,), J."""
+    """Friction loss of the guides and of a face over one cam turn (m,), J."""
     loads = turns.loads
-    rubbing = loads.friction_force * np.abs(loads.lift_slope)
+    rubbing = loads.friction_force * np.abs(loads.lift_slope) + loads.sliding_torque
     return FULL_TURN * np.mean(rubbing + loads.viscous_force * loads.lift_slope, axis=-1)

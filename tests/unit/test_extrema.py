@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from camwright.geometry.extrema import greatest, least, local_minima
+from camwright.geometry.extrema import greatest, least, local_minima, sampled_greatest
 
 
 @pytest.mark.parametrize("place", [0.0, 1e-9, 1.234567, 3.0, 6.28])
@@ -54,3 +54,23 @@ def test_of_a_function_that_is_not_known_everywhere_nothing_is_known():
         found = extreme(known_but_for_a_gap, 720)
         assert np.isnan(found.value)
         assert abs(found.theta - 2.0) < 0.11
+
+
+def test_a_maximum_between_samples_is_that_of_the_function() -> None:
+    theta = np.arange(180) * (2.0 * np.pi / 180.0)
+    values = np.cos(theta - np.array([[0.3], [0.301], [0.317]])) + 2.0
+    np.testing.assert_allclose(sampled_greatest(values), 3.0, rtol=0.0, atol=1e-6)
+
+
+@pytest.mark.parametrize("middle", [0.0, 0.5, 1.0])
+def test_a_step_between_samples_has_no_maximum_beyond_them(middle: float) -> None:
+    """One sample may lie on the flank of the step; the plateau falls slowly."""
+    values = np.r_[np.zeros(20), middle, 1.0 - 1e-3 * np.arange(20)]
+    assert sampled_greatest(values) == pytest.approx(1.0, abs=1e-3)
+
+
+def test_a_kink_between_samples_is_bounded_by_its_sides() -> None:
+    """Slopes 1 and -3 meet at 0.4 of a step: the value there is 0.4 above the sample before."""
+    place = np.arange(-20.0, 20.0)
+    values = np.where(place <= 0.4, place, 0.4 - 3.0 * (place - 0.4))
+    assert 0.0 <= sampled_greatest(values) <= 0.4 + 1e-12

@@ -35,10 +35,23 @@ def case() -> Case:
     return read_case(CASES / "gx120.toml")
 
 
-def test_a_flat_face_is_refused_by_name() -> None:
+def test_a_face_that_the_contact_leaves_is_a_row_as_in_the_preview() -> None:
     flat = read_case(CASES / "papers" / "petrescu_c.toml")
-    with pytest.raises(InputError, match=r'follower\.kind = flat, must be "roller" at the depth'):
-        screen_designs(flat, {"spring.preload": np.array([20.0, 40.0])})
+    widths = ["8 mm", "30 mm"]
+    columns = screen_designs(flat, {"follower.face.width": widths})
+    assert list(columns["screen"]) == ["error", "open"]
+    assert np.isnan(columns["face_width.demand"]).tolist() == [True, False]
+    with pytest.raises(InputError) as refused:
+        preview_case(with_values(flat, {"follower.face.width": widths[0]}), corners=False)
+    assert columns["message"][0] == str(refused.value)
+    assert columns["message"][0].startswith("follower.face.width = 8 mm, must be > ")
+
+
+def test_a_value_that_the_follower_does_not_have_is_a_row() -> None:
+    flat = read_case(CASES / "papers" / "petrescu_c.toml")
+    columns = screen_designs(flat, {"roller.radius": ["5 mm"], "spring.preload": [20.0]})
+    assert columns["screen"][0] == "error"
+    assert columns["message"][0].startswith("roller")
 
 
 def test_refused_designs_are_rows_that_name_field_value_and_limit() -> None:

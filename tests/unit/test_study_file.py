@@ -306,17 +306,6 @@ def test_an_objective_stays_among_the_outputs() -> None:
     assert plan.settings.outputs == ("mesh.*", column)
 
 
-def test_a_flat_face_is_refused_at_the_depth_screening_alone() -> None:
-    """Before the cluster starts, unless the kind of the follower is a factor."""
-    factor = {"key": "spring.preload", "range": {"low": "20 N", "high": "40 N"}}
-    tables = BASE | {"factor": [factor], "sampling": {"method": "sobol", "count": 2}}
-    templates = read_templates(ROOT / "cases" / "papers", ["petrescu_c.toml"])
-    words = 'follower.kind = flat, must be "roller" at the depth screening; .* the depth preview'
-    with pytest.raises(InputError, match=words):
-        planned(study_of(tables | {"depth": "screening"}), templates)
-    assert len(planned(study_of(tables | {"depth": "preview"}), templates).ids) == 2
-
-
 def test_designs_of_a_study_that_stops_are_the_first_ones() -> None:
     """Numbers 0 to 5 are of the unique designs 0, 1, 0, 2, 1, 3."""
     levels = ["5 mm", "6 mm", "5 mm", "7 mm", "6 mm", "8 mm"]

@@ -98,8 +98,8 @@ def planned(study: Study, templates: Sequence[Template]) -> Plan:
     Raises
     ------
     InputError
-        If a factor does not fit the first case, the sampling does not fit the factors, an
-        objective is no column of numbers, or the follower of a screened case has no roller.
+        If a factor does not fit the first case, the sampling does not fit the factors, or an
+        objective is no column of numbers.
     """
     return _plan(study, templates, _axes(study, templates), _settings(study, templates))
 
@@ -111,7 +111,6 @@ def _axes(study: Study, templates: Sequence[Template]) -> list[Axis]:
         cases = UnpackedTemplates(templates)
         base = cases[templates[0].name]
         axes = [axis_of(factor, base) for factor in study.factors]
-        _require_screened(study, cases)
     for each in study.objectives:
         _require_numbers(each.column, {axis.key: axis.unit for axis in axes})
     return axes
@@ -138,16 +137,6 @@ def _plan(
     if study.sampling is not None:
         designs = designs_of(axes, study.sampling, study.correlations)
     return Plan.of([each.name for each in templates], designs, settings)
-
-
-def _require_screened(study: Study, cases: UnpackedTemplates) -> None:
-    """Refuse a case that cannot be screened, before all of its designs are refused."""
-    if study.tier is Tier.SCREENING:
-        from camwright.pipeline.screening.design_screening import require_roller
-
-        keys = [factor.key for factor in study.factors]
-        for each in cases:
-            require_roller(each, keys)
 
 
 def _require_numbers(name: str, units: Mapping[str, str | None]) -> None:

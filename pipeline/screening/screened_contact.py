@@ -1,0 +1,126 @@
+"""Demand and limit of the checks of contact, roller bearing and flat face, of many designs."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from camwright.geometry.arrays import Array
+from camwright.pipeline.case.limits import (
+    EDGE_FACTOR,
+    ROLLER_LIFE,
+    ROLLER_LOAD_SHARE,
+    ROLLER_SPEED_SHARE,
+    ROLLER_STATIC_SAFETY,
+    Limit,
+)
+from camwright.pipeline.checks.contact_strength import LeastLimit, LoadCycles, pressure_limits
+from camwright.pipeline.contact.hertz import half_width_square
+from camwright.pipeline.follower.flat_face_motion import sliding_pv
+from camwright.pipeline.follower.roller_motion import rating_life, rolling_share
+from camwright.pipeline.screening.design_arrays import Designs, Judged, Turns
+
+
+def _pressure(_: Designs, turns: Turns) -> Array:
+    return turns.p0
+
+
+def pressure_at_edge(designs: Designs, turns: Turns) -> Array:
+    """The edge factor stands in the demand, the limit is that of the contact pressure."""
+    return np.where(turns.edged, designs.limit(EDGE_FACTOR)[:, None], 1.0) * turns.p0
+
+
+def contact(
+    name: str, safety: Limit, pressure: Callable[[Designs, Turns], Array] = _pressure
+) -> Callable[[Designs], Judged]:
+    """Contact pressure (m, n) against the least limit of cam and roller."""
+
+    def judged(designs: Designs) -> Judged:
+        limits = pressure_limits(designs.machine, LoadCycles(0.0, 0.0))
+        demand = designs.worst(lambda turns: pressure(designs, turns))
+        return demand, _least_limit(designs, limits[name], safety, demand)
+
+    return judged
+
+
+def _least_limit(designs: Designs, least: LeastLimit, safety: Limit, demand: Array) -> Array:
+    """Limit (m,) at the safety of each design; missing where a body lacks it, unless exceeded."""
+    if least.value is None:
+        return np.full(designs.count, np.nan)
+    limit = least.value * designs.machine.limits[safety] / designs.limit(safety)
+    return np.where(demand > limit, limit, np.nan) if least.missing else limit
+
+
+def _greatest_force(designs: Designs) -> Array:
+    return designs.worst(lambda turns: turns.loads.normal_force)
+
+
+def _bearing(key: str, designs: Designs) -> Array:
+    return designs.value(f"roller.bearing.{key}")[:, 0]
+
+
+def roller_static(designs: Designs) -> Judged:
+    force = _greatest_force(designs)
+    safety = np.divide(
+        _bearing("C0", designs), force, out=np.full_like(force, np.nan), where=force > 0.0
+    )
+    return safety, designs.limit(ROLLER_STATIC_SAFETY)
+
+
+def roller_load_share(designs: Designs) -> Judged:
+    return _greatest_force(designs) / _bearing("C", designs), designs.limit(ROLLER_LOAD_SHARE)
+
+
+def roller_radial(designs: Designs) -> Judged:
+    return _greatest_force(designs), _bearing("radial_limit", designs)
+
+
+def roller_static_radial(designs: Designs) -> Judged:
+    return _greatest_force(designs), _bearing("static_radial_limit", designs)
+
+
+def _spin(designs: Designs, turns: Turns) -> Array:
+    """Speed of the roller on its pin (m, n), rad/s."""
+    speed = designs.at_loads(designs.shape.pitch_speed)
+    return np.asarray(turns.cam_speed * rolling_share(speed, designs.value("roller.radius")))
+
+
+def roller_speed(designs: Designs) -> Judged:
+    worst = designs.worst(lambda turns: np.abs(_spin(designs, turns)))
+    return worst, designs.limit(ROLLER_SPEED_SHARE) * _bearing("speed_limit", designs)
+
+
+def roller_life(designs: Designs) -> Judged:
+    rating = _bearing("C", designs)
+    known = np.where(np.isnan(rating), 1.0, rating)
+    lives = [
+        (rating_life(turns.loads.normal_force, _spin(designs, turns), known).seconds, each.duty)
+        for turns in designs.turns
+        if (each := turns.state).duty != 0.0
+    ]
+    if not lives:
+        life = np.full(designs.count, np.nan)
+    elif all(duty is None for _, duty in lives):
+        life = np.min([each for each, _ in lives], axis=0)
+    else:
+        life = 1.0 / np.sum([(duty or 0.0) / each for each, duty in lives], axis=0)
+    return np.where(np.isnan(rating), np.nan, life), designs.limit(ROLLER_LIFE)
+
+
+def face_width(designs: Designs) -> Judged:
+    width = designs.contact_width
+    arm = np.abs(designs.at_loads(designs.shape.arm))
+
+    def needed(turns: Turns) -> Array:
+        load = np.maximum(turns.loads.normal_force, 0.0) / width
+        radius, modulus = designs.relative_radius, designs.machine.contact_modulus
+        return 2.0 * (arm + np.sqrt(half_width_square(load, radius, modulus)))
+
+    return designs.worst(needed), designs.value("follower.face.width")[:, 0]
+
+
+def face_pv(designs: Designs) -> Judged:
+    height = designs.at_loads(designs.shape.height)
+    worst = designs.worst(lambda turns: sliding_pv(turns.p0, turns.cam_speed * height))
+    return worst, designs.value("follower.face.pv_limit")[:, 0]
