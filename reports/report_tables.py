@@ -25,6 +25,7 @@ MINUS = "\N{MINUS SIGN}"
 DASH = "\N{EN DASH}"
 UNPRINTABLE = re.compile(r"[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\ud800-\udfff\ufffe\uffff]")
 TURNING = {"R", "AL", "RLE", "RLO", "LRE", "LRO", "RLI", "LRI", "FSI", "PDF", "PDI"}
+_TYPED_MINUS = re.compile(r"(?<![^\s(])-(?=\d)")  # before a number
 SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 SHOWN_AS = {
     "Pa": ("MPa", 1e-6),
@@ -142,6 +143,13 @@ def shortened(text: str, length: int) -> str:
     """Text on one line, cut to `length` characters."""
     line = " ".join(plain(text).split())
     return line if len(line) <= length else line[: length - 1] + "…"
+
+
+def printed(text: str) -> str:
+    """A line of the terminal with the signs of print: minus, arrow, comparisons."""
+    for typed, sign in (("->", "→"), (">=", "≥"), ("<=", "≤")):
+        text = text.replace(f" {typed} ", f" {sign} ")
+    return _TYPED_MINUS.sub(MINUS, text)
 
 
 def isolated(text: str) -> str:
@@ -276,7 +284,7 @@ def check_rows(checks: Sequence[Record]) -> list[CheckRow]:
             error=_error(check, unit), corner=": ".join(worst_corner(check) or ()),
             unproven=not_proven(check), judged_at=str(check["judged_at"]),
             evidence=bool(check["evidence"]),
-            remedy=str(check.get("remedy") or ""), part=part_of(check),
+            remedy=printed(str(check.get("remedy") or "")), part=part_of(check),
         ))  # fmt: skip
     return rows
 

@@ -26,6 +26,7 @@ from camwright.reports.report_tables import (
     Record,
     check_rows,
     isolated,
+    printed,
     sorted_checks,
     words,
 )
@@ -147,7 +148,7 @@ def verdict(
         ),
         label="Verdict" if depth == CERTIFIED else "Screen, no verdict",
         worst=tuple(
-            (isolated(failure_words(c)), isolated(str(c.get("remedy") or "")))
+            (isolated(printed(failure_words(c))), isolated(printed(str(c.get("remedy") or ""))))
             for c in failures(records)[:WORST]
         ),
     )

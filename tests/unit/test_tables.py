@@ -133,10 +133,18 @@ def test_the_page_lists_what_is_missing_not_proven_waived_and_to_be_confirmed():
     assert verdict("fail", checks, (), "no room; a").lists[-1] == (
         "Reasons to end the trials", ("no room", "a"),
     )  # fmt: skip
-    assert said.worst == (("B: 1.95 MPa, limit <= 2 MPa (98 %), idle 12.5 deg", ""),)
+    assert said.worst == (("B: 1.95 MPa, limit ≤ 2 MPa (98 %), idle 12.5 deg", ""),)
     row = next(row for row in report_tables.check_rows(checks) if row.id == "b")
     assert row.status.words == "fail, not proven"
     assert ("not proven: 1.950 ± 0.060 against 2", True) in row.remarks
+
+
+def test_a_line_of_the_terminal_is_printed_with_the_signs_of_print():
+    line = "F/F0: -0.9, limit >= 0.2; follower.mass-1: 100 g; (-3 mm) p0 1176 -> 1428 MPa, 1e-3"
+    assert report_tables.printed(line) == (
+        "F/F0: \N{MINUS SIGN}0.9, limit ≥ 0.2; follower.mass-1: 100 g; (\N{MINUS SIGN}3 mm)"
+        " p0 1176 → 1428 MPa, 1e-3"
+    )
 
 
 def test_the_sentence_counts_what_holds_fails_and_is_missing():
