@@ -16,7 +16,6 @@ from camwright.reports.sheet_turn import Turn
 
 _COLUMNS = {"contact": "normal_force_N", "spring": "spring_force_N",
             "guide-a": "guide_reaction_A_N", "guide-b": "guide_reaction_B_N"}  # fmt: skip
-_SEAT = 0.22  # of the stem: thickness of a seat
 # Shares of the stem diameter where the case has no size.
 _COIL, _WIRE, _GUIDE, _OVERHANG, _SPACING = 2.6, 0.42, 2.0, 3.0, 7.0
 _PIN_SHARE = 0.5  # of the roller
@@ -122,7 +121,7 @@ def _guides(turn: Turn, stem: float, highest: float) -> tuple[Bush, Bush]:
 
 def _spring(turn: Turn, stem: float, stroke: float, guides: tuple[Bush, Bush]) -> Spring:
     """The spring between the guides where it fits there, else above them."""
-    kind, seat = turn.case.get("spring", {}).get("kind", "coil"), _SEAT * stem
+    kind, seat = turn.case.get("spring", {}).get("kind", "coil"), arrangement.SEAT * stem
     above = _top(guides[1]) + seat + 0.3 * stem
     if kind == "gas":
         area = turn.length("spring", "gas", "area", unit="mm^2") or stem**2

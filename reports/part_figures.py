@@ -99,17 +99,13 @@ def _load_cases(turn: Turn) -> Figure | None:
     names = tuple(name for each in turn.others for name in each.load_cases)
     x = np.arange(1.0, len(names) + 1.0)
 
-    def extreme(column: str, measure: Callable[[Array], float]) -> Array:
-        known = (np.nan_to_num(each[column]) for each in turn.others)
-        return np.array([measure(values) for values in known])
-
-    def largest(values: Array) -> float:
-        return float(np.max(np.abs(values)))
+    def largest(column: str) -> Array:
+        return np.array([np.max(np.abs(np.nan_to_num(each[column]))) for each in turn.others])
 
     def bars(title: str, unit: str, *rows: tuple[str, str], limits: tuple[LimitLine, ...] = (),
              notes: tuple[str, ...] = ()) -> Panel:  # fmt: skip
         curves = tuple(
-            Curve(label, extreme(column, largest), colour, notes=notes if not k else ())
+            Curve(label, largest(column), colour, notes=notes if not k else ())
             for k, ((column, label), colour) in enumerate(zip(rows, SERIES, strict=False))
         )
         return Panel(title, unit, curves, limits, height=0.75, from_zero=True)

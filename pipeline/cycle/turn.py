@@ -141,16 +141,16 @@ class _Strokes:
     _known: dict[_Key, Guided] = field(default_factory=dict)
     _together: bool = True
 
-    def of(self, given: TurnInput, system: FollowerSystem) -> Guided:
+    def of(self, turn_input: TurnInput, system: FollowerSystem) -> Guided:
         """A follower in its guides, with the bounds of the friction of every load case."""
-        key = _key(given, system)
+        key = _key(turn_input, system)
         if key not in self._known and self._together:
             try:
                 self.solve((each, one) for each in self.inputs for one in _rubbed(each.machine))
             except CamError:  # of one load case at least: each on its own
                 self._together = False
         if key not in self._known:
-            self.solve((given, one) for one in _rubbed(given.machine))
+            self.solve((turn_input, one) for one in _rubbed(turn_input.machine))
         return self._known[key]
 
     def solve(self, wanted: Iterable[tuple[TurnInput, FollowerSystem]]) -> None:
@@ -162,23 +162,25 @@ class _Strokes:
             If one of them cannot be solved.
         """
         left: dict[tuple[Stem, GuidePair], dict[_Key, Stroke]] = {}
-        for given, system in wanted:
-            key, machine = _key(given, system), given.machine
+        for turn_input, system in wanted:
+            key, machine = _key(turn_input, system), turn_input.machine
             if key not in self._known:
                 strokes = left.setdefault((machine.stem, machine.guides), {})
-                strokes[key] = Stroke(given.contour.pitch, system, machine.cam_speed, self.theta)
+                strokes[key] = Stroke(
+                    turn_input.contour.pitch, system, machine.cam_speed, self.theta
+                )
         for (stem, guides), strokes in left.items():
             solved = guided_strokes(tuple(strokes.values()), stem, guides, self.knots)
             self._known |= zip(strokes, solved, strict=True)
 
 
-def _key(given: TurnInput, system: FollowerSystem) -> _Key:
-    machine = given.machine
-    return machine.stem, machine.guides, id(given.contour.pitch), system, machine.cam_speed
+def _key(turn_input: TurnInput, system: FollowerSystem) -> _Key:
+    machine = turn_input.machine
+    return machine.stem, machine.guides, id(turn_input.contour.pitch), system, machine.cam_speed
 
 
 def _turn(
-    given: TurnInput,
+    turn_input: TurnInput,
     theta: Array,
     strokes: _Strokes,
     before: Array | None,
@@ -186,8 +188,8 @@ def _turn(
     coarse: bool,
 ) -> Turn:
     """Turn of one load case; `before` (n,), N m, is the torque of the engine less its mean."""
-    machine, contour, torque = given
-    nominal, driving = strokes.of(given, machine.system), None if coarse else torque
+    machine, contour, torque = turn_input
+    nominal, driving = strokes.of(turn_input, machine.system), None if coarse else torque
     loads = nominal.loads
     after = None if before is None else before - loads.cam_torque / machine.gear_ratio
     return Turn(
@@ -195,7 +197,7 @@ def _turn(
         theta=theta,
         loads=loads,
         bounds=lambda: friction_bounds(
-            lambda system: strokes.of(given, system).loads, machine.system, machine.friction
+            lambda system: strokes.of(turn_input, system).loads, machine.system, machine.friction
         ),
         guides=nominal.reactions,
         friction_residual=nominal.residual,

@@ -32,6 +32,8 @@ from camwright.reports.drawing.spring_shapes import Coil, Spring
 
 _EDGE, _THIN = 0.45, 0.22  # mm, of lines on a mechanism `_WHOLE` high
 _WHOLE = 260.0
+SEAT = 0.22
+"""Thickness of a seat of the spring over the diameter of the stem."""
 _FORCE_SHARE = 0.85
 """Length of the greatest force over the least radius of the cam."""
 FORCES = {"contact": "Contact force", "spring": "Spring force",
@@ -245,7 +247,7 @@ def _follower(m: Mechanism) -> list[Shape]:
             Outline((rectangle(-0.5 * width, 0.0, 0.5 * width, thick),), edge),
         ]
     seat, reach = m.spring.seat - m.lowest, min(m.spring.reach, 4.0 * m.stem)
-    thick = 0.22 * m.stem
+    thick = SEAT * m.stem
     if not isinstance(m.spring, Coil):
         reach = 0.8 * m.stem
     made.append(Outline((rectangle(-reach, seat - thick, reach, seat),), edge))
@@ -274,7 +276,7 @@ def _guides(m: Mechanism) -> list[Shape]:
                 m.axis + side * 0.55 * m.stem,
                 m.axis + side * (m.spring.reach + m.stem / 4),
             )
-            box = (min(inner, outer), m.spring.top, max(inner, outer), m.spring.top + 0.22 * m.stem)
+            box = (min(inner, outer), m.spring.top, max(inner, outer), m.spring.top + SEAT * m.stem)
             made += [Outline(hatching(box, 3.2 * m.scale), thin, closed=False),
                      Outline((segment((inner, m.spring.top), (outer, m.spring.top)),),
                              Pen("ink", edge.width), closed=False)]  # fmt: skip
