@@ -47,7 +47,7 @@ def check_text(one: Declaration) -> CheckText:
     """Words of a declaration."""
     needs = f"; a {one.needs} only" if one.needs else ""
     part = f"; part `{one.part}`" if one.part else ""
-    depth = f"Judged from the depth {one.tier.word} on."
+    depth = f"Evaluated at the depth {one.tier.word} and deeper."
     if one.fails_from < one.tier:
         word = one.fails_from.word
         depth += f" At the depth {word} its utilisation is a lower bound: it can only fail."
