@@ -10,6 +10,7 @@ In the order of the calculation:
 | `brick_body`     | compliance of a block by finite elements                | m3           |
 | `length_contact` | pressures under force, tilt or moment                   | p, Pa; F, N  |
 | `length_tiers`   | both tiers over plane strain, error bars, many contacts | K, -         |
+| `factor_table`   | axial pressure of one pair of bodies, tabulated         | K, -         |
 
 Imports `contact` and `base`.
 """

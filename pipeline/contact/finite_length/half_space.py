@@ -37,14 +37,23 @@ def half_space_compliance(cells: PressureCells, bodies: tuple[FiniteBody, Finite
     """
     direct = influence(cells, 0.0, mirrored=False)
     total = np.zeros_like(direct)
+    mirrored: dict[float, Array] = {}
     for body in bodies:
-        whole = direct.copy()
+        whole = direct
         if np.isfinite(body.length):
-            factor = mirror_factor(body.material.poisson)
-            for end in (-0.5 * body.length, 0.5 * body.length):
-                whole += factor * influence(cells, 2.0 * end, mirrored=True)
+            if body.length not in mirrored:
+                mirrored[body.length] = _both_images(cells, body.length)
+            whole = direct + mirror_factor(body.material.poisson) * mirrored[body.length]
         total += whole / (np.pi * body.material.plane_strain_modulus)
     return total
+
+
+def _both_images(cells: PressureCells, length: float) -> Array:
+    """Influence of the loads mirrored at both ends of a length, m; cells symmetric in y."""
+    image = influence(cells, length, mirrored=True)
+    count = cells.shape
+    other = image.reshape(*count, *count)[::-1, :, ::-1].reshape(image.shape)
+    return np.asarray(image + other)
 
 
 def influence(cells: PressureCells, shift: float, *, mirrored: bool) -> Array:

@@ -57,17 +57,31 @@ class LengthContact:
 
         Of the centre line, from the last cell in contact.
         """
-        edges, line = self.cells.y, self.centre_line
-        means = np.empty((len(line), 2))
-        for row, values in enumerate(line):
-            touching = np.flatnonzero(values > 0)
-            primitive = np.concatenate([[0.0], np.cumsum(values * np.diff(edges))])
-            first, last = edges[touching[0]], edges[touching[-1] + 1]
-            if not last - first >= length:
-                raise ContactError("the contact is shorter than the length of the mean at its end")
-            inner = np.interp([first, first + length, last - length, last], edges, primitive)
-            means[row] = np.diff(inner)[[0, 2]] / length
+        means, lengths = means_at_ends(self.cells.y, self.centre_line, length)
+        if not (lengths >= length).all():
+            raise ContactError("the contact is shorter than the length of the mean at its end")
         return means
+
+
+def means_at_ends(edges: Array, line: Array, length: float) -> tuple[Array, Array]:
+    """Mean pressures (count, 2), Pa, over the last `length`, m, of contact, and its length, m.
+
+    At small and large y, of pressures (count, m) on cells of edges (m + 1,), m, from the last cell
+    in contact; of the whole contact where that is shorter.
+    """
+    touching = line > 0
+    first = edges[touching.argmax(axis=1)]
+    last = edges[edges.size - 1 - touching[:, ::-1].argmax(axis=1)]
+    over = np.minimum(length, last - first)
+    primitive = np.cumsum(np.pad(line * np.diff(edges), ((0, 0), (1, 0))), axis=1)
+    rows = np.arange(len(line))
+
+    def integral(place: Array) -> Array:
+        left = np.clip(np.searchsorted(edges, place, side="right") - 1, 0, edges.size - 2)
+        return np.asarray(primitive[rows, left] + line[rows, left] * (place - edges[left]))
+
+    sums = [integral(first + over) - integral(first), integral(last) - integral(last - over)]
+    return np.stack(sums, axis=1) / over[:, None], last - first
 
 
 def solve(
@@ -78,6 +92,7 @@ def solve(
     *,
     tilt: ArrayLike | None = None,
     moment: ArrayLike | None = None,
+    guess: ArrayLike | None = None,
 ) -> LengthContact:
     """Pressures of contacts that differ in gap, force, and tilt or moment.
 
@@ -88,6 +103,7 @@ def solve(
     force : array (count,)      N, > 0, of the whole contact
     tilt : array (count,)       rad, prescribed between the supports of the compliance; default: 0
     moment : array (count,)     N m, about y = 0, prescribed instead of the tilt
+    guess : array (n,) of bool  cells in contact to begin with; the solution does not depend on them
 
     Raises
     ------
@@ -105,12 +121,12 @@ def solve(
     if moment is None:
         turned = np.broadcast_to(np.asarray(0.0 if tilt is None else tilt, dtype=float), (count,))
         solution = active_set.solve(
-            compliance, gaps - np.outer(turned, levers), areas, forces / 2.0
+            compliance, gaps - np.outer(turned, levers), areas, forces / 2.0, guess
         )
     else:
         moments = np.broadcast_to(np.asarray(moment, dtype=float), (count,))
         solution = active_set.solve(
-            compliance, gaps, areas, forces / 2.0, levers=levers, moment=moments / 2.0
+            compliance, gaps, areas, forces / 2.0, guess, levers=levers, moment=moments / 2.0
         )
         turned = solution.tilt
     pressure = solution.pressure.reshape(count, *cells.shape)

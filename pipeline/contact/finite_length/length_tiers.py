@@ -24,7 +24,7 @@ from camwright.pipeline.contact.elasticity.mesh_convergence import (
     converged_on_two,
 )
 from camwright.pipeline.contact.finite_length import brick_body, length_contact
-from camwright.pipeline.contact.finite_length.axial_drop import FiniteBody, FinitePair
+from camwright.pipeline.contact.finite_length.axial_drop import FiniteBody, FinitePair, Straight
 from camwright.pipeline.contact.finite_length.brick_body import BrickGrid, QuarterCompliance
 from camwright.pipeline.contact.finite_length.half_space import half_space_compliance
 from camwright.pipeline.contact.finite_length.length_contact import LengthContact
@@ -48,6 +48,9 @@ _BLOCK_GROWTH = 2.0
 _DEEPEST, _TILT = 2e4, 0.1
 # Contacts whose half-widths lie within this ratio share their cells.
 _SHARED = 1.1
+# Width of the cells of tilted contacts, in half-widths: near one end the load is concentrated.
+_TILTED = 5.0
+_CROWNED_LARGEST, _CROWNED_SHARE = 2e-4, 1.0 / 24.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -96,6 +99,16 @@ class TierResult:
         """Whether the greatest pressure is in the first or last cell of the centre line."""
         line = self.contact.centre_line[0]
         return int(line.argmax()) in (0, line.size - 1)
+
+
+def cycle_sizes(pair: FinitePair) -> CellSizes:
+    """Cells of contacts over a cycle: for any tilt; finer along a crowned contact, which is shorter
+    under light loads.
+    """
+    sizes = CellSizes(window=_TILTED)
+    if isinstance(pair.crown, Straight):
+        return sizes
+    return replace(sizes, largest=_CROWNED_LARGEST, largest_share=_CROWNED_SHARE)
 
 
 def plane_strain(pair: FinitePair, force: float) -> tuple[float, float]:
@@ -180,7 +193,6 @@ def half_space_factors(
     moment: ArrayLike = 0.0,
     *,
     mean_length: float = MEAN_LENGTH,
-    sizes: CellSizes = SIZES,
 ) -> AxialFactors:
     """Factors of many contacts of the same bodies by half-spaces, at every angle of a cycle.
 
@@ -205,7 +217,7 @@ def half_space_factors(
         rows = np.flatnonzero(group == each)
         widest = rows[np.argmax(half_width[rows])]
         here = replace(pair, curvature=float(kappa[widest]))
-        cells = pressure_cells(here, float(half_width[widest]), sizes)
+        cells = pressure_cells(here, float(half_width[widest]), cycle_sizes(pair))
         gaps = [
             cells.integrated_gap(replace(pair, curvature=float(value))) for value in kappa[rows]
         ]

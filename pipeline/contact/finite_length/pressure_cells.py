@@ -14,9 +14,8 @@ from camwright.geometry.errors import InputError
 from camwright.pipeline.contact.finite_length.axial_drop import FinitePair
 
 _GAUSS = np.polynomial.legendre.leggauss(5)
-# Uniform cells across the contact up to this multiple of the half-width, coarser ones up to the
-# second: at a chamfer the contact is twice as wide as in the middle.
-_UNIFORM, _WINDOW = 4.0 / 3.0, 2.2
+# Uniform cells across the contact up to this multiple of the half-width, coarser ones beyond.
+_UNIFORM = 4.0 / 3.0
 _ACROSS_GROWTH = 1.4
 # Drop of a rounded end, over half-width squared times curvature, up to which there are cells, and
 # cells per radius.
@@ -27,7 +26,8 @@ _ROUNDED, _PER_RADIUS = 4.0, 32
 class CellSizes:
     """Cells per half-width; size at the ends, m, of `uniform` cells, and growth from there.
 
-    The largest size is that in m or, if larger, the share of the length of contact.
+    The largest size is that in m or, if larger, the share of the length of contact. The cells reach
+    `window` half-widths across: at a chamfer the contact is twice as wide as in the middle.
     """
 
     per_half_width: float = 6.0
@@ -36,9 +36,10 @@ class CellSizes:
     growth: float = 1.6
     largest: float = 4e-4
     largest_share: float = 1.0 / 12.0
+    window: float = 2.2
 
     def __post_init__(self) -> None:
-        for name in ("per_half_width", "at_end", "uniform", "largest", "largest_share"):
+        for name in ("per_half_width", "at_end", "uniform", "largest", "largest_share", "window"):
             if not getattr(self, name) > 0:
                 raise InputError(name, getattr(self, name), "> 0")
         if not self.growth >= 1:
@@ -106,7 +107,7 @@ def pressure_cells(pair: FinitePair, half_width: float, sizes: CellSizes) -> Pre
     """
     h = half_width / sizes.per_half_width
     x = [h * k for k in range(int(np.ceil(_UNIFORM * sizes.per_half_width)) + 1)]
-    while x[-1] < _WINDOW * half_width:
+    while x[-1] < sizes.window * half_width:
         x.append(x[-1] + _ACROSS_GROWTH * (x[-1] - x[-2]))
     flat = 0.5 * pair.contact_length
     radii = [
