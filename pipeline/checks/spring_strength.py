@@ -418,7 +418,7 @@ def _gas_check(
     corner: str = "",
 ) -> Declaration:
     """Check of a gas spring against the limit of its maker, `spring.gas.<allowed>`."""
-    shown = celsius if unit == "degC" else float
+    in_display_unit = celsius if unit == "degC" else float
 
     @check(
         id=name,
@@ -440,8 +440,8 @@ def _gas_check(
         at = measured if isinstance(measured, Extreme) else None
         value = measured.value if isinstance(measured, Extreme) else measured
         return Demand(
-            None if value is None else shown(value),
-            None if limit is None else shown(limit),
+            None if value is None else in_display_unit(value),
+            None if limit is None else in_display_unit(limit),
             at,
             missing=lacking("spring.gas", gas, allowed, *needs),
             figures=(gas.source,),
