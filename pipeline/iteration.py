@@ -2,21 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import cache, cached_property
+from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 
 import numpy as np
 
 from camwright.geometry.arrays import FULL_TURN, Array
 from camwright.geometry.contour import Contour
-from camwright.geometry.errors import GeometryError
+from camwright.geometry.errors import CamError
 from camwright.geometry.follower_path import cam_axes
 from camwright.geometry.lift import Lift
 from camwright.pipeline.base.progress import SILENT, Progress
 from camwright.pipeline.base.tables import Table, Tabled, table
 from camwright.pipeline.base.units import in_unit, shown
+from camwright.pipeline.base.worker_processes import ALONE, Crew
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.given_lift import given_lift, lift_origin
 from camwright.pipeline.case.load_case_torque import engine_torques
@@ -53,7 +54,7 @@ from camwright.pipeline.smoothing.required_lift import cam_lift
 from camwright.pipeline.smoothing.shadow_prices import limits_in_use, machine_prices
 from camwright.pipeline.smoothing.smoothers import Smoother
 from camwright.pipeline.smoothing.smoothing_feedback import Stop, next_smoother
-from camwright.pipeline.smoothing.smoothing_forecast import Attempt
+from camwright.pipeline.smoothing.smoothing_forecast import Attempt, Forecast
 from camwright.pipeline.smoothing.synthesis_problem import Design, Problem
 from camwright.pipeline.solver import solve
 from camwright.pipeline.torque.torque import Torque
@@ -167,6 +168,8 @@ def trials_of(
     tier: Tier = Tier.CYCLE,
     sink: TrialSink | None = None,
     progress: Progress = SILENT,
+    workers: Crew = ALONE,
+    ended: Callable[[Trial], object] = lambda _: None,
 ) -> Iteration:
     """Trials until one passes the checks of its tier or no better one is forecast.
 
@@ -175,18 +178,22 @@ def trials_of(
     torques : mapping    engine torque by load case
     tier : Tier          depth of the trials, at most CYCLE: the last one alone is certified
     sink : TrialSink     receives each trial when it is solved
+    workers : Crew       processes for tolerance corners and forecasts
+    ended : callable     receives the final trial as soon as it is known to be the final one
 
     Raises
     ------
     CamError
         If a trial cannot be solved.
     """
-    task = _Task(case, torques, min(tier, Tier.CYCLE), sink or NotKept(), progress)
+    depth = min(tier, Tier.CYCLE)
+    task = _Task(case, torques, depth, sink or NotKept(), progress, workers, ended)
     if case.smoothing.kind == "constrained":
         return _constrained(task)
     if not case.balances:
         trial = task.solved(1, case, given_lift(case), lift_origin(case), GIVEN_LIFT)
         reason = f"prescribed lift: {_result(trial)}, not smoothed"
+        task.ended(trial)
         task.sink.keep(trial)
         return Iteration(trial, reason, (TrialPoint.of(trial),))
     return _smoothed(task)
@@ -201,6 +208,8 @@ class _Task:
     tier: Tier
     sink: TrialSink
     progress: Progress
+    workers: Crew
+    ended: Callable[[Trial], object]
 
     def solved(
         self,
@@ -222,6 +231,7 @@ class _Task:
             torques=self.torques,
             synthesis_gain=gain,
             store=self.sink.store(number),
+            workers=self.workers,
             progress=_Prefixed(self.progress, f"trial {number}: "),
         )
         return replace(
@@ -237,7 +247,7 @@ class _Task:
 def _smoothed(task: _Task) -> Iteration:
     """Trials of ever wider smoothers."""
     case, torques = task.case, task.torques
-    forecast = cache(lambda smoother: forecast_checks(case, torques, smoother))
+    forecast = _forecast_of(task)
     smoother, why = Smoother.from_case(case.smoothing, case.period), "smoother of the case"
     attempts: list[Attempt] = []
     points: list[TrialPoint] = []
@@ -245,10 +255,12 @@ def _smoothed(task: _Task) -> Iteration:
         lift = cam_lift(case, torques, smoother)
         record = smoothing_record(smoother)
         trial = task.solved(len(attempts) + 1, case, lift, why, record)
-        task.sink.keep(trial)
         points.append(TrialPoint.of(trial))
         attempts.append(Attempt(smoother, within_depth(trial.checks)))
         after = next_smoother(attempts, case.solver.max_trials, forecast)
+        if isinstance(after, Stop):
+            task.ended(trial)
+        task.sink.keep(trial)
         if isinstance(after, Stop):
             return Iteration(trial, after.reason, tuple(points))
         del trial  # its solution takes most of the memory
@@ -256,23 +268,41 @@ def _smoothed(task: _Task) -> Iteration:
         smoother, why = after.smoother, after.why
 
 
-def forecast_checks(
-    case: Case, torques: Mapping[str, Torque], smoother: Smoother
-) -> tuple[Check, ...]:
-    """Quick checks of the cam of a smoother, by a coarse preview.
+def _forecast_of(task: _Task) -> Forecast:
+    """Forecast in the worker processes; of each smoother once."""
+    known: dict[Smoother, tuple[Check, ...]] = {}
 
-    Raises
-    ------
-    GeometryError
-        If the smoother leads to no cam.
-    """
-    contour = case.contour(cam_lift(case, torques, smoother))
-    if not is_body(contour):
-        raise GeometryError("the contour is undercut")
-    solved = solution(
-        case, contour, Tier.PREVIEW, torques=torques, positions=FORECAST_POSITIONS, coarse=True
-    )
-    return checks_of(solved, FORECAST)
+    def forecast(smoothers: Sequence[Smoother]) -> list[tuple[Check, ...]]:
+        left = [each for each in dict.fromkeys(smoothers) if each not in known]
+        count = task.workers.workers
+        parts = [part for part in (left[k::count] for k in range(count)) if part]
+        tasks = [task.workers.submit(forecasts, task.case, task.torques, part) for part in parts]
+        for part, begun in zip(parts, tasks, strict=True):
+            known.update(zip(part, begun.result(), strict=True))
+        return [known[each] for each in smoothers]
+
+    return forecast
+
+
+def forecasts(
+    case: Case, torques: Mapping[str, Torque], smoothers: Sequence[Smoother]
+) -> list[tuple[Check, ...]]:
+    """Quick checks of the cam of each smoother, by a coarse preview; none where no cam exists."""
+    made: list[tuple[Check, ...]] = []
+    for smoother in smoothers:
+        try:
+            contour = case.contour(cam_lift(case, torques, smoother))
+            checks: tuple[Check, ...] = ()
+            if is_body(contour):
+                solved = solution(
+                    case, contour, torques=torques, tier=Tier.PREVIEW,
+                    positions=FORECAST_POSITIONS, coarse=True,
+                )  # fmt: skip
+                checks = checks_of(solved, FORECAST)
+        except CamError:
+            checks = ()
+        made.append(checks)
+    return made
 
 
 def _constrained(task: _Task) -> Iteration:
@@ -322,11 +352,13 @@ def _constrained(task: _Task) -> Iteration:
             rollers = roller_problems(case, torques, after)
             conflict = infeasibility(problem, rollers, after, margin)
             record["infeasible"] = conflict.as_record()
-        task.sink.keep(trial)
-        points.append(TrialPoint.of(trial))
         ranked = rank(trial.checks, solved_ripple(trial.cycles))
         if best is None or ranked <= best[0]:
             best = (ranked, trial)
+        if last:
+            task.ended(best[1])
+        task.sink.keep(trial)
+        points.append(TrialPoint.of(trial))
         if last:
             final = best[1]
             parts = [_ending(final, number, comparisons[-1], settled=ends or comparisons[-1].agree)]

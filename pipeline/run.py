@@ -11,7 +11,7 @@ from typing import Any
 
 from camwright.geometry.errors import CamError
 from camwright.pipeline.base.progress import SILENT, Progress, utc
-from camwright.pipeline.base.worker_processes import Crew, Task, crew
+from camwright.pipeline.base.worker_processes import ALONE, Crew, Task, crew
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_values import refused_as_written
 from camwright.pipeline.case.load_case_torque import (
@@ -125,16 +125,27 @@ def _solved(
     if torques:
         folder.write_torque(torque_columns(torques[case.load_cases[0].name]))
     writer = TrialWriter(folder)
-    final, statement, points = trials_of(case, torques, tier=depth, sink=writer, progress=watch)
+    sought: list[Task] = []
+
+    def ended(trial: Trial) -> None:
+        if depth is Tier.CERTIFIED:
+            sought.extend(_remedies_begun(trial, workers, folder.path))
+
+    final, statement, points = trials_of(
+        case,
+        torques,
+        tier=depth,
+        sink=writer,
+        progress=watch,
+        workers=workers if depth is Tier.CERTIFIED else ALONE,
+        ended=ended,
+    )
     if final.corners:
         folder.write_corners(corners_record(final.case, final.corners))
     summary = summary_of(folder, torques, final, points) | dict(also(final))
 
-    sought: list[Task] = []
     if depth < Tier.CERTIFIED:
         judged(torques, final)
-    else:
-        sought = _remedies_begun(final, workers, folder.path)
     if depth >= Tier.CYCLE:
         watch.stage("fields")
         write_fields(folder.fields, final, fields, watch.advance)
@@ -154,6 +165,7 @@ def _solved(
         watch.stage("remedies")
         texts = {name: text for part in sought for name, text in part.result().items()}
         certified = with_changes(certified, checks=with_remedies(certified.checks, texts))
+    workers.dismiss()
     writer.judge(certified)
     return summary | judged_of(certified, restated(statement, failing, _failing(certified)))
 

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from contextlib import nullcontext
 from dataclasses import replace
 
 from camwright.geometry.contour import Contour
 from camwright.pipeline.base.progress import SILENT, Progress
-from camwright.pipeline.base.worker_processes import Crew, crew
+from camwright.pipeline.base.worker_processes import Crew, Task, crew
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.load_case_torque import engine_torques
 from camwright.pipeline.checks.check import Check, in_order
@@ -38,6 +39,7 @@ def solve(
     store: ContactStore = NOT_STORED,
     progress: Progress = SILENT,
     jobs: int | None = 1,
+    workers: Crew | None = None,
 ) -> Trial:
     """Solve a cam in every load case of a case and check it.
 
@@ -52,7 +54,8 @@ def solve(
     synthesis_gain : float   see `Solution`
     store : ContactStore  of partial contact solutions, to resume an interrupted run
     progress : Progress
-    jobs : int            processes for the certificate; None: number of processors, at most 4
+    jobs : int            processes for corners and certificate; None: one a processor, at most 4
+    workers : Crew        processes in their place that are running; None: start `jobs`
 
     Returns
     -------
@@ -63,34 +66,39 @@ def solve(
     CamError
         If the loads, a mesh or the contact cannot be solved.
     """
-    solved = solution(
-        case,
-        contour,
-        min(tier, Tier.CYCLE),
-        torques=torques,
-        positions=positions,
-        store=store,
-        progress=progress,
-    )
-    solved = replace(solved, synthesis_gain=synthesis_gain)
-    if tier is Tier.CERTIFIED:
-        with crew(jobs) as workers:
-            solved = certified_solution(solved, workers, progress=progress)
-    progress.stage(CHECKS)
-    trial = Trial(1, "", GIVEN_LIFT, solved, all_checks(solved))
-    tried = corners and tier > Tier.SCREENING
-    return judged_at_corners(trial, torques) if tried else trial
+    known = engine_torques(case) if torques is None else torques
+    with crew(jobs) if workers is None else nullcontext(workers) as hands:
+        tried: Task | None = None
+        if corners and tier > Tier.SCREENING:
+            tried = hands.submit(outcomes, case, known, contour)
+        solved = solution(
+            case,
+            contour,
+            min(tier, Tier.CYCLE),
+            torques=known,
+            positions=positions,
+            store=store,
+            progress=progress,
+        )
+        solved = replace(solved, synthesis_gain=synthesis_gain)
+        if tier is Tier.CERTIFIED:
+            solved = certified_solution(solved, hands, progress=progress)
+        progress.stage(CHECKS)
+        trial = Trial(1, "", GIVEN_LIFT, solved, all_checks(solved))
+        return trial if tried is None else _at_corners(trial, tried.result())
 
 
-def judged_at_corners(trial: Trial, torques: Mapping[str, Torque] | None = None) -> Trial:
+def judged_at_corners(trial: Trial, torques: Mapping[str, Torque]) -> Trial:
     """Trial whose checks are judged at their worst tolerance corners.
 
     Parameters
     ----------
-    torques : mapping   engine torque by load case; None: computed from the case
+    torques : mapping   engine torque by load case
     """
-    known = engine_torques(trial.case) if torques is None else torques
-    tried = outcomes(trial.case, known, trial.contour)
+    return _at_corners(trial, outcomes(trial.case, torques, trial.contour))
+
+
+def _at_corners(trial: Trial, tried: tuple[Outcome, ...]) -> Trial:
     return replace(trial, corners=tried, checks=_judged(trial.checks, trial.solution, tried))
 
 

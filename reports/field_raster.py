@@ -4,21 +4,18 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
-from matplotlib.axes import Axes
-from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.cm import ScalarMappable
-from matplotlib.colors import LogNorm, Normalize
-from matplotlib.figure import Figure
-from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
-from matplotlib.tri import Triangulation
 from numpy.typing import NDArray
 
 from camwright.geometry.arrays import Array
 from camwright.pipeline.base.tables import Table
 from camwright.reports.figure_svg import COLOURS, png, style
 from camwright.reports.figures import SERIES
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 PRESSURE = "5_pressure.npz"
 _ABOVE, _GAP = 1.25, 0.1  # inches
@@ -73,6 +70,11 @@ def framed(
 
     unit : length of one on both axes, mm, for second axes in mm; None without them
     """
+    from matplotlib.cm import ScalarMappable
+    from matplotlib.colors import LogNorm, Normalize
+    from matplotlib.figure import Figure
+    from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
+
     with style("picture"):
         width = 6.4
         tall = (extent[3] - extent[2]) / (extent[1] - extent[0])
@@ -155,6 +157,11 @@ def triangles_picture(
 
     `points` (2, n), `triangles` (3, m), `values` (n,); `window` is xmin, xmax, ymin, ymax.
     """
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.colors import LogNorm, Normalize
+    from matplotlib.figure import Figure
+    from matplotlib.tri import Triangulation
+
     tall = (window[3] - window[2]) / (window[1] - window[0])
     canvas = Figure(figsize=(6.0, 6.0 * tall), dpi=200, facecolor="white")
     agg = FigureCanvasAgg(canvas)

@@ -4,19 +4,19 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
-from matplotlib import colormaps
-from matplotlib.axes import Axes
-from matplotlib.collections import PolyCollection
-from matplotlib.colors import LogNorm, Normalize
-from matplotlib.figure import Figure
-from matplotlib.projections.polar import PolarAxes
-from matplotlib.ticker import FuncFormatter, NullLocator
 
 from camwright.geometry.arrays import Array
 from camwright.geometry.errors import ResultError
 from camwright.reports.figure_svg import COLOURS, png, style
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.colors import Normalize
+    from matplotlib.figure import Figure
+    from matplotlib.projections.polar import PolarAxes
 
 FILE = "5_guides.npz"
 COLOUR_MAP = "viridis"
@@ -89,6 +89,10 @@ def read_guides(path: Path, load_case: str) -> tuple[GuidePressure, GuidePressur
 
 def drawn(guides: tuple[GuidePressure, GuidePressure]) -> bytes:
     """PNG of both guides."""
+    from matplotlib.colors import Normalize
+    from matplotlib.figure import Figure
+    from matplotlib.projections.polar import PolarAxes
+
     with style("guide-pressure"):
         canvas = Figure(figsize=(7.6, 5.4), layout="constrained")
         grid = canvas.add_gridspec(2, 3, width_ratios=(1.25, 1.25, 0.8))
@@ -103,6 +107,9 @@ def drawn(guides: tuple[GuidePressure, GuidePressure]) -> bytes:
 
 
 def _over_the_turn(canvas: Figure, ax: Axes, guide: GuidePressure) -> None:
+    from matplotlib.colors import LogNorm
+    from matplotlib.ticker import FuncFormatter, NullLocator
+
     fine = np.linspace(guide.along[0], guide.along[-1], _ROWS)
     push = np.stack([np.interp(fine, guide.along, np.abs(line)) for line in guide.line], axis=1)
     top = float(push.max()) or 1.0
@@ -153,6 +160,9 @@ def _pressed(places: Array, pressure: Array) -> tuple[float, float]:
 
 def _across(polar: PolarAxes, guide: GuidePressure, norm: Normalize) -> None:
     """Pressure in the slice of maximum pressure, drawn outwards from the bore."""
+    from matplotlib import colormaps
+    from matplotlib.collections import PolyCollection
+
     polar.set_theta_zero_location("N")
     angle, pressure = np.radians(guide.round), np.nan_to_num(guide.pressure[guide.slice])
     reach = 1.0 + _LOBE * pressure / norm.vmax

@@ -12,9 +12,6 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeAlias
 
-import matplotlib as mpl
-from matplotlib.ft2font import FT2Font
-
 from camwright.geometry.errors import ResultError
 from camwright.pipeline.base.files import Json
 from camwright.reports.drawing import drawing_svg
@@ -29,7 +26,6 @@ if TYPE_CHECKING:
 Value: TypeAlias = "str | float | Sequence[Value] | DataclassInstance | None"
 
 _TEMPLATES = Path(__file__).parent / "templates"
-_FONTS = Path(mpl.get_data_path()) / "fonts" / "ttf"
 _LONG = 20  # characters of a word that may be broken
 _LONG_WORD = re.compile(rf"(?<!\S)(?![0-9a-f]{{64}}\b)\S{{{_LONG},}}")  # except SHA-256
 _MARKED = re.compile(r"[^./_,;-]*[./_,;-]+|[^./_,;-]+")
@@ -52,7 +48,7 @@ def typeset(template: str, document: DataclassInstance) -> bytes:
 
     def compiled(words: str, folder: Path) -> bytes:
         return typst.compile(
-            folder / template, root=folder, font_paths=[_FONTS],
+            folder / template, root=folder, font_paths=[_fonts()],
             ignore_system_fonts=_drawable(words) == words, sys_inputs={"report": words},
             format="pdf", pdf_standards=["a-2a", "ua-1"], timestamp=0,
         )  # fmt: skip
@@ -118,9 +114,18 @@ def _parted(word: re.Match[str]) -> str:
     return _BREAK.join(part if len(part) < _LONG else _BREAK.join(part) for part in parts)
 
 
+def _fonts() -> Path:
+    """Folder of the fonts of the matplotlib package."""
+    from matplotlib import get_data_path
+
+    return Path(get_data_path()) / "fonts" / "ttf"
+
+
 def _drawable(text: str) -> str:
     """Text with U+FFFD for the characters that DejaVu Sans lacks."""
-    known = FT2Font(_FONTS / "DejaVuSans.ttf").get_charmap()
+    from matplotlib.ft2font import FT2Font
+
+    known = FT2Font(_fonts() / "DejaVuSans.ttf").get_charmap()
     invisible = ("Cc", "Cf")
     return "".join(
         c

@@ -5,7 +5,6 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
-from matplotlib.figure import Figure
 
 from camwright.geometry.arrays import Array
 from camwright.geometry.errors import ResultError
@@ -51,6 +50,8 @@ def unrolled(values: Array, depth: Array, levels: Array) -> Array:
 
 def drawn(envelope: dict[str, Array]) -> bytes:
     """PNG of the maps over cam angle and depth."""
+    from matplotlib.figure import Figure
+
     angle, depth = envelope["cam_angle_deg"], envelope["depth_mm"]
     levels = np.linspace(0.0, float(np.nanmax(depth)), _ROWS)
     with style("envelope"):
@@ -74,6 +75,8 @@ def around(envelope: dict[str, Array], angle: Array, contour: Array, normal: Arr
 
     The contour (2, n), mm, and its outward normals (2, n) belong to cam angles (n,), deg.
     """
+    from matplotlib.figure import Figure
+
     at = envelope["cam_angle_deg"]
     place, up = (_between(at, angle, part) for part in (contour, normal))
     depth, values = envelope["depth_mm"], envelope["von_mises_MPa"]

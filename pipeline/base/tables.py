@@ -6,7 +6,7 @@ import csv
 import io
 import math
 from abc import ABC, abstractmethod
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from types import MappingProxyType
@@ -259,17 +259,23 @@ def _in_unit(column: Column, values: Array) -> Array:
     return readonly(values + 0.0)  # no -0.0, which spreadsheets show
 
 
-def _parsed(path: Path, header: str, cells: Iterable[str]) -> Array:
-    values: list[float] = []
-    for line, cell in enumerate(cells, start=2):
-        try:
-            value = float(cell) if cell else math.nan
-        except ValueError:
-            value = math.nan
-        if math.isnan(value) and cell:
+def _parsed(path: Path, header: str, cells: Sequence[str]) -> Array:
+    try:
+        values = np.array([float(cell) if cell else math.nan for cell in cells])
+    except ValueError:
+        values = np.array([_number(cell) for cell in cells])
+    for row in map(int, np.flatnonzero(np.isnan(values))):
+        if cell := cells[row]:
+            line = row + 2
             raise ResultError(f"{path}, line {line}: {header} = {cell[:40]!r}, must be a number")
-        values.append(value)
     return readonly(values)
+
+
+def _number(cell: str) -> float:
+    try:
+        return float(cell)
+    except ValueError:
+        return math.nan
 
 
 def _restored(columns: dict[str, Array], rows_of: Texts | None) -> Table:

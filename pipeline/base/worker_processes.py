@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copyreg
 import os
 import signal
 import sys
@@ -16,6 +17,7 @@ from multiprocessing import active_children
 from multiprocessing.context import SpawnContext, SpawnProcess
 from multiprocessing.popen_spawn_posix import Popen
 from multiprocessing.process import BaseProcess
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Protocol
 
 if TYPE_CHECKING:
@@ -24,6 +26,17 @@ if TYPE_CHECKING:
 _JOBS_MOST = 4
 THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
 _LOOK_EVERY_S = 1.0
+
+
+def _read_only(table: dict[Any, Any]) -> MappingProxyType[Any, Any]:
+    return MappingProxyType(table)
+
+
+def _pickled(table: MappingProxyType[Any, Any]) -> tuple[Any, ...]:
+    return _read_only, (dict(table),)
+
+
+copyreg.pickle(MappingProxyType, _pickled)  # read-only tables, such as those of a case
 
 
 def workers_for(jobs: int | None, tasks: int) -> int:
@@ -130,6 +143,15 @@ class Crew:
         if self._pool is None:
             self._pool = self._stack.enter_context(pool(self.workers))
         return self._pool.submit(function, *arguments)
+
+    def dismiss(self) -> None:
+        """End the processes after their tasks, without waiting; the last call of the crew."""
+        if self._pool is not None:
+            self._pool.shutdown(wait=False)
+
+
+ALONE = Crew(1, ExitStack())
+"""No process but this one, in which a task runs when its result is read."""
 
 
 def _imported(module: str) -> None:

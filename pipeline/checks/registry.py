@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+import copyreg
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
 from types import ModuleType
 
@@ -98,6 +99,17 @@ DECLARED: Mapping[str, Declaration] = {
     each.id: each for each in (*CHECKS, WAIVERS_WITHOUT_EFFECT, TOLERANCE_CORNERS)
 }
 """Every declaration by id, in the order of the calculation."""
+
+
+def _declared(name: str) -> Declaration:
+    return DECLARED[name]
+
+
+def _pickled(declared: Declaration) -> tuple[Callable[[str], Declaration], tuple[str]]:
+    return _declared, (declared.id,)
+
+
+copyreg.pickle(Declaration, _pickled)  # a check from a worker process has the declaration here
 
 
 def checks_of(

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from functools import cached_property, lru_cache
 
 import numpy as np
-from scipy.spatial import Delaunay, cKDTree
+import scipy
 
 from camwright.geometry.arrays import Array, readonly
 from camwright.meshes.gmsh_mesher import Index
@@ -67,8 +67,8 @@ class ZoneSite:
         return float(np.hypot(*(corners - np.roll(corners, 1, axis=1))).max())
 
     @cached_property
-    def _nodes(self) -> Delaunay:
-        return Delaunay(self.body.body.mesh.points.T)
+    def _nodes(self) -> scipy.spatial.Delaunay:
+        return scipy.spatial.Delaunay(self.body.body.mesh.points.T)
 
     def radius(self, contacts: Array, half_width: Array) -> Array:
         """Radius (k,) of the zones, m, at contacts (2, c), c = 1 or k, and half-widths (k,), m.
@@ -78,7 +78,7 @@ class ZoneSite:
         mesh = self.body.body.mesh
         others = [n for name, n in mesh.boundaries.items() if name != self.body.surface]
         far = mesh.points[:, np.unique(np.concatenate([n.ravel() for n in others]))]
-        wall = _WALL * np.asarray(cKDTree(far.T).query(contacts.T)[0])
+        wall = _WALL * np.asarray(scipy.spatial.cKDTree(far.T).query(contacts.T)[0])
         wanted = np.maximum(_EDGES * self._edge, _HALF_WIDTHS * half_width)
         return np.maximum(np.minimum(wanted, wall), 1.1 * _SPACING * _EQUAL * half_width)
 
@@ -105,7 +105,7 @@ class ZoneSite:
         corners = self._nodes.simplices[simplex]
         lost = np.flatnonzero(simplex < 0)
         if lost.size:
-            _, nearest = cKDTree(self._nodes.points).query(at[lost])
+            _, nearest = scipy.spatial.cKDTree(self._nodes.points).query(at[lost])
             corners[lost], shares[lost] = np.asarray(nearest)[:, None], 1 / 3
         column = np.zeros(1, dtype=int)
         if normals.shape[1] > 1:
@@ -152,7 +152,7 @@ def patch_weights(poisson: float) -> tuple[Index, Array, Array]:
     radius = np.hypot(*unit)
     blend = np.clip((_PATCH_END - radius) / (_PATCH_END - _PATCH_ALONE), 0.0, 1.0)
     inner = unit[:, blend > 0]
-    mesh = Delaunay(patch.T)
+    mesh = scipy.spatial.Delaunay(patch.T)
     # Just inside, for the nodes on the surface, which is the edge of the patch.
     simplex = mesh.find_simplex(np.maximum(inner, [[-np.inf], [1e-12]]).T)
     affine = mesh.transform[simplex]

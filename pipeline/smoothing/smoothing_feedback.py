@@ -50,7 +50,7 @@ def next_smoother(attempts: Sequence[Attempt], max_trials: int, forecast: Foreca
     ----------
     attempts : sequence    trials so far, in order, at least one
     max_trials : int       maximum number of trials, >= 1
-    forecast : callable    smoother -> quick checks of its cam
+    forecast : callable    quick checks of the cams of smoothers, see `Forecast`
 
     Returns
     -------

@@ -10,12 +10,12 @@ from itertools import pairwise
 
 import numpy as np
 
-from camwright.geometry.errors import CamError
 from camwright.pipeline.case.limits import TORQUE_REDUCTION
 from camwright.pipeline.checks.check import Check
 from camwright.pipeline.smoothing.smoothers import Smoother
 
-Forecast = Callable[[Smoother], Sequence[Check]]
+Forecast = Callable[[Sequence[Smoother]], Sequence[Sequence[Check]]]
+"""Quick checks of the cam of each smoother; none where no cam exists."""
 Score = tuple[bool, int, float, int]
 
 MARGIN = 0.005  # of the limit, between a forecast demand and its limit
@@ -60,7 +60,7 @@ def best_candidate(
     Parameters
     ----------
     attempts : sequence   trials so far
-    forecast : callable   smoother -> checks; may raise a CamError where no cam exists
+    forecast : callable   see `Forecast`
     widest : float        maximum angular width, rad of crank
 
     Returns
@@ -68,17 +68,24 @@ def best_candidate(
     Smoother or None      None when no forecast is better than the best trial
     """
     first = attempts[0].smoother
-    pairs = ((item, _forecast_checks(forecast, item.smoother)) for item in attempts)
-    known = tuple((item, checks) for item, checks in pairs if checks)
     reach = math.log(max(widest / first.angular_width, 1.0))
     count = 1 + math.ceil(reach / math.log(COARSE_STEP))
     coarse = first.strength * np.exp(np.linspace(0.0, reach, count))
-    scores = {float(s): _score(first.stretched(s), known, forecast) for s in coarse}
+    wider = [first.stretched(s) for s in coarse]
+    made = [_by_id(each) for each in forecast([*(item.smoother for item in attempts), *wider])]
+    known = tuple((item, checks) for item, checks in zip(attempts, made, strict=False) if checks)
+    ahead = zip(coarse, wider, made[len(attempts) :], strict=True)
+    scores = {float(s): _score(smoother, known, checks) for s, smoother, checks in ahead}
     place = int(np.searchsorted(coarse, _best(scores)))
     beside = coarse[max(place - 1, 0) : place + 2]
-    for low, high in pairwise(beside):
-        for s in np.geomspace(low, high, FINE_STEPS, endpoint=False)[1:]:
-            scores[float(s)] = _score(first.stretched(s), known, forecast)
+    fine = [
+        s
+        for low, high in pairwise(beside)
+        for s in np.geomspace(low, high, FINE_STEPS, endpoint=False)[1:]
+    ]
+    wider = [first.stretched(s) for s in fine]
+    for s, smoother, checks in zip(fine, wider, forecast(wider), strict=True):
+        scores[float(s)] = _score(smoother, known, _by_id(checks))
     chosen = _best(scores)
     if scores[chosen][0]:
         return None  # the torque reduction would be lost
@@ -94,21 +101,16 @@ def _best(scores: Mapping[float, Score]) -> float:
     return min(scores, key=lambda strength: (scores[strength], strength))
 
 
-def _forecast_checks(forecast: Forecast, smoother: Smoother) -> Mapping[str, Check]:
-    """Forecast checks by id; none where no cam exists."""
-    try:
-        return {check.id: check for check in forecast(smoother)}
-    except CamError:
-        return {}
+def _by_id(checks: Sequence[Check]) -> Mapping[str, Check]:
+    return {check.id: check for check in checks}
 
 
 def _score(
     smoother: Smoother,
     known: Sequence[tuple[Attempt, Mapping[str, Check]]],
-    forecast: Forecast,
+    candidate: Mapping[str, Check],
 ) -> Score:
     """Score of the forecast checks of a smoother; known: trials and their own forecasts."""
-    candidate = _forecast_checks(forecast, smoother)
     if not candidate:
         return (True, sys.maxsize, math.inf, sys.maxsize)
     if not known:  # no trial so far had a cam

@@ -11,8 +11,8 @@ from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike
-from scipy.integrate import solve_ivp
 
 from camwright.geometry.arrays import FULL_TURN, Array, uniform_turn
 from camwright.geometry.errors import ContactError, InputError
@@ -260,7 +260,7 @@ class ElasticValve:
             return [state[1], (push - self._sum * state[0]) / inertia]
 
         period = FULL_TURN / np.sqrt(self._sum / inertia)
-        solution = solve_ivp(
+        solution = scipy.integrate.solve_ivp(
             rate, (0.0, float(at[-1])), [-self._rest, 0.0], method="DOP853", t_eval=at,
             rtol=1e-9, atol=1e-13, max_step=min(period / 8.0, 0.02),
         )  # fmt: skip

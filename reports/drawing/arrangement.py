@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property, lru_cache
 
 import numpy as np
 
@@ -84,33 +85,33 @@ class Mechanism:
     guides: tuple[Bush, Bush]
     spring: Spring
 
-    @property
+    @cached_property
     def radius_max(self) -> float:
         """Greatest radius of the contour, mm."""
         return float(np.hypot(*self.contour).max())
 
-    @property
+    @cached_property
     def top(self) -> float:
         """Height of the highest part, mm."""
         above = self.guides[1].middle + 0.5 * self.guides[1].length
         return max(self.stem_end + self.stroke, self.spring.top + 0.06 * self.stem, above)
 
-    @property
+    @cached_property
     def height(self) -> float:
         """Height of cam and follower together, mm."""
         return self.top + self.radius_max
 
-    @property
+    @cached_property
     def scale(self) -> float:
         """Size of lines and texts relative to a mechanism `_WHOLE` high."""
         return self.height / _WHOLE
 
-    @property
+    @cached_property
     def text(self) -> float:
         """Height of the text, mm."""
         return 7.2 * self.scale
 
-    @property
+    @cached_property
     def arrow_length(self) -> float:
         """Length of the greatest force, mm."""
         return _FORCE_SHARE * float(np.hypot(*self.contour).min())
@@ -134,7 +135,7 @@ class Motion:
     contact_offset: Array | None
     forces: dict[str, Array]
 
-    @property
+    @cached_property
     def greatest_force(self) -> float:
         """Greatest force of the turn, N."""
         return max(float(np.abs(each).max()) for each in self.forces.values())
@@ -376,6 +377,7 @@ def _round(value: float) -> float:
     return float(max(step * power for step in (1.0, 2.0, 5.0) if step * power <= value))
 
 
+@lru_cache(maxsize=2)
 def _box(m: Mechanism) -> tuple[float, float, float, float]:
     margin = 1.4 * m.text
     places = label_places(m)

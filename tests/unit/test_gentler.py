@@ -1,12 +1,12 @@
 """The feedback: gentler while it helps, never at the price of the torque, always an end."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 import numpy as np
 import pytest
 from made_check import made_check
 
-from camwright.geometry.errors import GeometryError, InputError
+from camwright.geometry.errors import InputError
 from camwright.pipeline.checks.check import Check, verdict
 from camwright.pipeline.run import restated
 from camwright.pipeline.smoothing.smoothers import Smoother
@@ -34,7 +34,9 @@ def drive(model: Model, max_trials: int = BOUND, forecast: Model | None = None, 
     smoother, attempts, whys = Smoother(kind), [], []
     while True:
         attempts.append(Attempt(smoother, model(smoother.strength)))
-        step = next_smoother(attempts, max_trials, lambda wider: ahead(wider.strength))
+        step = next_smoother(
+            attempts, max_trials, lambda wider: [ahead(each.strength) for each in wider]
+        )
         if isinstance(step, Stop):
             return attempts, whys, step
         assert len(attempts) < max_trials
@@ -42,9 +44,9 @@ def drive(model: Model, max_trials: int = BOUND, forecast: Model | None = None, 
         smoother = step.smoother
 
 
-def never(_smoother: Smoother) -> tuple[Check, ...]:
+def never(smoothers: Sequence[Smoother]) -> list[tuple[Check, ...]]:
     """Forecast of smoothers that lead to no cam."""
-    raise GeometryError("no such cam")
+    return [() for _ in smoothers]
 
 
 def strengths(attempts) -> list[float]:
@@ -314,7 +316,7 @@ def test_no_window_is_wider_than_one_crank_turn():
 def test_a_first_trial_without_a_cam_leaves_the_word_to_the_prediction():
     def foreseen(s):
         if s < 1.5:
-            raise GeometryError("undercut")
+            return ()
         return torque(0.9 - 0.25 * s), check("undercut", 1.6 / s)
 
     def truth(s):
@@ -333,7 +335,7 @@ def test_strengths_without_a_cam_are_passed_over():
 
     def closed_form(s):
         if 1.3 < s < 1.6:
-            raise GeometryError("no such cam")
+            return ()
         return truth(s)
 
     attempts, _, stop = drive(truth, forecast=closed_form)

@@ -1,13 +1,21 @@
 """Fresh processes: as many as are of use, one BLAS thread each, gone when work is dropped."""
 
 import os
+import pickle
 import subprocess
 import sys
 import time
+from pathlib import Path
 
 import pytest
 
 from camwright.pipeline.base.worker_processes import crew, pool, workers_for
+from camwright.pipeline.case.case_file import read_case, with_values
+from camwright.pipeline.case.load_case_torque import engine_torques
+from camwright.pipeline.iteration import forecasts
+from camwright.pipeline.smoothing.smoothers import Smoother
+
+CASES = Path(__file__).resolve().parents[2] / "cases"
 
 
 @pytest.mark.parametrize(
@@ -58,6 +66,26 @@ def test_a_crew_shares_its_processes_and_ends_them():
         first, second = workers.submit(os.getpid), workers.submit(os.getpid)
         assert os.getpid() not in (first.result(), second.result())
         assert workers.workers == 2
+
+
+def test_a_dismissed_crew_finishes_its_tasks():
+    with crew(2) as workers:
+        task = workers.submit(time.sleep, 0.3)
+        workers.dismiss()
+        assert task.result() is None
+
+
+def test_a_case_and_its_checks_are_the_same_in_a_worker():
+    """The quick checks of two smoothers, one of which has no cam, from a worker and from here."""
+    case = with_values(read_case(CASES / "gx120.toml"), {"roller.radius": 0.03})
+    torques, first = engine_torques(case), Smoother.from_case(case.smoothing, case.period)
+    smoothers = [first, first.stretched(3.0)]
+    copy = pickle.loads(pickle.dumps(case))
+    assert (copy, copy.sha256, copy.included) == (case, case.sha256, case.included)
+    with crew(2) as workers:
+        there = workers.submit(forecasts, case, torques, smoothers).result()
+    assert there == forecasts(case, torques, smoothers)
+    assert [bool(checks) for checks in there] == [False, True]
 
 
 def test_an_interrupt_does_not_wait_for_what_runs():
