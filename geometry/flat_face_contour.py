@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Self
 
 import numpy as np
@@ -135,6 +136,10 @@ class FlatFaceContour(Contour):
         return self.radius_of_curvature(theta) / self.pitch.height(theta)
 
     def undercut(self) -> Undercut:
+        return self._undercut
+
+    @cached_property
+    def _undercut(self) -> Undercut:
         value, theta = least(self.factor, self.lift.search_count)
         return Undercut(theta, value)
 

@@ -529,14 +529,25 @@ def shakedown_factor(friction: float, poisson: float = 0.3) -> float:
     ----------
     Johnson, Contact Mechanics (1985), sec. 9.2; Melan's theorem.
     """
-    x, depth = np.meshgrid(np.linspace(-1.5, 1.5, 601), np.linspace(0.0, 1.5, 301))
-    below = float(np.abs(hertz.subsurface_stress(x, depth, friction)[2]).max())
+    rolling, rubbing = _shear_below()
+    below = float(np.abs(rolling + friction * rubbing).max())
     far = np.geomspace(1.5, 100.0, 60)[1:]
     along = np.concatenate([-far[::-1], np.linspace(-1.5, 1.5, 601), far])
     xx, zz, xz = hertz.subsurface_stress(along, 0.0, friction)
     out_of_plane = (poisson - 0.5) * (xx + zz) / math.sqrt(3.0)
     path = np.stack([0.5 * (xx - zz), xz, out_of_plane])
+    middle = 0.5 * (path.min(axis=1) + path.max(axis=1)) * np.array([1.0, 0.0, 1.0])
+    if np.sqrt(((path - middle[:, None]) ** 2).sum(axis=0).max()) <= below:
+        return 1.0 / below  # the smallest sphere is no larger than this one
     # The mirror image keeps the centre of the sphere at no shear stress.
     both = np.concatenate([path, path * np.array([[1.0], [-1.0], [1.0]])], axis=1)
     radius = float(smallest_sphere(both[:, None, :])[1][0])
     return 1.0 / max(below, radius)
+
+
+@lru_cache(maxsize=1)
+def _shear_below() -> tuple[Array, Array]:
+    """Shear stress along the track below the surface over p0: of the pressure, and per traction."""
+    x, depth = np.meshgrid(np.linspace(-1.5, 1.5, 601), np.linspace(0.0, 1.5, 301))
+    rolling = hertz.subsurface_stress(x, depth, 0.0)[2]
+    return rolling, hertz.subsurface_stress(x, depth, 1.0)[2] - rolling
