@@ -11,6 +11,7 @@ In the order of the calculation:
 | `length_contact` | pressures under force, tilt or moment                   | p, Pa; F, N  |
 | `length_tiers`   | both tiers over plane strain, error bars, many contacts | K, -         |
 | `factor_table`   | axial pressure of one pair of bodies, tabulated         | K, -         |
+| `length_certificate` | both tiers at chosen angles of a cycle              | K, -         |
 
 Imports `contact` and `base`.
 """

@@ -8,6 +8,7 @@ curvature nor on load and is kept on disk.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from typing import Literal
 
 import numpy as np
@@ -42,12 +43,16 @@ MEAN_LENGTH = 1e-4
 
 SIZES = CellSizes()
 _REFINEMENT = 1.5
+# Ladder of half-widths and depths of the blocks, so that the compliances kept are shared.
+_LADDER, _LADDER_START = 1.1, 1e-4
 # Growth of the elements into the block and beside the contact.
 _BLOCK_GROWTH = 2.0
 # Greatest depth of a block over its first element, by memory; greatest tilt, rad.
 _DEEPEST, _TILT = 2e4, 0.1
 # Contacts whose half-widths lie within this ratio share their cells.
 _SHARED = 1.1
+# Moment over force and length up to which the load is not concentrated near an end.
+_LIGHT_MOMENT = 0.2
 # Width of the cells of tilted contacts, in half-widths: near one end the load is concentrated.
 _TILTED = 5.0
 _CROWNED_LARGEST, _CROWNED_SHARE = 2e-4, 1.0 / 24.0
@@ -111,6 +116,12 @@ def cycle_sizes(pair: FinitePair) -> CellSizes:
     return replace(sizes, largest=_CROWNED_LARGEST, largest_share=_CROWNED_SHARE)
 
 
+def on_ladder(length: float) -> float:
+    """Length, m, rounded up to the ladder of half-widths and depths."""
+    step = np.ceil(np.log(length / _LADDER_START) / np.log(_LADDER) - 1e-9)
+    return float(_LADDER_START * _LADDER**step)
+
+
 def plane_strain(pair: FinitePair, force: float) -> tuple[float, float]:
     """Half-width, m, and peak pressure, Pa, at the mean line load of a force, N."""
     half_width, p0 = hertz.line_contact(
@@ -127,6 +138,7 @@ def both_tiers(
     moment: float | None = None,
     mean_length: float = MEAN_LENGTH,
     sizes: CellSizes = SIZES,
+    mesh_half_width: float | None = None,
 ) -> tuple[TierResult, TierResult]:
     """One contact by half-spaces and by finite elements.
 
@@ -138,6 +150,10 @@ def both_tiers(
     moment : float        N m, about y = 0, instead of the tilt
     mean_length : float   of the means at the ends, m
     sizes : CellSizes     of the cells; error bars by coarser ones, of the half-spaces by finer ones
+    mesh_half_width : float   m, of the cells; default: that of plane strain
+
+    Half-widths of the cells and depths of the blocks are rounded up to a ladder, so that bodies and
+    loads that are nearly the same share the compliances kept.
 
     Raises
     ------
@@ -148,8 +164,12 @@ def both_tiers(
     """
     _require_load(pair, force, tilt, moment)
     half_width, p0 = plane_strain(pair, force)
+    if moment is not None and abs(moment) > _LIGHT_MOMENT * force * pair.contact_length:
+        sizes = replace(sizes, window=max(sizes.window, _TILTED))
+    first, second = (replace(body, depth=on_ladder(body.depth)) for body in pair.bodies)
+    pair = replace(pair, bodies=(first, second))
     meshes = [
-        pressure_cells(pair, half_width, sizes.coarser(ratio))
+        pressure_cells(pair, on_ladder(mesh_half_width or half_width), sizes.coarser(ratio))
         for ratio in (_REFINEMENT, 1.0, 1.0 / _REFINEMENT)
     ]
 
@@ -277,7 +297,16 @@ def block_grid(cells: PressureCells, body: FiniteBody) -> BrickGrid:
 
 
 def _condensed(grid: BrickGrid, poisson: float) -> QuarterCompliance:
-    """Compliance of a block from the disk cache, or computed."""
+    """Compliance of a block from memory, from the disk cache, or computed."""
+    axes = grid.x.tobytes(), grid.y.tobytes(), grid.z.tobytes()
+    return _condensed_of(*axes, grid.cells, poisson)
+
+
+@lru_cache(maxsize=8)
+def _condensed_of(
+    x: bytes, y: bytes, z: bytes, cells: tuple[int, int], poisson: float
+) -> QuarterCompliance:
+    grid = BrickGrid(np.frombuffer(x), np.frombuffer(y), np.frombuffer(z), cells)
 
     def compute() -> dict[str, Array]:
         quarter = brick_body.condensed(grid, poisson)
