@@ -67,7 +67,6 @@ class CamModel:
 
     def __init__(self, problem, **changed):
         assert problem.ratings.offset == 0.0
-        assert problem.ratings.crown_radius is None
         assert problem.objective == (Weighted(TORQUE, 1.0),)
         assert not np.isfinite(problem.energy[1])
         self.count, self.points = problem.coefficients, problem.points

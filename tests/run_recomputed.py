@@ -348,15 +348,6 @@ def speed_reduction(run: RunFiles) -> float:
     return 1.0 - after / before
 
 
-# --- ends of the roller ---------------------------------------------------------------------
-
-
-def edge_factor(run: RunFiles) -> float:
-    """Pressure judged at the ends over the greatest pressure of the cycle."""
-    greatest = float(np.nanmax(run.columns("5_cycle.csv")["p0_fe_MPa"]))
-    return float(run.checks["edge_pressure"]["demand"]) / greatest
-
-
 # --- shape ------------------------------------------------------------------------------------
 def closure(run: RunFiles) -> float:
     """Where a polynomial through the last values of the lift ends, less the first, um."""
@@ -399,7 +390,6 @@ RECOMPUTED: dict[str, tuple[Callable[[RunFiles], float], float, float]] = {
     **{f"mesh_{name}": (index_of(name), 1e-6, 1e-9) for name in FIGURES},
     "certificate_gci": (greatest_index, 1e-6, 1e-9),
     "certificate_spread": (greatest_spread, 1e-6, 1e-9),
-    "edge_factor": (edge_factor, 1e-4, 0.0),  # the demand is refined between angles
     "bore_stress": (bore_stress, 0.05, 0.0),  # the error bar of the check is 3 to 5 %
     "closure": (closure, 0.0, 0.01),  # of the polynomial, a hundredth of the limit
     "acceleration_step": (acceleration_step, 0.0, 0.02),  # a tenth of the limit

@@ -252,6 +252,9 @@ def _check_ends(case: Case) -> None:
             most = 0.5 * part.line_width + part.end.size
             limit = f"< {{}}, half of {{{key}}}"
             _require(case, f"{part.table}.end.size", part.line_width > 0.0, limit, most)
+        crowned = case.cam.crown is not None or other.crown is not None
+        if crowned and part.end is None:
+            raise InputError(f"{part.table}.end", "missing", "given with a crown")
         if part.crown is not None and part.crown.kind == "iso16281" and case.roller_given is None:
             raise InputError(f"{part.table}.crown.kind", "iso16281", "that of a cam with a roller")
 

@@ -162,9 +162,10 @@ CAM_RADIUS = OpenLimit("cam_radius", "cam radius", _LENGTH, "installation space 
 TARGET_LIFE = OpenLimit(
     "target_life", "target life", _LIFE, "log10 K = (B - log10 n)/A, Rothbart (2004) eq. 9.15",
 )  # fmt: skip
-EDGE_FACTOR = Limit(
-    "edge_factor", "edge factor", In(at_least=1, at_most=5), 1.3,
-    "factor 1.3 to 2, or crown the follower, shop practice: verify",
+END_MEAN_LENGTH = Limit(
+    "end_mean_length", "length of the mean pressure at an end with a corner",
+    In("mm", above=0, at_most=10), 1e-4,
+    "0.1 mm, about a half-width of contact: the mean over it does not depend on the mesh",
 )  # fmt: skip
 WAVINESS = Limit(
     "waviness", "waviness force over contact force", _SHARE, 0.2,

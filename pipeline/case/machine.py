@@ -216,13 +216,15 @@ class Machine(Displayed):
         return max(-cam, self._axial_offset - other), min(cam, self._axial_offset + other)
 
     @property
-    def crown_radius(self) -> float | None:
-        """Radius of circular crowns, those of cam and follower in one, m; None of any other."""
-        shapes = [each.crown for each in (self.cam, self.follower) if each.crown is not None]
-        radii = [shape.radius for shape in shapes if shape.radius is not None]
-        if not radii or len(radii) < len(shapes):
-            return None
-        return 1.0 / sum(1.0 / radius for radius in radii)
+    def stem_offset(self) -> float:
+        """Distance of the middle of the line contact from the stem axis, m."""
+        low, high = self._overlap
+        return abs(0.5 * (low + high) - self._axial_offset)
+
+    @property
+    def is_crowned(self) -> bool:
+        """Whether cam or follower has a crown."""
+        return self.cam.crown is not None or self.follower.crown is not None
 
     @property
     def finite_pairs(self) -> tuple[FinitePair, ...]:

@@ -297,14 +297,14 @@ relaxation = 0.005                   # share of the force lost: ask the maker
 
 [cam]
 prime_radius = "60 mm"               # smallest radius of the roller's CENTRE
-width = "17.5 mm"
+width = "15.5 mm"                    # within the flat of the roller at its axial offset
 end = { kind = "sharp" }
 bore_radius = "15 mm"
 material = "case_hardened"
 roughness = "0.3 um"
 profile_tolerance = "8 um"           # ground; for waves of waviness_length, 5 mm
 keyway = { width = "8 mm", depth = "3.3 mm" }
-key = { length = "17 mm", form = "B", material = "c45" }
+key = { length = "15 mm", form = "B", material = "c45" }
 
 [camshaft]
 bearing_spacing = "70 mm"

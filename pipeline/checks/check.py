@@ -19,7 +19,7 @@ from camwright.pipeline.cycle.solution import Solution
 Status = Literal["pass", "fail", "not_evaluated", "waived"]
 Verdict = Literal["pass", "incomplete", "fail"]
 Screen = Literal["open", "fail"]
-Error = Literal["sampling", "contact", "guides", "guide_edges", "bore", "unknown"]
+Error = Literal["sampling", "contact", "ends", "guides", "guide_edges", "bore", "unknown"]
 RestsOn = Literal["", "contact", "loads"]
 Record = dict[str, str | float | bool | list[str] | None]
 EVERY = "all, standstill and over-speed included"

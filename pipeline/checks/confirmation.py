@@ -55,6 +55,12 @@ def _bodies(*keys: str) -> tuple[str, ...]:
 
 
 _CONTACT = (*_LOADS, *_bodies("E", "nu"))
+_LENGTH = (
+    *_CONTACT,
+    *("cam.end.*", "roller.end.*", "follower.face.end.*"),
+    *("cam.crown.*", "roller.crown.*", "follower.face.crown.*"),
+    *("guides.a.clearance", "guides.b.clearance", "roller.axial_offset"),
+)
 
 
 def _guides(name: str, *keys: str) -> dict[str, tuple[str, ...]]:
@@ -97,10 +103,10 @@ RESTS_ON: Mapping[str, tuple[str, ...]] = MappingProxyType(
         "first_yield": (*_CONTACT, *_bodies("yield_strength")),
         "shakedown": (*_CONTACT, *_bodies("yield_strength")),
         "contact_pressure_at_life": (
-            *_CONTACT, *_bodies("*endurance_slope", "*endurance_intercept"),
+            *_LENGTH, *_bodies("*endurance_slope", "*endurance_intercept"),
             "limits.contact_safety",
         ),
-        "edge_pressure": (*_CONTACT, *_bodies("*endurance_pressure"), "limits.contact_safety"),
+        "edge_pressure": (*_LENGTH, *_bodies("*endurance_pressure"), "limits.contact_safety"),
         "shakedown_traction": (
             *_CONTACT, *_bodies("yield_strength"), "roller.friction", "follower.face.friction",
         ),
@@ -116,14 +122,14 @@ RESTS_ON: Mapping[str, tuple[str, ...]] = MappingProxyType(
             *_CONTACT, "cam.material.yield_strength", "cam.material.core_yield_strength",
             "cam.material.case_depth",
         ),
-        "case_depth": (*_CONTACT, "cam.material.case_depth"),
+        "case_depth": (*_LENGTH, "cam.material.case_depth"),
         "case_shear": (
             *_CONTACT, *_TRACTION, "cam.material.case_depth", "cam.material.fatigue_torsion",
             "cam.material.core_fatigue_torsion",
         ),
         "endurance_rules": _bodies("*endurance_pressure", "hardness*"),
         "edge_shakedown": (
-            *_CONTACT, *_TRACTION, *_bodies("yield_strength"), "follower.face.friction",
+            *_LENGTH, *_TRACTION, *_bodies("yield_strength"), "follower.face.friction",
         ),
         "roller_overlap": ("roller.axial_offset",),
         "pressure_by_hardness": (*_CONTACT, "cam.material.hardness*"),

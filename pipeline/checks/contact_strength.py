@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from dataclasses import replace
 from functools import lru_cache
 from typing import NamedTuple
 
@@ -19,7 +20,7 @@ from camwright.pipeline.base.material import Endurance, Material
 from camwright.pipeline.base.units import shown
 from camwright.pipeline.case.limits import (
     CONTACT_SAFETY,
-    EDGE_FACTOR,
+    END_MEAN_LENGTH,
     SHAKEDOWN_SAFETY,
     TARGET_LIFE,
     YIELD_SAFETY,
@@ -27,11 +28,18 @@ from camwright.pipeline.case.limits import (
 from camwright.pipeline.case.machine import Machine
 from camwright.pipeline.checks.check import NONE, Demand, check
 from camwright.pipeline.checks.extremes import Extreme, greatest
-from camwright.pipeline.checks.missing_keys import lacking, lacking_of_card, no_friction, unset
+from camwright.pipeline.checks.missing_keys import (
+    lacking,
+    lacking_ends,
+    lacking_of_card,
+    no_friction,
+    unset,
+)
 from camwright.pipeline.contact import hertz
 from camwright.pipeline.contact.rolling_envelope import smallest_sphere
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.cycle import Cycle
+from camwright.pipeline.cycle.length_history import factor_at_pressure
 from camwright.pipeline.cycle.solution import Solution
 from camwright.pipeline.follower.roller_motion import rolling_share
 
@@ -99,31 +107,39 @@ def endurance_of(machine: Machine, card: Material) -> Endurance:
 
 
 def pressure_limits(machine: Machine, cycles: LoadCycles) -> dict[str, LeastLimit]:
-    """Allowable contact pressure by check, Pa, the least over both bodies.
+    """Allowable plane-strain pressure by check, Pa, the least over both bodies.
 
-    Under traction it is that of full sliding, the greatest traction of a follower: a roller that
-    transmits less has more, see `equivalent_pressure`.
+    At the ends it is an estimate, which a solved cam corrects. Under traction it is that of full
+    sliding, the greatest traction of a follower: a roller that transmits less has more, see
+    `equivalent_pressure`.
     """
     limits, follower = machine.limits, machine.follower
-    edge = applied_edge_factor(machine)
+    ends = estimated_length_factor(machine)
     shear = shear_yield(machine)
     endurance = _least_endurance(machine)
     allowed = {
         "contact_pressure": endurance,
-        "edge_pressure": _times(endurance, 1.0 / edge),
         "shakedown": _times(shear, SHAKEDOWN),
     }
+    if ends is not None:
+        allowed["edge_pressure"] = _times(endurance, 1.0 / ends)
     if follower.friction is not None:
         factor = shakedown_factor(follower.friction, least_poisson(machine))
         allowed["shakedown_traction"] = _times(shear, factor)
-        allowed["edge_shakedown"] = _times(shear, factor / edge)
-    if limits[TARGET_LIFE] is not None:
-        allowed["contact_pressure_at_life"] = least_of_bodies(
-            machine,
-            lambda body, card: _at_life(machine, body, card, cycles),
-            lambda body, card: _life_lacks(machine, body, card, cycles),
-        )
+        if ends is not None:
+            allowed["edge_shakedown"] = _times(shear, factor / ends)
+    if limits[TARGET_LIFE] is not None and ends is not None:
+        allowed["contact_pressure_at_life"] = _times(_life_limit(machine, cycles), 1.0 / ends)
     return allowed
+
+
+def _life_limit(machine: Machine, cycles: LoadCycles) -> LeastLimit:
+    """Least endurance pressure of cam and follower at the target life."""
+    return least_of_bodies(
+        machine,
+        lambda body, card: _at_life(machine, body, card, cycles),
+        lambda body, card: _life_lacks(machine, body, card, cycles),
+    )
 
 
 def pressure_allowables(machine: Machine, cycles: LoadCycles) -> dict[str, float]:
@@ -185,18 +201,18 @@ def least_poisson(machine: Machine) -> float:
     return min(card.nu for card in machine.bodies.values())
 
 
-def applied_edge_factor(machine: Machine) -> float:
-    """Edge factor on the plane-strain pressure; 1 for a crowned follower."""
-    crowned = machine.crown_radius is not None
-    return 1.0 if crowned else machine.limits[EDGE_FACTOR]
+def estimated_length_factor(machine: Machine) -> float | None:
+    """Signed over plane-strain pressure on the base circle, untilted; None without the ends.
 
-
-def edge_factors(cycle: Cycle) -> Array:
-    """Edge factor (n,): also of a crowned follower where its ellipse exceeds the width."""
-    factor = applied_edge_factor(cycle.machine)
-    if cycle.crown is None:
-        return np.full(cycle.theta.size, factor)
-    return np.where(cycle.crown.truncated, cycle.machine.limits[EDGE_FACTOR], factor)
+    At the greatest pressure that the endurance allows, or else the yield strength.
+    """
+    pressure = _least_endurance(machine).value or shear_yield(machine).value
+    pairs = machine.finite_pairs
+    if not pairs or pressure is None:
+        return None
+    return max(
+        factor_at_pressure(pair, pressure, machine.limits[END_MEAN_LENGTH]) for pair in pairs
+    )
 
 
 def life_turns(machines: tuple[Machine, ...]) -> float:
@@ -218,13 +234,8 @@ def load_cycles(machines: tuple[Machine, ...], contour: Contour) -> LoadCycles:
 
 
 def peak_pressure(solution: Solution) -> Extreme:
-    """Maximum contact pressure over the turn, Pa, that of the ellipse under a crowned follower."""
+    """Maximum contact pressure over the turn in the middle of the line, Pa."""
     return greatest(solution.cycles, lambda cycle: cycle.surface.p0)
-
-
-def _limit(solution: Solution, name: str) -> LeastLimit | None:
-    cycles = load_cycles(solution.machines, solution.contour)
-    return pressure_limits(solution.machine, cycles).get(name)
 
 
 def _judged(
@@ -249,23 +260,11 @@ def _judged(
 
 
 def _pressure_note(solution: Solution) -> str:
-    """Model of the pressure under a crowned follower."""
-    radius = solution.machine.crown_radius
-    if radius is None:
+    """Model of the pressure in the middle of a crowned line of contact."""
+    if not solution.machine.is_crowned:
         return ""
-    note = f"elliptic Hertz contact of a crown radius of {shown(radius, 'mm')}"
-    if truncated(solution):
-        note += (
-            "; the ellipse is longer than the width of the contact: not less than the line contact,"
-            " and derated at the ends by the flat edge factor"
-        )
-    return note
-
-
-def truncated(solution: Solution) -> bool:
-    """Whether the ellipse of a crowned follower exceeds the width of the contact at an angle."""
-    crowns = [cycle.crown for cycle in solution.cycles]
-    return any(crown is not None and bool(crown.truncated.any()) for crown in crowns)
+    most = max((float(c.length.centre.max()) for c in solution.cycles if c.length), default=np.nan)
+    return f"in the middle of the crowned line, up to {most:.4g} times plane strain"
 
 
 def traction_coefficient(cycle: Cycle) -> Array:
@@ -283,12 +282,17 @@ def traction_coefficient(cycle: Cycle) -> Array:
 
 def equivalent_pressure(cycle: Cycle) -> Array:
     """Contact pressure (n,), Pa, of free rolling with the same use of the shakedown limit."""
+    return cycle.surface.p0 * _traction_factor(cycle)
+
+
+def _traction_factor(cycle: Cycle) -> Array:
+    """Equivalent over contact pressure (n,); NaN where the traction is not known."""
     machine = cycle.machine
     coefficient = traction_coefficient(cycle)
     if machine.follower.friction is None or np.isnan(coefficient).any():
         return np.full(cycle.theta.size, np.nan)
     nodes, uses = _shakedown_uses(machine.follower.friction, least_poisson(machine))
-    return SHAKEDOWN * cycle.surface.p0 * np.interp(coefficient, nodes, uses)
+    return SHAKEDOWN * np.interp(coefficient, nodes, uses)
 
 
 @lru_cache(maxsize=32)
@@ -369,9 +373,7 @@ def _stress_with_traction(cycle: Cycle) -> Array:
 def shakedown(solution: Solution) -> Demand:
     """Maximum contact pressure, Pa, against elastic shakedown of free rolling."""
     limit = _times(shear_yield(solution.machine), SHAKEDOWN)
-    note = "without traction; that of an ellipse is higher, 4.7 k under a circle"
-    if solution.machine.crown_radius is None:
-        note = "without traction; sliding at the surface lowers the limit"
+    note = "without traction; sliding at the surface lowers the limit"
     return _judged(peak_pressure(solution), limit, note=note)
 
 
@@ -380,26 +382,37 @@ def shakedown(solution: Solution) -> Demand:
     id="contact_pressure_at_life",
     title="Peak contact pressure vs. endurance limit at target life",
     unit="MPa",
-    method="greatest contact pressure of the load cases in operation; one load cycle per turn of"
-    " the cam and per turn of the roller, by the duty, without one all in the fastest load case;"
-    " least of cam and follower",
+    method="greatest signed contact pressure of the load cases in operation, as of edge_pressure;"
+    " one load cycle per turn of the cam and per turn of the roller, by the duty, without one all"
+    " in the fastest load case; least of cam and follower",
     lift_can_help=True,
-    error="contact",
-    formula="p0 <= sqrt(K E*/pi) / S; log10 K = (B - log10 n)/A with K in psi, n: load cycles of"
+    error="ends",
+    formula="p <= sqrt(K E*/pi) / S; p: signed contact pressure as of edge_pressure,"
+    " log10 K = (B - log10 n)/A with K in psi, n: load cycles of"
     " the body in limits.target_life; a body without A and B keeps its endurance pressure up to its"
     " endurance_cycles",
     reason="the target life may need more load cycles than the endurance pressure",
 )
 def contact_pressure_at_life(solution: Solution) -> Demand:
     """Maximum contact pressure, Pa, against the endurance at the target life."""
-    operating = (each for each in solution.cycles if each.machine.duty != 0.0)
-    worst = greatest(operating, lambda cycle: cycle.surface.p0)
-    limit = _limit(solution, "contact_pressure_at_life")
-    if limit is None:
-        missing, cards = unset(solution.machine.limits, TARGET_LIFE), solution.machine.bodies
-        figures = tuple(f"{card.name}: {card.source}" for card in cards.values())
-        return Demand(worst.value, None, worst, missing, figures=figures)
-    return _judged(worst, limit, note=_pressure_note(solution))
+    machine = solution.machine
+    operating = [each for each in solution.cycles if each.machine.duty != 0.0]
+    worst, lacks = greatest(operating, lambda cycle: cycle.signed_pressure), lacking_ends(machine)
+    if machine.limits[TARGET_LIFE] is None:
+        missing = unset(machine.limits, TARGET_LIFE)
+        figures = tuple(f"{card.name}: {card.source}" for card in machine.bodies.values())
+        return Demand(worst.value, None, worst, (*missing, *lacks), figures=figures)
+    limit = _life_limit(machine, load_cycles(solution.machines, solution.contour))
+    return _judged(worst, limit, missing=lacks, note=signed_sentence(solution, worst))
+
+
+def signed_sentence(solution: Solution, worst: Extreme) -> str:
+    """What the signed pressure is where it is greatest; "" where it is not known."""
+    for cycle in solution.cycles:
+        if cycle.load_case == worst.load_case and cycle.length and worst.cam_angle is not None:
+            place = int(np.argmin(np.abs(cycle.theta - worst.cam_angle)))
+            return cycle.length.sentence(place)
+    return ""
 
 
 def pressure_at_life(cycles: float, slope: float, intercept: float, modulus: float) -> float:
@@ -419,54 +432,57 @@ def pressure_at_life(cycles: float, slope: float, intercept: float, modulus: flo
     return math.sqrt(factor * modulus / math.pi)
 
 
+_SIGNED = (
+    "contact pressure of plane strain times the factor along the line of contact, at each angle"
+    " without tilt and under the greatest moment of friction in the guides and axial offset; at a"
+    " corner the mean over limits.end_mean_length, else the greatest pressure; half-spaces with"
+    " mirrored ends"
+)
+
+
 @check(
-    EDGE_FACTOR,
+    CONTACT_SAFETY,
     id="edge_pressure",
-    title="Edge pressure of the {follower} vs. endurance limit",
+    title="Pressure along the line of contact of the {follower} vs. endurance limit",
     unit="MPa",
-    method="greatest contact pressure times the edge factor; the ends are not solved",
+    sense="at_most",
+    method=_SIGNED,
     lift_can_help=True,
     tier=Tier.SCREENING,
-    error="contact",
-    formula="f p0 <= p_E / S; f: limits.edge_factor for straight ends, 1 for a crown whose ellipse"
-    " lies within the width",
-    reason="a straight contact fails at its ends first; the flat factor is a derating"
-    " until the ends are solved in three dimensions",
+    error="ends",
+    formula="K p0 <= p_E / S; p0: contact pressure of plane strain, K: signed pressure over it, p_E"
+    " and S as of contact_pressure",
+    reason="a line contact fails at its ends first, and most where it is tilted",
 )
 def edge_pressure(solution: Solution) -> Demand:
-    """Contact pressure at the ends of the line contact, Pa, by the edge factor."""
+    """Greatest signed contact pressure, Pa, against the least endurance of cam and follower."""
     machine = solution.machine
-    limit = _least_endurance(machine)
-    worst = greatest(solution.cycles, lambda cycle: edge_factors(cycle) * cycle.surface.p0)
-    return _judged(worst, limit, note=_pressure_note(solution), method=_edge_method(solution))
+    worst = greatest(solution.cycles, lambda cycle: cycle.signed_pressure)
+    note, lacks = signed_sentence(solution, worst), lacking_ends(machine)
+    made = _judged(worst, _least_endurance(machine), missing=lacks, note=note)
+    mean = f"limits.end_mean_length: {machine.limits.source(END_MEAN_LENGTH)}"
+    return replace(made, figures=(*made.figures, mean))
 
 
 @check(
     SHAKEDOWN_SAFETY,
     id="edge_shakedown",
-    title="Edge pressure of the {follower} vs. shakedown limit",
+    title="Pressure along the line of contact of the {follower} vs. shakedown limit",
     unit="MPa",
-    method="greatest contact pressure times the edge factor; the ends are not solved",
+    method=_SIGNED + "; equivalent pressure as of shakedown_traction",
     lift_can_help=True,
-    error="contact",
-    formula="f p_eq <= 4 k / S; f: edge factor as of edge_pressure, p_eq: equivalent pressure as of"
-    " shakedown_traction",
-    reason="the edges yield first, and an edge that does not shake down is rolled out",
+    error="ends",
+    formula="K p_eq <= 4 k / S; K: as of edge_pressure, p_eq: equivalent pressure of plane strain,"
+    " see shakedown_traction",
+    reason="the ends yield first, and an end that does not shake down is rolled out",
 )
 def edge_shakedown(solution: Solution) -> Demand:
-    """Equivalent contact pressure at the ends, Pa, against shakedown."""
+    """Equivalent signed pressure, Pa, against shakedown."""
     machine = solution.machine
-    worst = greatest(solution.cycles, lambda each: edge_factors(each) * equivalent_pressure(each))
-    limit, missing = _times(shear_yield(machine), SHAKEDOWN), no_friction(machine)
-    return _judged(worst, limit, missing=missing, method=_edge_method(solution))
-
-
-def _edge_method(solution: Solution) -> str:
-    machine = solution.machine
-    if machine.crown_radius is not None and not truncated(solution):
-        return "greatest pressure of the ellipse, which lies within the width of the contact"
-    factor = machine.limits[EDGE_FACTOR]
-    return f"greatest contact pressure times {factor:g}, a flat derating: the ends are not solved"
+    worst = greatest(solution.cycles, lambda each: each.signed_pressure * _traction_factor(each))
+    limit = _times(shear_yield(machine), SHAKEDOWN)
+    missing = (*lacking_ends(machine), *no_friction(machine))
+    return _judged(worst, limit, missing=missing, note=signed_sentence(solution, worst))
 
 
 @check(

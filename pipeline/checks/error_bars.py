@@ -43,8 +43,9 @@ def with_error_bars(solution: Solution, checks: Iterable[Check]) -> tuple[Check,
 
     A demand on a guide has the discretisation uncertainty of the guide reaction, and one on its
     edges `GUIDE_EDGE_ERROR` besides. One on the contact has the greatest sum of difference and grid
-    convergence index of its certified quantity, and the sampling error; one on the bore the change
-    with a finer mesh. Without a certificate its error is not known.
+    convergence index of its certified quantity, and the sampling error; one on the line of contact
+    the difference of half-spaces from finite elements besides; one on the bore the change with a
+    finer mesh. Without a certificate its error is not known.
     """
     checks = tuple(checks)
     beam = [each.demand for each in checks if each.id == GUIDE_ERROR]
@@ -54,6 +55,7 @@ def with_error_bars(solution: Solution, checks: Iterable[Check]) -> tuple[Check,
         contact = contact_error(solution, FIGURES.get(one.id))
         meshes: dict[Error, float | None] = {
             "contact": contact,
+            "ends": None if contact is None else contact + length_error(solution),
             "guides": guides,
             "guide_edges": None if guides is None else guides + GUIDE_EDGE_ERROR,
             "bore": solution.bore_error,
@@ -82,6 +84,20 @@ def contact_error(solution: Solution, figure: str | None = None) -> float | None
             ]
         )
     )
+
+
+def length_error(solution: Solution) -> float:
+    """Relative error of the factor along the line of contact where the signed pressure is greatest.
+
+    0 where it is not known.
+    """
+    error, most = 0.0, 0.0
+    for cycle in solution.cycles:
+        if cycle.length is not None:
+            place = int(np.argmax(cycle.signed_pressure))
+            if not cycle.signed_pressure[place] <= most:
+                error, most = float(cycle.length.error[place]), cycle.signed_pressure[place]
+    return error
 
 
 def _share(one: Check, meshes: Mapping[Error, float | None]) -> float | None:

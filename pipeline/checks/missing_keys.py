@@ -25,3 +25,9 @@ def unset(limits: LimitValues, *rows: AnyLimit) -> tuple[str, ...]:
 def no_friction(machine: Machine) -> tuple[str, ...]:
     """Key of the friction of the follower on the cam where the case lacks it."""
     return lacking(machine.follower.table, machine.follower, "friction")
+
+
+def lacking_ends(machine: Machine) -> tuple[str, ...]:
+    """Keys of the ends of the contact that the case lacks."""
+    parts = (machine.cam, machine.follower)
+    return tuple(key for part in parts for key in lacking(part.table, part, "end"))

@@ -6,42 +6,17 @@ import numpy as np
 
 from camwright.geometry.arrays import Array
 from camwright.pipeline.base.units import shown
-from camwright.pipeline.case.limits import BORE_SAFETY, EDGE_FACTOR
+from camwright.pipeline.case.limits import BORE_SAFETY
 from camwright.pipeline.checks.check import NONE, Demand, check
-from camwright.pipeline.checks.contact_strength import truncated
 from camwright.pipeline.checks.extremes import greatest, least
 from camwright.pipeline.contact.bore_stress import BoreStress
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.cycle import Cycle
 from camwright.pipeline.cycle.solution import Solution
 
-LEAST_EDGE_FACTOR = 1.3  # without a crown: 1.3 to 2, shop practice: verify
 HELD_DISTANCE = 10.0  # half-widths, beyond which the supports do not affect the contact
 EXCLUDED_SHARE = 0.5  # of the keyway depth
 SUBSURFACE = 0.3  # half-widths: a shallower maximum is a singularity or an element error
-
-
-@check(
-    title="Edge factor on the plane-strain contact pressure",
-    unit="-",
-    sense="at_least",
-    source="factor 1.3 to 2, or crown the roller, shop practice: verify",
-    method="factor of edge_pressure on the plane-strain solution; 1 for a crown whose ellipse lies"
-    " within the width",
-    evidence=True,
-    tier=Tier.CYCLE,
-    formula="limits.edge_factor >= 1.3 for straight ends; 1 for a crowned roller whose contact ends"
-    " within its width",
-    reason="the plane solution has no ends, and a smaller factor would hide them",
-    load_cases=NONE,
-)
-def edge_factor(solution: Solution) -> Demand:
-    """Factor on the plane-strain pressure for the ends of the contact."""
-    machine = solution.machine
-    ends = machine.crown_radius is None or truncated(solution)
-    factor = machine.limits[EDGE_FACTOR] if ends else 1.0
-    note = "plane strain includes neither the ends of the contact nor a tilt of the axes"
-    return Demand(factor, LEAST_EDGE_FACTOR if ends else 1.0, note=note)
 
 
 @check(

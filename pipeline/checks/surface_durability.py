@@ -22,7 +22,12 @@ from camwright.pipeline.case.machine import Machine
 from camwright.pipeline.checks.check import NONE, Demand, check
 from camwright.pipeline.checks.contact_strength import endurance_of, peak_pressure
 from camwright.pipeline.checks.extremes import greatest, least, worst_case
-from camwright.pipeline.checks.missing_keys import lacking, lacking_of_card, no_friction
+from camwright.pipeline.checks.missing_keys import (
+    lacking,
+    lacking_ends,
+    lacking_of_card,
+    no_friction,
+)
 from camwright.pipeline.contact.oil_film import Lubricant
 from camwright.pipeline.contact.rolling_envelope import Envelope
 from camwright.pipeline.cycle.cycle import Cycle
@@ -93,7 +98,7 @@ def film_ratio(solution: Solution) -> Demand:
     machine = solution.machine
     oil, kind = machine.lubricant, machine.follower
     running = [cycle for cycle in solution.cycles if cycle.machine.speed > 0]
-    worst, crowned = least(running or solution.cycles, _lambda), machine.crown_radius is not None
+    worst, crowned = least(running or solution.cycles, _lambda), machine.is_crowned
     missing = lacking(machine.cam.table, machine.cam, "roughness")
     missing += lacking(kind.table, kind, "roughness")
     return Demand(
@@ -277,15 +282,22 @@ def _rank(value: float) -> float:
     return inf if math.isnan(value) else value
 
 
+def _signed_depth(cycle: Cycle) -> Array:
+    """Depth of the maximum shear (n,), m, where the signed pressure acts; NaN without the ends."""
+    if cycle.length is None:
+        return np.full(cycle.theta.size, np.nan)
+    return cycle.length.factor * cycle.contact.tau_depth
+
+
 @check(
     CASE_DEPTH_RATIO,
     id="case_depth",
     title="Effective case depth / depth of maximum shear stress",
-    method="effective case depth of the material over the greatest depth of tau_max over the turn;"
-    " least of cam and follower, where hardened",
+    method="effective case depth of the material over the greatest depth of tau_max over the turn,"
+    " at the signed contact pressure of edge_pressure; least of cam and follower, where hardened",
     lift_can_help=True,
     formula="d / z >= limits.case_depth_ratio; d: case_depth, z: greatest depth of the maximum"
-    " shear stress over all load cases",
+    " shear stress over all load cases, of plane strain times the factor of edge_pressure",
     reason="of a hardened surface: the maximum shear stress must lie within the case",
 )
 def case_depth(solution: Solution) -> Demand | None:
@@ -293,7 +305,7 @@ def case_depth(solution: Solution) -> Demand | None:
     bodies = hardened_bodies(solution)
     if not bodies:
         return None
-    worst = greatest(solution.cycles, lambda cycle: cycle.surface.tau_depth)
+    worst = greatest(solution.cycles, _signed_depth)
     loaded = worst.value > 0 or np.isnan(worst.value)
     limit = solution.machine.limits[CASE_DEPTH_RATIO]
     depths = [card.case_depth for card in bodies.values() if card.case_depth is not None]
@@ -303,7 +315,10 @@ def case_depth(solution: Solution) -> Demand | None:
         None if incomplete and not (ratio is not None and ratio < limit) else ratio,
         limit,
         worst,
-        tuple(key for card in incomplete for key in _lacks(card, "case_depth")),
+        (
+            *(key for card in incomplete for key in _lacks(card, "case_depth")),
+            *lacking_ends(solution.machine),
+        ),
         figures=tuple(f"{card.name}: {card.source}" for card in bodies.values()),
     )
 

@@ -13,7 +13,6 @@ In the order of the calculation:
 | `contact_pair`       | cam and follower: relative radius, gap         | R, m; gap, m         |
 | `contact_history`    | contact over the turn, certificate point       | p0, Pa; a, m         |
 | `closed_form`        | contact over the turn by Hertz                 | p0, Pa; a, m         |
-| `elliptic_contact`   | contact of a crowned follower, stress on axis  | a, b, m; p0, Pa      |
 | `contact_patch`      | finite-element template of the half-plane      | -                    |
 | `body_compliance`    | correction of the half-plane for a real body   | Pa m/N; 1/N          |
 | `two_scale`          | contact over the turn by patch and corrections | p0, tau, sigma_v, Pa |

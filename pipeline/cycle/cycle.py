@@ -25,10 +25,10 @@ from camwright.pipeline.base.tables import (
 from camwright.pipeline.case.machine import Machine
 from camwright.pipeline.contact.contact_history import ContactHistory
 from camwright.pipeline.contact.contact_pair import ContactPair
-from camwright.pipeline.contact.elliptic_contact import CrownedContact, crowned_contact
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.contact.two_scale import CycleBodies
 from camwright.pipeline.cycle.elastic_response import ElasticHistory, elastic_history
+from camwright.pipeline.cycle.length_history import LengthHistory, length_history
 from camwright.pipeline.cycle.part_loads import PartLoads, part_loads, spring_surge
 from camwright.pipeline.cycle.rolling_history import RollingHistory, rolling_history
 from camwright.pipeline.cycle.turn import Turn
@@ -125,22 +125,24 @@ class Cycle(Tabled):
         return self.turn.machine.cam_speed
 
     @cached_property
-    def crown(self) -> CrownedContact | None:
-        """Contact of a crowned follower, by the closed form of the ellipse; None if it is straight.
-
-        The plane contact is that of the same forces without the crown.
-        """
-        radius = self.machine.crown_radius
-        if radius is None or self.contact.tier is None:
+    def length(self) -> LengthHistory | None:
+        """Pressure along the line of contact; None where the case lacks an end, or without body."""
+        if self.contact.tier is None:
             return None
-        return crowned_contact(
-            self.contact, self.pair.width, radius, self.pair.contact_modulus, self.pair.cam.poisson
-        )
+        return length_history(self.machine, self.contact, self.loads.normal_force, self.guides)
 
     @property
+    def signed_pressure(self) -> Array:
+        """Signed contact pressure (n,), Pa, ends and tilt included; NaN without the ends."""
+        factor = np.full(self.theta.size, np.nan) if self.length is None else self.length.factor
+        return factor * self.contact.p0
+
+    @cached_property
     def surface(self) -> ContactHistory:
-        """Contact with the crown of the follower; the plane contact for a straight one."""
-        return self.contact if self.crown is None else self.crown.history
+        """Contact in the middle of the line of contact; the plane contact of straight bodies."""
+        if self.length is None or not self.machine.is_crowned:
+            return self.contact
+        return self.length.in_the_middle(self.contact)
 
     @cached_property
     def rolling(self) -> RollingHistory:
@@ -302,14 +304,21 @@ class Cycle(Tabled):
         if loads.applied_force.any():
             applied = Column("applied_force", "N", "Weight and external force on the follower")
             columns[applied] = loads.applied_force
-        if (crown := self.crown) is not None:
+        if (length := self.length) is not None:
             columns |= {
                 contact_column(
-                    "p0_crowned", "MPa", "Maximum contact pressure of the crowned roller, ellipse"
-                ): crown.history.p0,
+                    "p0_signed", "MPa", "Contact pressure that is signed, ends and tilt included"
+                ): self.signed_pressure,
                 contact_column(
-                    "half_length_crowned", "mm", "Axial half-length of the contact ellipse"
-                ): crown.half_length,
+                    "length_factor", "", "Signed contact pressure over that of plane strain"
+                ): length.factor,
+                contact_column("length_factor_level", "", "The same without tilt"): length.level,
+                contact_column(
+                    "centre_factor", "", "Contact pressure in the middle over plane strain"
+                ): length.centre,
+                contact_column(
+                    "tilt_moment", "N mm", "Greatest moment of the contact force about its middle"
+                ): length.moment,
             }
         # An engine at rest has no torque in its load case.
         if turn.torque_before is not None and turn.torque_after is not None:
@@ -338,6 +347,10 @@ class _ThinnedCycle(Cycle):
 
     whole: Cycle
     step: int
+
+    @cached_property
+    def length(self) -> LengthHistory | None:
+        return _at_every(self.whole.length, self.whole.theta.size, self.step)
 
     @cached_property
     def rolling(self) -> RollingHistory:

@@ -97,6 +97,8 @@ _MASS = _one("follower.mass", -1, 2.0)
 _PRIME = _one("cam.prime_radius", most=2.0)
 _RADIUS = Scaled(("roller.radius",), 1, along=("cam.prime_radius", "follower.overhang_at_max_lift"))
 _WIDTH = Scaled(("cam.width", "roller.width", "roller.pin.span", "follower.face.depth"), 1)
+# A cam that ends within the flat of the follower has a lower pressure at its ends.
+_NARROWER = Scaled(("cam.width", "cam.key.length"), -1, 1.25)
 _OVERHANG = _one("follower.overhang_at_max_lift", -1, 2.0)
 _SPACING = _one("guides.spacing", most=2.0)
 _LENGTH_A, _LENGTH_B = _one("guides.a.length", most=2.5), _one("guides.b.length", most=2.5)
@@ -171,8 +173,10 @@ LEVERS: Mapping[str, tuple[Lever, ...]] = {
     ),
     "jam_index": _JAM,
     "jam_index_friction_max": _JAM,
-    **dict.fromkeys(("contact_pressure", "edge_pressure", "contact_pressure_at_life"), _ENDURANCE),
-    **dict.fromkeys(("shakedown", "shakedown_traction", "edge_shakedown"), _YIELD),
+    "contact_pressure": _ENDURANCE,
+    **dict.fromkeys(("edge_pressure", "contact_pressure_at_life"), (_NARROWER, *_ENDURANCE)),
+    **dict.fromkeys(("shakedown", "shakedown_traction"), _YIELD),
+    "edge_shakedown": (_NARROWER, *_YIELD),
     **dict.fromkeys(("hardened_case", "case_shear", "case_depth"), _CASE),
     "roller_static": (Catalogued(BEARING, "C0", inverse=True), *_LOAD),
     "roller_load_share": (Catalogued(BEARING, "C", inverse=True), *_LOAD),

@@ -7,6 +7,7 @@ In the order of the calculation:
 | `design_factors`    | factors of the designs, their bounds; groups        |                      |
 | `cam_shapes`        | contour and contact under a roller or a flat face   | rho, m; kappa, 1/m   |
 | `design_arrays`     | lift, contour, loads and contact of many designs    | s, m; F_n, N; p0, Pa |
+| `design_lengths`    | pressure along the line of contact of many designs  | K, -                 |
 | `screened_shape`    | checks of the cam shape                             | m, rad               |
 | `screened_loads`    | checks of forces, guides and torque                 | N, N m, Pa           |
 | `screened_contact`  | checks of contact, roller bearing and flat face     | p0, Pa; h            |

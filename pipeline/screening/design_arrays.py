@@ -10,7 +10,6 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 from numpy.polynomial.chebyshev import chebvander
-from numpy.typing import NDArray
 
 from camwright.geometry.arrays import Array, uniform_turn
 from camwright.geometry.extrema import sampled_greatest, sampled_least
@@ -23,7 +22,6 @@ from camwright.pipeline.case.load_case_torque import engine_torque
 from camwright.pipeline.case.machine import CREEP, Machine, machine
 from camwright.pipeline.case.requirements_section import LoadCase
 from camwright.pipeline.checks import demands
-from camwright.pipeline.contact.elliptic_contact import Ellipse, elliptic_contact
 from camwright.pipeline.contact.hertz import peak_pressure_square
 from camwright.pipeline.follower.follower_forces import (
     REST,
@@ -39,6 +37,7 @@ from camwright.pipeline.follower.spring import spring_force, stored_lift
 from camwright.pipeline.follower.spring_kinds import SpringShape
 from camwright.pipeline.screening.cam_shapes import CamShape, FaceShape, RollerShape
 from camwright.pipeline.screening.design_factors import WoundSprings, wound_spring
+from camwright.pipeline.screening.design_lengths import factors_of
 
 Columns = Mapping[str, Array]
 Judged = tuple[Array, Array | float | None]
@@ -104,8 +103,9 @@ class State(NamedTuple):
 class Turns:
     """Loads of a load case of many designs, arrays (m, 1) and (m, n).
 
-    guides: their loads, N; jam_index_max: at the maximum friction on the rise; p0_line: of the line
-    contact; p0: of the ellipse under a crowned roller; edged: where the contact ends at an edge.
+    guides: their loads, N; jam_index_max: at the maximum friction on the rise; p0_line: of plane
+    strain; p0: in the middle of a crowned line; p0_signed: with ends and tilt, NaN where they are
+    not known.
     """
 
     state: State
@@ -116,7 +116,7 @@ class Turns:
     jam_index_max: Array
     p0_line: Array
     p0: Array
-    edged: NDArray[np.bool_]
+    p0_signed: Array
 
 
 @dataclass(frozen=True, eq=False)
@@ -310,17 +310,19 @@ class Designs:
         force = free.axial_force * share_left(motion.slope, free.jam_index)
         system = replace(system, rubbing=self._settled(force, system))
         loads = loads_of(motion, system, speed, theta)
-        p0_line, p0, edged = self._pressures(loads.normal_force)
+        guides = self._supports.loads(loads.axial_force)
+        rubbing = guides.rubbing_a, guides.rubbing_b
+        p0_line, p0, signed = self._pressures(loads.normal_force, rubbing)
         return Turns(
             state=state,
             crank_speed=crank,
             cam_speed=speed,
             loads=loads,
-            guides=self._supports.loads(loads.axial_force),
+            guides=guides,
             jam_index_max=self._jam_index_max(force, system),
             p0_line=p0_line,
             p0=p0,
-            edged=edged,
+            p0_signed=signed,
         )
 
     @cached_property
@@ -388,32 +390,20 @@ class Designs:
         radius = self.at_loads(self.shape.relative_radius)
         return np.where(self.shape.least_factor[:, None] > 0.0, radius, np.nan)
 
-    @cached_property
-    def _ellipse(self) -> Ellipse | None:
-        """Contact of the crowned bodies under 1 N (m, n); None of straight ones."""
-        if self.machine.crown_radius is None:
-            return None
-        radii = (self.value(f"{part}.crown.radius") for part in ("cam", self.shape.part))
-        crown = 1.0 / sum(np.nan_to_num(1.0 / radius) for radius in radii)
-        radius = np.where(np.isnan(self.relative_radius), 1.0, self.relative_radius)
-        modulus = self.machine.contact_modulus
-        return elliptic_contact(1.0, radius, crown, modulus, interpolated=True)
+    def _pressures(self, force: Array, rubbing: tuple[Array, Array]) -> tuple[Array, ...]:
+        """Greatest pressure of plane strain, in the middle of the line, and signed (m, n), Pa.
 
-    def _pressures(self, normal_force: Array) -> tuple[Array, Array, NDArray[np.bool_]]:
-        """Maximum pressure of the line and of the contact (m, n), Pa; where it ends at an edge.
-
-        NaN where the contour bounds no body. As `crowned_contact`: an ellipse longer than the width
-        has at least the pressure of the line.
+        NaN where the contour bounds no body; signed where its factor is not known.
         """
-        force, radius = np.maximum(normal_force, 0.0), self.relative_radius
+        load, radius = np.maximum(force, 0.0), self.relative_radius
         modulus, width = self.machine.contact_modulus, self.contact_width
-        line = np.sqrt(peak_pressure_square(force / width, 1.0 / radius, modulus))
-        if self._ellipse is None:
-            return line, line, np.ones(line.shape, dtype=bool)
-        scale = np.cbrt(force)
-        longer = 2.0 * scale * self._ellipse.half_length > width
-        crowned = np.where(np.isnan(radius), np.nan, scale * self._ellipse.p0)
-        return line, np.where(longer, np.maximum(crowned, line), crowned), longer
+        line = np.sqrt(peak_pressure_square(load / width, 1.0 / radius, modulus))
+        factors = factors_of(self, load, radius, rubbing)
+        crowned, unknown = self.machine.is_crowned, np.full(line.shape, np.nan)
+        if factors is None:
+            return line, unknown if crowned else line, unknown
+        signed = line * np.maximum(factors.level, factors.tilted)
+        return line, line * factors.centre if crowned else line, signed
 
     @cached_property
     def fastest(self) -> Array:

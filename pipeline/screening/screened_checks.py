@@ -57,11 +57,11 @@ SCREENED: tuple[Screened, ...] = (
     Screened("jam_index", loads.jam_index, 0.01),
     Screened("jam_index_friction_max", loads.jam_index_friction_max, 0.01),
     Screened("contact_pressure", contact.contact("contact_pressure", CONTACT_SAFETY), 0.001),
-    # A crown that is longer than the contact: the edge factor sets in between two samples.
+    # The friction of the guides, which holds a tilt, is interpolated.
     Screened(
         "edge_pressure",
-        contact.contact("contact_pressure", CONTACT_SAFETY, contact.pressure_at_edge),
-        0.05,
+        contact.contact("contact_pressure", CONTACT_SAFETY, contact.signed_pressure),
+        0.01,
     ),
     Screened("shakedown", contact.contact("shakedown", SHAKEDOWN_SAFETY), 0.001),
     Screened("roller_static", contact.roller_static, 0.005),

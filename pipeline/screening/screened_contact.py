@@ -8,7 +8,6 @@ import numpy as np
 
 from camwright.geometry.arrays import Array
 from camwright.pipeline.case.limits import (
-    EDGE_FACTOR,
     ROLLER_LIFE,
     ROLLER_LOAD_SHARE,
     ROLLER_SPEED_SHARE,
@@ -26,9 +25,9 @@ def _pressure(_: Designs, turns: Turns) -> Array:
     return turns.p0
 
 
-def pressure_at_edge(designs: Designs, turns: Turns) -> Array:
-    """The edge factor stands in the demand, the limit is that of the contact pressure."""
-    return np.where(turns.edged, designs.limit(EDGE_FACTOR)[:, None], 1.0) * turns.p0
+def signed_pressure(_: Designs, turns: Turns) -> Array:
+    """Contact pressure (m, n), Pa, with ends and tilt."""
+    return turns.p0_signed
 
 
 def contact(

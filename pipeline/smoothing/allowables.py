@@ -27,7 +27,12 @@ from camwright.pipeline.case.limits import (
     VISCOSITY_RATIO,
 )
 from camwright.pipeline.case.machine import Machine, machines
-from camwright.pipeline.checks import camshaft_strength, part_strength, surface_durability
+from camwright.pipeline.checks import (
+    camshaft_strength,
+    contact_strength,
+    part_strength,
+    surface_durability,
+)
 from camwright.pipeline.checks.cam_shape import least_concave_radius
 from camwright.pipeline.checks.camshaft_strength import tooth_torque_limits
 from camwright.pipeline.checks.check import Declaration
@@ -112,7 +117,6 @@ def ratings_of(case: Case) -> Ratings:
         pressure_by=pressure_by,
         contact_width=machine.contact_width,
         contact_modulus=machine.contact_modulus,
-        crown_radius=machine.crown_radius,
         overspeed=over,
         fastest=over,
         jump_speed=limits[JUMP_SPEED] * over,
@@ -323,7 +327,13 @@ _SCALED: Mapping[str, tuple[Declaration, float]] = {
     )
 }
 """Checks whose utilisation grows about with a power of the greatest normal force."""
-_SCALED_PRESSURE = (surface_durability.hardened_case, surface_durability.case_shear)
+_SCALED_PRESSURE = (
+    contact_strength.edge_pressure,
+    contact_strength.edge_shakedown,
+    contact_strength.contact_pressure_at_life,
+    surface_durability.hardened_case,
+    surface_durability.case_shear,
+)
 """Checks whose utilisation grows about with the greatest contact pressure."""
 
 

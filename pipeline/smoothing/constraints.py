@@ -12,14 +12,12 @@ value, title, unit and slope from the row.
 from __future__ import annotations
 
 from collections.abc import Container, Mapping
-from functools import lru_cache
 from math import inf
 from typing import Literal
 
 import numpy as np
 
 from camwright.geometry.arrays import Array
-from camwright.geometry.monotone_cubic import MonotoneCubic
 from camwright.geometry.pitch_curve import magnitude
 from camwright.pipeline.case.limits import (
     CAM_RADIUS,
@@ -33,7 +31,6 @@ from camwright.pipeline.case.limits import (
     AnyLimit,
 )
 from camwright.pipeline.checks import demands
-from camwright.pipeline.contact.elliptic_contact import pressure_cubed_per_force
 from camwright.pipeline.follower.roller_motion import BALL_LIFE_EXPONENT, wear
 from camwright.pipeline.smoothing.cam_state import (
     Constraint,
@@ -50,15 +47,13 @@ from camwright.pipeline.smoothing.cam_state import (
 from camwright.pipeline.smoothing.part_constraints import (
     PART_SHAPE,
     PARTS,
-    line_share,
+    line_pressure,
     rubbing_load,
 )
 from camwright.pipeline.smoothing.scenario import DesignVariables, Ratings, Scenario
 
 FACTOR_MAX = 4.0
 """Maximum factor of a relaxation."""
-_LEAST_FORCE = 1.0  # N, below which a crowned contact is far from any limit
-_CURVATURES, _CURVATURE_STEPS = (1.0, 1e6), 1500  # 1/m
 
 
 def shape_utilisations(
@@ -117,37 +112,6 @@ def _concave_radius(cam: Shape, hollow: float) -> Array | None:
     path = roller_of(cam.path)
     room = hollow - path.size
     return -path.curvature * room if room > 0.0 else None
-
-
-def _contact_pressure(at: Loads, limit: float) -> Array:
-    """As `line_pressure`, of a crowned roller by the greater of line and ellipse.
-
-    The ellipse reaches the limit at a relative curvature c: r kappa + 1/(r c) <= 1.
-    """
-    share, ratings = line_share(at, limit), at.ratings
-    if ratings.crown_radius is not None:
-        force = np.where(np.real(at.force.normal) > _LEAST_FORCE, at.force.normal, _LEAST_FORCE)
-        relief = 3.0 * np.log(limit / at.scenario.correction.contact) - np.log(force)
-        ellipse = np.exp(-_limit_curvature(relief, ratings)) / at.path.size
-        share = np.where(np.real(ellipse) > np.real(share), ellipse, share)
-    return at.path.bend + share
-
-
-def _limit_curvature(relief: Array, ratings: Ratings) -> Array:
-    """ln of the relative curvature, 1/m, at ln(p0^3/N) of an elliptic contact, complex (n,)."""
-    table = _curvature_table(ratings.crown_radius or inf, ratings.contact_modulus)
-    real, step = np.real(relief), np.imag(relief)
-    value: Array = table(real)
-    return value + 1j * step * table(real, 1) if np.iscomplexobj(relief) else value
-
-
-@lru_cache(maxsize=8)
-def _curvature_table(crown_radius: float, modulus: float) -> MonotoneCubic:
-    """ln(1/R) by ln(p0^3/N) of an elliptic contact, both rising."""
-    curvature = np.geomspace(*_CURVATURES, _CURVATURE_STEPS)
-    steepness = np.log(pressure_cubed_per_force(curvature, crown_radius, modulus))
-    rising = np.diff(steepness, prepend=-inf) > 0
-    return MonotoneCubic(steepness[rising], np.log(curvature[rising]))
 
 
 def _inertia(at: Loads, cam_speed: float) -> Array:
@@ -237,7 +201,7 @@ SHAPE: tuple[Constraint[Shape], ...] = (
 """Limits on the shape of the cam."""
 
 LOADS: tuple[Constraint[Loads], ...] = (
-    Constraint("contact_pressure", lambda ratings: ratings.pressure, _contact_pressure),
+    Constraint("contact_pressure", lambda ratings: ratings.pressure, line_pressure),
     Constraint(
         "contact_force_margin",
         CONTACT_FORCE_MARGIN,

@@ -349,7 +349,7 @@ def _of_cycle(cycle: Cycle, swept: Correction, left: Sequence[tuple[float, float
     swept : Correction   of the speed range
     left : pairs         shares of pressure limit and line load of the guides; see `softening`
     """
-    guides, contact, machine = cycle.guides, cycle.contact, cycle.machine
+    guides, contact, machine = cycle.guides, cycle.surface, cycle.machine
     worst, friction = cycle.parts.friction.greatest, machine.friction.greatest
     line_a, line_b = guides.line_pressure_max_a, guides.line_pressure_max_b
     surge, spacing = cycle.parts.surge_force, machine.guides.spacing

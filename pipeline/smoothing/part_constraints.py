@@ -295,16 +295,10 @@ def line_pressure(at: Loads, allowed: Value) -> Array:
     R_p is the relative radius at which the line contact has the allowed pressure. Pressure and
     undercut depend on the same undercut factor, 1 - bend.
     """
-    return at.path.bend + line_share(at, allowed)
-
-
-def line_share(at: Loads, allowed: Value) -> Array:
-    """R_p / size, see `line_pressure`."""
     ratings = at.ratings
     line_load = at.force.normal / ratings.contact_width
     flat = peak_pressure_square(line_load, 1.0 / at.path.size, ratings.contact_modulus)
-    share: Array = at.scenario.correction.contact**2 * flat / allowed**2
-    return share
+    return at.path.bend + at.scenario.correction.contact**2 * flat / allowed**2
 
 
 PART_SHAPE: tuple[Constraint[Shape], ...] = (

@@ -79,7 +79,6 @@ class Ratings:
                                check it comes from
     contact_width : float      m
     contact_modulus : float    E*, Pa
-    crown_radius : float       of the roller, m; None: straight
     overspeed : float          cam speed at which the contact force margin is kept, rad/s
     fastest : float            cam speed up to which the contact force margin is kept with surge
                                and elastic stem, rad/s
@@ -120,7 +119,6 @@ class Ratings:
     pressure_by: str = "contact_pressure"
     contact_width: float = 1.0
     contact_modulus: float = 1.0
-    crown_radius: float | None = None
     overspeed: float | None = None
     fastest: float | None = None
     jump_speed: float | None = None

@@ -156,7 +156,6 @@ def test_the_radius_grows_until_the_contact_holds() -> None:
         "endurance_pressure": "640 MPa", "source": "made up",
     }  # fmt: skip
     case["cam"] |= {"material": "soft", "offset": "0 mm"}
-    case["limits"]["edge_factor"] = 1.0
     case = without(case, "limits.target_life")
     sizing = sized(parse_open_case(tomli_w.dumps(case)))
     pressure = {each.id: each for each in sizing.checks}["contact_pressure"]

@@ -38,6 +38,7 @@ from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle import solution as solving
 from camwright.pipeline.cycle.cycle import Cycle
 from camwright.pipeline.cycle.elastic_response import ElasticHistory
+from camwright.pipeline.cycle.length_history import LengthHistory
 from camwright.pipeline.cycle.oil_film_history import FilmHistory
 from camwright.pipeline.cycle.part_loads import PartLoads
 from camwright.pipeline.cycle.rolling_history import RollingHistory, SweptStress
@@ -176,15 +177,13 @@ def put(result: Any, **values: Any) -> Any:
     )
 
 
-RESULTS = ("rolling", "parts", "elastic")
+RESULTS = ("length", "rolling", "parts", "elastic")
 
 
-def with_results(
-    cycle: Cycle, rolling: RollingHistory, parts: PartLoads, elastic: ElasticHistory
-) -> Cycle:
-    """The cycle with these for its rolling, its part loads and its elastic response."""
+def with_results(cycle: Cycle, **results: Any) -> Cycle:
+    """The cycle with these for those of `RESULTS`."""
     # A cycle computes them when they are first read and keeps them here: it takes no made-up ones.
-    vars(cycle).update(rolling=rolling, parts=parts, elastic=elastic)
+    vars(cycle).update(results)
     return cycle
 
 
@@ -247,11 +246,19 @@ def cycle(
             force_residual=np.full(POSITIONS, 1e-13),
             moment_residual=np.full(POSITIONS, 1e-12),
         ),
+        "length": _length(),
         "rolling": _rolling(base),
         "parts": _parts(base),
         "elastic": _elastic(base),
     }
     return changed_cycle(base, **(plain | values))
+
+
+def _length() -> LengthHistory:
+    """A quarter more pressure along the line of the tilted roller."""
+    one = np.ones(POSITIONS)
+    corner = np.zeros(POSITIONS, dtype=bool)
+    return LengthHistory(one, 1.1 * one, 1.25 * one, one, corner, 1e-4, 1e-3, is_crowned=False)
 
 
 def _even(force: np.ndarray, knots: np.ndarray) -> np.ndarray:

@@ -372,8 +372,8 @@ by_limit(
     "case_depth",
     "case_depth_ratio",
     lambda: with_contact(tau_depth=NAN),
-    1.0 / 0.0786,
-    "1 mm over 0.786 half-widths of 0.1 mm, Johnson sec. 4.2(c)",
+    1.0 / (1.25 * 0.0786),
+    "1 mm over 0.786 half-widths of 0.1 mm, Johnson sec. 4.2(c), times the factor along the line",
     missing=lambda: with_material("steel", case_depth=None),
 )
 tried(

@@ -306,14 +306,6 @@ tried(
 )
 # what a plane model cannot see
 tried(
-    "edge_factor",
-    lambda share: made.solution(case=made.limits(edge_factor=1.3 / share)),
-    None,
-    None,
-    1.3,
-    "the least in use, for a roller without a crown",
-)
-tried(
     "held_distance",
     loaded(
         "held_distance", lambda n: with_contact(half_width=np.full(made.POSITIONS, 1.36e-3 / n))

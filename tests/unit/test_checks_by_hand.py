@@ -1,6 +1,7 @@
 """Checks of overspeed, life, edges, space and manufacture by hand."""
 
 import datetime as dt
+from dataclasses import replace
 
 import made_trial as made
 import numpy as np
@@ -14,11 +15,10 @@ from camwright.pipeline.checks import (
     jump_and_jamming,
     manufacture,
     roller_bearing,
+    surface_durability,
 )
 from camwright.pipeline.checks.contact_strength import pressure_at_life, shakedown_factor
-from camwright.pipeline.checks.plane_strain_validity import edge_factor
 from camwright.pipeline.checks.registry import all_checks
-from camwright.pipeline.contact.axial_shape import AxialCrown
 
 RPM = 30.0 / np.pi
 MODULUS = 210e9 / (2.0 * (1.0 - 0.3**2))
@@ -65,22 +65,15 @@ def test_target_life_sets_the_cycles():
     assert check.must_have
 
 
-def test_edges_raise_the_pressure_of_a_roller_without_a_crown():
-    check = contact_strength.edge_pressure(made.solution())
-    assert check.demand == pytest.approx(1.3 * 900e6)
-    assert "a flat derating: the ends are not solved" in check.method
-
-
-def test_a_crown_within_the_width_needs_no_edge_factor():
-    roller = made.changed(made.case().roller, crown=AxialCrown(kind="circular", radius=0.05))
-    check = edge_factor(
-        with_case(roller=roller, limits=made.changed(made.case().limits, edge_factor=1.2))
-    )
-    assert (check.demand, check.limit, check.status) == (1.0, 1.0, "pass")
-    flatter = edge_factor(
-        with_part("roller", crown=AxialCrown(kind="circular", radius=10.0))
-    )  # longer than 10 mm
-    assert (flatter.demand, flatter.limit) == (1.3, 1.3)
+def test_a_contact_without_ends_is_not_evaluated_at_them():
+    for name in ("edge_pressure", "edge_shakedown", "case_depth", "contact_pressure_at_life"):
+        declared = getattr(surface_durability if name == "case_depth" else contact_strength, name)
+        case = made.case(roller=made.changed(made.case().roller, end=None))
+        bare = made.solution(case=case)
+        cycles = tuple(made.changed_cycle(cycle, length=None) for cycle in bare.cycles)
+        check = declared(replace(bare, cycles=cycles))
+        assert check.status == "not_evaluated", name
+        assert "roller.end" in check.missing, name
 
 
 def test_shakedown_factor_is_johnsons():

@@ -164,7 +164,7 @@ def test_a_preview_leaves_out_what_only_finite_elements_can_judge():
     preview = made.solution(tier=Tier.PREVIEW, mesh=None, certificate=(), benchmarks=None)
     checks, full = all_checks(preview), all_checks(made.solution())
     by_elements = {declared.id for declared in CHECKS if declared.tier > Tier.PREVIEW}
-    assert {"contact_equilibrium", "mesh_p0", "edge_factor", "bore_stress"} <= by_elements
+    assert {"contact_equilibrium", "mesh_p0", "bore_stress"} <= by_elements
     judged = within_depth(checks)
     assert {c.id for c in judged} == {c.id for c in full} - by_elements
     assert all(c.method.startswith("preview: ") for c in judged)

@@ -25,7 +25,7 @@ from camwright.pipeline.case.case_file import case_of
 from camwright.pipeline.checks.contact_strength import shakedown_factor
 from camwright.pipeline.checks.registry import CHECKS, checks_of
 from camwright.pipeline.contact import hertz
-from camwright.pipeline.contact.elliptic_contact import axis_stress, elliptic_contact
+from camwright.pipeline.contact.finite_length.length_tiers import half_space_factors
 
 CASE = Path(__file__).parents[1] / "data" / "every_part.toml"
 POSITIONS = 72
@@ -129,9 +129,7 @@ def demand(name, **which):
 # --- pressure --------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize(
-    "name", ["contact_pressure", "contact_pressure_at_life", "shakedown", "pressure_by_gear_limits"]
-)
+@pytest.mark.parametrize("name", ["contact_pressure", "shakedown", "pressure_by_gear_limits"])
 def test_pressure_is_that_of_roark(name):
     assert demand(name) == pytest.approx(roark()[0].max(), rel=1e-3)
 
@@ -262,7 +260,8 @@ def test_shakedown_with_traction_is_that_of_the_line_forces():
     worst = int(np.argmax(roark()[0] * (0.25 + 0.306 * traction())))
     use = 4.0 * roark()[0][worst] * orthogonal(traction()[worst])
     assert demand("shakedown_traction") == pytest.approx(use, rel=2e-3)
-    assert demand("edge_shakedown") == pytest.approx(1.3 * use, rel=2e-3)
+    factor = demand("edge_pressure") / demand("contact_pressure")
+    assert demand("edge_shakedown") == pytest.approx(factor * use, rel=5e-3)
     full = 4.0 * roark()[0].max() * orthogonal(0.1)
     assert demand("shakedown_traction") < 0.98 * full
 
@@ -273,10 +272,21 @@ def test_a_face_has_the_traction_of_full_sliding():
     assert checks["shakedown_traction"].demand == pytest.approx(use, rel=2e-3)
 
 
-def test_edge_pressure_is_a_flat_derating_and_says_so():
-    check = solved()[1]["edge_pressure"]
-    assert check.demand == pytest.approx(1.3 * roark()[0].max(), rel=1e-3)
-    assert "flat derating" in check.method
+def test_edge_pressure_is_that_of_the_half_spaces_and_says_so():
+    """Where it is greatest, by the kernel and not by the table: 0.2 % of the interpolation."""
+    solution, checks = solved()
+    cycle, check = solution.cycles[0], checks["edge_pressure"]
+    place = int(np.argmax(cycle.length.factor * roark()[0]))
+    (pair,) = cycle.machine.finite_pairs
+    force, moment = cycle.loads.normal_force[place], cycle.length.moment[place]
+    curvature = 1.0 / cycle.contact.relative_radius[place]
+    ends = half_space_factors(pair, [curvature] * 2, [force] * 2, [0.0, moment])
+    greatest = max(ends.end_means.max(), ends.centre.max(), ends.greatest.max())
+    assert check.demand <= greatest * roark()[0][place] * 1.003
+    assert check.demand >= max(ends.end_means.max(), ends.centre.max()) * roark()[0][place] * 0.997
+    assert checks["contact_pressure_at_life"].demand == check.demand
+    assert "half-spaces" in check.method
+    assert "times plane strain" in check.note
 
 
 def test_yield_is_that_of_carters_traction_by_line_forces():
@@ -440,7 +450,8 @@ def test_case_depth_by_the_axis():
     z = np.linspace(0.5, 1.0, 5001)
     root = np.sqrt(1.0 + z**2)
     shear = np.abs(-((1.0 + 2.0 * z**2) / root - 2.0 * z) + 1.0 / root)
-    deepest = z[shear.argmax()] * roark()[1].max()
+    factor = solved()[0].cycles[0].length.factor
+    deepest = z[shear.argmax()] * (factor * roark()[1]).max()
     assert demand("case_depth") == pytest.approx(1.1e-3 / deepest, rel=2e-3)
 
 
@@ -509,102 +520,26 @@ def test_a_hardness_without_its_scale_is_refused():
 # --- crown -----------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize(
-    ("crown", "pressure", "half_length"),
-    [(0.02, 1722.57e6, 0.3565e-3), (0.1, 1168.34e6, 0.7222e-3), (1.0, 729.58e6, 1.8157e-3)],
-)
-def test_ellipse_of_a_half_space_prototype(crown, pressure, half_length):
-    """Steel, 200 N on R = 40/7 mm: figures confirmed there by patches on a half-space."""
-    ellipse = elliptic_contact(200.0, 0.04 / 7.0, crown, 115_385e6)
-    assert ellipse.p0 == pytest.approx(pressure, rel=1e-5)
-    assert ellipse.half_length == pytest.approx(half_length, rel=2e-4)
-
-
-@pytest.mark.parametrize("ratio", [1.2, 3.0, 10.0, 60.0])
-def test_ellipse_against_the_fit_of_hamrock_and_brewe(ratio):
-    """Hamrock and Brewe (1983): k = 1.0339 r^0.636, E = 1.0003 + 0.5968/r, within 2 %."""
-    radius, modulus, force = 0.006, 115e9, 500.0
-    ellipse = elliptic_contact(force, radius, ratio * radius, modulus)
-    k, second = 1.0339 * ratio**0.636, 1.0003 + 0.5968 / ratio
-    mean = 1.0 / (1.0 / radius + 1.0 / (ratio * radius))
-    minor = (3.0 * second * force * mean / (np.pi * k * modulus)) ** (1.0 / 3.0)
-    peak = 1.5 * force / (np.pi * k * minor**2)
-    assert ellipse.p0 == pytest.approx(peak, rel=0.02)
-
-
-def test_ellipse_of_the_table_is_that_of_bisection():
-    """Linear between 4000 axis ratios from 1e-5 to 0.995: 5e-8 found, 1e-6 stated."""
-    crown = 0.006 * np.geomspace(1e-6, 1e6, 999)
-    ellipse = elliptic_contact(300.0, 0.006, crown, 115e9)
-    near = elliptic_contact(300.0, 0.006, crown, 115e9, interpolated=True)
-    for name in ("p0", "half_width", "half_length"):
-        np.testing.assert_allclose(getattr(near, name), getattr(ellipse, name), rtol=1e-6)
-
-
-@pytest.mark.parametrize("crown", [0.004, 0.01, 0.2])
-def test_ellipse_closes_the_gap_of_the_surfaces(crown):
-    """Boussinesq displacements by rays about a point: the depth at the centre less x^2/2R."""
-    radius, modulus, force = 0.006, 115e9, 300.0
-    ellipse = elliptic_contact(force, radius, crown, modulus)
-    a, b = float(ellipse.half_length), float(ellipse.half_width)
-
-    def settled(x, y):
-        """x rolling, y axial; on each ray the root of a parabola, integrated in closed form."""
-        angle = uniform_turn(4000) + 1e-4
-        c, s = np.cos(angle), np.sin(angle)
-        level = 1.0 - (x / b) ** 2 - (y / a) ** 2
-        slope, bend = x * c / b**2 + y * s / a**2, (c / b) ** 2 + (s / a) ** 2
-        top = slope / np.sqrt(bend)
-        whole = 0.5 / np.sqrt(bend) * (
-            (level + top**2) * (np.pi / 2 - np.arcsin(top / np.sqrt(level + top**2)))
-            - top * np.sqrt(level)
-        )  # fmt: skip
-        return float(ellipse.p0) * whole.mean() * 2.0 / modulus
-
-    for x, y in ((0.5 * b, 0.0), (0.0, 0.5 * a), (0.4 * b, 0.6 * a)):
-        gap = x**2 / (2.0 * radius) + y**2 / (2.0 * crown)
-        assert settled(0.0, 0.0) - settled(x, y) == pytest.approx(gap, rel=1e-4)
-
-
-@pytest.mark.parametrize("ratio", [0.9, 0.3])
-def test_stress_on_the_axis_is_that_of_point_forces(ratio):
-    """Boussinesq's point force summed over the ellipse, Gauss by rings."""
-    nodes, weights = np.polynomial.legendre.leggauss(60)
-    share = 0.5 * (nodes + 1.0)
-    ring, weight = 1.0 - share**2, 0.5 * weights * 2.0 * share
-    angle = uniform_turn(720)
-    x = ring[:, None] * np.cos(angle)
-    y = ratio * ring[:, None] * np.sin(angle)
-    load = (weight * ring * np.sqrt(1.0 - ring**2))[:, None] * ratio * 2.0 * np.pi / 720
-    for depth in (0.3, 0.7):
-        z = ratio * depth
-        flat = x**2 + y**2
-        r = np.sqrt(flat + z**2)
-
-        def along(u, v, flat=flat, r=r, z=z):
-            shear = (1.0 - z / r) * (u**2 - v**2) / flat + z * v**2 / r**3
-            return (load * (0.4 * shear / flat - 3.0 * z * u**2 / r**5)).sum() / (2.0 * np.pi)
-
-        normal = -(load * 3.0 * z**3 / r**5).sum() / (2.0 * np.pi)
-        summed = [along(x, y), along(y, x), normal]
-        assert axis_stress(ratio, depth, 0.3) == pytest.approx(summed, rel=1e-5)
-
-
 def test_a_crown_raises_the_pressure_to_that_of_its_ellipse():
-    """Solved for the ratio of axes by the gap, here by Roark's table: 1.0339 r^0.636."""
-    plain, crowned = solved()[1], solved(crown="100 mm")[1]
+    """Solved for the ratio of axes by the gap, here by Roark's table: 1.0339 r^0.636.
+
+    The free ends, 5 mm from the middle of an ellipse of 2.4 mm, make both bodies softer than the
+    half-spaces of the ellipse: 2.8 % more pressure.
+    """
+    plain, crowned = solved()[1], solved(crown="1000 mm")[1]
     cycle = solved()[0].cycles[0]
     own = circle([surface(THETA + step) for step in (-2e-3, 0.0, 2e-3)])
     radius = 1.0 / (1.0 / own + 1.0 / ROLLER)
-    ratio = 0.1 / radius
+    ratio = 1.0 / radius
     k, second = 1.0339 * ratio**0.636, 1.0003 + 0.5968 / ratio
     mean, modulus = radius / (1.0 + 1.0 / ratio), E_STEEL / 1.82
     minor = np.cbrt(3.0 * second * cycle.loads.normal_force * mean / (np.pi * k * modulus))
     peak = (1.5 * cycle.loads.normal_force / (np.pi * k * minor**2)).max()
-    for name in ("contact_pressure", "edge_pressure", "shakedown"):
-        assert crowned[name].demand == pytest.approx(peak, rel=0.015)
+    for name in ("contact_pressure", "shakedown"):
+        assert peak < crowned[name].demand < 1.03 * peak
         assert crowned[name].demand > 1.3 * plain["shakedown"].demand
-    assert "crown radius of 100" in crowned["contact_pressure"].note
+    assert crowned["edge_pressure"].demand >= crowned["contact_pressure"].demand
+    assert "in the middle of the crowned line" in crowned["contact_pressure"].note
     assert crowned["case_depth"].demand != plain["case_depth"].demand
     assert crowned["first_yield"].demand > 1.3 * plain["first_yield"].demand
     assert crowned["hardened_case"].demand > 1.3 * plain["hardened_case"].demand
@@ -615,13 +550,6 @@ def test_a_tick_for_a_crown_is_refused_and_its_table_suggested():
         case_of(tables(crowned=True))
     assert found.value.field == "roller.crowned"
     assert "did you mean crown?" in str(found.value)
-
-
-def test_a_truncated_ellipse_is_derated_and_says_so():
-    flat = solved(crown="10000 mm")[1]["edge_pressure"]
-    assert flat.demand >= 1.3 * roark()[0].max() * 0.999
-    assert "longer than the width" in flat.note
-    assert "flat derating" in flat.method
 
 
 def test_axial_offset_beyond_the_difference_of_widths_fails():

@@ -53,6 +53,8 @@ class FiniteBody:
 class Crown(Protocol):
     """Drop of the surface towards its ends."""
 
+    def __hash__(self) -> int: ...
+
     def drop(self, y: Array) -> Array:
         """Drop (...), m, at axial coordinates (...), m, within the contact."""
         ...

@@ -19,7 +19,7 @@ from camwright.pipeline.case.limits import CHORD_SHARE
 from camwright.pipeline.case.toml_text import tables_of
 from camwright.pipeline.follower.bearing_life import rated_viscosity
 from camwright.pipeline.follower.spring import HelicalSpring
-from camwright.pipeline.studies.design.machine_frame import Frame
+from camwright.pipeline.studies.design.machine_frame import AXIAL_OFFSET, ROLLER_CHAMFER, Frame
 from camwright.pipeline.studies.design.torque_task import DesignTask
 from camwright.pipeline.studies.design.wound_springs import SpringPoint
 
@@ -204,7 +204,7 @@ def _cam(design: Machinery) -> str:
 # --- Cam: the prime radius is that of the roller's CENTRE on the base circle.
 [cam]
 prime_radius = "{_mm(design.prime_radius)}"
-{offset}width = "{_mm(frame.card.width)}"                     # as wide as the roller
+{offset}width = "{_mm(frame.cam_width)}"                   # within the flat of the roller, offset
 end = {{ kind = "sharp" }}
 bore_radius = "{_mm(0.5 * seat.bore)}"
 material = "case_hardened"
@@ -268,9 +268,9 @@ def _roller(design: Machinery) -> str:
 [roller]
 radius = "{_mm(frame.radius)}"
 width = "{_mm(card.width)}"
-end = {{ kind = "chamfer", size = "0.6 mm" }}
+end = {{ kind = "chamfer", size = "{_mm(ROLLER_CHAMFER)}" }}
 hub_radius = "{_mm(0.25 * (card.bore + inside))}"              # shoulder of the inner ring
-axial_offset = "0.3 mm"
+axial_offset = "{_mm(AXIAL_OFFSET)}"
 friction = 0.10                      # oiled steel on steel
 roughness = "0.1 um"
 material = "bearing_steel"

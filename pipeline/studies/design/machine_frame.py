@@ -21,6 +21,8 @@ _SHAFT_STRESS = 40e6  # Pa: bending of C45 at a press fit, with safety 1.5 and s
 _SHRINK = 45e6 * 0.12  # Pa: pressure of H7/s6 times friction
 _TOOTH = 12e6  # Pa: T / (m^3 z b/m) of case-hardened teeth at half of their strength
 _PINION = 20
+ROLLER_CHAMFER, AXIAL_OFFSET = 6e-4, 3e-4  # m
+_OVERHANG = 2e-4  # m, of the roller beyond both ends of the cam at its offset
 
 
 @dataclass(frozen=True)
@@ -121,13 +123,18 @@ class Frame:
         return -1e-3 * ceil(1e3 * (0.5 * self.gear_width + 0.5 * self.seat.bore))
 
     @property
+    def cam_width(self) -> float:
+        """Within the flat of the roller at its axial offset."""
+        return cam_width_under(self.card)
+
+    @property
     def key_length(self) -> float:
-        return 1e-3 * int(1e3 * self.card.width - 0.4)
+        return 1e-3 * int(1e3 * self.cam_width - 0.4)
 
     @property
     def slip_torque(self) -> float:
         """Torque of the shrunk seat of the cam, N m."""
-        return 0.5 * _SHRINK * pi * self.seat.bore**2 * self.card.width
+        return 0.5 * _SHRINK * pi * self.seat.bore**2 * self.cam_width
 
     @property
     def least_radius(self) -> float:
@@ -137,7 +144,7 @@ class Frame:
     def rotor_mass(self, cam_radius: float) -> float:
         """Mass of cam, gear and shaft, kg."""
         solid = pi * STEEL
-        cam = solid * cam_radius**2 * self.card.width
+        cam = solid * cam_radius**2 * self.cam_width
         gear = solid * self.gear_radius**2 * self.gear_width
         shaft = 0.25 * solid * self.seat.bore**2 * 1.6 * self.bearing_spacing
         return cam + gear + shaft
@@ -149,16 +156,22 @@ def stem_of(card: BearingCard) -> float:
     return 1e-3 * min(STEMS, key=lambda size: abs(size - wanted))
 
 
+def cam_width_under(card: BearingCard) -> float:
+    """Width of a cam whose ends lie within the flat of a roller at its axial offset, m."""
+    return card.width - 2.0 * (ROLLER_CHAMFER + AXIAL_OFFSET) - _OVERHANG
+
+
 def frame_of(
     name: str, card: BearingCard, torque: float, force: float, ratio: float, sizes: Sequence[Seat]
 ) -> Frame | None:
     """Frame of a roller for a cam torque, N m, and a normal force, N; None: no seat is enough."""
-    width = card.width - 4e-4
+    cam_width = cam_width_under(card)
+    width = cam_width - 4e-4
     for seat in sizes:
         key = _KEY_STRESS * seat.hub_depth * width * 0.5 * seat.bore
         moment = 0.25 * force * (2.0 * card.width + 1.2 * seat.bore)
         bend = _SHAFT_STRESS * pi * seat.bore**3 / 32.0
-        slip = 0.5 * _SHRINK * pi * seat.bore**2 * card.width
+        slip = 0.5 * _SHRINK * pi * seat.bore**2 * cam_width
         static = seat.C0 / 1.5
         enough = (key, 0.5 * slip, static, bend), (torque, torque, 0.6 * force, moment)
         if seat.bore >= 0.5 * card.bore and all(a >= b for a, b in zip(*enough, strict=True)):

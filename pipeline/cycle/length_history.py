@@ -1,0 +1,239 @@
+"""Pressure along the line of contact over the turn: ends, crown and tilt, and what is signed."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import lru_cache
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from camwright.geometry.arrays import Array, freeze
+from camwright.pipeline.base.units import shown
+from camwright.pipeline.case.limits import END_MEAN_LENGTH
+from camwright.pipeline.case.machine import Machine
+from camwright.pipeline.contact.contact_history import ContactHistory
+from camwright.pipeline.contact.finite_length.axial_drop import (
+    Crown,
+    FiniteBody,
+    FinitePair,
+)
+from camwright.pipeline.contact.finite_length.factor_table import (
+    GREATEST_MOMENT,
+    FactorTable,
+    factor_table,
+)
+from camwright.pipeline.contact.finite_length.length_contact import means_at_ends
+from camwright.pipeline.follower.guide_reactions import GuideReactions
+
+_ANY_CURVATURE = 1.0  # 1/m: a table has every curvature
+_ROUND_OFF = 1e-9
+
+CORNER_ERROR, BOUNDED_ERROR = 0.05, 0.02
+"""Difference of the half-spaces from finite elements: of a mean at a corner, of a bounded peak."""
+
+
+class SignedFactor(NamedTuple):
+    """Signed pressure over that of plane strain, (n,), whether it is a mean at a corner; centre."""
+
+    value: Array
+    at_corner: NDArray[np.bool_]
+    centre: Array
+
+
+@dataclass(frozen=True, eq=False)
+class LengthHistory:
+    """Pressure along the line of contact over the peak of plane strain, arrays (n,).
+
+    centre: in the middle, untilted; level, tilted: signed, without a moment and at the greatest
+    one, `moment` (N m); at_corner: whether the greater of both is the mean over `mean_length` (m)
+    at a corner. 1 and no moment without contact. tilt: greatest in the guides, rad.
+    """
+
+    centre: Array
+    level: Array
+    tilted: Array
+    moment: Array
+    at_corner: NDArray[np.bool_]
+    mean_length: float
+    tilt: float
+    is_crowned: bool
+
+    def __post_init__(self) -> None:
+        freeze(self, centre=self.centre, level=self.level, tilted=self.tilted, moment=self.moment)
+
+    def with_rows(self, rows: NDArray[np.intp], solved: FactorRange) -> LengthHistory:
+        """The history with the factors of some angles."""
+        changed = {}
+        for name, values in solved._asdict().items():
+            whole = getattr(self, name).copy()
+            whole[rows] = values
+            changed[name] = whole
+        return replace(self, **changed)
+
+    @property
+    def factor(self) -> Array:
+        """Signed factor: the worse end of the range of the moment."""
+        return np.maximum(self.level, self.tilted)
+
+    @property
+    def error(self) -> Array:
+        """Relative difference of half-spaces from finite elements (n,)."""
+        return np.where(self.at_corner, CORNER_ERROR, BOUNDED_ERROR)
+
+    def sentence(self, place: int) -> str:
+        """What the signed pressure is at one of the angles."""
+        mean = shown(self.mean_length, "mm")
+        what = "greatest pressure along the line, which is bounded"
+        if self.at_corner[place]:
+            what = (
+                f"mean pressure over the last {mean} of contact: at its corner the peak grows"
+                " with the mesh, the mean does not"
+            )
+        most = shown(float(self.moment[place]), "N mm")
+        return (
+            f"{what}; {self.factor[place]:.4g} times plane strain, {self.level[place]:.4g} without"
+            f" tilt, at a moment of 0 to {most}, of friction in the guides and axial offset"
+        )
+
+    def in_the_middle(self, plane: ContactHistory) -> ContactHistory:
+        """Contact in the middle of the line, that of the line load there; of a straight one as is.
+
+        Pressures, widths and depths of a line contact grow with the root of its line load.
+        """
+        if not self.is_crowned:
+            return plane
+        names = (
+            *("p0", "half_width", "tau_max", "tau_any_plane", "tau_depth"),
+            *("von_mises", "von_mises_depth"),
+        )
+        return replace(plane, **{name: getattr(plane, name) * self.centre for name in names})
+
+
+def length_history(
+    machine: Machine, contact: ContactHistory, force: Array, guides: GuideReactions
+) -> LengthHistory | None:
+    """Pressure along the line of contact; None where the case lacks an end.
+
+    The stem aligns itself with the cam up to the friction of its guides: the moment lies between
+    zero and the lesser of that of the greatest tilt in the clearances and of the couple that
+    friction and axial offset can hold.
+
+    Parameters
+    ----------
+    force : array (n,)   normal force, N
+    """
+    pairs = machine.finite_pairs
+    if not pairs:
+        return None
+    radius = contact.relative_radius
+    blank = np.where(np.isnan(radius), np.nan, 1.0)
+    history = LengthHistory(
+        *(blank, blank, blank, np.zeros(force.size), np.zeros(force.size, dtype=bool)),
+        machine.limits[END_MEAN_LENGTH],
+        machine.guides.tilt_max,
+        machine.is_crowned,
+    )
+    rows = np.flatnonzero(np.isfinite(radius) & (radius > 0) & (force > 0))
+    if not rows.size:
+        return history
+    couple = held_couple(machine, guides)[rows] + force[rows] * machine.stem_offset
+    ranges = [
+        factor_range(
+            pair, history.mean_length, 1.0 / radius[rows], force[rows], history.tilt, couple
+        )
+        for pair in pairs
+    ]
+    return history.with_rows(rows, worst_of(ranges))
+
+
+class FactorRange(NamedTuple):
+    """Factors of contacts (count,) over the range of their moment; see `LengthHistory`."""
+
+    centre: Array
+    level: Array
+    tilted: Array
+    moment: Array
+    at_corner: NDArray[np.bool_]
+
+
+def factor_range(
+    pair: FinitePair,
+    mean_length: float,
+    curvature: Array,
+    force: Array,
+    tilt: ArrayLike,
+    couple: Array,
+) -> FactorRange:
+    """Factors of contacts without a moment and under the greatest one, of either direction.
+
+    Parameters
+    ----------
+    mean_length : float         of the mean at a corner, m
+    curvature, force : array    1/m, > 0; N, > 0, (count,)
+    tilt : float, array         greatest tilt, rad
+    couple : array (count,)     greatest couple that can hold it, N m
+    """
+    table = _table(pair.bodies, pair.crown, mean_length)
+    by_tilt = table.moment_at_tilt(curvature, force, np.broadcast_to(tilt, force.shape))
+    most = (1.0 - _ROUND_OFF) * GREATEST_MOMENT * force * pair.contact_length
+    moment = np.minimum(np.minimum(np.abs(by_tilt), couple), most)
+    level = signed_factor(table, curvature, force, np.zeros(force.size))
+    left, right = (signed_factor(table, curvature, force, side * moment) for side in (-1.0, 1.0))
+    tilted = np.where(left.value > right.value, left.value, right.value)
+    corner = np.where(left.value > right.value, left.at_corner, right.at_corner)
+    at_corner = np.where(level.value > tilted, level.at_corner, corner)
+    return FactorRange(level.centre, level.value, tilted, moment, at_corner)
+
+
+def worst_of(ranges: Sequence[FactorRange]) -> FactorRange:
+    """The worse of the contacts at both ends, at each place; the greater pressure of the middle."""
+    worst = ranges[0]
+    for other in ranges[1:]:
+        worse = np.maximum(other.level, other.tilted) > np.maximum(worst.level, worst.tilted)
+        chosen = (np.where(worse, new, old) for new, old in zip(other, worst, strict=True))
+        worst = FactorRange(*chosen)._replace(centre=np.maximum(worst.centre, other.centre))
+    return worst
+
+
+def factor_at_pressure(pair: FinitePair, pressure: float, mean_length: float) -> float:
+    """Signed factor of an untilted contact of a plane-strain pressure, Pa, at its curvature."""
+    half_width = 2.0 * pressure / (pair.contact_modulus * pair.curvature)
+    force = 0.5 * np.pi * half_width * pressure * pair.contact_length
+    table = _table(pair.bodies, pair.crown, mean_length)
+    at = np.array([pair.curvature]), np.array([force]), np.zeros(1)
+    return float(signed_factor(table, *at).value[0])
+
+
+def held_couple(machine: Machine, guides: GuideReactions) -> Array:
+    """Couple (n,), N m, in the plane of stem and cam axis that friction of the guides can hold."""
+    friction_a, friction_b = machine.friction.greatest
+    held = np.minimum(friction_a * guides.rubbing_load_a, friction_b * guides.rubbing_load_b)
+    return np.asarray(held * machine.guides.spacing)
+
+
+def signed_factor(
+    table: FactorTable, curvature: Array, force: Array, moment: Array
+) -> SignedFactor:
+    """Signed pressure of contacts over that of plane strain.
+
+    Where the greatest pressure is at a corner, the mean at the ends, and the greatest one between
+    them; else the greatest one.
+    """
+    edges, line = table.axial_pressure(curvature, force, moment)
+    means, _ = means_at_ends(edges, line, table.mean_length)
+    middles = 0.5 * (edges[1:] + edges[:-1])
+    between = np.abs(middles) <= edges[-1] - table.mean_length
+    most = line.argmax(axis=1)
+    at_corner = ((most == 0) | (most == line.shape[1] - 1)) & table.pair.has_singular_end
+    mean = np.maximum(means.max(axis=1), line[:, between].max(axis=1))
+    half = line.shape[1] // 2
+    centre = 0.5 * (line[:, half - 1] + line[:, half])
+    return SignedFactor(np.where(at_corner, mean, line.max(axis=1)), at_corner, centre)
+
+
+@lru_cache(maxsize=64)
+def _table(bodies: tuple[FiniteBody, FiniteBody], crown: Crown, mean_length: float) -> FactorTable:
+    return factor_table(FinitePair(bodies, _ANY_CURVATURE, crown), mean_length)

@@ -1,0 +1,120 @@
+"""Pressure along the line of contact of many designs: ends, crown, tilt."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Literal, Protocol
+
+import numpy as np
+
+from camwright.geometry.arrays import Array
+from camwright.pipeline.case.limits import END_MEAN_LENGTH
+from camwright.pipeline.case.machine import Machine
+from camwright.pipeline.contact.axial_shape import AxialCrown
+from camwright.pipeline.cycle.length_history import FactorRange, factor_range, worst_of
+
+# Keys that the contact of finite length depends on, and the number of its different shapes up to
+# which each is solved.
+_KEYS = (
+    *("cam.prime_radius", "cam.width", "roller.radius", "roller.width", "roller.crown.radius"),
+    *("cam.crown.radius", "follower.face.depth"),
+)
+_STRAIGHT = ("cam.width", "roller.width", "follower.face.depth")
+_SHAPES = 16
+
+
+class DesignValues(Protocol):
+    """Values of many designs by key, (m, 1); see `Designs`."""
+
+    @property
+    def count(self) -> int: ...
+    @property
+    def columns(self) -> Mapping[str, Array]: ...
+    @property
+    def machine(self) -> Machine: ...
+    def value(self, key: str) -> Array: ...
+    def greatest_friction(self, side: Literal["a", "b"]) -> Array: ...
+
+
+def factors_of(
+    designs: DesignValues, force: Array, radius: Array, rubbing: tuple[Array, Array]
+) -> FactorRange | None:
+    """Factors (m, n) of the designs; 1 without contact, NaN where the contour bounds no body.
+
+    None where the case lacks an end, or the designs have too many shapes of contact.
+
+    Parameters
+    ----------
+    force, radius : array (m, n)   normal force, N; relative radius, m
+    rubbing : two arrays (m, n)    normal loads of guides A and B, N
+    """
+    keys = _KEYS if designs.machine.is_crowned else _STRAIGHT
+    varied = [key for key in keys if key in designs.columns]
+    rows = np.concatenate([np.zeros((designs.count, 1)), *(designs.value(k) for k in varied)], 1)
+    shapes, member = np.unique(rows, axis=0, return_inverse=True)
+    if not designs.machine.finite_pairs or len(shapes) > _SHAPES:
+        return None
+    tilt, couple = _tilt(designs), _held_couple(designs, rubbing)
+    tilt, couple = (np.broadcast_to(each, force.shape) for each in (tilt, couple))
+    one, still = np.ones(force.shape), np.zeros(force.shape)
+    whole = FactorRange(one, one.copy(), one.copy(), still, np.zeros(force.shape, dtype=bool))
+    for number, shape in enumerate(shapes):
+        machine = _of_shape(designs.machine, dict(zip(varied, shape[1:].tolist(), strict=True)))
+        at = (member.ravel() == number)[:, None] & (force > 0) & np.isfinite(radius)
+        if not at.any():
+            continue
+        held = couple[at] + force[at] * machine.stem_offset
+        known = 1.0 / radius[at], force[at], tilt[at], held
+        mean = machine.limits[END_MEAN_LENGTH]
+        worst = worst_of([factor_range(pair, mean, *known) for pair in machine.finite_pairs])
+        for whole_values, values in zip(whole, worst, strict=True):
+            whole_values[at] = values
+    return whole
+
+
+def _of_shape(machine: Machine, values: Mapping[str, float]) -> Machine:
+    """The machine with some values of cam, roller and face, by their keys."""
+    cam, roller, face = machine.cam, machine.roller, machine.face
+    cam = replace(
+        cam,
+        prime_radius=values.get("cam.prime_radius", cam.prime_radius),
+        width=values.get("cam.width", cam.width),
+        crown=_crown(cam.crown, values.get("cam.crown.radius")),
+    )
+    if face is not None:
+        depth = values.get("follower.face.depth", face.depth)
+        return replace(machine, cam=cam, follower=replace(face, depth=depth))
+    if roller is None:
+        return replace(machine, cam=cam)
+    roller = replace(
+        roller,
+        radius=values.get("roller.radius", roller.radius),
+        width=values.get("roller.width", roller.width),
+        crown=_crown(roller.crown, values.get("roller.crown.radius")),
+    )
+    return replace(machine, cam=cam, follower=roller)
+
+
+def _crown(crown: AxialCrown | None, radius: float | None) -> AxialCrown | None:
+    return crown if crown is None or radius is None else replace(crown, radius=radius)
+
+
+def _tilt(designs: DesignValues) -> Array:
+    """Greatest tilt of the stem in its guides (m, 1), rad."""
+    guides = designs.machine.guides
+    ends = 0.5 * (guides.a.length + guides.b.length)
+    return np.asarray(guides.tilt_max * (guides.spacing + ends) / (_spacing(designs) + ends))
+
+
+def _held_couple(designs: DesignValues, rubbing: tuple[Array, Array]) -> Array:
+    """Couple (m, n), N m, that friction of the guides can hold."""
+    load_a, load_b = rubbing
+    held = np.minimum(
+        designs.greatest_friction("a") * load_a, designs.greatest_friction("b") * load_b
+    )
+    return np.asarray(held * _spacing(designs))
+
+
+def _spacing(designs: DesignValues) -> Array:
+    return designs.value("guides.spacing")

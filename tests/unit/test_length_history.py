@@ -1,0 +1,118 @@
+"""Signed pressure along the line of contact over a turn."""
+
+from dataclasses import replace
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import camwright as cw
+from camwright.geometry.arrays import uniform_turn
+from camwright.geometry.lift import Lift
+from camwright.pipeline.case.case_file import read_case, with_values
+from camwright.pipeline.contact.finite_length.length_tiers import half_space_factors
+from camwright.pipeline.cycle import length_history
+from camwright.pipeline.cycle.length_history import FactorRange, held_couple, worst_of
+
+CASES = Path(__file__).parents[2] / "cases"
+
+
+@cache
+def cycle(**values):
+    """Preview of a harmonic lift of 8 mm at the first load case, 90 angles.
+
+    The roller of 17.5 mm has chamfers of 0.6 mm and lies 0.3 mm off the middle of a cam of 15.5 mm.
+    """
+    stated = {key.replace("__", "."): value for key, value in values.items()}
+    case = with_values(read_case(CASES / "gx120-redesign.toml"), stated)
+    theta = uniform_turn(360)
+    lift = Lift(theta, 4e-3 * (1.0 - np.cos(theta)))
+    return cw.solve(case, case.contour(lift), tier=cw.Tier.PREVIEW, positions=90).solution.cycles[0]
+
+
+def kernel(made, place, moment):
+    """Factors of the half-spaces at an angle, the worse of the two ends."""
+    curvature, force = 1.0 / made.contact.relative_radius[place], made.loads.normal_force[place]
+    return [
+        half_space_factors(pair, [curvature], [force], [moment])
+        for pair in made.machine.finite_pairs
+    ]
+
+
+def test_factor_at_a_corner_is_the_mean_of_the_half_spaces():
+    """Within the interpolation of the table, 0.2 %."""
+    made = cycle()
+    place = int(np.argmax(made.signed_pressure))
+    assert made.length.at_corner[place]
+    for moment, factor in (
+        (0.0, made.length.level),
+        (made.length.moment[place], made.length.tilted),
+    ):
+        means = max(float(each.end_means.max()) for each in kernel(made, place, moment))
+        assert factor[place] == pytest.approx(means, rel=4e-3)
+    assert made.length.factor[place] == max(made.length.level[place], made.length.tilted[place])
+    assert "over the last 0.1 mm" in made.length.sentence(place)
+
+
+def test_moment_is_the_lesser_of_tilt_and_friction():
+    made = cycle()
+    guides, force = made.machine.guides, made.loads.normal_force
+    loads = made.guides.rubbing_load_a, made.guides.rubbing_load_b
+    held = np.minimum(
+        *(mu * load for mu, load in zip(made.machine.friction.greatest, loads, strict=True))
+    )
+    couple = held * guides.spacing + 0.3e-3 * force
+    np.testing.assert_allclose(held_couple(made.machine, made.guides), held * guides.spacing)
+    assert (made.length.moment <= couple * (1.0 + 1e-9)).all()
+    # At a dwell of the side load the offset alone holds the tilt.
+    light = int(np.argmin(held / force))
+    assert made.length.moment[light] == pytest.approx(couple[light], rel=1e-6)
+
+
+def test_without_clearance_and_offset_there_is_no_tilt():
+    made = cycle(
+        guides__a__clearance="0 mm", guides__b__clearance="0 mm", roller__axial_offset="0 mm"
+    )
+    assert np.abs(made.length.moment).max() < 1e-12  # N m
+    np.testing.assert_allclose(made.length.tilted, made.length.level)
+
+
+def test_a_crown_lowers_the_ends_and_raises_the_middle():
+    plain = cycle(guides__a__clearance="0 mm", guides__b__clearance="0 mm")
+    crowned = cycle(
+        guides__a__clearance="0 mm", guides__b__clearance="0 mm",
+        roller__crown__kind="johns_gohar", roller__crown__line_load="120 N/mm",
+    )  # fmt: skip
+    place = int(np.argmax(crowned.signed_pressure))
+    assert not crowned.length.at_corner[place]
+    assert "bounded" in crowned.length.sentence(place)
+    assert crowned.length.factor[place] < plain.length.factor[place]
+    assert (crowned.surface.p0 >= crowned.contact.p0).all()
+    assert plain.surface is plain.contact
+    np.testing.assert_allclose(
+        crowned.surface.half_width, crowned.contact.half_width * crowned.length.centre
+    )
+
+
+def test_worse_end_governs():
+    one, still = np.ones(2), np.zeros(2)
+    corner = np.array([True, True])
+    left = FactorRange(one, np.array([1.1, 1.1]), np.array([1.2, 1.5]), still, corner)
+    right = FactorRange(1.2 * one, np.array([1.3, 1.0]), np.array([1.0, 1.0]), one, ~corner)
+    worst = worst_of([left, right])
+    np.testing.assert_array_equal(worst.level, [1.3, 1.1])
+    np.testing.assert_array_equal(worst.tilted, [1.0, 1.5])
+    np.testing.assert_array_equal(worst.moment, [1.0, 0.0])
+    np.testing.assert_array_equal(worst.at_corner, [False, True])
+    np.testing.assert_array_equal(worst.centre, [1.2, 1.2])
+
+
+def test_without_an_end_nothing_is_signed():
+    made = cycle()
+    machine = made.machine
+    bare = replace(machine, cam=replace(machine.cam, end=None))
+    history = length_history.length_history(
+        bare, made.contact, made.loads.normal_force, made.guides
+    )
+    assert history is None
