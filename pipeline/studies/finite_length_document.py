@@ -29,7 +29,9 @@ from camwright.pipeline.contact.finite_length.length_tiers import (
     MEAN_LENGTH,
     TierResult,
     both_tiers,
+    plane_strain,
 )
+from camwright.pipeline.contact.finite_length.subsurface_stress import subsurface_stress
 from camwright.pipeline.studies.two_cylinders import TwoCylinders
 
 Document = dict[str, Any]
@@ -228,10 +230,36 @@ class FiniteLength:
                 "tilt_mrad": in_unit(float(contact.tilt[0]), "mrad"),
                 "held_at_depth_mm": depths,
             }
-        return record | {
-            "unknowns": tier.unknowns,
-            "residual": float(max(contact.equilibrium[0], contact.complementarity[0])),
-        }
+        return (
+            record
+            | self._stresses(tier)
+            | {
+                "unknowns": tier.unknowns,
+                "residual": float(max(contact.equilibrium[0], contact.complementarity[0])),
+            }
+        )
+
+    def _stresses(self, tier: TierResult) -> Document:
+        """Greatest stresses below middle and ends over plane-strain p0, and their depths."""
+        force, stretch = float(tier.contact.force[0]), tier.factors.mean_length
+        half_width, p0 = plane_strain(self.pair, force)
+        record: Document = {}
+        for number, body in enumerate(self.pair.bodies, 1):
+            stress = subsurface_stress(tier.contact, half_width, body.material.poisson, stretch)
+            record[f"stress_body{number}"] = {
+                place: {
+                    "von_mises": peak.von_mises / p0,
+                    "von_mises_depth_mm": in_unit(peak.von_mises_depth, "mm"),
+                    "shear": peak.shear / p0,
+                    "shear_depth_mm": in_unit(peak.shear_depth, "mm"),
+                }
+                for place, peak in (
+                    ("centre", stress.centre),
+                    ("end1", stress.end1),
+                    ("end2", stress.end2),
+                )
+            }
+        return record
 
     def write(self, path: Path) -> None:
         """VTU file of the pressure cells with the pressure of each tier, MPa."""

@@ -41,6 +41,12 @@ def test_document_text_and_field_of_a_tilted_contact(coarse, tmp_path):
         assert record["mean_length_mm"] == pytest.approx(0.1)
         assert record["end2_mean"] > record["end1_mean"]
         assert all(0.3 < record[name] <= record["greatest"] for name in FACTORS)
+        for body in (1, 2):
+            stress = record[f"stress_body{body}"]
+            # Between those of a line and of a point contact, over the pressure above it.
+            assert 0.5 < stress["centre"]["von_mises"] / record["centre"] < 0.65
+            assert 0.28 < stress["centre"]["shear"] / record["centre"] < 0.35
+            assert stress["end2"]["von_mises"] > stress["end1"]["von_mises"]
         assert record["residual"] < 1e-10
     assert blocks["tilt_mrad"] == pytest.approx(0.5)
     assert blocks["moment_Nmm"] == pytest.approx(half_space["moment_Nmm"], rel=1e-9) != 0

@@ -12,6 +12,7 @@ In the order of the calculation:
 | `length_tiers`   | both tiers over plane strain, error bars, many contacts | K, -         |
 | `factor_table`   | axial pressure of one pair of bodies, tabulated         | K, -         |
 | `length_certificate` | both tiers at chosen angles of a cycle              | K, -         |
+| `subsurface_stress` | von Mises and shear stress below middle and ends      | sigma, Pa    |
 
 Imports `contact` and `base`.
 """
