@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from typing import ClassVar
@@ -13,10 +13,27 @@ import numpy as np
 from camwright.geometry.arrays import Array
 from camwright.geometry.extrema import sampled_greatest, sampled_least
 from camwright.geometry.pitch_curve import speed_and_curvature
+from camwright.pipeline.case.case import Case
+from camwright.pipeline.case.case_values import value_of
 from camwright.pipeline.checks import demands
 
-Values = Callable[[str], Array]
-"""Dotted key -> values (m, 1), SI; NaN where the case leaves it out."""
+Columns = Mapping[str, Array]
+
+
+@dataclass(frozen=True, eq=False)
+class Values:
+    """Values of the keys of m designs: of `columns`, each (m, 1), SI, else of the case."""
+
+    case: Case
+    columns: Columns
+    count: int
+
+    def __call__(self, key: str) -> Array:
+        """Values of a key (m, 1), SI; NaN where the case leaves it out."""
+        if key in self.columns:
+            return self.columns[key]
+        stated = value_of(self.case, key)
+        return np.full((self.count, 1), np.nan if stated is None else float(stated))
 
 
 @dataclass(frozen=True, eq=False)

@@ -16,7 +16,6 @@ from camwright.geometry.extrema import sampled_greatest, sampled_least
 from camwright.geometry.periodic_spline import knot_derivatives, knot_integrals
 from camwright.pipeline.base.external_force import ExternalForce
 from camwright.pipeline.case.case import Case
-from camwright.pipeline.case.case_values import value_of
 from camwright.pipeline.case.limits import OVERSPEED, TORQUE_REDUCTION, AnyLimit
 from camwright.pipeline.case.load_case_torque import engine_torque
 from camwright.pipeline.case.machine import CREEP, Machine, machine
@@ -35,11 +34,16 @@ from camwright.pipeline.follower.guide_friction import friction_limits
 from camwright.pipeline.follower.guide_table import GuideLoads, SupportOfMany
 from camwright.pipeline.follower.spring import spring_force, stored_lift
 from camwright.pipeline.follower.spring_kinds import SpringShape
-from camwright.pipeline.screening.cam_shapes import CamShape, FaceShape, RollerShape
+from camwright.pipeline.screening.cam_shapes import (
+    CamShape,
+    Columns,
+    FaceShape,
+    RollerShape,
+    Values,
+)
 from camwright.pipeline.screening.design_factors import WoundSprings, wound_spring
 from camwright.pipeline.screening.design_lengths import factors_of
 
-Columns = Mapping[str, Array]
 Judged = tuple[Array, Array | float | None]
 """Demand (m,) and limit (m,) of a check, SI; NaN and None are missing."""
 
@@ -155,10 +159,11 @@ class Designs:
 
     def value(self, key: str) -> Array:
         """Values of a key (m, 1), SI; NaN where the case leaves it out."""
-        if key in self.columns:
-            return self.columns[key]
-        stated = value_of(self.case, key)
-        return np.full((self.count, 1), np.nan if stated is None else float(stated))
+        return self._values(key)
+
+    @cached_property
+    def _values(self) -> Values:
+        return Values(self.case, self.columns, self.count)
 
     def limit(self, row: AnyLimit) -> Array:
         """Values of a limit (m,), SI; NaN where there is none."""
@@ -200,7 +205,7 @@ class Designs:
     def shape(self) -> CamShape:
         """Contour and contact under the follower of the designs."""
         kind = RollerShape if self.case.follower.face is None else FaceShape
-        return kind(self.jets, self.value)
+        return kind(self.jets, self._values)
 
     @cached_property
     def theta(self) -> Array:

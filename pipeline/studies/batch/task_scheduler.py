@@ -12,7 +12,6 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from camwright.geometry.errors import CamError, InputError, ResultError
-from camwright.pipeline.base.worker_processes import THREADS
 from camwright.pipeline.studies.batch.case_template import Template
 from camwright.pipeline.studies.batch.dataset import (
     joined,
@@ -36,7 +35,6 @@ if TYPE_CHECKING:
 Result = TypeVar("Result")
 _AHEAD = 3
 """Tasks at a worker at once: one running, the next ones there."""
-_WORKER_MEMORY = "2GB"
 _CONNECT_S = 30
 _ADDRESS = re.compile(r"(?:(?:tcp|tls)://)?(?:[\w.-]+|\[[0-9A-Fa-f:.]+\]):([0-9]{1,5})", re.ASCII)
 MISSING = 'Dask is missing; install it with: pip install "camwright[study]"'
@@ -126,22 +124,23 @@ class TaskScheduler:
             logging.disable(logging.CRITICAL)  # Dask logs what is one line here
             if self._address is None:
                 folder = tempfile.TemporaryDirectory(prefix="camwright-dask-")
+                # Workers are threads that wait for a process each: see `solver_process`.
                 self._local = distributed.LocalCluster(
                     n_workers=0,
                     threads_per_worker=1,
-                    processes=True,
-                    host="127.0.0.1",
+                    processes=False,
                     dashboard_address=None,
-                    memory_limit=_WORKER_MEMORY,
+                    memory_limit=0,
                     local_directory=stack.enter_context(folder),
                     silence_logs=logging.CRITICAL,
-                    env=dict.fromkeys(THREADS, "1"),
                 )
                 stack.enter_context(self._local)
                 self._local.scale(self._jobs)
             else:
                 self._connected = stack.enter_context(_client_at(self._address))
             self._stack = stack.pop_all()
+        if self._local is not None:
+            _ = self._client  # by whose plugin the processes start
 
     def release(self) -> None:
         """End the local processes while the caller goes on; no task follows."""
@@ -207,7 +206,8 @@ class TaskScheduler:
             finished.add(future)
             return True
 
-        workers = max(1, len(self._client.scheduler_info(n_workers=-1)["workers"]))
+        there = len(self._client.scheduler_info(n_workers=-1)["workers"])
+        workers = max(1, there if self._local is None else self._jobs)
         for _ in range(_AHEAD * workers):
             submit()
         try:
