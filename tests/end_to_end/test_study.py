@@ -78,12 +78,12 @@ def written(folder: Path, count: int, more: str = "", name: str = "study.toml") 
 
 
 def processes_of(parent: psutil.Process) -> list[psutil.Process]:
-    """Workers of a study, and the processes that solve for them."""
+    """Processes that solve the designs of a study."""
     try:
         return [
             each
             for each in parent.children(recursive=True)
-            if any(word in " ".join(each.cmdline()) for word in ("spawn_main", "solver_process"))
+            if "solver_process" in " ".join(each.cmdline())
         ]
     except psutil.Error:
         return []
@@ -158,8 +158,8 @@ def test_a_signal_ends_in_one_line(folder: Path, number: signal.Signals) -> None
         cwd=folder, stderr=subprocess.PIPE, text=True,
     )  # fmt: skip
     children: list[psutil.Process] = []
-    # Two workers, each with the process that solves: the first shard is begun, none is complete.
-    while main.poll() is None and len(children) < 4:
+    # The processes that solve start before the first shard is complete.
+    while main.poll() is None and len(children) < 2:
         time.sleep(0.02)
         children = processes_of(psutil.Process(main.pid))
     main.send_signal(number)

@@ -8,12 +8,12 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any, cast
 
-from distributed import WorkerPlugin, get_worker
+from distributed import Reschedule, WorkerPlugin, get_worker
 
 from camwright.pipeline.studies.batch.case_template import Template
 from camwright.pipeline.studies.batch.design_rows import Files
 from camwright.pipeline.studies.batch.design_task import Settings, Task, Wanted
-from camwright.pipeline.studies.batch.solver_process import SolverProcess
+from camwright.pipeline.studies.batch.solver_process import EndedError, SolverProcess
 
 Shard = tuple[bytes, bytes, Mapping[str, Files]]
 """Rows and clock figures of a task as Parquet files; files of runs made with the rows, by id."""
@@ -32,16 +32,22 @@ class StudyPlugin(WorkerPlugin):
 
     def teardown(self, worker: Any) -> None:  # noqa: ARG002
         """End of the worker."""
-        self.process.close()
+        self.process.end()
 
 
 def solve_shard(task: Task, plugin: str, wanted: Wanted | None) -> Shard:
     """Rows of a task, in the process of this worker; `wanted` as of `SolverProcess.rows`."""
     study = cast(StudyPlugin, get_worker().plugins[plugin])
-    return study.process.rows(task, wanted)
+    try:
+        return study.process.rows(task, wanted)
+    except EndedError:
+        raise Reschedule from None
 
 
 def solve_run(task: Task, plugin: str) -> Files:
     """Files of the run folder of the one design of a task."""
     study = cast(StudyPlugin, get_worker().plugins[plugin])
-    return study.process.run_folder(task, 0)
+    try:
+        return study.process.run_folder(task, 0)
+    except EndedError:
+        raise Reschedule from None

@@ -64,9 +64,14 @@ class Wanted:
         if screen != self.screen or any(name not in cells for name, _ in self.objectives):
             return screen == self.screen  # a factor is no cell of a solution
         values = [(sign, cells[name]) for name, sign in self.objectives]
-        point = [sign * value if isinstance(value, float) else math.nan for sign, value in values]
+        return self.may_keep(
+            tuple(sign * value if isinstance(value, float) else math.nan for sign, value in values)
+        )
+
+    def may_keep(self, point: tuple[float, ...]) -> bool:
+        """Whether no bar dominates these values, with their signs; () without objectives."""
         return all(map(math.isfinite, point)) and not any(
-            all(map(float.__le__, bar, point)) and bar != tuple(point) for bar in self.bars
+            all(map(float.__le__, bar, point)) and bar != point for bar in self.bars
         )
 
 

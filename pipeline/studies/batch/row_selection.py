@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Sequence
+from collections.abc import Collection, Iterable, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
@@ -102,10 +102,23 @@ class Figures:
             return self.best(count)
         return self.front() if kind == "pareto" else self.failed() if kind == "failed" else []
 
-    def of(self, tier: Tier) -> Figures:
-        """Those of the rows of one depth."""
-        rows = {name: row for name, row in self._rows.items() if row[0] == tier.word}
+    def of(self, tier: Tier, ids: Collection[str] | None = None) -> Figures:
+        """Those of the rows of one depth, of all designs or of some."""
+        rows = {
+            name: row
+            for name, row in self._rows.items()
+            if row[0] == tier.word and (ids is None or name in ids)
+        }
         return Figures(self.objectives, rows)
+
+    def taken(self, ids: Iterable[str], wanted: Wanted) -> set[str]:
+        """Those of some designs whose run may be kept."""
+        return {
+            name
+            for name in ids
+            if (row := self._rows[name])[1] == wanted.screen
+            and wanted.may_keep(row[5][: len(wanted.objectives)])
+        }
 
     def wanted(self, kind: str, count: int) -> Wanted:
         """Designs that `Study.keep` may name, whatever rows follow.

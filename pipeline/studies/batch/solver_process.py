@@ -48,6 +48,10 @@ class _DiedError(Exception):
     pass
 
 
+class EndedError(Exception):
+    """The process was ended for good while it solved."""
+
+
 @dataclass
 class SolverProcess:
     """A supervised process; restarted after a death.
@@ -63,6 +67,7 @@ class SolverProcess:
     _process: subprocess.Popen[bytes] | None = None
     _pipe: Connection | None = None
     _ready: bool = False
+    _ended: bool = False
     _lock: threading.Lock = field(default_factory=threading.Lock)
 
     def begin(self) -> tuple[Connection, subprocess.Popen[bytes]]:
@@ -70,6 +75,8 @@ class SolverProcess:
         if self._process is not None and self._pipe is not None and self._process.poll() is None:
             return self._pipe, self._process
         self.close()
+        if self._ended:
+            raise EndedError
         ours, theirs = Pipe()
         environment = os.environ | dict.fromkeys(THREADS, "1")
         environment.pop(_TRIMMED, None)
@@ -135,8 +142,14 @@ class SolverProcess:
             return files
         return {}
 
+    def end(self) -> None:
+        """End the process for good; who waits for it receives `EndedError`."""
+        self._ended = True
+        if self._process is not None:
+            self._process.kill()
+
     def close(self) -> None:
-        """End the process."""
+        """End the process; the next request starts another."""
         if self._pipe is not None:
             self._pipe.close()
         if self._process is not None:

@@ -221,14 +221,14 @@ class _Run:
         if start is not None:
             waiting, made = chain([start], pending), set[str]()
             for task, (rows, clock, runs) in self.scheduler.shards(
-                waiting, lambda: self._wanted(tier)
+                waiting, lambda: self._wanted(tier, watch)
             ):
                 for name, files in runs.items():  # before their rows, by which they are known
                     self.home.write_run(name, files)
                 self.home.write_shard(task.name, rows, clock)
                 watch.take(Shard(task.name, task.ids), table_from(rows))
                 if runs:
-                    made = self._still_kept(made | set(runs), tier)
+                    made = self._still_wanted(made | set(runs), tier, watch)
                 if watch.stopped:
                     break
         shards = watch.shards()
@@ -237,22 +237,24 @@ class _Run:
             self.figures.keep({name for shard in shards for name in shard.ids})
         return shards
 
-    def _wanted(self, tier: Tier) -> Wanted | None:
+    def _wanted(self, tier: Tier, watch: _Watch) -> Wanted | None:
         """Designs of a depth whose run is made with their row, by those that are solved.
 
-        None where no run is kept, or a run takes longer to write than to solve.
+        Before a stop rule by those of the dataset wherever it stops. None where no run is kept, or
+        a run takes longer to write than to solve.
         """
         kind, most = self.study.kept
         if not kind or tier < Tier.CYCLE:
             return None
-        return self.figures.of(tier).wanted(kind, most)
+        return self.figures.of(tier, watch.certain).wanted(kind, most)
 
-    def _still_kept(self, made: set[str], tier: Tier) -> set[str]:
+    def _still_wanted(self, made: set[str], tier: Tier, watch: _Watch) -> set[str]:
         """Runs made so far that may be kept; the others are deleted."""
-        kept = made.intersection(self.figures.of(tier).kept(*self.study.kept))
-        for name in made - kept:
+        wanted = self._wanted(tier, watch)
+        still = made if wanted is None else self.figures.taken(made, wanted)
+        for name in made - still:
             self.home.delete_run(name)
-        return kept
+        return still
 
     def _keep(self, kept: Sequence[str], deeper: set[str]) -> None:
         """Write the run folders of the designs kept, at the depth of their rows."""
@@ -302,12 +304,14 @@ class _Watch:
     """Progress of a stage, and its stop rule on the shards that are complete in their order.
 
     The width of the interval is that of the same designs whatever the number of processes: those
-    before the first shard that is not complete. Their yield is counted as in the answers.
+    before the first shard that is not complete. Their yield is counted as in the answers. certain:
+    their ids, of the dataset wherever it stops; None without a rule: those of all rows.
     """
 
     def __init__(self, run: _Run, count: int, rule: Stop | None) -> None:
         self._run, self._count, self._rule = run, count, rule
         self._order: list[Shard] = []
+        self.certain: set[str] | None = None if rule is None else set()
         self._ready: dict[str, NDArray[np.uint8]] = {}
         self._states = np.full(len(run.plan.ids), UNKNOWN, dtype=np.uint8)  # of unique designs
         self._solved = self._failed = self._lost = 0
@@ -343,6 +347,8 @@ class _Watch:
             if shard.name not in self._ready:
                 break
             self._whole += 1
+            if self.certain is not None:
+                self.certain |= set(shard.ids)
             if rule is not None and rule.interval is not None:
                 self._count_in(self._ready[shard.name])
                 width = Yield(self._passes, self._judged).width
