@@ -20,7 +20,7 @@ from camwright.pipeline.results.run_reader import results_sha256
 from camwright.reports import pdf
 from camwright.reports.arrangement_data import arrangement_at
 from camwright.reports.drawing.drawing_shapes import Drawing
-from camwright.reports.drawing.part_view import Part, scale_words, views
+from camwright.reports.drawing.part_view import Part, Track, crown_words, scale_words, views
 from camwright.reports.report_content import Report, Signatures, report_content, verdict_of
 from camwright.reports.report_data import Material, title_block
 from camwright.reports.report_tables import (
@@ -228,6 +228,7 @@ class ShopDrawing:
     """Contents of the drawing.
 
     radii : sequence   polar angle, deg, and radius, mm, as text
+    drops : sequence   title of each crown; axial coordinate, mm, and drop, um, as text
     block, facts       names and values of the title block; "" is a field to fill by hand
     """
 
@@ -235,6 +236,7 @@ class ShopDrawing:
     drawing: Drawing
     radii: Sequence[tuple[str, str]]
     extremes: Sequence[tuple[str, str]]
+    drops: Sequence[tuple[str, Sequence[tuple[str, str]]]]
     notes: Sequence[str]
     block: Sequence[tuple[str, str]]
     facts: Sequence[tuple[str, str]]
@@ -306,9 +308,11 @@ def _content(material: Material, record: Record) -> ShopDrawing:
         for end, name in (("greatest", "radius_max"), ("least", "radius_min"))
     ]  # fmt: skip
     radii = [(f"{degrees}°", f"{radius:.4f}") for degrees, radius in record["radii_mm"].items()]
+    notes.append(_mating(record["tracks"]))
     return ShopDrawing(
-        f"Drawing of the cam, {shortened(title, 100)}", views(part), radii, extremes, notes,
-        title_block(case), facts, results_sha256(material.run.summary["files"]),
+        f"Drawing of the cam, {shortened(title, 100)}", views(part), radii, extremes,
+        list(_drops(record["tracks"])), notes, title_block(case), facts,
+        results_sha256(material.run.summary["files"]),
     )  # fmt: skip
 
 
@@ -329,8 +333,38 @@ def _part(material: Material, record: Record) -> Part:
         float(record["thickness_mm"]), bore, width, depth,
         None if keyway is None else keyway["root_radius_mm"],
         number(record["profile_tolerance_mm"]), str(record["datum"]),
-        "" if roughness is None else number(roughness),
+        "" if roughness is None else number(roughness), _track(record["tracks"]["cam"]),
     )  # fmt: skip
+
+
+def _track(record: Record) -> Track:
+    end, crown = record["end"], record["crown"]
+    return Track(
+        float(record["flat_width_mm"]),
+        None if end is None else (str(end["kind"]), float(end["size_mm"])),
+        None if crown is None else (
+            np.array(crown["y_mm"], dtype=float), 1e-3 * np.array(crown["drop_um"], dtype=float)
+        ),
+    )  # fmt: skip
+
+
+def _drops(tracks: Record) -> Iterator[tuple[str, Sequence[tuple[str, str]]]]:
+    """Drop of each crown on one side, with its title; y in mm, drop in um."""
+    for word, record in tracks.items():
+        crown = record["crown"]
+        if crown is not None:
+            rows = [(f"{y:.4g}", f"{drop:.3f}")
+                    for y, drop in zip(crown["y_mm"], crown["drop_um"], strict=True)]  # fmt: skip
+            yield f"Crown of the {word}, {crown_words(str(crown['kind']))}", rows
+
+
+def _mating(tracks: Record) -> str:
+    """Surface of the follower on the cam."""
+    word, record = next((word, each) for word, each in tracks.items() if word != "cam")
+    crown = record["crown"]
+    shape = "straight" if crown is None else f"crown {crown_words(str(crown['kind']))}"
+    flat = quantity(record["flat_width_mm"], "mm")
+    return f"The {word} is flat over {flat}, {_track(record).end_words}, {shape}."
 
 
 # --- spreadsheets
@@ -363,9 +397,15 @@ def begun(material: Material, workers: Crew) -> dict[str, Task]:
 
 def _tables(material: Material) -> dict[str, Excerpt | None]:
     """Tables of the run that people read; of the inspection sheet an excerpt to print."""
+    # Crowns stand in the workbook of the inspection sheet.
     files: dict[str, Excerpt | None] = {
         f"{material.run.final.path.name}/5_cycle.csv": None,
         "workshop/contour.csv": None,
-        "workshop/inspection.csv": Excerpt("every 10 deg", CAM_ANGLE.header, 10.0),
+        "workshop/inspection.csv": Excerpt(
+            "every 10 deg",
+            CAM_ANGLE.header,
+            10.0,
+            {f"crown of the {word}": f"crown_{word}.csv" for word in ("cam", "roller", "face")},
+        ),
     }
     return {name: each for name, each in files.items() if (material.run.path / name).is_file()}

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import datetime as dt
 import io
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -29,18 +30,23 @@ _OPTIONS = {"in_memory": True, "strings_to_formulas": False, "strings_to_urls": 
 
 @dataclass(frozen=True)
 class Excerpt:
-    """Rows of a table on one page to print: every `step` deg of a column."""
+    """Rows of a table on one page to print: every `step` deg of a column.
+
+    beside : mapping   files in the folder of the table by the titles of their sheets, if they are
+    """
 
     title: str
     column: str
     step: float
+    beside: Mapping[str, str] = field(default_factory=dict)
 
 
 def spreadsheet(file: Path, excerpt: Excerpt | None = None) -> bytes:
     """A CSV table as a spreadsheet; equal tables give equal bytes.
 
     The header row stays on the screen and on each page. Numbers are rounded, an unknown one is an
-    empty cell. An `excerpt` is the first sheet, and fits on one page; the whole table follows.
+    empty cell. An `excerpt` is the first sheet, and fits on one page, as do the tables beside it;
+    the whole table follows.
 
     Raises
     ------
@@ -56,6 +62,10 @@ def spreadsheet(file: Path, excerpt: Excerpt | None = None) -> bytes:
             turned = np.mod(whole[excerpt.column], excerpt.step)
             near = np.minimum(turned, excerpt.step - turned) < 1e-6
             _add_sheet(book, excerpt.title, whole, np.flatnonzero(near), pages=1)
+            for title, name in excerpt.beside.items():
+                if (beside := file.with_name(name)).is_file():
+                    more = read_table(beside)
+                    _add_sheet(book, title, more, np.arange(len(more)), pages=1)
         _add_sheet(book, "all" if excerpt else file.stem, whole, np.arange(len(whole)), pages=0)
     return content.getvalue()
 

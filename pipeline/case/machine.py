@@ -24,6 +24,7 @@ from camwright.pipeline.contact.axial_shape import AxialCrown, BodyEnd
 from camwright.pipeline.contact.cam_body import CamBody
 from camwright.pipeline.contact.elasticity.elastic_body import Elastic
 from camwright.pipeline.contact.finite_length.axial_drop import (
+    BodyCrown,
     Crown,
     CrownPlace,
     FiniteBody,
@@ -263,8 +264,15 @@ class Machine(Displayed):
         radius = self.follower.contact_radius
         return 1.0 / self.base_radius + (0.0 if radius is None else 1.0 / radius)
 
-    def _crown(self, middle: float, side: int) -> Crown:
-        """Crowns of both bodies about the middle of the contact, m from that of the cam."""
+    @property
+    def crowns(self) -> dict[str, BodyCrown]:
+        """Crown of each body that has one by its word, about its own middle.
+
+        Raises
+        ------
+        InputError
+            If a crown does not fit the contact.
+        """
         radius = self.follower.contact_radius
         place = CrownPlace(
             length=self.contact_width,
@@ -272,14 +280,23 @@ class Machine(Displayed):
             modulus=self.contact_modulus,
             diameter=None if radius is None else 2.0 * radius,
         )
-        crowns = []
-        for shape, drops, at in (
-            (self.cam.crown, self.cam_drops, 0.0),
-            (self.follower.crown, self.follower_drops, self._axial_offset),
-        ):
-            if shape is not None:
-                crowns.append((crown_of(shape, place, drops), at - middle))
-        return SummedCrown(tuple(crowns), side) if crowns else Straight()
+        shapes = {
+            "cam": (self.cam.crown, self.cam_drops),
+            self.follower.word: (self.follower.crown, self.follower_drops),
+        }
+        return {
+            word: crown_of(shape, place, drops)
+            for word, (shape, drops) in shapes.items()
+            if shape is not None
+        }
+
+    def _crown(self, middle: float, side: int) -> Crown:
+        """Crowns of both bodies about the middle of the contact, m from that of the cam."""
+        crowns = tuple(
+            (crown, (0.0 if word == "cam" else self._axial_offset) - middle)
+            for word, crown in self.crowns.items()
+        )
+        return SummedCrown(crowns, side) if crowns else Straight()
 
     @property
     def base_radius(self) -> float:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from functools import partial
 from math import radians
 from pathlib import Path
 
@@ -23,6 +24,7 @@ from camwright.pipeline.base.material import Material
 from camwright.pipeline.base.tables import CAM_ANGLE, Column, table
 from camwright.pipeline.base.units import in_unit, shown
 from camwright.pipeline.case.case import Case
+from camwright.pipeline.case.machine import machines
 from camwright.pipeline.cycle.cam_balance import drilled_hole
 from camwright.pipeline.cycle.cycle import LIFT, PRESSURE_ANGLE
 
@@ -35,8 +37,11 @@ _INSPECTION = (
 WORKSHOP = "workshop"
 SOLID = "cam.step"
 DIMENSIONS = "dimensions.json"
+CROWN = "crown_{}.csv"
+"""Drop of the crown of a body, by its word."""
 RADII_STEP = 10
 """deg, between the radii of the dimensions."""
+_CROWN_SHARES = (0.0, 0.2, 0.4, 0.6, 0.7, 0.8, 0.9, 0.95, 1.0)  # of half the flat
 _RADII_POINTS = 36_000  # of the contour: its chords are within a nanometre
 
 
@@ -99,6 +104,7 @@ def dimensions_record(case: Case, contour: Contour) -> dict[str, Json]:
         "material": size.material,
         "hardness": size.hardness,
         "arc_error_um": in_unit(case.workshop.arc_error, "um"),
+        "tracks": {word: track_record(case, word) for word in ("cam", case.facing.word)},
         "radii_mm": {
             str(degrees): in_unit(radius_at(polygon, radians(degrees)), "mm")
             for degrees in range(0, 360, RADII_STEP)
@@ -125,6 +131,35 @@ def dimensions_record(case: Case, contour: Contour) -> dict[str, Json]:
             "polar_angle_deg": float(np.round(np.degrees(np.arctan2(y, x)), 6) % 360.0),
         }
     return record
+
+
+def track_record(case: Case, word: str) -> dict[str, Json]:
+    """Axial section of the surface in contact of a body: flat, ends, crown; null: not stated."""
+    part = case.cam if word == "cam" else case.facing
+    end, crown = part.end, part.crown
+    drops = None if crown is None else crown_drops(case, word)
+    return {
+        "flat_width_mm": in_unit(part.line_width, "mm"),
+        "end": None if end is None else {"kind": end.kind, "size_mm": in_unit(end.size, "mm")},
+        "crown": None if crown is None or drops is None else {
+            "kind": crown.kind,
+            "y_mm": [in_unit(y, "mm") for y in drops[0].tolist()],
+            "drop_um": [in_unit(drop, "um") for drop in drops[1].tolist()],
+        },
+    }  # fmt: skip
+
+
+def crown_drops(case: Case, word: str) -> tuple[Array, Array]:
+    """Axial coordinates and drops, m, of the crown of a body, about its middle.
+
+    Both sides of the flat, as far as the drop is stated and bounded.
+    """
+    machine = machines(case)[0]
+    crown = machine.crowns[word]
+    half = 0.5 * (machine.cam if word == "cam" else machine.follower).line_width
+    y = half * np.array([*(-share for share in _CROWN_SHARES[:0:-1]), *_CROWN_SHARES])
+    stated = y[crown.is_stated(y)]
+    return stated, crown.drop(stated)
 
 
 def notes_of(case: Case) -> Iterator[str]:
@@ -184,7 +219,7 @@ def write_workshop(
     contour: Contour,
     note: Callable[[str], None] = lambda _: None,
 ) -> None:
-    """Write dimensions, contour, drawing, solid, path of the cutter and inspection sheet.
+    """Write dimensions, contour, drawing, solid, path of the cutter and inspection sheets.
 
     A file that the contour does not allow, such as the path of a tool larger than the minimum
     concave radius, is left out with a `note`; all others are written.
@@ -204,6 +239,9 @@ def write_workshop(
             path, inspection_sheet(contour, order.theta, order.tolerance)
         ),
     }
+    for word, part in (("cam", case.cam), (case.facing.word, case.facing)):
+        if part.crown is not None:
+            jobs[CROWN.format(word)] = partial(_write_crown, case, word)
     for name, write in jobs.items():
         try:
             write(folder / name)
@@ -212,6 +250,10 @@ def write_workshop(
         except CamError as error:
             (folder / name).unlink(missing_ok=True)
             note(f"{WORKSHOP}/{name} is left out: {error}")
+
+
+def _write_crown(case: Case, word: str, path: Path) -> None:
+    write_atomic(path, crown_sheet(*crown_drops(case, word)))
 
 
 def stamp_solid(folder: Path, case_sha256: str, results_sha256: str) -> None:
@@ -282,3 +324,19 @@ def inspection_sheet(contour: Contour, theta: Array, tolerance: float) -> str:
         for row in zip(*columns, strict=True)
     ]
     return "\n".join([",".join(_INSPECTION), *rows]) + "\n"
+
+
+def crown_sheet(y: Array, drop: Array) -> str:
+    """CSV of the nominal drop of a crown at axial coordinates, measured columns empty.
+
+    Its first two columns are those of the table of a crown in a case.
+    """
+    unknown = np.full(y.size, np.nan)
+    return table(
+        {
+            Column("y", "mm"): y,
+            Column("drop", "um"): drop,
+            Column("measured_drop", "um", unknown=True): unknown,
+            Column("deviation", "um", unknown=True): unknown,
+        }
+    ).to_csv()

@@ -38,8 +38,67 @@ _TEXT, _SMALL = 3.5, 2.5  # mm, heights of ISO 3098
 _EDGE, _THIN = 0.5, 0.25  # mm, lines of ISO 128
 _ARROW = 0.75  # mm, so that a head is 2.55 mm long; the line before it is thin
 _STEPS = (1.0, 2.0, 5.0)  # of scales, ISO 5455
+_TRACK = 46.0  # mm, greatest width of the section of the track
+_CROWN_HEIGHT = 0.06  # greatest drop drawn, over the width of the flat
+_CROWNS = {
+    "lundberg": "Lundberg", "johns_gohar": "Johns-Gohar", "iso16281": "ISO/TS 16281",
+    "table": "by table",
+}  # fmt: skip
+_ARC = 17  # points of the radius of an end
 _EVERY = 30  # deg, between the labelled angles
 _PROFILE_AT, _ROUGH_AT = 105.0, 75.0  # deg, of the leaders: between two labels
+
+
+@dataclass(frozen=True, eq=False)
+class Track:
+    """Axial section of the surface in contact; mm.
+
+    flat : float              width without the ends
+    end                       kind and size of both ends; None: not stated
+    crown : tuple of arrays   axial coordinates and drops; None: straight
+    """
+
+    flat: float
+    end: tuple[str, float] | None
+    crown: tuple[Array, Array] | None
+
+    @property
+    def width(self) -> float:
+        """Width with the ends, mm."""
+        return self.flat + 2.0 * (0.0 if self.end is None else self.end[1])
+
+    @property
+    def end_words(self) -> str:
+        """Ends as on a drawing."""
+        if self.end is None:
+            return "edges: not stated"
+        kind, size = self.end
+        if kind == "sharp":
+            return "both edges sharp, burr-free"
+        return f"both edges {size:.4g} × 45°" if kind == "chamfer" else f"both edges R {size:.4g}"
+
+    @property
+    def stretch(self) -> float:
+        """Factor by which the drop of the crown is drawn over the width; 1: straight."""
+        if self.crown is None:
+            return 1.0
+        share = _CROWN_HEIGHT * self.flat / float(np.abs(self.crown[1]).max())
+        return standard_scale(share, 1.0)
+
+    def line(self) -> Array:
+        """Surface (2, n) over the axial coordinate, drop stretched, from end to end."""
+        y, low = (np.array([-0.5, 0.5]) * self.flat, np.zeros(2)) if self.crown is None else (
+            self.crown[0], -self.stretch * self.crown[1])  # fmt: skip
+        left, right = self._end(float(low[0])), self._end(float(low[-1]))
+        return np.hstack([left[:, ::-1] * [[-1.0], [1.0]], [y, low], right])
+
+    def _end(self, low: float) -> Array:
+        """Points (2, m) of the right end, from the flat outwards."""
+        half, (kind, size) = 0.5 * self.flat, self.end or ("sharp", 0.0)
+        if kind != "radius":
+            return np.array([[half, half + size], [low, low - size]])
+        turn = np.linspace(0.0, 0.5 * np.pi, _ARC)
+        return np.array([half + size * np.sin(turn), low - size * (1.0 - np.cos(turn))])
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,6 +123,7 @@ class Part:
     profile_tolerance: str
     datum: str
     roughness: str
+    track: Track
 
     @property
     def bore_radius(self) -> float:
@@ -81,6 +141,11 @@ class Part:
         reach = float(np.abs(self.contour).max())
         return min(standard_scale(0.5 * _FRONT - _LABELS, reach),
                    standard_scale(_SECTION, self.thickness))  # fmt: skip
+
+    @property
+    def track_scale(self) -> float:
+        """Scale of the detail of the surface in contact."""
+        return standard_scale(_TRACK, self.track.width)
 
     @property
     def detail_scale(self) -> float:
@@ -108,8 +173,12 @@ def views(part: Part) -> Drawing:
         Group("front", tuple(_front(part, *middle))),
         Group("section", tuple(_section(part, _FRONT + 8.0, middle[1]))),
         Group("detail", tuple(_detail(part, 62.0, 36.0))),
+        Group("track", tuple(_track(part, 186.0, 46.0))),
     )
-    words = f"Cam in front view, section and detail of its bore; scale {scale_words(part.scale)}."
+    words = (
+        "Cam in front view, section and details of its bore and of the section of its surface; "
+        f"scale {scale_words(part.scale)}."
+    )
     return Drawing("Cam", words, groups, (0.0, 0.0, WIDTH, HEIGHT))
 
 
@@ -224,6 +293,9 @@ def _section(part: Part, left: float, y: float) -> Iterator[Shape]:
     yield from _dimension(
         (left, right), y + high, y + high + 9.0, f"{part.thickness:.6g}", above=True
     )
+    middle = 0.5 * (left + right)
+    yield _thin(circle(0.5 * scale * part.thickness + 3.0, (middle, y + high)))
+    yield Text("D", (right + 5.0, y + high - 5.0), _TEXT, bold=True)
     yield Text("C–C", (0.5 * (left + right), y - low - 8.0), _TEXT, align="middle", bold=True)
 
 
@@ -259,6 +331,39 @@ def _detail(part: Part, x: float, y: float) -> Iterator[Shape]:
         lines.append(f"radius at its floor ≥ {part.root_radius:.4g}")
     for k, line in enumerate(lines):
         yield Text(line, (x + radius + 12.5, middle - 5.0 - 4.5 * k), _SMALL)
+
+
+def crown_words(kind: str) -> str:
+    """Kind of a crown on a drawing."""
+    return _CROWNS.get(kind, kind)
+
+
+def _track(part: Part, x: float, y: float) -> Iterator[Shape]:
+    """Axial section of the surface in contact, its middle at x, y; the drop stretched."""
+    track, scale = part.track, part.track_scale
+    line = scale * track.line() + np.array([[x], [y]])
+    left, right, low = float(line[0, 0]), float(line[0, -1]), y - 16.0
+    torn = np.linspace(right, left, 25)
+    tear = np.stack([torn, low + 0.8 * np.sin(6.0 * np.pi * (torn - left) / (right - left))])
+    bottom = float(line[1].min())
+    yield _thin(*hatching((left, low + 1.0, right, bottom), 2.5))
+    body = np.hstack([line[:, :1], line, line[:, -1:]])
+    body[1, [0, -1]] = tear[1, [-1, 0]]
+    yield Outline((body,), Pen("ink", _EDGE), closed=False)
+    yield _thin(tear)
+    yield _thin(segment((x, low - 2.0), (x, y + 3.0)), dash="dashdot")
+    half = 0.5 * scale * track.flat
+    yield from _dimension((x - half, x + half), y, y + 9.0, f"{track.flat:.6g}", above=True)
+    corner = x + 0.25 * scale * (track.flat + track.width)
+    foot = (right + 7.0, low - 10.0)
+    yield from _arrow(foot, (corner, float(np.interp(corner, *line))))
+    yield _thin(segment((x - 36.0, foot[1]), foot))
+    yield Text(track.end_words, (x - 36.0, foot[1] + 1.2), _TEXT)
+    title = f"D ({scale_words(scale)})"
+    yield Text(title, (x - 36.0, y + 15.0), _TEXT, bold=True)
+    if track.crown is not None:
+        words = f"crown drawn {track.stretch:.6g}:1 over the width; drop as listed"
+        yield Text(words, (x - 36.0, foot[1] - 5.0), _SMALL)
 
 
 def _dimension(

@@ -160,6 +160,38 @@ def test_the_drawing_is_one_sheet(tmp_path: Path, scale: float, keyed: bool) -> 
     assert ("JS9" in words) == keyed
 
 
+@pytest.mark.parametrize(
+    ("end", "words", "crowned"),
+    [(None, "edges:notstated", False), (("sharp", 0.0), "bothedgessharp,burr-free", True),
+     (("chamfer", 0.3), "bothedges0.3×45°", False), (("radius", 1.2), "bothedgesR1.2", True)],
+)  # fmt: skip
+def test_the_drawing_shows_ends_and_crown_of_the_track(
+    tmp_path: Path, end: tuple[str, float] | None, words: str, crowned: bool
+) -> None:
+    material = drawing(tmp_path / "run", 1.0, keyed=True)
+    file = tmp_path / "run" / "workshop" / "dimensions.json"
+    record = json.loads(file.read_text())
+    drops = {"kind": "johns_gohar", "y_mm": [-4.0, -2.0, 0.0, 2.0, 4.0],
+             "drop_um": [3.2, 0.7, 0.0, 0.7, 3.2]}  # fmt: skip
+    size = 0.0 if end is None else end[1]
+    record["tracks"]["cam"] = {
+        "flat_width_mm": 10.0 - 2.0 * size,
+        "end": None if end is None else {"kind": end[0], "size_mm": size},
+        "crown": drops if crowned else None,
+    }
+    file.write_text(json.dumps(record))
+    (page,) = printed_text.pages(documents.write_drawing(material)[0])
+    assert printed_text.covered(page) == []
+    printed = printed_text.words_on(page)
+    assert words in printed
+    assert f"{10.0 - 2.0 * size:.6g}" in printed
+    assert (
+        ("3.200" in printed)
+        == ("CrownoftheCam,Johns-Gohar".lower() in printed.lower())
+        == (crowned)
+    )
+
+
 def test_no_drawing_of_a_contour_that_encloses_no_body(tmp_path: Path) -> None:
     report_fixture.write_run(tmp_path / "run", 36, field=False)
     assert documents.write_drawing(read_material(tmp_path / "run")) == []

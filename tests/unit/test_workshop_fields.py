@@ -6,6 +6,9 @@ import csv
 import datetime as dt
 import io
 import json
+import re
+import zipfile
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -19,8 +22,11 @@ from camwright.geometry.cutter_path import cutter_path
 from camwright.geometry.errors import InputError
 from camwright.geometry.lift import Lift
 from camwright.pipeline.base.fits import keyway_depth_deviations, size_deviations
+from camwright.pipeline.base.spreadsheets import Excerpt, spreadsheet
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_file import parse_case
+from camwright.pipeline.case.machine import machines
+from camwright.pipeline.contact.finite_length.axial_drop import TabulatedCrown
 from camwright.pipeline.results.workshop_files import part_title, stamp_solid, write_workshop
 
 LIMITS = "[limits]\n"
@@ -234,3 +240,43 @@ def test_radii_of_the_dimensions_are_those_of_the_contour_table(tmp_path: Path) 
     assert record["radius_max"]["radius_mm"] == pytest.approx(radius.max(), rel=1e-5)
     assert record["bore"]["nominal_mm"] == pytest.approx(2e3 * of.cam.bore_radius)
     assert record["arc_error_um"] == pytest.approx(2.0)
+
+
+CROWN = 'crown = { kind = "lundberg", line_load = "200 N/mm" }\n'
+
+
+def test_the_crown_of_a_body_is_a_sheet_that_a_case_reads(tmp_path: Path) -> None:
+    """Drop by Lundberg's formula; at the ends, where it is not bounded, it is left out."""
+    of = case(cam=CROWN)
+    write_workshop(tmp_path, of, contour(of))
+    sheet = rows(tmp_path / "crown_cam.csv")
+    y, drop = (np.array([float(row[name]) for row in sheet]) for name in ("y_mm", "drop_um"))
+    machine = machines(of)[0]
+    share = 2e-3 * y / machine.contact_width
+    expected = 1e6 * 200e3 / (np.pi * machine.contact_modulus) * -np.log(1.0 - share**2)
+    np.testing.assert_allclose(drop, expected, rtol=1e-9, atol=1e-12)
+    assert share.max() == pytest.approx(0.95)
+    assert {row["measured_drop_um"] + row["deviation_um"] for row in sheet} == {""}
+    table = TabulatedCrown.read(tmp_path / "crown_cam.csv")
+    np.testing.assert_allclose(table.drop(1e-3 * y), 1e-6 * drop, rtol=1e-12)
+    tracks = json.loads((tmp_path / "dimensions.json").read_text())["tracks"]
+    assert tracks["cam"]["crown"]["drop_um"] == pytest.approx(drop.tolist())
+    assert tracks["cam"]["end"] == {"kind": "sharp", "size_mm": 0.0}
+    assert tracks["roller"]["crown"] is None
+    assert tracks["roller"]["end"] == {"kind": "chamfer", "size_mm": 0.5}
+    assert tracks["roller"]["flat_width_mm"] == pytest.approx(10.0)
+    assert not (tmp_path / "crown_roller.csv").exists()
+
+
+def test_the_workbook_of_the_inspection_has_a_sheet_of_the_crown(tmp_path: Path) -> None:
+    of = case(cam=CROWN)
+    write_workshop(tmp_path, of, contour(of))
+    one = Excerpt("every 10 deg", "cam_angle_deg", 10.0, {"crown": "crown_cam.csv"})
+    with zipfile.ZipFile(io.BytesIO(spreadsheet(tmp_path / "inspection.csv", one))) as book:
+        names = re.findall('<sheet name="([^"]*)"', book.read("xl/workbook.xml").decode())
+        texts = book.read("xl/sharedStrings.xml").decode()
+    assert names == ["every 10 deg", "crown", "all"]
+    assert "measured_drop_um" in texts
+    other = replace(one, beside={"crown": "crown_roller.csv"})
+    with zipfile.ZipFile(io.BytesIO(spreadsheet(tmp_path / "inspection.csv", other))) as book:
+        assert "measured_drop_um" not in book.read("xl/sharedStrings.xml").decode()

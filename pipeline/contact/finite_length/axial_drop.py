@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Protocol
 
 import numpy as np
+from numpy.typing import NDArray
 
 from camwright.geometry.arrays import Array, finite, freeze
 from camwright.geometry.errors import InputError, ResultError
@@ -86,6 +87,10 @@ class CircularCrown:
         share = y / self.radius
         return np.asarray(y * share / (1.0 + np.sqrt(1.0 - share**2)))
 
+    def is_stated(self, y: Array) -> NDArray[np.bool_]:
+        """Whether the arc reaches axial coordinates (...), m."""
+        return np.asarray(np.abs(y) < self.radius)
+
 
 @dataclass(frozen=True)
 class LogarithmicCrown:
@@ -111,6 +116,10 @@ class LogarithmicCrown:
         """Drop (...), m, of the logarithm."""
         t = np.maximum(2.0 * np.abs(y) - self.straight, 0.0) / (self.length - self.straight)
         return np.asarray(-self.scale * np.log1p(-self.share * np.minimum(t**2, 1.0 - 1e-12)))
+
+    def is_stated(self, y: Array) -> NDArray[np.bool_]:
+        """Whether the drop is bounded at axial coordinates (...), m."""
+        return np.asarray((self.share < 1.0) | (2.0 * np.abs(y) < (1.0 - 1e-9) * self.length))
 
 
 @dataclass(frozen=True, eq=False)
@@ -152,10 +161,17 @@ class TabulatedCrown:
 
     def drop(self, y: Array) -> Array:
         """Drop (...), m, interpolated."""
-        place = np.abs(y) if self.y[0] == 0 else y
-        if not (self.y[0] <= place.min() and place.max() <= self.y[-1]):
+        if not self.is_stated(y).all():
             raise InputError("crown.y", float(self.y[-1]), "at least half the length of contact")
-        return np.interp(place, self.y, self.table)
+        return np.interp(self._place(y), self.y, self.table)
+
+    def is_stated(self, y: Array) -> NDArray[np.bool_]:
+        """Whether the table reaches axial coordinates (...), m."""
+        place = self._place(y)
+        return np.asarray((self.y[0] <= place) & (place <= self.y[-1]))
+
+    def _place(self, y: Array) -> Array:
+        return np.abs(y) if self.y[0] == 0 else y
 
 
 def lundberg(line_load: float, length: float, modulus: float) -> LogarithmicCrown:
@@ -208,7 +224,11 @@ class CrownPlace:
     diameter: float | None
 
 
-def crown_of(shape: AxialCrown, place: CrownPlace, drops: TabulatedCrown | None) -> Crown:
+BodyCrown = CircularCrown | LogarithmicCrown | TabulatedCrown
+"""Crown of one body."""
+
+
+def crown_of(shape: AxialCrown, place: CrownPlace, drops: TabulatedCrown | None) -> BodyCrown:
     """Crown that a case states; `drops` is that of its table.
 
     Raises
