@@ -118,12 +118,17 @@ class Smoothing(Section):
         return self
 
 
+CamAngle = Annotated[float, In("deg", at_least=-360, at_most=360)]
+
+
 class Solver(Section):
     """Resolution and number of trials."""
 
     positions: Annotated[int, Field(ge=36, le=7200)] = 720
     max_trials: Annotated[int, Field(ge=1, le=20)] = 6
     certificate_positions: Annotated[int, Field(ge=1, le=64)] = 8
+    end_elements: Annotated[int, Field(ge=2, le=12)] | None = None
+    end_angles: tuple[CamAngle, ...] = ()
 
 
 class Waiver(Section):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 
 import numpy as np
 
@@ -17,8 +17,11 @@ from camwright.pipeline.contact.certificate import (
 )
 from camwright.pipeline.contact.contact_history import CertificatePoint, ContactHistory
 from camwright.pipeline.contact.contact_pair import ContactPair
+from camwright.pipeline.contact.finite_length.factor_table import factor_table
+from camwright.pipeline.contact.finite_length.length_certificate import LengthLoad
 from camwright.pipeline.cycle.contact_store import NOT_STORED, ContactStore, piece_key
 from camwright.pipeline.cycle.cycle import Cycle
+from camwright.pipeline.cycle.length_history import LengthHistory, signed_factor
 
 _STORED_AS = ".certificate"  # no name of a load case
 FINEST = 2
@@ -46,6 +49,52 @@ def positions_to_certify(cycles: Sequence[Cycle], count: int) -> tuple[tuple[int
     for index in np.linspace(0, size, 4 * count, endpoint=False).astype(int):
         take(0, int(index))
     return tuple(wanted)
+
+
+def length_loads(cycles: Sequence[Cycle], angles: Sequence[float]) -> tuple[LengthLoad, ...]:
+    """Contacts of the bodies with ends to be solved by finite elements.
+
+    The greatest signed pressure of all load cases, then those of the first load case nearest to cam
+    angles (rad) under load, each at the worst moment of its range; empty without ends.
+    """
+    pressures = [np.nan_to_num(cycle.signed_pressure) for cycle in cycles]
+    case = int(np.argmax([pressure.max() for pressure in pressures]))
+    if not pressures[case].max() > 0:
+        return ()
+    chosen = [(case, int(np.argmax(pressures[case])))]
+    for angle in angles:
+        apart = np.abs(np.angle(np.exp(1j * (cycles[0].theta - angle))))
+        near = int(np.argmin(np.where(pressures[0] > 0, apart, np.inf)))
+        if pressures[0][near] > 0 and (0, near) not in chosen:
+            chosen.append((0, near))
+    return tuple(
+        _length_load(cycles[at], length, index)
+        for at, index in chosen
+        if (length := cycles[at].length) is not None
+    )
+
+
+def _length_load(cycle: Cycle, length: LengthHistory, index: int) -> LengthLoad:
+    """Contact at a position, at the end and the moment of the greatest signed pressure."""
+    force = cycle.loads.normal_force[[index]]
+    curvature = 1.0 / cycle.contact.relative_radius[[index]]
+    tried = [
+        (pair, share * length.moment[[index]])
+        for pair in cycle.machine.finite_pairs
+        for share in (0.0, 1.0, -1.0)
+    ]
+    signed = [
+        signed_factor(factor_table(pair, length.mean_length), curvature, force, moment).value[0]
+        for pair, moment in tried
+    ]
+    pair, moment = tried[int(np.argmax(signed))]
+    return LengthLoad(
+        load_case=cycle.load_case,
+        theta=float(cycle.theta[index]),
+        pair=replace(pair, curvature=float(curvature[0])),
+        force=float(force[0]),
+        moment=float(moment[0]),
+    )
 
 
 def _change(history: ContactHistory) -> Array:

@@ -16,6 +16,7 @@ from camwright.meshes.mesh_quality import Quality, gate, quality
 from camwright.pipeline.base.progress import SILENT, Progress
 from camwright.pipeline.base.worker_processes import Crew
 from camwright.pipeline.case.case import Case
+from camwright.pipeline.case.limits import END_MEAN_LENGTH
 from camwright.pipeline.case.load_case_torque import engine_torques
 from camwright.pipeline.case.machine import Machine, machines
 from camwright.pipeline.contact.bore_stress import bore_stress
@@ -24,9 +25,13 @@ from camwright.pipeline.contact.closed_form import closed_form_history
 from camwright.pipeline.contact.contact_benchmarks import benchmarks
 from camwright.pipeline.contact.contact_history import CertificatePoint, ContactHistory
 from camwright.pipeline.contact.contact_pair import ContactPair
+from camwright.pipeline.contact.finite_length.length_certificate import (
+    LengthCertificate,
+    length_certificate,
+)
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.contact.two_scale import CycleBodies, loaded_cam, two_scale_history
-from camwright.pipeline.cycle.certificate_angles import begun, positions_to_certify
+from camwright.pipeline.cycle.certificate_angles import begun, length_loads, positions_to_certify
 from camwright.pipeline.cycle.contact_setup import contact_pair
 from camwright.pipeline.cycle.contact_store import NOT_STORED, ContactStore, piece_key
 from camwright.pipeline.cycle.crank_speed import SpeedRipple
@@ -45,7 +50,7 @@ from camwright.pipeline.torque.torque import Torque
 # Positions solved and stored together; an interruption loses at most one such piece.
 CHUNK = 180
 MESHING, CONTACT = "mesh", "cycle"
-CERTIFICATE, BENCHMARKS = "certificate", "benchmarks"
+CERTIFICATE, BENCHMARKS, ENDS = "certificate", "benchmarks", "ends"
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -73,6 +78,8 @@ class Solution(Displayed):
     mesh : ContactMesh           None in a preview, and if the contour encloses no body: the
                                  contact is then NaN
     certificate : tuple          full two-body solutions; empty unless certified
+    length_certificate : object  contact of bodies with ends by both tiers; None unless certified
+                                 with `solver.end_elements`
     benchmarks : mapping         see `benchmarks`; None unless certified
     crank_speed : mapping        load case -> std of the crank speed, rad/s, without and with the
                                  cam; empty without a crankshaft
@@ -90,6 +97,7 @@ class Solution(Displayed):
     mesh: ContactMesh | None
     cycles: tuple[Cycle, ...]
     certificate: tuple[CertificatePoint, ...] = ()
+    length_certificate: LengthCertificate | None = None
     benchmarks: Mapping[str, float] | None = None
     crank_speed: Mapping[str, tuple[float, float]] = field(default_factory=dict)
     crank_speed_halved: Mapping[str, tuple[float, float]] = field(default_factory=dict)
@@ -288,7 +296,15 @@ def certified_solution(
     error = bore_error(pair, solved.cycles)
     progress.stage(CERTIFICATE)
     points = certificate.points(progress.advance)
-    return replace(final, certificate=points, benchmarks=known, bore_error=error)
+    ends, solver = None, solved.case.solver
+    if solver.end_elements is not None:
+        loads = length_loads(solved.cycles, solver.end_angles)
+        progress.stage(ENDS)
+        mean_length = solved.machine.limits[END_MEAN_LENGTH]
+        ends = length_certificate(loads, mean_length, solver.end_elements, progress.advance)
+    return replace(
+        final, certificate=points, length_certificate=ends, benchmarks=known, bore_error=error
+    )
 
 
 def bore_error(pair: ContactPair, cycles: tuple[Cycle, ...]) -> float | None:
