@@ -30,6 +30,7 @@ from camwright.pipeline.follower.guide_reactions import GuideReactions
 
 _ANY_CURVATURE = 1.0  # 1/m: a table has every curvature
 _ROUND_OFF = 1e-9
+_LIGHTEST = 1e-3  # of the greatest force: a thirtieth of its pressure
 
 CORNER_ERROR, BOUNDED_ERROR = 0.05, 0.02
 """Difference of the half-spaces from finite elements: of a mean at a corner, of a bounded peak."""
@@ -177,6 +178,9 @@ def factor_range(
     couple : array (count,)     greatest couple that can hold it, N m
     """
     table = _table(pair.bodies, pair.crown, mean_length)
+    # A vanishing load, of no pressure that counts, has the factor of the lightest one solved.
+    raised = np.maximum(_LIGHTEST * force.max() / force, 1.0)
+    force, couple = raised * force, raised * couple
     by_tilt = table.moment_at_tilt(curvature, force, np.broadcast_to(tilt, force.shape))
     most = (1.0 - _ROUND_OFF) * GREATEST_MOMENT * force * pair.contact_length
     moment = np.minimum(np.minimum(np.abs(by_tilt), couple), most)
@@ -185,7 +189,7 @@ def factor_range(
     tilted = np.where(left.value > right.value, left.value, right.value)
     corner = np.where(left.value > right.value, left.at_corner, right.at_corner)
     at_corner = np.where(level.value > tilted, level.at_corner, corner)
-    return FactorRange(level.centre, level.value, tilted, moment, at_corner)
+    return FactorRange(level.centre, level.value, tilted, moment / raised, at_corner)
 
 
 def worst_of(ranges: Sequence[FactorRange]) -> FactorRange:

@@ -11,9 +11,11 @@ import camwright as cw
 from camwright.geometry.arrays import uniform_turn
 from camwright.geometry.lift import Lift
 from camwright.pipeline.case.case_file import read_case, with_values
+from camwright.pipeline.case.machine import machine
+from camwright.pipeline.contact.finite_length.factor_table import GREATEST_MOMENT
 from camwright.pipeline.contact.finite_length.length_tiers import half_space_factors
 from camwright.pipeline.cycle import length_history
-from camwright.pipeline.cycle.length_history import FactorRange, held_couple, worst_of
+from camwright.pipeline.cycle.length_history import FactorRange, factor_range, held_couple, worst_of
 
 CASES = Path(__file__).parents[2] / "cases"
 
@@ -108,10 +110,23 @@ def test_worse_end_governs():
     np.testing.assert_array_equal(worst.centre, [1.2, 1.2])
 
 
+def test_a_chamfered_end_is_solved_down_to_vanishing_loads_under_the_heaviest_tilt():
+    case = with_values(read_case(CASES / "gx120-redesign.toml"), {"cam.width": "17.5 mm"})
+    pair = machine(case, case.load_cases[0]).finite_pairs[0]
+    force = np.array([1e-6, 1.0, 3e3])
+    couple = force * pair.contact_length
+    curvature = np.full(3, pair.curvature)
+    solved = factor_range(pair, 1e-4, curvature, force, 0.05, couple)
+    assert (solved.moment <= GREATEST_MOMENT * couple).all()
+    assert (solved.tilted > solved.level).all()
+    # The lightest load has the factor of a thousandth of the greatest.
+    least = factor_range(pair, 1e-4, curvature[:1], np.array([3.0]), 0.05, 3.0 * couple[1:2])
+    assert solved.tilted[0] == pytest.approx(least.tilted[0], rel=1e-9)
+
+
 def test_without_an_end_nothing_is_signed():
     made = cycle()
-    machine = made.machine
-    bare = replace(machine, cam=replace(machine.cam, end=None))
+    bare = replace(made.machine, cam=replace(made.machine.cam, end=None))
     history = length_history.length_history(
         bare, made.contact, made.loads.normal_force, made.guides
     )
