@@ -12,6 +12,7 @@
 | `inspect_command`     | `inspect`: measured cam                                 |
 | `design_command`      | `design`: a case with all parts from a torque table     |
 | `redesign_command`    | `redesign`: search of the catalogues                    |
+| `crown_command`       | `crown`: least crown of cam or follower                 |
 | `size_command`        | `size`: keys that a case leaves open                    |
 | `study_command`       | `study`: many designs on a cluster; answers and page    |
 

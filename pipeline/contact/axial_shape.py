@@ -76,7 +76,7 @@ class AxialCrown(Part):
     }
 
     kind: CrownKind
-    radius: Length | None = None
+    radius: Annotated[float, In("mm", above=0, at_most=1e6)] | None = None
     line_load: Annotated[float, In("N/mm", above=0, at_most=1e6)] | None = None
     length: Length | None = None
     file: FileName | None = None

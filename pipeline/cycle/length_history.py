@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
-from typing import NamedTuple
+from typing import NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -218,8 +218,23 @@ def held_couple(machine: Machine, guides: GuideReactions) -> Array:
     return np.asarray(held * machine.guides.spacing)
 
 
+class AxialPressures(Protocol):
+    """Axial pressure of a pair, tabulated or solved; mean_length (m) of the mean at a corner."""
+
+    @property
+    def pair(self) -> FinitePair: ...
+    @property
+    def mean_length(self) -> float: ...
+
+    def axial_pressure(
+        self, curvature: ArrayLike, force: ArrayLike, moment: ArrayLike = 0.0
+    ) -> tuple[Array, Array]:
+        """Edges (m + 1,), m, along y and pressures (count, m) over plane-strain p0, x = 0."""
+        ...
+
+
 def signed_factor(
-    table: FactorTable, curvature: Array, force: Array, moment: Array
+    table: AxialPressures, curvature: Array, force: Array, moment: Array
 ) -> SignedFactor:
     """Signed pressure of contacts over that of plane strain.
 

@@ -18,6 +18,7 @@ The public names, in the order of the calculation:
 | `design_from_torque` | case file with all parts for a torque table        | record           |
 | `screen_designs` | closed-form checks of thousands of designs at once    | columns          |
 | `size`         | sizes that a case leaves open, and their checks         | `Sizing`         |
+| `crown`        | least crown within a ratio of the axial pressure        | `CrownDesign`    |
 | `CamError`     | every error that the user can correct, in one line      |                  |
 
 All values are in SI units: m, N, Pa, rad, s, kg. A name is imported when it is first used.
@@ -40,6 +41,7 @@ if TYPE_CHECKING:
     from camwright.pipeline.results.trial import Trial
     from camwright.pipeline.run import run_case
     from camwright.pipeline.screening.design_screening import screen_designs
+    from camwright.pipeline.sizing.crown_design import crown
     from camwright.pipeline.sizing.sizing import size
     from camwright.pipeline.solver import solve
     from camwright.pipeline.studies.design.design_study import design_from_torque
@@ -51,6 +53,7 @@ _HOMES = {
     "Check": "pipeline.checks.check",
     "Tier": "pipeline.contact.tiers",
     "Trial": "pipeline.results.trial",
+    "crown": "pipeline.sizing.crown_design",
     "design_from_torque": "pipeline.studies.design.design_study",
     "preview_case": "pipeline.preview",
     "read_case": "pipeline.case.case_file",
@@ -69,6 +72,7 @@ __all__ = [
     "Check",
     "Tier",
     "Trial",
+    "crown",
     "design_from_torque",
     "preview_case",
     "read_case",

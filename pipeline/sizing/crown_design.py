@@ -1,0 +1,413 @@
+"""Least crown of cam or follower of a case: loads and tilts of its cycle, costs, sensitivity."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+import tomli_w
+
+from camwright.geometry.arrays import Array, freeze
+from camwright.geometry.display import Displayed, panels_of
+from camwright.geometry.errors import InputError
+from camwright.pipeline.base import units
+from camwright.pipeline.base.progress import SILENT, Progress
+from camwright.pipeline.base.tables import Column, table
+from camwright.pipeline.base.units import shown
+from camwright.pipeline.case.added_tables import ADDED
+from camwright.pipeline.case.case import Case
+from camwright.pipeline.case.case_file import enter
+from camwright.pipeline.case.limits import END_MEAN_LENGTH
+from camwright.pipeline.case.machine import Machine
+from camwright.pipeline.case.toml_text import Tables
+from camwright.pipeline.contact.axial_shape import AxialCrown
+from camwright.pipeline.contact.finite_length.axial_drop import (
+    CircularCrown,
+    Crown,
+    FinitePair,
+    Straight,
+    SummedCrown,
+    TabulatedCrown,
+)
+from camwright.pipeline.cycle.cycle import Cycle
+from camwright.pipeline.cycle.length_history import held_couple
+from camwright.pipeline.follower.flat_face import FlatFace
+from camwright.pipeline.follower.follower_kind import FollowerKind
+from camwright.pipeline.follower.roller import Roller
+from camwright.pipeline.preview import preview_case
+from camwright.pipeline.sizing.least_crown import (
+    KINDS,
+    ContactStates,
+    CrownKind,
+    CrownProblem,
+    Factor,
+    LeastCrown,
+    families,
+    least_crown,
+)
+from camwright.pipeline.sizing.solved_lines import SignedRange, SolvedLines, signed_range
+
+if TYPE_CHECKING:
+    import pandas as pd
+    from matplotlib.axes import Axes
+
+RATIO, TOLERANCE = 1.1, 2e-6
+"""Greatest signed pressure over plane strain; deviation of the drop at the ends, m."""
+DROP_TABLE, CASE_TEXT = "crown_drop.csv", "crown.toml"
+# Factors of the greatest moment; rows of the drop table.
+_TILTS, _ROWS = (0.0, 0.5, 1.0, 1.5, 2.0), 21
+
+
+@dataclass(frozen=True, eq=False)
+class AxialLine:
+    """Pressure over plane strain along the centre line at y (m,), m."""
+
+    y: Array
+    factor: Array
+
+    def __post_init__(self) -> None:
+        freeze(self, y=self.y, factor=self.factor)
+
+    @property
+    def centre(self) -> float:
+        """Factor at y = 0."""
+        return float(np.interp(0.0, self.y, self.factor))
+
+
+@dataclass(frozen=True)
+class LifeCost:
+    """Load cycles of a body to its endurance line over those of plane strain.
+
+    Without and with the crown; exponent: of the pressure, 2 A of the line.
+    """
+
+    body: str
+    material: str
+    exponent: float
+    straight: float
+    crowned: float
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class CrownDesign(Displayed):
+    """Least crown of one body of a case.
+
+    Parameters
+    ----------
+    case : Case
+    on : str               table of the crowned body: cam, roller or follower.face
+    kind : str
+    limit : float          ratio to be kept
+    tolerance : float      of the drop at the ends, m
+    machine : Machine      of the first load case
+    load_cases : tuple     names by the number in the states
+    theta : array (n,)     cam angles of the states, rad
+    least : LeastCrown
+    tilts : tuple          factor of the moments, greatest ratio
+    deviations : tuple     deviation of the drop at the ends, m, greatest ratio
+    """
+
+    case: Case
+    on: str
+    kind: CrownKind
+    limit: float
+    tolerance: float
+    machine: Machine
+    load_cases: tuple[str, ...]
+    theta: Array
+    least: LeastCrown
+    tilts: tuple[tuple[float, float], ...]
+    deviations: tuple[tuple[float, float], ...]
+
+    @property
+    def facts(self) -> Mapping[str, object]:
+        """Case, crown and ratios."""
+        return {
+            "case": self.case.name,
+            "on": self.on,
+            "kind": self.kind,
+            "drop": shown(self.least.drop, "um"),
+            "ratio": self.least.ratio,
+            "straight": float(self.least.straight.max()),
+        }
+
+    @property
+    def governing(self) -> int:
+        """Row of the greatest ratio with the crown."""
+        return int(self.least.ratios.argmax())
+
+    @property
+    def moment(self) -> float:
+        """Greatest moment at the governing row with the crown, N m."""
+        solved = self._solved(self.least.crown, self.governing)
+        return max(float(each.moment[0]) for each in solved)
+
+    def line(self, crown: Crown, row: int, *, tilted: bool) -> AxialLine:
+        """Pressure along the contact with a crown at a row, of the worse end; half-spaces.
+
+        Aligned, or under the greatest moment.
+        """
+        states, lines = self.least.problem.states, []
+        loads = states.curvature[[row]], states.force[[row]]
+        for pair, solved in zip(
+            self.least.problem.pairs(crown), self._solved(crown, row), strict=True
+        ):
+            moment = solved.moment if tilted else 0.0
+            edges, line = SolvedLines(pair, self._mean_length).axial_pressure(*loads, moment)
+            lines.append(AxialLine(0.5 * (edges[1:] + edges[:-1]), line[0]))
+        return max(lines, key=lambda each: float(each.factor.max()))
+
+    @property
+    def _mean_length(self) -> float:
+        return self.machine.limits[END_MEAN_LENGTH]
+
+    def _solved(self, crown: Crown, row: int) -> list[SignedRange]:
+        problem, at = self.least.problem, [row]
+        states = problem.states
+        loads = states.curvature[at], states.force[at], states.couple[at]
+        return [
+            signed_range(SolvedLines(pair, self._mean_length), *loads, problem.tilt)
+            for pair in problem.pairs(crown)
+        ]
+
+    @cached_property
+    def centres(self) -> tuple[float, float]:
+        """Factor at the centre without and with the crown, aligned at the greatest p0."""
+        worst = self.least.problem.states.worst
+        straight, crowned = (
+            self.line(crown, worst, tilted=False).centre for crown in (Straight(), self.least.crown)
+        )
+        return straight, crowned
+
+    @property
+    def lives(self) -> tuple[LifeCost, ...]:
+        """Cost in life of the bodies whose card has a line of endurance."""
+        straight, crowned = float(self.least.straight.max()), self.least.ratio
+        costs = []
+        for body, card in self.machine.bodies.items():
+            slope = card.endurance(sliding=self.machine.follower.slides).slope
+            if slope is not None:
+                power = 2.0 * slope
+                lives = straight**-power, crowned**-power
+                costs.append(LifeCost(body, card.name, power, *lives))
+        return tuple(costs)
+
+    @property
+    def shape(self) -> AxialCrown | None:
+        """The crown as the case states it; None: straight."""
+        crown = self.least.crown
+        if isinstance(crown, Straight):
+            return None
+        if isinstance(crown, CircularCrown):
+            return AxialCrown(kind="circular", radius=crown.radius)
+        if isinstance(crown, TabulatedCrown):
+            return AxialCrown(kind="table", file=DROP_TABLE)
+        return AxialCrown(kind=self.kind, line_load=self.least.load)
+
+    @property
+    def text(self) -> str:
+        """The crown as TOML to be pasted: a table `[[added]]`, or in place of the crown stated."""
+        shape = self.shape
+        if shape is None:
+            return f"# No crown is needed: the straight contact keeps the ratio {self.limit:g}.\n"
+        key = f"{self.on}.crown"
+        entries: dict[str, str] = {"kind": shape.kind}
+        for name, unit in (("radius", "mm"), ("line_load", "N/mm")):
+            if getattr(shape, name) is not None:
+                entries[name] = units.format(getattr(shape, name), unit)
+        if shape.file is not None:
+            entries["file"] = shape.file
+        entries["source"] = f"sized: pressure at most {self.limit:g} times that of plane strain"
+        tables: Tables = {}
+        enter(tables, key, dict(entries))
+        if self._stated is None:
+            head = "# Least crown. Paste the block at the end of the case file.\n"
+            return head + tomli_w.dumps({ADDED: [tables]})
+        return f"# Least crown. It replaces [{key}] of the case file.\n" + tomli_w.dumps(tables)
+
+    @property
+    def _stated(self) -> AxialCrown | None:
+        part = self.machine.cam if self.on == "cam" else self.machine.follower
+        return part.crown
+
+    @property
+    def heaviest(self) -> Crown | None:
+        """Heaviest crown of the family within the ratio; None beyond those tried."""
+        load = self.least.heaviest
+        return self.least.family.crown(load) if np.isfinite(load) else None
+
+    def columns(self) -> dict[Column, Array]:
+        """Drop table: y from the middle, drop, and that of the heaviest crown within the ratio."""
+        crown = self.least.crown
+        family = self.least.family
+        y = np.append(0.5 * family.length * np.linspace(0.0, 1.0, _ROWS)[:-1], family.gauge)
+        if isinstance(crown, TabulatedCrown):
+            y = crown.y
+        columns = {Column("y", "mm"): y, Column("drop", "um"): crown.drop(y)}
+        if self.heaviest is not None:
+            columns[Column("drop_max", "um")] = self.heaviest.drop(y)
+        return columns
+
+    @property
+    def drop_table(self) -> str:
+        """Drop table of the workshop as CSV."""
+        columns = table(self.columns()).numbers
+        rows = zip(*columns.values(), strict=True)
+        lines = [",".join(f"{value:.6f}" for value in row) for row in rows]
+        return "\n".join([",".join(columns), *lines]) + "\n"
+
+    def to_pandas(self) -> pd.DataFrame:
+        """The drop table; see `Columned.to_pandas`."""
+        return table(self.columns()).to_pandas()
+
+    def plot(self) -> tuple[Axes, ...]:
+        """Axial pressure at the governing angle, and drop over y."""
+        pressure, drop = panels_of(2)
+        row = self.governing
+        for label, crown in (("straight", Straight()), ("crowned", self.least.crown)):
+            line = self.line(crown, row, tilted=True)
+            pressure.plot(1e3 * line.y, line.factor, label=label)
+        pressure.axhline(self.limit, color="tab:red", linewidth=0.9)
+        pressure.set_ylabel("pressure over plane strain")
+        pressure.legend(fontsize="small")
+        rows = table(self.columns())
+        drop.plot(rows["y_mm"], rows["drop_um"])
+        drop.set_ylabel("drop, um")
+        drop.set_xlabel("y, mm")
+        return pressure, drop
+
+
+def crown(
+    case: Case,
+    ratio: float = RATIO,
+    *,
+    on: str | None = None,
+    kind: str = "johns_gohar",
+    tolerance: float = TOLERANCE,
+    progress: Progress = SILENT,
+) -> CrownDesign:
+    """Least crown of a case that keeps the axial pressure within a ratio.
+
+    The ratio is the signed axial pressure over the greatest of plane strain in the same load case,
+    at every angle, load case and both ends of the range of tilt of its preview. A crown that the
+    body has is replaced, that of the other body stays.
+
+    Parameters
+    ----------
+    ratio : float       greatest ratio, > 0
+    on : str            body that is crowned: cam, roller or face; None: the follower
+    kind : str          johns_gohar, lundberg, circular or table, a relief of the ends
+    tolerance : float   of the drop at the ends, m, >= 0, for the sensitivity
+
+    Raises
+    ------
+    InputError
+        If the case lacks an end, or no crown keeps the ratio, naming the least that one reaches.
+    """
+    chosen = _kind(kind)
+    _require(case, ratio, on, tolerance)
+    progress.stage("preview")
+    cycles = preview_case(case, corners=False, progress=progress).cycles
+    machine = cycles[0].machine
+    straight = _crowned(machine, on, Straight())
+    progress.stage("crown")
+    states, theta = _states(cycles)
+    length, pair = machine.contact_width, straight[0]
+    reach = 0.5 * max(body.length for each in straight for body in each.bodies)
+    problem = CrownProblem(
+        pairs=lambda shape: _crowned(machine, on, shape),
+        states=states,
+        families=families(chosen, length, pair.curvature, pair.contact_modulus, reach),
+        factor=_factor_of(machine.limits[END_MEAN_LENGTH]),
+        tilt=machine.guides.tilt_max,
+    )
+    least = least_crown(problem, ratio)
+    return CrownDesign(
+        case=case,
+        on="cam" if on == "cam" else machine.follower.table,
+        kind=chosen,
+        limit=ratio,
+        tolerance=tolerance,
+        machine=machine,
+        load_cases=tuple(each.load_case for each in cycles),
+        theta=theta,
+        least=least,
+        tilts=tuple((factor, least.at_tilt(factor)) for factor in _TILTS),
+        deviations=tuple((step, least.at_deviation(step)) for step in (-tolerance, 0.0, tolerance)),
+    )
+
+
+def _kind(text: str) -> CrownKind:
+    for kind in KINDS:
+        if kind == text:
+            return kind
+    raise InputError("kind", text, f"one of: {', '.join(KINDS)}")
+
+
+def _require(case: Case, ratio: float, on: str | None, tolerance: float) -> None:
+    if not 0 < ratio < np.inf:
+        raise InputError("ratio", ratio, "> 0")
+    if on not in (None, "cam", case.facing.word):
+        raise InputError("on", on, f"cam or {case.facing.word}")
+    if not 0 <= tolerance < np.inf:
+        raise InputError("tolerance", shown(tolerance, "um"), ">= 0 um")
+    for name, part in (("cam", case.cam), (case.facing.table, case.facing)):
+        if part.end is None:
+            limit = "specified: the crown joins the ends of both bodies"
+            raise InputError(f"{name}.end", "missing", limit)
+
+
+def _crowned(machine: Machine, on: str | None, shape: Crown) -> tuple[FinitePair, ...]:
+    """Contacts of the bodies with a crown in place of that of one of them."""
+    offset = machine.follower.axial_offset or 0.0
+    middle = np.copysign(machine.stem_offset, offset)
+    if on == "cam":
+        bare = replace(machine, cam=replace(machine.cam, crown=None))
+        middle -= offset
+    else:
+        bare = replace(machine, follower=_uncrowned(machine.follower))
+    pairs = bare.finite_pairs
+    sides = (-1, 1) if len(pairs) > 1 else (1,)
+    if isinstance(shape, Straight):
+        return pairs
+    return tuple(
+        replace(pair, crown=SummedCrown(((pair.crown, 0.0), (shape, float(middle))), side))
+        for pair, side in zip(pairs, sides, strict=True)
+    )
+
+
+def _uncrowned(follower: FollowerKind) -> FollowerKind:
+    if isinstance(follower, Roller | FlatFace):
+        return replace(follower, crown=None)
+    return follower
+
+
+def _states(cycles: Sequence[Cycle]) -> tuple[ContactStates, Array]:
+    """States of the greatest pressures of all cycles, and their cam angles, rad."""
+    columns: list[Array] = []
+    for number, cycle in enumerate(cycles):
+        contact, force = cycle.contact, cycle.loads.normal_force
+        rows = np.flatnonzero((force > 0) & (contact.p0 > 0))
+        couple = held_couple(cycle.machine, cycle.guides) + force * cycle.machine.stem_offset
+        values = (1.0 / contact.relative_radius, force, couple, contact.p0, cycle.theta)
+        number_of = np.full(rows.size, number)
+        columns.append(np.stack([*(each[rows] for each in values), number_of]))
+    curvature, force, couple, p0, theta, load_case = np.concatenate(columns, axis=1)
+    states = ContactStates(curvature, force, couple, p0, load_case.astype(np.intp))
+    kept = states.governing
+    return states.at(kept), theta[kept]
+
+
+def _factor_of(mean_length: float) -> Factor:
+    """Signed factor by contacts solved one by one; mean_length, m, at a corner."""
+
+    def factor(
+        pair: FinitePair, curvature: Array, force: Array, couple: Array, tilt: float
+    ) -> Array:
+        lines = SolvedLines(pair, mean_length)
+        return signed_range(lines, curvature, force, couple, tilt).factor
+
+    return factor

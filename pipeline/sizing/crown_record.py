@@ -1,0 +1,167 @@
+"""Record of the least crown of a case, and its text."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from camwright.pipeline.base.files import Json
+from camwright.pipeline.base.tables import table
+from camwright.pipeline.base.units import in_unit, shown
+from camwright.pipeline.contact.finite_length.axial_drop import Crown, Straight
+from camwright.pipeline.sizing.crown_design import CrownDesign
+
+_WORDS = {
+    "johns_gohar": "Johns-Gohar",
+    "lundberg": "Lundberg",
+    "circular": "circular",
+    "table": "relief of the ends",
+}
+
+
+def crown_record(design: CrownDesign) -> dict[str, Json]:
+    """Record of a least crown; ratios over the greatest plane-strain pressure of the load case.
+
+    ``crown``: as in the case; ``heaviest``: of the same kind within the ratio, None beyond those
+    tried; ``governing``: state of the greatest ratio; ``centre``: pressure over plane strain at
+    the greatest load, aligned; ``life``: load cycles over those of plane strain; ``lines``: axial
+    pressure at the governing state; ``drop_table``: rows of the workshop.
+    """
+    least, centre, rows = design.least, design.centres, table(design.columns())
+    return {
+        "case": design.case.name,
+        "on": design.on,
+        "kind": design.kind,
+        "ratio_limit": design.limit,
+        "ratio": least.ratio,
+        "ratio_straight": float(least.straight.max()),
+        "crown": _shape_record(design),
+        "heaviest": _heaviest_record(design),
+        "governing": _governing_record(design),
+        "centre": {"straight": centre[0], "crowned": centre[1]},
+        "life": [
+            {
+                "body": each.body,
+                "material": each.material,
+                "pressure_exponent": each.exponent,
+                "straight": each.straight,
+                "crowned": each.crowned,
+            }
+            for each in design.lives
+        ],
+        "tilt": [{"moment_factor": factor, "ratio": value} for factor, value in design.tilts],
+        "tolerance": [
+            {"deviation_um": in_unit(deviation, "um"), "ratio": _finite(value)}
+            for deviation, value in design.deviations
+        ],
+        "lines": _lines_record(design),
+        "drop_table": {name: [float(v) for v in values] for name, values in rows.columns.items()},
+        "toml": design.text,
+    }
+
+
+def crown_lines(design: CrownDesign) -> Iterator[str]:
+    """Crown, ratios, costs and sensitivity, a line each."""
+    least, governing = design.least, _governing_record(design)
+    shape, (before, after) = design.shape, design.centres
+    if shape is None:
+        yield f"{design.on}: no crown is needed"
+    else:
+        words = [f"{design.on}: {_WORDS[design.kind]}"]
+        if shape.line_load is not None:
+            words.append(f"design load {shown(shape.line_load, 'N/mm')}")
+        if shape.radius is not None:
+            words.append(f"radius {shown(shape.radius, 'mm')}")
+        if design.kind == "table":
+            straight = least.family.straight * least.family.length
+            words.append(f"straight over {shown(straight, 'mm')}")
+        yield f"{', '.join(words)}, drop {shown(least.drop, 'um', 3)} at the ends"
+    yield (
+        f"greatest pressure {least.ratio:.4f} of plane strain, at most {design.limit:g};"
+        f" {float(least.straight.max()):.4f} without a crown"
+    )
+    yield (
+        f"governs: {governing['load_case']}, cam angle {governing['cam_angle_deg']:.4g} deg,"
+        f" {governing['force_N']:.4g} N, moment {governing['moment_Nmm']:.4g} N mm"
+    )
+    yield f"centre at the greatest load: {after:.4f} of plane strain, {before:.4f} without a crown"
+    for each in design.lives:
+        yield (
+            f"life of the {each.body}, {each.material}: {each.crowned:.3g} of that of plane strain,"
+            f" {each.straight:.3g} without a crown"
+        )
+    if not design.lives:
+        yield "life: no material has a line of endurance"
+    if design.heaviest is not None:
+        most = least.family.drop(least.heaviest)
+        yield f"heaviest crown of the same ratio: drop {shown(most, 'um', 3)} at the ends"
+    tilts = ", ".join(f"{value:.4f} at {factor:g}" for factor, value in design.tilts)
+    yield f"greatest pressure by tilt, over the greatest moment of each angle: {tilts}"
+    made = ", ".join(
+        f"{value:.4f} at {in_unit(deviation, 'um'):+.3g} um"
+        for deviation, value in design.deviations
+    )
+    yield f"greatest pressure by deviation of the drop at the ends: {made}"
+
+
+def _shape_record(design: CrownDesign) -> Json:
+    """The crown in the units of its keys; None: straight."""
+    least, shape = design.least, design.shape
+    if shape is None:
+        return None
+    record: dict[str, Json] = {"kind": shape.kind, "drop_at_ends_um": in_unit(least.drop, "um")}
+    if shape.line_load is not None:
+        record["line_load_N_per_mm"] = in_unit(shape.line_load, "N/mm")
+    if shape.radius is not None:
+        record["radius_mm"] = in_unit(shape.radius, "mm")
+    if shape.kind == "table":
+        straight = least.family.straight * least.family.length
+        record["straight_length_mm"] = round(in_unit(straight, "mm"), 9)
+    return record | {"length_mm": round(in_unit(least.family.length, "mm"), 9)}
+
+
+def _heaviest_record(design: CrownDesign) -> Json:
+    if design.heaviest is None:
+        return None
+    load = design.least.heaviest
+    return {
+        "line_load_N_per_mm": in_unit(load, "N/mm"),
+        "drop_at_ends_um": in_unit(design.least.family.drop(load), "um"),
+    }
+
+
+def _governing_record(design: CrownDesign) -> dict[str, Json]:
+    states, row = design.least.problem.states, design.governing
+    return {
+        "load_case": design.load_cases[int(states.load_case[row])],
+        "cam_angle_deg": in_unit(float(design.theta[row]), "deg"),
+        "force_N": float(states.force[row]),
+        "moment_Nmm": in_unit(design.moment, "N mm"),
+        "p0_MPa": in_unit(float(states.p0[row]), "MPa"),
+    }
+
+
+def _lines_record(design: CrownDesign) -> list[Json]:
+    """Axial pressure over plane strain at the governing state, aligned and under its moment."""
+    row, crowned = design.governing, design.least.crown
+    shapes: tuple[tuple[str, Crown], ...] = (("straight", Straight()), ("crowned", crowned))
+    drawn = [
+        (name, tilted, design.line(shape, row, tilted=tilted))
+        for name, shape in shapes
+        for tilted in (False, True)
+    ]
+    return [
+        {
+            "crown": name,
+            "tilted": tilted,
+            "y_mm": [in_unit(float(y), "mm") for y in line.y],
+            "pressure_over_plane_strain": [float(value) for value in line.factor],
+        }
+        for name, tilted, line in drawn
+    ]
+
+
+def _finite(value: float) -> float | None:
+    """A ratio, None where the crown leaves hardly any contact."""
+    return value if np.isfinite(value) else None

@@ -1,0 +1,418 @@
+"""Least crown that keeps the axial pressure of a contact within a ratio at all loads and tilts.
+
+A crown relieves the ends and loads the middle: with a heavier crown the greatest pressure falls as
+long as the ends govern, and rises as soon as the middle does. The crowns within a ratio thus lie
+between two design loads, about that of the lowest pressure; the least crown is the lighter one.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Literal, Protocol, get_args
+
+import numpy as np
+from numpy.typing import NDArray
+
+from camwright.geometry.arrays import Array, freeze
+from camwright.geometry.errors import ContactError, InputError
+from camwright.pipeline.base.units import shown
+from camwright.pipeline.contact import hertz
+from camwright.pipeline.contact.finite_length.axial_drop import (
+    CircularCrown,
+    Crown,
+    FinitePair,
+    Straight,
+    TabulatedCrown,
+    johns_gohar,
+    lundberg,
+)
+
+IntArray = NDArray[np.intp]
+CrownKind = Literal["johns_gohar", "lundberg", "circular", "table"]
+KINDS: tuple[CrownKind, ...] = get_args(CrownKind)
+
+# Design loads tried first, over that of the greatest pressure: powers of two.
+_LIGHTEST, _HEAVIEST = -3, 3
+# Of the design load, relative; of a ratio, between a state and one a cam angle beside it.
+_PRECISION, _NEIGHBOUR = 5e-3, 5e-4
+# Most states of a load case.
+_STATES = 16
+# States of the greatest ratios at which the sensitivity is computed.
+_TOP = 8
+_GOLDEN = 0.5 * (np.sqrt(5.0) - 1.0)
+# Straight middle parts over the length of the crown that are tried for a relief of the ends, and
+# rows of its table on the contact.
+_STRAIGHT_PARTS, _RELIEF_ROWS = (0.4, 0.6, 0.8), 41
+# Share of half the length where a drop without bound is stated.
+_BOUNDED = 0.995
+# Digits of a radius, and of a drop, m: as they are written.
+_RADIUS_DIGITS, _DROP_DECIMALS = 4, 9
+
+
+@dataclass(frozen=True, eq=False)
+class ContactStates:
+    """Loads of `count` contacts of the same bodies, all (count,): the rows of a cycle.
+
+    curvature 1/m; force N, > 0; couple N m, the greatest that can hold the bodies tilted; p0 Pa, of
+    plane strain at the mean line load; load_case, number of the load case.
+    """
+
+    curvature: Array
+    force: Array
+    couple: Array
+    p0: Array
+    load_case: IntArray
+
+    def __post_init__(self) -> None:
+        names = ("curvature", "force", "couple", "p0")
+        freeze(self, **{name: getattr(self, name) for name in names})
+        if not self.force.size:
+            raise InputError("contact", "without load", "loaded at one angle at least")
+
+    @property
+    def share(self) -> Array:
+        """p0 (count,) over the greatest of the same load case."""
+        greatest = np.zeros(int(self.load_case.max()) + 1)
+        np.maximum.at(greatest, self.load_case, self.p0)
+        return np.asarray(self.p0 / greatest[self.load_case])
+
+    @property
+    def worst(self) -> int:
+        """Row of the greatest p0."""
+        return int(np.argmax(self.p0))
+
+    @property
+    def governing(self) -> IntArray:
+        """Rows than which no other of the same load case has more force, curvature and couple.
+
+        The pressure grows with each of the three: the greatest of a load case is at one of them.
+        Of more than 16 rows of a load case those evenly between them, and the greatest p0, force
+        and couple.
+        """
+        chosen = []
+        for case in np.unique(self.load_case):
+            rows = np.flatnonzero(self.load_case == case)
+            loads = np.stack([self.force, self.curvature, self.couple])[:, rows]
+            more = loads[:, :, None] >= loads[:, None, :]
+            same = (loads[:, :, None] == loads[:, None, :]).all(axis=0)
+            first = rows[:, None] < rows[None, :]
+            beaten = more.all(axis=0) & (~same | first)
+            left = rows[~beaten.any(axis=0)]
+            evenly = np.linspace(0, left.size - 1, min(left.size, _STATES)).round().astype(np.intp)
+            greatest = [left[np.argmax(each[left])] for each in (self.p0, self.force, self.couple)]
+            chosen.append(np.union1d(left[evenly], greatest))
+        return np.concatenate(chosen)
+
+    def at(self, rows: IntArray) -> ContactStates:
+        """Some of the rows."""
+        return ContactStates(
+            self.curvature[rows], self.force[rows], self.couple[rows],
+            self.p0[rows], self.load_case[rows],
+        )  # fmt: skip
+
+
+@dataclass(frozen=True)
+class CrownFamily:
+    """Crowns of one kind over a length (m), by their design load w (N/m); 0: straight.
+
+    A `table` is a relief of the ends: straight on a share of the length, from there a parabola up
+    to `reach` (m) from the middle. This and a circular crown of w end with the drop of the
+    Johns-Gohar crown of w. Radius and table are rounded as they are written.
+
+    curvature : float   1/m, of the contact whose half-width at w bounds the drop of Johns-Gohar
+    modulus : float     E*, Pa
+    """
+
+    kind: CrownKind
+    length: float
+    curvature: float
+    modulus: float
+    reach: float
+    straight: float = 0.0
+
+    @property
+    def gauge(self) -> float:
+        """y, m, where the drop at the end is stated: beside the end where it is unbounded there."""
+        return 0.5 * self.length * (_BOUNDED if self.kind == "lundberg" else 1.0)
+
+    def drop(self, load: float) -> float:
+        """Drop at the end, m, of the crown of a design load, N/m."""
+        return float(self.crown(load).drop(np.array([self.gauge]))[0])
+
+    def crown(self, load: float) -> Crown:
+        """Crown of a design load, N/m."""
+        if load == 0:
+            return Straight()
+        if self.kind == "lundberg":
+            return lundberg(load, self.length, self.modulus)
+        half_width, _ = hertz.line_contact(load, 1.0 / self.curvature, self.modulus)
+        bounded = johns_gohar(load, self.length, self.modulus, float(half_width))
+        if self.kind == "johns_gohar":
+            return bounded
+        end = 0.5 * self.length
+        drop = float(bounded.drop(np.array([end]))[0])
+        if self.kind == "circular":
+            radius = (end**2 + drop**2) / (2.0 * drop)
+            return CircularCrown(_rounded(radius, np.floor, _RADIUS_DIGITS))
+        y = np.linspace(0.0, end, _RELIEF_ROWS)
+        if self.reach > end:
+            y = np.append(y, self.reach)
+        beyond = np.maximum(y / end - self.straight, 0.0) / (1.0 - self.straight)
+        return TabulatedCrown(y, np.round(drop * beyond**2, _DROP_DECIMALS))
+
+
+def families(
+    kind: CrownKind, length: float, curvature: float, modulus: float, reach: float
+) -> tuple[CrownFamily, ...]:
+    """Families of a kind: one, or of a relief one for each straight part that is tried."""
+    parts = _STRAIGHT_PARTS if kind == "table" else (0.0,)
+    return tuple(CrownFamily(kind, length, curvature, modulus, reach, each) for each in parts)
+
+
+@dataclass(frozen=True)
+class DeviatedCrown:
+    """A crown made deeper by a deviation (m) at its ends, by the square of y inwards."""
+
+    crown: Crown
+    deviation: float
+    length: float
+
+    def drop(self, y: Array) -> Array:
+        """Drop (...), m, at axial coordinates (...), m."""
+        return np.asarray(self.crown.drop(y) + self.deviation * (2.0 * y / self.length) ** 2)
+
+
+class Factor(Protocol):
+    """Signed axial pressure of a pair over plane strain."""
+
+    def __call__(
+        self, pair: FinitePair, curvature: Array, force: Array, couple: Array, tilt: float
+    ) -> Array:
+        """Factors (count,), the worse of aligned and tilted.
+
+        At curvatures, 1/m, forces, N, and couples, N m, all (count,), up to a tilt, rad.
+        """
+        ...
+
+
+@dataclass(frozen=True, eq=False)
+class CrownProblem:
+    """A contact whose crown is sought.
+
+    Parameters
+    ----------
+    pairs : callable           both bodies with a crown: one pair, or one for each end
+    states : ContactStates     loads of each pair
+    tilt : float               greatest, rad, that the couples may hold
+    families : tuple           crowns to choose from
+    factor : Factor            signed axial pressure over plane strain
+    """
+
+    pairs: Callable[[Crown], tuple[FinitePair, ...]]
+    states: ContactStates
+    tilt: float
+    families: tuple[CrownFamily, ...]
+    factor: Factor
+
+    def factors(self, crown: Crown, rows: IntArray | None = None, tilt: float = 1.0) -> Array:
+        """Signed axial pressure over plane strain (count,), of the worse end.
+
+        Infinite where the crown leaves hardly any contact.
+
+        Parameters
+        ----------
+        rows : array (count,)   of the states; None: all
+        tilt : float            factor of the greatest tilt and of all couples
+        """
+        states = self.states
+        rows = np.arange(states.force.size) if rows is None else rows
+        loads = states.curvature[rows], states.force[rows], tilt * states.couple[rows]
+        try:
+            each = [self.factor(pair, *loads, tilt * self.tilt) for pair in self.pairs(crown)]
+        except ContactError:
+            return np.full(rows.size, np.inf)
+        return np.asarray(np.max(each, axis=0))
+
+    def ratios(self, crown: Crown, rows: IntArray | None = None, tilt: float = 1.0) -> Array:
+        """Signed axial pressure over the greatest of plane strain in the load case, (count,)."""
+        share = self.states.share if rows is None else self.states.share[rows]
+        return np.asarray(self.factors(crown, rows, tilt) * share)
+
+
+@dataclass(frozen=True, eq=False)
+class LeastCrown:
+    """Least crown of a problem within a ratio.
+
+    load : float       design load, N/m; 0: the straight contact keeps the ratio
+    heaviest : float   greatest design load that keeps it, N/m; infinite beyond those tried
+    ratios : array     (count,) of all states with the crown
+    straight : array   (count,) of all states without it
+    rows : array       states of the search, and those of the greatest ratios
+    """
+
+    problem: CrownProblem
+    family: CrownFamily
+    load: float
+    heaviest: float
+    ratios: Array
+    straight: Array
+    rows: IntArray
+
+    def __post_init__(self) -> None:
+        freeze(self, ratios=self.ratios, straight=self.straight)
+
+    @property
+    def crown(self) -> Crown:
+        """The crown."""
+        return self.family.crown(self.load)
+
+    @property
+    def ratio(self) -> float:
+        """Greatest ratio over all states."""
+        return float(self.ratios.max())
+
+    @property
+    def drop(self) -> float:
+        """Drop at the end, m."""
+        return self.family.drop(self.load)
+
+    def at_tilt(self, factor: float) -> float:
+        """Greatest ratio of `rows` with the greatest tilt and all couples times a factor."""
+        return float(self.problem.ratios(self.crown, self.rows, factor).max())
+
+    def at_deviation(self, deviation: float) -> float:
+        """Greatest ratio of `rows` of a crown made deeper at its ends by a deviation, m."""
+        made = DeviatedCrown(self.crown, deviation, self.family.length)
+        return float(self.problem.ratios(made, self.rows).max())
+
+
+def least_crown(problem: CrownProblem, ratio: float) -> LeastCrown:
+    """Least crown that keeps the ratio at every state, of all families that of the least drop.
+
+    Raises
+    ------
+    InputError
+        If no crown keeps it, naming the least ratio that one reaches.
+    """
+    if not 0 < ratio < np.inf:
+        raise InputError("ratio", ratio, "> 0")
+    straight = problem.ratios(Straight())
+    tried = [_of_family(problem, family, ratio, straight) for family in problem.families]
+    within = [each for each in tried if each.ratio <= ratio]
+    if within:
+        return min(within, key=lambda each: each.drop)
+    lowest = min(tried, key=lambda each: each.ratio)
+    reached = np.ceil(lowest.ratio * 1e4) / 1e4
+    by = f"a drop of {shown(lowest.drop, 'um', 3)} at its ends" if lowest.load else "no crown"
+    kind = lowest.family.kind
+    raise InputError("ratio", ratio, f">= {reached:.4f}, the least of kind {kind}: by {by}")
+
+
+def _of_family(
+    problem: CrownProblem, family: CrownFamily, ratio: float, straight: Array
+) -> LeastCrown:
+    """Least crown of a family within a ratio, or that of the lowest ratio.
+
+    The search holds the ratio at few states; each that violates it with the crown joins them.
+    """
+    rows, aim = _governing(problem.states, straight), ratio
+    while True:
+        search = _Search(problem, family, rows)
+        load, heaviest = search.within(aim)
+        ratios = problem.ratios(family.crown(load))
+        worst = int(ratios.argmax())
+        if ratios[worst] <= max(ratio, (1.0 + _NEIGHBOUR) * search.at(load)) or worst in rows:
+            top = [np.argsort(-each)[:_TOP] for each in (ratios, straight)]
+            kept = np.unique(np.concatenate([rows, *top]))
+            return LeastCrown(problem, family, load, heaviest, ratios, straight, kept)
+        rows = np.union1d(rows, _greatest_of_each(problem.states, ratios))
+        aim = (1.0 - _NEIGHBOUR) * ratio
+
+
+def _governing(states: ContactStates, straight: Array) -> IntArray:
+    """First rows of the search: of each load case the greatest p0, couple and straight ratio."""
+    measures = states.p0, states.couple, straight
+    return np.unique(np.concatenate([_greatest_of_each(states, each) for each in measures]))
+
+
+def _greatest_of_each(states: ContactStates, measure: Array) -> IntArray:
+    """Row of the greatest measure of each load case."""
+    cases = [np.flatnonzero(states.load_case == each) for each in np.unique(states.load_case)]
+    return np.array([own[np.argmax(measure[own])] for own in cases], dtype=np.intp)
+
+
+class _Search:
+    """Greatest ratio of some rows over the design load (N/m), each computed once."""
+
+    def __init__(self, problem: CrownProblem, family: CrownFamily, rows: IntArray) -> None:
+        self._problem, self._family, self._rows = problem, family, rows
+        scale = float(problem.states.force[problem.states.worst]) / family.length
+        steps = range(_LIGHTEST, _HEAVIEST + 1)
+        self._ladder = [0.0, *(_rounded(scale * 2.0**k, np.ceil) for k in steps)]
+        self._values: dict[float, float] = {}
+
+    def at(self, load: float) -> float:
+        """Greatest ratio."""
+        if load not in self._values:
+            crown = self._family.crown(load)
+            self._values[load] = float(self._problem.ratios(crown, self._rows).max())
+        return self._values[load]
+
+    def within(self, ratio: float) -> tuple[float, float]:
+        """Least and greatest design load within a ratio, about that of the lowest ratio.
+
+        The greatest is infinite beyond the ladder; both are that of the lowest ratio where it is
+        beyond the ratio.
+        """
+        lowest = min(self._ladder, key=self.at)
+        if not self.at(lowest) <= ratio:
+            lowest = self._lowest()
+        if not self.at(lowest) <= ratio:
+            return lowest, lowest
+        least = heaviest = lowest
+        for load in reversed(self._ladder):
+            if load < lowest:
+                if not self.at(load) <= ratio:
+                    least = self._crossing(load, least, ratio)
+                    break
+                least = load
+        for load in self._ladder:
+            if load > lowest:
+                if not self.at(load) <= ratio:
+                    return least, self._crossing(load, heaviest, ratio)
+                heaviest = load
+        return least, np.inf
+
+    def _crossing(self, outside: float, within: float, ratio: float) -> float:
+        """Design load of the ratio, on the side of `within`; of three digits if it is the least."""
+        while abs(outside - within) > _PRECISION * max(outside, within):
+            middle = 0.5 * (outside + within)
+            if self.at(middle) <= ratio:
+                within = middle
+            else:
+                outside = middle
+        if within < outside:
+            return within
+        rounded = _rounded(within, np.ceil)
+        return rounded if self.at(rounded) <= ratio else within
+
+    def _lowest(self) -> float:
+        """Design load of the lowest ratio, by golden sections about the least of the ladder."""
+        best, last = min(self._ladder, key=self.at), len(self._ladder) - 1
+        place = self._ladder.index(best)
+        left, right = self._ladder[max(place - 1, 0)], self._ladder[min(place + 1, last)]
+        while right - left > _PRECISION * right:
+            inner, outer = right - _GOLDEN * (right - left), left + _GOLDEN * (right - left)
+            if self.at(inner) <= self.at(outer):
+                right = outer
+            else:
+                left = inner
+        return min(self._values, key=lambda load: (self._values[load], load))
+
+
+def _rounded(value: float, direction: Callable[[float], float], digits: int = 3) -> float:
+    """A positive value rounded to some digits, up or down."""
+    power = int(np.floor(np.log10(value))) + 1 - digits
+    scaled = float(direction(value / 10.0**power))
+    return scaled * 10.0**power if power >= 0 else scaled / 10.0**-power

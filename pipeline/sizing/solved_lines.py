@@ -1,0 +1,129 @@
+"""Axial pressure of contacts by half-spaces, each solved by itself: few contacts of many crowns.
+
+A table of factors is for many contacts of one crown.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from functools import lru_cache
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from camwright.geometry.arrays import Array
+from camwright.pipeline.contact import hertz
+from camwright.pipeline.contact.finite_length import length_contact
+from camwright.pipeline.contact.finite_length.axial_drop import FiniteBody, FinitePair
+from camwright.pipeline.contact.finite_length.half_space import half_space_compliance
+from camwright.pipeline.contact.finite_length.length_contact import LengthContact
+from camwright.pipeline.contact.finite_length.length_tiers import cycle_sizes
+from camwright.pipeline.contact.finite_length.pressure_cells import PressureCells, pressure_cells
+from camwright.pipeline.cycle.length_history import signed_factor
+
+# Ratio of the half-widths, m, of neighbouring cells: contacts between them have the wider ones.
+_LADDER = 1.1
+
+
+@dataclass(frozen=True, eq=False)
+class SolvedLines:
+    """Axial pressure of a pair; mean_length (m) of the means at its ends."""
+
+    pair: FinitePair
+    mean_length: float
+
+    @property
+    def is_symmetric(self) -> bool:
+        """Whether both halves of the gap are alike."""
+        y = 0.5 * self.pair.contact_length * np.linspace(0.0, 1.0, 11)
+        drop, other = self.pair.crown.drop(y), self.pair.crown.drop(-y)
+        return bool(np.allclose(drop, other, rtol=1e-9, atol=0.0))
+
+    def axial_pressure(
+        self, curvature: ArrayLike, force: ArrayLike, moment: ArrayLike = 0.0
+    ) -> tuple[Array, Array]:
+        """Edges (m + 1,), m, along y and pressures (count, m) over plane-strain p0, x = 0.
+
+        Parameters
+        ----------
+        curvature : array (count,)  1/m, > 0
+        force : array (count,)      N, > 0
+        moment : array (count,)     N m, about y = 0
+        """
+        edges, rows, lines = np.empty(0), [], []
+        for each, contact, p0 in self._solved(curvature, force, moment=moment):
+            edges = max(edges, contact.cells.y, key=len)
+            rows.append(each)
+            lines.append(contact.centre_line / p0[:, None])
+        line = np.zeros((sum(map(len, rows)), edges.size - 1))
+        for each, values in zip(rows, lines, strict=True):
+            beyond = (edges.size - 1 - values.shape[1]) // 2
+            line[each] = np.pad(values, ((0, 0), (beyond, beyond)))
+        return edges, line
+
+    def moment_at_tilt(self, curvature: ArrayLike, force: ArrayLike, tilt: ArrayLike) -> Array:
+        """Moment (count,), N m, of contacts tilted by `tilt` (count,), rad."""
+        moment = np.empty(np.broadcast(curvature, force, tilt).shape)
+        for each, contact, _ in self._solved(curvature, force, tilt=tilt):
+            moment[each] = contact.moment
+        return moment
+
+    def _solved(
+        self, curvature: ArrayLike, force: ArrayLike, **turned: ArrayLike
+    ) -> Iterator[tuple[NDArray[np.intp], LengthContact, Array]]:
+        """Rows of like half-width, their contacts, and p0, Pa, of plane strain."""
+        (name, value), pair = next(iter(turned.items())), self.pair
+        kappa, load, turn = np.broadcast_arrays(
+            *(np.atleast_1d(np.asarray(v, dtype=float)) for v in (curvature, force, value))
+        )
+        half_width, p0 = hertz.line_contact(
+            load / pair.contact_length, 1.0 / kappa, pair.contact_modulus
+        )
+        step = np.ceil(np.log(half_width) / np.log(_LADDER)).astype(int)
+        for each in np.unique(step):
+            rows = np.flatnonzero(step == each)
+            widest = rows[np.argmax(kappa[rows] * half_width[rows] ** 2)]
+            here = replace(pair, curvature=float(kappa[widest]))
+            cells = pressure_cells(here, _LADDER ** int(each), cycle_sizes(pair))
+            gaps = [
+                cells.integrated_gap(replace(pair, curvature=float(value))) for value in kappa[rows]
+            ]
+            compliance = _compliance(cells.x.tobytes(), cells.y.tobytes(), pair.bodies)
+            contact = length_contact.solve(
+                cells, compliance, gaps, load[rows], **{name: turn[rows]}
+            )
+            yield rows, contact, p0[rows]
+
+
+class SignedRange(NamedTuple):
+    """Signed pressure over plane strain (count,), of the worse of aligned and tilted; moment, N m.
+
+    The moment is the greatest: that of the tilt, up to the couple that can hold it.
+    """
+
+    factor: Array
+    moment: Array
+
+
+def signed_range(
+    lines: SolvedLines, curvature: Array, force: Array, couple: Array, tilt: float
+) -> SignedRange:
+    """Signed pressure of contacts that align themselves up to a couple.
+
+    Parameters
+    ----------
+    couple : array (count,)   greatest that can hold the bodies tilted, N m
+    tilt : float              greatest, rad
+    """
+    moment = np.minimum(np.abs(lines.moment_at_tilt(curvature, force, tilt)), couple)
+    sides = (0.0, 1.0) if lines.is_symmetric else (-1.0, 0.0, 1.0)
+    signed = [signed_factor(lines, curvature, force, side * moment).value for side in sides]
+    return SignedRange(np.max(signed, axis=0), moment)
+
+
+@lru_cache(maxsize=16)
+def _compliance(x: bytes, y: bytes, bodies: tuple[FiniteBody, FiniteBody]) -> Array:
+    cells = PressureCells(np.frombuffer(x).copy(), np.frombuffer(y).copy())
+    return half_space_compliance(cells, bodies)
