@@ -19,7 +19,7 @@ interactive            figures as data for Plotly in the page
 field_raster           axes, colour bar and contact pressure around a picture of a field
 field_picture          von Mises stress below the contact and in both bodies, by VTK off screen
 stress_map             maximum stress of the turn below the contour, unrolled and in place
-guide_pressure_figure  pressure in both guides
+pressure_figures       pressure in both guides and along the line of contact
 picture_list           pictures of a report with title and caption
 utilisation_chart      chart of the greatest utilisations by part
 report_content         sections, blocks, text and tables of a report (`Report`)

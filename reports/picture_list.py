@@ -1,4 +1,4 @@
-"""Pictures of a report: stress field, stress maps, guide pressure, with titles and captions."""
+"""Pictures of a report: stress fields and maps, pressures, with titles and captions."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from camwright.pipeline.base.worker_processes import Crew, Task
 from camwright.reports import (
     field_picture,
     field_raster,
-    guide_pressure_figure,
+    pressure_figures,
     report_tables,
     stress_map,
 )
@@ -135,12 +135,12 @@ def envelope_pictures(material: Material) -> Sequence[Picture]:
 @lru_cache(maxsize=1)
 def guide_pictures(material: Material) -> Sequence[Picture]:
     """Pressure in both guides; none for a contour that encloses no body."""
-    file = material.run.final.path / guide_pressure_figure.FILE
+    file = material.run.final.path / pressure_figures.FILE
     if not file.exists():
         return ()
     title = "Pressure in the guides"
     try:
-        guides = guide_pressure_figure.read_guides(file, material.turn.load_case)
+        guides = pressure_figures.read_guides(file, material.turn.load_case)
     except ResultError as error:
         return (Picture(title, note=f"The guide pressure is not available: {error}."),)
     peaks = ", ".join(
@@ -158,13 +158,59 @@ def guide_pictures(material: Material) -> Sequence[Picture]:
             "neglected.",
             f"Maps of the pressure in both guides; maximum {peaks}.",
             "guide-pressure",
-            guide_pressure_figure.drawn(guides),
+            pressure_figures.drawn(guides),
+        ),
+    )
+
+
+@lru_cache(maxsize=1)
+def axial_pictures(material: Material) -> Sequence[Picture]:
+    """Pressure along the line of contact; none where the case lacks an end."""
+    final = material.run.final
+    file, follower = final.path / pressure_figures.AXIAL, material.turn.follower_name
+    if not file.exists():
+        return ()
+    title = f"Contact pressure along the {follower}"
+    check = next((c for c in final.checks if c["id"] == "edge_pressure"), None)
+    place, limit = None, None
+    if check is not None and check["load_case"] and check["cam_angle_deg"] is not None:
+        place = str(check["load_case"]), float(check["cam_angle_deg"])
+    if check is not None and check["limit"] is not None:
+        limit = float(check["limit"])
+    try:
+        axial = pressure_figures.read_axial(file, material.turn.load_case, place)
+    except ResultError as error:
+        return (
+            Picture(title, note=f"The pressure along the {follower} is not available: {error}."),
+        )
+    rows = final.cycle.of_load_case(axial.worst_case)
+    at = int(np.argmin(np.abs(rows["cam_angle_deg"] - axial.worst_angle)))
+    values = [float(rows[name][at]) for name in ("p0_fe_MPa", "p0_hertz_MPa") if name in rows]
+    centre = next((value for value in values if np.isfinite(value)), None)
+    certified = pressure_figures.certified_pressure(
+        final.record.get("length_certificate", []), axial, centre
+    )
+    tiers = "half-spaces" if certified is None else "half-spaces and by finite elements (points)"
+    mean = report_tables.quantity(axial.mean_length, "mm")
+    peak = report_tables.quantity(axial.peak, "MPa")
+    return (
+        Picture(
+            title,
+            f"Left: at cam angle {axial.worst_angle:g} deg of load case {axial.worst_case}, by "
+            f"{tiers}; maximum {peak}. Grey: the last {mean}, over which the pressure at a "
+            "corner is averaged, since its peak there depends on the mesh. Right: load case "
+            f"{material.turn.load_case} over the turn, at the greatest moment that the guides "
+            "can hold.",
+            f"Contact pressure over the axial position; maximum {peak}.",
+            "axial-pressure",
+            pressure_figures.drawn_axial(axial, limit, centre, certified),
         ),
     )
 
 
 PICTURES: tuple[Callable[[Material], Sequence[Picture]], ...] = (
     stress_pictures,
+    axial_pictures,
     envelope_pictures,
     guide_pictures,
 )

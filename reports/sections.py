@@ -45,6 +45,8 @@ PARTS = (
     _pictures("figures", "figures", figure_svg.write),
     _pictures("fields", "pictures of the stress fields",
               partial(picture_list.write_pictures, picture_list.stress_pictures)),
+    _pictures("length", "picture of the pressure along the line of contact",
+              partial(picture_list.write_pictures, picture_list.axial_pictures)),
     _pictures("guides", "picture of the guide pressure",
               partial(picture_list.write_pictures, picture_list.guide_pictures)),
     _pictures("envelope", "maps of the maximum stress below the contour",

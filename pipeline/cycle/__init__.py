@@ -16,6 +16,7 @@ In the order of the calculation:
 | `cycle`              | turn with contact; columns of its table         |                        |
 | `speed_sweep`        | surge, contact force, torque over the speed     | F_n, N; T, N m         |
 | `ripple_map`         | torque ripple by speed and engine load          | std ratio, -           |
+| `axial_pressure`     | pressure along the line at every position       | y, m; p, Pa            |
 | `guide_pressure`     | line load of the guides, pressure in the bores  | P', N/m; p, Pa         |
 | `contact_store`      | store of solved pieces of the contact           |                        |
 | `certificate_angles` | angles of the certificate, their solution       | theta, rad             |

@@ -177,9 +177,8 @@ def factor_range(
     tilt : float, array         greatest tilt, rad
     couple : array (count,)     greatest couple that can hold it, N m
     """
-    table = _table(pair.bodies, pair.crown, mean_length)
-    # A vanishing load, of no pressure that counts, has the factor of the lightest one solved.
-    raised = np.maximum(_LIGHTEST * force.max() / force, 1.0)
+    table = length_table(pair, mean_length)
+    raised = raised_load(force)
     force, couple = raised * force, raised * couple
     by_tilt = table.moment_at_tilt(curvature, force, np.broadcast_to(tilt, force.shape))
     most = (1.0 - _ROUND_OFF) * GREATEST_MOMENT * force * pair.contact_length
@@ -190,6 +189,14 @@ def factor_range(
     corner = np.where(left.value > right.value, left.at_corner, right.at_corner)
     at_corner = np.where(level.value > tilted, level.at_corner, corner)
     return FactorRange(level.centre, level.value, tilted, moment / raised, at_corner)
+
+
+def raised_load(force: Array) -> Array:
+    """Factors (count,) >= 1 that raise vanishing loads to the lightest one solved.
+
+    A vanishing load, of no pressure that counts, has the factor of pressure of that one.
+    """
+    return np.maximum(_LIGHTEST * force.max() / force, 1.0)
 
 
 def worst_of(ranges: Sequence[FactorRange]) -> FactorRange:
@@ -206,7 +213,7 @@ def factor_at_pressure(pair: FinitePair, pressure: float, mean_length: float) ->
     """Signed factor of an untilted contact of a plane-strain pressure, Pa, at its curvature."""
     half_width = 2.0 * pressure / (pair.contact_modulus * pair.curvature)
     force = 0.5 * np.pi * half_width * pressure * pair.contact_length
-    table = _table(pair.bodies, pair.crown, mean_length)
+    table = length_table(pair, mean_length)
     at = np.array([pair.curvature]), np.array([force]), np.zeros(1)
     return float(signed_factor(table, *at).value[0])
 
@@ -251,6 +258,14 @@ def signed_factor(
     half = line.shape[1] // 2
     centre = 0.5 * (line[:, half - 1] + line[:, half])
     return SignedFactor(np.where(at_corner, mean, line.max(axis=1)), at_corner, centre)
+
+
+def length_table(pair: FinitePair, mean_length: float) -> FactorTable:
+    """Table of the pressure along the line of a pair of bodies, of any curvature; kept.
+
+    mean_length : float   of the mean at a corner, m
+    """
+    return _table(pair.bodies, pair.crown, mean_length)
 
 
 @lru_cache(maxsize=64)

@@ -177,6 +177,10 @@ class RunFolder:
         """``5_guides.npz``: line load of the guides at every position, pressure in the bores."""
         write_atomic(self._file(f"trial_{trial}/5_guides.npz"), npz_bytes(arrays))
 
+    def write_length(self, trial: int, arrays: Mapping[str, ArrayLike]) -> None:
+        """``5_length.npz``: pressure along the line of contact at every position."""
+        write_atomic(self._file(f"trial_{trial}/5_length.npz"), npz_bytes(arrays))
+
     def write_envelope(self, trial: int, arrays: Mapping[str, ArrayLike]) -> None:
         """``5_envelope.npz``: maximum stresses of a turn in a band under the contour."""
         write_atomic(self._file(f"trial_{trial}/5_envelope.npz"), npz_bytes(arrays))

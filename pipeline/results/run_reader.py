@@ -77,9 +77,13 @@ class ContentsOfAnyTrial(TypedDict):
 
 
 class TrialContents(ContentsOfAnyTrial, total=False):
-    """Contents of ``trial.json``; fatigue: points of the Goodman diagrams by part."""
+    """Contents of ``trial.json``.
+
+    fatigue: points of the Goodman diagrams by part; length_certificate: ends of the contact.
+    """
 
     fatigue: dict[str, Json]
+    length_certificate: list[dict[str, Json]]
 
 
 class ScopeRecord(TypedDict):

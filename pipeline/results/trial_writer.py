@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from camwright.meshes.mesh_files import write_msh
+from camwright.pipeline.cycle.axial_pressure import axial_arrays
 from camwright.pipeline.cycle.contact_store import ContactStore
 from camwright.pipeline.cycle.guide_pressure import guide_arrays
 from camwright.pipeline.cycle.rolling_history import envelope_arrays
@@ -47,6 +48,8 @@ class TrialWriter:
         folder.write_speed_sweep(number, sweep_columns(trial.solution.speed_sweeps))
         folder.write_pressure(number, pressure_arrays(trial.cycles))
         folder.write_guides(number, guide_arrays(trial.cycles))
+        if (axial := axial_arrays(trial.cycles)) is not None:
+            folder.write_length(number, axial)
         self.judge(trial)
 
     def judge(self, trial: Trial) -> None:

@@ -15,6 +15,7 @@ from camwright.pipeline.case.machine import machine
 from camwright.pipeline.contact.finite_length.factor_table import GREATEST_MOMENT
 from camwright.pipeline.contact.finite_length.length_tiers import half_space_factors
 from camwright.pipeline.cycle import length_history
+from camwright.pipeline.cycle.axial_pressure import AXIAL_ARRAYS, axial_arrays, with_end_means
 from camwright.pipeline.cycle.length_history import FactorRange, factor_range, held_couple, worst_of
 
 CASES = Path(__file__).parents[2] / "cases"
@@ -131,3 +132,46 @@ def test_without_an_end_nothing_is_signed():
         bare, made.contact, made.loads.normal_force, made.guides
     )
     assert history is None
+
+
+def test_pressure_along_the_line_is_the_signed_one():
+    """Its greatest value with and without tilt at every angle whose peak is at a corner."""
+    made = cycle()
+    arrays = axial_arrays([made])
+    assert list(arrays) and set(arrays) == {column.header for column in AXIAL_ARRAYS}
+    edges = arrays["axial_edge_mm"]
+    assert edges[-1] - edges[0] == pytest.approx(1e3 * made.machine.contact_width)
+    level, tilted = (arrays[f"{name}_pressure_MPa"] for name in ("level", "tilted"))
+    worst = int(np.argmax(np.where(made.length.at_corner, made.signed_pressure, 0.0)))
+    signed = 1e-6 * made.signed_pressure[worst]
+    assert np.maximum(level, tilted)[worst].max() == pytest.approx(signed, rel=1e-9)
+    # The moment loads one side: that beyond the middle by as much as the other is relieved.
+    half = tilted.shape[1] // 2
+    widths = np.diff(edges)
+    change = (tilted - level)[worst] * widths
+    assert change[:half].sum() * change[half:].sum() < 0
+    assert abs(change.sum()) < 0.02 * (level[worst] * widths).sum()
+
+
+def test_pressure_along_the_line_needs_the_ends_and_contact():
+    made = cycle()
+    assert axial_arrays([cycle(roller__end=None)]) is None
+    radius = made.contact.relative_radius
+
+    def touching(where):
+        contact = replace(made.contact, relative_radius=np.where(where, radius, np.nan))
+        return axial_arrays([replace(made, contact=contact)])
+
+    assert touching(False) is None
+    half = touching(np.arange(radius.size) % 2 > 0)["level_pressure_MPa"]
+    assert not half[::2].any() and half[1::2].all()
+
+
+def test_means_at_the_ends_keep_the_force():
+    edges = np.array([-2.0, -1.97, -1.85, -1.0, 0.0, 1.0, 1.85, 1.97, 2.0])
+    line = np.array([[9.0, 4.0, 2.0, 1.0, 1.0, 2.0, 4.0, 9.0], [0.0, 0, 0, 1, 2, 3, 5, 12]])
+    joined, means = with_end_means(edges, line, 0.1)
+    np.testing.assert_allclose(means @ np.diff(joined), line @ np.diff(edges), rtol=1e-12)
+    assert means[0, 0] == pytest.approx((9.0 * 0.03 + 4.0 * 0.07) / 0.1)
+    assert means[1, -1] == pytest.approx((12.0 * 0.03 + 5.0 * 0.07) / 0.1)
+    np.testing.assert_allclose(joined[[0, 1, -2, -1]], [-2.0, -1.9, 1.9, 2.0])

@@ -24,7 +24,7 @@ from camwright.pipeline.checks.registry import (
 )
 from camwright.pipeline.follower.spring import HelicalSpring
 from camwright.pipeline.results.workshop_files import WORKSHOP
-from camwright.reports import guide_pressure_figure
+from camwright.reports import pressure_figures
 
 NAMES = renamed_names()
 CHECK_IDS = {each.id for each in (*CHECKS, TOLERANCE_CORNERS, WAIVERS_WITHOUT_EFFECT)}
@@ -238,4 +238,4 @@ def test_renamed_values_keys_of_wires_and_files_are_those_of_today() -> None:
     fields = section_of(HelicalSpring).model_fields
     assert set(NAMES["wires"].values()) <= set(fields)
     assert not set(NAMES["wires"]) & set(fields)
-    assert NAMES["files"] == {"shop/": f"{WORKSHOP}/", "5_bushes.npz": guide_pressure_figure.FILE}
+    assert NAMES["files"] == {"shop/": f"{WORKSHOP}/", "5_bushes.npz": pressure_figures.FILE}

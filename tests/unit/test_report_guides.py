@@ -1,11 +1,11 @@
-"""Pictures of the pressure in the guides and over the contact."""
+"""Pictures of the pressure in the guides, along the line of contact and over the contact."""
 
 import numpy as np
 import pytest
 
 from camwright.geometry.errors import ResultError
 from camwright.pipeline.base.tables import Table
-from camwright.reports import guide_pressure_figure
+from camwright.reports import pressure_figures
 from camwright.reports.field_raster import over_the_contact
 
 ROWS, KNOTS = 8, 5
@@ -28,35 +28,33 @@ def path(tmp_path):
             f"guide_{side}_worst_row": np.array(7), f"guide_{side}_slice_position_mm": along,
             f"guide_{side}_bore_angle_deg": angle, f"guide_{side}_bore_pressure_MPa": pressure,
         }  # fmt: skip
-    np.savez(tmp_path / guide_pressure_figure.FILE, **values)
-    return tmp_path / guide_pressure_figure.FILE
+    np.savez(tmp_path / pressure_figures.FILE, **values)
+    return tmp_path / pressure_figures.FILE
 
 
 def test_reads_both_guides_and_their_worst_place(path):
-    a, b = guide_pressure_figure.read_guides(path, "idle")
+    a, b = pressure_figures.read_guides(path, "idle")
     assert (a.name, a.peak, a.slice, a.worst_angle) == ("A", 40.0, 0, 315.0)
     assert b.line.shape == (ROWS, KNOTS)
 
 
 def test_draws_a_picture_of_either_side_of_the_bore(path):
-    png = guide_pressure_figure.drawn(guide_pressure_figure.read_guides(path, "idle"))
+    png = pressure_figures.drawn(pressure_figures.read_guides(path, "idle"))
     assert png.startswith(b"\x89PNG") and len(png) > 10_000
 
 
 def test_what_is_pressed_is_shown_with_a_margin():
     places = np.linspace(0.0, 10.0, 101)
-    low, high = guide_pressure_figure._pressed(
-        places, np.where(np.abs(places - 5) < 1.01, 1.0, 0.0)
-    )
+    low, high = pressure_figures._pressed(places, np.where(np.abs(places - 5) < 1.01, 1.0, 0.0))
     assert (low, high) == pytest.approx((3.8, 6.2))
-    assert guide_pressure_figure._pressed(places, np.zeros(101)) == (0.0, 10.0)
+    assert pressure_figures._pressed(places, np.zeros(101)) == (0.0, 10.0)
 
 
 def test_a_file_without_the_load_case_is_told(path):
     with pytest.raises(ResultError, match="rated"):
-        guide_pressure_figure.read_guides(path, "rated")
+        pressure_figures.read_guides(path, "rated")
     with pytest.raises(ResultError):
-        guide_pressure_figure.read_guides(path.with_name("none.npz"), "idle")
+        pressure_figures.read_guides(path.with_name("none.npz"), "idle")
 
 
 def test_pressure_over_the_contact_is_that_of_the_angle_and_of_the_harder_case(tmp_path):
@@ -74,3 +72,58 @@ def test_pressure_over_the_contact_is_that_of_the_angle_and_of_the_harder_case(t
     np.testing.assert_allclose(places, xi / 0.1)
     assert over_the_contact(tmp_path / "p.npz", cycle, 45.0, 0.1) is None
     assert over_the_contact(tmp_path / "none.npz", cycle, 90.0, 0.1) is None
+
+
+@pytest.fixture
+def axial(tmp_path):
+    angle = np.tile(45.0 * np.arange(ROWS), 2)
+    edges = np.array([-2.0, -1.9, -1.0, 0.0, 1.0, 1.9, 2.0])
+    level = np.outer(np.linspace(0.0, 1.0, 2 * ROWS), [300.0, 200.0, 150.0, 150.0, 200.0, 300.0])
+    np.savez(
+        tmp_path / pressure_figures.AXIAL, cam_angle_deg=angle, axial_edge_mm=edges,
+        load_case=np.repeat(["idle", "fast"], ROWS), level_pressure_MPa=level,
+        tilted_pressure_MPa=level * np.linspace(0.8, 1.2, 6), mean_length_mm=np.array(0.1),
+    )  # fmt: skip
+    return tmp_path / pressure_figures.AXIAL
+
+
+def test_reads_the_pressure_along_the_line_at_its_worst_angle(axial):
+    worst = pressure_figures.read_axial(axial, "idle", None)
+    assert (worst.worst_case, worst.worst_angle, worst.whole.shape) == ("idle", 315.0, (ROWS, 6))
+    assert worst.peak == pytest.approx(300.0 * 1.2 * 7 / 15)
+    assert worst.has_means
+    at = pressure_figures.read_axial(axial, "idle", ("fast", 359.0))
+    assert (at.worst_case, at.worst_angle, at.whole.shape) == ("fast", 0.0, (ROWS, 6))
+    assert at.level.max() == pytest.approx(300.0 * 8 / 15)
+    with pytest.raises(ResultError, match="load case nowhere is missing"):
+        pressure_figures.read_axial(axial, "nowhere", None)
+    axial.write_bytes(b"no archive")
+    with pytest.raises(ResultError, match=r"5_length\.npz"):
+        pressure_figures.read_axial(axial, "idle", None)
+
+
+@pytest.mark.parametrize(("limit", "centre"), [(None, None), (250.0, 180.0)])
+def test_draws_the_pressure_along_the_line(axial, limit, centre):
+    one = pressure_figures.read_axial(axial, "idle", None)
+    png = pressure_figures.drawn_axial(one, limit, centre)
+    assert png.startswith(b"\x89PNG") and len(png) > 10_000
+    assert png != pressure_figures.drawn_axial(one, 275.0, centre)
+
+
+def test_finite_elements_stand_beside_the_half_spaces_at_the_certified_angle(axial):
+    one = pressure_figures.read_axial(axial, "idle", ("fast", 45.0))
+    factors = {"centre": 1.1, "end1_mean": 1.6, "end2_mean": 1.4}
+    bars = {f"{name}_gci_percent": share for name, share in zip(factors, (1, 2, 3), strict=True)}
+    record = {"load_case": "fast", "cam_angle_deg": 45.0, "finite_elements": factors | bars}
+    made = pressure_figures.certified_pressure([record], one, 100.0)
+    places, values, errors = made.over(one)
+    np.testing.assert_allclose(places, [-1.95, 0.0, 1.95])
+    # The half-spaces carry more at y > 0, the record at y < 0: the same contact, mirrored.
+    np.testing.assert_allclose(values, [140.0, 110.0, 160.0])
+    np.testing.assert_allclose(errors, [4.2, 1.1, 3.2])
+    assert pressure_figures.drawn_axial(one, None, 100.0, made) != pressure_figures.drawn_axial(
+        one, None, 100.0
+    )
+    for other in ({"cam_angle_deg": 44.0}, {"load_case": "idle"}):
+        assert pressure_figures.certified_pressure([record | other], one, 100.0) is None
+    assert pressure_figures.certified_pressure([record], one, None) is None

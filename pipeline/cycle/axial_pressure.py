@@ -1,0 +1,107 @@
+"""Pressure along the line of contact at every position of a cycle, ends and tilt included."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from camwright.geometry.arrays import Array
+from camwright.pipeline.base.tables import Column
+from camwright.pipeline.contact.finite_length.axial_drop import FinitePair
+from camwright.pipeline.cycle.cycle import Cycle
+from camwright.pipeline.cycle.length_history import length_table, raised_load
+
+_MM, _MPA = 1e3, 1e-6
+
+AXIAL_ARRAYS = (
+    Column("load_case", "", "(n,) load case of each row of `5_cycle.csv`"),
+    Column("cam_angle", "deg", "(n,) cam angle of the row"),
+    Column("axial_edge", "mm", "(k + 1,) ends of the cells along the line, from its middle"),
+    Column("level_pressure", "MPa", "(n, k) mean over the cell without tilt, middle of the width"),
+    Column("tilted_pressure", "MPa", "(n, k) the same at the greatest moment, of the worse sign"),
+    Column("mean_length", "mm", "length of the cells at a corner that ends the contact"),
+)
+"""Arrays of ``5_length.npz``."""
+
+
+def axial_arrays(cycles: Sequence[Cycle]) -> Mapping[str, ArrayLike] | None:
+    """Arrays of ``5_length.npz``, by half-spaces; None without an end or a contact.
+
+    At a corner the pressure of the last cell is the mean over the stated length: the peak there
+    depends on the cells. With an axial offset each half of the line is that of its own end.
+
+    Returns
+    -------
+    mapping   by the headers of `AXIAL_ARRAYS`
+    """
+    machine, first = cycles[0].machine, cycles[0].length
+    if first is None or any(cycle.length is None for cycle in cycles):
+        return None
+    p0, radius, force, moment = (
+        np.concatenate(columns)
+        for columns in zip(
+            *(
+                (c.contact.p0, c.contact.relative_radius, c.loads.normal_force, c.length.moment)
+                for c in cycles
+                if c.length is not None
+            ),
+            strict=True,
+        )
+    )
+    rows = np.flatnonzero(np.isfinite(radius) & (radius > 0) & (force > 0))
+    if not rows.size:
+        return None
+    raised = raised_load(force[rows])
+    at, couple = (1.0 / radius[rows], raised * force[rows]), raised * moment[rows]
+    states = np.zeros(rows.size), couple, -couple
+    pairs = machine.finite_pairs
+    halves = pairs if len(pairs) > 1 else pairs * 2
+    (ends_left, left), (ends_right, right) = (
+        _cells(pair, first.mean_length, at, states) for pair in halves
+    )
+    low, high = ends_left.size // 2, ends_right.size // 2
+    edges = np.concatenate([ends_left[:low], ends_right[high:]])
+    level, *tilted = (
+        np.hstack([one[:, :low], other[:, high:]]) * p0[rows, None]
+        for one, other in zip(left, right, strict=True)
+    )
+    worse = max(tilted, key=lambda pressure: float(pressure.max()))
+    arrays: dict[str, ArrayLike] = {
+        "load_case": np.repeat([c.load_case for c in cycles], [c.theta.size for c in cycles]),
+        "cam_angle_deg": np.degrees(np.concatenate([c.theta for c in cycles])),
+        "axial_edge_mm": _MM * edges,
+        "mean_length_mm": np.array(_MM * first.mean_length),
+    }
+    for name, pressure in (("level_pressure_MPa", level), ("tilted_pressure_MPa", worse)):
+        whole = np.zeros((p0.size, edges.size - 1))
+        whole[rows] = _MPA * pressure
+        arrays[name] = whole
+    return arrays
+
+
+def _cells(
+    pair: FinitePair, mean_length: float, at: tuple[Array, Array], moments: Sequence[Array]
+) -> tuple[Array, list[Array]]:
+    """Edges, m, and pressures over p0 at each of the moments, N m; see `with_end_means`."""
+    table = length_table(pair, mean_length)
+    lines = []
+    for moment in moments:
+        edges, line = table.axial_pressure(*at, moment)
+        if pair.has_singular_end:
+            edges, line = with_end_means(edges, line, mean_length)
+        lines.append(line)
+    return edges, lines
+
+
+def with_end_means(edges: Array, line: Array, length: float) -> tuple[Array, Array]:
+    """Edges and pressures (count, m) whose first and last cell are means over a length.
+
+    The force on each part of the line remains.
+    """
+    inner = edges[np.abs(edges) < edges[-1] - length - 1e-9]
+    joined = np.concatenate([[edges[0], edges[0] + length], inner, [edges[-1] - length, edges[-1]]])
+    total = np.cumsum(np.pad(line * np.diff(edges), ((0, 0), (1, 0))), axis=1)
+    at = np.array([np.interp(joined, edges, row) for row in total])
+    return joined, np.diff(at, axis=1) / np.diff(joined)
