@@ -144,9 +144,12 @@ def test_three_meshes_settle():
     solved = [two_discs(edges) for edges in (4, 8, 16)]
     for name in ("p0", "half_width", "tau_max", "von_mises"):
         found = converged([getattr(s, name) for s in solved], 2.0)
-        # All within 6e-4 on the coarsest mesh, the scatter of mesh positions: an order may be
-        # missing or below 1, and the bar is then three times wider.
-        assert found.order is None or found.order <= 3.0, (name, found.order)
+        # p0 and half-width are within the scatter of mesh positions and may have no order. Fitted
+        # stresses follow the pressure within 5e-4 on the coarsest mesh, see the next test: their
+        # order is that of its scatter, and their bar alone is bounded.
+        if name in ("p0", "half_width"):
+            assert found.order is None or 1.4 <= found.order <= 3.0, (name, found.order)
+            assert found.order is not None or found.gci < 1e-3
         assert found.gci < 1.5e-3, (name, found.gci)
     for name, exact in (("p0", p0), ("half_width", a)):
         found = converged([getattr(s, name) for s in solved], 2.0)
