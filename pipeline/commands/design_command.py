@@ -114,7 +114,13 @@ def _show(document: dict[str, Any], out: Path) -> None:
             f"  passes with {each['option']} {each['to']}, not {each['from']}:", markup=False
         )
         stdout.print(f"    {each['command']}", markup=False, soft_wrap=True)
-    if not conflict["relaxations"]:
+    if conflict["relaxations"]:
+        stdout.print(
+            "  each: one option alone, the least change within 2 % for the designs tried, so that "
+            "a smaller one may exist",
+            markup=False,
+        )
+    else:
         stdout.print("  no relaxation of one option passes within its range", markup=False)
 
 

@@ -85,10 +85,11 @@ def _front(axes: Axes, document: Record) -> None:
 
 def _cam(axes: Axes, document: Record) -> None:
     chosen = document["chosen"]
-    axes.set_title("Cam, shaft and roller at the base circle, mm", fontsize=10, loc="left")
     if chosen is None:
         axes.axis("off")
         return
+    axes.set_title("Cam, shaft and roller at the base circle, mm", fontsize=10, loc="left")
+    axes.set_axisbelow(True)
     x, y = np.array(chosen["contour_mm"])
     turn = np.linspace(0.0, 2.0 * np.pi, 121)
     axes.fill(x, y, facecolor=COLOURS["grid"], edgecolor=COLOURS["blue"], lw=1.6)
@@ -107,12 +108,13 @@ def _cam(axes: Axes, document: Record) -> None:
 def _words(axes: Axes, document: Record) -> None:
     axes.axis("off")
     chosen, demand = document["chosen"], document["torque"]
+    turns = "turn" if demand["ratio"] == 1.0 else "turns"
     lines = [
         f"ripple            {demand['ripple_Nm']:.4g} N m (std)",
         f"energy swing      {demand['energy_swing_J']:.4g} J",
         f"speed             {demand['speed_rpm']:.5g} rpm, over-speed "
         f"{demand['overspeed_rpm']:.5g} rpm",
-        f"drive             {demand['ratio']:g} shaft turns a cam turn",
+        f"drive             {demand['ratio']:g} shaft {turns} a cam turn",
         f"designs screened  {document['screened']}, {document['within_limits']} within limits",
         "",
     ]
@@ -121,7 +123,8 @@ def _words(axes: Axes, document: Record) -> None:
             f"ripple left       {chosen['ripple_left_Nm']:.4g} N m, "
             f"{100 * chosen['removed']:.0f} % removed",
             f"size              {chosen['size_mm']:.4g} mm",
-            f"prime radius      {chosen['prime_radius_mm']:.4g} mm",
+            f"prime radius      {chosen['prime_radius_mm']:.4g} mm, offset "
+            f"{chosen['offset_mm']:.3g} mm",
             f"lift              {chosen['lift_max_mm']:.4g} mm",
             f"pressure angle    {chosen['pressure_angle_max_deg']:.3g} deg",
             f"roller            {chosen['roller']}",

@@ -6,6 +6,7 @@ import shlex
 from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -22,8 +23,18 @@ from camwright.pipeline.studies.design.candidate_search import candidates, sprin
 from camwright.pipeline.studies.design.design_case import Machinery, case_text, oils_of
 from camwright.pipeline.studies.design.design_study import _prepare, designed
 from camwright.pipeline.studies.design.machine_frame import frame_of
-from camwright.pipeline.studies.design.relaxation_search import WIDTH, Lever, _levers, _smallest
-from camwright.pipeline.studies.design.synthesised_points import Study, likeliest, synthesised
+from camwright.pipeline.studies.design.relaxation_search import (
+    WIDTH,
+    Lever,
+    _levers,
+    _smallest,
+)
+from camwright.pipeline.studies.design.synthesised_points import (
+    Solved,
+    Study,
+    likeliest,
+    synthesised,
+)
 from camwright.pipeline.studies.design.torque_task import DesignTask, task_of
 from camwright.pipeline.studies.design.wound_springs import wound
 
@@ -193,7 +204,7 @@ def test_bisection_of_a_relaxation(
     study = Study(task_in(tmp_path), tmp_path, "torque.csv", "")
     lever = next(each for each in _levers(study.task) if each.name == "--speed")
 
-    def passing(_study: object, _lever: Lever, value: float, _rollers: object) -> object:
+    def passing(_study: object, _lever: Lever, value: float, *_: object) -> object:
         return object() if value <= most * RPM else None
 
     monkeypatch.setattr(relaxation_search, "_passing", passing)
@@ -205,6 +216,24 @@ def test_bisection_of_a_relaxation(
     assert _smallest(study, lever, frozenset()) is None
 
 
+def test_the_better_of_two_designs_passes_with_less_ripple_in_the_same_size() -> None:
+    design: Any = SimpleNamespace(
+        task=SimpleNamespace(ripple_allowed=5.0), frame=SimpleNamespace(radius=0.01)
+    )
+
+    def solved(ripple: float, verdict: str = "pass", prime: float = 40.0) -> Solved:
+        record = {"verdict": verdict, "ripple_left_Nm": ripple, "lift_max_mm": 5.0,
+                  "cam_radius_mm": 35.0, "prime_radius_mm": prime}  # fmt: skip
+        return Solved(design, record)
+
+    assert solved(4.0).better_than(solved(4.1))
+    assert not solved(4.1).better_than(solved(4.0))
+    assert solved(4.8).better_than(solved(4.0, "fail"))
+    assert not solved(3.0, "fail").better_than(solved(4.0, "fail"))
+    assert not solved(3.0, prime=43.0).better_than(solved(4.0))  # 3 % larger
+    assert solved(4.8).better_than(Solved(design, {"why": "undercut"}))
+
+
 def test_a_pump_is_synthesised_with_free_radius_and_preload(tmp_path: Path) -> None:
     """One roller: the free synthesis leaves no more ripple than that at the screened values."""
     table_of_pump = write_table(tmp_path, "pump")
@@ -212,6 +241,14 @@ def test_a_pump_is_synthesised_with_free_radius_and_preload(tmp_path: Path) -> N
     screened = candidates(task, tmp_path, table_of_pump.name, SILENT, {"track_roller_28x8"})
     candidate = likeliest(task, screened)
     assert candidate is not None
+    # the offset in the middle of the greatest and least slope of the lift, torque over force
+    spring, torque = candidate.design.spring, task.demand.torque
+    share = min(spring.energy / task.demand.energy_swing, 1.0)
+    force = 0.5 * (spring.preload + spring.greatest)
+    slopes = share * task.ratio * np.array([torque.min(), torque.max()]) / force
+    offset = candidate.with_offset.design.offset
+    assert offset == pytest.approx(slopes.mean(), abs=5.1e-5)
+    assert 0.0 < offset < 0.2 * candidate.design.prime_radius
     study = Study(task, tmp_path, table_of_pump.name, "")
     free = synthesised(study, candidate)
     fixed = study.solved(free.design)

@@ -45,6 +45,9 @@ _ALIKE = 0.2  # share of the torque that one camshaft is drawn for
 _RADII = 7
 _STEEP, _FLAT = np.radians((28.0, 6.0))  # pressure angles of the least and greatest base circle
 _RADIUS_MOST = 0.4  # m
+OPTIMISTIC = 1.1  # ripple of a screened design over that allowed
+FAR = 1.8  # of the size of the smallest design
+_OFFSET_MOST = 0.2  # of the prime radius
 _REMOVED_MORE = 0.05  # of the ripple, above the requirement
 _PEAK = 1.25  # cam torque over that of the balanced ripple
 _FREE_ROOM = 5.0  # m, of a cam whose space is not limited
@@ -72,6 +75,25 @@ class Candidate:
         """From the far side of the cam to the top of the roller at maximum lift, m."""
         return self.cam_radius + self.design.height
 
+    def within(self, excess: float) -> bool:
+        """Whether its checks are above 1 by an excess at most, and its ripple is near to enough."""
+        enough = self.ripple <= OPTIMISTIC * self.design.task.ripple_allowed
+        return enough and self.excess <= excess
+
+    @property
+    def with_offset(self) -> Candidate:
+        """The design with the offset at which rise and return have equal pressure angles.
+
+        By the greatest and least torque at the mean spring force, rounded to 0.1 mm.
+        """
+        design = self.design
+        task, spring = design.task, design.spring
+        middle = 0.5 * (task.demand.torque.max() + task.demand.torque.min())
+        slope = _share(task, spring) * task.ratio * middle / (spring.energy / spring.travel)
+        most = _OFFSET_MOST * design.prime_radius
+        offset = 1e-4 * round(1e4 * float(np.clip(slope, -most, most)))
+        return replace(self, design=replace(design, offset=offset))
+
 
 def spring_wire(task: DesignTask, folder: Path | None) -> HelicalSpring:
     """Wire of wound springs, as a spring of any size."""
@@ -92,6 +114,8 @@ def candidates(
 ) -> list[Candidate]:
     """Screened designs of all rollers of the catalogue that can bear the force.
 
+    Without those that are larger than `FAR` times one that is within all limits.
+
     Parameters
     ----------
     folder : Path   of the torque table, the user's cards and springs
@@ -106,6 +130,7 @@ def candidates(
         key=lambda name: (rollers[name].outer_diameter, rollers[name].C),
     )
     screened: list[Candidate] = []
+    largest = np.inf
     for k, name in enumerate(order, start=1):
         card = rollers[name]
         springs = _springs(task, card, wire, list(parts.springs.values()))
@@ -114,7 +139,10 @@ def candidates(
             torque = _PEAK * task.ratio * task.demand.peak * max(_share(task, each) for each in own)
             frame = frame_of(name, card, torque, force, task.ratio, sizes)
             if frame is not None:
-                screened += _screened(task, frame, own, oils, folder, file)
+                judged = _screened(task, frame, own, oils, folder, file, largest)
+                sizes_within = (FAR * each.size for each in judged if each.within(0.0))
+                largest = min(largest, *sizes_within, np.inf)
+                screened += judged
         progress.advance(k, len(order))
     return screened
 
@@ -171,13 +199,15 @@ def _screened(
     oils: Mapping[str, tuple[float, float]],
     folder: Path,
     file: str,
+    largest: float,
 ) -> list[Candidate]:
-    """Closed-form checks of a frame with each spring on several base circles."""
+    """Closed-form checks of a frame with each spring on several base circles, up to a size, m."""
     designs = [
         Machinery(task, frame, spring, float(radius), spring.travel, 0.0, oils=oils)
         for spring in springs
         for radius in _radii(task, frame, spring)
     ]
+    designs = [each for each in designs if each.least_size <= largest]
     if not designs:
         return []
     longest = max(designs, key=lambda each: each.lift)

@@ -77,6 +77,11 @@ class Machinery:
         return self.prime_radius + self.lift + self.frame.radius
 
     @property
+    def least_size(self) -> float:
+        """Least distance from the far side of the cam to the top of the roller, m."""
+        return self.prime_radius - self.frame.radius + self.height
+
+    @property
     def oil_temperature(self) -> float:
         return self.task.ambient + OIL_WARMER
 

@@ -28,6 +28,7 @@ from camwright.pipeline.studies.design.relaxation_search import relaxations
 from camwright.pipeline.studies.design.synthesised_points import (
     Solved,
     Study,
+    free,
     promising,
     settled,
     synthesised,
@@ -38,6 +39,7 @@ from camwright.pipeline.studies.redesign.point_store import SOLVED, Record
 
 RECORD = "design.json"
 PICTURE = "design.png"
+_BINDING = 3  # limits that the nearest design uses fully, named with those that it fails
 _POINTS = 4  # of the front of the screening, solved in full
 _OURS = re.compile(
     rf"design\.(json|png)|point_\d+\.toml|{SOLVED}|.*\.csv|cards\.toml|springs\.toml"
@@ -182,12 +184,18 @@ def _prepare(task: DesignTask, folder: Path, out: Path) -> tuple[str, list[str]]
 def _solved_front(
     study: Study, screened: Sequence[Candidate], progress: Progress
 ) -> tuple[list[Solved], list[Solved]]:
-    """Designs of the front of the screening that pass, and those that do not."""
+    """Designs of the front of the screening that pass, and those that do not.
+
+    The smallest one is solved without and with an offset, the others with the better choice.
+    """
     chosen = promising(study.task, screened, _POINTS)
     passing: list[Solved] = []
     failing: list[Solved] = []
+    offset = False
     for k, candidate in enumerate(chosen, start=1):
-        point = synthesised(study, candidate)
+        if k == 1:
+            offset = free(study, candidate.with_offset).better_than(free(study, candidate))
+        point = synthesised(study, candidate.with_offset if offset else candidate)
         if point.has_cam and point.passes:
             point = settled(study, point)
         if point.has_cam:
@@ -289,7 +297,9 @@ def _limits(task: DesignTask, screened: Sequence[Candidate], points: Sequence[So
     """What no design keeps together."""
     if points:
         near = min(points, key=lambda each: each.shortfall)
-        return near.failing or ["the limits of the synthesis at the ends of the tolerances"]
+        failing = near.failing or ["the limits of the synthesis at the ends of the tolerances"]
+        binding = [DECLARED[name].title for name in near.record["binding"] if name in DECLARED]
+        return failing + [title for title in binding if title not in failing][:_BINDING]
     if screened:
         counts = Counter(each.governing for each in screened if each.excess > 0.0)
         return [DECLARED[name].title for name, _ in counts.most_common(3)]

@@ -7,16 +7,14 @@ from dataclasses import dataclass, replace
 from math import ceil
 from pathlib import Path
 
-from camwright.pipeline.studies.design.candidate_search import Candidate
+from camwright.pipeline.studies.design.candidate_search import FAR, OPTIMISTIC, Candidate
 from camwright.pipeline.studies.design.design_case import SYNTHESIS, Machinery, case_text
 from camwright.pipeline.studies.design.torque_task import DesignTask
 from camwright.pipeline.studies.redesign.pareto_front import front, thinned
 from camwright.pipeline.studies.redesign.point_store import Record, Task, solved
 
 _NEAR = 0.5  # excess that a synthesis may remove
-_OPTIMISTIC = 1.1  # ripple of a screened design over that allowed
 _ALIKE = 0.02  # relative size within which the lesser ripple replaces
-_FAR = 1.8  # of the size of the smallest design
 _GAIN = 0.03  # of the ripple, between points
 _SHRUNK, _GROWN = 0.9, 1.1  # of the prime radius of the screening
 _FREE_PRELOAD = (0.85, 1.1)  # of the preload of the screening: the spring has room for 1.05
@@ -59,6 +57,14 @@ class Solved:
         """Whether all limits are kept, the ripple with a reserve for the finite elements."""
         most = (1.0 - RESERVE) * self.design.task.ripple_allowed
         return self.record.get("verdict") == "pass" and self.ripple <= most
+
+    def better_than(self, other: Solved) -> bool:
+        """Whether it passes where the other does not, or leaves less ripple in the same size."""
+        if not (self.has_cam and self.passes):
+            return False
+        if not (other.has_cam and other.passes):
+            return True
+        return self.ripple < other.ripple and self.size <= (1.0 + _ALIKE) * other.size
 
     @property
     def size(self) -> float:
@@ -103,9 +109,8 @@ def _screened_front(
     task: DesignTask, screened: Sequence[Candidate], excess: float, most: int
 ) -> list[Candidate]:
     """Front of ripple and size of designs up to an excess, not far above the smallest one."""
-    ripple = task.ripple_allowed * _OPTIMISTIC
-    good = [each for each in screened if each.excess <= excess and each.ripple <= ripple]
-    largest = _FAR * min((each.size for each in good), default=0.0)
+    good = [each for each in screened if each.within(excess)]
+    largest = FAR * min((each.size for each in good), default=0.0)
     good = [each for each in good if each.size <= largest]
     figures = [(each.size, each.ripple) for each in good]
     places = front(figures, _ALIKE, _GAIN * task.demand.ripple)
@@ -119,7 +124,7 @@ def likeliest(task: DesignTask, screened: Sequence[Candidate]) -> Candidate | No
         return each.ripple / task.ripple_allowed + _NEAR * each.excess
 
     best = min(screened, key=lack, default=None)
-    return best if best is not None and lack(best) <= _OPTIMISTIC + _NEAR**2 else None
+    return best if best is not None and lack(best) <= OPTIMISTIC + _NEAR**2 else None
 
 
 def synthesised(study: Study, candidate: Candidate) -> Solved:
@@ -128,7 +133,7 @@ def synthesised(study: Study, candidate: Candidate) -> Solved:
     Both are free about the values of the screening. The cam grows where it would not pass
     otherwise, unless the space is limited.
     """
-    point = _free(study, candidate, 1.0)
+    point = free(study, candidate)
     if study.task.space is not None or not point.has_cam or point.passes:
         return point
     return grown(study, candidate)
@@ -136,10 +141,10 @@ def synthesised(study: Study, candidate: Candidate) -> Solved:
 
 def grown(study: Study, candidate: Candidate) -> Solved:
     """As `synthesised`, of a cam that may grow from the start, unless the space is limited."""
-    return _free(study, candidate, 1.0 if study.task.space is not None else _GROWN)
+    return free(study, candidate, 1.0 if study.task.space is not None else _GROWN)
 
 
-def _free(study: Study, candidate: Candidate, growth: float) -> Solved:
+def free(study: Study, candidate: Candidate, growth: float = 1.0) -> Solved:
     """Synthesis with the preload and, up to some growth, the prime radius free."""
     design = _rounded(candidate.design)
     high = growth * design.prime_radius
