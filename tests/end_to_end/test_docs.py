@@ -95,6 +95,7 @@ def test_the_run_folder_holds_what_is_listed(folder: Path) -> None:
         "1_speed.csv",
         "corners.json",
         "trial_1/2_limits.csv",
+        "workshop/crown_cam.csv",
         "figures/",
     }
     for name in listed:
