@@ -18,6 +18,7 @@ from camwright.geometry.errors import InputError
 GRAVITY = 9.80665
 ROWS_MIN = 20
 CONFIDENCE = 0.95
+_STEP = 1e-2  # of the scale of a parameter: widths of intervals are then within 2e-4
 
 
 @dataclass(frozen=True, eq=False)
@@ -100,7 +101,11 @@ def from_pendulum(
     frequency = float(np.sqrt(stiffness / pendulum.total_inertia))
     if at[-1] - at[0] < 2.0 * 2.0 * np.pi / frequency:
         raise InputError("decay.time", f"{at[-1] - at[0]:.4g} s", "at least two swings long")
-    start = [seen[0], float(np.gradient(seen, at)[0]), 0.01 * frequency * pendulum.total_inertia]
+    viscous = 0.01 * frequency * pendulum.total_inertia
+    start = [seen[0], float(np.gradient(seen, at)[0]), viscous]
+    # A swing may begin at rest: its speed has the scale of the swing.
+    swing = float(np.abs(seen).max())
+    scale = [swing, swing * frequency, viscous]
 
     def closed(p: Array) -> Array:
         decay = p[2] / (2.0 * pendulum.total_inertia)
@@ -113,8 +118,9 @@ def from_pendulum(
         return pendulum.swing(at, p[0], p[1], abs(p[2]), abs(p[3])) - seen
 
     if small:
-        return _fitted(closed, np.array(start), (2, None))
-    return _fitted(numeric, np.array([*start, 1e-3 * stiffness]), (2, 3))
+        return _fitted(closed, np.array(start), np.array(scale), (2, None))
+    dry = 1e-3 * stiffness
+    return _fitted(numeric, np.array([*start, dry]), np.array([*scale, dry]), (2, 3))
 
 
 def from_run_down(time: ArrayLike, speed: ArrayLike, inertia: float) -> Identified:
@@ -142,7 +148,8 @@ def from_run_down(time: ArrayLike, speed: ArrayLike, inertia: float) -> Identifi
         return p[0] * np.exp(-rate * t) - p[2] / inertia * grown - seen
 
     drop = inertia * (seen[0] - seen[-1]) / t[-1]
-    return _fitted(miss, np.array([seen[0], 0.5 * drop / seen[0], 0.5 * drop]), (1, 2))
+    start = np.array([seen[0], 0.5 * drop / seen[0], 0.5 * drop])
+    return _fitted(miss, start, start, (1, 2))
 
 
 def read_decay(path: str | Path) -> tuple[Array, Array]:
@@ -173,21 +180,20 @@ def _signal(time: ArrayLike, values: ArrayLike) -> tuple[Array, Array]:
 
 
 def _fitted(
-    miss: Callable[[Array], Array], start: Array, places: tuple[int, int | None]
+    miss: Callable[[Array], Array], start: Array, scale: Array, places: tuple[int, int | None]
 ) -> Identified:
-    """Least squares; intervals by the linearised covariance and Student's t."""
-    scale = np.maximum(np.abs(start), 1e-6)
-    # Steps far above the integration error at sign changes of the speed: steps smaller by a factor
-    # of 100 halved the intervals.
-    fit = least_squares(
-        miss,
-        start,
-        "3-point",
-        x_scale=scale,
-        xtol=1e-9,
-        ftol=1e-9,
-        diff_step=np.full(start.size, 1e-3),
-    )
+    """Least squares; intervals by the linearised covariance and Student's t.
+
+    Slopes by central differences over a share of the scale (k,) > 0 of each parameter: far above
+    the integration error at sign changes of the speed, also where the parameter vanishes.
+    """
+    steps = _STEP * scale
+
+    def slopes(p: Array) -> Array:
+        sides = [[miss(p + sign * step) for sign in (1.0, -1.0)] for step in np.diag(steps)]
+        return np.stack([up - down for up, down in sides], axis=1) / (2.0 * steps)
+
+    fit = least_squares(miss, start, slopes, x_scale=scale, xtol=1e-9, ftol=1e-9)
     if not fit.success:
         raise InputError("decay", str(fit.message), "a decay by viscous and dry friction")
     freedom = len(fit.fun) - len(start)
