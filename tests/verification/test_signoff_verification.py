@@ -37,7 +37,9 @@ from camwright.pipeline.smoothing.required_lift import cam_lift
 
 GX120 = Path(__file__).parents[2] / "cases" / "gx120.toml"
 POSITIONS = 180
-CAM_CHECKS = ("contact_pressure", "edge_pressure", "shakedown", "first_yield")
+# Beside edge_pressure: the chamfers of the roller end the contact within the cam and raise the
+# pressure there by 1.9, tilted, which no steel of the cards bears.
+CAM_CHECKS = ("contact_pressure", "shakedown", "first_yield")
 
 
 @lru_cache(maxsize=1)
@@ -151,8 +153,9 @@ def test_a_hardened_cam_passes_its_own_checks_and_the_others_still_fail():
     for name in CAM_CHECKS:
         assert (soft[name].status, hard[name].status) == ("fail", "pass"), name
         assert hard[name].demand == pytest.approx(soft[name].demand)
-    for name in ("roller_static", "pressure_angle", "guide_pv_A"):
+    for name in ("roller_static", "pressure_angle", "guide_pv_A", "edge_pressure"):
         assert hard[name].status == "fail", name
+    assert 1.7 <= hard["edge_pressure"].demand / hard["contact_pressure"].demand <= 2.1
     assert "verify" in hard["contact_pressure"].source
 
 
@@ -186,7 +189,7 @@ def test_published_machine_by_finite_elements(hardened: bool) -> None:
     found = {check.id: check for check in all_checks(solved)}
     for name in CAM_CHECKS:
         assert found[name].status == ("pass" if hardened else "fail"), name
-    for name in ("roller_static", "pressure_angle", "guide_pv_A"):
+    for name in ("roller_static", "pressure_angle", "guide_pv_A", "edge_pressure"):
         assert found[name].status == "fail", name
     assert verdict(found.values()) == "fail"
     assert 0.34 <= demand(found["roller_static"]) <= 0.48
