@@ -71,7 +71,8 @@ class _Context(SpawnContext):
 def pool(workers: int) -> Iterator[ProcessPoolExecutor]:
     """A pool of spawned processes; an error cancels the tasks that have not started.
 
-    An interrupt ends the processes at once: of what they solve nothing is read any more.
+    An interrupt, or the death of a process, ends them at once: of what they solve nothing is read
+    any more.
 
     The number of threads is set before the processes load a BLAS: many processes of one thread are
     faster than few of many. Workers ignore the keyboard interrupt, which the parent handles, and
@@ -79,7 +80,7 @@ def pool(workers: int) -> Iterator[ProcessPoolExecutor]:
     """
     before = {name: os.environ.get(name) for name in THREADS}
     os.environ.update(dict.fromkeys(THREADS, "1"))
-    from concurrent.futures import ProcessPoolExecutor
+    from concurrent.futures import BrokenExecutor, ProcessPoolExecutor
 
     workers_pool = ProcessPoolExecutor(
         workers, mp_context=_Context(), initializer=as_worker, initargs=(os.getpid(),)
@@ -87,9 +88,10 @@ def pool(workers: int) -> Iterator[ProcessPoolExecutor]:
     try:
         yield workers_pool
     except BaseException as error:
-        if isinstance(error, KeyboardInterrupt):
+        if isinstance(error, KeyboardInterrupt | BrokenExecutor):
             for process in active_children():
                 process.terminate()
+            _stop_sending(workers_pool)
         workers_pool.shutdown(cancel_futures=True)
         raise
     finally:
@@ -99,6 +101,16 @@ def pool(workers: int) -> Iterator[ProcessPoolExecutor]:
                 os.environ.pop(name, None)
             else:
                 os.environ[name] = value
+
+
+def _stop_sending(workers_pool: ProcessPoolExecutor) -> None:
+    """Let the pool end although it is sending a task that no process reads any more.
+
+    Python 3.11.2 waits for ever for its thread that writes to the pipe; 3.11.7 closes the pipe.
+    """
+    queue = getattr(workers_pool, "_call_queue", None)
+    if queue is not None:
+        queue._reader.close()
 
 
 class Task(Protocol):

@@ -95,3 +95,24 @@ def test_an_interrupt_does_not_wait_for_what_runs():
         waiting = fresh.submit(time.sleep, 300)
         raise KeyboardInterrupt
     assert waiting.done()
+
+
+@pytest.mark.parametrize(
+    ("first", "end"),
+    [("pass", "raise KeyboardInterrupt"), ("dead = fresh.submit(os._exit, 1)", "dead.result()")],
+    ids=["interrupt", "dead process"],
+)
+def test_a_pool_ends_while_it_sends_a_task_that_no_process_reads(first, end):
+    """The tasks are longer than the buffer of a pipe; a pool that waits would never end."""
+    script = (
+        "import os\n"
+        "from camwright.pipeline.base.worker_processes import pool\n"
+        "with pool(1) as fresh:\n"
+        f"    {first}\n"
+        "    long = [fresh.submit(len, bytes(10_000_000)) for _ in range(4)]\n"
+        f"    {end}\n"
+    )
+    ended = subprocess.run(
+        [sys.executable, "-c", script], capture_output=True, text=True, check=False, timeout=60
+    )
+    assert ended.stderr.splitlines()[-1].split(":")[0].endswith(("Interrupt", "BrokenProcessPool"))
