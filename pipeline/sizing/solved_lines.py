@@ -7,7 +7,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -16,11 +15,11 @@ from numpy.typing import ArrayLike, NDArray
 from camwright.geometry.arrays import Array
 from camwright.pipeline.contact import hertz
 from camwright.pipeline.contact.finite_length import length_contact
-from camwright.pipeline.contact.finite_length.axial_drop import FiniteBody, FinitePair
-from camwright.pipeline.contact.finite_length.half_space import half_space_compliance
+from camwright.pipeline.contact.finite_length.axial_drop import FinitePair
+from camwright.pipeline.contact.finite_length.half_space import shared_compliance
 from camwright.pipeline.contact.finite_length.length_contact import LengthContact
 from camwright.pipeline.contact.finite_length.length_tiers import cycle_sizes
-from camwright.pipeline.contact.finite_length.pressure_cells import PressureCells, pressure_cells
+from camwright.pipeline.contact.finite_length.pressure_cells import pressure_cells
 from camwright.pipeline.cycle.length_history import signed_factor
 
 # Ratio of the half-widths, m, of neighbouring cells: contacts between them have the wider ones.
@@ -90,7 +89,7 @@ class SolvedLines:
             gaps = [
                 cells.integrated_gap(replace(pair, curvature=float(value))) for value in kappa[rows]
             ]
-            compliance = _compliance(cells.x.tobytes(), cells.y.tobytes(), pair.bodies)
+            compliance = shared_compliance(cells, pair.bodies)
             contact = length_contact.solve(
                 cells, compliance, gaps, load[rows], **{name: turn[rows]}
             )
@@ -121,9 +120,3 @@ def signed_range(
     sides = (0.0, 1.0) if lines.is_symmetric else (-1.0, 0.0, 1.0)
     signed = [signed_factor(lines, curvature, force, side * moment).value for side in sides]
     return SignedRange(np.max(signed, axis=0), moment)
-
-
-@lru_cache(maxsize=16)
-def _compliance(x: bytes, y: bytes, bodies: tuple[FiniteBody, FiniteBody]) -> Array:
-    cells = PressureCells(np.frombuffer(x).copy(), np.frombuffer(y).copy())
-    return half_space_compliance(cells, bodies)

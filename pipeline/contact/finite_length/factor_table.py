@@ -10,7 +10,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
-from functools import lru_cache
 
 import numpy as np
 import scipy
@@ -27,9 +26,8 @@ from camwright.pipeline.contact.finite_length import (
     length_tiers,
     pressure_cells,
 )
-from camwright.pipeline.contact.finite_length.axial_drop import FiniteBody, FinitePair, Straight
+from camwright.pipeline.contact.finite_length.axial_drop import FinitePair, Straight
 from camwright.pipeline.contact.finite_length.length_tiers import AxialFactors, cycle_sizes
-from camwright.pipeline.contact.finite_length.pressure_cells import PressureCells
 
 Index = NDArray[np.intp]
 
@@ -248,7 +246,7 @@ class FactorTable:
         def compute() -> dict[str, Array]:
             force = line_load * self.pair.contact_length
             couples = moments * force * self.pair.contact_length
-            compliance = _compliance(cells.x.tobytes(), cells.y.tobytes(), self.pair.bodies)
+            compliance = half_space.shared_compliance(cells, self.pair.bodies)
             gaps = np.tile(gap, (moments.size, 1))
             try:
                 level = length_contact.solve(cells, compliance, gap, force)
@@ -349,12 +347,6 @@ def factor_table(pair: FinitePair, mean_length: float) -> FactorTable:
     if not 0 < mean_length <= pair.contact_length:
         raise InputError("mean_length", mean_length, f"in (0, {pair.contact_length:.4g}] m")
     return FactorTable(pair, mean_length)
-
-
-@lru_cache(maxsize=8)
-def _compliance(x: bytes, y: bytes, bodies: tuple[FiniteBody, FiniteBody]) -> Array:
-    cells = PressureCells(np.frombuffer(x), np.frombuffer(y))
-    return half_space.half_space_compliance(cells, bodies)
 
 
 def _alike(*values: ArrayLike) -> list[Array]:

@@ -6,6 +6,8 @@ stiff. A mirrored pressure beyond the end, times a factor, restores the complian
 
 from __future__ import annotations
 
+from functools import lru_cache
+
 import numpy as np
 
 from camwright.geometry.arrays import Array
@@ -54,6 +56,16 @@ def _both_images(cells: PressureCells, length: float) -> Array:
     count = cells.shape
     other = image.reshape(*count, *count)[::-1, :, ::-1].reshape(image.shape)
     return np.asarray(image + other)
+
+
+def shared_compliance(cells: PressureCells, bodies: tuple[FiniteBody, FiniteBody]) -> Array:
+    """As `half_space_compliance`, computed once for the last few cells and bodies."""
+    return _of_edges(cells.x.tobytes(), cells.y.tobytes(), bodies)
+
+
+@lru_cache(maxsize=16)
+def _of_edges(x: bytes, y: bytes, bodies: tuple[FiniteBody, FiniteBody]) -> Array:
+    return half_space_compliance(PressureCells(np.frombuffer(x), np.frombuffer(y)), bodies)
 
 
 def influence(cells: PressureCells, shift: float, *, mirrored: bool) -> Array:
