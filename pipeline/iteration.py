@@ -169,7 +169,7 @@ def trials_of(
     sink: TrialSink | None = None,
     progress: Progress = SILENT,
     workers: Crew = ALONE,
-    ended: Callable[[Trial], object] = lambda _: None,
+    on_final: Callable[[Trial], object] = lambda _: None,
 ) -> Iteration:
     """Trials until one passes the checks of its tier or no better one is forecast.
 
@@ -179,7 +179,7 @@ def trials_of(
     tier : Tier          depth of the trials, at most CYCLE: the last one alone is certified
     sink : TrialSink     receives each trial when it is solved
     workers : Crew       processes for tolerance corners and forecasts
-    ended : callable     receives the final trial as soon as it is known to be the final one
+    on_final : callable  called with the final trial, before its files are written
 
     Raises
     ------
@@ -187,13 +187,13 @@ def trials_of(
         If a trial cannot be solved.
     """
     depth = min(tier, Tier.CYCLE)
-    task = _Task(case, torques, depth, sink or NotKept(), progress, workers, ended)
+    task = _Task(case, torques, depth, sink or NotKept(), progress, workers, on_final)
     if case.smoothing.kind == "constrained":
         return _constrained(task)
     if not case.balances:
         trial = task.solved(1, case, given_lift(case), lift_origin(case), GIVEN_LIFT)
         reason = f"prescribed lift: {_result(trial)}, not smoothed"
-        task.ended(trial)
+        task.on_final(trial)
         task.sink.keep(trial)
         return Iteration(trial, reason, (TrialPoint.of(trial),))
     return _smoothed(task)
@@ -209,7 +209,7 @@ class _Task:
     sink: TrialSink
     progress: Progress
     workers: Crew
-    ended: Callable[[Trial], object]
+    on_final: Callable[[Trial], object]
 
     def solved(
         self,
@@ -259,7 +259,7 @@ def _smoothed(task: _Task) -> Iteration:
         attempts.append(Attempt(smoother, within_depth(trial.checks)))
         after = next_smoother(attempts, case.solver.max_trials, forecast)
         if isinstance(after, Stop):
-            task.ended(trial)
+            task.on_final(trial)
         task.sink.keep(trial)
         if isinstance(after, Stop):
             return Iteration(trial, after.reason, tuple(points))
@@ -356,7 +356,7 @@ def _constrained(task: _Task) -> Iteration:
         if best is None or ranked <= best[0]:
             best = (ranked, trial)
         if last:
-            task.ended(best[1])
+            task.on_final(best[1])
         task.sink.keep(trial)
         points.append(TrialPoint.of(trial))
         if last:

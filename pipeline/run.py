@@ -127,7 +127,7 @@ def _solved(
     writer = TrialWriter(folder)
     sought: list[Task] = []
 
-    def ended(trial: Trial) -> None:
+    def on_final(trial: Trial) -> None:
         if depth is Tier.CERTIFIED:
             sought.extend(_remedies_begun(trial, workers, folder.path))
 
@@ -138,7 +138,7 @@ def _solved(
         sink=writer,
         progress=watch,
         workers=workers if depth is Tier.CERTIFIED else ALONE,
-        ended=ended,
+        on_final=on_final,
     )
     if final.corners:
         folder.write_corners(corners_record(final.case, final.corners))

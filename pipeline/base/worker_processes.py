@@ -106,10 +106,12 @@ def pool(workers: int) -> Iterator[ProcessPoolExecutor]:
 def _stop_sending(workers_pool: ProcessPoolExecutor) -> None:
     """Let the pool end although it is sending a task that no process reads any more.
 
-    Python 3.11.2 waits for ever for its thread that writes to the pipe; 3.11.7 closes the pipe.
+    Before Python 3.11.5 a pool waits for ever for its thread that writes to the pipe
+    (https://github.com/python/cpython/issues/94777). Later ones close the pipe themselves, in a
+    thread of theirs: to close it here, too, could close a descriptor twice.
     """
     queue = getattr(workers_pool, "_call_queue", None)
-    if queue is not None:
+    if queue is not None and sys.version_info < (3, 11, 5):
         queue._reader.close()
 
 

@@ -260,7 +260,7 @@ class CrownDesign(Displayed):
         return "\n".join([",".join(columns), *lines]) + "\n"
 
     def to_pandas(self) -> pd.DataFrame:
-        """The drop table; see `Columned.to_pandas`."""
+        """The drop table; see `Table.to_pandas`."""
         return table(self.columns()).to_pandas()
 
     def plot(self) -> tuple[Axes, ...]:

@@ -3,7 +3,7 @@
 The pressure over the peak pressure of plane strain depends on the half-width and on the moment over
 force and length; with a crown or a rounded end on the line load, too. The centre line is tabulated,
 so that its greatest value and the means at its ends follow at any place of the table. A node is
-computed when a contact beside it is asked for.
+computed when an interpolation first needs it.
 """
 
 from __future__ import annotations

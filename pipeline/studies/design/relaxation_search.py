@@ -40,7 +40,7 @@ class Lever:
     """
 
     name: str
-    given: float
+    stated: float
     loosest: float
     options: Callable[[float], Options]
     shown: Callable[[float], str]
@@ -65,7 +65,7 @@ def relaxations(
     for k, lever in enumerate(levers, start=1):
         value = _smallest(study, lever, _rollers(study.task, screened))
         if value is not None:
-            records.append((abs(log(value / lever.given)), _record(study.task, lever, value, out)))
+            records.append((abs(log(value / lever.stated)), _record(study.task, lever, value, out)))
         progress.advance(k, len(levers))
     return [record for _, record in sorted(records, key=lambda each: each[0])]
 
@@ -133,7 +133,7 @@ def _smallest(study: Study, lever: Lever, rollers: frozenset[str]) -> float | No
     point = _passing(study, lever, lever.loosest, rollers)
     if point is None:
         return None
-    low, best = lever.given, lever.reached(point, lever.loosest)
+    low, best = lever.stated, lever.reached(point, lever.loosest)
     while abs(log(best / low)) > WIDTH:
         middle = sqrt(low * best)
         point = _passing(study, lever, middle, rollers)
@@ -141,7 +141,7 @@ def _smallest(study: Study, lever: Lever, rollers: frozenset[str]) -> float | No
             low = middle
         else:
             best = _nearer(lever, middle, lever.reached(point, middle))
-    step = exp(copysign(WIDTH, lever.loosest - lever.given))
+    step = exp(copysign(WIDTH, lever.loosest - lever.stated))
     for _ in range(_TRIES):
         point = _passing(study, lever, best, rollers)
         if point is not None and settled(_relaxed(study, lever, best), point).passes:
@@ -152,7 +152,7 @@ def _smallest(study: Study, lever: Lever, rollers: frozenset[str]) -> float | No
 
 def _nearer(lever: Lever, *values: float) -> float:
     """Of some values that which is nearest to the value of the task."""
-    return min(values, key=lambda value: abs(value - lever.given))
+    return min(values, key=lambda value: abs(value - lever.stated))
 
 
 def _relaxed(study: Study, lever: Lever, value: float) -> Study:
@@ -174,7 +174,7 @@ def _record(task: DesignTask, lever: Lever, value: float, out: Path) -> Record:
     options = lever.options(value)
     return {
         "option": lever.name,
-        "from": lever.shown(lever.given),
+        "from": lever.shown(lever.stated),
         "to": lever.shown(value),
         "options": options,
         "command": task.relaxed(options).command(out),
