@@ -183,8 +183,10 @@ def factor_range(
     by_tilt = table.moment_at_tilt(curvature, force, np.broadcast_to(tilt, force.shape))
     most = (1.0 - _ROUND_OFF) * GREATEST_MOMENT * force * pair.contact_length
     moment = np.minimum(np.minimum(np.abs(by_tilt), couple), most)
-    level = signed_factor(table, curvature, force, np.zeros(force.size))
-    left, right = (signed_factor(table, curvature, force, side * moment) for side in (-1.0, 1.0))
+    sides = np.concatenate([np.zeros(force.size), -moment, moment])
+    three = signed_factor(table, np.tile(curvature, 3), np.tile(force, 3), sides)
+    parts = zip(*(np.split(values, 3) for values in three), strict=True)
+    level, left, right = (SignedFactor(*part) for part in parts)
     tilted = np.where(left.value > right.value, left.value, right.value)
     corner = np.where(left.value > right.value, left.at_corner, right.at_corner)
     at_corner = np.where(level.value > tilted, level.at_corner, corner)
