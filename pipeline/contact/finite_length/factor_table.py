@@ -252,7 +252,9 @@ class FactorTable:
             compliance = half_space.shared_compliance(cells, self.pair.bodies)
             gaps = np.tile(gap, (moments.size, 1))
             try:
-                level = length_contact.solve(cells, compliance, gap, force)
+                level = length_contact.solve(
+                    cells, compliance, gap, force, guess=cells.centres[0] < half_width
+                )
                 contact = length_contact.solve(
                     cells,
                     compliance,

@@ -9,6 +9,7 @@ from __future__ import annotations
 from functools import lru_cache
 
 import numpy as np
+from numpy.typing import NDArray
 
 from camwright.geometry.arrays import Array
 from camwright.pipeline.contact.finite_length.axial_drop import FiniteBody
@@ -78,54 +79,69 @@ def influence(cells: PressureCells, shift: float, *, mirrored: bool) -> Array:
     shift : float     of the loads along y, m
     mirrored : bool   whether the loads are mirrored at y = 0 before the shift
     """
-    loaded = shift + (-cells.y if mirrored else cells.y)
-    right = _double_integral(cells, cells.x, loaded)
-    left = _double_integral(cells, -cells.x, loaded)
-    count = cells.areas.size
-    return np.asarray((right + left).transpose(2, 0, 3, 1).reshape(count, count))
+    along = _Pairs(cells.y, -1.0 if mirrored else 1.0, shift)
+    right, left = (_Pairs(cells.x, sign) for sign in (1.0, -1.0))
+    values = _double_integral(right, along) + _double_integral(left, along)
+    (k, across), (m, lengthwise) = (_places(edges.size - 1) for edges in (cells.x, cells.y))
+    full = values[np.ix_(across.ravel(), lengthwise.ravel())].reshape(k, k, m, m)
+    return np.asarray(full.transpose(2, 0, 3, 1).reshape(k * m, k * m))
 
 
-def _double_integral(cells: PressureCells, across: Array, along: Array) -> Array:
-    """Integral of 1/r over cells (x, y) and loaded cells (x, y): (k, k, m, m), m3.
+def _places(count: int) -> tuple[int, NDArray[np.intp]]:
+    """A count, and the places (count, count) of pairs in any order among those in rising order."""
+    first, second = np.triu_indices(count)
+    places = np.empty((count, count), dtype=np.intp)
+    places[first, second] = places[second, first] = np.arange(first.size)
+    return count, places
 
-    Loaded cells by their edges in the order of the cells, falling where they are mirrored.
-    Axes: x of cell and of load, y of cell and of load.
+
+class _Pairs:
+    """Pairs of cells along one axis in rising order, the second mirrored by its sign and shifted.
+
+    Two cells that change places have the same distance, so that half of the pairs is enough.
+
+    Attributes: distances of the edges (e,), of the centres (p,), m; squares (p,), m2, the second
+    moments of both cells over their lengths; areas (p,), m2, products of the lengths.
     """
-    x, y = np.subtract.outer(cells.x, across), np.subtract.outer(cells.y, along)
-    values = _fourth_primitive(x[:, :, None, None], y)
-    for axis in range(4):
-        values = np.diff(values, axis=axis)
-    turned = (-1.0 if across[-1] < across[0] else 1.0) * (-1.0 if along[-1] < along[0] else 1.0)
-    return _far_field_replaced(turned * values, cells, across, along)
+
+    def __init__(self, edges: Array, sign: float, shift: float = 0.0) -> None:
+        first, second = np.triu_indices(edges.size)
+        self.edges = np.abs(edges[first] - sign * edges[second] - shift)
+        self._sign = sign
+        self._corners = _places(edges.size)[1]
+        self._cells = first, second = np.triu_indices(edges.size - 1)
+        steps, centres = np.diff(edges), 0.5 * (edges[1:] + edges[:-1])
+        self.centres = centres[first] - sign * centres[second] - shift
+        self.squares = (steps[first] ** 2 + steps[second] ** 2) / 12.0
+        self.areas = steps[first] * steps[second]
+
+    def integrated(self, primitive: Array) -> Array:
+        """Integrals (p, ...) over both cells from a primitive (e, ...) taken twice."""
+        i, j = self._cells
+        corner = self._corners
+        rising = primitive[corner[i + 1, j + 1]] - primitive[corner[i, j + 1]]
+        falling = primitive[corner[i + 1, j]] - primitive[corner[i, j]]
+        return np.asarray(-self._sign * (rising - falling))
 
 
-def _fourth_primitive(x: Array, y: Array) -> Array:
-    """Primitive of 1/r, twice in x and twice in y, m3."""
-    r = np.hypot(x, y)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        first = np.where(x == 0, 0.0, 0.5 * x**2 * y * np.arcsinh(y / np.abs(x)))
-        second = np.where(y == 0, 0.0, 0.5 * x * y**2 * np.arcsinh(x / np.abs(y)))
-    return np.asarray(first + second - r**3 / 6.0)
-
-
-def _far_field_replaced(near: Array, cells: PressureCells, across: Array, along: Array) -> Array:
-    """Integrals with those of distant cells by the second moments of both cells."""
-    (x, across_squares, across_areas), (y, along_squares, along_areas) = (
-        _pairs(cells.x, across), _pairs(cells.y, along)
-    )  # fmt: skip
-    x, across_squares = x[:, :, None, None], across_squares[:, :, None, None]
+def _double_integral(across: _Pairs, along: _Pairs) -> Array:
+    """Integral of 1/r over pairs of cells, (p across, p along), m3."""
+    primitive = _fourth_primitive(across.edges[:, None], along.edges)
+    near = along.integrated(across.integrated(primitive).T).T
+    x, y = across.centres[:, None], along.centres
+    x_squares, y_squares = across.squares[:, None], along.squares
     square = x**2 + y**2
-    is_far = square > _FAR**2 * 12.0 * np.maximum(across_squares, along_squares)
+    is_far = square > _FAR**2 * 12.0 * np.maximum(x_squares, y_squares)
     r2 = np.where(is_far, square, 1.0)
-    bend = across_squares * (3.0 * x**2 - r2) + along_squares * (3.0 * y**2 - r2)
-    area = across_areas[:, :, None, None] * along_areas
-    far = area / np.sqrt(r2) * (1.0 + 0.5 * bend / r2**2)
+    bend = x_squares * (3.0 * x**2 - r2) + y_squares * (3.0 * y**2 - r2)
+    far = across.areas[:, None] * along.areas / np.sqrt(r2) * (1.0 + 0.5 * bend / r2**2)
     return np.asarray(np.where(is_far, far, near))
 
 
-def _pairs(edges: Array, loaded: Array) -> tuple[Array, Array, Array]:
-    """Distances of centres (m), second moments over length (m2), products of lengths (m2)."""
-    steps, loads = np.diff(edges), np.abs(np.diff(loaded))
-    centres, sources = edges[:-1] + 0.5 * steps, 0.5 * (loaded[1:] + loaded[:-1])
-    squares = np.add.outer(steps**2, loads**2) / 12.0
-    return np.subtract.outer(centres, sources), squares, np.multiply.outer(steps, loads)
+def _fourth_primitive(x: Array, y: Array) -> Array:
+    """Primitive of 1/r, twice in x and twice in y, m3, for x and y >= 0."""
+    r = np.hypot(x, y)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        first = np.where(x == 0, 0.0, 0.5 * x**2 * y * np.arcsinh(y / x))
+        second = np.where(y == 0, 0.0, 0.5 * x * y**2 * np.arcsinh(x / y))
+    return np.asarray(first + second - r**3 / 6.0)
