@@ -26,6 +26,7 @@ ROWS_MIN = 12
 GAP_MAX = radians(20.0)
 GAP_OVER_MEDIAN_MAX = 5.0
 VALUE_MAX = 1e12  # SI, above any engine's values; sums of squares stay finite
+SEAM_MAX = 5.0  # step over the end of the period over the steepest other step
 END_TOLERANCE = 0.25  # of the median spacing, between the last sample and the end of the period
 
 
@@ -41,8 +42,9 @@ class Trace:
     angle : array (n,)         rad, strictly increasing over less than one period, n >= 12
     values : array (n,)        N m, Pa or rad/s
     period : float             rad
-    closure : float            difference of the values at both ends of the period, where the file
-                               has both
+    closure : float            difference of the values at both ends of the period where the file
+                               has both, else step from the last to the first row where it is
+                               steeper than any other by more than `SEAM_MAX`
     """
 
     source: str
@@ -176,7 +178,8 @@ def one_period(
     """
     written = values
     angle, values = without_end(angle, values, period)
-    closure = float(abs(written[-1] - written[0])) if values.size < written.size else 0.0
+    closed = values.size < written.size
+    closure = float(abs(written[-1] - written[0])) if closed else _seam(angle, values, period)
     trace = Trace(name, quantity, column, angle, values, period, closure)
     _guard_gaps(trace, lines, gap_max)
     return trace
@@ -188,6 +191,13 @@ def without_end(angle: Array, values: Array, period: float) -> tuple[Array, Arra
         return angle, values
     mean = 0.5 * (values[:1] + values[-1:])
     return angle[:-1], np.concatenate([mean, values[1:-1]])
+
+
+def _seam(angle: Array, values: Array, period: float) -> float:
+    """Step from the last to the first value of a period that does not continue the others, or 0."""
+    across, gap = float(abs(values[0] - values[-1])), float(angle[0] + period - angle[-1])
+    steepest = float(np.abs(np.diff(values) / np.diff(angle)).max())
+    return across if across > SEAM_MAX * steepest * gap else 0.0
 
 
 def guard_order(name: str, lines: Sequence[int], angle: Array, header: str) -> None:

@@ -116,6 +116,14 @@ def test_a_table_of_no_whole_turns_names_the_option(tmp_path: Path) -> None:
         task_of(table(tmp_path, 500.0), speed="300 rpm")
 
 
+def test_a_table_of_falling_angles_names_the_line(tmp_path: Path) -> None:
+    path = table(tmp_path)
+    header, *rows = path.read_text(encoding="utf-8").split()
+    path.write_text("\n".join([header, *rows[::-1]]), encoding="utf-8")
+    with pytest.raises(InputError, match="line 3, shaft_angle_deg = 350"):
+        task_of(path, speed="300 rpm")
+
+
 def test_a_table_without_units_is_refused(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="unit"):
         task_of(table(tmp_path, header="shaft_angle_deg,torque"), speed="300 rpm")

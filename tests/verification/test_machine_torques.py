@@ -246,6 +246,10 @@ def test_pressure_over_720_deg_with_cylinders_that_differ(tmp_path: Path) -> Non
             "not closed, 36 N m",
         ),
         (
+            "angle_deg,T_Nm\n" + "\n".join(f"{10 * k},{k}" for k in range(36)),
+            "not closed, 35 N m",
+        ),
+        (
             "angle_deg,T_Nm\n" + "\n".join(f"{10 * k},{(-1) ** k}" for k in range(36)),
             "36 rows; the work changes by",
         ),
@@ -258,7 +262,7 @@ def test_pressure_over_720_deg_with_cylinders_that_differ(tmp_path: Path) -> Non
             "one column of torque, or column = the beginning of its header",
         ),
     ],
-    ids=["empty", "no rows", "unit", "constant", "open", "aliased", "cycle", "columns"],
+    ids=["empty", "no rows", "unit", "constant", "open", "ramp", "aliased", "cycle", "columns"],
 )
 def test_a_bad_table_gets_one_clear_line(tmp_path: Path, text: str, words: str) -> None:
     path = tmp_path / "torque.csv"
@@ -267,6 +271,16 @@ def test_a_bad_table_gets_one_clear_line(tmp_path: Path, text: str, words: str) 
         tabled_torque(TabledTorqueFile(file="torque.csv"), path)
     assert words in str(error.value)
     assert "\n" not in str(error.value)
+
+
+def test_a_ramp_whose_end_is_stated_is_a_sawtooth(tmp_path: Path) -> None:
+    """Energy swing of a sawtooth of amplitude a about its mean over 2 pi: pi a / 4."""
+    path = tmp_path / "torque.csv"
+    rows = [f"{k},{0.1 * k:g}" for k in range(360)]
+    path.write_text("\n".join(["angle_deg,T_Nm", *rows, "360,0"]))
+    torque = tabled_torque(TabledTorqueFile(file="torque.csv"), path).torque(grid(720))
+    swing = np.ptp(np.cumsum(torque - torque.mean())) * TURN / 720
+    assert swing == pytest.approx(36.0 * np.pi / 4.0, rel=5e-3)
 
 
 def test_a_good_table_is_its_own_torque(tmp_path: Path) -> None:

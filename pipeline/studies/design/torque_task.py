@@ -13,7 +13,7 @@ import numpy as np
 from camwright.geometry.arrays import FULL_TURN, Array, readonly
 from camwright.geometry.errors import InputError
 from camwright.pipeline.base import units
-from camwright.pipeline.torque.angle_trace import ROWS_MIN
+from camwright.pipeline.torque.angle_trace import guard_order
 from camwright.pipeline.torque.period import Period
 from camwright.pipeline.torque.tabled_torque import TabledTorqueFile, tabled_torque
 from camwright.pipeline.torque.torque import SAMPLES, uniform_cycle
@@ -276,9 +276,9 @@ def _cycle(path: Path, cycle: str | float | None) -> float:
         return _number(cycle, "deg", "--cycle", above=0.0)
     text = trace_text(path)
     at, factor = angle_column(text.name, text.header)
-    angle = text.numbers((at,))[:, 0] * factor
-    if angle.size < ROWS_MIN:
-        raise InputError(text.name, f"{angle.size} rows", f"{ROWS_MIN} rows or more")
+    written = text.numbers((at,))[:, 0]
+    guard_order(text.name, text.line_numbers, written, text.header[at])
+    angle = written * factor
     spacing = float(np.median(np.diff(angle)))
     span = float(angle[-1] - angle[0])
     for whole in (span, span + spacing):
