@@ -35,7 +35,7 @@ def whole(folder):
     idle = text[: text.index('[[load_case]]\nname = "overspeed"')]
     assert idle.count(over) == 1
     assert idle.count("positions = 720") == 1
-    idle = idle.replace("positions = 720", "positions = 180")
+    idle = idle.replace("positions = 720", "positions = 90")
     path = folder / "case.toml"
     path.write_text(idle.replace(over, 'unbalance = "9999 mm/s"') + SCOPE, encoding="utf-8")
     return path

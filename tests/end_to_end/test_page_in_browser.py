@@ -168,9 +168,15 @@ def test_the_filters_of_the_checks_work_by_keyboard(report: Path, tab: Tab) -> N
     assert shown.count() == passed
 
 
-@pytest.mark.parametrize("scheme", ["light", "dark"])
-@pytest.mark.parametrize("width", [400, 1300])
-def test_axe_finds_nothing(report: Path, tab: Tab, scheme: str, width: int) -> None:
+@pytest.mark.parametrize(
+    ("width", "scheme"),
+    [
+        (400, "light"), (1300, "dark"),
+        pytest.param(400, "dark", marks=pytest.mark.slow),
+        pytest.param(1300, "light", marks=pytest.mark.slow),
+    ],
+)  # fmt: skip
+def test_axe_finds_nothing(report: Path, tab: Tab, width: int, scheme: str) -> None:
     axe = pytest.importorskip("axe_playwright_python.sync_playwright").Axe()
     context = tab.page.context.browser.new_context(
         viewport={"width": width, "height": 900}, color_scheme=scheme, bypass_csp=True

@@ -24,6 +24,7 @@ from camwright.pipeline.case.case_file import read_case
 from camwright.pipeline.case.load_case_torque import engine_torques
 from camwright.pipeline.case.machine import machines
 from camwright.pipeline.contact import contact_benchmarks
+from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.contact.two_scale import CycleBodies, two_scale_history
 from camwright.pipeline.cycle.contact_setup import contact_pair
 from camwright.pipeline.cycle.solution import CONTACT
@@ -394,7 +395,7 @@ def test_a_run_may_begin_at_the_lift(tmp_path: Path) -> None:
     text = text.replace(engine.group(), '[lift]\nfile = "lift.csv"\n\n[mechanism]')
     (tmp_path / "case.toml").write_text(text)
     case = read_case(tmp_path / "case.toml")
-    run = run_case(case, tmp_path / "out", jobs=1, progress=Silent())
+    run = run_case(case, tmp_path / "out", jobs=1, progress=Silent(), depth=Tier.CYCLE)
     summary = run.summary
     assert not (tmp_path / "out" / "1_torque.csv").exists()
     assert summary["headline"]["torque_std_before_Nm"] is None

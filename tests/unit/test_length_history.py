@@ -31,7 +31,9 @@ def cycle(**values):
     case = with_values(read_case(CASES / "gx120-redesign.toml"), stated)
     theta = uniform_turn(360)
     lift = Lift(theta, 4e-3 * (1.0 - np.cos(theta)))
-    return cw.solve(case, case.contour(lift), tier=cw.Tier.PREVIEW, positions=90).solution.cycles[0]
+    contour = case.contour(lift)
+    trial = cw.solve(case, contour, tier=cw.Tier.PREVIEW, positions=90, corners=False)
+    return trial.solution.cycles[0]
 
 
 def kernel(made, place, moment):

@@ -148,7 +148,8 @@ def test_a_smaller_error_takes_more_arcs(error: float) -> None:
     assert finer.bulges.size / arcs.bulges.size == pytest.approx(10 ** (1 / 3), rel=0.3)
 
 
-def test_arcs_finer_than_numbers_are_refused() -> None:
+def test_arcs_finer_than_numbers_are_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(sys.modules[arc_polyline.__module__], "_HALVINGS", 9)
     with pytest.raises(GeometryError, match="must be <= 1e-21 m"):
         arc_polyline(wavy(), 1e-21)
     with pytest.raises(InputError):
