@@ -122,6 +122,15 @@ def test_a_mirrored_moment_mirrors_the_pressure():
     np.testing.assert_allclose(edges, -edges[::-1], atol=1e-15)
 
 
+def test_contacts_do_not_depend_on_how_many_are_interpolated():
+    table = factor_table(pair(8e-3), MEAN_LENGTH)
+    contacts = loads(table.pair, 3001, seed=4)
+    _, together = table.axial_pressure(*contacts)  # by a sparse matrix
+    parts = [table.axial_pressure(*(each[k::7] for each in contacts))[1] for k in range(7)]
+    for k, part in enumerate(parts):
+        np.testing.assert_array_equal(part, together[k::7])
+
+
 @pytest.mark.slow
 def test_a_crown_of_one_side_loads_the_other():
     y = np.linspace(-0.5 * LENGTH, 0.5 * LENGTH, 21)
