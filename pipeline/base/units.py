@@ -35,10 +35,11 @@ _LONGEST = 80
 
 
 class _Common(NamedTuple):
-    """Coherent SI value of one unit and its powers of kg, m, s, K and rad."""
+    """Coherent SI value of one unit, its powers of kg, m, s, K and rad, and that of its zero."""
 
     size: Decimal
     powers: tuple[int, int, int, int, int]
+    zero: Decimal = Decimal(0)
 
 
 def _common(size: str, *powers: int) -> _Common:
@@ -80,6 +81,8 @@ _COMMON = {
     "kW": _common("1e3", 1, 2, -3),
 }
 """Units read without pint. Reciprocals, products and powers of them are, too."""
+_CELSIUS, _ZERO_CELSIUS = "degC", Decimal("273.15")
+"""Unit with a zero of its own, K, read without pint where it stands alone."""
 _COMMON_TERM = re.compile(r"([A-Za-z]+)(?:(?:\^|\*\*)?(-?[1-9]))?")
 _BETWEEN = re.compile(r"\s*(?<!\*)([*/])(?!\*)\s*|\s+")
 
@@ -87,6 +90,8 @@ _BETWEEN = re.compile(r"\s*(?<!\*)([*/])(?!\*)\s*|\s+")
 @lru_cache(maxsize=512)
 def _from_table(text: str) -> _Common | None:
     """Unit composed of those of the table, from left to right as pint does; None otherwise."""
+    if text == _CELSIUS:
+        return _COMMON["K"]._replace(zero=_ZERO_CELSIUS)
     if text and (len(text) > _LONGEST or not _UNIT.fullmatch(text)):
         return None
     size, powers, sign = Decimal(1), [0] * 5, 1
@@ -139,7 +144,7 @@ def _si_unit(text: str) -> PlainUnit:
 def _to_si(number: Decimal, unit: str, wanted: str) -> Decimal:
     known = _from_table(unit)
     if known is not None:
-        return number * known.size
+        return number * known.size + known.zero
     converted: Decimal = _registry().Quantity(number, _unit(unit)).to(_si_unit(wanted)).magnitude
     return converted
 
@@ -147,7 +152,7 @@ def _to_si(number: Decimal, unit: str, wanted: str) -> Decimal:
 def _from_si(number: Decimal, unit: str) -> Decimal:
     known = _from_table(unit)
     if known is not None:
-        return number / known.size
+        return (number - known.zero) / known.size
     converted: Decimal = _registry().Quantity(number, _si_unit(unit)).to(_unit(unit)).magnitude
     return converted
 
@@ -268,7 +273,6 @@ def column(name: str, unit: str) -> str:
 
 COUNTS = ("corners", "crossings", "data", "rotations", "waivers")
 _PURE = ("", "-", "degC", *COUNTS)  # a Celsius temperature is a number of degrees
-_ZERO_CELSIUS = 273.15
 
 
 def in_unit(value: float, unit: str) -> float:
@@ -284,7 +288,7 @@ def in_unit(value: float, unit: str) -> float:
 
 def celsius(temperature: float) -> float:
     """Celsius temperature, degC, of a temperature in K."""
-    return temperature - _ZERO_CELSIUS
+    return temperature - float(_ZERO_CELSIUS)
 
 
 def shown(value: float, unit: str, digits: int = 4) -> str:

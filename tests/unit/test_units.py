@@ -135,6 +135,16 @@ def test_table_of_units_agrees_with_pint(form: str) -> None:
         assert abs(size / table.size - 1) < Decimal("1e-25"), text
 
 
+@pytest.mark.parametrize("number", ["20", "-40", "1e3", "0.05", "-273.15", "70.000001"])
+def test_a_celsius_temperature_is_that_of_pint(number: str) -> None:
+    registry, value = units._registry(), Decimal(number)
+    kelvin = registry.Quantity(value, "degC").to("K").magnitude
+    assert units._to_si(value, "degC", "K") == kelvin
+    assert units._from_si(kelvin, "degC") == registry.Quantity(kelvin, "K").to("degC").magnitude
+    assert units.same_dimension("degC", "K") and not units.same_dimension("degC", "m")
+    assert units._from_table("W/degC") is None
+
+
 @pytest.mark.parametrize(
     "text", ["m//s", "m /", "/m", "m*", "m*/s", "1//m", "m**", "m^2^2", " m", "1", "1 m", "m*1/s"]
 )
