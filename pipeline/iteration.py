@@ -44,13 +44,13 @@ from camwright.pipeline.smoothing.fe_correction import (
     corrected,
     design_record,
     rank,
-    redrawn,
     solved_ripple,
 )
 from camwright.pipeline.smoothing.infeasibility import infeasibility
 from camwright.pipeline.smoothing.multistart import Explored, explored
 from camwright.pipeline.smoothing.problem_setup import problem_of, roller_problems
 from camwright.pipeline.smoothing.required_lift import cam_lift
+from camwright.pipeline.smoothing.scenario import redrawn
 from camwright.pipeline.smoothing.shadow_prices import limits_in_use, machine_prices
 from camwright.pipeline.smoothing.smoothers import Smoother
 from camwright.pipeline.smoothing.smoothing_feedback import Stop, next_smoother

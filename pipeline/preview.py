@@ -2,24 +2,37 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Mapping
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
+import numpy as np
+
+from camwright.geometry.lift import Lift
+from camwright.pipeline.base import disk_cache
 from camwright.pipeline.base.progress import SILENT, Progress
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_values import refused_as_written
 from camwright.pipeline.case.load_case_torque import engine_torques
 from camwright.pipeline.contact.tiers import Tier
+from camwright.pipeline.results.run_folder import versions
 from camwright.pipeline.results.trial import CONSTRAINED, GIVEN_LIFT, SmoothingRecord, Trial
 from camwright.pipeline.smoothing.required_lift import cam_lift
+from camwright.pipeline.smoothing.scenario import DesignVariables, redrawn
 from camwright.pipeline.smoothing.smoothers import Smoother
 from camwright.pipeline.solver import judged_at_corners, solve
 from camwright.pipeline.torque.torque import Torque
 
+if TYPE_CHECKING:
+    from camwright.pipeline.smoothing.fe_correction import SynthesisRecord
+
 _ROUNDS = 4  # of synthesis and correction
 
 
-def preview_case(case: Case, *, corners: bool = True, progress: Progress = SILENT) -> Trial:
+def preview_case(
+    case: Case, *, corners: bool = True, kept: bool = False, progress: Progress = SILENT
+) -> Trial:
     """Cam of a case with the contact by closed forms; no sign-off.
 
     A constrained synthesis is corrected for length and clearance of the guides until no
@@ -28,6 +41,8 @@ def preview_case(case: Case, *, corners: bool = True, progress: Progress = SILEN
     Parameters
     ----------
     corners : bool   judge each check at its worst tolerance corner
+    kept : bool      read the cam of a constrained synthesis from the disk cache, where an earlier
+                     preview of the same case by the same program has kept it
 
     Returns
     -------
@@ -39,10 +54,10 @@ def preview_case(case: Case, *, corners: bool = True, progress: Progress = SILEN
         If the case has no such cam.
     """
     with refused_as_written(case):
-        return _previewed(case, corners, progress)
+        return _previewed(case, corners, kept, progress)
 
 
-def _previewed(case: Case, corners: bool, progress: Progress) -> Trial:
+def _previewed(case: Case, corners: bool, kept: bool, progress: Progress) -> Trial:
     torques = engine_torques(case)
     if case.smoothing.kind != "constrained":
         contour = case.contour(cam_lift(case, torques))
@@ -51,8 +66,57 @@ def _previewed(case: Case, corners: bool, progress: Progress) -> Trial:
         )
         smoother = Smoother.from_case(case.smoothing, case.period) if case.balances else None
         return replace(trial, smoothing=smoothing_record(smoother))
-    trial = _synthesised(case, torques, progress)
+    made = _kept if kept else _synthesised
+    trial = made(case, torques, progress)
     return judged_at_corners(trial, torques) if corners else trial
+
+
+def _kept(case: Case, torques: Mapping[str, Torque], progress: Progress) -> Trial:
+    """As `_synthesised`; solved again for the cam in the disk cache, if it is there."""
+    solved: list[Trial] = []
+
+    def compute() -> disk_cache.Arrays:
+        trial = _synthesised(case, torques, progress)
+        solved.append(trial)
+        spring, lift = trial.case.spring, trial.contour.pitch.lift
+        drawn = spring.rate, spring.preload, trial.case.cam.prime_radius
+        return {
+            "variables": np.array(drawn),
+            "theta": lift.theta,
+            "lift": lift.values,
+            "gain": np.array(trial.solution.synthesis_gain),
+            "record": np.frombuffer(json.dumps(trial.synthesis).encode(), dtype=np.uint8),
+        }
+
+    inputs = case.sha256, tuple(versions().items())
+    cam = disk_cache.kept("synthesis", inputs, compute, ())
+    if solved:
+        return solved[0]
+    drawn = redrawn(case, DesignVariables(*cam["variables"].tolist()))
+    record = json.loads(cam["record"].tobytes())
+    lift, gain = Lift(cam["theta"], cam["lift"]), float(cam["gain"])
+    return _trial_of(drawn, lift, gain, record, torques, progress)
+
+
+def _trial_of(
+    drawn: Case,
+    lift: Lift,
+    gain: float,
+    record: SynthesisRecord,
+    torques: Mapping[str, Torque],
+    progress: Progress,
+) -> Trial:
+    """Trial of the cam of a synthesis, without tolerance corners."""
+    trial = solve(
+        drawn,
+        drawn.contour(lift),
+        tier=Tier.PREVIEW,
+        torques=torques,
+        corners=False,
+        synthesis_gain=gain,
+        progress=progress,
+    )
+    return replace(trial, smoothing=CONSTRAINED, synthesis=record)
 
 
 def _synthesised(case: Case, torques: Mapping[str, Torque], progress: Progress) -> Trial:
@@ -66,7 +130,6 @@ def _synthesised(case: Case, torques: Mapping[str, Torque], progress: Progress) 
         corrected,
         design_record,
         rank,
-        redrawn,
         solved_ripple,
     )
     from camwright.pipeline.smoothing.multistart import explored
@@ -81,21 +144,8 @@ def _synthesised(case: Case, torques: Mapping[str, Torque], progress: Progress) 
         else:
             first = explored(problem, 1)
             design, problem = first.design, replace(problem, coefficients=first.splines)
-        drawn = redrawn(case, design.variables)
-        contour = drawn.contour(design.lift())
-        trial = replace(
-            solve(
-                drawn,
-                contour,
-                tier=Tier.PREVIEW,
-                torques=torques,
-                corners=False,
-                synthesis_gain=design.gain,
-                progress=progress,
-            ),
-            smoothing=CONSTRAINED,
-            synthesis=design_record(design, problem),
-        )
+        drawn, record = redrawn(case, design.variables), design_record(design, problem)
+        trial = _trial_of(drawn, design.lift(), design.gain, record, torques, progress)
         comparisons.append(compared(problem, design, trial.solution))
         ranked = rank(trial.checks, solved_ripple(trial.cycles))
         if best is None or ranked <= best[0]:

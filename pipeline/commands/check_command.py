@@ -448,7 +448,7 @@ def _checked_case(path: Path, remedies: bool) -> tuple[dict[str, Any], Clock]:
         say(line)
     with progress_shown() as progress:
         progress.stage(f"preview of {case.name}")
-        trial = preview_case(case, progress=progress)
+        trial = preview_case(case, kept=True, progress=progress)
     made = trial.checks
     if remedies:
         from camwright.pipeline.remedies.remedy_search import remedies_of, with_remedies

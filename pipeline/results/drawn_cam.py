@@ -15,8 +15,7 @@ from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_file import read_case
 from camwright.pipeline.results import run_reader
 from camwright.pipeline.results.run_records import SPLINE
-from camwright.pipeline.smoothing.fe_correction import redrawn
-from camwright.pipeline.smoothing.scenario import DesignVariables
+from camwright.pipeline.smoothing.scenario import DesignVariables, redrawn
 
 _SPLINE_ROUNDING = 1e-9  # of coefficients computed by another machine
 

@@ -62,6 +62,7 @@ _LIBRARIES = (
     "vtk",
     "matplotlib",
 )
+_SOURCES = (".py", ".toml")
 
 
 def versions() -> dict[str, str]:
@@ -433,11 +434,13 @@ def _version(name: str) -> str:
 
 
 def _source_sha256() -> str:
-    """SHA-256 of the modules of the project, shortened."""
+    """SHA-256 of the modules and tables of the project, shortened."""
     root = Path(camwright.__file__).parent
     digest = hashlib.sha256()
     for package in ("geometry", "meshes", "pipeline", "reports"):
-        for file in sorted((root / package).rglob("*.py")):
+        for file in sorted((root / package).rglob("*")):
+            if file.suffix not in _SOURCES:
+                continue
             digest.update(f"\0{file.relative_to(root).as_posix()}\0".encode())
             digest.update(file.read_bytes())
     return digest.hexdigest()[:16]

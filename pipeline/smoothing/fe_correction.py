@@ -12,7 +12,6 @@ import scipy
 from camwright.geometry.arrays import Array
 from camwright.pipeline.base.material import ROOM
 from camwright.pipeline.base.units import in_unit
-from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.limits import TORQUE_REDUCTION
 from camwright.pipeline.checks.check import Check, depends_on_lift, within_depth
 from camwright.pipeline.checks.guide_strength import GUIDES, Side, hottest
@@ -31,7 +30,7 @@ from camwright.pipeline.smoothing.multistart import (
     StartsRecord,
 )
 from camwright.pipeline.smoothing.sampled_problem import Search
-from camwright.pipeline.smoothing.scenario import Correction, DesignVariables, Ratings
+from camwright.pipeline.smoothing.scenario import Correction, Ratings
 from camwright.pipeline.smoothing.shadow_prices import MachinePriceRecord, PriceRecord, prices
 from camwright.pipeline.smoothing.synthesis_problem import RESERVE, Design, Problem
 
@@ -449,13 +448,6 @@ def _corrections_record(problem: Problem) -> dict[str, dict[str, list[float]]]:
         }
         for item in problem.scenarios
     }  # fmt: skip
-
-
-def redrawn(case: Case, variables: DesignVariables) -> Case:
-    """The case with the spring and prime radius of a design."""
-    spring = replace(case.spring, rate=float(variables.rate), preload=float(variables.preload))
-    cam = replace(case.cam, prime_radius=float(variables.prime_radius))
-    return case.model_copy(update={"spring": spring, "cam": cam})
 
 
 def design_record(

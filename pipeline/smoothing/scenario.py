@@ -9,6 +9,7 @@ from typing import Literal, NamedTuple
 import numpy as np
 
 from camwright.geometry.arrays import FULL_TURN, Array, readonly, uniform_turn
+from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.limits import AnyLimit
 from camwright.pipeline.checks.key_strength import KeywayRoot
 from camwright.pipeline.checks.roller_bearing import Grease
@@ -42,6 +43,13 @@ class DesignVariables:
     def closing(self) -> float:
         """Force towards the cam at zero lift and rest, N."""
         return self.preload + self.dead_load
+
+
+def redrawn(case: Case, variables: DesignVariables) -> Case:
+    """The case with the spring and prime radius of a design."""
+    spring = replace(case.spring, rate=float(variables.rate), preload=float(variables.preload))
+    cam = replace(case.cam, prime_radius=float(variables.prime_radius))
+    return case.model_copy(update={"spring": spring, "cam": cam})
 
 
 class ModifiedLife(NamedTuple):

@@ -45,11 +45,16 @@ from camwright.pipeline.smoothing.fe_correction import (
     compared,
     corrected,
     corrections_of,
-    redrawn,
 )
 from camwright.pipeline.smoothing.problem_setup import problem_of
 from camwright.pipeline.smoothing.sampled_problem import SHAPE_LIMITS, Search
-from camwright.pipeline.smoothing.scenario import Correction, DesignVariables, Face, Scenario
+from camwright.pipeline.smoothing.scenario import (
+    Correction,
+    DesignVariables,
+    Face,
+    Scenario,
+    redrawn,
+)
 from camwright.pipeline.smoothing.shadow_prices import prices
 from camwright.pipeline.smoothing.synthesis_problem import Problem
 

@@ -21,9 +21,9 @@ from camwright.pipeline.checks.check import Check, Verdict, in_order, within_dep
 from camwright.pipeline.follower.camshaft_loads import unbalance
 from camwright.pipeline.preview import preview_case
 from camwright.pipeline.smoothing.constrained_synthesis import approached
-from camwright.pipeline.smoothing.fe_correction import redrawn
 from camwright.pipeline.smoothing.multistart import continued
 from camwright.pipeline.smoothing.problem_setup import problem_of
+from camwright.pipeline.smoothing.scenario import redrawn
 from camwright.pipeline.smoothing.synthesis_problem import coarsened
 from camwright.pipeline.torque.torque import Torque
 
