@@ -89,6 +89,12 @@ def kept(
     return arrays
 
 
+def holds(kind: str, inputs: Hashable, modules: tuple[ModuleType, ...]) -> bool:
+    """Whether there is an entry; see `kept`."""
+    place = folder()
+    return place is not None and (place / f"{key(kind, inputs, modules)}.npz").is_file()
+
+
 def _laid_out(arrays: Arrays) -> dict[str, Array]:
     """Arrays in C order, as they are read back: sums over them then agree to the bit."""
     return {name: np.array(values, order="C") for name, values in arrays.items()}

@@ -6,7 +6,7 @@ import datetime as dt
 from math import radians
 from typing import Annotated, Literal, Self
 
-from pydantic import Field, model_validator
+from pydantic import Field, field_validator, model_validator
 
 from camwright.geometry.errors import InputError
 from camwright.pipeline.base.quantities import (
@@ -127,8 +127,15 @@ class Solver(Section):
     positions: Annotated[int, Field(ge=36, le=7200)] = 720
     max_trials: Annotated[int, Field(ge=1, le=20)] = 6
     certificate_positions: Annotated[int, Field(ge=1, le=64)] = 8
-    end_elements: Annotated[int, Field(ge=2, le=12)] | None = None
+    end_elements: Annotated[int, Field(ge=0, le=12)] = 6
     end_angles: tuple[CamAngle, ...] = ()
+
+    @field_validator("end_elements")
+    @classmethod
+    def _none_or_two(cls, value: int) -> int:
+        if value == 1:
+            raise InputError("solver.end_elements", value, "0, without finite elements, or >= 2")
+        return value
 
 
 class Waiver(Section):

@@ -436,7 +436,8 @@ _SIGNED = (
     "contact pressure of plane strain times the factor along the line of contact, at each angle"
     " without tilt and under the greatest moment of friction in the guides and axial offset; at a"
     " corner the mean over limits.end_mean_length, else the greatest pressure; half-spaces with"
-    " mirrored ends"
+    " mirrored ends, in a certified run times the ratio of finite elements to them at the certified"
+    " angles"
 )
 
 

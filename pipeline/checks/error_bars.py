@@ -43,19 +43,22 @@ def with_error_bars(solution: Solution, checks: Iterable[Check]) -> tuple[Check,
 
     A demand on a guide has the discretisation uncertainty of the guide reaction, and one on its
     edges `GUIDE_EDGE_ERROR` besides. One on the contact has the greatest sum of difference and grid
-    convergence index of its certified quantity, and the sampling error; one on the line of contact
-    the difference of half-spaces from finite elements besides; one on the bore the change with a
-    finer mesh. Without a certificate its error is not known.
+    convergence index of its certified quantity, the sampling error, and that of the pressure in the
+    middle of a crowned line over plane strain; one on the line of contact that of its factor
+    instead; one on the bore the change with a finer mesh. Without a certificate its error is not
+    known.
     """
     checks = tuple(checks)
     beam = [each.demand for each in checks if each.id == GUIDE_ERROR]
+    centre = max((each.length.centre_error for each in solution.cycles if each.length), default=0.0)
     guides = None if beam in ([], [None]) else float(beam[0] or 0.0)
 
     def share(one: Check) -> float | None:
-        contact = contact_error(solution, FIGURES.get(one.id))
+        plane = contact_error(solution, FIGURES.get(one.id))
+        contact = None if plane is None else plane + centre
         meshes: dict[Error, float | None] = {
             "contact": contact,
-            "ends": None if contact is None else contact + length_error(solution),
+            "ends": None if plane is None else plane + length_error(solution),
             "guides": guides,
             "guide_edges": None if guides is None else guides + GUIDE_EDGE_ERROR,
             "bore": solution.bore_error,

@@ -18,6 +18,7 @@ In the order of the calculation:
 | `ripple_map`         | torque ripple by speed and engine load          | std ratio, -           |
 | `axial_pressure`     | pressure along the line at every position       | y, m; p, Pa            |
 | `guide_pressure`     | line load of the guides, pressure in the bores  | P', N/m; p, Pa         |
+| `length_records`     | contacts of finite length as records            | K, -                   |
 | `contact_store`      | store of solved pieces of the contact           |                        |
 | `certificate_angles` | angles of the certificate, their solution       | theta, rad             |
 | `solution`           | all load cases of a cam, by one tier            |                        |

@@ -8,6 +8,7 @@ from dataclasses import asdict, dataclass, replace
 import numpy as np
 
 from camwright.geometry.arrays import Array
+from camwright.geometry.errors import ResultError
 from camwright.pipeline.base.worker_processes import Crew, Task
 from camwright.pipeline.contact.certificate import (
     EDGES,
@@ -17,11 +18,11 @@ from camwright.pipeline.contact.certificate import (
 )
 from camwright.pipeline.contact.contact_history import CertificatePoint, ContactHistory
 from camwright.pipeline.contact.contact_pair import ContactPair
-from camwright.pipeline.contact.finite_length.factor_table import factor_table
-from camwright.pipeline.contact.finite_length.length_certificate import LengthLoad
+from camwright.pipeline.contact.finite_length.length_certificate import ONE_MESH, LengthLoad
+from camwright.pipeline.contact.finite_length.length_tiers import plane_strain
 from camwright.pipeline.cycle.contact_store import NOT_STORED, ContactStore, piece_key
 from camwright.pipeline.cycle.cycle import Cycle
-from camwright.pipeline.cycle.length_history import LengthHistory, signed_factor
+from camwright.pipeline.cycle.length_history import length_table, signed_factor
 
 _STORED_AS = ".certificate"  # no name of a load case
 FINEST = 2
@@ -54,46 +55,62 @@ def positions_to_certify(cycles: Sequence[Cycle], count: int) -> tuple[tuple[int
 def length_loads(cycles: Sequence[Cycle], angles: Sequence[float]) -> tuple[LengthLoad, ...]:
     """Contacts of the bodies with ends to be solved by finite elements.
 
-    The greatest signed pressure of all load cases, then those of the first load case nearest to cam
-    angles (rad) under load, each at the worst moment of its range; empty without ends.
+    The greatest signed pressure of all load cases; that of each other load case whose contact is
+    about as wide, so that the same blocks serve; those of the first load case nearest to cam angles
+    (rad) under load. Each at the worst moment of its range; empty without ends.
     """
     pressures = [np.nan_to_num(cycle.signed_pressure) for cycle in cycles]
-    case = int(np.argmax([pressure.max() for pressure in pressures]))
-    if not pressures[case].max() > 0:
+    worst = [(case, int(np.argmax(pressure))) for case, pressure in enumerate(pressures)]
+    worst = [at for at in worst if pressures[at[0]][at[1]] > 0]
+    if not worst:
         return ()
-    chosen = [(case, int(np.argmax(pressures[case])))]
+    first = max(worst, key=lambda at: float(pressures[at[0]][at[1]]))
+    chosen = {at: _length_load(cycles, at) for at in (first, *worst)}
+    width = _half_width(chosen[first])
+    chosen = {
+        at: load
+        for at, load in chosen.items()
+        if width / ONE_MESH < _half_width(load) < width * ONE_MESH
+    }
     for angle in angles:
         apart = np.abs(np.angle(np.exp(1j * (cycles[0].theta - angle))))
-        near = int(np.argmin(np.where(pressures[0] > 0, apart, np.inf)))
-        if pressures[0][near] > 0 and (0, near) not in chosen:
-            chosen.append((0, near))
-    return tuple(
-        _length_load(cycles[at], length, index)
-        for at, index in chosen
-        if (length := cycles[at].length) is not None
-    )
+        at = 0, int(np.argmin(np.where(pressures[0] > 0, apart, np.inf)))
+        if pressures[0][at[1]] > 0 and at not in chosen:
+            chosen[at] = _length_load(cycles, at)
+    return tuple(chosen.values())
 
 
-def _length_load(cycle: Cycle, length: LengthHistory, index: int) -> LengthLoad:
-    """Contact at a position, at the end and the moment of the greatest signed pressure."""
+def _half_width(load: LengthLoad) -> float:
+    """Half-width of plane strain, m."""
+    return plane_strain(load.pair, load.force)[0]
+
+
+def _length_load(cycles: Sequence[Cycle], at: tuple[int, int]) -> LengthLoad:
+    """Contact of a load case at a position: end and moment of the greatest signed pressure."""
+    cycle, index = cycles[at[0]], at[1]
+    if cycle.length is None:
+        raise ResultError("pressure along the line of contact: missing")
     force = cycle.loads.normal_force[[index]]
     curvature = 1.0 / cycle.contact.relative_radius[[index]]
     tried = [
-        (pair, share * length.moment[[index]])
+        (pair, share * cycle.length.moment[[index]])
         for pair in cycle.machine.finite_pairs
         for share in (0.0, 1.0, -1.0)
     ]
-    signed = [
-        signed_factor(factor_table(pair, length.mean_length), curvature, force, moment).value[0]
+    lines = [
+        signed_factor(length_table(pair, cycle.length.mean_length), curvature, force, moment)
         for pair, moment in tried
     ]
-    pair, moment = tried[int(np.argmax(signed))]
+    chosen = int(np.argmax([line.value[0] for line in lines]))
+    pair, moment = tried[chosen]
     return LengthLoad(
         load_case=cycle.load_case,
         theta=float(cycle.theta[index]),
         pair=replace(pair, curvature=float(curvature[0])),
         force=float(force[0]),
         moment=float(moment[0]),
+        factor=float(lines[chosen].value[0]),
+        centre=float(lines[chosen].centre[0]),
     )
 
 

@@ -25,6 +25,7 @@ from camwright.pipeline.base.tables import (
 from camwright.pipeline.case.machine import Machine
 from camwright.pipeline.contact.contact_history import ContactHistory
 from camwright.pipeline.contact.contact_pair import ContactPair
+from camwright.pipeline.contact.finite_length.length_certificate import EndCorrection
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.contact.two_scale import CycleBodies
 from camwright.pipeline.cycle.elastic_response import ElasticHistory, elastic_history
@@ -56,7 +57,8 @@ class Cycle(Tabled):
     bodies are the meshed bodies of the contact; None in a preview, where the contact is that of
     half-planes, and for a contour that encloses no body, where it is unknown. None inside rolling
     and part loads means that the machine has no such part. error_bars: demands have those of their
-    sampling; without where ratios of demands alone count.
+    sampling; without where ratios of demands alone count. ends: finite elements over half-spaces
+    of the pressure along the line of contact; None: half-spaces alone.
     """
 
     turn: Turn
@@ -65,6 +67,18 @@ class Cycle(Tabled):
     bodies: CycleBodies | None
     contact: ContactHistory
     error_bars: bool = field(default=True, kw_only=True)
+    ends: EndCorrection | None = field(default=None, kw_only=True)
+
+    def with_ends(self, correction: EndCorrection) -> Cycle:
+        """The cycle with the pressure along the line of contact corrected by finite elements.
+
+        What is computed already and does not depend on that pressure is kept.
+        """
+        cycle = replace(self, ends=correction)
+        kept = ("parts", "elastic") if self.machine.is_crowned else ("parts", "elastic", "rolling")
+        known = {name: value for name, value in vars(self).items() if name in kept}
+        vars(cycle).update(known)
+        return cycle
 
     @property
     def facts(self) -> Mapping[str, object]:
@@ -129,7 +143,12 @@ class Cycle(Tabled):
         """Pressure along the line of contact; None where the case lacks an end, or without body."""
         if self.contact.tier is None:
             return None
-        return length_history(self.machine, self.contact, self.loads.normal_force, self.guides)
+        by_half_spaces = length_history(
+            self.machine, self.contact, self.loads.normal_force, self.guides
+        )
+        if by_half_spaces is None or self.ends is None:
+            return by_half_spaces
+        return by_half_spaces.corrected(self.ends)
 
     @property
     def signed_pressure(self) -> Array:

@@ -25,7 +25,11 @@ from camwright.pipeline.contact.finite_length.factor_table import (
     FactorTable,
     factor_table,
 )
-from camwright.pipeline.contact.finite_length.length_contact import means_at_ends
+from camwright.pipeline.contact.finite_length.length_certificate import EndCorrection
+from camwright.pipeline.contact.finite_length.length_contact import (
+    SignedPressure,
+    signed_pressure,
+)
 from camwright.pipeline.follower.guide_reactions import GuideReactions
 
 _ANY_CURVATURE = 1.0  # 1/m: a table has every curvature
@@ -33,15 +37,8 @@ _ROUND_OFF = 1e-9
 _LIGHTEST = 1e-3  # of the greatest force: a thirtieth of its pressure
 
 CORNER_ERROR, BOUNDED_ERROR = 0.05, 0.02
-"""Difference of the half-spaces from finite elements: of a mean at a corner, of a bounded peak."""
-
-
-class SignedFactor(NamedTuple):
-    """Signed pressure over that of plane strain, (n,), whether it is a mean at a corner; centre."""
-
-    value: Array
-    at_corner: NDArray[np.bool_]
-    centre: Array
+"""Stated difference of the half-spaces from finite elements, where these are not solved: of a mean
+at a corner, of a bounded peak."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,7 +47,8 @@ class LengthHistory:
 
     centre: in the middle, untilted; level, tilted: signed, without a moment and at the greatest
     one, `moment` (N m); at_corner: whether the greater of both is the mean over `mean_length` (m)
-    at a corner. 1 and no moment without contact. tilt: greatest in the guides, rad.
+    at a corner. 1 and no moment without contact. tilt: greatest in the guides, rad. correction: of
+    the half-spaces by finite elements, included in the pressures; None: half-spaces alone.
     """
 
     centre: Array
@@ -61,6 +59,7 @@ class LengthHistory:
     mean_length: float
     tilt: float
     is_crowned: bool
+    correction: EndCorrection | None = None
 
     def __post_init__(self) -> None:
         freeze(self, centre=self.centre, level=self.level, tilted=self.tilted, moment=self.moment)
@@ -81,8 +80,28 @@ class LengthHistory:
 
     @property
     def error(self) -> Array:
-        """Relative difference of half-spaces from finite elements (n,)."""
+        """Relative error bar (n,) of the factor."""
+        if self.correction is not None:
+            return np.full(self.at_corner.shape, self.correction.signed_error)
         return np.where(self.at_corner, CORNER_ERROR, BOUNDED_ERROR)
+
+    @property
+    def centre_error(self) -> float:
+        """Relative error bar of the pressure in the middle of a crowned line over plane strain."""
+        if not self.is_crowned:
+            return 0.0
+        return BOUNDED_ERROR if self.correction is None else self.correction.centre_error
+
+    def corrected(self, correction: EndCorrection) -> LengthHistory:
+        """The history of the half-spaces, corrected by finite elements."""
+        signed = correction.signed
+        return replace(
+            self,
+            centre=self.centre * correction.centre,
+            level=self.level * signed,
+            tilted=self.tilted * signed,
+            correction=correction,
+        )
 
     def sentence(self, place: int) -> str:
         """What the signed pressure is at one of the angles."""
@@ -96,7 +115,18 @@ class LengthHistory:
         most = shown(float(self.moment[place]), "N mm")
         return (
             f"{what}; {self.factor[place]:.4g} times plane strain, {self.level[place]:.4g} without"
-            f" tilt, at a moment of 0 to {most}, of friction in the guides and axial offset"
+            f" tilt, at a moment of 0 to {most}, of friction in the guides and axial offset;"
+            f" {self.tier(place)}"
+        )
+
+    def tier(self, place: int) -> str:
+        """By which tier the factor and its error bar are at one of the angles."""
+        bar = f"error bar {100.0 * self.error[place]:.2g} %"
+        if self.correction is None:
+            return f"by half-spaces with mirrored ends, {bar} as stated, finite elements not solved"
+        return (
+            f"by half-spaces times {self.correction.signed:.4g}, the greatest ratio of finite"
+            f" elements to half-spaces at the certified angles, {bar} by refinement"
         )
 
     def in_the_middle(self, plane: ContactHistory) -> ContactHistory:
@@ -186,7 +216,7 @@ def factor_range(
     sides = np.concatenate([np.zeros(force.size), -moment, moment])
     three = signed_factor(table, np.tile(curvature, 3), np.tile(force, 3), sides)
     parts = zip(*(np.split(values, 3) for values in three), strict=True)
-    level, left, right = (SignedFactor(*part) for part in parts)
+    level, left, right = (SignedPressure(*part) for part in parts)
     tilted = np.where(left.value > right.value, left.value, right.value)
     corner = np.where(left.value > right.value, left.at_corner, right.at_corner)
     at_corner = np.where(level.value > tilted, level.at_corner, corner)
@@ -244,22 +274,10 @@ class AxialPressures(Protocol):
 
 def signed_factor(
     table: AxialPressures, curvature: Array, force: Array, moment: Array
-) -> SignedFactor:
-    """Signed pressure of contacts over that of plane strain.
-
-    Where the greatest pressure is at a corner, the mean at the ends, and the greatest one between
-    them; else the greatest one.
-    """
+) -> SignedPressure:
+    """Signed pressure of contacts over that of plane strain; see `signed_pressure`."""
     edges, line = table.axial_pressure(curvature, force, moment)
-    means, _ = means_at_ends(edges, line, table.mean_length)
-    middles = 0.5 * (edges[1:] + edges[:-1])
-    between = np.abs(middles) <= edges[-1] - table.mean_length
-    most = line.argmax(axis=1)
-    at_corner = ((most == 0) | (most == line.shape[1] - 1)) & table.pair.has_singular_end
-    mean = np.maximum(means.max(axis=1), line[:, between].max(axis=1))
-    half = line.shape[1] // 2
-    centre = 0.5 * (line[:, half - 1] + line[:, half])
-    return SignedFactor(np.where(at_corner, mean, line.max(axis=1)), at_corner, centre)
+    return signed_pressure(edges, line, table.mean_length, has_corner=table.pair.has_singular_end)
 
 
 def length_table(pair: FinitePair, mean_length: float) -> FactorTable:

@@ -11,6 +11,7 @@ import numpy as np
 from camwright.geometry.arrays import Array
 from camwright.geometry.contour import Contour
 from camwright.geometry.display import Displayed
+from camwright.geometry.errors import CamError
 from camwright.meshes.body_mesh import BodyMesh
 from camwright.meshes.mesh_quality import Quality, gate, quality
 from camwright.pipeline.base.progress import SILENT, Progress
@@ -26,8 +27,9 @@ from camwright.pipeline.contact.contact_benchmarks import benchmarks
 from camwright.pipeline.contact.contact_history import CertificatePoint, ContactHistory
 from camwright.pipeline.contact.contact_pair import ContactPair
 from camwright.pipeline.contact.finite_length.length_certificate import (
+    BegunEnds,
     LengthCertificate,
-    length_certificate,
+    begun_ends,
 )
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.contact.two_scale import CycleBodies, loaded_cam, two_scale_history
@@ -79,7 +81,7 @@ class Solution(Displayed):
                                  contact is then NaN
     certificate : tuple          full two-body solutions; empty unless certified
     length_certificate : object  contact of bodies with ends by both tiers; None unless certified
-                                 with `solver.end_elements`
+                                 by finite elements
     benchmarks : mapping         see `benchmarks`; None unless certified
     crank_speed : mapping        load case -> std of the crank speed, rad/s, without and with the
                                  cam; empty without a crankshaft
@@ -290,21 +292,59 @@ def certified_solution(
     if solved.mesh is None or not chosen:
         return final
     pair = solved.cycles[0].pair
+    ends = _begun_ends(solved, workers, progress)
     certificate = begun(pair, solved.cycles, chosen, workers, store=store)
     progress.stage(BENCHMARKS)
     known = benchmarks(solved.case.contact_radius)
     error = bore_error(pair, solved.cycles)
     progress.stage(CERTIFICATE)
     points = certificate.points(progress.advance)
-    ends, solver = None, solved.case.solver
-    if solver.end_elements is not None:
-        loads = length_loads(solved.cycles, solver.end_angles)
-        progress.stage(ENDS)
-        mean_length = solved.machine.limits[END_MEAN_LENGTH]
-        ends = length_certificate(loads, mean_length, solver.end_elements, progress.advance)
-    return replace(
-        final, certificate=points, length_certificate=ends, benchmarks=known, bore_error=error
-    )
+    final = replace(final, certificate=points, benchmarks=known, bore_error=error)
+    return final if ends is None else _with_ends(final, ends, progress)
+
+
+def _begun_ends(
+    solved: Solution, workers: Crew, progress: Progress
+) -> BegunEnds | LengthCertificate | None:
+    """Certificate of the ends, its blocks handed to workers; that of a refusal; None: no ends."""
+    elements, mean_length = solved.case.solver.end_elements, solved.machine.limits[END_MEAN_LENGTH]
+    if elements == 0:
+        return None
+    loads = length_loads(solved.cycles, solved.case.solver.end_angles)
+    if not loads:
+        return None
+    try:
+        begun_blocks = begun_ends(loads, mean_length, elements, workers)
+    except CamError as error:
+        return LengthCertificate((), mean_length, elements, str(error))
+    if begun_blocks.fresh:
+        progress.note(
+            f"finite-element ends: {begun_blocks.fresh} meshes of the ends of cam and"
+            f" {solved.cycles[0].pair.follower.name} are solved and kept for the next run"
+        )
+    return begun_blocks
+
+
+def _with_ends(
+    final: Solution, ends: BegunEnds | LengthCertificate, progress: Progress
+) -> Solution:
+    """The solution with the certificate of its ends, by which the cycles are corrected."""
+    progress.stage(ENDS)
+    try:
+        certificate = (
+            ends if isinstance(ends, LengthCertificate) else ends.certificate(progress.advance)
+        )
+    except CamError as error:
+        certificate = LengthCertificate((), ends.mean_length, ends.elements, str(error))
+    if certificate.refused:
+        progress.note(
+            f"finite-element ends: not solved, the stated error bars hold: {certificate.refused}"
+        )
+    correction = certificate.correction
+    cycles = final.cycles
+    if correction is not None:
+        cycles = tuple(each.with_ends(correction) for each in cycles)
+    return replace(final, length_certificate=certificate, cycles=cycles)
 
 
 def bore_error(pair: ContactPair, cycles: tuple[Cycle, ...]) -> float | None:

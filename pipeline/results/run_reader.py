@@ -79,11 +79,13 @@ class ContentsOfAnyTrial(TypedDict):
 class TrialContents(ContentsOfAnyTrial, total=False):
     """Contents of ``trial.json``.
 
-    fatigue: points of the Goodman diagrams by part; length_certificate: ends of the contact.
+    fatigue: points of the Goodman diagrams by part; length_certificate: ends of the contact;
+    length_refused: why finite elements did not solve them.
     """
 
     fatigue: dict[str, Json]
     length_certificate: list[dict[str, Json]]
+    length_refused: str | None
 
 
 class ScopeRecord(TypedDict):

@@ -21,8 +21,6 @@ from camwright.pipeline.checks.camshaft_strength import shaft_fatigue_points
 from camwright.pipeline.checks.spring_strength import spring_fatigue_points
 from camwright.pipeline.contact.contact_history import CertificatePoint, ContactHistory
 from camwright.pipeline.contact.elasticity.mesh_convergence import Convergence
-from camwright.pipeline.contact.finite_length.length_certificate import LengthCertificate
-from camwright.pipeline.contact.finite_length.length_tiers import TierResult
 from camwright.pipeline.contact.hertz import von_mises_peak
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.cam_balance import balance
@@ -34,6 +32,7 @@ from camwright.pipeline.cycle.cycle import (
     PRESSURE_ANGLE,
     Cycle,
 )
+from camwright.pipeline.cycle.length_records import length_record
 from camwright.pipeline.cycle.rolling_history import rolling_record
 from camwright.pipeline.cycle.solution import Solution
 from camwright.pipeline.cycle.speed_sweep import SpeedSweep
@@ -270,6 +269,7 @@ def trial_record(trial: Trial) -> dict[str, Json]:
     """Contents of ``trial.json``: smoothing, reason, mesh, certificate, rolling."""
     smoothing, mesh, width = trial.smoothing, trial.mesh, trial.smoothing.angular_width
     machine, contact = trial.solution.machine, trial.cycles[0].contact
+    ends = trial.solution.length_certificate
     return {
         "number": trial.number,
         "why": trial.why,
@@ -295,7 +295,8 @@ def trial_record(trial: Trial) -> dict[str, Json]:
             **asdict(mesh.quality),
         },
         "certificate": [certificate_record(point) for point in trial.certificate],
-        "length_certificate": length_record(trial.solution.length_certificate),
+        "length_certificate": length_record(ends, (*machine.bodies,)),
+        "length_refused": None if ends is None else ends.refused or None,
         "fatigue": fatigue_record(trial.solution),
         "rolling": rolling_record({cycle.load_case: cycle.rolling for cycle in trial.cycles}),
     }
@@ -453,38 +454,6 @@ def certificate_record(point: CertificatePoint) -> dict[str, Json]:
         "residual_equilibrium": point.residual_equilibrium,
         "residual_complementarity": point.residual_complementarity,
     }
-
-
-def length_record(certificate: LengthCertificate | None) -> list[dict[str, Json]]:
-    """Contact of bodies with ends by both tiers at each angle, over plane-strain p0."""
-    records: list[dict[str, Json]] = []
-    for point in () if certificate is None else certificate.points:
-        load = point.load
-        records.append(
-            {
-                "load_case": load.load_case,
-                "cam_angle_deg": float(np.degrees(load.theta)),
-                "force_N": load.force,
-                "moment_Nmm": in_unit(load.moment, "N mm"),
-                "half_space": _tier_record(point.half_space),
-                "finite_elements": _tier_record(point.finite_elements),
-                "difference": dict(zip(_FACTORS, point.difference.tolist(), strict=True)),
-            }
-        )
-    return records
-
-
-_FACTORS = ("centre", "greatest", "end1_mean", "end2_mean")
-
-
-def _tier_record(tier: TierResult) -> dict[str, Json]:
-    factors = dict(zip(_FACTORS, tier.factors.all[0].tolist(), strict=True))
-    bars = {
-        f"{name}_gci_percent": 100 * each.gci
-        for name, each in zip(_FACTORS, tier.convergence, strict=True)
-    }
-    mean = in_unit(tier.factors.mean_length, "mm")
-    return {**factors, **bars, "mean_length_mm": mean, "unknowns": tier.unknowns}
 
 
 def _figure(figure: Convergence, cycle: float, scale: float) -> dict[str, Json]:

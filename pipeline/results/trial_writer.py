@@ -53,6 +53,9 @@ class TrialWriter:
         self.judge(trial)
 
     def judge(self, trial: Trial) -> None:
-        """Write checks and record of a trial; again after its certificate."""
+        """Write checks and record; again after the certificate, which corrects the cycle."""
+        ends = trial.solution.length_certificate
+        if ends is not None and ends.points:
+            self._folder.write_cycle(trial.number, cycle_columns(trial.cycles))
         self._folder.write_checks(trial.number, [check.as_record() for check in trial.checks])
         self._folder.write_trial(trial.number, trial_record(trial))

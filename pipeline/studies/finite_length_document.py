@@ -26,12 +26,12 @@ from camwright.pipeline.contact.finite_length.axial_drop import (
     lundberg,
 )
 from camwright.pipeline.contact.finite_length.length_tiers import (
+    FACTORS,
     MEAN_LENGTH,
     TierResult,
     both_tiers,
-    plane_strain,
 )
-from camwright.pipeline.contact.finite_length.subsurface_stress import subsurface_stress
+from camwright.pipeline.cycle.length_records import factors, stress_peaks
 from camwright.pipeline.studies.two_cylinders import TwoCylinders
 
 Document = dict[str, Any]
@@ -40,7 +40,6 @@ _ENDS = "sharp, chamfer:SIZE or radius:SIZE"
 _CROWNS = (
     "johns-gohar:LOAD, lundberg:LOAD, iso16281, circular:RADIUS or a CSV file of y_mm and drop_um"
 )
-_FACTORS = ("centre", "greatest", "end1_mean", "end2_mean")
 _TITLES = {"half_space": "half-space", "finite_elements": "finite elements"}
 # Moment over force and length of contact: round-off.
 _ROUND_OFF = 1e-12
@@ -204,12 +203,12 @@ class FiniteLength:
         return [self._record(tier) for tier in self.tiers]
 
     def _record(self, tier: TierResult) -> Document:
-        factors = dict(zip(_FACTORS, tier.factors.all[0].tolist(), strict=True))
+        values = factors(tier)
         contact, cells = tier.contact, tier.contact.cells
         is_singular = self.pair.has_singular_end and tier.greatest_is_at_an_end
         bars: dict[str, float | None] = {
             f"{name}_error_percent": in_unit(each.gci, "%")
-            for name, each in zip(_FACTORS, tier.convergence, strict=True)
+            for name, each in zip(FACTORS, tier.convergence, strict=True)
         }
         if is_singular:
             bars["greatest_error_percent"] = None
@@ -217,7 +216,7 @@ class FiniteLength:
         place = int(contact.centre_line[0].argmax())
         record: Document = {
             "tier": tier.tier,
-            **factors,
+            **values,
             "mean_length_mm": in_unit(tier.factors.mean_length, "mm"),
             **bars,
             "greatest_at_mm": in_unit(float(cells.centres_along[place]), "mm"),
@@ -230,36 +229,12 @@ class FiniteLength:
                 "tilt_mrad": in_unit(float(contact.tilt[0]), "mrad"),
                 "held_at_depth_mm": depths,
             }
-        return (
-            record
-            | self._stresses(tier)
-            | {
-                "unknowns": tier.unknowns,
-                "residual": float(max(contact.equilibrium[0], contact.complementarity[0])),
-            }
-        )
-
-    def _stresses(self, tier: TierResult) -> Document:
-        """Greatest stresses below middle and ends over plane-strain p0, and their depths."""
-        force, stretch = float(tier.contact.force[0]), tier.factors.mean_length
-        half_width, p0 = plane_strain(self.pair, force)
-        record: Document = {}
-        for number, body in enumerate(self.pair.bodies, 1):
-            stress = subsurface_stress(tier.contact, half_width, body.material.poisson, stretch)
-            record[f"stress_body{number}"] = {
-                place: {
-                    "von_mises": peak.von_mises / p0,
-                    "von_mises_depth_mm": in_unit(peak.von_mises_depth, "mm"),
-                    "shear": peak.shear / p0,
-                    "shear_depth_mm": in_unit(peak.shear_depth, "mm"),
-                }
-                for place, peak in (
-                    ("centre", stress.centre),
-                    ("end1", stress.end1),
-                    ("end2", stress.end2),
-                )
-            }
-        return record
+        for number, peaks in enumerate(stress_peaks(self.pair, tier), 1):
+            record[f"stress_body{number}"] = peaks
+        return record | {
+            "unknowns": tier.unknowns,
+            "residual": float(max(contact.equilibrium[0], contact.complementarity[0])),
+        }
 
     def write(self, path: Path) -> None:
         """VTU file of the pressure cells with the pressure of each tier, MPa."""
@@ -308,7 +283,7 @@ def lines(records: Sequence[Document]) -> Iterator[str]:
     mean = f"{records[0]['mean_length_mm']:g} mm"
     titles = ("centre", "greatest", f"last {mean}, y < 0", f"last {mean}, y > 0")
     yield f"{'over plane strain':22}" + "".join(f"{_TITLES[r['tier']]:>24}" for r in records)
-    for name, title in zip(_FACTORS, titles, strict=True):
+    for name, title in zip(FACTORS, titles, strict=True):
         bars = [record[f"{name}_error_percent"] for record in records]
         yield f"{title:22}" + "".join(
             f"{record[name]:15.4f} " + (f"{'unbounded':>8}" if bar is None else f"± {bar:4.2g} %")

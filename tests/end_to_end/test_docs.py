@@ -78,7 +78,19 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
         result = shell(line, folder)
         allowed = (0, 1, 3) if line.startswith("camwright check") else (0,)
         assert result.returncode in allowed, f"{line}: {result.stderr}"
+        if line.startswith("camwright init"):
+            without_finite_element_ends(folder)
     return folder
+
+
+def without_finite_element_ends(folder: Path) -> None:
+    """The ends of new cases by half-spaces alone: the finite elements have their own tests."""
+    for path in folder.glob("*.toml"):
+        text = path.read_text(encoding="utf-8")
+        if "end_elements" not in text:
+            assert text.count("\n[solver]\n") == 1, path
+            text = text.replace("\n[solver]\n", "\n[solver]\nend_elements = 0\n")
+            path.write_text(text, encoding="utf-8")
 
 
 def test_commands_of_other_pages_are_in_readme_or_tutorial() -> None:

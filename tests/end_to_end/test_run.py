@@ -55,14 +55,15 @@ class Recorder(Silent):
 
 
 def small(folder: Path, **changes: str) -> Case:
-    """The GX120 case with few positions and one certified angle, lines replaced by key.
+    """The GX120 case with few positions, one certified angle and the ends by half-spaces alone,
+    lines replaced by key.
 
     Ground by a wheel that is too large for its concave part, 15.3 mm; at 2400 rpm the follower
     still keeps to the cam.
     """
     text = (ROOT / "cases" / "gx120.toml").read_text(encoding="utf-8")
     text += '\n[workshop]\ntool_radius = "20 mm"\n'
-    wanted = {"positions": str(POSITIONS), "certificate_positions": "1"}
+    wanted = {"positions": str(POSITIONS), "certificate_positions": "1\nend_elements = 0"}
     wanted |= {"overspeed": '"2400 rpm"'} | changes
     for key, value in wanted.items():
         text, count = re.subn(rf"(?m)^{key} = .*$", f"{key} = {value}", text, count=1)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from camwright.pipeline.contact.elasticity.elastic_body import Elastic
-from camwright.pipeline.contact.finite_length import brick_body
+from camwright.pipeline.contact.finite_length import brick_body, length_tiers
 from camwright.pipeline.contact.finite_length.axial_drop import (
     BodyEnd,
     FiniteBody,
@@ -15,7 +15,7 @@ from camwright.pipeline.contact.finite_length.axial_drop import (
 )
 from camwright.pipeline.contact.finite_length.length_certificate import (
     LengthLoad,
-    length_certificate,
+    begun_ends,
 )
 from camwright.pipeline.contact.finite_length.length_tiers import (
     on_ladder,
@@ -31,7 +31,8 @@ PAIR = FinitePair(
 
 
 def load(theta, force, moment, curvature=175.0):
-    return LengthLoad("rated", theta, replace(PAIR, curvature=curvature), force, moment)
+    pair = replace(PAIR, curvature=curvature)
+    return LengthLoad("rated", theta, pair, force, moment, factor=1.25, centre=0.8)
 
 
 @pytest.fixture(scope="module")
@@ -48,15 +49,17 @@ def condensations():
     patch.setattr(brick_body, "condensed", counted)
     steps = []
     loads = [load(0.5, 400.0, 0.0), load(1.0, 400.0, 0.08), load(2.0, 300.0, -0.05, 200.0)]
-    certificate = length_certificate(loads, 1e-4, 2.0, lambda k, total: steps.append((k, total)))
+    begun = begun_ends(loads, 1e-4, 2.0)
+    certificate = begun.certificate(lambda k, total: steps.append((k, total)))
+    assert begun.fresh == len(begun.blocks)
     patch.undo()
     return certificate, counts, steps
 
 
 def test_bodies_are_condensed_once_for_all_angles(condensations):
     certificate, counts, steps = condensations
-    assert len(counts) == 4  # two bodies, two meshes
-    assert steps == [(1, 3), (2, 3), (3, 3)]
+    assert len(counts) == 6  # two bodies, three meshes
+    assert steps == [(k, 9) for k in range(1, 10)]
     assert [point.load.theta for point in certificate.points] == [0.5, 1.0, 2.0]
 
 
@@ -78,9 +81,40 @@ def test_points_have_their_force_and_moment_at_both_tiers(condensations):
     assert back.end_means[0, 0] > back.end_means[0, 1]
 
 
+def test_the_half_spaces_are_corrected_to_the_finite_elements(condensations):
+    certificate, _, _ = condensations
+    correction, blocks = certificate.correction, [p.finite_elements for p in certificate.points]
+    signed = [tier.signed.values[-1] for tier in blocks]
+    assert correction.signed == pytest.approx(max(signed) / 1.25, rel=1e-12)
+    assert correction.signed_error == max(tier.signed.gci for tier in blocks) > 0
+    assert correction.centre == pytest.approx(
+        max(tier.factors.centre[0] for tier in blocks) / 0.8, rel=1e-12
+    )
+    for tier, value in zip(blocks, signed, strict=True):
+        means, greatest = tier.factors.end_means[0].max(), tier.factors.greatest[0]
+        assert value <= greatest
+        assert value == greatest if not tier.at_corner else value >= (1 - 1e-12) * means
+    assert replace(certificate, points=()).correction is None
+
+
+def test_blocks_in_the_disk_cache_are_not_condensed_again(tmp_path, monkeypatch):
+    monkeypatch.setenv("CAMWRIGHT_CACHE", str(tmp_path))
+    monkeypatch.delenv("CAMWRIGHT_NO_CACHE", raising=False)
+    bodies = tuple(replace(body, length=1.1 * body.length) for body in PAIR.bodies)
+    one = replace(load(0.0, 400.0, 0.0), pair=replace(PAIR, bodies=bodies))
+    first = begun_ends([one], 1e-4, 2.0)
+    kept = first.certificate().points[0].finite_elements.signed
+    again = begun_ends([one], 1e-4, 2.0)
+    assert (first.fresh, again.fresh) == (6, 0)
+    entry = next(tmp_path.glob("block-*.npz"))
+    entry.write_bytes(entry.read_bytes()[:-100])
+    length_tiers.condensed_block_of.cache_clear()
+    assert begun_ends([one], 1e-4, 2.0).certificate().points[0].finite_elements.signed == kept
+
+
 def test_a_contact_much_narrower_has_its_own_cells():
     loads = [load(0.0, 400.0, 0.0), load(1.0, 40.0, 0.0)]
-    points = length_certificate(loads, 1e-4, 2.0).points
+    points = begun_ends(loads, 1e-4, 2.0).certificate().points
     widths = [point.finite_elements.contact.cells.x[1] for point in points]
     half_widths = [plane_strain(PAIR, force)[0] for force in (400.0, 40.0)]
     np.testing.assert_allclose(widths, [on_ladder(each) / 2 for each in half_widths], rtol=1e-12)

@@ -2,28 +2,41 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from camwright.geometry.arrays import Array
+from camwright.geometry.errors import ContactError
+from camwright.pipeline.base.worker_processes import ALONE, Crew, Task
+from camwright.pipeline.contact.finite_length import length_contact
 from camwright.pipeline.contact.finite_length.axial_drop import FinitePair
+from camwright.pipeline.contact.finite_length.brick_body import BrickGrid, QuarterCompliance
+from camwright.pipeline.contact.finite_length.half_space import shared_compliance
 from camwright.pipeline.contact.finite_length.length_tiers import (
     SIZES,
     TierResult,
+    block_grid,
     both_tiers,
+    condensed_block,
+    is_kept,
+    meshes_of,
     plane_strain,
+    with_depths_on_ladder,
 )
-from camwright.pipeline.contact.finite_length.pressure_cells import CellSizes
+from camwright.pipeline.contact.finite_length.pressure_cells import CellSizes, PressureCells
 
 # Contacts whose half-widths lie within this ratio have the cells of the widest.
-_ONE_MESH = 1.5
+ONE_MESH = 1.5
+# Widths of the cells in half-widths, ascending: the contact is wide at a chamfer under light loads.
+_WINDOWS = (SIZES.window, 5.0, 10.0)
 
 
 @dataclass(frozen=True, eq=False)
 class LengthLoad:
     """Contact of bodies with ends at one cam angle, rad: force, N; moment, N m, about the middle.
 
-    The curvature of the pair is that at the angle.
+    The curvature of the pair is that at the angle. factor, centre: signed pressure and pressure in
+    the middle by the half-spaces of the cycle, over plane strain.
     """
 
     load_case: str
@@ -31,6 +44,8 @@ class LengthLoad:
     pair: FinitePair
     force: float
     moment: float
+    factor: float
+    centre: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,58 +62,193 @@ class LengthPoint:
         values: Array = self.half_space.factors.all[0] - self.finite_elements.factors.all[0]
         return values
 
+    @property
+    def ratio(self) -> float:
+        """Signed pressure of the finite elements over that of the half-spaces of the cycle."""
+        return self.finite_elements.signed.values[-1] / self.load.factor
+
+    @property
+    def centre_ratio(self) -> float:
+        """The same of the pressure in the middle."""
+        return float(self.finite_elements.factors.centre[0]) / self.load.centre
+
+
+@dataclass(frozen=True)
+class EndCorrection:
+    """Finite elements over the half-spaces of the cycle, and relative error bars by refinement.
+
+    Greatest ratios and bars of the certified angles: of the signed pressure, of the middle.
+    """
+
+    signed: float
+    signed_error: float
+    centre: float
+    centre_error: float
+
 
 @dataclass(frozen=True, eq=False)
 class LengthCertificate:
-    """Points by both tiers, the first the most critical; cells per half-width."""
+    """Points by both tiers, the first the most critical; cells per half-width.
+
+    refused: why finite elements cannot solve the contact, without points then.
+    """
 
     points: tuple[LengthPoint, ...]
     mean_length: float
     elements: float
+    refused: str = ""
+
+    @property
+    def correction(self) -> EndCorrection | None:
+        """Correction of the half-spaces; None without points."""
+        if not self.points:
+            return None
+        blocks = [point.finite_elements for point in self.points]
+        return EndCorrection(
+            max(point.ratio for point in self.points),
+            max(each.signed.gci for each in blocks),
+            max(point.centre_ratio for point in self.points),
+            max(each.convergence[0].gci for each in blocks),
+        )
 
 
-def length_certificate(
+@dataclass(frozen=True, eq=False)
+class _Mesh:
+    """Half-width, m, and sizes of the cells of loads of about one half-width."""
+
+    half_width: float
+    sizes: CellSizes
+
+
+@dataclass(frozen=True, eq=False)
+class BegunEnds:
+    """Certificate whose blocks are being condensed; see `begun_ends`.
+
+    fresh: number of blocks that are not in the disk cache.
+    """
+
+    loads: tuple[LengthLoad, ...]
+    mean_length: float
+    elements: float
+    meshes: tuple[_Mesh, ...]
+    blocks: Mapping[object, Task]
+    fresh: int
+
+    def certificate(
+        self, advance: Callable[[int, int], None] = lambda *_: None
+    ) -> LengthCertificate:
+        """The loads by both tiers.
+
+        advance : callable   receives the number of condensed blocks and solved loads, and of all
+
+        Raises
+        ------
+        ContactError
+            If a contact leaves its cells or the bodies tip over.
+        """
+        total, steps = len(self.blocks) + len(self.loads), 0
+        for task in self.blocks.values():
+            task.result()
+            steps += 1
+            advance(steps, total)
+
+        def condensed(grid: BrickGrid, poisson: float) -> QuarterCompliance:
+            quarter: QuarterCompliance = self.blocks[_key(grid, poisson)].result()
+            return quarter
+
+        points = []
+        for load, mesh in zip(self.loads, self.meshes, strict=True):
+            tiers = both_tiers(
+                load.pair,
+                load.force,
+                moment=load.moment,
+                mean_length=self.mean_length,
+                sizes=mesh.sizes,
+                mesh_half_width=mesh.half_width,
+                condensed=condensed,
+            )
+            points.append(LengthPoint(load, *tiers))
+            steps += 1
+            advance(steps, total)
+        return LengthCertificate(tuple(points), self.mean_length, self.elements)
+
+
+def begun_ends(
     loads: Sequence[LengthLoad],
     mean_length: float,
     elements: float = SIZES.per_half_width,
-    advance: Callable[[int, int], None] = lambda *_: None,
-) -> LengthCertificate:
-    """Contacts by both tiers; bodies are condensed once for all loads of about one half-width.
+    workers: Crew = ALONE,
+) -> BegunEnds:
+    """Certificate of contacts, its blocks handed to worker processes.
+
+    Bodies are condensed once for all loads of about one half-width.
 
     Parameters
     ----------
     loads : sequence      the most critical first
     mean_length : float   of the means at the ends, m
     elements : float      per half-width, at least
-    advance : callable    receives the number of solved contacts and of all
+
+    Raises
+    ------
+    InputError
+        If a block is not deep enough for the width of its contact.
+    ContactError
+        If a contact is wider than the widest cells.
     """
-    ratio = SIZES.per_half_width / elements
-    points = []
-    for load, widest in zip(loads, _mesh_half_widths(loads), strict=True):
-        tiers = both_tiers(
-            load.pair,
+    meshes = _meshes(loads, SIZES.per_half_width / elements)
+    grids: dict[object, tuple[BrickGrid, float]] = {}
+    for load, mesh in zip(loads, meshes, strict=True):
+        pair = with_depths_on_ladder(load.pair)
+        for cells in reversed(meshes_of(pair, mesh.half_width, mesh.sizes)[:-1]):
+            for body in pair.bodies:
+                grid, poisson = block_grid(cells, body), body.material.poisson
+                grids[_key(grid, poisson)] = grid, poisson
+    fresh = sum(not is_kept(*each) for each in grids.values())
+    tasks = {key: workers.submit(condensed_block, *each) for key, each in grids.items()}
+    return BegunEnds(tuple(loads), mean_length, elements, meshes, tasks, fresh)
+
+
+def _key(grid: BrickGrid, poisson: float) -> object:
+    return grid.x.tobytes(), grid.y.tobytes(), grid.z.tobytes(), grid.cells, poisson
+
+
+def _meshes(loads: Sequence[LengthLoad], ratio: float) -> tuple[_Mesh, ...]:
+    """Mesh of each load, coarser by a ratio: of the widest within the ratio of one mesh."""
+    half_widths = [plane_strain(load.pair, load.force)[0] for load in loads]
+    groups: list[float] = []
+    for value in sorted(half_widths, reverse=True):
+        if not groups or value * ONE_MESH < groups[-1]:
+            groups.append(value)
+    widest = [min(group for group in groups if group >= value) for value in half_widths]
+    meshes = {}
+    for group in groups:
+        members = [load for load, mesh in zip(loads, widest, strict=True) if mesh == group]
+        meshes[group] = _Mesh(group, _sizes(members, group, ratio))
+    return tuple(meshes[each] for each in widest)
+
+
+def _sizes(loads: Sequence[LengthLoad], half_width: float, ratio: float) -> CellSizes:
+    """Cells coarser by a ratio, as wide as the contacts of the loads by half-spaces need."""
+    sizes = SIZES if ratio == 1 else SIZES.coarser(ratio)
+    for window in _WINDOWS:
+        chosen = replace(sizes, window=window)
+        if all(_is_covered(load, half_width, chosen) for load in loads):
+            return chosen
+    raise ContactError("contact wider than the window of its pressure cells")
+
+
+def _is_covered(load: LengthLoad, half_width: float, sizes: CellSizes) -> bool:
+    """Whether the contact by half-spaces leaves the last two cells across it without pressure."""
+    cells: PressureCells = meshes_of(load.pair, half_width, sizes)[1]
+    try:
+        contact = length_contact.solve(
+            cells,
+            shared_compliance(cells, load.pair.bodies),
+            cells.integrated_gap(load.pair),
             load.force,
             moment=load.moment,
-            mean_length=mean_length,
-            sizes=_sizes(ratio),
-            mesh_half_width=widest,
         )
-        points.append(LengthPoint(load, *tiers))
-        advance(len(points), len(loads))
-    return LengthCertificate(tuple(points), mean_length, elements)
-
-
-def _mesh_half_widths(loads: Sequence[LengthLoad]) -> list[float]:
-    """Half-width (m) of the cells of each load: of the widest within the ratio of one mesh."""
-    half_widths = [plane_strain(load.pair, load.force)[0] for load in loads]
-    meshes: list[float] = []
-    for value in sorted(half_widths, reverse=True):
-        if not meshes or value * _ONE_MESH < meshes[-1]:
-            meshes.append(value)
-    return [min(mesh for mesh in meshes if mesh >= value) for value in half_widths]
-
-
-def _sizes(ratio: float) -> CellSizes:
-    """Cells coarser by a ratio, as wide as those of one."""
-    sizes = SIZES if ratio == 1 else SIZES.coarser(ratio)
-    return replace(sizes, window=SIZES.window)
+    except ContactError:
+        return False
+    return not (contact.pressure[:, :, -2:] > 0).any()

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from camwright.geometry.arrays import Array, freeze
 from camwright.geometry.errors import ContactError, InputError
@@ -82,6 +83,38 @@ def means_at_ends(edges: Array, line: Array, length: float) -> tuple[Array, Arra
 
     sums = [integral(first + over) - integral(first), integral(last) - integral(last - over)]
     return np.stack(sums, axis=1) / over[:, None], last - first
+
+
+class SignedPressure(NamedTuple):
+    """Signed pressure (count,), whether it is a mean at a corner, pressure in the middle."""
+
+    value: Array
+    at_corner: NDArray[np.bool_]
+    centre: Array
+
+
+def signed_pressure(
+    edges: Array, line: Array, length: float, *, has_corner: bool
+) -> SignedPressure:
+    """Signed pressure of lines (count, m) on cells of edges (m + 1,), m.
+
+    Where the greatest pressure is at a corner, the mean at the ends, and the greatest one between
+    them; else the greatest one.
+
+    Parameters
+    ----------
+    length : float      of the mean at a corner, m
+    has_corner : bool   whether the pressure grows without bound at the ends
+    """
+    means, _ = means_at_ends(edges, line, length)
+    middles = 0.5 * (edges[1:] + edges[:-1])
+    between = np.abs(middles) <= edges[-1] - length
+    most = line.argmax(axis=1)
+    at_corner = ((most == 0) | (most == line.shape[1] - 1)) & has_corner
+    mean = np.maximum(means.max(axis=1), line[:, between].max(axis=1))
+    half = line.shape[1] // 2
+    centre = 0.5 * (line[:, half - 1] + line[:, half])
+    return SignedPressure(np.where(at_corner, mean, line.max(axis=1)), at_corner, centre)
 
 
 def solve(

@@ -7,6 +7,7 @@ curvature nor on load and is kept on disk.
 
 from __future__ import annotations
 
+from collections.abc import Callable, Hashable, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Literal
@@ -19,15 +20,14 @@ from camwright.geometry.errors import InputError
 from camwright.pipeline.base import disk_cache
 from camwright.pipeline.contact import hertz
 from camwright.pipeline.contact.elasticity import elastic_body
-from camwright.pipeline.contact.elasticity.mesh_convergence import (
-    Convergence,
-    converged,
-    converged_on_two,
-)
+from camwright.pipeline.contact.elasticity.mesh_convergence import Convergence, converged
 from camwright.pipeline.contact.finite_length import brick_body, length_contact
 from camwright.pipeline.contact.finite_length.axial_drop import FiniteBody, FinitePair, Straight
 from camwright.pipeline.contact.finite_length.brick_body import BrickGrid, QuarterCompliance
-from camwright.pipeline.contact.finite_length.half_space import half_space_compliance
+from camwright.pipeline.contact.finite_length.half_space import (
+    half_space_compliance,
+    shared_compliance,
+)
 from camwright.pipeline.contact.finite_length.length_contact import LengthContact
 from camwright.pipeline.contact.finite_length.pressure_cells import (
     CellSizes,
@@ -37,16 +37,26 @@ from camwright.pipeline.contact.finite_length.pressure_cells import (
 )
 
 TierName = Literal["half_space", "finite_elements"]
+Condensed = Callable[[BrickGrid, float], QuarterCompliance]
+"""Compliance of the cells of a block at a Poisson ratio."""
 
 MEAN_LENGTH = 1e-4
 """Length of the mean pressure at an end, m."""
 
+FACTORS = ("centre", "greatest", "end1_mean", "end2_mean")
+"""Names of the columns of `AxialFactors.all`."""
+
 SIZES = CellSizes()
+# Ratio of the cells of successive meshes, and their sizes: the half-spaces on the last three, the
+# finite elements on the first three.
 _REFINEMENT = 1.5
+_MESHES = tuple(_REFINEMENT**k for k in (2, 1, 0, -1))
 # Ladder of half-widths and depths of the blocks, so that the compliances kept are shared.
 _LADDER, _LADDER_START = 1.1, 1e-4
 # Growth of the elements into the block and beside the contact.
 _BLOCK_GROWTH = 2.0
+# Width of a block to each side over that of its cells, at least.
+_NARROWEST = 2.0
 # Greatest depth of a block over its first element, by memory; greatest tilt, rad.
 _DEEPEST, _TILT = 2e4, 0.1
 # Contacts whose half-widths lie within this ratio share their cells.
@@ -93,12 +103,17 @@ class AxialFactors:
 
 @dataclass(frozen=True, eq=False)
 class TierResult:
-    """One contact at one tier: on the cells of both tiers; finest factors, their convergence."""
+    """One contact at one tier: on the cells of both tiers; finest factors, their convergence.
+
+    signed: pressure that is signed, over that of plane strain; at_corner: whether that is a mean.
+    """
 
     tier: TierName
     contact: LengthContact
     factors: AxialFactors
     convergence: tuple[Convergence, ...]
+    signed: Convergence
+    at_corner: bool
     unknowns: int
 
     @property
@@ -141,6 +156,7 @@ def both_tiers(
     mean_length: float = MEAN_LENGTH,
     sizes: CellSizes = SIZES,
     mesh_half_width: float | None = None,
+    condensed: Condensed | None = None,
 ) -> tuple[TierResult, TierResult]:
     """One contact by half-spaces and by finite elements.
 
@@ -151,8 +167,10 @@ def both_tiers(
                           half-space has no base
     moment : float        N m, about y = 0, instead of the tilt
     mean_length : float   of the means at the ends, m
-    sizes : CellSizes     of the cells; error bars by coarser ones, of the half-spaces by finer ones
+    sizes : CellSizes     of the cells; error bars by two coarser ones, of the half-spaces by a
+                          coarser and a finer one
     mesh_half_width : float   m, of the cells; default: that of plane strain
+    condensed : callable  compliance of a block; default: `condensed_block`
 
     Half-widths of the cells and depths of the blocks are rounded up to a ladder, so that bodies and
     loads that are nearly the same share the compliances kept.
@@ -168,44 +186,68 @@ def both_tiers(
     half_width, p0 = plane_strain(pair, force)
     if moment is not None and abs(moment) > _LIGHT_MOMENT * force * pair.contact_length:
         sizes = replace(sizes, window=max(sizes.window, _TILTED))
-    first, second = (replace(body, depth=on_ladder(body.depth)) for body in pair.bodies)
-    pair = replace(pair, bodies=(first, second))
-    meshes = [
-        pressure_cells(pair, on_ladder(mesh_half_width or half_width), sizes.coarser(ratio))
-        for ratio in (_REFINEMENT, 1.0, 1.0 / _REFINEMENT)
-    ]
-
+    pair = with_depths_on_ladder(pair)
+    meshes = meshes_of(pair, mesh_half_width or half_width, sizes)
     blocks, unknowns = [], 0
-    for cells in meshes[:2]:
-        compliance, unknowns = block_compliance(cells, pair.bodies)
+    for cells in meshes[:-1]:
+        compliance, unknowns = block_compliance(cells, pair.bodies, condensed)
         gap = cells.integrated_gap(pair)
         blocks.append(length_contact.solve(cells, compliance, gap, force, tilt=tilt, moment=moment))
     balanced = float(blocks[-1].moment[0])
     halves = [
         length_contact.solve(
             cells,
-            half_space_compliance(cells, pair.bodies),
+            shared_compliance(cells, pair.bodies),
             cells.integrated_gap(pair),
             force,
             moment=balanced,
         )
-        for cells in meshes
+        for cells in meshes[1:]
     ]
-    ladders = [
-        [AxialFactors.of(contact, [p0], mean_length) for contact in contacts]
-        for contacts in (halves, blocks)
-    ]
-    coarse_to_fine = [np.concatenate([f.all for f in steps]).T.tolist() for steps in ladders]
-    observed = tuple(converged(values, _REFINEMENT) for values in coarse_to_fine[0])
-    refined = tuple(
-        converged_on_two(values, _REFINEMENT, [seen])
-        for values, seen in zip(coarse_to_fine[1], observed, strict=True)
-    )
-    count = 2 * meshes[1].areas.size
     return (
-        TierResult("half_space", halves[1], ladders[0][-1], observed, count),
-        TierResult("finite_elements", blocks[-1], ladders[1][-1], refined, unknowns),
+        _result("half_space", pair, halves[1], halves, p0, mean_length, 2 * meshes[2].areas.size),
+        _result("finite_elements", pair, blocks[-1], blocks, p0, mean_length, unknowns),
     )
+
+
+def _result(
+    tier: TierName,
+    pair: FinitePair,
+    contact: LengthContact,
+    refined: Sequence[LengthContact],
+    p0: float,
+    mean_length: float,
+    unknowns: int,
+) -> TierResult:
+    """Result of a contact with those on three meshes, coarse to fine, over p0, Pa."""
+    factors = [AxialFactors.of(each, [p0], mean_length) for each in refined]
+    signed = [
+        length_contact.signed_pressure(
+            each.cells.y, each.centre_line / p0, mean_length, has_corner=pair.has_singular_end
+        )
+        for each in refined
+    ]
+    columns = np.concatenate([each.all for each in factors]).T.tolist()
+    return TierResult(
+        tier,
+        contact,
+        factors[-1],
+        tuple(converged(values, _REFINEMENT) for values in columns),
+        converged([float(each.value[0]) for each in signed], _REFINEMENT),
+        bool(signed[-1].at_corner[0]),
+        unknowns,
+    )
+
+
+def with_depths_on_ladder(pair: FinitePair) -> FinitePair:
+    """The pair with the depths of its blocks rounded up to the ladder."""
+    first, second = (replace(body, depth=on_ladder(body.depth)) for body in pair.bodies)
+    return replace(pair, bodies=(first, second))
+
+
+def meshes_of(pair: FinitePair, half_width: float, sizes: CellSizes) -> list[PressureCells]:
+    """Cells of both tiers, coarse to fine; finite elements have all but the last."""
+    return [pressure_cells(pair, on_ladder(half_width), sizes.coarser(each)) for each in _MESHES]
 
 
 def half_space_factors(
@@ -264,33 +306,42 @@ def _require_load(pair: FinitePair, force: float, tilt: float | None, moment: fl
 
 
 def block_compliance(
-    cells: PressureCells, bodies: tuple[FiniteBody, FiniteBody]
+    cells: PressureCells,
+    bodies: tuple[FiniteBody, FiniteBody],
+    condensed: Condensed | None = None,
 ) -> tuple[Array, int]:
-    """Compliance (n, n), m3/Pa, of the cells on both blocks, and their unknowns."""
+    """Compliance (n, n), m3/Pa, of the cells on both blocks, and their unknowns.
+
+    condensed : callable   compliance of a block; default: `condensed_block`
+    """
+    solve = condensed or condensed_block
     total, unknowns = np.zeros((cells.areas.size, cells.areas.size)), 0
     for body in bodies:
         grid = block_grid(cells, body)
-        quarter = _condensed(grid, body.material.poisson)
+        quarter = solve(grid, body.material.poisson)
         total += quarter.both_sides(grid.cells[0]) / body.material.modulus
         unknowns += 2 * grid.unknowns  # of both symmetries
     return total, unknowns
 
 
 def block_grid(cells: PressureCells, body: FiniteBody) -> BrickGrid:
-    """Elements of a quarter of a block, as wide to each side as it is deep.
+    """Elements of a quarter of a block, to each side as wide as it is deep, at least twice as wide
+    as its cells.
 
     Raises
     ------
     InputError
-        If the block is not deeper than the cells are wide, or too deep for elements of that size.
+        If the block is not deeper than half of the cells' width, or too deep for elements of that
+        size.
     """
     if not body.depth < _DEEPEST * cells.x[1]:
         raise InputError("depth", body.depth, f"< {_DEEPEST * cells.x[1]:.4g} m at this half-width")
-    if not body.depth > 2.0 * cells.x[-1]:
-        raise InputError("depth", body.depth, f"> {2.0 * cells.x[-1]:.4g} m, width of the cells")
+    if not body.depth > cells.x[-1]:
+        raise InputError("depth", body.depth, f"> {cells.x[-1]:.4g} m, half the width of the cells")
     middle = cells.shape[0] // 2
     x, y = cells.x, cells.y[middle:]
-    beside = graded(body.depth - x[-1], x[-1] - x[-2], _BLOCK_GROWTH, np.inf)
+    width = max(body.depth, _NARROWEST * x[-1])
+    beside = graded(width - x[-1], x[-1] - x[-2], _BLOCK_GROWTH, np.inf)
     deep = graded(body.depth, x[1], _BLOCK_GROWTH, np.inf)
     step, overhang = y[-1] - y[-2], 0.5 * body.length - y[-1]
     if overhang > 0.5 * step:
@@ -298,14 +349,19 @@ def block_grid(cells: PressureCells, body: FiniteBody) -> BrickGrid:
     return BrickGrid(np.concatenate([x, x[-1] + beside[1:]]), y, deep, (cells.shape[1], middle))
 
 
-def _condensed(grid: BrickGrid, poisson: float) -> QuarterCompliance:
+def condensed_block(grid: BrickGrid, poisson: float) -> QuarterCompliance:
     """Compliance of a block from memory, from the disk cache, or computed."""
     axes = grid.x.tobytes(), grid.y.tobytes(), grid.z.tobytes()
-    return _condensed_of(*axes, grid.cells, poisson)
+    return condensed_block_of(*axes, grid.cells, poisson)
+
+
+def is_kept(grid: BrickGrid, poisson: float) -> bool:
+    """Whether the compliance of a block is in the disk cache."""
+    return disk_cache.holds(_KEPT_AS, _inputs(grid, poisson), _MODULES)
 
 
 @lru_cache(maxsize=8)
-def _condensed_of(
+def condensed_block_of(
     x: bytes, y: bytes, z: bytes, cells: tuple[int, int], poisson: float
 ) -> QuarterCompliance:
     grid = BrickGrid(np.frombuffer(x), np.frombuffer(y), np.frombuffer(z), cells)
@@ -314,6 +370,12 @@ def _condensed_of(
         quarter = brick_body.condensed(grid, poisson)
         return {"symmetric": quarter.symmetric, "antisymmetric": quarter.antisymmetric}
 
-    inputs = (tuple(grid.x), tuple(grid.y), tuple(grid.z), grid.cells, poisson)
-    arrays = disk_cache.kept("block", inputs, compute, (brick_body, elastic_body))
+    arrays = disk_cache.kept(_KEPT_AS, _inputs(grid, poisson), compute, _MODULES)
     return QuarterCompliance(**arrays)
+
+
+def _inputs(grid: BrickGrid, poisson: float) -> Hashable:
+    return tuple(grid.x), tuple(grid.y), tuple(grid.z), grid.cells, poisson
+
+
+_KEPT_AS, _MODULES = "block", (brick_body, elastic_body)
