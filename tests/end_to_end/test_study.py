@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import random
 import shutil
@@ -30,11 +31,12 @@ from camwright.pipeline.studies.batch.answers import answered
 from camwright.pipeline.studies.batch.answers_yield import Yield
 from camwright.pipeline.studies.batch.case_template import read_templates
 from camwright.pipeline.studies.batch.dataset import read_dataset, table_from
-from camwright.pipeline.studies.batch.design_plan import SHARD_OF
+from camwright.pipeline.studies.batch.design_plan import SHARD_OF, study_versions
 from camwright.pipeline.studies.batch.design_rows import encoded
 from camwright.pipeline.studies.batch.design_solver import DesignSolver
-from camwright.pipeline.studies.batch.design_task import Task, Wanted
+from camwright.pipeline.studies.batch.design_task import Settings, Task, Wanted
 from camwright.pipeline.studies.batch.study_file import read_study
+from camwright.pipeline.studies.batch.task_scheduler import TaskScheduler
 
 ROOT = Path(__file__).resolve().parents[2]
 SECONDS = 300.0
@@ -147,6 +149,21 @@ def test_a_finished_study_is_resumed_without_a_cluster(folder: Path) -> None:
     )
     assert again.returncode == 0, again.stderr
     assert contents(folder / "one") == before
+
+
+@pytest.mark.filterwarnings("error:Port:UserWarning")
+def test_local_processes_listen_on_loopback_alone() -> None:
+    settings = Settings({}, study_versions(), "own", 36, True, (), 60.0, 10**9)
+    before = set(psutil.Process().net_connections())
+    with TaskScheduler(1, None, (), settings) as scheduler, socket.socket() as other:
+        with contextlib.suppress(OSError):  # the port of Dask, in use
+            other.bind(("127.0.0.1", 8787))
+            other.listen()
+            before |= set(psutil.Process().net_connections())
+        scheduler.begin()
+        opened = set(psutil.Process().net_connections()) - before
+        listening = {each.laddr.ip for each in opened if each.status == psutil.CONN_LISTEN}
+        assert listening == {"127.0.0.1"}
 
 
 @pytest.mark.slow

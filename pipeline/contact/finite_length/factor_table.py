@@ -206,11 +206,10 @@ class FactorTable:
         else:
             second, load_weights = np.zeros_like(first), np.ones((across.size, 1))
         size = load_weights.shape[1]
-        corners, inverse = np.unique(np.stack([first, second]), axis=1, return_inverse=True)
-        reach = [
-            [(a + i, b + j) for i in range(4) for j in range(size)] for a, b in corners.T.tolist()
-        ]
-        inverse = inverse.ravel()
+        least, count = second.min(), np.ptp(second) + 1
+        corners, inverse = np.unique(first * count + (second - least), return_inverse=True)
+        pairs = zip((corners // count).tolist(), (corners % count + least).tolist(), strict=True)
+        reach = [[(a + i, b + j) for i in range(4) for j in range(size)] for a, b in pairs]
         has_heavy = np.bincount(inverse, heavy, minlength=len(reach)) > 0
         needed: dict[tuple[int, int], bool] = {}
         for cells, is_heavy in zip(reach, has_heavy.tolist(), strict=True):

@@ -36,6 +36,7 @@ Result = TypeVar("Result")
 _AHEAD = 3
 """Tasks at a worker at once: one running, the next ones there."""
 _CONNECT_S = 30
+_LOOPBACK = "127.0.0.1:0"  # any free port
 _ADDRESS = re.compile(r"(?:(?:tcp|tls)://)?(?:[\w.-]+|\[[0-9A-Fa-f:.]+\]):([0-9]{1,5})", re.ASCII)
 MISSING = 'Dask is missing; install it with: pip install "camwright[study]"'
 
@@ -130,6 +131,9 @@ class TaskScheduler:
                     threads_per_worker=1,
                     processes=False,
                     dashboard_address=None,
+                    # Without an address both listen for HTTP on every interface.
+                    worker_dashboard_address=_LOOPBACK,
+                    scheduler_kwargs={"dashboard_address": _LOOPBACK},
                     memory_limit=0,
                     local_directory=stack.enter_context(folder),
                     silence_logs=logging.CRITICAL,
