@@ -16,7 +16,7 @@ from camwright.geometry.errors import MeshError, ResultError
 from camwright.meshes.body_mesh import BodyMesh
 from camwright.meshes.element_size import MILLIMETRE
 from camwright.meshes.gmsh_mesher import Index, session
-from camwright.meshes.vtu import QUADRANGLE, QUADRATIC_TRIANGLE, Grid, vtu
+from camwright.meshes.vtu import HEXAHEDRON, QUADRANGLE, QUADRATIC_TRIANGLE, Grid, vtu
 
 UNITS = "units_mm_N_MPa"
 """Field data that names the units of every VTU file."""
@@ -169,6 +169,39 @@ def write_rectangles(path: str | Path, x: Array, y: Array, cell_data: Mapping[st
     grid = Grid(points, cells, QUADRANGLE, {}, values, {UNITS: 1.0})
     with replacing(path) as temporary:
         temporary.write_bytes(vtu(grid))
+
+
+def write_hexahedra(
+    path: str | Path,
+    points: Array,
+    cells: Index,
+    point_data: Mapping[str, Array],
+    cell_data: Mapping[str, Array],
+    field_data: Mapping[str, float],
+) -> None:
+    """VTU file of hexahedra with fields.
+
+    Parameters
+    ----------
+    points : array (n, 3)                   m
+    cells : array (m, 8)                    corners, in the order of VTK
+    point_data, cell_data : mapping         name, unit included -> (n, ...) or (m, ...)
+    field_data : mapping                    numbers of the file as a whole, besides its units
+
+    Raises
+    ------
+    ResultError
+        If the file cannot be written; one already there is left as it was.
+    """
+    grid = Grid(
+        points / MILLIMETRE,
+        cells,
+        HEXAHEDRON,
+        {name: np.ascontiguousarray(values) for name, values in point_data.items()},
+        {name: np.ascontiguousarray(values) for name, values in cell_data.items()},
+        {UNITS: 1.0, **field_data},
+    )
+    _write_grid(path, grid)
 
 
 @contextmanager

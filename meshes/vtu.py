@@ -13,7 +13,7 @@ from xml.sax.saxutils import quoteattr
 import numpy as np
 from numpy.typing import NDArray
 
-QUADRATIC_TRIANGLE, QUADRANGLE = 22, 9  # cell types of VTK
+QUADRATIC_TRIANGLE, QUADRANGLE, HEXAHEDRON = 22, 9, 12  # cell types of VTK
 _BLOCK = 1 << 16
 _LEVEL = 1  # the highest saves a tenth of the size for three times the time
 _TYPES = {"f8": "Float64", "i4": "Int32", "u1": "UInt8"}

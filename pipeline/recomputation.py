@@ -36,7 +36,13 @@ from camwright.pipeline.results import check_records, run_reader, signoff
 from camwright.pipeline.results.check_records import AnyCheck
 from camwright.pipeline.results.drawn_cam import drawn_cam
 from camwright.pipeline.results.field_file import read_series
-from camwright.pipeline.results.field_output import STRESS, Shown, write_fields
+from camwright.pipeline.results.field_output import (
+    ENDS,
+    STRESS,
+    Shown,
+    write_end_field,
+    write_fields,
+)
 from camwright.pipeline.results.file_differences import (
     SAME,
     file_differences,
@@ -395,7 +401,10 @@ def _written(
         write_workshop(shop, trial.case, trial.contour)
         stamp_solid(shop, run.summary["input_sha256"], results_sha256(run.summary["files"]))
     if trial.depth >= Tier.CYCLE:
-        write_fields(again.fields, trial, _shown_fields(run.path, trial))
+        shown = _shown_fields(run.path, trial)
+        write_fields(again.fields, trial, shown)
+        if shown is not Shown.NONE:
+            write_end_field(again.fields / ENDS, trial)
     return summary | judged_of(trial, run.summary["statement"])
 
 

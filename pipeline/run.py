@@ -26,7 +26,7 @@ from camwright.pipeline.cycle.ripple_map import ripple_map
 from camwright.pipeline.iteration import trials_of
 from camwright.pipeline.remedies.remedy_search import order_of, texts_of, with_remedies
 from camwright.pipeline.results.check_records import governing_id
-from camwright.pipeline.results.field_output import Shown, write_fields
+from camwright.pipeline.results.field_output import ENDS, Shown, write_end_field, write_fields
 from camwright.pipeline.results.run_folder import RunFolder
 from camwright.pipeline.results.run_reader import Run, read_run
 from camwright.pipeline.results.run_records import crank_speed_record, headline, torque_columns
@@ -165,6 +165,9 @@ def _solved(
         watch.stage("remedies")
         texts = {name: text for part in sought for name, text in part.result().items()}
         certified = with_changes(certified, checks=with_remedies(certified.checks, texts))
+    if fields is not Shown.NONE:
+        watch.stage("fields")
+        write_end_field(folder.fields / ENDS, certified, workers)
     workers.dismiss()
     writer.judge(certified)
     return summary | judged_of(certified, restated(statement, failing, _failing(certified)))

@@ -190,7 +190,11 @@ def axial_pictures(material: Material) -> Sequence[Picture]:
     certified = pressure_figures.certified_pressure(
         final.record.get("length_certificate", []), axial, centre
     )
-    tiers = "half-spaces" if certified is None else "half-spaces and by finite elements (points)"
+    tiers = (
+        "half-spaces"
+        if certified is None
+        else "half-spaces, and at the greatest moment by finite elements with error bars"
+    )
     mean = report_tables.quantity(axial.mean_length, "mm")
     peak = report_tables.quantity(axial.peak, "MPa")
     return (
@@ -227,8 +231,12 @@ def pictures(material: Material) -> list[Picture]:
 
 
 def begun(material: Material, workers: Crew) -> dict[str, Task]:
-    """Pictures handed to worker processes, by kind and load case."""
-    return {_key(draw, material): workers.submit(draw, material) for draw in PICTURES}
+    """Pictures that need no certificate handed to worker processes, by kind and load case."""
+    return {
+        _key(draw, material): workers.submit(draw, material)
+        for draw in PICTURES
+        if draw is not axial_pictures  # it shows the certificate, which is not solved yet
+    }
 
 
 def _key(draw: Callable[[Material], Sequence[Picture]], material: Material) -> str:

@@ -255,26 +255,40 @@ def read_axial(path: Path, load_case: str, worst: tuple[str, float] | None) -> A
     )  # fmt: skip
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class CertifiedPressure:
-    """Pressure by finite elements, MPa: in the middle, mean at either end; their error bars."""
+    """Pressure by finite elements, MPa: in the middle, mean at either end; their error bars.
+
+    along, line (m,): positions, mm, and pressure there.
+    """
 
     centre: float
     ends: tuple[float, float]
     errors: tuple[float, float, float]
+    along: Array
+    line: Array
+
+    def _is_mirrored(self, axial: AxialPressure) -> bool:
+        """Whether the moment has the other sign than that of the half-spaces.
+
+        The bodies are symmetric.
+        """
+        return bool((self.ends[1] - self.ends[0]) * (axial.tilted[-1] - axial.tilted[0]) < 0)
 
     def over(self, axial: AxialPressure) -> tuple[Array, Array, Array]:
-        """Places, mm, values and error bars, the more loaded end where the half-spaces have it.
-
-        The moment of the record may have the other sign: the bodies are symmetric.
-        """
-        line = axial.tilted
-        flip = (self.ends[1] - self.ends[0]) * (line[-1] - line[0]) < 0
+        """Places, mm, values and error bars, the more loaded end where the half-spaces have it."""
         places = np.array([0.5 * (axial.edges[0] + axial.edges[1]), 0.0,
                            0.5 * (axial.edges[-1] + axial.edges[-2])])  # fmt: skip
         values = np.array([self.ends[0], self.centre, self.ends[1]])
         bars = np.array([self.errors[1], self.errors[0], self.errors[2]])
-        return places, *((values[::-1], bars[::-1]) if flip else (values, bars))
+        return places, *((values[::-1], bars[::-1]) if self._is_mirrored(axial) else (values, bars))
+
+    def curve(self, axial: AxialPressure) -> tuple[Array, Array]:
+        """Positions, mm, and pressure, MPa, between the means at the ends where there are such."""
+        line = self.line[::-1] if self._is_mirrored(axial) else self.line
+        reach = axial.edges[-1] - (axial.mean_length if axial.has_means else 0.0)
+        inside = np.abs(self.along) < reach
+        return self.along[inside], line[inside]
 
 
 def certified_pressure(
@@ -297,7 +311,11 @@ def certified_pressure(
             abs(value) * 1e-2 * float(tier[f"{name}_gci_percent"])
             for name, value in zip(_PLACES, (centre, end1, end2), strict=True)
         ]
-        return CertifiedPressure(centre, (end1, end2), (bars[0], bars[1], bars[2]))
+        axial_line = tier["axial"]
+        along, line = (np.array(axial_line[name], dtype=float) for name in ("y_mm", "factor"))
+        return CertifiedPressure(
+            centre, (end1, end2), (bars[0], bars[1], bars[2]), along, plane * line
+        )
     return None
 
 
@@ -351,9 +369,11 @@ def _along_the_line(
         top = max(top, centre)
     if certified is not None:
         places, values, bars = certified.over(axial)
-        ax.errorbar(places, values, bars, fmt="o", markersize=4.0, color=COLOURS["ink"],
-                    capsize=2.5, linewidth=0.9, label="finite elements")  # fmt: skip
-        top = max(top, float((values + bars).max()))
+        along, line = certified.curve(axial)
+        ax.plot(along, line, "-.", color=COLOURS["ink"], linewidth=0.9, label="finite elements")
+        ax.errorbar(places, values, bars, fmt="o", markersize=3.0, color=COLOURS["ink"],
+                    capsize=2.5, elinewidth=0.9)  # fmt: skip
+        top = max(top, float((values + bars).max()), float(line.max()))
     if limit is not None and limit < 2.0 * top:
         ax.axhline(limit, color=COLOURS["ink"], linewidth=0.9, label=f"limit {limit:.4g} MPa")
         top = max(top, limit)

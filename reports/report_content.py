@@ -394,14 +394,14 @@ def _evidence(material: Material) -> Section:
             "The contact is solved again at these cam angles, with both bodies meshed: at the two "
             "of the greatest pressure on three successively finer meshes, at the others on the two "
             "coarser ones, with the least order observed there. Edges are counted across the "
-            "half-width a. Each row has order, GCI and deviation of its own quantity. Order: of "
-            "convergence; scatter where none is observed. GCI: grid convergence index of the "
-            "finest mesh. Deviation: of the cycle from the extrapolated value.",
+            "half-width a. Order: of convergence; scatter where none is observed. GCI: grid "
+            "convergence index of the finest mesh. Deviation: of the cycle from the extrapolated.",
         ) if certificate.rows else Block(
             None, "Certificate points", "The final trial has no certificate points."
         ),
         *_tables(
             (verification_tables.certified(points), "Half-width and stresses", ""),
+            *verification_tables.of_ends(final.record),
             (
                 verification_tables.corners(final.checks), "Tolerance corners",
                 "Checks whose demand within the tolerances exceeds the nominal one.",
@@ -447,6 +447,7 @@ def _evidence(material: Material) -> Section:
         Block(Pairs("Solver time", times), "Solver time", narrow=True),
     ]  # fmt: skip
     lead = f"Contact model: {method}. {_beyond_hertz(material)}".rstrip() if method else ""
+    lead = f"{lead} {verification_tables.ends_refused(final.record)}".strip()
     return Section("evidence", "Evidence", blocks, lead)
 
 

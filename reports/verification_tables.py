@@ -35,6 +35,15 @@ CERTIFIED_HEAD = (
     "Cam angle, deg", "Quantity", "Per mesh", "Extrapolated", "Order", "GCI, %", "Of the cycle",
     "Deviation, %",
 )  # fmt: skip
+ENDS_HEAD = (
+    "Load case", "Cam angle, deg", "Force, N", "Moment, N mm", "Signed pressure", "Half-spaces",
+    "Finite elements", "GCI, %", "Ratio", "Middle, finite elements",
+)  # fmt: skip
+STRESS_HEAD = (
+    "Load case", "Cam angle, deg", "Body", "Below", "von Mises, MPa", "at depth, mm",
+    "Shear, MPa", "at depth, mm",
+)  # fmt: skip
+_BELOW = {"centre": "middle", "end1": "end at y < 0", "end2": "end at y > 0"}
 CERTIFIED = {
     "half_width_mm": "half-width a, mm",
     "tau_max_MPa": "maximum shear stress, MPa",
@@ -205,6 +214,62 @@ def certified(points: Sequence[Record]) -> Table:
     ]  # fmt: skip
     return Table("Half-width and stresses at the certificate points", CERTIFIED_HEAD, rows, 2,
                  wide=True)  # fmt: skip
+
+
+def ends(points: Sequence[Record]) -> Table:
+    """Signed pressure at the ends of the contact over plane strain by both tiers."""
+    rows = []
+    for point in points:
+        blocks = _figure(point, "finite_elements")
+        mean = f"mean of {number(blocks.get('mean_length_mm'))} mm at a corner"
+        rows.append([
+            str(point.get("load_case")), number(point.get("cam_angle_deg")),
+            number(point.get("force_N")), number(point.get("moment_Nmm")),
+            mean if point.get("is_mean_at_corner") else "greatest",
+            number(point.get("cycle_factor")), number(point.get("signed_factor")),
+            number(point.get("signed_gci_percent"), 2), number(point.get("ratio")),
+            number(blocks.get("centre")),
+        ])  # fmt: skip
+    return Table("Ends of the contact, over plane strain", ENDS_HEAD, rows, wide=True)
+
+
+def stress_below(points: Sequence[Record]) -> Table:
+    """Greatest stresses below middle and ends of the contact at the first certified angle."""
+    rows = []
+    for point in points[:1]:
+        p0 = float(point["plane_strain_p0_MPa"])
+        for body, places in _records_by_name(_figure(point, "finite_elements").get("stress")):
+            for place, peak in _records_by_name(places):
+                rows.append([
+                    str(point.get("load_case")), number(point.get("cam_angle_deg")), body,
+                    _BELOW[place], number(p0 * float(peak["von_mises"])),
+                    number(peak["von_mises_depth_mm"], 3), number(p0 * float(peak["shear"])),
+                    number(peak["shear_depth_mm"], 3),
+                ])  # fmt: skip
+    return Table("Stress below middle and ends of the contact", STRESS_HEAD, rows, wide=True)
+
+
+def of_ends(trial: Record) -> list[tuple[Table, str, str]]:
+    """Tables of the finite-element ends of a trial, their titles and introductions."""
+    points = _records(trial.get("length_certificate"))
+    return [
+        (
+            ends(points), "Ends of the contact",
+            "Bodies of finite length by half-spaces with mirrored ends and by finite elements on "
+            "three meshes. The greatest ratio multiplies the factor of every check, with the "
+            "greatest grid convergence index (GCI) as its error bar.",
+        ),
+        (
+            stress_below(points), "Stress below the ends",
+            "From the pressure of the finite elements, as patches on a half-space.",
+        ),
+    ]  # fmt: skip
+
+
+def ends_refused(trial: Record) -> str:
+    """Why finite elements did not solve the ends; "" where they did."""
+    refused = trial.get("length_refused")
+    return f"The ends of the contact are solved by half-spaces alone: {refused}." if refused else ""
 
 
 def hertz_difference(record: Json) -> str:

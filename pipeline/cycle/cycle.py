@@ -69,11 +69,13 @@ class Cycle(Tabled):
     error_bars: bool = field(default=True, kw_only=True)
     ends: EndCorrection | None = field(default=None, kw_only=True)
 
-    def with_ends(self, correction: EndCorrection) -> Cycle:
+    def with_ends(self, correction: EndCorrection | None) -> Cycle:
         """The cycle with the pressure along the line of contact corrected by finite elements.
 
-        What is computed already and does not depend on that pressure is kept.
+        None: by half-spaces. What is computed already and does not depend on it is kept.
         """
+        if correction == self.ends:
+            return self
         cycle = replace(self, ends=correction)
         kept = ("parts", "elastic") if self.machine.is_crowned else ("parts", "elastic", "rolling")
         known = {name: value for name, value in vars(self).items() if name in kept}
@@ -326,10 +328,12 @@ class Cycle(Tabled):
         if (length := self.length) is not None:
             columns |= {
                 contact_column(
-                    "p0_signed", "MPa", "Contact pressure that is signed, ends and tilt included"
+                    "p0_signed",
+                    "MPa",
+                    "Signed contact pressure by half-spaces, ends and tilt included",
                 ): self.signed_pressure,
                 contact_column(
-                    "length_factor", "", "Signed contact pressure over that of plane strain"
+                    "length_factor", "", "The same over the contact pressure of plane strain"
                 ): length.factor,
                 contact_column("length_factor_level", "", "The same without tilt"): length.level,
                 contact_column(

@@ -12,10 +12,14 @@ from numpy.typing import ArrayLike
 
 from camwright.geometry.arrays import Array, uniform_turn
 from camwright.geometry.cutouts import KeywayLike
+from camwright.meshes.mesh_files import write_hexahedra
 from camwright.pipeline.base.files import npz_bytes, write_atomic
 from camwright.pipeline.base.tables import Column
+from camwright.pipeline.base.worker_processes import ALONE, Crew
 from camwright.pipeline.contact.contact_pair import ContactPair
 from camwright.pipeline.contact.elasticity import plane_stress_measures
+from camwright.pipeline.contact.finite_length.block_stress import BlockField, block_field
+from camwright.pipeline.contact.finite_length.length_tiers import with_depths_on_ladder
 from camwright.pipeline.contact.two_scale import CycleBodies
 from camwright.pipeline.cycle.certificate_angles import positions_to_certify
 from camwright.pipeline.cycle.cycle import Cycle
@@ -30,7 +34,7 @@ from camwright.pipeline.results.stress_fields import (
 from camwright.pipeline.results.trial import Trial
 
 STEP = np.radians(15.0)
-STRESS, TURN, VIEW = "stress.vtkhdf", "turn.npz", "view_stress.py"
+STRESS, TURN, VIEW, ENDS = "stress.vtkhdf", "turn.npz", "view_stress.py", "ends.vtu"
 FIELDS = {"displacement_mm": 3, "stress_MPa": 6, "von_mises_MPa": 1, "tau_max_MPa": 1}
 """Point data and their components; stress in the order XX, YY, ZZ, XY, YZ, XZ of VTK."""
 FRAMES = 360
@@ -72,6 +76,52 @@ def write_fields(
     write_stress(folder / STRESS, TurnFields(cycle.pair, bodies, cycle), positions, advance)
     script = files("camwright.pipeline.results") / "templates" / VIEW
     write_atomic(folder / VIEW, script.read_bytes())
+
+
+def write_end_field(path: Path, final: Trial, workers: Crew = ALONE) -> None:
+    """Write the field of both bodies at the worst certified angle; nothing without finite elements.
+
+    Half x >= 0 of each on the coarser of the last two meshes: x along the rolling direction, y
+    along the axis, z = 0 in the contact, below it the cam, above it the follower.
+
+    Raises
+    ------
+    ResultError
+        If the file cannot be written.
+    """
+    certificate = final.solution.length_certificate
+    if certificate is None or not certificate.points:
+        return
+    point = certificate.points[0]
+    contact, pair = point.finite_elements.coarser, with_depths_on_ladder(point.load.pair)
+    tasks = [workers.submit(block_field, body, contact) for body in pair.bodies]
+    blocks: list[BlockField] = [task.result() for task in tasks]
+    up = np.array([1.0, 1.0, -1.0]), np.array([1.0, 1.0, 1.0, 1.0, -1.0, -1.0])
+    turned = (up, (np.ones(3), np.ones(6)))
+    stress = [block.stress * signs for block, (_, signs) in zip(blocks, turned, strict=True)]
+    motion = [block.displacement * signs for block, (signs, _) in zip(blocks, turned, strict=True)]
+    count = len(blocks[0].points)
+    cells = [blocks[0].cells[:, [4, 5, 6, 7, 0, 1, 2, 3]], blocks[1].cells + count]
+    load = point.load
+    write_hexahedra(
+        path,
+        np.concatenate([b.points * signs for b, (signs, _) in zip(blocks, turned, strict=True)]),
+        np.concatenate(cells),
+        {
+            "displacement_mm": np.concatenate(motion) / _MILLIMETRE,
+            "stress_MPa": np.concatenate(stress) / _MEGAPASCAL,
+            "von_mises_MPa": np.concatenate([block.von_mises for block in blocks]) / _MEGAPASCAL,
+        },
+        {
+            "contact_pressure_MPa": np.concatenate([b.pressure for b in blocks]) / _MEGAPASCAL,
+            "body": np.repeat([0, 1], [len(block.cells) for block in blocks]),
+        },
+        {
+            "cam_angle_deg": round(float(np.degrees(load.theta)), _DIGITS),
+            "force_N": load.force,
+            "moment_Nmm": load.moment * _TO_MM,
+        },
+    )
 
 
 def hardest(cycles: Sequence[Cycle]) -> int:

@@ -32,8 +32,13 @@ class TrialWriter:
         return self._folder.contact_store(number)
 
     def keep(self, trial: Trial) -> None:
-        """Write lift, contour, mesh, cycle, checks and record of a trial."""
+        """Write lift, contour, mesh, cycle, checks and record of a trial.
+
+        The pressure along the line of contact is that of half-spaces; the certificate states the
+        correction of it.
+        """
         folder, number, case = self._folder, trial.number, trial.case
+        cycles = tuple(cycle.with_ends(None) for cycle in trial.cycles)
         folder.write_spline(number, spline_columns(trial.lift))
         folder.write_lift(number, lift_columns(case, trial.lift))
         if trial.limits_in_use is not None:
@@ -42,20 +47,17 @@ class TrialWriter:
         if (mesh := trial.mesh) is not None:
             bodies = {"cam": mesh.cam, mesh.name: mesh.follower}
             write_msh(folder.mesh_path(number), bodies)
-            turns = {cycle.load_case: cycle.rolling for cycle in trial.cycles}
+            turns = {cycle.load_case: cycle.rolling for cycle in cycles}
             folder.write_envelope(number, envelope_arrays(turns))
-        folder.write_cycle(number, cycle_columns(trial.cycles))
+        folder.write_cycle(number, cycle_columns(cycles))
         folder.write_speed_sweep(number, sweep_columns(trial.solution.speed_sweeps))
-        folder.write_pressure(number, pressure_arrays(trial.cycles))
-        folder.write_guides(number, guide_arrays(trial.cycles))
-        if (axial := axial_arrays(trial.cycles)) is not None:
+        folder.write_pressure(number, pressure_arrays(cycles))
+        folder.write_guides(number, guide_arrays(cycles))
+        if (axial := axial_arrays(cycles)) is not None:
             folder.write_length(number, axial)
         self.judge(trial)
 
     def judge(self, trial: Trial) -> None:
-        """Write checks and record; again after the certificate, which corrects the cycle."""
-        ends = trial.solution.length_certificate
-        if ends is not None and ends.points:
-            self._folder.write_cycle(trial.number, cycle_columns(trial.cycles))
+        """Write checks and record of a trial; again after its certificate."""
         self._folder.write_checks(trial.number, [check.as_record() for check in trial.checks])
         self._folder.write_trial(trial.number, trial_record(trial))

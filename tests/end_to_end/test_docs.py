@@ -109,6 +109,7 @@ def test_the_run_folder_holds_what_is_listed(folder: Path) -> None:
         "trial_1/2_limits.csv",
         "workshop/crown_cam.csv",
         "figures/",
+        "fields/ends.vtu",
     }
     for name in listed:
         assert (folder / "runs" / "demo" / name).exists() or name in some_cases_only, name

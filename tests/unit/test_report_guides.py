@@ -114,13 +114,18 @@ def test_finite_elements_stand_beside_the_half_spaces_at_the_certified_angle(axi
     one = pressure_figures.read_axial(axial, "idle", ("fast", 45.0))
     factors = {"centre": 1.1, "end1_mean": 1.6, "end2_mean": 1.4}
     bars = {f"{name}_gci_percent": share for name, share in zip(factors, (1, 2, 3), strict=True)}
-    record = {"load_case": "fast", "cam_angle_deg": 45.0, "finite_elements": factors | bars}
+    line = {"y_mm": [-1.95, -1.0, 0.0, 1.0, 1.95], "factor": [1.7, 1.3, 1.1, 1.2, 1.5]}
+    blocks = factors | bars | {"axial": line}
+    record = {"load_case": "fast", "cam_angle_deg": 45.0, "finite_elements": blocks}
     made = pressure_figures.certified_pressure([record], one, 100.0)
     places, values, errors = made.over(one)
     np.testing.assert_allclose(places, [-1.95, 0.0, 1.95])
     # The half-spaces carry more at y > 0, the record at y < 0: the same contact, mirrored.
     np.testing.assert_allclose(values, [140.0, 110.0, 160.0])
     np.testing.assert_allclose(errors, [4.2, 1.1, 3.2])
+    along, line = made.curve(one)
+    np.testing.assert_allclose(along, [-1.0, 0.0, 1.0])  # the means stand for the rest
+    np.testing.assert_allclose(line, [120.0, 110.0, 130.0])
     assert pressure_figures.drawn_axial(one, None, 100.0, made) != pressure_figures.drawn_axial(
         one, None, 100.0
     )

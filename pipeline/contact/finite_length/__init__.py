@@ -10,6 +10,7 @@ In the order of the calculation:
 | `brick_body`     | compliance of a block by finite elements                | m3           |
 | `length_contact` | pressures under force, tilt or moment                   | p, Pa; F, N  |
 | `length_tiers`   | both tiers over plane strain, error bars, many contacts | K, -         |
+| `block_stress`   | displacement and stress of a block at one contact       | sigma, Pa    |
 | `factor_table`   | axial pressure of one pair of bodies, tabulated         | K, -         |
 | `length_certificate` | both tiers at chosen angles of a cycle              | K, -         |
 | `subsurface_stress` | von Mises and shear stress below middle and ends      | sigma, Pa    |

@@ -4,7 +4,8 @@ Hexahedra of 20 nodes on a tensor grid, the base held, constant pressure on the 
 A quarter is modelled: loads are symmetric in x, and in y symmetric or antisymmetric. The nodes are
 eliminated plane by plane from the free end towards the middle; both symmetries differ in the last
 plane alone. The compliance is the product of the forward substitution with itself, so that neither
-the stiffness nor its factors are kept.
+the stiffness nor its factors are kept; the displacement under known pressures needs the factors of
+all planes.
 """
 
 from __future__ import annotations
@@ -95,41 +96,123 @@ def condensed(grid: BrickGrid, poisson: float, *, free_ends: bool = True) -> Qua
     Block elimination of a block tridiagonal matrix: Golub and Van Loan, Matrix Computations (2013),
     sec. 4.5.
     """
-    section = _Section(grid)
     across, along = grid.cells
     count = across * along
-    stiffness = _SlabStiffness(section, poisson)
     compliance = np.zeros((count, count))
-    schur = np.zeros((3 * section.planar, 3 * section.planar))
-    right = np.zeros((3 * section.planar, count))
-    kept = section.supported
-    if not free_ends:
-        kept = np.delete(kept, np.flatnonzero(kept % 3 == 1))
-    steps = np.diff(grid.y)
-    for slab in range(steps.size - 1, -1, -1):
-        outer, cross, inner, middle = stiffness.condensed(float(steps[slab]))
-        ahead = np.zeros_like(right)
-        if slab < along:
-            columns = slice(slab * across, (slab + 1) * across)
-            loads = section.facet_loads(float(steps[slab]))
-            half = middle.forward(loads.between)
-            compliance[columns, columns] += half.T @ half
-            right[:, columns] += loads.plane - middle.outer.T @ half
-            ahead[:, columns] += loads.plane - middle.inner.T @ half
-        block = (schur + outer)[np.ix_(kept, kept)]
-        factor = _cholesky(block)
-        carried = _forward(factor, right[kept])
-        compliance += carried.T @ carried
-        coupling = _forward(factor, cross[kept])
-        schur = inner - _gram(coupling)
-        right = ahead - coupling.T @ carried
-        kept = section.supported
+    elimination = _Elimination(grid, poisson, count, free_ends=free_ends)
+    for slab in range(grid.y.size - 2, -1, -1):
+        columns = np.arange(slab * across, (slab + 1) * across)
+        loads = elimination.facets(slab)
+        gone = elimination.without_outer_plane(slab, loads, columns)
+        if gone.between is not None:
+            compliance[np.ix_(columns, columns)] += gone.between.T @ gone.between
+        compliance += gone.carried.T @ gone.carried
     results = []
-    for fixed in ((1,), (0, 2)):
-        free = kept[~np.isin(kept % 3, fixed)]
-        last = _forward(_cholesky(schur[np.ix_(free, free)]), right[free])
+    for symmetry in _SYMMETRIES:
+        _, _, last = elimination.last_plane(symmetry)
         results.append(compliance + last.T @ last)
     return QuarterCompliance(*results)
+
+
+def displacement(grid: BrickGrid, poisson: float, pressure: Array) -> Array:
+    """Displacement times Young's modulus (2, i, j, k, 3), m Pa, of a block with free ends.
+
+    On the lattice of half edges along x, y and z, NaN where it has no node; z into the block.
+
+    Parameters
+    ----------
+    pressure : array (2, along, across)   Pa, on the cells: symmetric and antisymmetric in y
+    """
+    elimination = _Elimination(grid, poisson, 2)
+    section, slabs = elimination.section, range(grid.y.size - 1)
+    gone = {}
+    for slab in reversed(slabs):
+        loads = elimination.facets(slab)
+        if loads is not None:
+            here = pressure[:, slab].T
+            loads = _Loads(loads.plane @ here, loads.between @ here)
+        gone[slab] = elimination.without_outer_plane(slab, loads, np.arange(2))
+    shape = (2 * grid.x.size - 1, 2 * grid.y.size - 1, 2 * grid.z.size - 1, 3)
+    field = np.full((2, *shape), np.nan)
+    for number, symmetry in enumerate(_SYMMETRIES):
+        free, factor, right = elimination.last_plane(symmetry)
+        plane = np.zeros(3 * section.planar)
+        plane[free] = _backward(factor, right[:, number])
+        section.place(field[number, :, 0], plane)
+        for slab in slabs:
+            inner, part = plane, gone[slab]
+            plane = np.zeros_like(inner)
+            right = part.carried[:, number] - part.coupling @ inner
+            plane[part.kept] = _backward(part.factor, right)
+            between = np.zeros(3 * section.between)
+            loaded = 0.0 if part.between is None else part.between[:, number]
+            right = loaded - part.middle.outer @ plane - part.middle.inner @ inner
+            between[part.middle.supported] = _backward(part.middle.factor, right)
+            section.place(field[number, :, 2 * slab + 1], between)
+            section.place(field[number, :, 2 * slab + 2], plane)
+    return field
+
+
+# Displacements that vanish in the middle plane under symmetric and antisymmetric loads.
+_SYMMETRIES = ((1,), (0, 2))
+
+
+@dataclass(frozen=True, eq=False)
+class _Gone:
+    """Eliminated outer plane of a slab, and the nodes between its planes.
+
+    kept: its unknowns; factor: of their stiffness; coupling to the inner plane, loads `carried`
+    and loads `between`, forward-substituted.
+    """
+
+    kept: Index
+    factor: Array
+    coupling: Array
+    carried: Array
+    between: Array | None
+    middle: _Middle
+
+
+class _Elimination:
+    """Elimination of the planes of a block from its end to the middle, under columns of loads."""
+
+    def __init__(
+        self, grid: BrickGrid, poisson: float, columns: int, *, free_ends: bool = True
+    ) -> None:
+        self.section = section = _Section(grid)
+        self._steps, self._along = np.diff(grid.y), grid.cells[1]
+        self._stiffness = _SlabStiffness(section, poisson)
+        self._schur = np.zeros((3 * section.planar, 3 * section.planar))
+        self._right = np.zeros((3 * section.planar, columns))
+        self._kept = section.supported
+        if not free_ends:
+            self._kept = np.delete(self._kept, np.flatnonzero(self._kept % 3 == 1))
+
+    def facets(self, slab: int) -> _Loads | None:
+        """Loads of unit pressures on the facets of a slab; None beside the cells."""
+        return self.section.facet_loads(float(self._steps[slab])) if slab < self._along else None
+
+    def without_outer_plane(self, slab: int, loads: _Loads | None, columns: Index) -> _Gone:
+        """Eliminate the outer plane of a slab under loads in some columns."""
+        outer, cross, inner, middle = self._stiffness.condensed(float(self._steps[slab]))
+        ahead, half, kept = np.zeros_like(self._right), None, self._kept
+        if loads is not None:
+            half = middle.forward(loads.between)
+            self._right[:, columns] += loads.plane - middle.outer.T @ half
+            ahead[:, columns] += loads.plane - middle.inner.T @ half
+        factor = _cholesky((self._schur + outer)[np.ix_(kept, kept)])
+        carried = _forward(factor, self._right[kept])
+        coupling = _forward(factor, cross[kept])
+        self._schur = inner - _gram(coupling)
+        self._right = ahead - coupling.T @ carried
+        self._kept = self.section.supported
+        return _Gone(kept, factor, coupling, carried, half, middle)
+
+    def last_plane(self, fixed: tuple[int, ...]) -> tuple[Index, Array, Array]:
+        """Middle plane: unknowns, factor of their stiffness, forward-substituted loads."""
+        free = self._kept[~np.isin(self._kept % 3, fixed)]
+        factor = _cholesky(self._schur[np.ix_(free, free)])
+        return free, factor, _forward(factor, self._right[free])
 
 
 @dataclass(frozen=True, eq=False)
@@ -183,6 +266,11 @@ class _Section:
             else:
                 nodes[:, node] = (0 if py == 2 else self.planar) + self._planar[place]
         return (3 * nodes[:, :, None] + np.arange(3)).reshape(i.size, 3 * _NODES)
+
+    def place(self, lattice: Array, values: Array) -> None:
+        """Write unknowns of a plane, or of the nodes between two, on the lattice (i, k, 3)."""
+        numbers = self._planar if values.size == 3 * self.planar else self._between
+        lattice[numbers >= 0] = values.reshape(-1, 3)[numbers[numbers >= 0]]
 
     def facet_loads(self, thickness: float) -> _Loads:
         """Loads of the facets of a slab of a thickness, m, along z: into the block."""
@@ -274,6 +362,20 @@ def _reference() -> _Reference:
     return _Reference(np.rint(2.0 * basis.doflocs.T).astype(np.intp), slopes)
 
 
+def shape_slopes(points: Array) -> tuple[Index, Array]:
+    """Places (20, 3) of the nodes of an element in half edges, slopes of their shape functions.
+
+    Slopes (n, 3, 20) along the axes of the unit cube at points (n, 3) of it.
+    """
+    from skfem import Basis, ElementHexS2, MeshHex
+
+    element = ElementHexS2()
+    mapping = Basis(MeshHex(), element, intorder=_ORDER).mapping
+    inside = np.concatenate([mapping.invF(each[:, None, None]) for each in points], axis=2)
+    columns = [element.gbasis(mapping, inside[:, 0], node)[0].grad[:, 0] for node in range(_NODES)]
+    return _reference().places, np.moveaxis(np.array(columns), -1, 0).transpose(0, 2, 1)
+
+
 def _element_stiffness(
     width: Array, depth: Array, lame: float, shear: float
 ) -> tuple[Array, Array, Array]:
@@ -310,6 +412,11 @@ def _cholesky(matrix: Array) -> Array:
 
 def _forward(factor: Array, right: Array) -> Array:
     solved = scipy.linalg.solve_triangular(factor, right, lower=True, check_finite=False)
+    return np.asarray(solved)
+
+
+def _backward(factor: Array, right: Array) -> Array:
+    solved = scipy.linalg.solve_triangular(factor, right, lower=True, trans=1, check_finite=False)
     return np.asarray(solved)
 
 

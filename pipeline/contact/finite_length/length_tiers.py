@@ -106,6 +106,7 @@ class TierResult:
     """One contact at one tier: on the cells of both tiers; finest factors, their convergence.
 
     signed: pressure that is signed, over that of plane strain; at_corner: whether that is a mean.
+    coarser: the contact on the next coarser of three meshes.
     """
 
     tier: TierName
@@ -115,6 +116,7 @@ class TierResult:
     signed: Convergence
     at_corner: bool
     unknowns: int
+    coarser: LengthContact
 
     @property
     def greatest_is_at_an_end(self) -> bool:
@@ -236,6 +238,7 @@ def _result(
         converged([float(each.value[0]) for each in signed], _REFINEMENT),
         bool(signed[-1].at_corner[0]),
         unknowns,
+        refined[-2],
     )
 
 
