@@ -110,14 +110,17 @@ def _show(document: dict[str, Any], out: Path) -> None:
     conflict = document["conflict"]
     stdout.print(f"no design keeps together: {'; '.join(conflict['limits'])}", markup=False)
     for each in conflict["relaxations"]:
+        fails = each["fails_at"]
+        least = "an upper bound" if fails is None else f"none passes with {fails}"
         stdout.print(
-            f"  passes with {each['option']} {each['to']}, not {each['from']}:", markup=False
+            f"  passes with {each['option']} {each['to']}, not {each['from']}; {least}:",
+            markup=False,
         )
         stdout.print(f"    {each['command']}", markup=False, soft_wrap=True)
     if conflict["relaxations"]:
         stdout.print(
-            "  each: one option alone, the least change within 2 % for the designs tried, so that "
-            "a smaller one may exist",
+            "  each: one option alone, the least change within 2 %; an upper bound is that of one "
+            "roller, so that a smaller change may exist",
             markup=False,
         )
     else:

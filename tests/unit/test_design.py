@@ -14,6 +14,7 @@ from torque_tables import MACHINES, write_table
 
 from camwright.geometry.errors import InputError, ResultError
 from camwright.pipeline.base.progress import SILENT
+from camwright.pipeline.base.worker_processes import ALONE
 from camwright.pipeline.case.cards.catalogue import catalogue_of
 from camwright.pipeline.case.cards.shaft_seats import seats
 from camwright.pipeline.case.cards.spring_catalogue import SpringDemand
@@ -26,14 +27,17 @@ from camwright.pipeline.studies.design.machine_frame import frame_of
 from camwright.pipeline.studies.design.relaxation_search import (
     WIDTH,
     Lever,
-    _levers,
-    _smallest,
+    Relaxation,
+    Way,
+    _proven,
+    _relaxation,
+    relaxations,
 )
 from camwright.pipeline.studies.design.synthesised_points import (
     Solved,
     Study,
+    free,
     likeliest,
-    synthesised,
 )
 from camwright.pipeline.studies.design.torque_task import DesignTask, task_of
 from camwright.pipeline.studies.design.wound_springs import wound
@@ -210,18 +214,72 @@ def test_bisection_of_a_relaxation(
 ) -> None:
     """A task that passes up to a speed: within 2 % below it; one that never does: None."""
     study = Study(task_in(tmp_path), tmp_path, "torque.csv", "")
-    lever = next(each for each in _levers(study.task) if each.name == "--speed")
+    point = SimpleNamespace(design=SimpleNamespace(frame=SimpleNamespace(roller="r")))
 
-    def passing(_study: object, _lever: Lever, value: float, *_: object) -> object:
-        return object() if value <= most * RPM else None
+    def passing(_study: object, _lever: Lever, value: float, way: Way) -> object:
+        return point if value <= most * RPM and way.offset else None
 
     monkeypatch.setattr(relaxation_search, "_passing", passing)
     monkeypatch.setattr(relaxation_search, "settled", lambda *_: SimpleNamespace(passes=True))
-    value = _smallest(study, lever, frozenset())
-    assert value is not None
-    assert most * RPM / (1.0 + WIDTH) <= value <= most * RPM
+    change = _relaxation(study, "--speed", frozenset({"r", "s"}))
+    assert change is not None
+    assert change.offset
+    assert most * RPM / (1.0 + WIDTH) <= change.value <= most * RPM
     most = 0.0
-    assert _smallest(study, lever, frozenset()) is None
+    assert _relaxation(study, "--speed", frozenset()) is None
+
+
+@pytest.mark.parametrize("most", [199.0, 205.0, 209.0])
+def test_a_relaxation_less_its_width_does_not_pass(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, most: float
+) -> None:
+    """From 200 rpm, where the command passes up to a speed: it fails at the value named."""
+    study = Study(task_in(tmp_path), tmp_path, "torque.csv", "")
+    failed: list[float] = []
+
+    def front(own: Study, *_: object) -> tuple[list[object], list[object]]:
+        passes = own.task.speed <= most * RPM
+        failed.extend([] if passes else [own.task.speed])
+        return [object()] if passes else [], []
+
+    monkeypatch.setattr(relaxation_search, "candidates", lambda *_: [])
+    monkeypatch.setattr(relaxation_search, "solved_front", front)
+    change = _proven(study, Relaxation("--speed", 300.0 * RPM, 200.0 * RPM, offset=False), ALONE)
+    assert change.failing is not None
+    assert change.value <= max(most, 200.0) * RPM < change.failing
+    assert change.failing == pytest.approx(change.value * np.exp(WIDTH), rel=1e-9)
+    assert failed == pytest.approx([change.failing], rel=1e-3)  # in the digits of the command
+
+
+def test_relaxations_are_commands_and_the_first_names_what_fails(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A task that passes up to 290 rpm, or for up to 1000 h: the speed is the smaller change."""
+    study = Study(task_in(tmp_path), tmp_path, "torque.csv", "")
+    point = SimpleNamespace(design=SimpleNamespace(frame=SimpleNamespace(roller="r")))
+
+    def passes(task: DesignTask) -> bool:
+        return task.speed <= 290.0 * RPM or task.life <= 1000.0 * 3600.0
+
+    def passing(own: Study, lever: Lever, value: float, _way: Way) -> object:
+        known = lever.name in ("--speed", "--life")
+        return point if known and passes(own.task.relaxed(lever.options(value))) else None
+
+    monkeypatch.setattr(relaxation_search, "_passing", passing)
+    monkeypatch.setattr(relaxation_search, "settled", lambda *_: SimpleNamespace(passes=True))
+    monkeypatch.setattr(relaxation_search, "candidates", lambda *_: [])
+    monkeypatch.setattr(
+        relaxation_search, "solved_front", lambda own, *_: ([point] * passes(own.task), [])
+    )
+    first, second = relaxations(study, [], tmp_path / "c.toml", ALONE, SILENT)
+    assert (first["option"], second["option"]) == ("--speed", "--life")
+    assert second["fails_at"] is None
+    for each in (first, second):
+        words = shlex.split(each["command"])
+        options = dict(zip(words[3::2], words[4::2], strict=True))
+        assert options.pop("--out") == str(tmp_path / "c.toml")
+        assert passes(task_of(words[2], **{name[2:]: text for name, text in options.items()}))
+    assert not passes(study.task.relaxed({"speed": first["fails_at"]}))
 
 
 def test_the_better_of_two_designs_passes_with_less_ripple_in_the_same_size() -> None:
@@ -230,14 +288,18 @@ def test_the_better_of_two_designs_passes_with_less_ripple_in_the_same_size() ->
     )
 
     def solved(ripple: float, verdict: str = "pass", prime: float = 40.0) -> Solved:
+        shortfalls = [] if verdict == "pass" else [{"utilisation": ripple / 2.0}]
         record = {"verdict": verdict, "ripple_left_Nm": ripple, "lift_max_mm": 5.0,
-                  "cam_radius_mm": 35.0, "prime_radius_mm": prime}  # fmt: skip
+                  "cam_radius_mm": 35.0, "prime_radius_mm": prime,
+                  "shortfalls": shortfalls}  # fmt: skip
         return Solved(design, record)
 
     assert solved(4.0).better_than(solved(4.1))
     assert not solved(4.1).better_than(solved(4.0))
     assert solved(4.8).better_than(solved(4.0, "fail"))
-    assert not solved(3.0, "fail").better_than(solved(4.0, "fail"))
+    assert not solved(4.0, "fail").better_than(solved(4.8))
+    assert solved(3.0, "fail").better_than(solved(4.0, "fail"))  # beyond its limit by less
+    assert not solved(4.0, "fail").better_than(solved(3.0, "fail"))
     assert not solved(3.0, prime=43.0).better_than(solved(4.0))  # 3 % larger
     assert solved(4.8).better_than(Solved(design, {"why": "undercut"}))
 
@@ -258,12 +320,12 @@ def test_a_pump_is_synthesised_with_free_radius_and_preload(tmp_path: Path) -> N
     assert offset == pytest.approx(slopes.mean(), abs=5.1e-5)
     assert 0.0 < offset < 0.2 * candidate.design.prime_radius
     study = Study(task, tmp_path, table_of_pump.name, "")
-    free = synthesised(study, candidate)
-    fixed = study.solved(free.design)
-    assert free.passes
-    assert free.ripple <= fixed.ripple * 1.001
-    assert free.record["prime_radius_mm"] <= 1e3 * free.design.prime_radius * 1.0001
-    assert free.record["preload_N"] != pytest.approx(free.design.spring.preload)
+    point = free(study, candidate)
+    fixed = study.solved(point.design)
+    assert point.passes
+    assert point.ripple <= fixed.ripple * 1.001
+    assert point.record["prime_radius_mm"] <= 1e3 * point.design.prime_radius * 1.0001
+    assert point.record["preload_N"] != pytest.approx(point.design.spring.preload)
 
 
 def test_cards_beside_the_case_are_copies_or_refused(tmp_path: Path) -> None:

@@ -14,6 +14,7 @@ from camwright.geometry.errors import InputError, ResultError
 from camwright.pipeline.base import units
 from camwright.pipeline.base.files import json_text, write_atomic
 from camwright.pipeline.base.progress import SILENT, Progress
+from camwright.pipeline.base.worker_processes import crew
 from camwright.pipeline.case.cards.card_filling import USER_FILE
 from camwright.pipeline.case.cards.catalogue import SPRINGS_FILE
 from camwright.pipeline.case.case_file import parse_case
@@ -28,19 +29,14 @@ from camwright.pipeline.studies.design.relaxation_search import relaxations
 from camwright.pipeline.studies.design.synthesised_points import (
     Solved,
     Study,
-    free,
-    promising,
-    settled,
-    synthesised,
+    solved_front,
 )
 from camwright.pipeline.studies.design.torque_task import DesignTask, task_of
-from camwright.pipeline.studies.redesign.pareto_front import front
 from camwright.pipeline.studies.redesign.point_store import SOLVED, Record
 
 RECORD = "design.json"
 PICTURE = "design.png"
 _BINDING = 3  # limits that the nearest design uses fully, named with those that it fails
-_POINTS = 4  # of the front of the screening, solved in full
 _OURS = re.compile(
     rf"design\.(json|png)|point_\d+\.toml|{SOLVED}|.*\.csv|cards\.toml|springs\.toml"
 )
@@ -112,8 +108,13 @@ def designed(task: DesignTask, out: Path, progress: Progress = SILENT) -> Record
     study = Study(task, folder, file, versions()["source"])
     progress.stage("search rollers, springs and base circles")
     screened = candidates(task, folder, file, progress)
-    progress.stage("solve the front")
-    points, failing = _solved_front(study, screened, progress)
+    with crew(None) as workers:
+        progress.stage("solve the front")
+        points, failing = solved_front(study, screened, workers, progress)
+        changes: list[Record] = []
+        if not points:
+            progress.stage("smallest relaxation")
+            changes = relaxations(study, screened, out, workers, progress)
     document: Record = {
         "schema": 1,
         "torque": _demand_record(task),
@@ -138,11 +139,8 @@ def designed(task: DesignTask, out: Path, progress: Progress = SILENT) -> Record
         head = _summary(study, best, points)
         write_atomic(out, case_text(best.design, out.stem, file, head))
     else:
-        progress.stage("smallest relaxation")
-        document["conflict"] = {
-            "limits": _limits(task, screened, failing),
-            "relaxations": relaxations(study, screened, out, progress),
-        }
+        limits = _limits(task, screened, failing)
+        document["conflict"] = {"limits": limits, "relaxations": changes}
     write_atomic(folder / RECORD, json_text(document) + "\n")
     return document
 
@@ -179,34 +177,6 @@ def _prepare(task: DesignTask, folder: Path, out: Path) -> tuple[str, list[str]]
         if kept in copied:
             write_atomic(beside / kept, content)
     return name, copied
-
-
-def _solved_front(
-    study: Study, screened: Sequence[Candidate], progress: Progress
-) -> tuple[list[Solved], list[Solved]]:
-    """Designs of the front of the screening that pass, and those that do not.
-
-    The smallest one is solved without and with an offset, the others with the better choice.
-    """
-    chosen = promising(study.task, screened, _POINTS)
-    passing: list[Solved] = []
-    failing: list[Solved] = []
-    offset = False
-    for k, candidate in enumerate(chosen, start=1):
-        if k == 1:
-            offset = free(study, candidate.with_offset).better_than(free(study, candidate))
-        point = synthesised(study, candidate.with_offset if offset else candidate)
-        if point.has_cam and point.passes:
-            point = settled(study, point)
-        if point.has_cam:
-            (passing if point.passes else failing).append(point)
-        progress.advance(k, len(chosen))
-    return _front(passing), failing
-
-
-def _front(points: Sequence[Solved]) -> list[Solved]:
-    figures = [(each.size, each.ripple) for each in points]
-    return [points[k] for k in front(figures)]
 
 
 def _sampled(screened: Sequence[Candidate], most: int = 400) -> list[Candidate]:

@@ -9,6 +9,7 @@ from pathlib import Path
 
 from camwright.pipeline.base import units
 from camwright.pipeline.base.progress import SILENT, Progress
+from camwright.pipeline.base.worker_processes import Crew
 from camwright.pipeline.studies.design.candidate_search import Candidate, candidates
 from camwright.pipeline.studies.design.synthesised_points import (
     RESERVE,
@@ -17,6 +18,7 @@ from camwright.pipeline.studies.design.synthesised_points import (
     grown,
     likeliest,
     settled,
+    solved_front,
 )
 from camwright.pipeline.studies.design.torque_task import DesignTask, Options
 from camwright.pipeline.studies.redesign.point_store import Record
@@ -48,26 +50,84 @@ class Lever:
 
 
 def relaxations(
-    study: Study, screened: Sequence[Candidate], out: Path, progress: Progress
+    study: Study, screened: Sequence[Candidate], out: Path, workers: Crew, progress: Progress
 ) -> list[Record]:
     """Relaxations of one option each, with the command line of each; the smallest first.
 
-    Each is the smallest one within `WIDTH` of those by the designs solved, and its design passes by
-    closed forms.
+    Each passes at all tolerance ends and is the smallest within `WIDTH` for one of the nearest
+    rollers, with an offset where it does not pass otherwise. The first is reduced until the command
+    passes no design at a change that is smaller by `WIDTH`, which its record names.
 
     Parameters
     ----------
     screened : sequence   designs of the task
     out : Path            case file of the command
     """
-    levers = list(_levers(study.task))
-    records: list[tuple[float, Record]] = []
-    for k, lever in enumerate(levers, start=1):
-        value = _smallest(study, lever, _rollers(study.task, screened))
-        if value is not None:
-            records.append((abs(log(value / lever.stated)), _record(study.task, lever, value, out)))
-        progress.advance(k, len(levers))
-    return [record for _, record in sorted(records, key=lambda each: each[0])]
+    names, rollers = [each.name for each in _levers(study.task)], _rollers(study.task, screened)
+    waiting = [workers.submit(_relaxation, study, name, rollers) for name in names]
+    changes: list[Relaxation] = []
+    for k, each in enumerate(waiting, start=1):
+        change = each.result()
+        changes += [] if change is None else [change]
+        progress.advance(k, len(names))
+    changes.sort(key=lambda each: each.size)
+    if changes:
+        changes[0] = _proven(study, changes[0], workers)
+    return [_record(study.task, each, out) for each in changes]
+
+
+@dataclass(frozen=True)
+class Relaxation:
+    """A value of an option with which a design passes.
+
+    offset: whether by designs with an offset; failing: value nearer to that of the task with which
+    none passes; None: not known.
+    """
+
+    name: str
+    stated: float
+    value: float
+    offset: bool
+    failing: float | None = None
+
+    @property
+    def size(self) -> float:
+        """Logarithm of the value over that of the task."""
+        return abs(log(self.value / self.stated))
+
+
+def _relaxation(study: Study, name: str, rollers: frozenset[str]) -> Relaxation | None:
+    """Smallest change of an option by the likeliest of some rollers; None: none passes."""
+    lever = _lever(study.task, name)
+    for offset in (False, True):
+        way = Way(rollers, offset)
+        point = _passing(study, lever, lever.loosest, way)
+        if point is not None:
+            way = Way(frozenset({point.design.frame.roller}), offset)
+            value = _smallest(study, lever, way, point)
+            return None if value is None else Relaxation(name, lever.stated, value, offset)
+    return None
+
+
+def _lever(task: DesignTask, name: str) -> Lever:
+    return next(each for each in _levers(task) if each.name == name)
+
+
+def _proven(study: Study, change: Relaxation, workers: Crew) -> Relaxation:
+    """A relaxation reduced until all designs of the command fail at one smaller by `WIDTH`."""
+    lever = _lever(study.task, change.name)
+    for _ in range(_TRIES):
+        less = change.value * exp(-copysign(WIDTH, lever.loosest - lever.stated))
+        if change.size <= WIDTH:
+            return replace(change, failing=lever.stated)
+        own = _relaxed(study, lever, less)
+        screened = candidates(own.task, study.folder, study.file, SILENT)
+        passing, _ = solved_front(own, screened, workers, SILENT)
+        if not passing:
+            return replace(change, failing=less)
+        values = [lever.reached(each, less) for each in passing]
+        change = replace(change, value=_nearer(lever, less, *values))
+    return change
 
 
 def _levers(task: DesignTask) -> Iterator[Lever]:
@@ -128,22 +188,34 @@ def _rollers(task: DesignTask, screened: Sequence[Candidate]) -> frozenset[str]:
     return frozenset(list(names)[:_ROLLERS])
 
 
-def _smallest(study: Study, lever: Lever, rollers: frozenset[str]) -> float | None:
-    """The value nearest to that of the task at which a design passes; None: none does."""
-    point = _passing(study, lever, lever.loosest, rollers)
-    if point is None:
-        return None
-    low, best = lever.stated, lever.reached(point, lever.loosest)
+@dataclass(frozen=True)
+class Way:
+    """Rollers of the designs that are tried, and whether with an offset."""
+
+    rollers: frozenset[str]
+    offset: bool = False
+
+
+def _smallest(study: Study, lever: Lever, way: Way, loosest: Solved) -> float | None:
+    """The value nearest to that of the task at which a design passes; None: none does.
+
+    Parameters
+    ----------
+    loosest : Solved   the design that passes at the loosest value
+    """
+    low, best = lever.stated, lever.reached(loosest, lever.loosest)
+    known = {lever.loosest: loosest}
     while abs(log(best / low)) > WIDTH:
         middle = sqrt(low * best)
-        point = _passing(study, lever, middle, rollers)
+        point = _passing(study, lever, middle, way)
         if point is None:
             low = middle
         else:
+            known[middle] = point
             best = _nearer(lever, middle, lever.reached(point, middle))
     step = exp(copysign(WIDTH, lever.loosest - lever.stated))
     for _ in range(_TRIES):
-        point = _passing(study, lever, best, rollers)
+        point = known.get(best) or _passing(study, lever, best, way)
         if point is not None and settled(_relaxed(study, lever, best), point).passes:
             return best
         best *= step
@@ -159,23 +231,25 @@ def _relaxed(study: Study, lever: Lever, value: float) -> Study:
     return replace(study, task=study.task.relaxed(lever.options(value)))
 
 
-def _passing(study: Study, lever: Lever, value: float, rollers: frozenset[str]) -> Solved | None:
+def _passing(study: Study, lever: Lever, value: float, way: Way) -> Solved | None:
     """The likeliest design at a value of an option, solved; None where it does not pass."""
     own = _relaxed(study, lever, value)
-    screened = candidates(own.task, study.folder, study.file, SILENT, rollers)
+    screened = candidates(own.task, study.folder, study.file, SILENT, way.rollers)
     candidate = likeliest(own.task, screened)
     if candidate is None:
         return None
-    point = grown(own, candidate)
+    point = grown(own, candidate.with_offset if way.offset else candidate)
     return point if point.has_cam and point.passes else None
 
 
-def _record(task: DesignTask, lever: Lever, value: float, out: Path) -> Record:
-    options = lever.options(value)
+def _record(task: DesignTask, change: Relaxation, out: Path) -> Record:
+    lever = _lever(task, change.name)
+    options = lever.options(change.value)
     return {
-        "option": lever.name,
-        "from": lever.shown(lever.stated),
-        "to": lever.shown(value),
+        "option": change.name,
+        "from": lever.shown(change.stated),
+        "to": lever.shown(change.value),
+        "fails_at": None if change.failing is None else lever.shown(change.failing),
         "options": options,
         "command": task.relaxed(options).command(out),
     }

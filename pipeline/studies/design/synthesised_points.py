@@ -7,12 +7,15 @@ from dataclasses import dataclass, replace
 from math import ceil
 from pathlib import Path
 
+from camwright.pipeline.base.progress import Progress
+from camwright.pipeline.base.worker_processes import Crew
 from camwright.pipeline.studies.design.candidate_search import FAR, OPTIMISTIC, Candidate
 from camwright.pipeline.studies.design.design_case import SYNTHESIS, Machinery, case_text
 from camwright.pipeline.studies.design.torque_task import DesignTask
 from camwright.pipeline.studies.redesign.pareto_front import front, thinned
 from camwright.pipeline.studies.redesign.point_store import Record, Task, solved
 
+_POINTS = 4  # of the front of the screening, solved in full
 _NEAR = 0.5  # excess that a synthesis may remove
 _ALIKE = 0.02  # relative size within which the lesser ripple replaces
 _GAIN = 0.03  # of the ripple, between points
@@ -59,11 +62,14 @@ class Solved:
         return self.record.get("verdict") == "pass" and self.ripple <= most
 
     def better_than(self, other: Solved) -> bool:
-        """Whether it passes where the other does not, or leaves less ripple in the same size."""
-        if not (self.has_cam and self.passes):
-            return False
-        if not (other.has_cam and other.passes):
-            return True
+        """Whether it passes where the other does not, or leaves less ripple in the same size.
+
+        Where neither passes, whether its checks fail by less.
+        """
+        if not self.has_cam or not other.has_cam:
+            return self.has_cam
+        if not (self.passes and other.passes):
+            return self.passes or (not other.passes and self.shortfall < other.shortfall)
         return self.ripple < other.ripple and self.size <= (1.0 + _ALIKE) * other.size
 
     @property
@@ -90,13 +96,13 @@ class Solved:
         return sum(float(each["utilisation"] or 99.0) for each in self.record["shortfalls"])
 
 
-def promising(task: DesignTask, screened: Sequence[Candidate], most: int) -> list[Candidate]:
+def promising(task: DesignTask, screened: Sequence[Candidate]) -> list[Candidate]:
     """Designs of the screening that may be on the front, by increasing size.
 
     The front of those within the limits and the smallest one near to them; where none is within,
     the front of those near to them and the likeliest.
     """
-    within, near = (_screened_front(task, screened, excess, most - 1) for excess in (0.0, _NEAR))
+    within, near = (_screened_front(task, screened, excess, _POINTS - 1) for excess in (0.0, _NEAR))
     further = near[:1]
     if not within:
         likely = likeliest(task, screened)
@@ -130,13 +136,18 @@ def likeliest(task: DesignTask, screened: Sequence[Candidate]) -> Candidate | No
 def synthesised(study: Study, candidate: Candidate) -> Solved:
     """A screened design with the prime radius and preload of least ripple within all limits.
 
-    Both are free about the values of the screening. The cam grows where it would not pass
-    otherwise, unless the space is limited.
+    Both are free about the values of the screening, and rounded where the design passes. The cam
+    grows where it would not pass otherwise, unless the space is limited.
     """
-    point = free(study, candidate)
+    point = _rounded_point(study, free(study, candidate))
     if study.task.space is not None or not point.has_cam or point.passes:
         return point
-    return grown(study, candidate)
+    return _rounded_point(study, grown(study, candidate))
+
+
+def _rounded_point(study: Study, point: Solved) -> Solved:
+    """A point as drawings state it where it passes, else itself."""
+    return settled(study, point) if point.has_cam and point.passes else point
 
 
 def grown(study: Study, candidate: Candidate) -> Solved:
@@ -183,3 +194,34 @@ def _rounded(design: Machinery) -> Machinery:
     """The design with lift and preload as a drawing states them."""
     spring = replace(design.spring, preload=float(f"{design.spring.preload:.3g}"))
     return replace(design, spring=spring, lift=2e-4 * ceil(design.lift / 2e-4))
+
+
+def solved_front(
+    study: Study, screened: Sequence[Candidate], workers: Crew, progress: Progress
+) -> tuple[list[Solved], list[Solved]]:
+    """Designs of the front of the screening that pass, and those that do not.
+
+    The likeliest one is solved without and with an offset, the others with the better choice.
+    """
+    chosen = promising(study.task, screened)
+    first = likeliest(study.task, chosen)
+    if first is None:
+        return [], []
+    progress.advance(0, len(chosen))
+    both = [workers.submit(synthesised, study, each) for each in (first, first.with_offset)]
+    straight, shifted = (each.result() for each in both)
+    offset = shifted.better_than(straight)
+    others = [each.with_offset if offset else each for each in chosen if each is not first]
+    waiting = [workers.submit(synthesised, study, each) for each in others]
+    points = [shifted if offset else straight]
+    for k, each in enumerate(waiting, start=1):
+        progress.advance(k, len(chosen))
+        points.append(each.result())
+    progress.advance(len(chosen), len(chosen))
+    passing = [each for each in points if each.has_cam and each.passes]
+    return _front(passing), [each for each in points if each.has_cam and not each.passes]
+
+
+def _front(points: Sequence[Solved]) -> list[Solved]:
+    figures = [(each.size, each.ripple) for each in points]
+    return [points[k] for k in front(figures)]

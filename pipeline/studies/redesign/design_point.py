@@ -17,6 +17,7 @@ from camwright.geometry.errors import InputError
 from camwright.pipeline.base.units import in_unit
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.limits import TORQUE_REDUCTION
+from camwright.pipeline.case.load_case_torque import engine_torques
 from camwright.pipeline.checks.check import Check, Verdict, in_order, within_depth
 from camwright.pipeline.follower.camshaft_loads import unbalance
 from camwright.pipeline.preview import preview_case
@@ -25,6 +26,7 @@ from camwright.pipeline.smoothing.multistart import continued
 from camwright.pipeline.smoothing.problem_setup import problem_of
 from camwright.pipeline.smoothing.scenario import redrawn
 from camwright.pipeline.smoothing.synthesis_problem import coarsened
+from camwright.pipeline.solver import judged_at_corners
 from camwright.pipeline.torque.torque import Torque
 
 
@@ -122,14 +124,16 @@ def point_of(case: Case, *, corners: bool = False) -> Point:
 
     Parameters
     ----------
-    corners : bool   judge each check at its worst tolerance corner
+    corners : bool   judge each check at its worst tolerance corner, unless one fails nominally
 
     Raises
     ------
     CamError
         If there is no such cam.
     """
-    trial = preview_case(case, corners=corners)
+    trial = preview_case(case, corners=False)
+    if corners and not any(check.blocks and check.status == "fail" for check in trial.checks):
+        trial = judged_at_corners(trial, engine_torques(case))
     drawn, contour, turn = trial.case, trial.contour, trial.cycles[0].turn
     rest, torque = turn.torque_after, turn.torque_before
     if rest is None or torque is None:
