@@ -9,7 +9,6 @@ took of it is printed beside them.
 from __future__ import annotations
 
 import contextlib
-import resource
 import subprocess
 import sys
 import tempfile
@@ -85,21 +84,20 @@ def studied(folder: Path, depth: str, count: int, jobs: int) -> Cost:
     name = f"{depth}_{count}_{jobs}"
     (folder / f"{name}.toml").write_text(STUDY.format(depth=depth, count=count))
     arguments = ["study", f"{name}.toml", "--out", name, "--jobs", str(jobs)]
-    before = resource.getrusage(resource.RUSAGE_CHILDREN)
     start, busy = time.perf_counter(), cpu_of_all()
     peaks: dict[int, float] = {}
+    spent: dict[int, float] = {}
     with subprocess.Popen(
         [sys.executable, "-m", "camwright", *arguments],
         cwd=folder, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
     ) as process:  # fmt: skip
         watched = psutil.Process(process.pid)
         while process.poll() is None:
-            note_memory(watched, peaks)
+            note(watched, peaks, spent)
             time.sleep(0.5)  # a look takes milliseconds of a core that the study needs
     wall = time.perf_counter() - start
-    after = resource.getrusage(resource.RUSAGE_CHILDREN)
     assert process.returncode == 0
-    cpu = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+    cpu = sum(spent.values())  # those that solve are ended, and counted by no process above them
     return Cost(wall, cpu, sum(peaks.values()), cpu_of_all() - busy - cpu)
 
 
@@ -109,13 +107,15 @@ def cpu_of_all() -> float:
     return float(sum(times) - times.idle - getattr(times, "iowait", 0.0))
 
 
-def note_memory(process: psutil.Process, peaks: dict[int, float]) -> None:
-    """Greatest memory so far of a process and those below it, bytes by number."""
+def note(process: psutil.Process, peaks: dict[int, float], spent: dict[int, float]) -> None:
+    """Greatest memory, bytes, and CPU time, s, of a process and those below it, by number."""
     with contextlib.suppress(psutil.Error, OSError):
         for each in (process, *process.children(recursive=True)):
             status = Path(f"/proc/{each.pid}/status").read_text().split("VmHWM:")
             if len(status) == 2:  # a process that has ended states none
                 peaks[each.pid] = 1024.0 * float(status[1].split()[0])
+            times = each.cpu_times()
+            spent[each.pid] = times.user + times.system
 
 
 def told(name: str, value: float, unit: str, budget: float) -> None:
