@@ -268,7 +268,7 @@ class AxialPressures(Protocol):
     def axial_pressure(
         self, curvature: ArrayLike, force: ArrayLike, moment: ArrayLike = 0.0
     ) -> tuple[Array, Array]:
-        """Edges (m + 1,), m, along y and pressures (count, m) over plane-strain p0, x = 0."""
+        """Edges (count, m + 1), m, along y and pressures (count, m) over plane-strain p0, x = 0."""
         ...
 
 
@@ -277,7 +277,8 @@ def signed_factor(
 ) -> SignedPressure:
     """Signed pressure of contacts over that of plane strain; see `signed_pressure`."""
     edges, line = table.axial_pressure(curvature, force, moment)
-    return signed_pressure(edges, line, table.mean_length, has_corner=table.pair.has_singular_end)
+    flat, corner = table.pair.contact_length, table.pair.has_singular_end
+    return signed_pressure(edges, line, flat, table.mean_length, has_corner=corner)
 
 
 def length_table(pair: FinitePair, mean_length: float) -> FactorTable:
