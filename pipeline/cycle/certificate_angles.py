@@ -57,11 +57,16 @@ def length_loads(cycles: Sequence[Cycle], angles: Sequence[float]) -> tuple[Leng
 
     The greatest signed pressure of all load cases; that of each other load case whose contact is
     about as wide, so that the same blocks serve; those of the first load case nearest to cam angles
-    (rad) under load. Each at the worst moment of its range; empty without ends.
+    (rad) under load. Each at the worst moment of its range; empty without ends. A load case in
+    which the follower leaves the cam or locks counts only where every one does.
     """
     pressures = [np.nan_to_num(cycle.signed_pressure) for cycle in cycles]
-    worst = [(case, int(np.argmax(pressure))) for case, pressure in enumerate(pressures)]
-    worst = [at for at in worst if pressures[at[0]][at[1]] > 0]
+    whole = [cycle.loads.end is None for cycle in cycles]
+    worst = [
+        (case, int(np.argmax(pressure)))
+        for case, pressure in enumerate(pressures)
+        if (whole[case] or not any(whole)) and pressure.max() > 0
+    ]
     if not worst:
         return ()
     first = max(worst, key=lambda at: float(pressures[at[0]][at[1]]))

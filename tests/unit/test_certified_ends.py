@@ -37,6 +37,21 @@ def test_the_greatest_signed_pressure_is_certified_at_its_moment(trial):
     assert named.theta == pytest.approx(np.radians(55.0), abs=np.radians(2.5))
 
 
+def test_a_load_case_that_locks_is_not_certified(trial):
+    cycles = list(trial.solution.cycles)
+    (first, *_) = length_loads(cycles, [])
+    number = next(n for n, cycle in enumerate(cycles) if cycle.load_case == first.load_case)
+    turn = cycles[number].turn
+    index = turn.loads.jam_index.copy()
+    index[np.argmax(turn.loads.lift_slope)] = 1.0
+    jammed = replace(turn, loads=replace(turn.loads, jam_index=index))
+    cycles[number] = replace(cycles[number], turn=jammed)
+    assert cycles[number].loads.end is not None
+    assert first.load_case not in {load.load_case for load in length_loads(cycles, [])}
+    alone = length_loads(cycles[number : number + 1], [])
+    assert [load.theta for load in alone] == [first.theta]
+
+
 def test_an_angle_is_certified_once(trial):
     cycles = trial.solution.cycles[:1]
     k = int(np.nanargmax(cycles[0].signed_pressure))
