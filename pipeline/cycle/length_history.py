@@ -213,12 +213,15 @@ def factor_range(
     by_tilt = table.moment_at_tilt(curvature, force, np.broadcast_to(tilt, force.shape))
     most = (1.0 - _ROUND_OFF) * GREATEST_MOMENT * force * pair.contact_length
     moment = np.minimum(np.minimum(np.abs(by_tilt), couple), most)
-    sides = np.concatenate([np.zeros(force.size), -moment, moment])
-    three = signed_factor(table, np.tile(curvature, 3), np.tile(force, 3), sides)
-    parts = zip(*(np.split(values, 3) for values in three), strict=True)
-    level, left, right = (SignedPressure(*part) for part in parts)
-    tilted = np.where(left.value > right.value, left.value, right.value)
-    corner = np.where(left.value > right.value, left.at_corner, right.at_corner)
+    directions = (1.0,) if pair.is_symmetric else (-1.0, 1.0)
+    count = 1 + len(directions)
+    moments = np.concatenate([np.zeros(force.size), *(each * moment for each in directions)])
+    solved = signed_factor(table, np.tile(curvature, count), np.tile(force, count), moments)
+    parts = zip(*(np.split(values, count) for values in solved), strict=True)
+    level, *tilts = (SignedPressure(*part) for part in parts)
+    worse = tilts[0].value > tilts[-1].value
+    tilted = np.where(worse, tilts[0].value, tilts[-1].value)
+    corner = np.where(worse, tilts[0].at_corner, tilts[-1].at_corner)
     at_corner = np.where(level.value > tilted, level.at_corner, corner)
     return FactorRange(level.centre, level.value, tilted, moment / raised, at_corner)
 
