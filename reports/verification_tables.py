@@ -261,7 +261,9 @@ def of_ends(trial: Record) -> list[tuple[Table, str, str]]:
         ),
         (
             stress_below(points), "Stress below the ends",
-            "From the pressure of the finite elements, as patches on a half-space.",
+            "From the pressure of the finite elements, as patches on a half-space; at a corner of "
+            "the mean over the length of its mean pressure, since the greatest one grows with the "
+            "mesh.",
         ),
     ]  # fmt: skip
 

@@ -90,7 +90,13 @@ def stress_peaks(pair: FinitePair, tier: TierResult) -> list[dict[str, Json]]:
     half_width, p0 = plane_strain(pair, force)
     records: list[dict[str, Json]] = []
     for body in pair.bodies:
-        stress = subsurface_stress(tier.contact, half_width, body.material.poisson, stretch)
+        stress = subsurface_stress(
+            tier.contact,
+            half_width,
+            body.material.poisson,
+            stretch,
+            has_corner=pair.has_singular_end,
+        )
         places = {"centre": stress.centre, "end1": stress.end1, "end2": stress.end2}
         records.append(
             {

@@ -26,7 +26,7 @@ def mean_square_root(edges):
 def test_line_contact_of_hertz():
     x, y = np.linspace(0, 1.25, 41), np.linspace(-400, 400, 41)
     line = contact(x, y, np.tile(mean_square_root(x), (40, 1)))
-    stress = subsurface_stress(line, 1.0, 0.3, 20.0)
+    stress = subsurface_stress(line, 1.0, 0.3, 20.0, has_corner=False)
     # Johnson (1985), eq. 4.50: 0.300 p0 at 0.786 a; von Mises 0.558 p0 at 0.70 a, nu = 0.3.
     assert stress.centre.shear == pytest.approx(0.3003, abs=5e-4)
     assert stress.centre.shear_depth == pytest.approx(0.786, abs=5e-3)
@@ -46,7 +46,7 @@ def test_point_contact_of_hertz(poisson, shear, mises, depth):
     dome = np.sqrt(np.maximum(1 - middles[:, None] ** 2 - middles**2, 0))
     pressure = dome.reshape(50, 20, 50, 20).mean(axis=(1, 3))
     sphere = contact(edges[25:], edges, pressure[:, 25:])
-    peak = subsurface_stress(sphere, 1.0, poisson, 0.2).centre
+    peak = subsurface_stress(sphere, 1.0, poisson, 0.2, has_corner=False).centre
     # Johnson (1985), eqs. 3.45, on the axis: greatest of both stresses, at one depth.
     assert peak.shear == pytest.approx(shear, abs=1e-3)
     assert peak.von_mises == pytest.approx(mises, abs=2e-3)
@@ -84,8 +84,26 @@ def test_stress_of_a_patch_is_the_integral_of_point_loads():
 def test_an_uneven_end_pressure_has_its_own_peak():
     x, y = np.linspace(0, 1.25, 21), np.linspace(-10, 10, 41)
     rising = np.outer(1 + 0.5 * (y[1:] > 9), mean_square_root(x))
-    stress = subsurface_stress(contact(x, y, rising), 1.0, 0.3, 1.0)
+    stress = subsurface_stress(contact(x, y, rising), 1.0, 0.3, 1.0, has_corner=False)
     assert stress.end2.von_mises > 1.1 * stress.end1.von_mises
     # The middle is that of the even pressure, half a length from the rise.
-    even = subsurface_stress(contact(x, y, np.tile(rising[0], (40, 1))), 1.0, 0.3, 1.0)
+    even = subsurface_stress(
+        contact(x, y, np.tile(rising[0], (40, 1))), 1.0, 0.3, 1.0, has_corner=False
+    )
     assert stress.centre.von_mises == pytest.approx(even.centre.von_mises, rel=1e-2)
+
+
+def test_at_a_corner_the_peak_does_not_grow_with_the_mesh():
+    """Pressure as the distance from the end to the power -0.4, on cells of 0.1 and of 0.0125."""
+    x = np.linspace(0, 1.25, 21)
+
+    def peaks(count, *, has_corner):
+        y = np.concatenate([np.linspace(-10, 9, 39), np.linspace(9, 10, count + 1)[1:]])
+        line = np.diff((10 - y) ** 0.6) / np.diff(10 - y) / 0.6
+        even = contact(x, y, np.outer(line, mean_square_root(x)))
+        end = subsurface_stress(even, 1.0, 0.3, 1.0, has_corner=has_corner).end2
+        return np.array([end.von_mises, end.shear])
+
+    coarse, fine = (peaks(count, has_corner=True) for count in (10, 80))
+    np.testing.assert_allclose(fine, coarse, rtol=0.02)
+    assert (peaks(80, has_corner=False) > 1.3 * peaks(10, has_corner=False)).all()

@@ -32,7 +32,11 @@ class StressPeak:
 
 @dataclass(frozen=True)
 class SubsurfaceStress:
-    """Peaks below the middle and below the last stretch of contact at y < 0 and y > 0."""
+    """Peaks below the middle and below the last stretch of contact at y < 0 and y > 0.
+
+    At a corner, where the stress near the surface grows with the mesh as the pressure does, of the
+    mean over the stretch; else of the greatest stress below it.
+    """
 
     centre: StressPeak
     end1: StressPeak
@@ -40,7 +44,12 @@ class SubsurfaceStress:
 
 
 def subsurface_stress(
-    contact: LengthContact, half_width: float, poisson: float, stretch: float
+    contact: LengthContact,
+    half_width: float,
+    poisson: float,
+    stretch: float,
+    *,
+    has_corner: bool,
 ) -> SubsurfaceStress:
     """Peaks of the first contact.
 
@@ -49,6 +58,7 @@ def subsurface_stress(
     half_width : float   of plane strain, m: scale of the depths
     poisson : float      nu of the body
     stretch : float      length of contact at its ends, m, below which their peaks are taken
+    has_corner : bool    whether a corner ends the contact
     """
     cells, pressure = contact.cells, contact.pressure[0]
     middles = cells.centres_along
@@ -56,13 +66,16 @@ def subsurface_stress(
     first, last = cells.y[touching[0]], cells.y[touching[-1] + 1]
     depths = half_width * np.arange(_STEP, _DEEPEST + 0.5 * _STEP, _STEP)
     ends = (
-        middles[(middles > first) & (middles < first + stretch)],
-        middles[(middles < last) & (middles > last - stretch)],
+        (first, (middles > first) & (middles < first + stretch)),
+        (last, (middles < last) & (middles > last - stretch)),
     )
-    places = [np.zeros(1)]
-    for edge, inside in zip((first, last), ends, strict=True):
-        places.append(np.append(inside, edge))
-    peaks = [_peak(stress_below(cells, pressure, poisson, y, depths), depths) for y in places]
+    peaks = [_peak(stress_below(cells, pressure, poisson, np.zeros(1), depths), depths)]
+    for edge, inside in ends:
+        places = middles[inside] if has_corner else np.append(middles[inside], edge)
+        stress = stress_below(cells, pressure, poisson, places, depths)
+        if has_corner:
+            stress = np.average(stress, axis=0, weights=np.diff(cells.y)[inside])[None]
+        peaks.append(_peak(stress, depths))
     return SubsurfaceStress(*peaks)
 
 
