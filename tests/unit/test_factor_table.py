@@ -94,9 +94,10 @@ MODULUS = STEEL.plane_strain_modulus / 2
         (pair(crown=CROWN), 1),
         pytest.param(pair(crown=iso16281(16e-3, LENGTH)), 3, marks=pytest.mark.slow),
         pytest.param(pair(crown=CircularCrown(0.3)), 4, marks=pytest.mark.slow),
+        pytest.param(pair(8e-3, crown=CircularCrown(1.0)), 5, marks=pytest.mark.slow),
         pytest.param(pair(end=BodyEnd("radius", 0.3e-3)), 6, marks=pytest.mark.slow),
     ],
-    ids=["johns-gohar", "iso", "circular", "rounded"],
+    ids=["johns-gohar", "iso", "circular", "nearly-straight", "rounded"],
 )
 def test_loaded_shapes_between_the_nodes(finite, seed):
     table = factor_table(finite, MEAN_LENGTH)
@@ -191,8 +192,8 @@ def test_a_crown_of_one_side_loads_the_other():
     finite = pair(crown=crown)
     table = factor_table(finite, MEAN_LENGTH)
     factors = table.factors(CURVATURE, 800.0, [-0.2, 0.0, 0.2])
-    finest = [finely(finite, CURVATURE, 800.0, moment)[1] for moment in (-0.2, 0.0, 0.2)]
-    np.testing.assert_allclose(factors.greatest, finest, rtol=table.interpolation_error)
+    direct = one_by_one(finite, [CURVATURE] * 3, [800.0] * 3, [-0.2, 0.0, 0.2])
+    np.testing.assert_allclose(factors.greatest, direct[:, 1], rtol=2e-3)
     assert factors.end_means[1, 0] > factors.end_means[1, 1]
 
 
