@@ -271,7 +271,7 @@ class AxialPressures(Protocol):
     def axial_pressure(
         self, curvature: ArrayLike, force: ArrayLike, moment: ArrayLike = 0.0
     ) -> tuple[Array, Array]:
-        """Edges (count, m + 1), m, along y and pressures (count, m) over plane-strain p0, x = 0."""
+        """Edges (m + 1,), m, along y and pressures (count, m) over plane-strain p0, x = 0."""
         ...
 
 
@@ -280,8 +280,7 @@ def signed_factor(
 ) -> SignedPressure:
     """Signed pressure of contacts over that of plane strain; see `signed_pressure`."""
     edges, line = table.axial_pressure(curvature, force, moment)
-    flat, corner = table.pair.contact_length, table.pair.has_singular_end
-    return signed_pressure(edges, line, flat, table.mean_length, has_corner=corner)
+    return signed_pressure(edges, line, table.mean_length, has_corner=table.pair.has_singular_end)
 
 
 def length_table(pair: FinitePair, mean_length: float) -> FactorTable:

@@ -33,10 +33,17 @@ class SolvedLines:
     pair: FinitePair
     mean_length: float
 
+    @property
+    def is_symmetric(self) -> bool:
+        """Whether both halves of the gap are alike."""
+        y = 0.5 * self.pair.contact_length * np.linspace(0.0, 1.0, 11)
+        drop, other = self.pair.crown.drop(y), self.pair.crown.drop(-y)
+        return bool(np.allclose(drop, other, rtol=1e-9, atol=0.0))
+
     def axial_pressure(
         self, curvature: ArrayLike, force: ArrayLike, moment: ArrayLike = 0.0
     ) -> tuple[Array, Array]:
-        """Edges (count, m + 1), m, along y and pressures (count, m) over plane-strain p0, x = 0.
+        """Edges (m + 1,), m, along y and pressures (count, m) over plane-strain p0, x = 0.
 
         Parameters
         ----------
@@ -44,11 +51,15 @@ class SolvedLines:
         force : array (count,)      N, > 0
         moment : array (count,)     N m, about y = 0
         """
-        solved = list(self._solved(curvature, force, moment=moment))
-        cells, count = solved[0][1].cells, sum(rows.size for rows, _, _ in solved)
-        edges, line = np.empty((count, cells.y.size)), np.empty((count, cells.shape[0]))
-        for rows, contact, p0 in solved:
-            edges[rows], line[rows] = contact.cells.y, contact.centre_line / p0[:, None]
+        edges, rows, lines = np.empty(0), [], []
+        for each, contact, p0 in self._solved(curvature, force, moment=moment):
+            edges = max(edges, contact.cells.y, key=len)
+            rows.append(each)
+            lines.append(contact.centre_line / p0[:, None])
+        line = np.zeros((sum(map(len, rows)), edges.size - 1))
+        for each, values in zip(rows, lines, strict=True):
+            beyond = (edges.size - 1 - values.shape[1]) // 2
+            line[each] = np.pad(values, ((0, 0), (beyond, beyond)))
         return edges, line
 
     def moment_at_tilt(self, curvature: ArrayLike, force: ArrayLike, tilt: ArrayLike) -> Array:
@@ -106,6 +117,6 @@ def signed_range(
     tilt : float              greatest, rad
     """
     moment = np.minimum(np.abs(lines.moment_at_tilt(curvature, force, tilt)), couple)
-    sides = (0.0, 1.0) if lines.pair.is_symmetric else (-1.0, 0.0, 1.0)
+    sides = (0.0, 1.0) if lines.is_symmetric else (-1.0, 0.0, 1.0)
     signed = [signed_factor(lines, curvature, force, side * moment).value for side in sides]
     return SignedRange(np.max(signed, axis=0), moment)

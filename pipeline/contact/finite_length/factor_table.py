@@ -3,8 +3,7 @@
 The pressure over the peak pressure of plane strain depends on the half-width and on the moment over
 force and length; with a crown or a rounded end on the line load, too. The centre line is tabulated,
 so that its greatest value and the means at its ends follow at any place of the table. A node is
-computed when an interpolation first needs it. The cells of a crowned or rounded contact follow it
-from node to node: their edges are interpolated as their pressures are.
+computed when an interpolation first needs it.
 """
 
 from __future__ import annotations
@@ -12,35 +11,30 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
 from functools import cached_property, lru_cache
-from typing import NamedTuple
 
 import numpy as np
 import scipy
 from numpy.typing import ArrayLike, NDArray
 
 from camwright.geometry.arrays import Array, readonly
-from camwright.geometry.errors import InputError
+from camwright.geometry.errors import ContactError, InputError
 from camwright.pipeline.base import disk_cache
 from camwright.pipeline.contact import hertz
 from camwright.pipeline.contact.elasticity import active_set
 from camwright.pipeline.contact.finite_length import (
-    axial_drop,
-    contact_span,
     half_space,
     length_contact,
     length_tiers,
     pressure_cells,
 )
 from camwright.pipeline.contact.finite_length.axial_drop import FinitePair, Straight
-from camwright.pipeline.contact.finite_length.length_contact import WideContactError
 from camwright.pipeline.contact.finite_length.length_tiers import AxialFactors, cycle_sizes
-from camwright.pipeline.contact.finite_length.pressure_cells import CellSizes
 
 Index = NDArray[np.intp]
 
 # Ratios of the half-widths, without and with a crown, and of the line loads of neighbouring nodes;
 # nodes of ladder index 0.
-_WIDTH_RATIO, _CROWNED_WIDTH_RATIO, _LOAD_RATIO = 2.0, 3.0, 2.5
+_WIDTH_RATIO, _CROWNED_WIDTH_RATIO, _LOAD_RATIO = 2.0, 3.0, 2.0
 _WIDTH, _LOAD = 1e-4, 1e5  # m, N/m
 # Moments over force and length: of light tilts, and up to a force near the end of the contact.
 _LIGHT: Array = np.linspace(0.0, 0.24, 9)
@@ -48,14 +42,17 @@ _HEAVY: Array = np.array([0.265, 0.29, 0.315, 0.34, 0.36, 0.38, 0.40, 0.415, 0.4
 _MOMENTS = np.concatenate([_LIGHT, _HEAVY])
 _SIGNED: Array = np.concatenate([-_MOMENTS[:0:-1], _MOMENTS])
 _ZERO = _MOMENTS.size - 1
+# Fewest cells along a crowned contact; its approach over load per length and pi E* at most.
+_FEWEST, _APPROACH = 4, 60.0
+# Ratio by which the load of a shorter contact is raised, and how often at most.
+_RAISE, _RAISES = 2.0, 60
+
 _FEW = 3000  # rows of an interpolation: those of a turn, untilted and tilted to both sides
 
-# Places along the line at which the drop of a crown decides the tables kept.
-_PLACES = 2001
-# Wider cells across for contacts that leave theirs: ratio, and how often at most.
-_WIDER, _WIDENINGS = 2.0, 3
+# Difference of a symmetric gap from its mirror, relative.
+_SYMMETRIC = 1e-9
 # Errors of the interpolation, verified by tests.
-_ERROR, _LOADED_ERROR = 2e-3, 5e-3
+_ERROR, _CROWNED_ERROR, _ROUNDED_ERROR = 2e-3, 5e-3, 0.1
 
 GREATEST_MOMENT = float(_MOMENTS[-1])
 """Greatest moment over force and length of contact: the force acts near the end."""
@@ -65,7 +62,9 @@ GREATEST_MOMENT = float(_MOMENTS[-1])
 class FactorTable:
     """Factors of a pair of bodies over half-width, moment and, where it matters, line load.
 
-    mean_length (m) of the means at the ends; the curvature of the pair is not used.
+    mean_length (m) of the means at the ends; the curvature of the pair is not used. A crowned
+    contact too light for the cells, shorter than four of them, has the pressure of the lightest one
+    that is not: an upper bound.
     """
 
     pair: FinitePair
@@ -76,9 +75,12 @@ class FactorTable:
     def interpolation_error(self) -> float:
         """Error of centre, greatest and mean pressure at a singular end, over the greatest.
 
-        Up to a moment of 0.2 of force and length; three times that beyond.
+        Up to a moment of 0.2 of force and length; three times that beyond. The cells of a rounded
+        end do not resolve its peak better.
         """
-        return _LOADED_ERROR if self._depends_on_load else _ERROR
+        if self._is_rounded:
+            return _ROUNDED_ERROR
+        return _ERROR if isinstance(self.pair.crown, Straight) else _CROWNED_ERROR
 
     def factors(
         self, curvature: ArrayLike, force: ArrayLike, moment: ArrayLike = 0.0
@@ -96,18 +98,28 @@ class FactorTable:
         InputError
             If an input is out of bounds.
         """
-        edges, line = self.axial_pressure(curvature, force, moment)
+        edges, line, peaks = self._interpolated(curvature, force, moment)
+        middle = (edges.size - 1) // 2
         means, _ = length_contact.means_at_ends(edges, line, self.mean_length)
-        centre = length_contact.at_middle(edges, line)
-        return AxialFactors(centre, line.max(axis=1), means, self.mean_length)
+        centre = 0.5 * (line[:, middle - 1] + line[:, middle])
+        # The steep peak of a rounded end moves from cell to cell with the load.
+        greatest = (peaks if self._is_rounded else line).max(axis=1)
+        return AxialFactors(centre, greatest, means, self.mean_length)
 
     def axial_pressure(
         self, curvature: ArrayLike, force: ArrayLike, moment: ArrayLike = 0.0
     ) -> tuple[Array, Array]:
-        """Edges (count, m + 1), m, along y and pressures (count, m) over plane-strain p0, x = 0.
+        """Edges (m + 1,), m, along y and pressures (count, m) over plane-strain p0, x = 0.
 
         Inputs as those of `factors`.
         """
+        edges, line, _ = self._interpolated(curvature, force, moment)
+        return edges, line
+
+    def _interpolated(
+        self, curvature: ArrayLike, force: ArrayLike, moment: ArrayLike
+    ) -> tuple[Array, Array, Array]:
+        """Edges, pressures of `axial_pressure`; greatest of the nodes at y < 0 and y > 0."""
         kappa, load, couple = _alike(curvature, force, moment)
         share = couple / (load * self.pair.contact_length)
         if not (np.abs(share) <= GREATEST_MOMENT).all():
@@ -116,21 +128,15 @@ class FactorTable:
             raise InputError("moment", float(couple[worst]), f"within {most:.4g} N m, near an end")
         place = self._place(kappa, load, share)
         first, weights = _moment_stencil(share)
-        nodes, columns, values = place
+        nodes, columns, values = place.rows
         # Rows of the table: every node has one row per moment.
         columns = columns[:, :, None] * _SIGNED.size + (first[:, None] + np.arange(4))[:, None]
         values = values[:, :, None] * weights[:, None]
+        edges, lines = _lines(tuple(nodes))
         flat = (load.size, -1)
-        lines = _lines(tuple(nodes))
         interpolated = _weighted(columns.reshape(flat), values.reshape(flat), lines)
-        ends = nodes[0].edges.shape[1]
-        return interpolated[:, :ends], np.maximum(interpolated[:, ends:], 0.0)
-
-    def edges_of_line(self, curvature: float, force: float) -> Array:
-        """Edges (m + 1,), m, of cells along the whole line at a curvature, 1/m, and force, N."""
-        half_width, _ = self._hertz(np.array([curvature]), np.array([force]))
-        pair = replace(self.pair, curvature=curvature)
-        return pressure_cells.edges_along(pair, float(half_width[0]), cycle_sizes(pair))
+        scaled = np.maximum(interpolated, 0.0) * place.factor[:, None]
+        return edges, scaled[:, :-2], scaled[:, -2:]
 
     def moment_at_tilt(self, curvature: ArrayLike, force: ArrayLike, tilt: ArrayLike) -> Array:
         """Moment (count,), N m, of contacts tilted by `tilt` (count,), rad, as half-spaces.
@@ -138,12 +144,12 @@ class FactorTable:
         At most `GREATEST_MOMENT` of force and length.
         """
         kappa, load, angle = _alike(curvature, force, tilt)
-        share = np.zeros(load.size)
+        share = np.full(load.size, _LIGHT[-1])
         for _ in range(2):
             place = self._place(kappa, load, share)
-            nodes, columns, values = place
+            nodes, columns, values = place.rows
             turns = _weighted(columns, values, np.array([node.turn for node in nodes]))
-            half_width, _ = self._hertz(kappa, load)
+            half_width, _ = self._hertz(kappa, place.load)
             target = angle * self.pair.contact_length / (kappa * half_width**2)
             # The second pass has the heavy tilts of those beyond the light ones.
             inner = turns[:, _ZERO - _LIGHT.size + 2], turns[:, _ZERO + _LIGHT.size - 2]
@@ -155,12 +161,15 @@ class FactorTable:
 
     @property
     def _depends_on_load(self) -> bool:
-        rounded = any(body.end.kind == "radius" for body in self.pair.bodies)
-        return rounded or not isinstance(self.pair.crown, Straight)
+        return self._is_rounded or not isinstance(self.pair.crown, Straight)
 
     @property
     def _width_ratio(self) -> float:
         return _WIDTH_RATIO if isinstance(self.pair.crown, Straight) else _CROWNED_WIDTH_RATIO
+
+    @property
+    def _is_rounded(self) -> bool:
+        return any(body.end.kind == "radius" for body in self.pair.bodies)
 
     def _hertz(self, curvature: Array, force: Array) -> tuple[Array, Array]:
         return hertz.line_contact(
@@ -168,14 +177,29 @@ class FactorTable:
         )
 
     def _place(self, curvature: Array, force: Array, share: Array) -> _Place:
-        """Nodes, their columns and weights of contacts."""
+        """Nodes and weights of contacts, with loads raised where a crowned contact is too light."""
+        load = force.copy()
         heavy = np.abs(share) > _LIGHT[-2]
-        half_width, _ = self._hertz(curvature, force)
-        across = np.log(half_width / _WIDTH) / np.log(self._width_ratio)
-        along = np.zeros_like(across)
-        if self._depends_on_load:
-            line_load = force / self.pair.contact_length
-            along = np.log(line_load / _LOAD) / np.log(_LOAD_RATIO)
+        for _ in range(_RAISES):
+            half_width, _ = self._hertz(curvature, load)
+            across = np.log(half_width / _WIDTH) / np.log(self._width_ratio)
+            along = np.zeros_like(across)
+            if self._depends_on_load:
+                line_load = load / self.pair.contact_length
+                along = np.log(line_load / _LOAD) / np.log(_LOAD_RATIO)
+            place = self._stencils(across, along, heavy, np.sqrt(load / force), load)
+            nodes, columns, _ = place.rows
+            light = np.array([node.is_too_light for node in nodes])[columns].any(axis=1)
+            lacks = ~np.array([node.is_heavy for node in nodes])[columns].all(axis=1)
+            light |= heavy & lacks
+            if not light.any():
+                return place
+            load = np.where(light, load * _RAISE, load)
+        raise ContactError("crown: the contact does not fill its cells under any load")
+
+    def _stencils(
+        self, across: Array, along: Array, heavy: NDArray[np.bool_], factor: Array, load: Array
+    ) -> _Place:
         first, width_weights = _uniform_stencil(across)
         if self._depends_on_load:
             second, load_weights = _uniform_stencil(along)
@@ -196,13 +220,13 @@ class FactorTable:
         number = {key: index for index, key in enumerate(keys)}
         columns = np.array([[number[key] for key in cells] for cells in reach])[inverse]
         weights = (width_weights[:, :, None] * load_weights[:, None, :]).reshape(columns.shape)
-        return _Place(nodes, columns, weights)
+        return _Place((nodes, columns, weights), factor, load)
 
     def _node(self, key: tuple[int, int], *, heavy: bool) -> _Node:
         if key not in self._nodes:
             self._nodes[key] = self._computed(key, _LIGHT)
         known = self._nodes[key]
-        if heavy and not known.is_heavy:
+        if heavy and not known.is_tried and not known.is_too_light:
             self._nodes[key] = known.joined(self._computed(key, _HEAVY))
         return self._nodes[key]
 
@@ -211,113 +235,99 @@ class FactorTable:
         half_width, line_load = _WIDTH * self._width_ratio ** key[0], _LOAD * _LOAD_RATIO ** key[1]
         curvature = 4.0 * line_load / (np.pi * self.pair.contact_modulus * half_width**2)
         here = replace(self.pair, curvature=curvature)
-        if not self.pair.is_symmetric:
+        cells = pressure_cells.pressure_cells(here, half_width, cycle_sizes(self.pair))
+        middle = cells.shape[0] // 2
+        drops = here.crown.drop(cells.y[[middle - _FEWEST // 2, middle + _FEWEST // 2]])
+        if drops.min() > _APPROACH * line_load / (np.pi * self.pair.contact_modulus):
+            return _Node.of(cells.y, moments, np.empty((0, cells.shape[0])), np.empty(0))
+        gap = cells.integrated_gap(here)
+        mirrored = gap.reshape(cells.shape)[::-1].ravel()
+        if not np.allclose(gap, mirrored, rtol=0.0, atol=_SYMMETRIC * np.abs(gap).max()):
             moments = np.concatenate([-moments[moments > 0][::-1], moments])
+        bodies = tuple((body.material, body.length) for body in self.pair.bodies)
 
         def compute() -> dict[str, Array]:
             force = line_load * self.pair.contact_length
-            edges, line, turn = _solved(here, force, moments * force * self.pair.contact_length)
+            couples = moments * force * self.pair.contact_length
+            compliance = half_space.shared_compliance(cells, self.pair.bodies)
+            gaps = np.tile(gap, (moments.size, 1))
+            try:
+                level = length_contact.solve(
+                    cells, compliance, gap, force, guess=cells.centres[0] < half_width
+                )
+                contact = length_contact.solve(
+                    cells,
+                    compliance,
+                    gaps,
+                    force,
+                    moment=couples,
+                    guess=level.pressure.ravel() > 0,
+                )
+            except ContactError:
+                if not self._depends_on_load:
+                    raise
+                return {"line": np.empty((0, cells.shape[0])), "turn": np.empty(0)}
             p0 = 0.5 * self.pair.contact_modulus * curvature * half_width
-            turned = turn * self.pair.contact_length / (curvature * half_width**2)
-            return {"edges": edges, "line": line / p0, "turn": turned}
+            turn = contact.tilt * self.pair.contact_length / (curvature * half_width**2)
+            return {"line": contact.centre_line / p0, "turn": turn}
 
-        places = 0.5 * self.pair.contact_length * np.linspace(-1.0, 1.0, _PLACES)
-        bodies = tuple(
-            (body.material, body.length, body.end.kind, body.end.size) for body in self.pair.bodies
-        )
-        inputs = (
-            half_width,
-            line_load,
-            self.pair.crown.drop(places).tobytes(),
-            bodies,
-            moments.tobytes(),
-        )
-        modules = (
-            *(active_set, axial_drop, contact_span, half_space, length_contact, length_tiers),
-            pressure_cells,
-        )
+        inputs = (cells.x.tobytes(), cells.y.tobytes(), gap.tobytes(), bodies, moments.tobytes())
+        modules = (active_set, half_space, length_contact, length_tiers, pressure_cells)
         kept = disk_cache.kept("factors", inputs, compute, modules)
-        return _Node.of(moments, kept["edges"], kept["line"], kept["turn"])
+        return _Node.of(cells.y, moments, kept["line"], kept["turn"])
 
 
-def _solved(pair: FinitePair, force: float, couples: Array) -> tuple[Array, Array, Array]:
-    """Edges (count, m + 1), m, pressures (count, m), Pa, tilts (count,), rad, at moments, N m."""
-    sizes = cycle_sizes(pair)
-    for _ in range(_WIDENINGS):
-        try:
-            return _solved_on(pair, force, couples, sizes)
-        except WideContactError:
-            sizes = replace(sizes, window=_WIDER * sizes.window)
-    return _solved_on(pair, force, couples, sizes)
+@dataclass(frozen=True, eq=False)
+class _Place:
+    """Nodes, columns (count, k) and weights; factor (count,) of p0; loads (count,), N."""
 
-
-def _solved_on(
-    pair: FinitePair, force: float, couples: Array, sizes: CellSizes
-) -> tuple[Array, Array, Array]:
-    cells = [contact_span.contact_cells(pair, force, float(each), sizes) for each in couples]
-    shared: dict[bytes, list[int]] = {}
-    for row, each in enumerate(cells):
-        shared.setdefault(each.x.tobytes() + each.y.tobytes(), []).append(row)
-    line, turn = np.empty((couples.size, cells[0].shape[0])), np.empty(couples.size)
-    for rows in shared.values():
-        here = cells[rows[0]]
-        contact = length_contact.solve(
-            here,
-            half_space.shared_compliance(here, pair.bodies),
-            np.tile(here.integrated_gap(pair), (len(rows), 1)),
-            force,
-            moment=couples[rows],
-            guess=here.centres[0] < here.x[int(sizes.per_half_width)],
-        )
-        line[rows], turn[rows] = contact.centre_line, contact.tilt
-    return np.array([each.y for each in cells]), line, turn
-
-
-class _Place(NamedTuple):
-    """Nodes, columns and weights (count, k) of contacts."""
-
-    nodes: list[_Node]
-    columns: Index
-    weights: Array
+    rows: tuple[list[_Node], Index, Array]
+    factor: Array
+    load: Array
 
 
 @dataclass(frozen=True, eq=False)
 class _Node:
-    """Edges (2 moments - 1, m + 1), m, along y; line (2 moments - 1, m) over p0, turn.
+    """Edges (m + 1,), m, along y; line (2 moments - 1, m) over p0, turn (2 moments - 1,).
 
     The turn is the tilt times the length over curvature and half-width squared. Rows of heavy
-    tilts are not numbers before they are computed.
+    tilts are not numbers before they are tried, or where the contact leaves its cells.
     """
 
     edges: Array
     line: Array
     turn: Array
+    is_tried: bool = False
 
     @classmethod
-    def of(cls, moments: Array, edges: Array, line: Array, turn: Array) -> _Node:
+    def of(cls, edges: Array, moments: Array, line: Array, turn: Array) -> _Node:
         """Rows of all moments from those computed; those below zero by symmetry where left out."""
-        ends, lines = (np.full((_SIGNED.size, each.shape[1]), np.nan) for each in (edges, line))
-        turns = np.full(_SIGNED.size, np.nan)
-        signs = (1,) if (moments < 0).any() else (-1, 1)
-        for sign in signs:
-            rows = np.searchsorted(_SIGNED, sign * moments - 1e-9)
-            ends[rows], lines[rows] = sign * edges[:, ::sign], line[:, ::sign]
-            turns[rows] = sign * turn
-        return cls(ends, lines, turns)
+        lines, turns = (
+            np.full((_SIGNED.size, edges.size - 1), np.nan),
+            np.full(_SIGNED.size, np.nan),
+        )
+        if len(line):
+            signs = (1,) if (moments < 0).any() else (-1, 1)
+            for sign in signs:
+                rows = np.searchsorted(_SIGNED, sign * moments - 1e-9)
+                lines[rows], turns[rows] = line[:, ::sign], sign * turn
+        return cls(edges, lines, turns)
 
     def joined(self, other: _Node) -> _Node:
         """The rows of both."""
         here = np.isfinite(self.turn)
-        edges, line = (
-            np.where(here[:, None], one, two)
-            for one, two in ((self.edges, other.edges), (self.line, other.line))
-        )
-        return _Node(edges, line, np.where(here, self.turn, other.turn))
+        lines = np.where(here[:, None], self.line, other.line)
+        return _Node(self.edges, lines, np.where(here, self.turn, other.turn), is_tried=True)
 
     @cached_property
     def is_heavy(self) -> bool:
         """Whether the rows of heavy tilts are computed."""
         return bool(np.isfinite(self.turn[[0, -1]]).all())
+
+    @cached_property
+    def is_too_light(self) -> bool:
+        """Whether the untilted contact covers too few cells."""
+        return not np.count_nonzero(self.line[_ZERO] > 0) >= _FEWEST
 
 
 def factor_table(pair: FinitePair, mean_length: float) -> FactorTable:
@@ -334,9 +344,16 @@ def factor_table(pair: FinitePair, mean_length: float) -> FactorTable:
 
 
 @lru_cache(maxsize=16)
-def _lines(nodes: tuple[_Node, ...]) -> Array:
-    """Edges and pressures of nodes side by side as rows."""
-    return readonly(np.concatenate([np.hstack([node.edges, node.line]) for node in nodes]))
+def _lines(nodes: tuple[_Node, ...]) -> tuple[Array, Array]:
+    """Edges of the longest nodes; their pressures and greatest of both halves as rows."""
+    widest = max(nodes, key=lambda node: node.edges.size).edges
+    padded = []
+    for node in nodes:
+        beyond = (widest.size - node.edges.size) // 2
+        halves = np.split(node.line, 2, axis=1)
+        peaks = [half.max(axis=1) for half in halves]
+        padded.append(np.column_stack([np.pad(node.line, ((0, 0), (beyond, beyond))), *peaks]))
+    return widest, readonly(np.concatenate(padded))
 
 
 def _alike(*values: ArrayLike) -> list[Array]:
