@@ -33,13 +33,6 @@ class SolvedLines:
     pair: FinitePair
     mean_length: float
 
-    @property
-    def is_symmetric(self) -> bool:
-        """Whether both halves of the gap are alike."""
-        y = 0.5 * self.pair.contact_length * np.linspace(0.0, 1.0, 11)
-        drop, other = self.pair.crown.drop(y), self.pair.crown.drop(-y)
-        return bool(np.allclose(drop, other, rtol=1e-9, atol=0.0))
-
     def axial_pressure(
         self, curvature: ArrayLike, force: ArrayLike, moment: ArrayLike = 0.0
     ) -> tuple[Array, Array]:
@@ -117,6 +110,6 @@ def signed_range(
     tilt : float              greatest, rad
     """
     moment = np.minimum(np.abs(lines.moment_at_tilt(curvature, force, tilt)), couple)
-    sides = (0.0, 1.0) if lines.is_symmetric else (-1.0, 0.0, 1.0)
+    sides = (0.0, 1.0) if lines.pair.is_symmetric else (-1.0, 0.0, 1.0)
     signed = [signed_factor(lines, curvature, force, side * moment).value for side in sides]
     return SignedRange(np.max(signed, axis=0), moment)

@@ -120,7 +120,8 @@ def third_cam():
     return CASE.with_name("petrescu_b3.toml").read_text() + "\n[solver]\npositions = 36\n"
 
 
-@pytest.mark.parametrize("cam", [pytest.param(sharp_cam, marks=pytest.mark.slow), third_cam])
+@pytest.mark.slow
+@pytest.mark.parametrize("cam", [sharp_cam, third_cam])
 def test_undercut_is_a_verdict_of_the_run(tmp_path, cam):
     (tmp_path / "cut.toml").write_text(cam())
     code, said = camwright("run", tmp_path / "cut.toml", "--out", tmp_path / "run")

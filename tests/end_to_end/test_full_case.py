@@ -12,6 +12,7 @@ from every_option import full_case
 from camwright.pipeline.base.progress import Silent
 from camwright.pipeline.case.case_file import read_case
 from camwright.pipeline.case.machine import machines
+from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.run import run_case
 from camwright.reports.analysis_sheet import groups
 from camwright.reports.report_data import read_material
@@ -48,7 +49,7 @@ CHECKS = (
 @pytest.fixture(scope="module")
 def run(tmp_path_factory):
     folder = tmp_path_factory.mktemp("full") / "run"
-    run_case(full_case(), folder, progress=Silent(), jobs=1)
+    run_case(full_case(), folder, progress=Silent(), jobs=1, depth=Tier.CYCLE)
     return folder
 
 

@@ -284,6 +284,7 @@ def test_keys_of_a_case_in_a_data_frame(made: SimpleNamespace) -> None:
     assert frame["load_case[0].name"] == made.case.load_cases[0].name
 
 
+@pytest.mark.slow
 def test_a_sizing(tmp_path: Path) -> None:
     command = [sys.executable, "-m", "camwright", "init", "feed", "--kind", "lift"]
     subprocess.run(command, cwd=tmp_path, check=True)

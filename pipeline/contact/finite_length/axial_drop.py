@@ -22,6 +22,8 @@ from camwright.pipeline.contact.elasticity.elastic_body import Elastic
 
 # Half of the distance over which the slope of a crown is taken, m.
 _SLOPE_STEP = 1e-6
+# Places at which the halves of a gap are compared.
+_HALVES = 101
 # Share of the half-width over half the length that a Johns-Gohar crown leaves at its end.
 _JOHNS_GOHAR = 0.3033
 # Scales of ISO/TS 16281 over the roller diameter, and the longest roller, in diameters, that is
@@ -309,6 +311,13 @@ class FinitePair:
             body.end.kind == "radius" and body.flat_length == self.contact_length
             for body in self.bodies
         )
+
+    @property
+    def is_symmetric(self) -> bool:
+        """Whether both halves of the gap are alike."""
+        y = 0.5 * self.contact_length * np.linspace(0.0, 1.0, _HALVES)
+        drop, other = self.crown.drop(y), self.crown.drop(-y)
+        return bool(np.allclose(drop, other, rtol=1e-9, atol=1e-9 * np.abs(drop).max()))
 
     def gap(self, x: Array, y: Array) -> Array:
         """Distance (...), m, of the undeformed surfaces at x and y (...), m; circles as parabolas.

@@ -144,7 +144,7 @@ class FactorTable:
         At most `GREATEST_MOMENT` of force and length.
         """
         kappa, load, angle = _alike(curvature, force, tilt)
-        share = np.full(load.size, _LIGHT[-1])
+        share = np.zeros(load.size)
         for _ in range(2):
             place = self._place(kappa, load, share)
             nodes, columns, values = place.rows
@@ -250,11 +250,13 @@ class FactorTable:
             force = line_load * self.pair.contact_length
             couples = moments * force * self.pair.contact_length
             compliance = half_space.shared_compliance(cells, self.pair.bodies)
+            # A crowned contact is begun with all cells: from others its active set may recur.
+            near = None if self._depends_on_load else cells.centres[0] < half_width
             gaps = np.tile(gap, (moments.size, 1))
             try:
-                level = length_contact.solve(
-                    cells, compliance, gap, force, guess=cells.centres[0] < half_width
-                )
+                level = length_contact.solve(cells, compliance, gap, force, guess=near)
+                if np.count_nonzero(level.centre_line > 0) < _FEWEST:
+                    raise ContactError("contact of too few cells to be tilted")
                 contact = length_contact.solve(
                     cells,
                     compliance,
