@@ -49,8 +49,6 @@ _RAISE, _RAISES = 2.0, 60
 
 _FEW = 3000  # rows of an interpolation: those of a turn, untilted and tilted to both sides
 
-# Difference of a symmetric gap from its mirror, relative.
-_SYMMETRIC = 1e-9
 # Errors of the interpolation, verified by tests.
 _ERROR, _CROWNED_ERROR, _ROUNDED_ERROR = 2e-3, 5e-3, 0.1
 
@@ -241,8 +239,7 @@ class FactorTable:
         if drops.min() > _APPROACH * line_load / (np.pi * self.pair.contact_modulus):
             return _Node.of(cells.y, moments, np.empty((0, cells.shape[0])), np.empty(0))
         gap = cells.integrated_gap(here)
-        mirrored = gap.reshape(cells.shape)[::-1].ravel()
-        if not np.allclose(gap, mirrored, rtol=0.0, atol=_SYMMETRIC * np.abs(gap).max()):
+        if not self.pair.is_symmetric:
             moments = np.concatenate([-moments[moments > 0][::-1], moments])
         bodies = tuple((body.material, body.length) for body in self.pair.bodies)
 

@@ -328,8 +328,9 @@ def block_compliance(
 
 
 def block_grid(cells: PressureCells, body: FiniteBody) -> BrickGrid:
-    """Elements of a quarter of a block, to each side as wide as it is deep, at least twice as wide
-    as its cells.
+    """Elements of a quarter of a block.
+
+    Its half-width is its depth, or twice the half-width of the cells where that is larger.
 
     Raises
     ------
