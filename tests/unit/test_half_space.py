@@ -187,13 +187,13 @@ def test_tilt_of_the_moment_gives_the_moment_of_the_tilt():
 
 
 # Finite elements of blocks 8 and 10 mm deep give 0.989, 1.017, 0.976, 1.059 in the middle, and
-# 1.139, 0.823, 1.577 over the last 0.1 mm.
+# over the last 0.1 mm 1.139, 0.823, and 1.596 on these cells (`test_length_anchors`).
 @pytest.mark.parametrize(
     ("finite", "centre", "end", "tolerance"),
     [
         (pair(8e-3), 0.989, 1.139, 0.005),
-        (pair(5e-3), 1.017, 0.823, 0.045),  # the mirror is least exact where both bodies end
-        (pair(5e-3, end=BodyEnd("chamfer", 0.3e-3)), 0.976, 1.577, 0.005),
+        (pair(5e-3), 1.017, 0.823, 0.02),
+        (pair(5e-3, end=BodyEnd("chamfer", 0.3e-3)), 0.976, 1.596, 0.005),
         (pair(5e-3, crown=crown()), 1.059, None, 0.0),
     ],
 )
@@ -217,8 +217,22 @@ def test_a_cycle_is_its_contacts_one_by_one():
         half_space_factors(finite, curvature, 0.0)
 
 
-def test_mirror_factor_of_steel():
-    assert mirror_factor(0.3) == pytest.approx(1.51)
+def test_mirror_factor_depends_on_the_ratio_of_the_distances_from_the_end():
+    # Guilbault (2011) has 1.39 for all of them.
+    np.testing.assert_allclose(mirror_factor(0.3, [0.0, 1.0]), [1.495, 1.840], atol=1e-3)
+    step = 20e-6
+    x, y = step * np.arange(4), step * np.arange(-6, 7)
+    small, large = (
+        half_space_compliance(PressureCells(scale * x, scale * y), bodies)
+        for scale, bodies in ((1.0, scaled(1.0)), (3.0, scaled(3.0)))
+    )
+    np.testing.assert_allclose(large, 27.0 * small, rtol=1e-9)
+    np.testing.assert_allclose(small, small.T, atol=1e-12 * small.max())
+
+
+def scaled(scale):
+    body = FiniteBody(STEEL, scale * 240e-6, SHARP, 1.0)
+    return body, body
 
 
 def test_a_contact_beyond_its_cells_is_refused():
