@@ -28,6 +28,7 @@ from camwright.pipeline.contact.finite_length.axial_drop import (
 from camwright.pipeline.contact.finite_length.length_tiers import (
     FACTORS,
     MEAN_LENGTH,
+    SIZES,
     TierResult,
     both_tiers,
 )
@@ -136,12 +137,19 @@ class LengthOptions:
         """Length of the mean at an end, m."""
         if self.mean_length is None:
             return MEAN_LENGTH
-        return self._positive(self.mean_length, "mm", "--mean-length")
+        mean, most = self._positive(self.mean_length, "mm", "--mean-length"), self.contact_length()
+        if not SIZES.at_end <= mean <= most:
+            limit = f"at least {shown(SIZES.at_end, 'mm')}, the cell at the end, and at most "
+            limit += f"{shown(most, 'mm')}, the length of contact"
+            raise InputError("--mean-length", shown(mean, "mm"), limit)
+        return mean
 
     def _crown(self, straight: FinitePair, pair: TwoCylinders) -> Crown:
         if self.crown is None:
             return Straight()
         kind, _, value = self.crown.partition(":")
+        if kind in ("johns-gohar", "lundberg", "circular") and not value:
+            raise InputError("--crown", self.crown, _CROWNS)
         length, modulus = straight.contact_length, straight.contact_modulus
         if kind in ("johns-gohar", "lundberg"):
             load = self._positive(value, "N/mm", "--crown")
@@ -174,9 +182,9 @@ class LengthOptions:
         kind, _, size = (text or "sharp").partition(":")
         if kind == "sharp" and not size:
             return BodyEnd()
-        if kind == "chamfer":
+        if kind == "chamfer" and size:
             return BodyEnd("chamfer", cls._positive(size, "mm", option))
-        if kind == "radius":
+        if kind == "radius" and size:
             return BodyEnd("radius", cls._positive(size, "mm", option))
         raise InputError(option, text, _ENDS)
 
@@ -265,10 +273,11 @@ def finite_length(
     if not pair.line_load > 0:
         raise InputError("--line-load", shown(pair.line_load, "N/mm"), "> 0 N/mm beside --length1")
     tilt, moment = options.tilt_or_moment()
+    mean_length = options.mean()
     try:
         finite = options.finite_pair(pair, depths)
         force = pair.line_load * finite.contact_length
-        tiers = both_tiers(finite, force, tilt=tilt, moment=moment, mean_length=options.mean())
+        tiers = both_tiers(finite, force, tilt=tilt, moment=moment, mean_length=mean_length)
     except InputError as error:
         known = {"moment": "--moment", "tilt": "--tilt", "depth": "--depth1 or --depth2"}
         if error.field.startswith("--"):
@@ -286,7 +295,7 @@ def lines(records: Sequence[Document]) -> Iterator[str]:
     for name, title in zip(FACTORS, titles, strict=True):
         bars = [record[f"{name}_error_percent"] for record in records]
         yield f"{title:22}" + "".join(
-            f"{record[name]:15.4f} " + (f"{'unbounded':>8}" if bar is None else f"± {bar:4.2g} %")
+            f"{record[name]:13.4f} " + (f"{'unbounded':>10}" if bar is None else f"± {bar:6.2g} %")
             for record, bar in zip(records, bars, strict=True)
         )
     blocks = records[1]

@@ -217,6 +217,24 @@ def test_error_lines_are_the_real_ones(tmp_path: Path) -> None:
         assert not (tmp_path / "run").exists()
 
 
+@pytest.mark.slow
+def test_the_crown_of_the_tutorial_is_the_printed_one(tmp_path: Path) -> None:
+    (example,) = blocks("docs/tutorial.md", "console")
+    prompt, *shown = example.splitlines()
+    assert shell("camwright init demo", tmp_path).returncode == 0
+    result = shell(prompt.removeprefix("$ "), tmp_path)
+    assert result.returncode == 0, result.stderr
+    printed = " ".join(result.stdout.split())
+    number = re.compile(r"[-+]?\d+(?:\.\d+)?(?:e[-+]\d+)?")
+    for line in shown:
+        between = [re.escape(words) for words in number.split(line)]
+        match = re.search(f"({number.pattern})".join(between), printed)
+        assert match, line
+        stated = [float(each) for each in number.findall(line)]
+        np.testing.assert_allclose([float(each) for each in match.groups()], stated, rtol=1e-2)
+    assert (tmp_path / "demo_crown" / "crown.toml").is_file()
+
+
 @cache
 def tables() -> ModuleType:
     spec = importlib.util.spec_from_file_location(

@@ -129,7 +129,7 @@ def test_table_of_drop(tmp_path):
         ({"length_1": "-3"}, "--length1 = -3"),
         ({"length_1": "nan"}, "--length1"),
         ({"end_1": "round"}, "--end1 = round"),
-        ({"end_1": "chamfer"}, "--end1 = missing"),
+        ({"end_1": "chamfer"}, "--end1 = chamfer,"),
         ({"end_2": "chamfer:1"}, "--end2 = 1 mm"),
         ({"end_2": "radius:x"}, "--end2 = x"),
         ({"crown": "cube"}, "--crown = cube"),
@@ -139,10 +139,13 @@ def test_table_of_drop(tmp_path):
         ({"tilt": "1", "moment": "1"}, "--moment = 1"),
         ({"tilt": "1 mm"}, "--tilt = 1 mm"),
         ({"tilt": "1e300"}, "--tilt"),
-        ({"line_load": "1e-9"}, "--depth1 or --depth2 = 0.002"),
+        ({"line_load": "1e-9"}, "--depth1 or --depth2 = 2.111 mm"),
         ({"crown": "lundberg:1e300"}, "--crown"),
-        ({"moment": "400"}, "--moment = 0.4"),
+        ({"moment": "400"}, "--moment = 400 N mm"),
         ({"mean_length": "0"}, "--mean-length = 0"),
+        ({"mean_length": "0.0199"}, "--mean-length = 0.0199 mm"),
+        ({"mean_length": "2.01"}, "--mean-length = 2.01 mm"),
+        ({"crown": "circular"}, "--crown = circular,"),
         ({"width": "2", "load": "100", "line_load": None}, "--width = 2"),
         ({"line_load": "0"}, "--line-load = 0"),
         ({"line_load": None}, "--line-load = missing"),
@@ -156,4 +159,4 @@ def test_bad_options_are_named(change, field, coarse):
 
 def test_a_mean_longer_than_the_contact_is_refused(coarse):
     with pytest.raises(ContactError, match="shorter than the length of the mean"):
-        solved(options(mean_length="3"))
+        solved(options(mean_length="1.9", crown="circular:50"))

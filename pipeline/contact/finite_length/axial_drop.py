@@ -85,7 +85,8 @@ class CircularCrown:
     def drop(self, y: Array) -> Array:
         """Drop (...), m, of the arc."""
         if not np.abs(y).max() < self.radius:
-            raise InputError("crown.radius", self.radius, "> half the length of the contact")
+            radius = units.shown(self.radius, "mm")
+            raise InputError("crown.radius", radius, "> half the length of the contact")
         share = y / self.radius
         return np.asarray(y * share / (1.0 + np.sqrt(1.0 - share**2)))
 
@@ -164,7 +165,8 @@ class TabulatedCrown:
     def drop(self, y: Array) -> Array:
         """Drop (...), m, interpolated."""
         if not self.is_stated(y).all():
-            raise InputError("crown.y", float(self.y[-1]), "at least half the length of contact")
+            end = units.shown(float(self.y[-1]), "mm")
+            raise InputError("crown.y", end, "at least half the length of contact")
         return np.interp(self._place(y), self.y, self.table)
 
     def is_stated(self, y: Array) -> NDArray[np.bool_]:

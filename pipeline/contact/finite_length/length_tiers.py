@@ -18,6 +18,7 @@ from numpy.typing import ArrayLike
 from camwright.geometry.arrays import Array, freeze
 from camwright.geometry.errors import InputError
 from camwright.pipeline.base import disk_cache
+from camwright.pipeline.base.units import shown
 from camwright.pipeline.contact import hertz
 from camwright.pipeline.contact.elasticity import elastic_body
 from camwright.pipeline.contact.elasticity.mesh_convergence import Convergence, converged
@@ -299,13 +300,14 @@ def _require_load(pair: FinitePair, force: float, tilt: float | None, moment: fl
     if not 0 < force < np.inf:
         raise InputError("force", force, "> 0 N")
     if tilt is not None and not abs(tilt) < _TILT:
-        raise InputError("tilt", tilt, f"within {_TILT:g} rad, small rotations")
+        raise InputError("tilt", shown(tilt, "mrad"), f"within {shown(_TILT, 'mrad')}")
     if moment is not None:
         if tilt is not None:
             raise InputError("moment", moment, "left out beside a tilt")
         most = 0.5 * force * pair.contact_length
         if not abs(moment) < most:
-            raise InputError("moment", moment, f"within {most:.4g} N m, the force at an end")
+            limit = f"within {shown(most, 'N mm')}, the force at an end"
+            raise InputError("moment", shown(moment, "N mm"), limit)
 
 
 def block_compliance(
@@ -339,9 +341,11 @@ def block_grid(cells: PressureCells, body: FiniteBody) -> BrickGrid:
         size.
     """
     if not body.depth < _DEEPEST * cells.x[1]:
-        raise InputError("depth", body.depth, f"< {_DEEPEST * cells.x[1]:.4g} m at this half-width")
+        limit = f"< {shown(_DEEPEST * cells.x[1], 'mm')} at this half-width"
+        raise InputError("depth", shown(body.depth, "mm"), limit)
     if not body.depth > cells.x[-1]:
-        raise InputError("depth", body.depth, f"> {cells.x[-1]:.4g} m, half the width of the cells")
+        limit = f"> {shown(cells.x[-1], 'mm')}, half the width of the cells"
+        raise InputError("depth", shown(body.depth, "mm"), limit)
     middle = cells.shape[0] // 2
     x, y = cells.x, cells.y[middle:]
     width = max(body.depth, _NARROWEST * x[-1])
