@@ -50,7 +50,7 @@ def with_error_bars(solution: Solution, checks: Iterable[Check]) -> tuple[Check,
     """
     checks = tuple(checks)
     beam = [each.demand for each in checks if each.id == GUIDE_ERROR]
-    centre = max((each.length.centre_error for each in solution.cycles if each.length), default=0.0)
+    centre = centre_error(solution) if solution.certificate else 0.0
     guides = None if beam in ([], [None]) else float(beam[0] or 0.0)
 
     def share(one: Check) -> float | None:
@@ -87,6 +87,12 @@ def contact_error(solution: Solution, figure: str | None = None) -> float | None
             ]
         )
     )
+
+
+def centre_error(solution: Solution) -> float:
+    """Greatest relative error of the pressure in the middle of the line over plane strain."""
+    errors = [cycle.length.centre_error for cycle in solution.cycles if cycle.length is not None]
+    return max(errors, default=0.0)
 
 
 def length_error(solution: Solution) -> float:
