@@ -203,7 +203,7 @@ class _Elimination:
         factor = _cholesky((self._schur + outer)[np.ix_(kept, kept)])
         carried = _forward(factor, self._right[kept])
         coupling = _forward(factor, cross[kept])
-        self._schur = inner - _gram(coupling)
+        self._schur = inner - coupling.T @ coupling
         self._right = ahead - coupling.T @ carried
         self._kept = self.section.supported
         return _Gone(kept, factor, coupling, carried, half, middle)
@@ -336,7 +336,7 @@ class _SlabStiffness:
         free = 2 * planar + supported
         factor = _cholesky(whole[free][:, free].toarray())
         coupling = _forward(factor, whole[free][:, : 2 * planar].toarray())
-        planes -= _gram(coupling)
+        planes -= coupling.T @ coupling
         middle = _Middle(factor, supported, coupling[:, :planar], coupling[:, planar:])
         return planes[:planar, :planar], planes[:planar, planar:], planes[planar:, planar:], middle
 
@@ -418,9 +418,3 @@ def _forward(factor: Array, right: Array) -> Array:
 def _backward(factor: Array, right: Array) -> Array:
     solved = scipy.linalg.solve_triangular(factor, right, lower=True, trans=1, check_finite=False)
     return np.asarray(solved)
-
-
-def _gram(matrix: Array) -> Array:
-    """Product of the transposed matrix and itself, by half of the multiplications."""
-    upper = scipy.linalg.blas.dsyrk(1.0, matrix, trans=1)
-    return np.asarray(upper + np.triu(upper, 1).T)
