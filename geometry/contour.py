@@ -31,6 +31,7 @@ _OFFSET_STEP_MAX = 0.5
 """rad: a longer step of Newton's method has left the neighbourhood of the contact."""
 
 _DRAWN = 721
+_MEASURED = 20001
 
 
 class Undercut(NamedTuple):
@@ -298,6 +299,10 @@ class Contour(Displayed, ABC):
         """Length of the contour, m."""
         return float(np.sum(np.hypot(*self._ring_step)))
 
+    def arc_length(self, theta: Array) -> Array:
+        """Length (n,) along the contour from angle 0, m."""
+        return np.asarray(np.interp(theta, *self._lengths))
+
     def plot(self) -> tuple[Axes, ...]:
         """Contour in the cam frame: under a roller with pitch curve and prime circle, under a flat
         face with the base circle; see `Table.plot`."""
@@ -324,6 +329,14 @@ class Contour(Displayed, ABC):
     @cached_property
     def _radius_min(self) -> Extremum:
         return least(self.radius, self.lift.search_count)
+
+    @cached_property
+    def _lengths(self) -> tuple[Array, Array]:
+        """Cam angles (n,), rad, and the length of the contour up to them, m."""
+        theta = np.linspace(0.0, FULL_TURN, _MEASURED)
+        speed = np.abs(self.speed(theta))
+        steps = np.diff(theta) * (speed[1:] + speed[:-1]) / 2
+        return theta, np.concatenate([[0.0], np.cumsum(steps)])
 
     @cached_property
     def _ring(self) -> Array:

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from camwright.geometry.arrays import FULL_TURN, Array, uniform_turn
 
@@ -29,7 +30,7 @@ class Extremum(NamedTuple):
     theta: float
 
 
-def local_minima(function: Function, count: int) -> tuple[Array, Array]:
+def local_minima(function: Function, count: int, *, lowest: bool = False) -> tuple[Array, Array]:
     """Local minima of a smooth periodic function and their angles, rad.
 
     Every sample not above its neighbours brackets a local minimum; all brackets are refined at
@@ -39,6 +40,7 @@ def local_minima(function: Function, count: int) -> tuple[Array, Array]:
     ----------
     function : callable    array of angles (rad) of any shape -> array of the same shape
     count : int            samples per turn; two minima must not share a sample interval
+    lowest : bool          only those that may be the lowest one
 
     Returns
     -------
@@ -49,11 +51,22 @@ def local_minima(function: Function, count: int) -> tuple[Array, Array]:
     values = function(theta)
     if (unknown := np.isnan(values)).any():
         return values[unknown][:1], theta[unknown][:1]
-    low = np.flatnonzero((values <= np.roll(values, 1)) & (values <= np.roll(values, -1)))
+    low = np.flatnonzero(_is_bracketed(values))
     # a constant function brackets at every sample; the lowest samples are enough
+    if lowest:
+        # The vertex of a parabola is below its sample by an eighth of this at most.
+        step = np.abs(values - np.roll(values, 1))
+        reach = np.maximum(step, np.roll(step, -1))[low]
+        low = low[values[low] - reach <= values.min()]
     low = low[np.argsort(values[low], kind="stable")[:_MINIMA_MAX]]
     best, where = refined(function, theta[low], FULL_TURN / count, _ZOOMS)
     return best, np.mod(where, FULL_TURN)
+
+
+def _is_bracketed(values: Array) -> NDArray[np.bool_]:
+    """Whether each sample (n,) of a turn is not above its neighbours."""
+    bracketed: NDArray[np.bool_] = (values <= np.roll(values, 1)) & (values <= np.roll(values, -1))
+    return bracketed
 
 
 def refined(function: Function, centre: Array, half: float, zooms: int) -> tuple[Array, Array]:
@@ -77,7 +90,7 @@ def refined(function: Function, centre: Array, half: float, zooms: int) -> tuple
 
 def least(function: Function, count: int) -> Extremum:
     """Minimum of a smooth periodic function over the continuous turn; see `local_minima`."""
-    values, theta = local_minima(function, count)
+    values, theta = local_minima(function, count, lowest=True)
     lowest = int(np.argmin(values))
     return Extremum(float(values[lowest]), float(theta[lowest]))
 

@@ -125,6 +125,9 @@ class FlatFaceContour(Contour):
         """Zero: the face is its own tangent."""
         return np.zeros_like(xi)
 
+    def points(self, theta: ArrayLike) -> Array:
+        return self.pitch.points(theta)
+
     def local_frame(self, theta: ArrayLike) -> Frame:
         return Frame(self.pitch.points(theta), self.normal(theta), self.tangent(theta))
 

@@ -7,7 +7,8 @@ corner is the nominal demand times the ratio of the closed forms at the corner a
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import asdict, dataclass, replace
 
 import numpy as np
@@ -24,7 +25,8 @@ from camwright.pipeline.case.machine import Corner, Machine, machines
 from camwright.pipeline.checks.check import Check, Declaration, Demand
 from camwright.pipeline.checks.registry import TOLERANCE_CORNERS, TOLERANCED, checks_of
 from camwright.pipeline.contact.tiers import Tier
-from camwright.pipeline.cycle.solution import solved_turns
+from camwright.pipeline.cycle.cycle import solve_lengths
+from camwright.pipeline.cycle.solution import Solution, solved_turns
 from camwright.pipeline.cycle.turn import Turn, TurnInput, turns
 from camwright.pipeline.follower.guide_friction import FrictionRange
 from camwright.pipeline.torque.torque import Torque
@@ -88,7 +90,7 @@ def outcomes(
         solved = _turns_at(case, torques, contour, corners, declarations)
     except CamError:  # of one corner at least: each on its own
         return tuple(_alone(case, torques, contour, each, declarations) for each in corners)
-    return tuple(_outcome(case, torques, *each, declarations) for each in solved)
+    return tuple(_outcomes(case, torques, solved, declarations))
 
 
 def checks_at(
@@ -106,7 +108,7 @@ def checks_at(
         If a corner cannot be solved.
     """
     solved = _turns_at(case, torques, contour, corners, declarations)
-    return tuple(_checks(case, torques, *each, declarations) for each in solved)
+    return tuple(checks_of(_solution(case, torques, *each), declarations) for each in solved)
 
 
 def governed(checks: Sequence[Check], tried: Sequence[Outcome]) -> tuple[Check, ...]:
@@ -239,39 +241,51 @@ def _alone(
     declarations: Sequence[Declaration],
 ) -> Outcome:
     try:
-        ((tried, solved),) = _turns_at(case, torques, contour, (corner,), declarations)
+        solved = _turns_at(case, torques, contour, (corner,), declarations)
     except CamError as error:
         return Outcome(corner, {}, str(error))
-    return _outcome(case, torques, tried, solved, declarations)
+    (outcome,) = _outcomes(case, torques, solved, declarations)
+    return outcome
 
 
-def _checks(
-    case: Case,
-    torques: Mapping[str, Torque],
-    tried: _Tried,
-    solved: Sequence[Turn],
-    declarations: Sequence[Declaration],
-) -> tuple[Check, ...]:
-    """Checks of the turns at a corner."""
+def _solution(
+    case: Case, torques: Mapping[str, Torque], tried: _Tried, solved: Sequence[Turn]
+) -> Solution:
+    """Solution of the turns at a corner."""
     corner, shape = tried.corner, tried.shape
     advance = corner.phase / case.mechanism.gear_ratio
-    solution = solved_turns(
+    return solved_turns(
         case, shape, tuple(_phased(each, corner) for each in solved), Tier.PREVIEW, torques,
         body=True, speed_contour=_early(shape, advance), advance=advance, error_bars=False,
     )  # fmt: skip
-    return checks_of(solution, declarations)
+
+
+def _outcomes(
+    case: Case,
+    torques: Mapping[str, Torque],
+    turns_at: Sequence[tuple[_Tried, tuple[Turn, ...]]],
+    declarations: Sequence[Declaration],
+) -> Iterator[Outcome]:
+    solved: list[tuple[Corner, Solution | CamError]] = []
+    for tried, turns_there in turns_at:
+        try:
+            solved.append((tried.corner, _solution(case, torques, tried, turns_there)))
+        except CamError as error:
+            solved.append((tried.corner, error))
+    if declarations is TOLERANCED:
+        cycles = [c for _, each in solved if isinstance(each, Solution) for c in each.cycles]
+        with suppress(CamError):  # of one corner at least: each on its own
+            solve_lengths(cycles)
+    return (_outcome(*each, declarations) for each in solved)
 
 
 def _outcome(
-    case: Case,
-    torques: Mapping[str, Torque],
-    tried: _Tried,
-    solved: Sequence[Turn],
-    declarations: Sequence[Declaration],
+    corner: Corner, solved: Solution | CamError, declarations: Sequence[Declaration]
 ) -> Outcome:
-    corner = tried.corner
+    if isinstance(solved, CamError):
+        return Outcome(corner, {}, str(solved))
     try:
-        checks = _checks(case, torques, tried, solved, declarations)
+        checks = checks_of(solved, declarations)
     except CamError as error:
         return Outcome(corner, {}, str(error))
     known = {one.id: float(one.demand) for one in checks if one.demand is not None}

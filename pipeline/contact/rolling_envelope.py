@@ -236,7 +236,7 @@ def swept(
     body_hydrostatic = (1 + pair.cam.poisson) / 3 * along
     return Envelope(
         theta=at,
-        arc=arc_length(pair, at),
+        arc=pair.contour.arc_length(at),
         depth=half_width[:, None] * unit.depth,
         von_mises=mises,
         tau_max=shear,
@@ -244,14 +244,6 @@ def swept(
         crossland=None if limits is None else _crossland(unit, p0, body_hydrostatic, limits),
         dang_van=None if limits is None else _dang_van(unit, p0, body_hydrostatic, limits),
     )
-
-
-def arc_length(pair: ContactPair, theta: Array) -> Array:
-    """Arc length (n,) along the contour from angle 0, m."""
-    dense = np.linspace(0, FULL_TURN, 20001)
-    speed = np.abs(pair.contour.speed(dense))
-    steps = np.diff(dense) * (speed[1:] + speed[:-1]) / 2
-    return np.asarray(np.interp(theta, dense, np.concatenate([[0.0], np.cumsum(steps)])))
 
 
 def _between(at: Array, theta: Array, finite_elements: Array, closed_form: Array) -> Array:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, fields, is_dataclass, replace
 from functools import cached_property
 from types import MappingProxyType
@@ -29,7 +29,7 @@ from camwright.pipeline.contact.finite_length.length_certificate import EndCorre
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.contact.two_scale import CycleBodies
 from camwright.pipeline.cycle.elastic_response import ElasticHistory, elastic_history
-from camwright.pipeline.cycle.length_history import LengthHistory, length_history
+from camwright.pipeline.cycle.length_history import LengthHistory, LineContact, length_histories
 from camwright.pipeline.cycle.part_loads import PartLoads, part_loads, spring_surge
 from camwright.pipeline.cycle.rolling_history import RollingHistory, rolling_history
 from camwright.pipeline.cycle.turn import Turn
@@ -143,14 +143,7 @@ class Cycle(Tabled):
     @cached_property
     def length(self) -> LengthHistory | None:
         """Pressure along the line of contact; None where the case lacks an end, or without body."""
-        if self.contact.tier is None:
-            return None
-        by_half_spaces = length_history(
-            self.machine, self.contact, self.loads.normal_force, self.guides
-        )
-        if by_half_spaces is None or self.ends is None:
-            return by_half_spaces
-        return by_half_spaces.corrected(self.ends)
+        return None if self.contact.tier is None else _lengths([self])[0]
 
     @property
     def signed_pressure(self) -> Array:
@@ -362,6 +355,28 @@ class Cycle(Tabled):
         if contact.tier is not None:
             columns |= self.rolling.columns()
         return columns | self.parts.columns(self.elastic) | self.shares.columns()
+
+
+def _lengths(cycles: Sequence[Cycle]) -> list[LengthHistory | None]:
+    """Pressure along the line of contact of cycles whose contour encloses a body."""
+    turns = [LineContact(c.machine, c.contact, c.loads.normal_force, c.guides) for c in cycles]
+    return [
+        solved if solved is None or cycle.ends is None else solved.corrected(cycle.ends)
+        for cycle, solved in zip(cycles, length_histories(turns), strict=True)
+    ]
+
+
+def solve_lengths(cycles: Iterable[Cycle]) -> None:
+    """Solve the pressure along the line of contact of many cycles at once.
+
+    Raises
+    ------
+    CamError
+        If that of one cannot be solved.
+    """
+    left = [each for each in cycles if each.contact.tier is not None and "length" not in vars(each)]
+    for cycle, length in zip(left, _lengths(left), strict=True):
+        vars(cycle)["length"] = length
 
 
 @dataclass(frozen=True, eq=False, repr=False)

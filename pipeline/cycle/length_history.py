@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import NamedTuple, Protocol
@@ -34,6 +34,7 @@ from camwright.pipeline.follower.guide_reactions import GuideReactions
 
 _ANY_CURVATURE = 1.0  # 1/m: a table has every curvature
 _ROUND_OFF = 1e-9
+_TOGETHER = 1000  # contacts evaluated at once: the interpolation of more takes a sparse matrix
 _LIGHTEST = 1e-3  # of the greatest force: a thirtieth of its pressure
 
 CORNER_ERROR, BOUNDED_ERROR = 0.05, 0.02
@@ -143,41 +144,101 @@ class LengthHistory:
         return replace(plane, **{name: getattr(plane, name) * self.centre for name in names})
 
 
-def length_history(
-    machine: Machine, contact: ContactHistory, force: Array, guides: GuideReactions
-) -> LengthHistory | None:
-    """Pressure along the line of contact; None where the case lacks an end.
+class LineContact(NamedTuple):
+    """A turn of which the pressure along the line is sought; force (n,): normal force, N."""
+
+    machine: Machine
+    contact: ContactHistory
+    force: Array
+    guides: GuideReactions
+
+    @property
+    def rows(self) -> NDArray[np.intp]:
+        """Angles with contact."""
+        radius = self.contact.relative_radius
+        return np.flatnonzero(np.isfinite(radius) & (radius > 0) & (self.force > 0))
+
+    @property
+    def loads(self) -> ContactLoads:
+        """Contacts at the angles with contact."""
+        rows, machine = self.rows, self.machine
+        force, tilt = self.force[rows], np.full(rows.size, machine.guides.tilt_max)
+        couple = held_couple(machine, self.guides)[rows] + force * machine.stem_offset
+        radius = self.contact.relative_radius[rows]
+        return ContactLoads(1.0 / radius, force, tilt, couple, raised_load(force))
+
+    def history(self, solved: FactorRange | None) -> LengthHistory:
+        """History of the factors at the angles with contact; None: no contact."""
+        radius, count = self.contact.relative_radius, self.force.size
+        blank = np.where(np.isnan(radius), np.nan, 1.0)
+        history = LengthHistory(
+            *(blank, blank, blank, np.zeros(count), np.zeros(count, dtype=bool)),
+            self.machine.limits[END_MEAN_LENGTH],
+            self.machine.guides.tilt_max,
+            self.machine.is_crowned,
+        )
+        return history if solved is None else history.with_rows(self.rows, solved)
+
+
+def length_histories(turns: Sequence[LineContact]) -> tuple[LengthHistory | None, ...]:
+    """Pressure along the line of contact of each turn; None where the case lacks an end.
 
     The stem aligns itself with the cam up to the friction of its guides: the moment lies between
     zero and the lesser of that of the greatest tilt in the clearances and of the couple that
-    friction and axial offset can hold.
-
-    Parameters
-    ----------
-    force : array (n,)   normal force, N
+    friction and axial offset can hold. Contacts of the same bodies are evaluated at once.
     """
-    pairs = machine.finite_pairs
-    if not pairs:
-        return None
-    radius = contact.relative_radius
-    blank = np.where(np.isnan(radius), np.nan, 1.0)
-    history = LengthHistory(
-        *(blank, blank, blank, np.zeros(force.size), np.zeros(force.size, dtype=bool)),
-        machine.limits[END_MEAN_LENGTH],
-        machine.guides.tilt_max,
-        machine.is_crowned,
-    )
-    rows = np.flatnonzero(np.isfinite(radius) & (radius > 0) & (force > 0))
-    if not rows.size:
-        return history
-    couple = held_couple(machine, guides)[rows] + force[rows] * machine.stem_offset
-    ranges = [
-        factor_range(
-            pair, history.mean_length, 1.0 / radius[rows], force[rows], history.tilt, couple
-        )
-        for pair in pairs
-    ]
-    return history.with_rows(rows, worst_of(ranges))
+    histories: list[LengthHistory | None] = [None] * len(turns)
+    alike: dict[tuple[object, float], list[int]] = {}
+    for index, each in enumerate(turns):
+        pairs = each.machine.finite_pairs
+        if not pairs:
+            continue
+        if each.rows.size:
+            key = pairs, each.machine.limits[END_MEAN_LENGTH]
+            alike.setdefault(key, []).append(index)
+        else:
+            histories[index] = each.history(None)
+    for members in (part for same in alike.values() for part in _parts(turns, same)):
+        loads = [turns[index].loads for index in members]
+        solved = _together(turns[members[0]].machine, loads)
+        starts = np.cumsum([one.force.size for one in loads])[:-1]
+        parts = zip(*(np.split(values, starts) for values in solved), strict=True)
+        for index, part in zip(members, parts, strict=True):
+            histories[index] = turns[index].history(FactorRange(*part))
+    return tuple(histories)
+
+
+def _parts(turns: Sequence[LineContact], members: Sequence[int]) -> Iterator[list[int]]:
+    """Members of up to `_TOGETHER` contacts; one turn at least."""
+    part: list[int] = []
+    contacts = 0
+    for index in members:
+        count = turns[index].force.size
+        if part and contacts + count > _TOGETHER:
+            yield part
+            part, contacts = [], 0
+        part.append(index)
+        contacts += count
+    if part:
+        yield part
+
+
+def _together(machine: Machine, loads: Sequence[ContactLoads]) -> FactorRange:
+    """Factors of the contacts of several turns, the worse of both ends."""
+    whole = ContactLoads(*(np.concatenate(parts) for parts in zip(*loads, strict=True)))
+    mean_length = machine.limits[END_MEAN_LENGTH]
+    return worst_of([factor_range(pair, mean_length, whole) for pair in machine.finite_pairs])
+
+
+class ContactLoads(NamedTuple):
+    """Contacts (count,): curvature, 1/m, > 0; force, N, > 0; greatest tilt, rad; greatest couple
+    that can hold it, N m; factor that raises vanishing loads, see `raised_load`."""
+
+    curvature: Array
+    force: Array
+    tilt: Array
+    couple: Array
+    raised: Array
 
 
 class FactorRange(NamedTuple):
@@ -190,27 +251,17 @@ class FactorRange(NamedTuple):
     at_corner: NDArray[np.bool_]
 
 
-def factor_range(
-    pair: FinitePair,
-    mean_length: float,
-    curvature: Array,
-    force: Array,
-    tilt: ArrayLike,
-    couple: Array,
-) -> FactorRange:
+def factor_range(pair: FinitePair, mean_length: float, loads: ContactLoads) -> FactorRange:
     """Factors of contacts without a moment and under the greatest one, of either direction.
 
     Parameters
     ----------
-    mean_length : float         of the mean at a corner, m
-    curvature, force : array    1/m, > 0; N, > 0, (count,)
-    tilt : float, array         greatest tilt, rad
-    couple : array (count,)     greatest couple that can hold it, N m
+    mean_length : float   of the mean at a corner, m
     """
     table = length_table(pair, mean_length)
-    raised = raised_load(force)
-    force, couple = raised * force, raised * couple
-    by_tilt = table.moment_at_tilt(curvature, force, np.broadcast_to(tilt, force.shape))
+    curvature, raised = loads.curvature, loads.raised
+    force, couple = raised * loads.force, raised * loads.couple
+    by_tilt = table.moment_at_tilt(curvature, force, loads.tilt)
     most = (1.0 - _ROUND_OFF) * GREATEST_MOMENT * force * pair.contact_length
     moment = np.minimum(np.minimum(np.abs(by_tilt), couple), most)
     directions = (1.0,) if pair.is_symmetric else (-1.0, 1.0)

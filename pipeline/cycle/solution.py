@@ -134,10 +134,10 @@ class Solution(Displayed):
     def least_damped(self) -> Solution | None:
         """The solution at the least damping of the surge; None if the case states the damping.
 
-        None in a coarse solution, too.
+        None in a coarse solution, too, and without error bars.
         """
-        design = self.machine.spring.design
-        if self.coarse or design is None or design.damping_ratio is not None:
+        design, barred = self.machine.spring.design, self.cycles[0].error_bars
+        if self.coarse or not barred or design is None or design.damping_ratio is not None:
             return None
         return replace(
             self,

@@ -12,7 +12,13 @@ from camwright.geometry.arrays import Array
 from camwright.pipeline.case.limits import END_MEAN_LENGTH
 from camwright.pipeline.case.machine import Machine
 from camwright.pipeline.contact.axial_shape import AxialCrown
-from camwright.pipeline.cycle.length_history import FactorRange, factor_range, worst_of
+from camwright.pipeline.cycle.length_history import (
+    ContactLoads,
+    FactorRange,
+    factor_range,
+    raised_load,
+    worst_of,
+)
 
 # Keys that the contact of finite length depends on, and the number of its different shapes up to
 # which each is solved.
@@ -65,9 +71,10 @@ def factors_of(
         if not at.any():
             continue
         held = couple[at] + force[at] * machine.stem_offset
-        known = 1.0 / radius[at], force[at], tilt[at], held
+        raised = raised_load(force[at])
+        known = ContactLoads(1.0 / radius[at], force[at], tilt[at], held, raised)
         mean = machine.limits[END_MEAN_LENGTH]
-        worst = worst_of([factor_range(pair, mean, *known) for pair in machine.finite_pairs])
+        worst = worst_of([factor_range(pair, mean, known) for pair in machine.finite_pairs])
         for whole_values, values in zip(whole, worst, strict=True):
             whole_values[at] = values
     return whole

@@ -14,9 +14,18 @@ from camwright.pipeline.case.case_file import read_case, with_values
 from camwright.pipeline.case.machine import machine
 from camwright.pipeline.contact.finite_length.factor_table import GREATEST_MOMENT
 from camwright.pipeline.contact.finite_length.length_tiers import half_space_factors
-from camwright.pipeline.cycle import length_history
 from camwright.pipeline.cycle.axial_pressure import AXIAL_ARRAYS, axial_arrays, with_end_means
-from camwright.pipeline.cycle.length_history import FactorRange, factor_range, held_couple, worst_of
+from camwright.pipeline.cycle.cycle import solve_lengths
+from camwright.pipeline.cycle.length_history import (
+    ContactLoads,
+    FactorRange,
+    LineContact,
+    factor_range,
+    held_couple,
+    length_histories,
+    raised_load,
+    worst_of,
+)
 
 CASES = Path(__file__).parents[2] / "cases"
 
@@ -119,21 +128,39 @@ def test_a_chamfered_end_is_solved_down_to_vanishing_loads_under_the_heaviest_ti
     force = np.array([1e-6, 1.0, 3e3])
     couple = force * pair.contact_length
     curvature = np.full(3, pair.curvature)
-    solved = factor_range(pair, 1e-4, curvature, force, 0.05, couple)
+    tilt = np.full(3, 0.05)
+    loads = ContactLoads(curvature, force, tilt, couple, raised_load(force))
+    solved = factor_range(pair, 1e-4, loads)
     assert (solved.moment <= GREATEST_MOMENT * couple).all()
     assert (solved.tilted > solved.level).all()
     # The lightest load has the factor of a thousandth of the greatest.
-    least = factor_range(pair, 1e-4, curvature[:1], np.array([3.0]), 0.05, 3.0 * couple[1:2])
+    light = ContactLoads(curvature[:1], 3.0 * force[1:2], tilt[:1], 3.0 * couple[1:2], np.ones(1))
+    least = factor_range(pair, 1e-4, light)
     assert solved.tilted[0] == pytest.approx(least.tilted[0], rel=1e-9)
 
 
 def test_without_an_end_nothing_is_signed():
     made = cycle()
     bare = replace(made.machine, cam=replace(made.machine.cam, end=None))
-    history = length_history.length_history(
-        bare, made.contact, made.loads.normal_force, made.guides
-    )
-    assert history is None
+    turn = LineContact(bare, made.contact, made.loads.normal_force, made.guides)
+    assert length_histories([turn]) == (None,)
+
+
+def test_turns_solved_together_are_those_solved_alone():
+    """Of two pairs of bodies, with a light and a heavy load."""
+    made, other = cycle(), cycle(roller__width="17 mm")
+    force = made.loads.normal_force
+    loads = [replace(made.loads, normal_force=factor * force) for factor in (1e-3, 1.0, 2.0)]
+    turns = [replace(made, turn=replace(made.turn, loads=each)) for each in loads]
+    turns.append(replace(other))
+    alone = [replace(each) for each in turns]
+    solve_lengths(turns)
+    assert all("length" in vars(each) for each in turns)
+    for together, single in zip(turns, alone, strict=True):
+        for name in ("centre", "level", "tilted", "moment"):
+            values = getattr(together.length, name), getattr(single.length, name)
+            np.testing.assert_allclose(*values, rtol=1e-12)
+    assert np.abs(turns[0].length.factor - turns[1].length.factor).max() > 1e-3
 
 
 def test_pressure_along_the_line_is_the_signed_one():
