@@ -21,7 +21,14 @@ FULL_TURN = 2.0 * np.pi
 
 
 def readonly(values: ArrayLike) -> Array:
-    """Read-only float copy of `values`."""
+    """Read-only float copy of `values`; those of a read-only array that owns them are shared."""
+    if (
+        type(values) is np.ndarray
+        and values.base is None
+        and values.dtype == np.float64
+        and not values.flags.writeable
+    ):
+        return values
     array = np.array(values, dtype=float)
     array.setflags(write=False)
     return array
