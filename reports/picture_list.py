@@ -172,9 +172,8 @@ def axial_pictures(material: Material) -> Sequence[Picture]:
         return ()
     title = f"Contact pressure along the {follower}"
     check = next((c for c in final.checks if c["id"] == "edge_pressure"), None)
-    place, limit = None, None
-    if check is not None and check["load_case"] and check["cam_angle_deg"] is not None:
-        place = str(check["load_case"]), float(check["cam_angle_deg"])
+    records: Sequence[report_tables.Record] = final.record.get("length_certificate") or []
+    place, limit = pressure_figures.shown_place(check, records), None
     if check is not None and check["limit"] is not None:
         limit = float(check["limit"])
     try:
@@ -187,9 +186,7 @@ def axial_pictures(material: Material) -> Sequence[Picture]:
     at = int(np.argmin(np.abs(rows["cam_angle_deg"] - axial.worst_angle)))
     values = [float(rows[name][at]) for name in ("p0_fe_MPa", "p0_hertz_MPa") if name in rows]
     centre = next((value for value in values if np.isfinite(value)), None)
-    certified = pressure_figures.certified_pressure(
-        final.record.get("length_certificate", []), axial, centre
-    )
+    certified = pressure_figures.certified_pressure(records, axial, centre)
     tiers = (
         "half-spaces"
         if certified is None

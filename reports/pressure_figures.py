@@ -291,6 +291,24 @@ class CertifiedPressure:
         return self.along[inside], line[inside]
 
 
+def shown_place(check: Record | None, records: Sequence[Record]) -> tuple[str, float] | None:
+    """Load case and cam angle, deg, of the pressure along the line; None: not known.
+
+    The worst certified angle, of the load case of the check if it has one; else that of the check.
+    """
+    worst = str(check["load_case"]) if check is not None else ""
+    of_worst = [record for record in records if record["load_case"] == worst]
+    if records:
+        most = max(
+            of_worst or records,
+            key=lambda each: float(each["signed_factor"]) * float(each["plane_strain_p0_MPa"]),
+        )
+        return str(most["load_case"]), float(most["cam_angle_deg"])
+    if check is not None and worst and check["cam_angle_deg"] is not None:
+        return worst, float(check["cam_angle_deg"])
+    return None
+
+
 def certified_pressure(
     records: Sequence[Record], axial: AxialPressure, plane: float | None
 ) -> CertifiedPressure | None:

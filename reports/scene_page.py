@@ -13,20 +13,35 @@ from numpy.typing import ArrayLike, NDArray
 from camwright.geometry.arrays import Array
 from camwright.geometry.errors import ResultError
 from camwright.pipeline.base.files import Json, write_atomic
+from camwright.pipeline.results.field_file import EndField, read_end_field
 from camwright.reports import stress_map
 from camwright.reports.interactive import script_safe_json, scripts
 from camwright.reports.page import environment
+from camwright.reports.pressure_figures import Record
 from camwright.reports.report_data import Material
-from camwright.reports.scene_solids import Solid, box, joined, pin, ring, rod, tube, unit_circle
+from camwright.reports.scene_solids import (
+    Lattice,
+    Solid,
+    box,
+    joined,
+    pin,
+    ring,
+    rod,
+    tube,
+    unit_circle,
+)
 
 FILE = "scene.html"
-TURN = Path("fields") / "turn.npz"
+TURN, ENDS = Path("fields") / "turn.npz", Path("fields") / "ends.vtu"
 _NAMES = (
     *("cycle_row", "cam_angle_deg", "cam_outline_mm", "follower_nodes_mm"),
     *("follower_origin_mm", "follower_rotation_deg"),
 )
 MAP = "von_mises_MPa"
 _DIGITS = 5
+# Over half the greatest width of contact: width and depth of the blocks shown, half their distance.
+_BESIDE, _APART = 2.5, 0.5
+_STRETCHED = 0.3  # width and depth over the length, as drawn
 _HERE = Path(__file__).parent
 _SCRIPTS = (_HERE / "vendor" / "plotly-gl3d.min.js", _HERE / "templates" / "scene.js")
 _READOUT = (
@@ -108,18 +123,20 @@ def write(material: Material) -> Sequence[Path]:
     except ResultError:
         return []
     own, hashes = scripts(_SCRIPTS)
+    data = scene(material, view)
     text = environment().get_template("scene.html").render(
         title=str(material.case.get("title") or material.run.summary["case"]),
         load_case=view.load_case,
         last=view.angle.size - 1,
         scripts=own,
         hashes=hashes,
-        data=Markup(script_safe_json(scene(material, view))),  # noqa: S704 - no "<" is left in it
+        ends=data["ends"],
+        data=Markup(script_safe_json(data)),  # noqa: S704 - no "<" is left in it
     )  # fmt: skip
     return [write_atomic(material.folder / FILE, text.encode("utf-8", "replace"))]
 
 
-def scene(material: Material, view: TurnView) -> Json:
+def scene(material: Material, view: TurnView) -> dict[str, Json]:
     """Data of the page: bodies as triangles, mm, their positions, values at each angle.
 
     The axis of the cam is z; the follower moves along y.
@@ -156,6 +173,7 @@ def scene(material: Material, view: TurnView) -> Json:
             "side": float(np.hypot(*view.contour).max()),
             "top": float(lab[1].min()) + _stem_end(material, view, stem),
         },
+        "ends": _ends(material),
     }
 
 
@@ -267,6 +285,70 @@ def _stem_end(material: Material, view: TurnView, stem: float) -> float:
         return 4.0 * stem + float(view.follower[1].max())
     lifted = view.lab_origin()[1]
     return overhang + 0.5 * length + float(np.ptp(lifted)) + 0.5 * stem
+
+
+def _ends(material: Material) -> Json:
+    """Halves of both bodies at the contact of the worst certified angle; None without a field.
+
+    The follower is drawn apart from the cam; width and depth are stretched, so that they are
+    `_STRETCHED` of the length.
+    """
+    try:
+        field = read_end_field(material.run.path / ENDS)
+    except ResultError:
+        return None
+    touching = field.points[field.cells[field.pressure > 0]].reshape(-1, 3)
+    half, length = float(touching[:, 0].max()), float(np.ptp(field.points[:, 1]))
+    reach = _BESIDE * half
+    stretch = max(1.0, float(np.round(_STRETCHED * length / reach)))
+    blocks = [_end_block(field, field.body == number, reach) for number in (0, 1)]
+    for block, side in zip(blocks, (-1.0, 1.0), strict=True):
+        x, axis, height = np.array(block.pop("points")).T
+        apart = side * _APART * half + height
+        block |= {"x": _rounded(stretch * x), "y": _rounded(stretch * apart), "z": _rounded(axis)}
+    return {
+        "blocks": blocks,
+        "stretch": stretch,
+        "reach": {"side": stretch * reach, "deep": 0.5 * length},
+        "words": _end_words(material, field),
+    }
+
+
+def _end_block(field: EndField, of_body: NDArray[np.bool_], reach: float) -> dict[str, Json]:
+    """Faces of one body within a reach, mm, of the middle of contact: its stress and pressure."""
+    nodes = np.unique(field.cells[of_body])
+    points, first = field.points[nodes], int(nodes[0])
+    axes = [np.unique(part) for part in points.T]
+    counts = [axis.size for axis in axes]
+    order = points.reshape(*counts, 3)
+    kept = [int((np.abs(axis) <= reach).sum()) for axis in (axes[0], axes[2])]
+    wide, deep = (max(2, count) for count in kept)
+    lattice = order[:wide, :, :deep]
+    solid, chosen, behind = Lattice(lattice).surface()
+    stress = field.von_mises[first : first + len(nodes)].reshape(counts)[:wide, :, :deep]
+    cells = field.pressure[of_body].reshape([count - 1 for count in counts])
+    pressed = cells[: wide - 1, :, : deep - 1].ravel()[behind]
+    top = np.arange(behind.size) < 2 * (wide - 1) * (counts[1] - 1)
+    return {
+        "points": solid.points.T.tolist(),
+        **dict(zip("ijk", solid.triangles.tolist(), strict=True)),
+        "stress": _rounded(stress.ravel()[chosen]),
+        "pressure": _rounded(np.where(top, pressed, 0.0)),
+    }
+
+
+def _end_words(material: Material, field: EndField) -> str:
+    """Place and load of the field."""
+    records: Sequence[Record] = material.run.final.record.get("length_certificate") or []
+    cases = [
+        f" of load case {record['load_case']}"
+        for record in records
+        if np.isclose(record["cam_angle_deg"], field.cam_angle)
+    ]
+    return (
+        f"cam angle {field.cam_angle:.4g}°{''.join(cases[:1])}: force {field.force:.4g} N, "
+        f"moment {field.moment:.4g} N mm"
+    )
 
 
 def _rounded(values: ArrayLike) -> list[float]:

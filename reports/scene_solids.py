@@ -74,6 +74,42 @@ def joined(solids: Sequence[Solid]) -> Solid:
     return Solid(np.hstack([solid.points for solid in solids]), np.hstack(triangles))
 
 
+@dataclass(frozen=True, eq=False)
+class Lattice:
+    """Points (i, j, k, 3) of a block of hexahedra."""
+
+    points: Array
+
+    def surface(self) -> tuple[Solid, NDArray[np.int64], NDArray[np.int64]]:
+        """Faces of the block, the first that of k = 0.
+
+        Returns
+        -------
+        solid, nodes, cells   the solid; number of the node of each of its points, and of the cell
+                              behind each of its triangles, i slowest and k fastest
+        """
+        shape = self.points.shape[:3]
+        nodes = np.arange(np.prod(shape)).reshape(shape)
+        cells = np.arange(np.prod([n - 1 for n in shape])).reshape([n - 1 for n in shape])
+        numbers, triangles, behind = [], [], []
+        start = 0
+        for axis in (2, 1, 0):
+            for end in (0, -1):
+                face, cell = nodes.take(end, axis), cells.take(end, axis).ravel()
+                here = start + np.arange(face.size).reshape(face.shape)
+                a, b, c, d = here[:-1, :-1], here[1:, :-1], here[1:, 1:], here[:-1, 1:]
+                halves = (
+                    np.stack([part.ravel() for part in half]) for half in ((a, b, c), (a, c, d))
+                )
+                triangles += list(halves)
+                behind += [cell, cell]
+                numbers.append(face.ravel())
+                start += face.size
+        chosen = np.concatenate(numbers)
+        points = self.points.reshape(-1, 3)[chosen].T
+        return Solid(points, np.hstack(triangles)), chosen, np.concatenate(behind)
+
+
 def rod(diameter: float, start: float, end: float) -> Solid:
     """Circular rod along y, without end faces."""
     return ring(0.5 * diameter * unit_circle(), end - start).upright((start + end) / 2)

@@ -16,7 +16,7 @@ In the order of a run:
 | `run_folder`           | the folder of a run while it is written; resumption                   |
 | `run_records`          | columns of the tables, key figures, records of trial and crank speed  |
 | `trial_writer`         | files of a trial                                                      |
-| `field_file`           | VTKHDF file of meshes with fields over the turn: writer and reader    |
+| `field_file`           | VTKHDF file of fields over the turn, VTU file of the ends: readers    |
 | `contact_zone`         | fine mesh of a body below its contact, interpolation on it            |
 | `stress_fields`        | displacement and stress of both bodies over the turn                  |
 | `field_output`         | files of ``fields/``                                                  |

@@ -19,6 +19,7 @@ from camwright.geometry.arrays import Array
 from camwright.geometry.errors import ResultError
 from camwright.meshes.gmsh_mesher import Index
 from camwright.meshes.mesh_files import UNITS, replacing
+from camwright.meshes.vtu import read_vtu
 
 if TYPE_CHECKING:
     import h5py
@@ -212,6 +213,46 @@ def read_series(path: Path) -> Series:
     with _opened(path) as root:
         notes = {name: values[()] for name, values in root["FieldData"].items()}
         return Series(path, root["Steps/Values"][()], notes)
+
+
+@dataclass(frozen=True, eq=False)
+class EndField:
+    """Half x >= 0 of both bodies at the certified ends of contact.
+
+    points (n, 3), mm; cells (m, 8) of points; body (m,): 0 cam, 1 follower; von_mises (n,) and
+    contact pressure (m,), MPa; cam angle, deg; force, N; moment, N mm.
+    """
+
+    points: Array
+    cells: Index
+    body: Index
+    von_mises: Array
+    pressure: Array
+    cam_angle: float
+    force: float
+    moment: float
+
+
+def read_end_field(path: Path) -> EndField:
+    """Field of ``fields/ends.vtu``.
+
+    Raises
+    ------
+    ResultError
+        If the file cannot be read.
+    """
+    try:
+        grid = read_vtu(path.read_bytes())
+        return EndField(
+            np.asarray(grid.points, dtype=float),
+            np.asarray(grid.cells, dtype=np.intp),
+            np.asarray(grid.cell_data["body"], dtype=np.intp),
+            np.asarray(grid.point_data["von_mises_MPa"], dtype=float),
+            np.asarray(grid.cell_data["contact_pressure_MPa"], dtype=float),
+            *(grid.field_data[name] for name in ("cam_angle_deg", "force_N", "moment_Nmm")),
+        )
+    except _UNREADABLE as error:
+        raise ResultError(f"{path}: {error}") from None
 
 
 @contextmanager

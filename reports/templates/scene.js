@@ -53,14 +53,18 @@
   /* Colour bar beside the bodies, in a narrow window below them, and the share left to them. */
   const narrow = matchMedia("(max-width: 640px)");
   const BAR_WIDTH = 150, BAR_HEIGHT = 84; // px
+  const TITLES = { turn: ["maximum von Mises", "of the turn, MPa"], stress: ["von Mises stress,", "MPa"],
+    pressure: ["contact pressure,", "MPa"] };
+  let field = "turn";
   function arranged() {
-    const below = narrow.matches, title = ["maximum von Mises", "of the turn, MPa"].join(below ? " " : "<br>");
+    const below = narrow.matches, title = TITLES[field].join(below ? " " : "<br>");
     const bar = { title: { text: title, font: { size: 12 }, side: "top" }, thickness: 14,
       ...(below ? { orientation: "h", len: 0.9, x: 0.5, xanchor: "center", y: 0, yanchor: "bottom" }
         : { orientation: "v", len: 0.7, x: 1, xanchor: "right", y: 0.5, yanchor: "middle" }) };
     const domain = { x: [0, 1], y: [0, 1] };
-    if (data.bodies.flank.values && below) domain.y[0] = BAR_HEIGHT / place.clientHeight;
-    else if (data.bodies.flank.values) domain.x[1] = 1 - BAR_WIDTH / place.clientWidth;
+    const valued = field !== "turn" || data.bodies.flank.values;
+    if (valued && below) domain.y[0] = BAR_HEIGHT / place.clientHeight;
+    else if (valued) domain.x[1] = 1 - BAR_WIDTH / place.clientWidth;
     return { bar, domain };
   }
 
@@ -130,6 +134,29 @@
       camera: camera("oblique") },
   });
 
+  /* Stress of both bodies at the ends of contact, at their points; pressure on the cam, of its triangles. */
+  const PRESSED = [[0, STEEL], [0.008, STEEL], [0.008, "#440154"], [0.25, "#3b528b"], [0.5, "#21918c"], [0.75, "#5ec962"], [1, "#fde725"]];
+  function endTraces() {
+    const blocks = field === "stress" ? data.ends.blocks : data.ends.blocks.slice(0, 1);
+    const values = blocks.map((block) => block[field]);
+    const cmax = values.flat().reduce((most, v) => Math.max(most, v), 0);
+    return blocks.map((block, n) => solid(block, { intensity: values[n], cmin: 0, cmax, lighting: EVEN,
+      intensitymode: field === "stress" ? "vertex" : "cell", colorscale: field === "stress" ? "Viridis" : PRESSED,
+      flatshading: field !== "stress", showscale: n === 0, colorbar: arranged().bar,
+      hoverinfo: field === "stress" ? "z+text" : "skip",
+      hovertext: field === "stress" ? values[n].map((v) => `${v.toPrecision(4)} MPa`) : undefined }));
+  }
+
+  function endLayout() {
+    const { side: wide, deep } = data.ends.reach, longest = Math.max(2 * deep, 2.4 * wide);
+    const share = (size) => (1.5 * size) / longest;
+    const base = layout();
+    return { ...base, uirevision: "ends", scene: { ...base.scene, uirevision: "ends",
+      xaxis: axis([0, wide]), yaxis: axis([-1.2 * wide, 1.2 * wide]), zaxis: axis([-deep, deep]),
+      aspectratio: { x: share(wide), y: share(2.4 * wide), z: share(2 * deep) },
+      camera: { ...camera("oblique"), eye: { x: -1.5, y: 0.45, z: 0.8 } } } };
+  }
+
   function say(n) {
     const angle = data.angle[n], deg = (v) => v.toFixed(1) + "°";
     const values = data.readout.map((t) => `${t.words} ${Number(t.values[n].toPrecision(4))} ${t.unit}`);
@@ -169,21 +196,36 @@
     slider.addEventListener("input", () => say(Number(slider.value)));
     return;
   }
-  const draw = () => Plotly.newPlot(place, all, layout(), { displaylogo: false, responsive: true, displayModeBar: false });
+  const draw = () => Plotly.newPlot(place, field === "turn" ? all : endTraces(),
+    field === "turn" ? layout() : endLayout(), { displaylogo: false, responsive: true, displayModeBar: false });
   say(0);  // before the drawing: its lines take height from it
   placed(0);
   draw().then(() => { place.dataset.shown = "0"; });
   slider.addEventListener("input", () => show(Number(slider.value)));
-  play.addEventListener("click", () => {
-    const on = !playing;
+  function run(on) {
     play.setAttribute("aria-pressed", String(on));
     play.textContent = on ? "Pause" : "Play";
     if (on) playing = requestAnimationFrame(step);
     else { cancelAnimationFrame(playing); playing = 0; }
-  });
+  }
+  play.addEventListener("click", () => run(!playing));
+  const choices = document.querySelectorAll("[data-field]");
+  for (const choice of choices)
+    choice.addEventListener("click", () => {
+      field = choice.dataset.field;
+      run(false);
+      for (const other of choices) other.setAttribute("aria-pressed", String(other === choice));
+      const atEnds = field !== "turn";
+      document.getElementById("of-turn").hidden = atEnds;
+      document.getElementById("of-ends").hidden = !atEnds;
+      for (const control of [play, slider]) control.disabled = atEnds;
+      if (atEnds) readout.textContent = data.ends.words;
+      else say(Number(slider.value));
+      draw().then(() => { place.dataset.field = field; });
+    });
   addEventListener("resize", () => Plotly.relayout(place, { "scene.domain": arranged().domain }));
   narrow.addEventListener("change", () => {
-    if (all[0].colorbar) all[0].colorbar = arranged().bar;
+    if (all[0].colorbar && field === "turn") all[0].colorbar = arranged().bar;
     draw();
   });
   for (const button of document.querySelectorAll("[data-view]"))

@@ -17,10 +17,11 @@ import turn_fixture
 from browser_fixture import Tab, chromium
 
 from camwright.geometry.errors import ResultError
+from camwright.meshes.mesh_files import write_hexahedra
 from camwright.reports import scene_page, sections, stress_map
 from camwright.reports.report_data import read_material
 from camwright.reports.scene_page import TurnView, read_turn_view
-from camwright.reports.scene_solids import Solid, box, joined, ring, tube
+from camwright.reports.scene_solids import Lattice, Solid, box, joined, ring, tube
 
 POSITIONS = 36
 BYTES_MAX = 10 << 20
@@ -39,8 +40,36 @@ def page(tmp_path_factory: pytest.TempPathFactory) -> Path:
         folder / "trial_2" / stress_map.FILE,
         **{f"idle.{name}": np.array(values) for name, values in below.items()},
     )
+    write_ends(folder / scene_page.ENDS)
     (made,) = sections.report(folder, sections.chosen(["scene"]))["scene"]
     return made
+
+
+PRESSURE = (900.0, 1200.0, 1500.0)
+
+
+def write_ends(path: Path) -> None:
+    """Two blocks 4 mm long and 1 mm deep, in contact up to 0.1 mm beside the middle."""
+    axes = np.array([0.0, 0.1, 0.2, 1.0]), np.array([-2.0, -1.0, 1.0, 2.0]), np.array([0, 0.1, 1.0])
+    points = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 3)
+    numbers = np.arange(len(points)).reshape([axis.size for axis in axes])
+    low, high = slice(None, -1), slice(1, None)
+    around = [(low, low), (high, low), (high, high), (low, high)]
+    cells = np.stack([numbers[x, y, z].ravel() for z in (low, high) for x, y in around], axis=1)
+    pressed = np.zeros([axis.size - 1 for axis in axes])
+    pressed[0, :, 0] = PRESSURE
+    stress = 600.0 - 100.0 * points[:, 2]
+    write_hexahedra(
+        path,
+        1e-3 * np.concatenate([points * (1, 1, -1), points]),
+        np.concatenate([cells, cells + len(points)]),
+        {"von_mises_MPa": np.concatenate([stress, stress + 10.0])},
+        {
+            "contact_pressure_MPa": np.tile(pressed.ravel(), 2),
+            "body": np.repeat([0, 1], len(cells)),
+        },
+        {"cam_angle_deg": 240.0, "force_N": 812.5, "moment_Nmm": 40.0},
+    )
 
 
 @pytest.fixture(scope="module")
@@ -157,6 +186,33 @@ def test_the_colour_bar_lies_beside_the_bodies(page: Path, tab: Tab) -> None:
     assert tab.errors == []
 
 
+def test_the_field_at_the_ends_is_selected_and_left_again(page: Path, tab: Tab) -> None:
+    tab.open(page, 900, 700)
+    tab.page.wait_for_selector(SHOWN.format(0))
+    shown = "document.getElementById('scene').data.map((t) => t.intensity)"
+    tab.page.click("[data-field=stress]")
+    tab.page.wait_for_selector("#scene[data-field=stress]")
+    cam, follower = (np.array(values) for values in tab.evaluate(shown))
+    # Cut 2.5 half-widths of contact beside and below it.
+    assert (cam.min(), cam.max()) == pytest.approx((590.0, 600.0))
+    assert (follower.min(), follower.max()) == pytest.approx((600.0, 610.0))
+    words = tab.page.locator("#readout").text_content()
+    assert words == "cam angle 240°: force 812.5 N, moment 40 N mm"
+    assert "at 5 times the scale" in tab.page.locator("#of-ends").text_content()
+    assert tab.page.locator("#turn").is_disabled()
+    tab.page.click("[data-field=pressure]")
+    tab.page.wait_for_selector("#scene[data-field=pressure]")
+    (pressure,) = tab.evaluate(shown)
+    assert sorted(set(pressure)) == [0.0, *PRESSURE]
+    assert sorted(value for value in pressure if value) == sorted(2 * PRESSURE)
+    tab.page.click("[data-field=turn]")
+    tab.page.wait_for_selector("#scene[data-field=turn]")
+    tab.page.locator("#turn").fill("2")
+    tab.page.wait_for_selector(SHOWN.format(2))
+    assert tab.page.locator("#readout").text_content().startswith("cam 120.0°")
+    assert tab.errors == [] and tab.outside == []
+
+
 def test_scene_says_what_the_run_found(page: Path) -> None:
     text = page.read_text(encoding="utf-8")
     data = json.loads(re.search(r'id="scene-data">(.*?)</script>', text, re.DOTALL)[1])
@@ -192,6 +248,13 @@ def test_solids_have_the_size_they_should() -> None:
     block = box((-1, 0, 2), (2, 4, 3))
     assert area(block) == pytest.approx(2 * (3 * 4 + 4 * 1 + 3 * 1))
     assert abs(volume(block)) == pytest.approx(12.0)
+    axes = np.array([-1.0, 0.5, 2.0]), np.array([0.0, 1.0, 3.0, 4.0]), np.array([2.0, 3.0])
+    lattice = Lattice(np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1))
+    faces, nodes, cells = lattice.surface()
+    assert area(faces) == pytest.approx(area(block))
+    np.testing.assert_array_equal(lattice.points.reshape(-1, 3)[nodes].T, faces.points)
+    assert sorted(set(cells.tolist())) == list(range(6))
+    assert (faces.points[2, faces.triangles[:, :12]] == 2.0).all()
     both = joined([block, block.shifted(10.0)])
     assert abs(volume(both)) == pytest.approx(24.0)
     standing = ring(hexagon, 4.0).upright(7.0)

@@ -132,3 +132,20 @@ def test_finite_elements_stand_beside_the_half_spaces_at_the_certified_angle(axi
     for other in ({"cam_angle_deg": 44.0}, {"load_case": "idle"}):
         assert pressure_figures.certified_pressure([record | other], one, 100.0) is None
     assert pressure_figures.certified_pressure([record], one, None) is None
+
+
+def test_the_worst_certified_angle_of_the_load_case_of_the_check_is_shown():
+    def record(load_case, angle, factor, p0):
+        place = {"load_case": load_case, "cam_angle_deg": angle}
+        return place | {"signed_factor": factor, "plane_strain_p0_MPa": p0}
+
+    records = [record("idle", 40.0, 1.9, 900.0), record("idle", 50.0, 1.5, 1200.0)]
+    records += [record("fast", 210.0, 1.3, 1000.0)]
+    check = {"load_case": "fast", "cam_angle_deg": 212.5}
+    shown = pressure_figures.shown_place
+    assert shown(check, records) == ("fast", 210.0)
+    assert shown(check, records[:2]) == ("idle", 50.0)
+    assert shown(None, records) == ("idle", 50.0)
+    assert shown(check, []) == ("fast", 212.5)
+    assert shown(check | {"cam_angle_deg": None}, []) is None
+    assert shown(None, []) is None
