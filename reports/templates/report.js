@@ -132,11 +132,13 @@
   /* Colours and width, which may change together: one redraw after the last of both. */
   let later = 0, recoloured = false;
   function redraw() {
-    ready().forEach((place) => {
+    ready().filter((place) => place.clientWidth).forEach((place) => {
       const made = themed(specs[place.dataset.figure]);
       const drawing = recoloured ? Plotly.react(place, made.data, made.layout, config) :
         Promise.resolve();
-      drawing.then(() => Plotly.Plots.resize(place)).then(() => fitLegend(place, made.layout));
+      /* A width, since Plotly resizes no figure whose height has been changed for its legend. */
+      drawing.then(() => Plotly.relayout(place, { width: place.clientWidth }))
+        .then(() => fitLegend(place, made.layout));
     });
     recoloured = false;
   }
