@@ -44,6 +44,14 @@ def contact(folder):
     return field, point, normal, float(cycle["half_width_hertz_mm"][worst])
 
 
+@pytest.fixture(scope="module")
+def rendered(folder, contact):
+    """Contact and whole bodies, rendered."""
+    field, point, normal, half_width = contact
+    view = field_picture.contact_view(field, half_width, point, normal)
+    return field_picture.render(folder / picture_list.FIELD, [view, field_picture.body_view(field)])
+
+
 def test_contact_is_that_stated_in_the_file(contact):
     field, point, normal, half_width = contact
     found, direction = field_picture.find_contact(field)
@@ -75,16 +83,13 @@ def test_the_contact_view_puts_the_roller_above(contact):
     assert view.clim[1] == pytest.approx(0.5575 * 1088.9, rel=0.01)
 
 
-def test_the_rendered_and_the_flat_picture_agree(folder, contact):
-    field, point, normal, half_width = contact
-    view = field_picture.contact_view(field, half_width, point, normal)
-    body = field_picture.body_view(field)
-    rendered = field_picture.render(folder / picture_list.FIELD, [view, body])
+def test_the_rendered_and_the_flat_picture_agree(contact, rendered):
+    field, *_ = contact
     if rendered[0].note:
         pytest.skip("no OpenGL device, the flat picture is all there is")
     for raster in rendered:
         assert raster.pixels.shape == (raster.view.size[1], raster.view.size[0], 3)
-    flat = field_picture.flat(field, view).pixels.astype(float)
+    flat = field_picture.flat(field, rendered[0].view).pixels.astype(float)
     pixels = rendered[0].pixels.astype(float)
     shares = [0.1, 0.3, 0.42, 0.6, 0.85]
 
@@ -114,11 +119,9 @@ def test_without_opengl_the_page_says_so_and_still_shows_the_field(folder, conta
     assert np.ptp(middle.astype(float)) > 60  # a colour, not paper
 
 
-def test_pictures_are_whole_png_files(folder, contact):
-    field, point, normal, half_width = contact
-    view = field_picture.contact_view(field, half_width, point, normal)
-    raster = field_picture.render(folder / picture_list.FIELD, [view])[0]
-    png = field_picture.frame_contact(raster, half_width)
+def test_pictures_are_whole_png_files(contact, rendered):
+    *_, half_width = contact
+    png = field_picture.frame_contact(rendered[0], half_width)
     assert png.startswith(b"\x89PNG")
     image = imread(io.BytesIO(png), format="png")
     assert min(image.shape[:2]) > 500
