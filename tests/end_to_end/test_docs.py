@@ -79,17 +79,19 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
         allowed = (0, 1, 3) if line.startswith("camwright check") else (0,)
         assert result.returncode in allowed, f"{line}: {result.stderr}"
         if line.startswith("camwright init"):
-            without_finite_element_ends(folder)
+            with_a_small_certificate(folder)
     return folder
 
 
-def without_finite_element_ends(folder: Path) -> None:
-    """The ends of new cases by half-spaces alone: the finite elements have their own tests."""
+def with_a_small_certificate(folder: Path) -> None:
+    """New cases certified at one angle, their ends by half-spaces: both have their own tests."""
     for path in folder.glob("*.toml"):
         text = path.read_text(encoding="utf-8")
         if "end_elements" not in text:
             assert text.count("\n[solver]\n") == 1, path
-            text = text.replace("\n[solver]\n", "\n[solver]\nend_elements = 0\n")
+            assert "certificate_positions" not in text, path
+            keys = "certificate_positions = 1\nend_elements = 0"
+            text = text.replace("\n[solver]\n", f"\n[solver]\n{keys}\n")
             path.write_text(text, encoding="utf-8")
 
 
