@@ -34,6 +34,12 @@ def readonly(values: ArrayLike) -> Array:
     return array
 
 
+def sealed(values: Array) -> Array:
+    """A new array made read-only in place: no copy, as nothing else refers to it."""
+    values.setflags(write=False)
+    return values
+
+
 def finite(field: str, values: ArrayLike) -> Array:
     """`values` as a read-only array of finite floats.
 

@@ -10,12 +10,12 @@ from __future__ import annotations
 
 import sys
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cached_property, lru_cache
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from camwright.geometry.arrays import FULL_TURN, Array, finite, freeze
+from camwright.geometry.arrays import FULL_TURN, Array, finite, freeze, readonly, sealed
 from camwright.geometry.errors import InputError
 from camwright.pipeline.base import disk_cache
 from camwright.pipeline.contact import hertz
@@ -79,6 +79,15 @@ class RollingPass:
     def __post_init__(self) -> None:
         freeze(self, **{name: getattr(self, name) for name in self.__dataclass_fields__})
 
+    @cached_property
+    def hydrostatic_greatest(self) -> Array:
+        """Greatest hydrostatic stress (k,) through the pass, of either sign."""
+        return readonly(self.hydrostatic.max(axis=1))
+
+    def shear_pulled(self, weight: float) -> Array:
+        """Greatest shear plus weighted hydrostatic stress (k,), compression included."""
+        return _shear_pulled(self, weight)
+
     def crossland(self, limits: FatigueLimits) -> Array:
         """Crossland stress (k,): amplitude of root J2 plus weighted maximum hydrostatic stress."""
         return self.shear_amplitude + limits.crossland * self.hydrostatic_max
@@ -94,6 +103,11 @@ class RollingPass:
         """
         tension = np.maximum(self.hydrostatic, 0.0)
         return np.asarray((self.shear + limits.dang_van * tension).max(axis=1))
+
+
+@lru_cache(maxsize=16)
+def _shear_pulled(unit: RollingPass, weight: float) -> Array:
+    return readonly((unit.shear + weight * unit.hydrostatic).max(axis=1))
 
 
 @lru_cache(maxsize=8)
@@ -237,10 +251,10 @@ def swept(
     return Envelope(
         theta=at,
         arc=pair.contour.arc_length(at),
-        depth=half_width[:, None] * unit.depth,
-        von_mises=mises,
-        tau_max=shear,
-        shear_range=scale * unit.shear_range,
+        depth=sealed(half_width[:, None] * unit.depth),
+        von_mises=sealed(mises),
+        tau_max=sealed(shear),
+        shear_range=sealed(scale * unit.shear_range),
         crossland=None if limits is None else _crossland(unit, p0, body_hydrostatic, limits),
         dang_van=None if limits is None else _dang_van(unit, p0, body_hydrostatic, limits),
     )
@@ -316,20 +330,18 @@ def _crossland(
     unit: RollingPass, p0: Array, body_hydrostatic: Array, limits: FatigueLimits
 ) -> Array:
     """Crossland stress (n, k) with the hydrostatic stress (n,) of the body added."""
-    greatest = p0[:, None] * unit.hydrostatic.max(axis=1) + body_hydrostatic[:, None]
-    return np.asarray(
-        p0[:, None] * unit.shear_amplitude + limits.crossland * np.maximum(greatest, 0.0)
-    )
+    greatest = p0[:, None] * unit.hydrostatic_greatest
+    greatest += body_hydrostatic[:, None]
+    np.maximum(greatest, 0.0, out=greatest)
+    greatest *= limits.crossland
+    greatest += p0[:, None] * unit.shear_amplitude
+    return sealed(greatest)
 
 
 def _dang_van(
     unit: RollingPass, p0: Array, body_hydrostatic: Array, limits: FatigueLimits
 ) -> Array:
     """Dang Van stress (n, k) likewise; compression counts as zero."""
-    pulled = (unit.shear + limits.dang_van * unit.hydrostatic).max(axis=1)
-    return np.asarray(
-        np.maximum(
-            p0[:, None] * unit.shear.max(axis=1),
-            p0[:, None] * pulled + limits.dang_van * body_hydrostatic[:, None],
-        )
-    )
+    pulled = p0[:, None] * unit.shear_pulled(limits.dang_van)
+    pulled += limits.dang_van * body_hydrostatic[:, None]
+    return sealed(np.maximum(p0[:, None] * unit.shear_pulled(0.0), pulled, out=pulled))

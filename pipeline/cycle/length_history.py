@@ -194,7 +194,8 @@ def length_histories(turns: Sequence[LineContact]) -> tuple[LengthHistory | None
         if not pairs:
             continue
         if each.rows.size:
-            key = pairs, each.machine.limits[END_MEAN_LENGTH]
+            bodies = tuple((pair.bodies, pair.crown) for pair in pairs)
+            key = bodies, each.machine.limits[END_MEAN_LENGTH]
             alike.setdefault(key, []).append(index)
         else:
             histories[index] = each.history(None)
