@@ -98,9 +98,8 @@ def require_known(tables: Tables, field: str, value: str) -> None:
     InputError
         With the closest name.
     """
-    known = tuple(values_in(tables))
-    if value not in known and not value.startswith(OF_A_CHECK):
-        close = get_close_matches(value, known, n=1)
+    if not value.startswith(OF_A_CHECK) and value not in values_in(tables):
+        close = get_close_matches(value, tuple(values_in(tables)), n=1)
         hint = f"; did you mean {close[0]}?" if close else ", by its dotted name"
         raise InputError(field, value, f"a value of the case{hint}")
 

@@ -119,8 +119,8 @@ def _show(document: dict[str, Any], out: Path) -> None:
         stdout.print(f"    {each['command']}", markup=False, soft_wrap=True)
     if conflict["relaxations"]:
         stdout.print(
-            "  each: one option alone, the least change within 2 %; an upper bound is that of one "
-            "roller, so that a smaller change may exist",
+            "  each: one option alone; the first is the smallest by the ratio of its values within "
+            "2 %; with less than an upper bound a design may pass",
             markup=False,
         )
     else:

@@ -199,7 +199,7 @@ def _over(reactions: GuideReactions, on_a: Array, on_b: Array) -> GuideLoads:
 _STATED = -(10**6)  # number of the spacing of the guides themselves
 
 
-@lru_cache(maxsize=32)
+@lru_cache(maxsize=128)
 def _table(kind: type[GuideTable], stem: Stem, guides: GuidePair) -> GuideTable:
     """Tables of a stem in guides, kept by both."""
     return kind(stem, guides)

@@ -17,8 +17,9 @@ from camwright.pipeline.base.progress import SILENT
 from camwright.pipeline.base.worker_processes import crew
 from camwright.pipeline.commands.design_command import design
 from camwright.pipeline.commands.terminal import FAILED, PASSED
+from camwright.pipeline.results.run_folder import versions
 from camwright.pipeline.studies.design.candidate_search import candidates
-from camwright.pipeline.studies.design.synthesised_points import Study, solved_front
+from camwright.pipeline.studies.design.synthesised_points import Study, drafts, solved_front
 from camwright.pipeline.studies.design.torque_task import task_of
 
 pytestmark = pytest.mark.slow
@@ -43,10 +44,12 @@ def passes_by_closed_forms(out: Path, name: str, options: dict[str, str]) -> boo
     """Whether `design` passes with other options, without a search for relaxations."""
     table = out.with_name(f"{name}.csv")
     task = task_of(table, **{"speed": MACHINES[name].speed, **options})
-    study = Study(task, out.with_name(f"{out.stem}_design").absolute(), table.name, "")
+    folder = out.with_name(f"{out.stem}_design").absolute()
+    study = Study(task, folder, table.name, versions()["source"])
     with crew(None) as workers:
         screened = candidates(task, study.folder, study.file, SILENT)
-        return bool(solved_front(study, screened, workers, SILENT)[0])
+        drafted = drafts(study, screened, workers)
+        return bool(solved_front(study, drafted, workers, SILENT)[0])
 
 
 @pytest.mark.parametrize("name", ["engine", "press", "compressor"])

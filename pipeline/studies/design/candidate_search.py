@@ -53,8 +53,8 @@ _PEAK = 1.25  # cam torque over that of the balanced ripple
 _FREE_ROOM = 5.0  # m, of a cam whose space is not limited
 _SMOOTHER = 'kind = "harmonic"\nharmonics = 12.0\n'
 _WAVINESS = "profile_waviness"
-_WAVY = 0.9  # utilisation above which the contour is ground finely
-POSITIONS = 90
+_WAVY = 0.75  # utilisation above which the contour is ground finely: the preload is free
+POSITIONS = 60
 
 
 @dataclass(frozen=True)

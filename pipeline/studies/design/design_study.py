@@ -29,6 +29,7 @@ from camwright.pipeline.studies.design.relaxation_search import relaxations
 from camwright.pipeline.studies.design.synthesised_points import (
     Solved,
     Study,
+    drafts,
     solved_front,
 )
 from camwright.pipeline.studies.design.torque_task import DesignTask, task_of
@@ -110,11 +111,11 @@ def designed(task: DesignTask, out: Path, progress: Progress = SILENT) -> Record
     screened = candidates(task, folder, file, progress)
     with crew(None) as workers:
         progress.stage("solve the front")
-        points, failing = solved_front(study, screened, workers, progress)
+        points, failing = solved_front(study, drafts(study, screened, workers), workers, progress)
         changes: list[Record] = []
         if not points:
             progress.stage("smallest relaxation")
-            changes = relaxations(study, screened, out, workers, progress)
+            changes = relaxations(study, out, workers, progress)
     document: Record = {
         "schema": 1,
         "torque": _demand_record(task),
@@ -264,9 +265,9 @@ def _summary(study: Study, best: Solved, points: Sequence[Solved]) -> str:
 
 
 def _limits(task: DesignTask, screened: Sequence[Candidate], points: Sequence[Solved]) -> list[str]:
-    """What no design keeps together."""
+    """What no design keeps together; points: those that fail, the nearest first."""
     if points:
-        near = min(points, key=lambda each: each.shortfall)
+        near = points[0]
         failing = near.failing or ["the limits of the synthesis at the ends of the tolerances"]
         binding = [DECLARED[name].title for name in near.record["binding"] if name in DECLARED]
         return failing + [title for title in binding if title not in failing][:_BINDING]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from math import copysign, exp, log, sqrt
 from pathlib import Path
@@ -10,27 +10,25 @@ from pathlib import Path
 from camwright.pipeline.base import units
 from camwright.pipeline.base.progress import SILENT, Progress
 from camwright.pipeline.base.worker_processes import Crew
-from camwright.pipeline.studies.design.candidate_search import Candidate, candidates
+from camwright.pipeline.studies.design.candidate_search import candidates
 from camwright.pipeline.studies.design.synthesised_points import (
     RESERVE,
     Solved,
     Study,
-    grown,
-    likeliest,
-    settled,
-    solved_front,
+    drafts,
+    passing_design,
 )
 from camwright.pipeline.studies.design.torque_task import DesignTask, Options
 from camwright.pipeline.studies.redesign.point_store import Record
 
 WIDTH = 0.02  # relative width of the bisection
-_ROLLERS = 3  # of the nearest designs, to which the search is limited
-_LEAST_REMOVED = 0.1  # of the ripple
+_LEAST_REMOVED = 0.25  # of the ripple
 _SLOWEST = 0.4  # of the speeds
 _SHORTEST = 0.05  # of the life
 _FREE_SPACE = 5.0  # of the space
 _SPARE = 1.005  # of the size of a design
-_TRIES = 3  # steps of WIDTH by which a rounded design is loosened
+_EQUAL = 1e-9  # difference of equal sizes
+_INNER = 0.1  # least share of a bracket between its ends and the next value
 
 
 @dataclass(frozen=True)
@@ -48,86 +46,107 @@ class Lever:
     shown: Callable[[float], str]
     reached: Callable[[Solved, float], float] = lambda _point, value: value
 
-
-def relaxations(
-    study: Study, screened: Sequence[Candidate], out: Path, workers: Crew, progress: Progress
-) -> list[Record]:
-    """Relaxations of one option each, with the command line of each; the smallest first.
-
-    Each passes at all tolerance ends and is the smallest within `WIDTH` for one of the nearest
-    rollers, with an offset where it does not pass otherwise. The first is reduced until the command
-    passes no design at a change that is smaller by `WIDTH`, which its record names.
-
-    Parameters
-    ----------
-    screened : sequence   designs of the task
-    out : Path            case file of the command
-    """
-    names, rollers = [each.name for each in _levers(study.task)], _rollers(study.task, screened)
-    waiting = [workers.submit(_relaxation, study, name, rollers) for name in names]
-    changes: list[Relaxation] = []
-    for k, each in enumerate(waiting, start=1):
-        change = each.result()
-        changes += [] if change is None else [change]
-        progress.advance(k, len(names))
-    changes.sort(key=lambda each: each.size)
-    if changes:
-        changes[0] = _proven(study, changes[0], workers)
-    return [_record(study.task, each, out) for each in changes]
+    def changed(self, size: float) -> float:
+        """The value a logarithm away from that of the task, at most the loosest."""
+        end = log(self.loosest / self.stated)
+        return self.stated * exp(copysign(min(size, abs(end)), end))
 
 
 @dataclass(frozen=True)
-class Relaxation:
-    """A value of an option with which a design passes.
+class Bracket:
+    """Two values of an option: no design passes with `failing`, one does with `passing`.
 
-    offset: whether by designs with an offset; failing: value nearer to that of the task with which
-    none passes; None: not known.
+    reached: value that the design at `passing` keeps, at most as far from that of the task.
     """
 
-    name: str
-    stated: float
-    value: float
-    offset: bool
-    failing: float | None = None
+    lever: Lever
+    failing: float
+    passing: float
+    reached: float
 
     @property
     def size(self) -> float:
-        """Logarithm of the value over that of the task."""
-        return abs(log(self.value / self.stated))
+        """Logarithm of the passing value over that of the task."""
+        return abs(log(self.passing / self.lever.stated))
+
+    @property
+    def least(self) -> float:
+        """Logarithm of the failing value over that of the task."""
+        return abs(log(self.failing / self.lever.stated))
+
+    @property
+    def narrow(self) -> bool:
+        """Whether the bracket is as narrow as `WIDTH`."""
+        return self.size - self.least <= WIDTH
+
+    def middle(self) -> float:
+        """The value to be tried next: that reached, if it is inside, else the geometric mean."""
+        share = log(self.reached / self.failing) / log(self.passing / self.failing)
+        if _INNER < share < 1.0 - _INNER:
+            return self.reached
+        return sqrt(self.failing * self.passing)
 
 
-def _relaxation(study: Study, name: str, rollers: frozenset[str]) -> Relaxation | None:
-    """Smallest change of an option by the likeliest of some rollers; None: none passes."""
-    lever = _lever(study.task, name)
-    for offset in (False, True):
-        way = Way(rollers, offset)
-        point = _passing(study, lever, lever.loosest, way)
-        if point is not None:
-            way = Way(frozenset({point.design.frame.roller}), offset)
-            value = _smallest(study, lever, way, point)
-            return None if value is None else Relaxation(name, lever.stated, value, offset)
-    return None
+def relaxations(study: Study, out: Path, workers: Crew, progress: Progress) -> list[Record]:
+    """Relaxations of one option each, with the command line of each; the smallest first.
+
+    With each the command passes. With the first it does not at `fails_at`, which is nearer to the
+    value of the task by `WIDTH` at most, nor with another option changed by that ratio.
+
+    Parameters
+    ----------
+    study : Study   with whose task no design passes
+    out : Path      case file of the command
+    """
+    levers = tuple(_levers(study.task))
+    tried: list[Bracket | None] = []
+    for k, lever in enumerate(levers):
+        progress.advance(k, len(levers) + 1)
+        tried.append(_loosest(study, lever, workers))
+    progress.advance(len(levers), len(levers) + 1)
+    brackets = _ranked(study, [each for each in tried if each is not None], workers)
+    progress.advance(len(levers) + 1, len(levers) + 1)
+    return [_record(study.task, each, out, first=k == 0) for k, each in enumerate(brackets)]
 
 
-def _lever(task: DesignTask, name: str) -> Lever:
-    return next(each for each in _levers(task) if each.name == name)
+def _ranked(study: Study, brackets: list[Bracket], workers: Crew) -> list[Bracket]:
+    """The brackets by size; the first narrow, and no other known to allow a smaller change."""
+    brackets = sorted(brackets, key=lambda each: abs(log(each.reached / each.lever.stated)))
+    while brackets:
+        first, *others = brackets
+        rival = next((each for each in others if each.least < first.least - _EQUAL), None)
+        if not first.narrow:
+            brackets[0] = _narrowed(study, first, first.middle(), workers)
+        elif rival is not None:
+            value = rival.lever.changed(first.least)
+            others[others.index(rival)] = _narrowed(study, rival, value, workers)
+            brackets = sorted([first, *others], key=lambda each: each.size)
+        else:
+            break
+    return brackets
 
 
-def _proven(study: Study, change: Relaxation, workers: Crew) -> Relaxation:
-    """A relaxation reduced until all designs of the command fail at one smaller by `WIDTH`."""
-    lever = _lever(study.task, change.name)
-    for _ in range(_TRIES):
-        less = change.value * exp(-copysign(WIDTH, lever.loosest - lever.stated))
-        if change.size <= WIDTH:
-            return replace(change, failing=lever.stated)
-        own = _relaxed(study, lever, less)
-        screened = candidates(own.task, study.folder, study.file, SILENT)
-        passing, _ = solved_front(own, screened, workers, SILENT)
-        if not passing:
-            return replace(change, failing=less)
-        values = [lever.reached(each, less) for each in passing]
-        change = replace(change, value=_nearer(lever, less, *values))
-    return change
+def _loosest(study: Study, lever: Lever, workers: Crew) -> Bracket | None:
+    """Bracket of all values of an option; None: no design passes with the loosest."""
+    point = _passing(study, lever, lever.loosest, workers)
+    if point is None:
+        return None
+    return Bracket(lever, lever.stated, lever.loosest, lever.reached(point, lever.loosest))
+
+
+def _narrowed(study: Study, bracket: Bracket, value: float, workers: Crew) -> Bracket:
+    """The bracket after the search with a value inside it."""
+    point = _passing(study, bracket.lever, value, workers)
+    if point is None:
+        return replace(bracket, failing=value)
+    return replace(bracket, passing=value, reached=bracket.lever.reached(point, value))
+
+
+def _passing(study: Study, lever: Lever, value: float, workers: Crew) -> Solved | None:
+    """A design with which the command passes at a value of an option; None: it does not."""
+    own = replace(study, task=study.task.relaxed(lever.options(value)))
+    screened = candidates(own.task, study.folder, study.file, SILENT)
+    return passing_design(own, drafts(own, screened, workers))
 
 
 def _levers(task: DesignTask) -> Iterator[Lever]:
@@ -181,75 +200,15 @@ def _percent(share: float) -> str:
     return f"{100.0 * share:.3g}%"
 
 
-def _rollers(task: DesignTask, screened: Sequence[Candidate]) -> frozenset[str]:
-    """Rollers of the nearest designs."""
-    order = sorted(screened, key=lambda each: each.ripple / task.ripple_allowed + each.excess)
-    names = dict.fromkeys(each.design.frame.roller for each in order)
-    return frozenset(list(names)[:_ROLLERS])
-
-
-@dataclass(frozen=True)
-class Way:
-    """Rollers of the designs that are tried, and whether with an offset."""
-
-    rollers: frozenset[str]
-    offset: bool = False
-
-
-def _smallest(study: Study, lever: Lever, way: Way, loosest: Solved) -> float | None:
-    """The value nearest to that of the task at which a design passes; None: none does.
-
-    Parameters
-    ----------
-    loosest : Solved   the design that passes at the loosest value
-    """
-    low, best = lever.stated, lever.reached(loosest, lever.loosest)
-    known = {lever.loosest: loosest}
-    while abs(log(best / low)) > WIDTH:
-        middle = sqrt(low * best)
-        point = _passing(study, lever, middle, way)
-        if point is None:
-            low = middle
-        else:
-            known[middle] = point
-            best = _nearer(lever, middle, lever.reached(point, middle))
-    step = exp(copysign(WIDTH, lever.loosest - lever.stated))
-    for _ in range(_TRIES):
-        point = known.get(best) or _passing(study, lever, best, way)
-        if point is not None and settled(_relaxed(study, lever, best), point).passes:
-            return best
-        best *= step
-    return None
-
-
-def _nearer(lever: Lever, *values: float) -> float:
-    """Of some values that which is nearest to the value of the task."""
-    return min(values, key=lambda value: abs(value - lever.stated))
-
-
-def _relaxed(study: Study, lever: Lever, value: float) -> Study:
-    return replace(study, task=study.task.relaxed(lever.options(value)))
-
-
-def _passing(study: Study, lever: Lever, value: float, way: Way) -> Solved | None:
-    """The likeliest design at a value of an option, solved; None where it does not pass."""
-    own = _relaxed(study, lever, value)
-    screened = candidates(own.task, study.folder, study.file, SILENT, way.rollers)
-    candidate = likeliest(own.task, screened)
-    if candidate is None:
-        return None
-    point = grown(own, candidate.with_offset if way.offset else candidate)
-    return point if point.has_cam and point.passes else None
-
-
-def _record(task: DesignTask, change: Relaxation, out: Path) -> Record:
-    lever = _lever(task, change.name)
-    options = lever.options(change.value)
+def _record(task: DesignTask, bracket: Bracket, out: Path, *, first: bool) -> Record:
+    """Record of a relaxation; first: whether it is the smallest."""
+    lever = bracket.lever
+    options = lever.options(bracket.passing)
     return {
-        "option": change.name,
-        "from": lever.shown(change.stated),
-        "to": lever.shown(change.value),
-        "fails_at": None if change.failing is None else lever.shown(change.failing),
+        "option": lever.name,
+        "from": lever.shown(lever.stated),
+        "to": lever.shown(bracket.passing),
+        "fails_at": lever.shown(bracket.failing) if first else None,
         "options": options,
         "command": task.relaxed(options).command(out),
     }

@@ -3,23 +3,28 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
-from math import ceil
+from dataclasses import dataclass, field, replace
+from math import ceil, inf
 from pathlib import Path
 
 from camwright.pipeline.base.progress import Progress
 from camwright.pipeline.base.worker_processes import Crew
+from camwright.pipeline.checks.registry import DECLARED
 from camwright.pipeline.studies.design.candidate_search import FAR, OPTIMISTIC, Candidate
 from camwright.pipeline.studies.design.design_case import SYNTHESIS, Machinery, case_text
 from camwright.pipeline.studies.design.torque_task import DesignTask
 from camwright.pipeline.studies.redesign.pareto_front import front, thinned
 from camwright.pipeline.studies.redesign.point_store import Record, Task, solved
 
-_POINTS = 4  # of the front of the screening, solved in full
+_FRONT = 5  # of the front of the screening within the limits
+_NEAREST = 2  # of the front of those near to them
+_ROLLERS = 3  # whose likeliest designs are tried
 _NEAR = 0.5  # excess that a synthesis may remove
 _ALIKE = 0.02  # relative size within which the lesser ripple replaces
 _GAIN = 0.03  # of the ripple, between points
 _SHRUNK, _GROWN = 0.9, 1.1  # of the prime radius of the screening
+_CURABLE = 1.2  # utilisation that a larger cam may cure
+_SHORT = 1.05  # utilisation that a synthesis with corrections may cure
 _FREE_PRELOAD = (0.85, 1.1)  # of the preload of the screening: the spring has room for 1.05
 RESERVE = 0.01  # of the ripple allowed, for the corrections by finite elements
 
@@ -40,15 +45,34 @@ class Study:
     def solved(self, design: Machinery, smoothing: str = SYNTHESIS) -> Solved:
         """A design with its record, cached or solved, its checks judged at all tolerance ends."""
         text = self.text(design, smoothing)
-        return Solved(design, solved(Task(text, "", self.folder, self.version, "corners")))
+        record = solved(Task(text, "", self.folder, self.version, "corners"))
+        return Solved(design, record, smoothing)
+
+    def drafted(self, design: Machinery, smoothing: str) -> Solved:
+        """A design with the record of its synthesis on few cam angles, cached or solved."""
+        text = self.text(design, smoothing)
+        rough = solved(Task(text, "", self.folder, self.version, "coarse"))
+        if "why" in rough:
+            return Solved(design, rough, smoothing)
+        failing = {"title": DECLARED[rough["limit"]].title, "check": rough["limit"],
+                   "utilisation": rough["utilisation"]} if rough["limit"] else None  # fmt: skip
+        record = {
+            "verdict": "fail" if failing else "pass",
+            "ripple_left_Nm": rough["ripple"] * self.task.demand.ripple,
+            "shortfalls": [failing] if failing else [],
+            "binding": list(rough["binding"]),
+            "preload_N": rough["preload"],
+        } | {f"{key}_mm": 1e3 * rough[key] for key in ("cam_radius", "prime_radius", "lift_max")}
+        return Solved(design, record, smoothing)
 
 
 @dataclass(frozen=True)
 class Solved:
-    """A design with the record of its preview."""
+    """A design with the record of its preview or synthesis, and the lines of its smoothing."""
 
     design: Machinery
     record: Record
+    smoothing: str = field(default=SYNTHESIS, repr=False)
 
     @property
     def has_cam(self) -> bool:
@@ -86,6 +110,15 @@ class Solved:
         return float(self.record["ripple_left_Nm"])
 
     @property
+    def use(self) -> float:
+        """Greatest utilisation, of the ripple allowed where all checks pass; infinite: no cam."""
+        if not self.has_cam:
+            return inf
+        ripple = self.ripple / ((1.0 - RESERVE) * self.design.task.ripple_allowed)
+        uses = [float(each["utilisation"] or 99.0) for each in self.record["shortfalls"]]
+        return max([ripple, *uses])
+
+    @property
     def failing(self) -> list[str]:
         """Titles of the checks that fail."""
         return [str(each["title"]) for each in self.record["shortfalls"]]
@@ -99,16 +132,20 @@ class Solved:
 def promising(task: DesignTask, screened: Sequence[Candidate]) -> list[Candidate]:
     """Designs of the screening that may be on the front, by increasing size.
 
-    The front of those within the limits and the smallest one near to them; where none is within,
-    the front of those near to them and the likeliest.
+    The front of those within the limits, the smallest ones near to them, and the likeliest of the
+    likeliest rollers.
     """
-    within, near = (_screened_front(task, screened, excess, _POINTS - 1) for excess in (0.0, _NEAR))
-    further = near[:1]
-    if not within:
-        likely = likeliest(task, screened)
-        within, further = near, [] if likely is None else [likely]
-    chosen = within + [each for each in further if each not in within]
-    return sorted(chosen, key=lambda each: (each.size, each.ripple))
+    chosen = _screened_front(task, screened, 0.0, _FRONT)
+    chosen += _screened_front(task, screened, _NEAR, _NEAREST)
+    left = list(screened)
+    for _ in range(_ROLLERS):
+        likely = likeliest(task, left)
+        if likely is None:
+            break
+        chosen.append(likely)
+        left = [each for each in left if each.design.frame.roller != likely.design.frame.roller]
+    distinct = [each for k, each in enumerate(chosen) if each not in chosen[:k]]
+    return sorted(distinct, key=lambda each: (each.size, each.ripple))
 
 
 def _screened_front(
@@ -133,30 +170,21 @@ def likeliest(task: DesignTask, screened: Sequence[Candidate]) -> Candidate | No
     return best if best is not None and lack(best) <= OPTIMISTIC + _NEAR**2 else None
 
 
-def synthesised(study: Study, candidate: Candidate) -> Solved:
+def draft(study: Study, candidate: Candidate) -> Solved:
     """A screened design with the prime radius and preload of least ripple within all limits.
 
-    Both are free about the values of the screening, and rounded where the design passes. The cam
-    grows where it would not pass otherwise, unless the space is limited.
+    By the synthesis on few cam angles, both free about the values of the screening. The cam grows
+    where its limits conflict by little otherwise, unless the space is limited.
     """
-    point = _rounded_point(study, free(study, candidate))
-    if study.task.space is not None or not point.has_cam or point.passes:
+    point = _free(study, candidate, 1.0)
+    if study.task.space is not None or point.passes or not point.use <= _CURABLE:
         return point
-    return _rounded_point(study, grown(study, candidate))
+    larger = _free(study, candidate, _GROWN)
+    return larger if larger.use < point.use else point
 
 
-def _rounded_point(study: Study, point: Solved) -> Solved:
-    """A point as drawings state it where it passes, else itself."""
-    return settled(study, point) if point.has_cam and point.passes else point
-
-
-def grown(study: Study, candidate: Candidate) -> Solved:
-    """As `synthesised`, of a cam that may grow from the start, unless the space is limited."""
-    return free(study, candidate, 1.0 if study.task.space is not None else _GROWN)
-
-
-def free(study: Study, candidate: Candidate, growth: float = 1.0) -> Solved:
-    """Synthesis with the preload and, up to some growth, the prime radius free."""
+def _free(study: Study, candidate: Candidate, growth: float) -> Solved:
+    """Draft with the preload and, up to some growth, the prime radius free."""
     design = _rounded(candidate.design)
     high = growth * design.prime_radius
     low = max(design.frame.least_radius, _SHRUNK * design.prime_radius)
@@ -167,7 +195,20 @@ def free(study: Study, candidate: Candidate, growth: float = 1.0) -> Solved:
         f'prime_radius_range = ["{radii[0]:.6g} mm", "{radii[1]:.6g} mm"]\n'
         f'preload_range = ["{forces[0]:.6g} N", "{forces[1]:.6g} N"]\n'
     )
-    return study.solved(design, smoothing)
+    return study.drafted(design, smoothing)
+
+
+def synthesised(study: Study, point: Solved) -> Solved:
+    """A draft solved in full, with its prime radius and preload as a drawing states them.
+
+    Where a check fails by little, both are first those of the full synthesis, with the corrections
+    for the guides.
+    """
+    drawn = settled(study, point)
+    if not drawn.has_cam or drawn.passes or drawn.use > _SHORT:
+        return drawn
+    corrected = study.solved(point.design, point.smoothing)
+    return settled(study, corrected) if corrected.has_cam and corrected.passes else drawn
 
 
 def settled(study: Study, point: Solved) -> Solved:
@@ -196,30 +237,58 @@ def _rounded(design: Machinery) -> Machinery:
     return replace(design, spring=spring, lift=2e-4 * ceil(design.lift / 2e-4))
 
 
-def solved_front(
-    study: Study, screened: Sequence[Candidate], workers: Crew, progress: Progress
-) -> tuple[list[Solved], list[Solved]]:
-    """Designs of the front of the screening that pass, and those that do not.
+def drafts(study: Study, screened: Sequence[Candidate], workers: Crew) -> list[Solved]:
+    """Drafts of the designs of the screening that may be on the front, those with a cam.
 
-    The likeliest one is solved without and with an offset, the others with the better choice.
+    Without an offset; all that are within their limits or near to them with one, where the best of
+    them is better so.
     """
     chosen = promising(study.task, screened)
-    first = likeliest(study.task, chosen)
-    if first is None:
-        return [], []
-    progress.advance(0, len(chosen))
-    both = [workers.submit(synthesised, study, each) for each in (first, first.with_offset)]
-    straight, shifted = (each.result() for each in both)
-    offset = shifted.better_than(straight)
-    others = [each.with_offset if offset else each for each in chosen if each is not first]
-    waiting = [workers.submit(synthesised, study, each) for each in others]
-    points = [shifted if offset else straight]
-    for k, each in enumerate(waiting, start=1):
-        progress.advance(k, len(chosen))
-        points.append(each.result())
-    progress.advance(len(chosen), len(chosen))
-    passing = [each for each in points if each.has_cam and each.passes]
-    return _front(passing), [each for each in points if each.has_cam and not each.passes]
+    points = _drafted(study, chosen, workers)
+    near = [k for k, each in enumerate(points) if each.use <= _CURABLE]
+    if near:
+        first = min(near, key=lambda k: points[k].use)
+        shifted = draft(study, chosen[first].with_offset)
+        if shifted.better_than(points[first]):
+            others = [chosen[k].with_offset for k in near if k != first]
+            points = [each for k, each in enumerate(points) if k not in near]
+            points += [shifted, *_drafted(study, others, workers)]
+    return [each for each in points if each.has_cam]
+
+
+def _drafted(study: Study, chosen: Sequence[Candidate], workers: Crew) -> list[Solved]:
+    waiting = [workers.submit(draft, study, each) for each in chosen]
+    return [each.result() for each in waiting]
+
+
+def solved_front(
+    study: Study, drafted: Sequence[Solved], workers: Crew, progress: Progress
+) -> tuple[list[Solved], list[Solved]]:
+    """Designs of the front of the drafts that pass, and those that do not, the nearest first.
+
+    Where none of the front passes, the other drafts that pass are solved.
+    """
+    likely = [each for each in drafted if each.passes]
+    passing: list[Solved] = []
+    failing = [each for each in drafted if not each.passes]
+    while likely and not passing:
+        batch = _front(likely)
+        likely = [each for each in likely if each not in batch]
+        waiting = [workers.submit(synthesised, study, each) for each in batch]
+        for k, each in enumerate(waiting):
+            progress.advance(k, len(batch))
+            point = each.result()
+            if point.has_cam:
+                (passing if point.passes else failing).append(point)
+        progress.advance(len(batch), len(batch))
+    return _front(passing), sorted(failing, key=lambda each: each.use)
+
+
+def passing_design(study: Study, drafted: Sequence[Solved]) -> Solved | None:
+    """First design that passes of those of `solved_front`; None: it has none."""
+    likely = sorted((each for each in drafted if each.passes), key=lambda each: each.use)
+    points = (synthesised(study, each) for each in likely)
+    return next((each for each in points if each.has_cam and each.passes), None)
 
 
 def _front(points: Sequence[Solved]) -> list[Solved]:

@@ -21,7 +21,7 @@ from camwright.pipeline.case.load_case_torque import engine_torques
 from camwright.pipeline.checks.check import Check, Verdict, in_order, within_depth
 from camwright.pipeline.follower.camshaft_loads import unbalance
 from camwright.pipeline.preview import preview_case
-from camwright.pipeline.smoothing.constrained_synthesis import approached
+from camwright.pipeline.smoothing.constrained_synthesis import approached, synthesise
 from camwright.pipeline.smoothing.multistart import continued
 from camwright.pipeline.smoothing.problem_setup import problem_of
 from camwright.pipeline.smoothing.scenario import redrawn
@@ -29,12 +29,15 @@ from camwright.pipeline.smoothing.synthesis_problem import coarsened
 from camwright.pipeline.solver import judged_at_corners
 from camwright.pipeline.torque.torque import Torque
 
+_BINDING = 0.99  # utilisation
+
 
 @dataclass(frozen=True)
 class Rough:
-    """Result of the synthesis alone: residual over engine torque ripple, cam radius m, mass kg.
+    """Result of the synthesis alone: residual over engine torque ripple, lengths m, mass kg.
 
-    limit, utilisation: id and utilisation of the limit furthest exceeded; "" and 0: feasible.
+    limit, utilisation: id and utilisation of the limit furthest exceeded; "" and 0: feasible;
+    preload: N; binding: ids of the limits that are used up, the most used first.
     """
 
     feasible: bool
@@ -43,6 +46,10 @@ class Rough:
     mass: float
     limit: str = ""
     utilisation: float = 0.0
+    prime_radius: float = 0.0
+    preload: float = 0.0
+    lift_max: float = 0.0
+    binding: tuple[str, ...] = ()
 
     @classmethod
     def impossible(cls) -> Rough:
@@ -159,16 +166,23 @@ def point_of(case: Case, *, corners: bool = False) -> Point:
     )
 
 
-def rough_point(case: Case, torques: Mapping[str, Torque]) -> Rough:
+def rough_point(case: Case, torques: Mapping[str, Torque], *, fine: bool = True) -> Rough:
     """Point of a case by the synthesis, without its corrections and checks.
 
     The limit of the ripple is compared with its minimum afterwards: as a constraint it would hide
     the ripple of an infeasible case.
+
+    Parameters
+    ----------
+    fine : bool   with the splines and cam angles of the case; else with those of a start, whose
+                  fewer splines leave more ripple
     """
     every = problem_of(case, torques)
     problem = replace(every, left_out=frozenset({TORQUE_REDUCTION.id}))
-    design = continued(problem, approached(coarsened(problem)))
-    contour = redrawn(case, design.variables).contour(design.lift())
+    coarse = coarsened(problem)
+    design = continued(problem, approached(coarse)) if fine else synthesise(coarse)
+    drawn, lift = redrawn(case, design.variables), design.lift()
+    contour = drawn.contour(lift)
     uses = dict(design.utilisation)
     if every.ceiling is not None:
         uses[TORQUE_REDUCTION.id] = design.ripple / every.ceiling
@@ -181,6 +195,10 @@ def rough_point(case: Case, torques: Mapping[str, Torque]) -> Rough:
         _mass(case, contour),
         limit if beyond else "",
         uses[limit] if beyond else 0.0,
+        drawn.cam.prime_radius,
+        drawn.spring.preload,
+        float(lift.highest.value),
+        tuple(sorted((name for name in uses if uses[name] > _BINDING), key=lambda n: -uses[n])),
     )
 
 

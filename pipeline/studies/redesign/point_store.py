@@ -25,8 +25,8 @@ SOLVED = "solved"
 
 @dataclass(frozen=True)
 class Task:
-    """A case as text, to be solved by the synthesis alone, in full, in full at the worst tolerance
-    corners, or for its conflict of limits.
+    """A case as text, to be solved by the synthesis alone, also on few cam angles, in full, in full
+    at the worst tolerance corners, or for its conflict of limits.
 
     base: the original case, whose torque all variants share; folder: of the included files and of
     the cache ``solved/``; version: of the source.
@@ -36,7 +36,7 @@ class Task:
     base: str
     folder: Path
     version: str
-    tier: Literal["rough", "whole", "corners", "conflict"]
+    tier: Literal["coarse", "rough", "whole", "corners", "conflict"]
 
     @property
     def path(self) -> Path:
@@ -54,6 +54,8 @@ def solved(task: Task) -> Record:
         case = parse_case(task.text, task.folder)
         if task.tier == "rough":
             record = asdict(rough_point(case, _torques(task.base, task.folder)))
+        elif task.tier == "coarse":
+            record = asdict(rough_point(case, engine_torques(case), fine=False))
         elif task.tier == "conflict":
             problem = problem_of(case, _torques(task.base, task.folder))
             record = {"feasible": False, **infeasibility(problem).as_record()}
