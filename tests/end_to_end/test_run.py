@@ -34,7 +34,7 @@ from camwright.pipeline.smoothing.required_lift import cam_lift
 from camwright.reports.sections import report
 
 ROOT = Path(__file__).resolve().parents[2]
-POSITIONS = 108  # two pieces of the contact per trial
+POSITIONS = 108
 
 
 class Recorder(Silent):
@@ -157,12 +157,15 @@ def test_records_keep_their_schemas(finished: tuple[Case, Path, dict[str, Any]])
         document = json.loads((out / file).read_text(encoding="utf-8"))
         assert schema_errors(name, document) == []
         if name != "checks":
-            for key in document:
-                lacking = {other: value for other, value in document.items() if other != key}
+            short = {key: value[:2] if isinstance(value, list) else value
+                     for key, value in document.items()}  # fmt: skip
+            assert schema_errors(name, short) == []
+            for key in short:
+                lacking = {other: value for other, value in short.items() if other != key}
                 assert schema_errors(name, lacking), f"{file} without {key}"
-                assert schema_errors(name, document | {key: object_of_another_type(document[key])})
-            assert schema_errors(name, document | {"further": 1})
-            assert schema_errors(name, document | {"files": {"run.json": "12"}})
+                assert schema_errors(name, short | {key: object_of_another_type(short[key])})
+            assert schema_errors(name, short | {"further": 1})
+            assert schema_errors(name, short | {"files": {"run.json": "12"}})
 
 
 def object_of_another_type(value: object) -> object:
