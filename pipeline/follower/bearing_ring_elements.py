@@ -60,28 +60,41 @@ class RingElements:
         whole = Basis(mesh, element, intorder=4)
         self.stiffness = scipy.sparse.csc_array(ring.width * form.assemble(whole))
         local = ring.width * form.elemental(whole).tolocal()
-        angle = np.arctan2(*whole.doflocs[::-1]) / FULL_TURN * sections
-        height = np.hypot(*whole.doflocs) - ring.radius
-        sideways = _second(whole)
-        radial, along, moment, hoop = [], [], [], []
-        for k in range(sections):
-            off = (angle - k + 0.5 * sections) % sections - 0.5 * sections
-            here = np.flatnonzero(np.abs(off) < 0.25)
-            pair = here[np.lexsort((height[here], sideways[here]))].reshape(2, -1)
-            cosine, sine = np.cos(FULL_TURN * k / sections), np.sin(FULL_TURN * k / sections)
-            radial.append(_row(pair, np.outer([cosine, sine], _SIMPSON), whole.N))
-            along.append(_row(pair, np.outer([-sine, cosine], _SIMPSON), whole.N))
-            arm = height[pair[0]]
-            turned = _row(pair, np.outer([-sine, cosine], arm), whole.N)
-            drawn = _row(pair, np.outer([-sine, cosine], np.ones_like(arm)), whole.N)
-            after = k + sections * np.arange(_LAYERS)
-            sector = _assembled(local[after], whole.element_dofs[:, after].T, whole.N)
-            moment.append(turned @ sector)
-            hoop.append(-drawn @ sector)
-        self.radial, self.along, self.moment, self.hoop = (
-            scipy.sparse.csr_array(scipy.sparse.vstack(rows))
-            for rows in (radial, along, moment, hoop)
+        nodes, height = _nodes(whole, ring.radius, sections)
+        turn = FULL_TURN * np.arange(sections) / sections
+        outward = np.stack([np.cos(turn), np.sin(turn)], axis=1)[:, :, None]
+        ahead = np.stack([-np.sin(turn), np.cos(turn)], axis=1)[:, :, None]
+        self.radial, self.along = (
+            _rows(nodes, way * _SIMPSON, whole.N) for way in (outward, ahead)
         )
+        # the elements between a section and the next one
+        after = (np.arange(sections)[:, None] + sections * np.arange(_LAYERS)).ravel()
+        dofs = whole.element_dofs[:, after].T
+        at = np.repeat(np.arange(sections), _LAYERS)
+
+        def transmitted(virtual: Array) -> scipy.sparse.csr_array:
+            """Work of the forces that these elements put on a section in a virtual motion of it."""
+            motion = np.zeros((sections, whole.N))
+            motion[np.arange(sections)[:, None, None], nodes] = virtual
+            work = np.einsum("ei,eij->ej", motion[at[:, None], dofs], local[after])
+            return _rows(dofs.reshape(sections, -1), work.reshape(sections, -1), whole.N)
+
+        self.moment = transmitted(ahead * height[:, None])
+        self.hoop = transmitted(-ahead * np.ones_like(height)[:, None])
+
+
+def _nodes(basis: Basis, radius: float, sections: int) -> tuple[NDArray[np.intp], Array]:
+    """Degrees of freedom (sections, x and y, nodes outwards) of the sections; heights, m.
+
+    Heights (sections, nodes) are those of the nodes over the mean radius.
+    """
+    angle = np.arctan2(*basis.doflocs[::-1]) / FULL_TURN * sections
+    height = np.hypot(*basis.doflocs) - radius
+    section = np.rint(angle).astype(np.intp)
+    on = np.flatnonzero(np.abs(angle - section) < 0.25)
+    order = np.lexsort((height[on], _second(basis)[on], section[on] % sections))
+    nodes = on[order].reshape(sections, 2, -1)
+    return nodes, height[nodes[:, 0]]
 
 
 def _second(basis: Basis) -> Array:
@@ -91,18 +104,11 @@ def _second(basis: Basis) -> Array:
     return way
 
 
-def _assembled(local: Array, dofs: NDArray[np.intp], size: int) -> scipy.sparse.csr_array:
-    """Matrix (size, size) assembled from element matrices (m, d, d) with dofs (m, d)."""
-    rows = np.broadcast_to(dofs[:, :, None], local.shape).ravel()
-    columns = np.broadcast_to(dofs[:, None, :], local.shape).ravel()
-    return scipy.sparse.coo_array((local.ravel(), (rows, columns)), (size, size)).tocsr()
-
-
-def _row(dofs: NDArray[np.intp], values: Array, size: int) -> scipy.sparse.coo_array:
-    """Row vector (1, size) of values at dofs."""
-    return scipy.sparse.coo_array(
-        (values.ravel(), (np.zeros(dofs.size, int), dofs.ravel())), (1, size)
-    )
+def _rows(dofs: NDArray[np.intp], values: Array, size: int) -> scipy.sparse.csr_array:
+    """Rows (n, size) of values (n, ...) at dofs (n, ...); values at the same place are added."""
+    count = dofs.shape[0]
+    rows = np.repeat(np.arange(count), dofs[0].size)
+    return scipy.sparse.coo_array((values.ravel(), (rows, dofs.ravel())), (count, size)).tocsr()
 
 
 @lru_cache(maxsize=16)
