@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike
 from camwright.geometry.arrays import Array
 from camwright.pipeline.base.tables import Column
 from camwright.pipeline.contact.finite_length.axial_drop import FinitePair
+from camwright.pipeline.contact.finite_length.length_contact import rebinned
 from camwright.pipeline.cycle.cycle import Cycle
 from camwright.pipeline.cycle.length_history import length_table, raised_load
 
@@ -84,24 +85,18 @@ def axial_arrays(cycles: Sequence[Cycle]) -> Mapping[str, ArrayLike] | None:
 def _cells(
     pair: FinitePair, mean_length: float, at: tuple[Array, Array], moments: Sequence[Array]
 ) -> tuple[Array, list[Array]]:
-    """Edges, m, and pressures over p0 at each of the moments, N m; see `with_end_means`."""
-    table = length_table(pair, mean_length)
-    lines = []
-    for moment in moments:
-        edges, line = table.axial_pressure(*at, moment)
-        if pair.has_singular_end:
-            edges, line = with_end_means(edges, line, mean_length)
-        lines.append(line)
-    return edges, lines
+    """Edges, m, and pressures over p0 at each of the moments, N m, on the cells of the worst load.
 
-
-def with_end_means(edges: Array, line: Array, length: float) -> tuple[Array, Array]:
-    """Edges and pressures (count, m) whose first and last cell are means over a length.
-
-    The force on each part of the line remains.
+    At a corner the last cell is that of the mean.
     """
+    table, worst = length_table(pair, mean_length), int(np.argmax(at[1]))
+    edges = table.edges_of_line(*(float(each[worst]) for each in at))
+    if pair.has_singular_end:
+        edges = with_end_cells(edges, mean_length)
+    return edges, [rebinned(*table.axial_pressure(*at, moment), edges) for moment in moments]
+
+
+def with_end_cells(edges: Array, length: float) -> Array:
+    """Edges, m, of which the first and last cell have a length, m."""
     inner = edges[np.abs(edges) < edges[-1] - length - 1e-9]
-    joined = np.concatenate([[edges[0], edges[0] + length], inner, [edges[-1] - length, edges[-1]]])
-    total = np.cumsum(np.pad(line * np.diff(edges), ((0, 0), (1, 0))), axis=1)
-    at = np.array([np.interp(joined, edges, row) for row in total])
-    return joined, np.diff(at, axis=1) / np.diff(joined)
+    return np.concatenate([[edges[0], edges[0] + length], inner, [edges[-1] - length, edges[-1]]])

@@ -262,9 +262,8 @@ def factor_range(pair: FinitePair, mean_length: float, loads: ContactLoads) -> F
     table = length_table(pair, mean_length)
     curvature, raised = loads.curvature, loads.raised
     force, couple = raised * loads.force, raised * loads.couple
-    by_tilt = table.moment_at_tilt(curvature, force, loads.tilt)
-    most = (1.0 - _ROUND_OFF) * GREATEST_MOMENT * force * pair.contact_length
-    moment = np.minimum(np.minimum(np.abs(by_tilt), couple), most)
+    most = np.minimum(couple, (1.0 - _ROUND_OFF) * GREATEST_MOMENT * force * pair.contact_length)
+    moment = np.abs(table.moment_at_tilt(curvature, force, loads.tilt, most))
     directions = (1.0,) if pair.is_symmetric else (-1.0, 1.0)
     count = 1 + len(directions)
     moments = np.concatenate([np.zeros(force.size), *(each * moment for each in directions)])
@@ -323,7 +322,7 @@ class AxialPressures(Protocol):
     def axial_pressure(
         self, curvature: ArrayLike, force: ArrayLike, moment: ArrayLike = 0.0
     ) -> tuple[Array, Array]:
-        """Edges (m + 1,), m, along y and pressures (count, m) over plane-strain p0, x = 0."""
+        """Edges (count, m + 1), m, along y and pressures (count, m) over plane-strain p0, x = 0."""
         ...
 
 
@@ -332,7 +331,8 @@ def signed_factor(
 ) -> SignedPressure:
     """Signed pressure of contacts over that of plane strain; see `signed_pressure`."""
     edges, line = table.axial_pressure(curvature, force, moment)
-    return signed_pressure(edges, line, table.mean_length, has_corner=table.pair.has_singular_end)
+    flat, corner = table.pair.contact_length, table.pair.has_singular_end
+    return signed_pressure(edges, line, flat, table.mean_length, has_corner=corner)
 
 
 def length_table(pair: FinitePair, mean_length: float) -> FactorTable:

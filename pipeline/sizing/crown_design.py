@@ -157,7 +157,7 @@ class CrownDesign(Displayed):
         ):
             moment = solved.moment if tilted else 0.0
             edges, line = SolvedLines(pair, self._mean_length).axial_pressure(*loads, moment)
-            lines.append(AxialLine(0.5 * (edges[1:] + edges[:-1]), line[0]))
+            lines.append(AxialLine(0.5 * (edges[0, 1:] + edges[0, :-1]), line[0]))
         return max(lines, key=lambda each: float(each.factor.max()))
 
     @property

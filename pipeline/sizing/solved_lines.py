@@ -36,7 +36,7 @@ class SolvedLines:
     def axial_pressure(
         self, curvature: ArrayLike, force: ArrayLike, moment: ArrayLike = 0.0
     ) -> tuple[Array, Array]:
-        """Edges (m + 1,), m, along y and pressures (count, m) over plane-strain p0, x = 0.
+        """Edges (count, m + 1), m, along y and pressures (count, m) over plane-strain p0, x = 0.
 
         Parameters
         ----------
@@ -44,15 +44,11 @@ class SolvedLines:
         force : array (count,)      N, > 0
         moment : array (count,)     N m, about y = 0
         """
-        edges, rows, lines = np.empty(0), [], []
-        for each, contact, p0 in self._solved(curvature, force, moment=moment):
-            edges = max(edges, contact.cells.y, key=len)
-            rows.append(each)
-            lines.append(contact.centre_line / p0[:, None])
-        line = np.zeros((sum(map(len, rows)), edges.size - 1))
-        for each, values in zip(rows, lines, strict=True):
-            beyond = (edges.size - 1 - values.shape[1]) // 2
-            line[each] = np.pad(values, ((0, 0), (beyond, beyond)))
+        solved = list(self._solved(curvature, force, moment=moment))
+        cells, count = solved[0][1].cells, sum(rows.size for rows, _, _ in solved)
+        edges, line = np.empty((count, cells.y.size)), np.empty((count, cells.shape[0]))
+        for rows, contact, p0 in solved:
+            edges[rows], line[rows] = contact.cells.y, contact.centre_line / p0[:, None]
         return edges, line
 
     def moment_at_tilt(self, curvature: ArrayLike, force: ArrayLike, tilt: ArrayLike) -> Array:

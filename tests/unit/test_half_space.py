@@ -6,7 +6,7 @@ import pytest
 from camwright.geometry.errors import ContactError, InputError
 from camwright.pipeline.contact.axial_shape import BodyEnd
 from camwright.pipeline.contact.elasticity.elastic_body import Elastic
-from camwright.pipeline.contact.finite_length import length_contact
+from camwright.pipeline.contact.finite_length import half_space, length_contact
 from camwright.pipeline.contact.finite_length.axial_drop import (
     CircularCrown,
     FiniteBody,
@@ -228,6 +228,17 @@ def test_mirror_factor_depends_on_the_ratio_of_the_distances_from_the_end():
     )
     np.testing.assert_allclose(large, 27.0 * small, rtol=1e-9)
     np.testing.assert_allclose(small, small.T, atol=1e-12 * small.max())
+
+
+def test_far_images_have_the_moments_of_their_cells(monkeypatch):
+    x, y = 20e-6 * np.arange(10), 1e-3 * np.linspace(-2.5, 2.5, 21)
+    body = FiniteBody(STEEL, 5e-3, SHARP, 1.0)
+    whole = half_space_compliance(PressureCells(x, y), (body, body))
+    monkeypatch.setattr(half_space, "_FAR_IMAGE", np.inf)
+    exact = half_space_compliance(PressureCells(x, y), (body, body))
+    pressure = np.tile(np.sqrt(1 - (x[:-1] / x[-1]) ** 2), 20)
+    assert not np.array_equal(whole, exact)
+    np.testing.assert_allclose(whole @ pressure, exact @ pressure, rtol=3e-5)
 
 
 def scaled(scale):

@@ -13,8 +13,9 @@ from camwright.geometry.lift import Lift
 from camwright.pipeline.case.case_file import read_case, with_values
 from camwright.pipeline.case.machine import machine
 from camwright.pipeline.contact.finite_length.factor_table import GREATEST_MOMENT
+from camwright.pipeline.contact.finite_length.length_contact import rebinned
 from camwright.pipeline.contact.finite_length.length_tiers import half_space_factors
-from camwright.pipeline.cycle.axial_pressure import AXIAL_ARRAYS, axial_arrays, with_end_means
+from camwright.pipeline.cycle.axial_pressure import AXIAL_ARRAYS, axial_arrays, with_end_cells
 from camwright.pipeline.cycle.cycle import solve_lengths
 from camwright.pipeline.cycle.length_history import (
     ContactLoads,
@@ -199,7 +200,8 @@ def test_pressure_along_the_line_needs_the_ends_and_contact():
 def test_means_at_the_ends_keep_the_force():
     edges = np.array([-2.0, -1.97, -1.85, -1.0, 0.0, 1.0, 1.85, 1.97, 2.0])
     line = np.array([[9.0, 4.0, 2.0, 1.0, 1.0, 2.0, 4.0, 9.0], [0.0, 0, 0, 1, 2, 3, 5, 12]])
-    joined, means = with_end_means(edges, line, 0.1)
+    joined = with_end_cells(edges, 0.1)
+    means = rebinned(np.stack([edges, edges]), line, joined)
     np.testing.assert_allclose(means @ np.diff(joined), line @ np.diff(edges), rtol=1e-12)
     assert means[0, 0] == pytest.approx((9.0 * 0.03 + 4.0 * 0.07) / 0.1)
     assert means[1, -1] == pytest.approx((12.0 * 0.03 + 5.0 * 0.07) / 0.1)

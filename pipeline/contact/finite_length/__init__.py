@@ -6,6 +6,7 @@ In the order of the calculation:
 | ---------------- | ------------------------------------------------------- | ------------ |
 | `axial_drop`     | ends and crowns, gap of two bodies                      | y, m; gap, m |
 | `pressure_cells` | rectangular cells of constant pressure                  | x, y, m      |
+| `contact_span`   | cells on the part of a crowned line that touches        | y, m         |
 | `half_space`     | compliance of half-spaces with mirrored ends            | m3/Pa        |
 | `brick_body`     | compliance of a block by finite elements                | m3           |
 | `length_contact` | pressures under force, tilt or moment                   | p, Pa; F, N  |

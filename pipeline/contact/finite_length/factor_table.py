@@ -3,7 +3,8 @@
 The pressure over the peak pressure of plane strain depends on the half-width and on the moment over
 force and length; with a crown or a rounded end on the line load, too. The centre line is tabulated,
 so that its greatest value and the means at its ends follow at any place of the table. A node is
-computed when an interpolation first needs it.
+computed when an interpolation first needs it. The cells of a crowned or rounded contact follow it
+from node to node: their edges are interpolated as their pressures are.
 """
 
 from __future__ import annotations
@@ -11,46 +12,52 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
 from functools import cached_property, lru_cache
+from typing import NamedTuple
 
 import numpy as np
 import scipy
 from numpy.typing import ArrayLike, NDArray
 
 from camwright.geometry.arrays import Array, readonly
-from camwright.geometry.errors import ContactError, InputError
+from camwright.geometry.errors import InputError
 from camwright.pipeline.base import disk_cache
 from camwright.pipeline.contact import hertz
 from camwright.pipeline.contact.elasticity import active_set
 from camwright.pipeline.contact.finite_length import (
+    axial_drop,
+    contact_span,
     half_space,
     length_contact,
     length_tiers,
     pressure_cells,
 )
 from camwright.pipeline.contact.finite_length.axial_drop import FinitePair, Straight
+from camwright.pipeline.contact.finite_length.length_contact import WideContactError
 from camwright.pipeline.contact.finite_length.length_tiers import AxialFactors, cycle_sizes
+from camwright.pipeline.contact.finite_length.pressure_cells import CellSizes
 
 Index = NDArray[np.intp]
 
 # Ratios of the half-widths, without and with a crown, and of the line loads of neighbouring nodes;
 # nodes of ladder index 0.
-_WIDTH_RATIO, _CROWNED_WIDTH_RATIO, _LOAD_RATIO = 2.0, 3.0, 2.0
+_WIDTH_RATIO, _CROWNED_WIDTH_RATIO, _LOAD_RATIO = 2.0, 3.0, 2.5
 _WIDTH, _LOAD = 1e-4, 1e5  # m, N/m
-# Moments over force and length: of light tilts, and up to a force near the end of the contact.
+# Moments over force and length: of light tilts, and up to a force near the end of the contact; how
+# many are computed at a time, where each has cells of its own and where all have the same.
 _LIGHT: Array = np.linspace(0.0, 0.24, 9)
 _HEAVY: Array = np.array([0.265, 0.29, 0.315, 0.34, 0.36, 0.38, 0.40, 0.415, 0.43, 0.44, 0.45])
 _MOMENTS = np.concatenate([_LIGHT, _HEAVY])
 _SIGNED: Array = np.concatenate([-_MOMENTS[:0:-1], _MOMENTS])
 _ZERO = _MOMENTS.size - 1
-# Fewest cells along a crowned contact; its approach over load per length and pi E* at most.
-_FEWEST, _APPROACH = 4, 60.0
-# Ratio by which the load of a shorter contact is raised, and how often at most.
-_RAISE, _RAISES = 2.0, 60
-
+_OWN_CELLS, _SAME_CELLS = (1, 4, 6, 9, 14, 20), (9, 20)
 _FEW = 3000  # rows of an interpolation: those of a turn, untilted and tilted to both sides
 
+# Places along the line at which the drop of a crown decides the tables kept.
+_PLACES = 2001
+# Wider cells across for contacts that leave theirs: ratio, and how often at most.
+_WIDER, _WIDENINGS = 2.0, 3
 # Errors of the interpolation, verified by tests.
-_ERROR, _CROWNED_ERROR, _ROUNDED_ERROR = 2e-3, 5e-3, 0.1
+_ERROR, _LOADED_ERROR = 2e-3, 5e-3
 
 GREATEST_MOMENT = float(_MOMENTS[-1])
 """Greatest moment over force and length of contact: the force acts near the end."""
@@ -60,9 +67,7 @@ GREATEST_MOMENT = float(_MOMENTS[-1])
 class FactorTable:
     """Factors of a pair of bodies over half-width, moment and, where it matters, line load.
 
-    mean_length (m) of the means at the ends; the curvature of the pair is not used. A crowned
-    contact too light for the cells, shorter than four of them, has the pressure of the lightest one
-    that is not: an upper bound.
+    mean_length (m) of the means at the ends; the curvature of the pair is not used.
     """
 
     pair: FinitePair
@@ -73,12 +78,9 @@ class FactorTable:
     def interpolation_error(self) -> float:
         """Error of centre, greatest and mean pressure at a singular end, over the greatest.
 
-        Up to a moment of 0.2 of force and length; three times that beyond. The cells of a rounded
-        end do not resolve its peak better.
+        Up to a moment of 0.2 of force and length; three times that beyond.
         """
-        if self._is_rounded:
-            return _ROUNDED_ERROR
-        return _ERROR if isinstance(self.pair.crown, Straight) else _CROWNED_ERROR
+        return _LOADED_ERROR if self._depends_on_load else _ERROR
 
     def factors(
         self, curvature: ArrayLike, force: ArrayLike, moment: ArrayLike = 0.0
@@ -96,136 +98,130 @@ class FactorTable:
         InputError
             If an input is out of bounds.
         """
-        edges, line, peaks = self._interpolated(curvature, force, moment)
-        middle = (edges.size - 1) // 2
+        edges, line = self.axial_pressure(curvature, force, moment)
         means, _ = length_contact.means_at_ends(edges, line, self.mean_length)
-        centre = 0.5 * (line[:, middle - 1] + line[:, middle])
-        # The steep peak of a rounded end moves from cell to cell with the load.
-        greatest = (peaks if self._is_rounded else line).max(axis=1)
-        return AxialFactors(centre, greatest, means, self.mean_length)
+        centre = length_contact.at_middle(edges, line)
+        return AxialFactors(centre, line.max(axis=1), means, self.mean_length)
 
     def axial_pressure(
         self, curvature: ArrayLike, force: ArrayLike, moment: ArrayLike = 0.0
     ) -> tuple[Array, Array]:
-        """Edges (m + 1,), m, along y and pressures (count, m) over plane-strain p0, x = 0.
+        """Edges (count, m + 1), m, along y and pressures (count, m) over plane-strain p0, x = 0.
 
         Inputs as those of `factors`.
         """
-        edges, line, _ = self._interpolated(curvature, force, moment)
-        return edges, line
-
-    def _interpolated(
-        self, curvature: ArrayLike, force: ArrayLike, moment: ArrayLike
-    ) -> tuple[Array, Array, Array]:
-        """Edges, pressures of `axial_pressure`; greatest of the nodes at y < 0 and y > 0."""
         kappa, load, couple = _alike(curvature, force, moment)
         share = couple / (load * self.pair.contact_length)
         if not (np.abs(share) <= GREATEST_MOMENT).all():
             worst = int(np.argmax(np.abs(share)))
             most = GREATEST_MOMENT * load[worst] * self.pair.contact_length
             raise InputError("moment", float(couple[worst]), f"within {most:.4g} N m, near an end")
-        place = self._place(kappa, load, share)
         first, weights = _moment_stencil(share)
-        nodes, columns, values = place.rows
+        outermost = np.maximum(_ZERO - first, first + weights.shape[1] - 1 - _ZERO)
+        place = self._place(kappa, load, np.where(share == 0, 1, outermost + 1))
+        nodes, columns, values = place
         # Rows of the table: every node has one row per moment.
         columns = columns[:, :, None] * _SIGNED.size + (first[:, None] + np.arange(4))[:, None]
         values = values[:, :, None] * weights[:, None]
-        edges, lines = _lines(tuple(nodes))
         flat = (load.size, -1)
+        lines = _lines(tuple(nodes))
         interpolated = _weighted(columns.reshape(flat), values.reshape(flat), lines)
-        scaled = np.maximum(interpolated, 0.0) * place.factor[:, None]
-        return edges, scaled[:, :-2], scaled[:, -2:]
+        ends = nodes[0].edges.shape[1]
+        return interpolated[:, :ends], np.maximum(interpolated[:, ends:], 0.0)
 
-    def moment_at_tilt(self, curvature: ArrayLike, force: ArrayLike, tilt: ArrayLike) -> Array:
+    def edges_of_line(self, curvature: float, force: float) -> Array:
+        """Edges (m + 1,), m, of cells along the whole line at a curvature, 1/m, and force, N."""
+        half_width, _ = self._hertz(np.array([curvature]), np.array([force]))
+        pair = replace(self.pair, curvature=curvature)
+        return pressure_cells.edges_along(pair, float(half_width[0]), cycle_sizes(pair))
+
+    def moment_at_tilt(
+        self, curvature: ArrayLike, force: ArrayLike, tilt: ArrayLike, most: ArrayLike = np.inf
+    ) -> Array:
         """Moment (count,), N m, of contacts tilted by `tilt` (count,), rad, as half-spaces.
 
-        At most `GREATEST_MOMENT` of force and length.
+        In amount at most `most` (count,), N m, and `GREATEST_MOMENT` of force and length.
         """
         kappa, load, angle = _alike(curvature, force, tilt)
-        share = np.zeros(load.size)
-        for _ in range(2):
-            place = self._place(kappa, load, share)
-            nodes, columns, values = place.rows
+        length = load * self.pair.contact_length
+        limit = np.minimum(most, GREATEST_MOMENT * length)
+        if self.pair.is_symmetric and not (angle * limit).any():
+            return np.zeros(load.size)
+        half_width, _ = self._hertz(kappa, load)
+        target = angle * self.pair.contact_length / (kappa * half_width**2)
+        batches, rows = [count for count in self._batches if count > 1], np.arange(load.size)
+        count = np.full(load.size, batches[0])
+        for more in [*batches[1:], 0]:
+            nodes, columns, values = self._place(kappa, load, count)
             turns = _weighted(columns, values, np.array([node.turn for node in nodes]))
-            half_width, _ = self._hertz(kappa, place.load)
-            target = angle * self.pair.contact_length / (kappa * half_width**2)
-            # The second pass has the heavy tilts of those beyond the light ones.
-            inner = turns[:, _ZERO - _LIGHT.size + 2], turns[:, _ZERO + _LIGHT.size - 2]
+            # A target between the last two moments takes one more.
+            inner = turns[rows, _ZERO + 2 - count], turns[rows, _ZERO - 2 + count]
             beyond = (target < inner[0]) | (target > inner[1])
-            if not beyond.any() or not (share[beyond] <= _LIGHT[-1]).all():
+            beyond &= _MOMENTS[count - 2] * length < limit
+            if not more or not beyond.any():
                 break
-            share = np.where(beyond, GREATEST_MOMENT, share)
-        return np.asarray(_inverse(turns, target) * load * self.pair.contact_length)
+            count = np.where(beyond, more, count)
+        return np.clip(_inverse(turns, target) * length, -limit, limit)
+
+    @cached_property
+    def _batches(self) -> tuple[int, ...]:
+        """Numbers of moments from zero that are computed together."""
+        return _SAME_CELLS if isinstance(self.pair.crown, Straight) else _OWN_CELLS
 
     @property
     def _depends_on_load(self) -> bool:
-        return self._is_rounded or not isinstance(self.pair.crown, Straight)
+        rounded = any(body.end.kind == "radius" for body in self.pair.bodies)
+        return rounded or not isinstance(self.pair.crown, Straight)
 
     @property
     def _width_ratio(self) -> float:
         return _WIDTH_RATIO if isinstance(self.pair.crown, Straight) else _CROWNED_WIDTH_RATIO
-
-    @property
-    def _is_rounded(self) -> bool:
-        return any(body.end.kind == "radius" for body in self.pair.bodies)
 
     def _hertz(self, curvature: Array, force: Array) -> tuple[Array, Array]:
         return hertz.line_contact(
             force / self.pair.contact_length, 1.0 / curvature, self.pair.contact_modulus
         )
 
-    def _place(self, curvature: Array, force: Array, share: Array) -> _Place:
-        """Nodes and weights of contacts, with loads raised where a crowned contact is too light."""
-        load = force.copy()
-        heavy = np.abs(share) > _LIGHT[-2]
-        for _ in range(_RAISES):
-            half_width, _ = self._hertz(curvature, load)
-            across = np.log(half_width / _WIDTH) / np.log(self._width_ratio)
-            along = np.zeros_like(across)
-            if self._depends_on_load:
-                line_load = load / self.pair.contact_length
-                along = np.log(line_load / _LOAD) / np.log(_LOAD_RATIO)
-            place = self._stencils(across, along, heavy, np.sqrt(load / force), load)
-            nodes, columns, _ = place.rows
-            light = np.array([node.is_too_light for node in nodes])[columns].any(axis=1)
-            lacks = ~np.array([node.is_heavy for node in nodes])[columns].all(axis=1)
-            light |= heavy & lacks
-            if not light.any():
-                return place
-            load = np.where(light, load * _RAISE, load)
-        raise ContactError("crown: the contact does not fill its cells under any load")
-
-    def _stencils(
-        self, across: Array, along: Array, heavy: NDArray[np.bool_], factor: Array, load: Array
-    ) -> _Place:
+    def _place(self, curvature: Array, force: Array, count: Index) -> _Place:
+        """Nodes, their columns and weights of contacts that need `count` (count,) moments."""
+        half_width, _ = self._hertz(curvature, force)
+        across = np.log(half_width / _WIDTH) / np.log(self._width_ratio)
+        along = np.zeros_like(across)
+        if self._depends_on_load:
+            line_load = force / self.pair.contact_length
+            along = np.log(line_load / _LOAD) / np.log(_LOAD_RATIO)
         first, width_weights = _uniform_stencil(across)
         if self._depends_on_load:
             second, load_weights = _uniform_stencil(along)
         else:
             second, load_weights = np.zeros_like(first), np.ones((across.size, 1))
         size = load_weights.shape[1]
-        least, count = second.min(), np.ptp(second) + 1
-        corners, inverse = np.unique(first * count + (second - least), return_inverse=True)
-        pairs = zip((corners // count).tolist(), (corners % count + least).tolist(), strict=True)
+        least, span = second.min(), np.ptp(second) + 1
+        corners, inverse = np.unique(first * span + (second - least), return_inverse=True)
+        pairs = zip((corners // span).tolist(), (corners % span + least).tolist(), strict=True)
         reach = [[(a + i, b + j) for i in range(4) for j in range(size)] for a, b in pairs]
-        has_heavy = np.bincount(inverse, heavy, minlength=len(reach)) > 0
-        needed: dict[tuple[int, int], bool] = {}
-        for cells, is_heavy in zip(reach, has_heavy.tolist(), strict=True):
+        most = np.zeros(len(reach), dtype=np.intp)
+        np.maximum.at(most, inverse, count)
+        needed: dict[tuple[int, int], int] = {}
+        for cells, moments in zip(reach, most.tolist(), strict=True):
             for key in cells:
-                needed[key] = needed.get(key, False) or is_heavy
+                needed[key] = max(needed.get(key, 0), moments)
         keys = sorted(needed)
-        nodes = [self._node(key, heavy=needed[key]) for key in keys]
+        nodes = [self._node(key, needed[key]) for key in keys]
         number = {key: index for index, key in enumerate(keys)}
         columns = np.array([[number[key] for key in cells] for cells in reach])[inverse]
         weights = (width_weights[:, :, None] * load_weights[:, None, :]).reshape(columns.shape)
-        return _Place((nodes, columns, weights), factor, load)
+        return _Place(nodes, columns, weights)
 
-    def _node(self, key: tuple[int, int], *, heavy: bool) -> _Node:
-        if key not in self._nodes:
-            self._nodes[key] = self._computed(key, _LIGHT)
-        known = self._nodes[key]
-        if heavy and not known.is_tried and not known.is_too_light:
-            self._nodes[key] = known.joined(self._computed(key, _HEAVY))
+    def _node(self, key: tuple[int, int], count: int) -> _Node:
+        """Node with `count` moments from zero at least."""
+        before = self._nodes[key].count if key in self._nodes else 0
+        for after in self._batches:
+            if before < min(count, after):
+                computed = self._computed(key, _MOMENTS[before:after])
+                known = self._nodes.get(key)
+                self._nodes[key] = computed if known is None else known.joined(computed)
+                before = after
         return self._nodes[key]
 
     def _computed(self, key: tuple[int, int], moments: Array) -> _Node:
@@ -233,100 +229,117 @@ class FactorTable:
         half_width, line_load = _WIDTH * self._width_ratio ** key[0], _LOAD * _LOAD_RATIO ** key[1]
         curvature = 4.0 * line_load / (np.pi * self.pair.contact_modulus * half_width**2)
         here = replace(self.pair, curvature=curvature)
-        cells = pressure_cells.pressure_cells(here, half_width, cycle_sizes(self.pair))
-        middle = cells.shape[0] // 2
-        drops = here.crown.drop(cells.y[[middle - _FEWEST // 2, middle + _FEWEST // 2]])
-        if drops.min() > _APPROACH * line_load / (np.pi * self.pair.contact_modulus):
-            return _Node.of(cells.y, moments, np.empty((0, cells.shape[0])), np.empty(0))
-        gap = cells.integrated_gap(here)
         if not self.pair.is_symmetric:
             moments = np.concatenate([-moments[moments > 0][::-1], moments])
-        bodies = tuple((body.material, body.length) for body in self.pair.bodies)
 
         def compute() -> dict[str, Array]:
             force = line_load * self.pair.contact_length
-            couples = moments * force * self.pair.contact_length
-            compliance = half_space.shared_compliance(cells, self.pair.bodies)
-            # A crowned contact is begun with all cells: from others its active set may recur.
-            near = None if self._depends_on_load else cells.centres[0] < half_width
-            gaps = np.tile(gap, (moments.size, 1))
-            try:
-                level = length_contact.solve(cells, compliance, gap, force, guess=near)
-                if np.count_nonzero(level.centre_line > 0) < _FEWEST:
-                    raise ContactError("contact of too few cells to be tilted")
-                contact = length_contact.solve(
-                    cells,
-                    compliance,
-                    gaps,
-                    force,
-                    moment=couples,
-                    guess=level.pressure.ravel() > 0,
-                )
-            except ContactError:
-                if not self._depends_on_load:
-                    raise
-                return {"line": np.empty((0, cells.shape[0])), "turn": np.empty(0)}
+            edges, line, turn = _solved(here, force, moments * force * self.pair.contact_length)
             p0 = 0.5 * self.pair.contact_modulus * curvature * half_width
-            turn = contact.tilt * self.pair.contact_length / (curvature * half_width**2)
-            return {"line": contact.centre_line / p0, "turn": turn}
+            turned = turn * self.pair.contact_length / (curvature * half_width**2)
+            return {"edges": edges, "line": line / p0, "turn": turned}
 
-        inputs = (cells.x.tobytes(), cells.y.tobytes(), gap.tobytes(), bodies, moments.tobytes())
-        modules = (active_set, half_space, length_contact, length_tiers, pressure_cells)
+        places = 0.5 * self.pair.contact_length * np.linspace(-1.0, 1.0, _PLACES)
+        bodies = tuple(
+            (body.material, body.length, body.end.kind, body.end.size) for body in self.pair.bodies
+        )
+        inputs = (
+            half_width,
+            line_load,
+            self.pair.crown.drop(places).tobytes(),
+            bodies,
+            moments.tobytes(),
+        )
+        modules = (
+            *(active_set, axial_drop, contact_span, half_space, length_contact, length_tiers),
+            pressure_cells,
+        )
         kept = disk_cache.kept("factors", inputs, compute, modules)
-        return _Node.of(cells.y, moments, kept["line"], kept["turn"])
+        return _Node.of(moments, kept["edges"], kept["line"], kept["turn"])
 
 
-@dataclass(frozen=True, eq=False)
-class _Place:
-    """Nodes, columns (count, k) and weights; factor (count,) of p0; loads (count,), N."""
+def _solved(pair: FinitePair, force: float, couples: Array) -> tuple[Array, Array, Array]:
+    """Edges (count, m + 1), m, pressures (count, m), Pa, tilts (count,), rad, at moments, N m."""
+    sizes = cycle_sizes(pair)
+    for _ in range(_WIDENINGS):
+        try:
+            return _solved_on(pair, force, couples, sizes)
+        except WideContactError:
+            sizes = replace(sizes, window=_WIDER * sizes.window)
+    return _solved_on(pair, force, couples, sizes)
 
-    rows: tuple[list[_Node], Index, Array]
-    factor: Array
-    load: Array
+
+def _solved_on(
+    pair: FinitePair, force: float, couples: Array, sizes: CellSizes
+) -> tuple[Array, Array, Array]:
+    line, turn, ends, begin = [], [], [], None
+    # Each contact begins with the cells that touch under the moment before.
+    order = np.argsort(np.abs(couples), kind="stable")
+    for couple in couples[order].tolist():
+        cells = contact_span.contact_cells(pair, force, couple, sizes)
+        if begin is None or begin.shape != cells.shape:
+            begin = (cells.centres[0] < cells.x[int(sizes.per_half_width)]).reshape(cells.shape)
+        contact = length_contact.solve(
+            cells,
+            half_space.shared_compliance(cells, pair.bodies),
+            cells.integrated_gap(pair),
+            force,
+            moment=couple,
+            guess=begin.ravel(),
+        )
+        begin = contact.pressure[0] > 0
+        ends.append(cells.y)
+        line.append(contact.centre_line[0])
+        turn.append(contact.tilt[0])
+    back = np.argsort(order)
+    return np.array(ends)[back], np.array(line)[back], np.array(turn)[back]
+
+
+class _Place(NamedTuple):
+    """Nodes, columns and weights (count, k) of contacts."""
+
+    nodes: list[_Node]
+    columns: Index
+    weights: Array
 
 
 @dataclass(frozen=True, eq=False)
 class _Node:
-    """Edges (m + 1,), m, along y; line (2 moments - 1, m) over p0, turn (2 moments - 1,).
+    """Edges (2 moments - 1, m + 1), m, along y; line (2 moments - 1, m) over p0, turn.
 
-    The turn is the tilt times the length over curvature and half-width squared. Rows of heavy
-    tilts are not numbers before they are tried, or where the contact leaves its cells.
+    The turn is the tilt times the length over curvature and half-width squared; not a number at
+    moments that are not computed.
     """
 
     edges: Array
     line: Array
     turn: Array
-    is_tried: bool = False
 
     @classmethod
-    def of(cls, edges: Array, moments: Array, line: Array, turn: Array) -> _Node:
+    def of(cls, moments: Array, edges: Array, line: Array, turn: Array) -> _Node:
         """Rows of all moments from those computed; those below zero by symmetry where left out."""
-        lines, turns = (
-            np.full((_SIGNED.size, edges.size - 1), np.nan),
-            np.full(_SIGNED.size, np.nan),
-        )
-        if len(line):
-            signs = (1,) if (moments < 0).any() else (-1, 1)
-            for sign in signs:
-                rows = np.searchsorted(_SIGNED, sign * moments - 1e-9)
-                lines[rows], turns[rows] = line[:, ::sign], sign * turn
-        return cls(edges, lines, turns)
+        ends, lines = (np.zeros((_SIGNED.size, each.shape[1])) for each in (edges, line))
+        turns = np.full(_SIGNED.size, np.nan)
+        signs = (1,) if (moments < 0).any() else (-1, 1)
+        for sign in signs:
+            rows = np.searchsorted(_SIGNED, sign * moments - 1e-9)
+            ends[rows], lines[rows] = sign * edges[:, ::sign], line[:, ::sign]
+            turns[rows] = sign * turn
+        return cls(ends, lines, turns)
 
     def joined(self, other: _Node) -> _Node:
         """The rows of both."""
         here = np.isfinite(self.turn)
-        lines = np.where(here[:, None], self.line, other.line)
-        return _Node(self.edges, lines, np.where(here, self.turn, other.turn), is_tried=True)
+        edges, line = (
+            np.where(here[:, None], one, two)
+            for one, two in ((self.edges, other.edges), (self.line, other.line))
+        )
+        return _Node(edges, line, np.where(here, self.turn, other.turn))
 
     @cached_property
-    def is_heavy(self) -> bool:
-        """Whether the rows of heavy tilts are computed."""
-        return bool(np.isfinite(self.turn[[0, -1]]).all())
-
-    @cached_property
-    def is_too_light(self) -> bool:
-        """Whether the untilted contact covers too few cells."""
-        return not np.count_nonzero(self.line[_ZERO] > 0) >= _FEWEST
+    def count(self) -> int:
+        """Number of moments from zero that are computed."""
+        return int(np.isfinite(self.turn[_ZERO:]).sum())
 
 
 def factor_table(pair: FinitePair, mean_length: float) -> FactorTable:
@@ -343,16 +356,9 @@ def factor_table(pair: FinitePair, mean_length: float) -> FactorTable:
 
 
 @lru_cache(maxsize=16)
-def _lines(nodes: tuple[_Node, ...]) -> tuple[Array, Array]:
-    """Edges of the longest nodes; their pressures and greatest of both halves as rows."""
-    widest = max(nodes, key=lambda node: node.edges.size).edges
-    padded = []
-    for node in nodes:
-        beyond = (widest.size - node.edges.size) // 2
-        halves = np.split(node.line, 2, axis=1)
-        peaks = [half.max(axis=1) for half in halves]
-        padded.append(np.column_stack([np.pad(node.line, ((0, 0), (beyond, beyond))), *peaks]))
-    return widest, readonly(np.concatenate(padded))
+def _lines(nodes: tuple[_Node, ...]) -> Array:
+    """Edges and pressures of nodes side by side as rows."""
+    return readonly(np.concatenate([np.hstack([node.edges, node.line]) for node in nodes]))
 
 
 def _alike(*values: ArrayLike) -> list[Array]:

@@ -14,6 +14,10 @@ from camwright.pipeline.contact.elasticity import active_set
 from camwright.pipeline.contact.finite_length.pressure_cells import PressureCells
 
 
+class WideContactError(ContactError):
+    """The contact reaches the last cells across it."""
+
+
 @dataclass(frozen=True, eq=False)
 class LengthContact:
     """Contact of `count` problems: pressure (count, m, k), Pa, on the cells; approach (count,), m.
@@ -45,8 +49,12 @@ class LengthContact:
     @property
     def centre(self) -> Array:
         """Pressure (count,), Pa, at x = 0 and y = 0."""
-        y, line = self.cells.centres_along, self.centre_line
-        return np.array([np.interp(0.0, y, row) for row in line])
+        return at_middle(self.edges, self.centre_line)
+
+    @property
+    def edges(self) -> Array:
+        """Edges (count, m + 1), m, of the cells along y."""
+        return np.broadcast_to(self.cells.y, (self.force.size, self.cells.y.size))
 
     @property
     def greatest(self) -> Array:
@@ -58,35 +66,43 @@ class LengthContact:
 
         Of the centre line, from the last cell in contact.
         """
-        means, lengths = means_at_ends(self.cells.y, self.centre_line, length)
+        means, lengths = means_at_ends(self.edges, self.centre_line, length)
         if not (lengths >= length).all():
             raise ContactError("the contact is shorter than the length of the mean at its end")
         return means
 
 
+def at_middle(edges: Array, line: Array) -> Array:
+    """Pressures (count,) at y = 0, interpolated between the middles of cells.
+
+    edges (count, m + 1), m; line (count, m).
+    """
+    middles = 0.5 * (edges[:, 1:] + edges[:, :-1])
+    return np.array([np.interp(0.0, *row) for row in zip(middles, line, strict=True)])
+
+
 def means_at_ends(edges: Array, line: Array, length: float) -> tuple[Array, Array]:
     """Mean pressures (count, 2), Pa, over the last `length`, m, of contact, and its length, m.
 
-    At small and large y, of pressures (count, m) on cells of edges (m + 1,), m, from the last cell
-    in contact; of the whole contact where that is shorter.
+    At small and large y, of pressures (count, m) on cells of edges (count, m + 1), m, from the last
+    cell in contact; of the whole contact where that is shorter.
     """
-    touching = line > 0
-    first = edges[touching.argmax(axis=1)]
-    last = edges[edges.size - 1 - touching[:, ::-1].argmax(axis=1)]
+    touching, rows = line > 0, np.arange(len(line))
+    first = edges[rows, touching.argmax(axis=1)]
+    last = edges[rows, line.shape[1] - touching[:, ::-1].argmax(axis=1)]
     over = np.minimum(length, last - first)
     primitive = np.cumsum(np.pad(line * np.diff(edges), ((0, 0), (1, 0))), axis=1)
-    rows = np.arange(len(line))
 
     def integral(place: Array) -> Array:
-        left = np.clip(np.searchsorted(edges, place, side="right") - 1, 0, edges.size - 2)
-        return np.asarray(primitive[rows, left] + line[rows, left] * (place - edges[left]))
+        left = np.clip((edges <= place[:, None]).sum(axis=1) - 1, 0, line.shape[1] - 1)
+        return np.asarray(primitive[rows, left] + line[rows, left] * (place - edges[rows, left]))
 
     sums = [integral(first + over) - integral(first), integral(last) - integral(last - over)]
     return np.stack(sums, axis=1) / over[:, None], last - first
 
 
 class SignedPressure(NamedTuple):
-    """Signed pressure (count,), whether it is a mean at a corner, pressure in the middle."""
+    """Signed pressure (count,), whether it is the mean at a corner, pressure in the middle."""
 
     value: Array
     at_corner: NDArray[np.bool_]
@@ -94,27 +110,37 @@ class SignedPressure(NamedTuple):
 
 
 def signed_pressure(
-    edges: Array, line: Array, length: float, *, has_corner: bool
+    edges: Array, line: Array, flat: float, length: float, *, has_corner: bool
 ) -> SignedPressure:
-    """Signed pressure of lines (count, m) on cells of edges (m + 1,), m.
+    """Signed pressure of lines (count, m) on cells of edges (count, m + 1), m.
 
-    Where the greatest pressure is at a corner, the mean at the ends, and the greatest one between
-    them; else the greatest one.
+    Where the greatest pressure is at a corner, the mean at the ends or, if greater, the greatest
+    pressure between them; else the greatest one.
 
     Parameters
     ----------
+    flat : float        length of the line without ends, m
     length : float      of the mean at a corner, m
     has_corner : bool   whether the pressure grows without bound at the ends
     """
     means, _ = means_at_ends(edges, line, length)
-    middles = 0.5 * (edges[1:] + edges[:-1])
-    between = np.abs(middles) <= edges[-1] - length
+    middles = 0.5 * (edges[:, 1:] + edges[:, :-1])
+    between = np.abs(middles) <= 0.5 * flat - length
     most = line.argmax(axis=1)
-    at_corner = ((most == 0) | (most == line.shape[1] - 1)) & has_corner
-    mean = np.maximum(means.max(axis=1), line[:, between].max(axis=1))
-    half = line.shape[1] // 2
-    centre = 0.5 * (line[:, half - 1] + line[:, half])
-    return SignedPressure(np.where(at_corner, mean, line.max(axis=1)), at_corner, centre)
+    peak_at_corner = ((most == 0) | (most == line.shape[1] - 1)) & has_corner
+    mean, bounded = means.max(axis=1), np.where(between, line, 0.0).max(axis=1)
+    greatest = np.where(peak_at_corner, np.maximum(mean, bounded), line.max(axis=1))
+    return SignedPressure(greatest, peak_at_corner & (mean >= bounded), at_middle(edges, line))
+
+
+def rebinned(edges: Array, line: Array, common: Array) -> Array:
+    """Mean pressures (count, k) on the cells of common edges (k + 1,), m; their force remains.
+
+    edges (count, m + 1), m; line (count, m).
+    """
+    total = np.cumsum(np.pad(line * np.diff(edges), ((0, 0), (1, 0))), axis=1)
+    at = np.array([np.interp(common, *row) for row in zip(edges, total, strict=True)])
+    return np.asarray(np.diff(at, axis=1) / np.diff(common))
 
 
 def solve(
@@ -143,7 +169,9 @@ def solve(
     InputError
         If both tilt and moment are prescribed.
     ContactError
-        If a problem has no solution, or the contact reaches the last cells across it.
+        If a problem has no solution.
+    WideContactError
+        If the contact reaches the last cells across it.
     """
     if tilt is not None and moment is not None:
         raise InputError("moment", "prescribed", "left out beside a tilt")
@@ -164,7 +192,7 @@ def solve(
         turned = solution.tilt
     pressure = solution.pressure.reshape(count, *cells.shape)
     if (pressure[:, :, -1] > 0).any():
-        raise ContactError("contact wider than the window of its pressure cells")
+        raise WideContactError("contact wider than the window of its pressure cells")
     return LengthContact(
         cells=cells,
         pressure=pressure,

@@ -68,7 +68,10 @@ _LIGHT_MOMENT = 0.2
 _TILTED = 5.0
 # The same under the light loads of a cycle: at a chamfer the contact is up to 8 times as wide.
 _OVER_CYCLE = 10.0
-_CROWNED_LARGEST, _CROWNED_SHARE = 2e-4, 1.0 / 24.0
+# Sizes along a crowned contact: where a tilt presses an end, a logarithmic crown drops by as much
+# as the indentation within some micrometres.
+_CROWNED_END, _CROWNED_UNIFORM, _CROWNED_GROWTH = 5e-6, 2, 1.8
+_CROWNED_LARGEST, _CROWNED_SHARE = 2e-4, 1.0 / 18.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -133,7 +136,14 @@ def cycle_sizes(pair: FinitePair) -> CellSizes:
     sizes = CellSizes(window=_OVER_CYCLE)
     if isinstance(pair.crown, Straight):
         return sizes
-    return replace(sizes, largest=_CROWNED_LARGEST, largest_share=_CROWNED_SHARE)
+    return replace(
+        sizes,
+        at_end=_CROWNED_END,
+        uniform=_CROWNED_UNIFORM,
+        growth=_CROWNED_GROWTH,
+        largest=_CROWNED_LARGEST,
+        largest_share=_CROWNED_SHARE,
+    )
 
 
 def on_ladder(length: float) -> float:
@@ -226,7 +236,11 @@ def _result(
     factors = [AxialFactors.of(each, [p0], mean_length) for each in refined]
     signed = [
         length_contact.signed_pressure(
-            each.cells.y, each.centre_line / p0, mean_length, has_corner=pair.has_singular_end
+            each.edges,
+            each.centre_line / p0,
+            pair.contact_length,
+            mean_length,
+            has_corner=pair.has_singular_end,
         )
         for each in refined
     ]

@@ -17,9 +17,10 @@ _GAUSS = np.polynomial.legendre.leggauss(5)
 # Uniform cells across the contact up to this multiple of the half-width, coarser ones beyond.
 _UNIFORM = 4.0 / 3.0
 _ACROSS_GROWTH = 1.4
-# Drop of a rounded end, over half-width squared times curvature, up to which there are cells, and
-# cells per radius.
-_ROUNDED, _PER_RADIUS = 4.0, 32
+# Peak at a rounded end: cells over its width per cell over the half-width; widths beyond the flat
+# with cells of that size, and up to which there are cells; narrowest peak over the radius for which
+# the growth of the cells is not exceeded.
+_PER_PEAK, _RESOLVED, _REACH, _NARROWEST = 0.5, 3.0, 7.0, 2e-3
 
 
 @dataclass(frozen=True)
@@ -105,27 +106,87 @@ def pressure_cells(pair: FinitePair, half_width: float, sizes: CellSizes) -> Pre
 
     Beyond the flat they cover a rounded end as far as it may touch, and no chamfer.
     """
+    return PressureCells(edges_across(half_width, sizes), edges_along(pair, half_width, sizes))
+
+
+def edges_across(half_width: float, sizes: CellSizes) -> Array:
+    """Edges (k + 1,), m, of the cells across a contact of a half-width, m."""
     h = half_width / sizes.per_half_width
     x = [h * k for k in range(int(np.ceil(_UNIFORM * sizes.per_half_width)) + 1)]
     while x[-1] < sizes.window * half_width:
         x.append(x[-1] + _ACROSS_GROWTH * (x[-1] - x[-2]))
+    return np.array(x)
+
+
+def edges_along(pair: FinitePair, half_width: float, sizes: CellSizes) -> Array:
+    """Edges (m + 1,), m, of the cells along a contact of a half-width, m, symmetric about 0.
+
+    At a rounded end the cells resolve the width of its peak, which depends on the half-width; their
+    number does not.
+    """
     flat = 0.5 * pair.contact_length
-    radii = [
-        b.end.size for b in pair.bodies if b.end.kind == "radius" and b.flat_length == 2 * flat
-    ]
-    at_end, cells_beyond = sizes.at_end, 0
-    if radii:
-        at_end = min(at_end, min(radii) / _PER_RADIUS)
-        drop = _ROUNDED * half_width**2 * pair.curvature
-        cells_beyond = int(np.ceil(min(np.sqrt(2.0 * min(radii) * drop), *radii) / at_end))
-    fine = min(sizes.uniform * at_end, 0.5 * flat)
-    steps = np.linspace(0.0, fine, sizes.uniform + 1)
     largest = max(sizes.largest, sizes.largest_share * 2.0 * flat)
-    inwards = graded(flat - fine, steps[1] * sizes.growth, sizes.growth, largest)
-    inside = flat - np.concatenate([steps[:-1], fine + inwards])
-    beyond = at_end * np.arange(1, cells_beyond + 1)
-    half = np.concatenate([[0.0], inside[-2::-1], flat + beyond])
-    return PressureCells(np.array(x), np.concatenate([-half[:0:-1], half]))
+    radius = _end_radius(pair)
+    if radius is None:
+        fine = min(sizes.uniform * sizes.at_end, 0.5 * flat)
+        steps = np.linspace(0.0, fine, sizes.uniform + 1)
+        inwards = graded(flat - fine, steps[1] * sizes.growth, sizes.growth, largest)
+        half = np.concatenate(
+            [[0.0], (flat - np.concatenate([steps[:-1], fine + inwards]))[-2::-1]]
+        )
+    else:
+        half = _rounded(flat, radius, rounded_peak(radius, half_width, pair.curvature), sizes)
+    return np.concatenate([-half[:0:-1], half])
+
+
+def rounded_peak(radius: float, half_width: float, curvature: float) -> float:
+    """Width, m, of the pressure peak at a rounded end of a radius, m; half-width m, curvature 1/m.
+
+    Over it the drop of the arc is the difference of the indentation of a half-space under the sharp
+    end of a line contact, which grows with the root of the distance.
+    """
+    drop = 0.5 * half_width * curvature * radius
+    return float(np.cbrt(drop**2 * half_width))
+
+
+def _end_radius(pair: FinitePair) -> float | None:
+    """Radius, m, of the ends of the contact; None where they are not rounded."""
+    radii = [
+        body.end.size
+        for body in pair.bodies
+        if body.end.kind == "radius" and body.flat_length == pair.contact_length
+    ]
+    return min(radii, default=None)
+
+
+def _rounded(flat: float, radius: float, peak: float, sizes: CellSizes) -> Array:
+    """Edges, m, of the half y >= 0 of a flat of half-length `flat` with a rounded end."""
+    per_peak = sizes.per_half_width * _PER_PEAK
+    resolved = int(np.ceil(_RESOLVED * per_peak))
+    beyond = np.arange(resolved + 1) / per_peak
+    while beyond[-1] < _REACH:
+        beyond = np.append(beyond, beyond[-1] + sizes.growth * (beyond[-1] - beyond[-2]))
+    width = min(peak, radius / beyond[-1], 0.25 * flat)
+    # As many cells as the narrowest peak takes, of the growth that fits.
+    largest = max(sizes.largest, sizes.largest_share * 2.0 * flat)
+    count = graded(flat, _NARROWEST * radius / per_peak, sizes.growth, largest).size - 1
+    first = width / per_peak
+    inwards = np.concatenate([[0.0], np.cumsum(_steps(flat, first, count, largest))])
+    return np.asarray(np.concatenate([flat - inwards[::-1], flat + width * beyond[1:]]))
+
+
+def _steps(length: float, first: float, count: int, largest: float) -> Array:
+    """Steps (count,) of a length, m, growing from the first one by one ratio up to the largest."""
+
+    def steps(ratio: float) -> Array:
+        return np.asarray(np.minimum(first * ratio ** np.arange(count), largest))
+
+    low, high = 1.0, 10.0
+    for _ in range(60):
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if steps(middle).sum() < length else (low, middle)
+    fitted = steps(high)
+    return np.asarray(fitted * (length / fitted.sum()))
 
 
 def graded(length: float, first: float, growth: float, largest: float) -> Array:
