@@ -35,6 +35,7 @@ from camwright.pipeline.remedies.levers import (
     BUSH_B,
     CAM_MATERIAL,
     Catalogued,
+    Crowned,
     Drilled,
     Lever,
     Scaled,
@@ -44,6 +45,8 @@ PARTS = (BEARING, CAM_MATERIAL, BUSH_A, BUSH_B)
 """Keys whose value is the name of a card."""
 _DIGITS = 3  # of a value that a designer writes
 _OF_RATING = 0.05  # share of the rating in the change of a bearing; the rest is its dimensions
+_CROWNS = (0.5, 1.0)  # line loads of the first crown over the greatest one
+_HEAVIER = 2.0  # ratio of the drops of a crown and of the next heavier or lighter one
 _SLIGHT = Decimal("1e-9")  # relative: a value is rounded up unless it is one of these digits
 
 
@@ -68,11 +71,13 @@ class Workbench:
 
     Parameters
     ----------
-    folder : Path   None: shipped cards only
+    folder : Path       None: shipped cards only
+    line_load : float   greatest line load of the case, N/m, for which a crown is drawn; None: none
     """
 
     case: Case
     folder: Path | None
+    line_load: float | None = None
 
     def applied(self, changes: Mapping[str, str]) -> Case:
         """The case with the values of a step.
@@ -87,7 +92,7 @@ class Workbench:
         """
         case = self.case
         numbers: dict[str, TomlValue] = {
-            key: value if _unit(quantity_of(key)) else float(value)
+            key: value if _unit(quantity_of(key)) or _is_word(key) else float(value)
             for key, value in changes.items()
             if key not in PARTS
         }
@@ -129,6 +134,8 @@ class Workbench:
         case = self.case
         if isinstance(lever, Drilled):
             return case.cam.counter_hole is None
+        if isinstance(lever, Crowned):
+            return bool(self.crowns(lever))
         if isinstance(lever, Catalogued):
             if lever.key == BEARING:
                 return case.roller_given is not None and case.scope.covers("roller_bearing")
@@ -187,6 +194,31 @@ class Workbench:
         """Step of a counter-hole; as a change it is the smallest one."""
         return Step({lever.key: units.format(BalanceHole().wall, "mm")}, 0.0)
 
+    def crowns(self, lever: Crowned) -> list[Step]:
+        """Steps of the crown of the follower, as a change the smallest ones.
+
+        None without the ends of both bodies, or where a table or a standard states the crown.
+        """
+        facing = self.case.facing
+        key, crown = f"{facing.table}.crown", facing.crown
+        if self.case.cam.end is None or facing.end is None:
+            return []
+        if crown is None:
+            if self.line_load is None or not lever.first:
+                return []
+            at = f"{key}.line_load"
+            texts = [_rounded(at, share * self.line_load, 1) for share in _CROWNS]
+            return [Step({f"{key}.kind": "johns_gohar", at: text}, 0.0) for text in texts]
+        for name, value in (("radius", crown.radius), ("line_load", crown.line_load)):
+            if value is not None:
+                at = f"{key}.{name}"
+                ratios = ((1.0 / _HEAVIER, -1), (_HEAVIER, 1))
+                return [
+                    Step({at: _rounded(at, value * ratio, side)}, math.log(_HEAVIER))
+                    for ratio, side in ratios
+                ]
+        return []
+
     def _numbers(self, keys: tuple[str, ...]) -> dict[str, float]:
         """Numbers of the case at the keys that it has, SI."""
         numbers: dict[str, float] = {}
@@ -239,6 +271,11 @@ def without_exponent(value: float, unit: str, digits: int = 4) -> str:
 
 def _unit(quantity: In | Count | None) -> str:
     return quantity.unit if isinstance(quantity, In) else ""
+
+
+def _is_word(key: str) -> bool:
+    """Whether the value of a key is a word."""
+    return key.endswith(".kind")
 
 
 def _read(key: str, text: str) -> float:

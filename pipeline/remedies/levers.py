@@ -61,7 +61,19 @@ class Drilled:
     key: str = COUNTER_HOLE
 
 
-Lever: TypeAlias = Scaled | Catalogued | Drilled
+@dataclass(frozen=True)
+class Crowned:
+    """A crown of the follower whose drop relieves the ends; of a crowned one twice and half of it.
+
+    Parameters
+    ----------
+    first : bool   a straight follower is crowned, too
+    """
+
+    first: bool
+
+
+Lever: TypeAlias = Scaled | Catalogued | Drilled | Crowned
 
 _DRAWN = ("none", "moving_average", "gaussian", "harmonic", "savitzky_golay", "smoothing_spline")
 _COMPENSATION_MOST = 20.0  # one twentieth of the torque is next to no cam
@@ -99,6 +111,10 @@ _RADIUS = Scaled(("roller.radius",), 1, along=("cam.prime_radius", "follower.ove
 _WIDTH = Scaled(("cam.width", "roller.width", "roller.pin.span", "follower.face.depth"), 1)
 # A cam that ends within the flat of the follower has a lower pressure at its ends.
 _NARROWER = Scaled(("cam.width", "cam.key.length"), -1, 1.25)
+_PRESSED = Catalogued(BEARING, "C0")
+LENGTHS: tuple[Scaled | Catalogued, ...] = (_WIDTH, _NARROWER, _PRESSED)
+"""Levers of the length of contact: with a crown each step is a pair of bodies with a new table."""
+_CROWNED, _RECROWNED = Crowned(first=True), Crowned(first=False)
 _OVERHANG = _one("follower.overhang_at_max_lift", -1, 2.0)
 _SPACING = _one("guides.spacing", most=2.0)
 _LENGTH_A, _LENGTH_B = _one("guides.a.length", most=2.5), _one("guides.b.length", most=2.5)
@@ -116,7 +132,7 @@ _JAM: tuple[Lever, ...] = (
 )
 _LOAD = (_PRIME, _OVERHANG, _LENGTH_A, *_GENTLER)
 _SHAPE = (_PRIME, *_GENTLER)
-_PRESSURE: tuple[Lever, ...] = (_WIDTH, _RADIUS, _PRIME, Catalogued(BEARING, "C0"), *_GENTLER)
+_PRESSURE: tuple[Lever, ...] = (_WIDTH, _RADIUS, _PRIME, _PRESSED, *_GENTLER)
 _ENDURANCE: tuple[Lever, ...] = (Catalogued(CAM_MATERIAL, "endurance_pressure"), *_PRESSURE)
 _YIELD: tuple[Lever, ...] = (Catalogued(CAM_MATERIAL, "yield_strength"), *_PRESSURE)
 _CASE: tuple[Lever, ...] = (_one("materials.{cam}.case_depth"), *_PRESSURE)
@@ -173,10 +189,12 @@ LEVERS: Mapping[str, tuple[Lever, ...]] = {
     ),
     "jam_index": _JAM,
     "jam_index_friction_max": _JAM,
-    "contact_pressure": _ENDURANCE,
-    **dict.fromkeys(("edge_pressure", "contact_pressure_at_life"), (_NARROWER, *_ENDURANCE)),
-    **dict.fromkeys(("shakedown", "shakedown_traction"), _YIELD),
-    "edge_shakedown": (_NARROWER, *_YIELD),
+    "contact_pressure": (_RECROWNED, *_ENDURANCE),
+    **dict.fromkeys(
+        ("edge_pressure", "contact_pressure_at_life"), (_CROWNED, _NARROWER, *_ENDURANCE)
+    ),
+    **dict.fromkeys(("shakedown", "shakedown_traction"), (_RECROWNED, *_YIELD)),
+    "edge_shakedown": (_CROWNED, _NARROWER, *_YIELD),
     **dict.fromkeys(("hardened_case", "case_shear", "case_depth"), _CASE),
     "roller_static": (Catalogued(BEARING, "C0", inverse=True), *_LOAD),
     "roller_load_share": (Catalogued(BEARING, "C", inverse=True), *_LOAD),

@@ -28,7 +28,15 @@ from camwright.pipeline.checks.registry import DECLARED
 from camwright.pipeline.follower.follower_forces import LEAVES, LOCKS
 from camwright.pipeline.remedies.case_judge import Judge, Preview, effects, newly_failing, used
 from camwright.pipeline.remedies.lever_steps import Step, Workbench, without_exponent
-from camwright.pipeline.remedies.levers import LEVERS, Catalogued, Drilled, Lever, Scaled
+from camwright.pipeline.remedies.levers import (
+    LENGTHS,
+    LEVERS,
+    Catalogued,
+    Crowned,
+    Drilled,
+    Lever,
+    Scaled,
+)
 from camwright.pipeline.remedies.remedy import Remedy
 from camwright.pipeline.results.trial import Trial
 
@@ -39,6 +47,8 @@ LEVELS = (0.15, 0.4, 0.8, math.log(4.0), 2.0, 3.0)
 """Sizes of the steps, |ln| of the factor on a value."""
 _ALIKE = 1.1  # ratio of two sizes that count as equal: the side effects then decide
 _TRIES = 3  # levers verified for a check
+_COARSE = (0.4, math.log(4.0))  # levels of the width of a crowned contact, each a new table
+_COARSE_PREVIEWS = 2
 _REFINED = 1  # interpolations between two steps, at most
 _PREVIEWS = 5  # of one lever for a check, at most
 _ENOUGH = 0.9  # utilisation of a change that is small enough
@@ -204,7 +214,14 @@ def remedies(
     corners = {each.check: each.corners for each in known.values()}
     judge = Judge(engine_torques(case), lift, corners)
     base = judge.preview(case, known, undercut=True)
-    return _Search(Workbench(case, cards), judge, base, wanted).remedies()
+    bench = Workbench(case, cards, _greatest_line_load(base))
+    return _Search(bench, judge, base, wanted).remedies()
+
+
+def _greatest_line_load(base: Preview) -> float | None:
+    """Greatest line load of the cycles whose loads hold, N/m; None: none holds."""
+    held = [cycle.contact.line_load for cycle in base.solved.cycles if cycle.loads.end is None]
+    return max((float(np.nanmax(each)) for each in held), default=None)
 
 
 class _Seen(NamedTuple):
@@ -312,16 +329,31 @@ class _Search:
         """Steps of a lever with a size above `below`, up to a level."""
         if isinstance(lever, Scaled):
             most = math.log(lever.most)
-            if below < most:
+            if below < most and (level in _COARSE or not self._is_coarse(lever)):
                 yield self.bench.scaled(lever, min(level, most))
         elif isinstance(lever, Drilled):
             if below == 0.0:
                 yield self.bench.drilled(lever)
+        elif isinstance(lever, Crowned):
+            if below == 0.0:
+                yield from self.bench.crowns(lever)
         else:
             low, top = _ALIKE * below, _ALIKE * level
-            for step in self.bench.cards(lever):
-                if (low < step.size or low == step.size == 0.0) and step.size <= top:
-                    yield step
+            steps = [
+                step
+                for step in self.bench.cards(lever)
+                if (low < step.size or low == step.size == 0.0) and step.size <= top
+            ]
+            yield from steps[:1] if self._is_coarse(lever) else steps
+
+    def _is_coarse(self, lever: Scaled | Catalogued) -> bool:
+        """Whether each step of a lever is a new table of the pressure along the line.
+
+        Of its steps fewer are tried.
+        """
+        case = self.bench.case
+        crowned = case.cam.crown is not None or case.facing.crown is not None
+        return crowned and lever in LENGTHS
 
     def _used(self, step: Step, names: Sequence[str]) -> dict[str, float]:
         """Utilisations with a step; infinite where the case has no such cam."""
@@ -366,8 +398,9 @@ class _Search:
             return None if preview is None else self._at_every_corner(name, way.below.step, preview)
         above, below = way.above, way.below
         best: tuple[Step, Preview] | None = None
-        size = self._refined(name, way, way.lever)
-        for _ in range(_PREVIEWS):
+        is_coarse = self._is_coarse(way.lever)
+        size = way.size if is_coarse else self._refined(name, way, way.lever)
+        for _ in range(_COARSE_PREVIEWS if is_coarse else _PREVIEWS):
             step = self.bench.scaled(way.lever, size)
             preview = self._preview(name, step)
             value = math.inf if preview is None else self._judged(name, preview)

@@ -23,6 +23,7 @@ from camwright.pipeline.remedies.levers import (
     CAM_MATERIAL,
     LEVERS,
     Catalogued,
+    Crowned,
     Drilled,
     Scaled,
 )
@@ -145,6 +146,34 @@ def test_a_counter_hole_is_drilled_once(bench: Workbench) -> None:
     drilled = bench.applied(bench.drilled(Drilled()).changes)
     assert drilled.cam.counter_hole is not None
     assert not Workbench(drilled, None).acts(Drilled())
+
+
+@pytest.mark.parametrize(
+    ("file", "key"), [("gx120", "roller.crown"), ("gx120-flat-face", "follower.face.crown")]
+)
+def test_a_straight_follower_is_crowned_for_its_line_load(file: str, key: str) -> None:
+    case = read_case(GX120.with_name(f"{file}.toml"))
+    first, again = Crowned(first=True), Crowned(first=False)
+    bench = Workbench(case, None, line_load=120.04e3)
+    loads = [step.changes[f"{key}.line_load"] for step in bench.crowns(first)]
+    assert loads == ["60.1 N/mm", "121 N/mm"]
+    assert bench.acts(first) and not bench.acts(again)
+    assert not Workbench(case, None).acts(first)
+    crowned = bench.tried(bench.crowns(first)[1].changes)
+    assert crowned.facing.crown is not None
+    assert (crowned.facing.crown.kind, crowned.facing.crown.line_load) == ("johns_gohar", 121e3)
+
+
+def test_a_crown_is_made_lighter_and_heavier(case: Case) -> None:
+    key = "roller.crown.radius"
+    crowned = with_values(case, {"roller.crown.kind": "circular", key: "500 mm"})
+    bench = Workbench(crowned, None, line_load=120e3)
+    for lever in (Crowned(first=True), Crowned(first=False)):
+        steps = bench.crowns(lever)
+        assert [step.changes for step in steps] == [{key: "250 mm"}, {key: "1000 mm"}]
+        assert {step.size for step in steps} == {math.log(2.0)}
+    standard = with_values(case, {"roller.crown.kind": "iso16281"})
+    assert not Workbench(standard, None, line_load=120e3).acts(Crowned(first=True))
 
 
 def test_a_value_that_does_not_fit_is_refused(bench: Workbench) -> None:

@@ -8,11 +8,13 @@ from __future__ import annotations
 
 import math
 import re
+import tomllib
 from pathlib import Path
 
 import pytest
+from small_machine import small_machine
 
-from camwright.pipeline.case.case_file import read_case
+from camwright.pipeline.case.case_file import case_of, read_case, with_values
 from camwright.pipeline.preview import preview_case
 from camwright.pipeline.remedies.lever_steps import Workbench
 from camwright.pipeline.remedies.levers import LEVERS
@@ -90,6 +92,19 @@ def test_further_remedies_of_the_gx120_hold(texts: dict[str, str]) -> None:
     others = [name for name, text in texts.items() if NONE not in text and name not in CURED]
     for name in others:
         assert_cures(name, texts[name])
+
+
+@pytest.mark.slow
+def test_a_crown_cures_the_pressure_at_the_ends() -> None:
+    narrow = {"cam.width": "7 mm", "roller.width": "7 mm"}
+    case = with_values(case_of(tomllib.loads(small_machine("narrow"))), narrow)
+    failing = [one for one in failures_of(preview_case(case)) if one.check == "edge_pressure"]
+    (remedy,) = remedies(case, None, None, failing).values()
+    changes = changes_in(remedy.text)
+    assert list(changes) == ["roller.crown.kind", "roller.crown.line_load"]
+    crowned = preview_case(Workbench(case, None).applied(changes))
+    status = {one.id: one.status for one in crowned.checks}
+    assert (status["edge_pressure"], status["contact_pressure"]) == ("pass", "pass")
 
 
 @pytest.mark.slow
