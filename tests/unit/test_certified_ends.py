@@ -89,9 +89,9 @@ def test_record_of_both_tiers(trial):
 
 
 def with_ends(**keys):
-    """The case of every part on coarse finite elements."""
+    """The case of every part on coarse finite elements, certified at one angle besides."""
     case = read_case("tests/data/every_part.toml")
-    solver = case.solver.model_copy(update={"end_elements": 2} | keys)
+    solver = case.solver.model_copy(update={"end_elements": 2, "certificate_positions": 1} | keys)
     return cw.synthesize(case.model_copy(update={"solver": solver}))
 
 
