@@ -47,7 +47,7 @@ LEVELS = (0.15, 0.4, 0.8, math.log(4.0), 2.0, 3.0)
 """Sizes of the steps, |ln| of the factor on a value."""
 _ALIKE = 1.1  # ratio of two sizes that count as equal: the side effects then decide
 _TRIES = 3  # levers verified for a check
-_COARSE = (0.4, math.log(4.0))  # levels of the width of a crowned contact, each a new table
+_COARSE = (0.4, math.log(4.0))  # levels of the length of a crowned contact, each a new table
 _COARSE_PREVIEWS = 2
 _REFINED = 1  # interpolations between two steps, at most
 _PREVIEWS = 5  # of one lever for a check, at most
@@ -344,7 +344,10 @@ class _Search:
                 for step in self.bench.cards(lever)
                 if (low < step.size or low == step.size == 0.0) and step.size <= top
             ]
-            yield from steps[:1] if self._is_coarse(lever) else steps
+            if not self._is_coarse(lever):
+                yield from steps
+            elif level <= _COARSE[-1]:
+                yield from steps[:1]
 
     def _is_coarse(self, lever: Scaled | Catalogued) -> bool:
         """Whether each step of a lever is a new table of the pressure along the line.
