@@ -71,7 +71,9 @@ def crown(
     except InputError as error:
         if error.field not in _OPTIONS:
             raise
-        raise InputError(f"--{error.field}", error.value, error.limit) from None
+        limit = error.limit.replace("_", "-") if error.field == "kind" else error.limit
+        value = kind if error.field == "kind" else error.value
+        raise InputError(f"--{error.field}", value, limit) from None
     record = crown_record(design)
     if as_json:
         show_json(record)

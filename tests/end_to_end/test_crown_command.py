@@ -59,6 +59,8 @@ def test_bad_options_are_named(options, field):
     with pytest.raises(InputError) as refused:
         crown(GX120, **options)
     assert refused.value.field == field
+    if field == "--kind":
+        assert "johns-gohar" in refused.value.limit
 
 
 def test_a_folder_with_files_is_not_overwritten(tmp_path):
