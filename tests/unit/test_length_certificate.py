@@ -125,3 +125,18 @@ def test_lengths_on_the_ladder_are_the_next_larger():
     rungs = np.array([on_ladder(length) for length in lengths])
     assert ((rungs >= lengths) & (rungs < 1.1001 * lengths)).all()
     assert on_ladder(on_ladder(3.3e-5)) == on_ladder(3.3e-5)
+
+
+def test_scatter_of_cells_too_wide_for_the_contact_is_not_that_of_the_blocks():
+    # Coarse cells err by 7, 0.1 and 0.5 %; what the blocks add converges by the first order.
+    cells, blocks = np.array([1.07, 0.999, 1.005]), 1.0 + 0.001 * np.array([2.25, 1.5, 1.0])
+    values, halves = 0.98 * cells * blocks, 0.99 * np.append(cells, 1.0)
+    plain, freed = (length_tiers._converged(values, each) for each in (None, halves))
+    assert plain.gci > 0.2
+    assert freed.values == plain.values
+    assert freed.extrapolated == pytest.approx(0.98, rel=1e-4)
+    error = abs(freed.values[-1] / 0.98 - 1.0)
+    assert error < freed.gci < 0.01
+    # An observed order is that of the blocks and stays.
+    smooth = 0.98 * blocks
+    assert length_tiers._converged(smooth, halves) == length_tiers._converged(smooth, None)

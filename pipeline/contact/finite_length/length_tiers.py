@@ -200,13 +200,16 @@ def both_tiers(
     if moment is not None and abs(moment) > _LIGHT_MOMENT * force * pair.contact_length:
         sizes = replace(sizes, window=max(sizes.window, _TILTED))
     pair = with_depths_on_ladder(pair)
-    meshes = meshes_of(pair, mesh_half_width or half_width, sizes)
+    mesh_width = mesh_half_width or half_width
+    meshes = meshes_of(pair, mesh_width, sizes)
     blocks, unknowns = [], 0
     for cells in meshes[:-1]:
         compliance, unknowns = block_compliance(cells, pair.bodies, condensed)
         gap = cells.integrated_gap(pair)
         blocks.append(length_contact.solve(cells, compliance, gap, force, tilt=tilt, moment=moment))
     balanced = float(blocks[-1].moment[0])
+    wide = on_ladder(mesh_width) / half_width
+    fitted = replace(sizes.coarser(1.0 / _REFINEMENT), window=wide * sizes.window)
     halves = [
         length_contact.solve(
             cells,
@@ -215,46 +218,86 @@ def both_tiers(
             force,
             moment=balanced,
         )
-        for cells in meshes[1:]
+        for cells in (*meshes, pressure_cells(pair, half_width, fitted))
     ]
+    lines = [_SignedLine.of(each, pair, p0, mean_length) for each in halves]
+    by_blocks = [_SignedLine.of(each, pair, p0, mean_length) for each in blocks]
     return (
-        _result("half_space", pair, halves[1], halves, p0, mean_length, 2 * meshes[2].areas.size),
-        _result("finite_elements", pair, blocks[-1], blocks, p0, mean_length, unknowns),
+        _result("half_space", lines[1:-1], 1, 2 * meshes[2].areas.size),
+        _result("finite_elements", by_blocks, 2, unknowns, (*lines[:3], lines[-1])),
     )
 
 
-def _result(
-    tier: TierName,
-    pair: FinitePair,
-    contact: LengthContact,
-    refined: Sequence[LengthContact],
-    p0: float,
-    mean_length: float,
-    unknowns: int,
-) -> TierResult:
-    """Result of a contact with those on three meshes, coarse to fine, over p0, Pa."""
-    factors = [AxialFactors.of(each, [p0], mean_length) for each in refined]
-    signed = [
-        length_contact.signed_pressure(
-            each.edges,
-            each.centre_line / p0,
+@dataclass(frozen=True, eq=False)
+class _SignedLine:
+    """One contact on one mesh: factors over plane strain; signed pressure, whether a mean."""
+
+    contact: LengthContact
+    factors: AxialFactors
+    signed: float
+    at_corner: bool
+
+    @classmethod
+    def of(
+        cls, contact: LengthContact, pair: FinitePair, p0: float, mean_length: float
+    ) -> _SignedLine:
+        """Pressures of a contact over p0, Pa."""
+        signed = length_contact.signed_pressure(
+            contact.edges,
+            contact.centre_line / p0,
             pair.contact_length,
             mean_length,
             has_corner=pair.has_singular_end,
         )
-        for each in refined
-    ]
-    columns = np.concatenate([each.all for each in factors]).T.tolist()
+        factors = AxialFactors.of(contact, [p0], mean_length)
+        return cls(contact, factors, float(signed.value[0]), bool(signed.at_corner[0]))
+
+    @property
+    def values(self) -> Array:
+        """Factors and signed pressure (5,)."""
+        return np.append(self.factors.all[0], self.signed)
+
+
+def _result(
+    tier: TierName,
+    lines: Sequence[_SignedLine],
+    place: int,
+    unknowns: int,
+    halves: Sequence[_SignedLine] = (),
+) -> TierResult:
+    """Result of a contact on the mesh `place` of three, coarse to fine.
+
+    halves : sequence   by half-spaces on the same cells and on finer ones that fit the contact
+    """
+    values = np.array([each.values for each in lines]).T
+    beside = np.array([each.values for each in halves]).T if halves else [None] * len(values)
+    *factors, signed = (_converged(*each) for each in zip(values, beside, strict=True))
     return TierResult(
         tier,
-        contact,
-        factors[-1],
-        tuple(converged(values, _REFINEMENT) for values in columns),
-        converged([float(each.value[0]) for each in signed], _REFINEMENT),
-        bool(signed[-1].at_corner[0]),
+        lines[place].contact,
+        lines[-1].factors,
+        tuple(factors),
+        signed,
+        lines[-1].at_corner,
         unknowns,
-        refined[-2],
+        lines[-2].contact,
     )
+
+
+def _converged(values: Array, halves: Array | None) -> Convergence:
+    """Convergence of a pressure on three meshes.
+
+    Cells wider than the contact needs scatter it, and err alike in both tiers: of values without an
+    observed order, the error of the half-spaces on the same cells is taken off before the bar is
+    taken, and added to it; the lesser bar holds.
+    """
+    plain = converged(values.tolist(), _REFINEMENT)
+    if halves is None or plain.order is not None:
+        return plain
+    corrected = values * halves[-1] / halves[:-1]
+    freed = converged(corrected.tolist(), _REFINEMENT)
+    bar = freed.gci + abs(float(corrected[-1] / values[-1]) - 1.0)
+    return plain if plain.gci <= bar else replace(freed, values=plain.values, gci=bar)
 
 
 def with_depths_on_ladder(pair: FinitePair) -> FinitePair:
