@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from camwright.geometry.arrays import FULL_TURN, Array, uniform_turn
+from camwright.geometry.errors import InputError
 
 Function = Callable[[Array], Array]
 
@@ -17,6 +18,9 @@ _ZOOMS = 7
 """Each zoom keeps a sixteenth of the bracket: 7 leave 4e-9 of it, whose square is round-off."""
 
 _MINIMA_MAX = 256
+
+_CLOSINGS = 5
+"""3e-8 of the range is left, on which a smooth function is a line but for round-off."""
 
 _GOLDEN = 0.5 * (np.sqrt(5.0) - 1.0)
 _SECTIONS = 50
@@ -127,6 +131,32 @@ def sampled_greatest(values: Array) -> Array:
 def sampled_least(values: Array) -> Array:
     """Minima (...) of smooth periodic functions; see `sampled_greatest`."""
     return -sampled_greatest(-values)
+
+
+def zero_argument(function: Function, low: float, high: float) -> float:
+    """Argument of the only zero of a smooth function between two bounds, of different signs there.
+
+    By 33 points, of which the two on either side of the zero are the next bounds; at last by the
+    line through them.
+
+    Parameters
+    ----------
+    function : callable    (k,) -> (k,)
+
+    Raises
+    ------
+    InputError
+        If the signs are equal.
+    """
+    ends = np.array([low, high], dtype=float)
+    for _ in range(_CLOSINGS):
+        places = 0.5 * (ends[0] + ends[1]) + 0.5 * (ends[1] - ends[0]) * _ZOOM_POINTS
+        values = function(places)
+        after = int(np.argmax(np.sign(values) != np.sign(values[0])))
+        if after == 0:
+            raise InputError("values at both bounds", float(values[0]), "of different signs")
+        ends, sides = places[after - 1 : after + 1], values[after - 1 : after + 1]
+    return float(ends[0] - sides[0] * (ends[1] - ends[0]) / (sides[1] - sides[0]))
 
 
 def least_argument(

@@ -10,6 +10,8 @@ import numpy as np
 from camwright.geometry.arrays import FULL_TURN, Array, positive, rotation
 from camwright.geometry.cutouts import HoleLike, KeywayLike
 from camwright.geometry.errors import GeometryError, InputError, in_millimetres
+from camwright.geometry.extrema import least_argument, zero_argument
+from camwright.geometry.monotone_cubic import MonotoneCubic
 from camwright.meshes.element_size import EDGES_PER_TURN, SizeField, Sizing
 from camwright.meshes.outline import Piece, Zone, arc, line
 
@@ -70,9 +72,7 @@ def contour_piece(path: Trace, sizing: Sizing) -> Piece:
     InputError
         If the contact point does not lie on the contour.
     """
-    from scipy.interpolate import PchipInterpolator
-
-    theta_of = PchipInterpolator(path.arc_length, path.theta)
+    theta_of = MonotoneCubic(path.arc_length, path.theta)
 
     def at(s: Array) -> Array:
         return path.contour.points(theta_of(np.mod(s, path.length)))
@@ -80,7 +80,7 @@ def contour_piece(path: Trace, sizing: Sizing) -> Piece:
     zone = None
     if sizing.contact_size is not None and sizing.contact_point is not None:
         theta = _foot(path, sizing.contact_point, sizing.contact_extent + sizing.contact_size)
-        inverse = PchipInterpolator(path.theta, path.arc_length)
+        inverse = MonotoneCubic(path.theta, path.arc_length)
         centre = float(inverse(theta)) + sizing.phase * sizing.contact_size
         zone = Zone(centre, sizing.contact_size, sizing.steps)
     return Piece("contour", at, path.length, zone, closed=True)
@@ -88,19 +88,16 @@ def contour_piece(path: Trace, sizing: Sizing) -> Piece:
 
 def _foot(path: Trace, point: Array, tolerance: float) -> float:
     """Cam angle, rad, of the contour point nearest to `point`, at most `tolerance` (m) from it."""
-    from scipy.optimize import brentq
-
     squared = ((path.points - point[:, None]) ** 2).sum(axis=0)
     near = path.theta[int(np.argmin(squared))]
     step = 2.0 * FULL_TURN / _SAMPLES
 
-    def along(theta: float) -> float:
-        here = np.array([theta])
-        normal = path.contour.normal(here)[:, 0]
-        offset = path.contour.points(here)[:, 0] - point
-        return float(normal[0] * offset[1] - normal[1] * offset[0])
+    def along(theta: Array) -> Array:
+        offset = path.contour.points(theta) - point[:, None]
+        normal = path.contour.normal(theta)
+        return np.asarray(normal[0] * offset[1] - normal[1] * offset[0])
 
-    theta = float(brentq(along, near - step, near + step, xtol=1e-15))
+    theta = zero_argument(along, near - step, near + step)
     distance = float(np.hypot(*(path.contour.points(np.array([theta]))[:, 0] - point)))
     if not distance <= tolerance:
         raise InputError(
@@ -175,18 +172,14 @@ def least_wall(path: Trace, bore_radius: float, keyway: KeywayLike | None) -> tu
 
     Negative where the bore or the keyway crosses the contour.
     """
-    from scipy.optimize import minimize_scalar
-
     # rounded: on a dwell all are equal but for round-off, and the first is taken
     worst = int(np.argmin(np.round(wall_at(path.points, bore_radius, keyway), _WALL_DECIMALS)))
     step = FULL_TURN / _SAMPLES
-    nearest = minimize_scalar(
-        lambda theta: wall_at(path.contour.points(np.array([theta])), bore_radius, keyway)[0],
-        bounds=(path.theta[worst] - step, path.theta[worst] + step),
-        method="bounded",
-        options={"xatol": 1e-12},
-    )
-    wall = float(nearest.fun)
+
+    def wall_of(theta: float) -> float:
+        return float(wall_at(path.contour.points(np.array([theta])), bore_radius, keyway)[0])
+
+    wall = wall_of(least_argument(wall_of, path.theta[worst] - step, path.theta[worst] + step))
     if not _winds_around_origin(path.points):
         wall = -bore_radius
     return wall, path.points[:, worst]

@@ -79,6 +79,7 @@ _COMMON = {
     "MJ": _common("1e6", 1, 2, -2),
     "W": _common("1", 1, 2, -3),
     "kW": _common("1e3", 1, 2, -3),
+    "percent": _common("1e-2"),
 }
 """Units read without pint. Reciprocals, products and powers of them are, too."""
 _CELSIUS, _ZERO_CELSIUS = "degC", Decimal("273.15")

@@ -3,7 +3,14 @@
 import numpy as np
 import pytest
 
-from camwright.geometry.extrema import greatest, least, local_minima, sampled_greatest
+from camwright.geometry.errors import InputError
+from camwright.geometry.extrema import (
+    greatest,
+    least,
+    local_minima,
+    sampled_greatest,
+    zero_argument,
+)
 
 
 @pytest.mark.parametrize("place", [0.0, 1e-9, 1.234567, 3.0, 6.28])
@@ -74,3 +81,31 @@ def test_a_kink_between_samples_is_bounded_by_its_sides() -> None:
     place = np.arange(-20.0, 20.0)
     values = np.where(place <= 0.4, place, 0.4 - 3.0 * (place - 0.4))
     assert 0.0 <= sampled_greatest(values) <= 0.4 + 1e-12
+
+
+@pytest.mark.parametrize("zero", [0.4999, 0.5, 0.500123456789, 0.52])
+def test_zero_of_a_smooth_function(zero):
+    def function(theta):
+        return np.sin(theta - zero) * (2.0 + np.cos(5.0 * theta))
+
+    assert zero_argument(function, 0.4999, 0.52) == pytest.approx(zero, abs=2e-16)
+
+
+def test_zero_needs_a_change_of_sign():
+    with pytest.raises(InputError, match="different signs"):
+        zero_argument(lambda theta: 1.0 + theta**2, -1.0, 1.0)
+
+
+def test_lowest_of_several_minima_beside_a_plateau():
+    """Brackets that cannot hold the lowest minimum are left out; the plateau is not the lowest."""
+
+    def function(theta):
+        return np.minimum(0.0, 0.5 - np.cos(theta - 1.0)) - 1e-9 * np.cos(3.0 * theta)
+
+    every, _ = local_minima(function, 720)
+    best = least(function, 720)
+    assert best.value == every.min()
+    assert best.value == pytest.approx(-0.5, abs=2e-9)
+    assert best.theta == pytest.approx(1.0, abs=1e-6)
+    few, _ = local_minima(function, 720, lowest=True)
+    assert len(few) < len(every)
