@@ -164,7 +164,7 @@ TARGET_LIFE = OpenLimit(
 )  # fmt: skip
 END_MEAN_LENGTH = Limit(
     "end_mean_length", "length of the mean pressure at an end with a corner",
-    In("mm", above=0, at_most=10), 1e-4,
+    In("mm", at_least=0.02, at_most=10), 1e-4,
     "0.1 mm, about a half-width of contact: the mean over it does not depend on the mesh",
 )  # fmt: skip
 WAVINESS = Limit(

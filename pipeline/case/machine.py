@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from camwright.geometry.display import Displayed
+from camwright.geometry.errors import InputError
 from camwright.pipeline.base.external_force import ExternalForce
 from camwright.pipeline.base.material import Material
 from camwright.pipeline.case.case import Case
@@ -284,6 +285,11 @@ class Machine(Displayed):
             "cam": (self.cam.crown, self.cam_drops),
             self.follower.word: (self.follower.crown, self.follower_drops),
         }
+        if self._axial_offset:
+            for word, (shape, drops) in shapes.items():
+                if shape is not None and drops is not None and not drops.is_symmetric:
+                    limit = "a drop alike on both sides at an axial offset"
+                    raise InputError(f"{word}.crown.file", shape.file, limit)
         return {
             word: crown_of(shape, place, drops)
             for word, (shape, drops) in shapes.items()

@@ -170,6 +170,29 @@ def test_a_crown_comes_from_its_table(tmp_path):
     assert case.included["inputs/crown.csv"].startswith(b"y_mm")
 
 
+@pytest.mark.parametrize(("left", "is_refused"), [(10, False), (0, True)])
+def test_a_one_sided_table_is_refused_at_an_axial_offset(tmp_path, left, is_refused):
+    (tmp_path / "crown.csv").write_text(f"y_mm,drop_um\n-4,{left}\n0,0\n4,10\n")
+    text = (CASES / "gx120.toml").read_text()
+    text += '\n[roller.crown]\nkind = "table"\nfile = "crown.csv"\n'
+    (tmp_path / "case.toml").write_text(text)
+    case = read_case(tmp_path / "case.toml")
+    assert len(machine(case, case.load_cases[0]).finite_pairs) == 1
+    beside = with_values(case, {"roller.axial_offset": "0.1 mm"})
+    made = machine(beside, beside.load_cases[0])
+    if is_refused:
+        with pytest.raises(InputError, match=r"roller.crown.file = .*both sides at an axial"):
+            made.finite_pairs  # noqa: B018
+    else:
+        assert len(made.finite_pairs) == 2
+
+
+@pytest.mark.parametrize("length", ["0.019 mm", "10.1 mm"])
+def test_a_mean_of_less_than_a_cell_or_more_than_an_end_is_refused(length):
+    with pytest.raises(InputError, match=r"limits\.end_mean_length"):
+        case_with(limits__end_mean_length=length)
+
+
 def test_a_table_without_its_columns_is_refused(tmp_path):
     (tmp_path / "crown.csv").write_text("y_mm,drop\n0,0\n1,1\n")
     assert "drop_um" not in read_table(tmp_path / "crown.csv")

@@ -222,6 +222,23 @@ def test_ten_thousand_contacts_take_a_tenth_of_a_second():
 
 
 @pytest.mark.parametrize(
+    "finite",
+    [pair(8e-3), pytest.param(pair(crown=CROWN), marks=pytest.mark.slow)],
+    ids=["overhang", "johns-gohar"],
+)
+def test_a_turn_with_tilt_takes_at_most_ten_seconds(finite, monkeypatch):
+    monkeypatch.setenv("CAMWRIGHT_NO_CACHE", "1")
+    theta = np.linspace(0.0, 2 * np.pi, 720)
+    force = (30e3 + 90e3 * (1 + np.cos(theta))) * finite.contact_length
+    curvature = CURVATURE * (1 + 0.3 * np.sin(theta))
+    table, start = factor_table(finite, MEAN_LENGTH), time.process_time()
+    moment = table.moment_at_tilt(curvature, force, 5e-4, 0.2 * force * finite.contact_length)
+    tilted = table.factors(curvature, force, moment)
+    assert time.process_time() - start < 10.0
+    assert (tilted.greatest > table.factors(curvature, force).greatest).all()
+
+
+@pytest.mark.parametrize(
     ("arguments", "field"),
     [
         ((0.0, 500.0, 0.0), "curvature"),

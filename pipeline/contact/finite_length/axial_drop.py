@@ -169,6 +169,14 @@ class TabulatedCrown:
             raise InputError("crown.y", end, "at least half the length of contact")
         return np.interp(self._place(y), self.y, self.table)
 
+    @property
+    def is_symmetric(self) -> bool:
+        """Whether the drop is alike on both sides."""
+        mirrored = np.interp(-self.y, self.y, self.table)
+        within = np.abs(self.y) <= min(-self.y[0], self.y[-1])
+        scale = 1e-9 * float(np.abs(self.table).max())
+        return bool(self.y[0] == 0 or (np.abs(self.table - mirrored)[within] <= scale).all())
+
     def is_stated(self, y: Array) -> NDArray[np.bool_]:
         """Whether the table reaches axial coordinates (...), m."""
         place = self._place(y)

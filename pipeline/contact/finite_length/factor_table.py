@@ -20,7 +20,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from camwright.geometry.arrays import Array, readonly
 from camwright.geometry.errors import InputError
-from camwright.pipeline.base import disk_cache
+from camwright.pipeline.base import disk_cache, units
 from camwright.pipeline.contact import hertz
 from camwright.pipeline.contact.elasticity import active_set
 from camwright.pipeline.contact.finite_length import (
@@ -351,7 +351,8 @@ def factor_table(pair: FinitePair, mean_length: float) -> FactorTable:
     mean_length : float   of the means at the ends, m
     """
     if not 0 < mean_length <= pair.contact_length:
-        raise InputError("mean_length", mean_length, f"in (0, {pair.contact_length:.4g}] m")
+        shown, whole = (units.shown(each, "mm") for each in (mean_length, pair.contact_length))
+        raise InputError("limits.end_mean_length", shown, f"> 0 and <= {whole}, the contact")
     return FactorTable(pair, mean_length)
 
 
