@@ -219,9 +219,10 @@ def remedies(
 
 
 def _greatest_line_load(base: Preview) -> float | None:
-    """Greatest line load of the cycles whose loads hold, N/m; None: none holds."""
+    """Greatest line load of the cycles whose loads hold, N/m; None where none is known."""
     held = [cycle.contact.line_load for cycle in base.solved.cycles if cycle.loads.end is None]
-    return max((float(np.nanmax(each)) for each in held), default=None)
+    known = [float(np.nanmax(each)) for each in held if not np.isnan(each).all()]
+    return max(known, default=None)
 
 
 class _Seen(NamedTuple):

@@ -7,15 +7,18 @@ from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 from camwright.geometry.errors import InputError
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_file import read_case, with_values
 from camwright.pipeline.case.case_values import quantity_of, value_of
+from camwright.pipeline.case.load_case_torque import engine_torques
 from camwright.pipeline.checks.lost_loads import LoadEnd
 from camwright.pipeline.checks.registry import DECLARED
 from camwright.pipeline.follower.follower_forces import LEAVES, LOCKS
+from camwright.pipeline.remedies.case_judge import Judge
 from camwright.pipeline.remedies.lever_steps import PARTS, Workbench, without_exponent
 from camwright.pipeline.remedies.levers import (
     BEARING,
@@ -28,7 +31,7 @@ from camwright.pipeline.remedies.levers import (
     Scaled,
 )
 from camwright.pipeline.remedies.remedy import WIDTH, Remedy
-from camwright.pipeline.remedies.remedy_search import LEVELS, needed_first
+from camwright.pipeline.remedies.remedy_search import LEVELS, _greatest_line_load, needed_first
 
 GX120 = Path(__file__).parents[2] / "cases" / "gx120.toml"
 
@@ -174,6 +177,17 @@ def test_a_crown_is_made_lighter_and_heavier(case: Case) -> None:
         assert {step.size for step in steps} == {math.log(2.0)}
     standard = with_values(case, {"roller.crown.kind": "iso16281"})
     assert not Workbench(standard, None, line_load=120e3).acts(Crowned(first=True))
+
+
+@pytest.mark.parametrize(("radius", "undercut"), [("8 mm", False), ("20 mm", True)])
+def test_an_undercut_contour_has_no_line_load(case: Case, radius: str, undercut: bool) -> None:
+    changed = with_values(case, {"roller.radius": radius, "cam.prime_radius": "34 mm"})
+    base = Judge(engine_torques(changed), None, {}).preview(changed, [], undercut=True)
+    known = np.concatenate(
+        [cycle.contact.line_load for cycle in base.solved.cycles if cycle.loads.end is None]
+    )
+    assert np.isnan(known).all() == undercut
+    assert _greatest_line_load(base) == (None if undercut else known.max())
 
 
 def test_a_value_that_does_not_fit_is_refused(bench: Workbench) -> None:
