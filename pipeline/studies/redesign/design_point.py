@@ -7,8 +7,8 @@ parallel.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
-from typing import TypedDict
+from dataclasses import asdict, dataclass, replace
+from typing import Any, TypedDict
 
 import numpy as np
 
@@ -55,6 +55,10 @@ class Rough:
     def impossible(cls) -> Rough:
         """Result of a case without a cam."""
         return cls(feasible=False, ripple=1.0, cam_radius=0.0, mass=0.0)
+
+    def as_record(self) -> dict[str, Any]:
+        """Record for JSON, SI: equal to the one that is read again."""
+        return asdict(self) | {"binding": list(self.binding)}
 
 
 class Shortfall(TypedDict):

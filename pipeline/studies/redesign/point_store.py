@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
 from typing import Any, Literal
@@ -53,9 +53,9 @@ def solved(task: Task) -> Record:
     try:
         case = parse_case(task.text, task.folder)
         if task.tier == "rough":
-            record = asdict(rough_point(case, _torques(task.base, task.folder)))
+            record = rough_point(case, _torques(task.base, task.folder)).as_record()
         elif task.tier == "coarse":
-            record = asdict(rough_point(case, engine_torques(case), fine=False))
+            record = rough_point(case, engine_torques(case), fine=False).as_record()
         elif task.tier == "conflict":
             problem = problem_of(case, _torques(task.base, task.folder))
             record = {"feasible": False, **infeasibility(problem).as_record()}
