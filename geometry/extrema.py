@@ -149,12 +149,15 @@ def zero_argument(function: Function, low: float, high: float) -> float:
         If the signs are equal.
     """
     ends = np.array([low, high], dtype=float)
+    sides = np.array(function(ends), dtype=float)
+    if np.sign(sides[0]) == np.sign(sides[1]):
+        raise InputError("values at both bounds", float(sides[0]), "of different signs")
     for _ in range(_CLOSINGS):
         places = 0.5 * (ends[0] + ends[1]) + 0.5 * (ends[1] - ends[0]) * _ZOOM_POINTS
-        values = function(places)
+        values = np.array(function(places), dtype=float)
+        # known at the bounds: computed again, a zero there may have another sign by round-off
+        places[[0, -1]], values[[0, -1]] = ends, sides
         after = int(np.argmax(np.sign(values) != np.sign(values[0])))
-        if after == 0:
-            raise InputError("values at both bounds", float(values[0]), "of different signs")
         ends, sides = places[after - 1 : after + 1], values[after - 1 : after + 1]
     return float(ends[0] - sides[0] * (ends[1] - ends[0]) / (sides[1] - sides[0]))
 

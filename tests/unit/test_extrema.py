@@ -91,6 +91,17 @@ def test_zero_of_a_smooth_function(zero):
     assert zero_argument(function, 0.4999, 0.52) == pytest.approx(zero, abs=2e-16)
 
 
+def test_zero_at_a_sample_whose_value_changes_by_round_off():
+    """The middle of the range is the zero; evaluated again, it is negative."""
+    calls: list[int] = []
+
+    def function(theta):
+        calls.append(theta.size)
+        return theta - (1e-17 if len(calls) > 2 else 0.0)
+
+    assert zero_argument(function, -1.0, 1.0) == pytest.approx(0.0, abs=1e-16)
+
+
 def test_zero_needs_a_change_of_sign():
     with pytest.raises(InputError, match="different signs"):
         zero_argument(lambda theta: 1.0 + theta**2, -1.0, 1.0)
