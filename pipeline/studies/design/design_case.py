@@ -29,6 +29,8 @@ _CENTISTOKES = 1e-6
 _ROOM = "given: space less the height of the roller at maximum lift"
 _BALANCED = 3e-3  # m/s, residual unbalance of the bench
 PROFILES = (8e-6, 4e-6)  # m, tolerance of the contour: ground, finely ground
+SEARCHED = 72  # cam angles of a turn in the search
+WRITTEN = 144  # in a case file, for the error bars of a run
 _STEPS = (0.5, 0.25, 0.2, 0.1)  # deg, of the contour table
 SYNTHESIS = """\
 kind = "constrained"
@@ -113,7 +115,12 @@ def oils_of(folder: Path | None) -> dict[str, tuple[float, float]]:
 
 
 def case_text(
-    design: Machinery, name: str, file: str, head: str = "", smoothing: str = SYNTHESIS
+    design: Machinery,
+    name: str,
+    file: str,
+    head: str = "",
+    smoothing: str = SYNTHESIS,
+    positions: int = SEARCHED,
 ) -> str:
     """Text of the case file of a design.
 
@@ -123,6 +130,7 @@ def case_text(
     file : str        of the torque table, in the folder of the case
     head : str        comment lines at the top
     smoothing : str   lines of its section
+    positions : int   cam angles of a turn
     """
     parts = (
         _HEAD.format(head=head, name=name, title=_title(design)),
@@ -132,7 +140,7 @@ def case_text(
         _shaft(design),
         _roller(design),
         _follower(design),
-        _requirements(design, smoothing),
+        _requirements(design, smoothing, positions),
     )
     return "\n".join(parts)
 
@@ -347,7 +355,7 @@ c45 = {{ card = "c45" }}
 """
 
 
-def _requirements(design: Machinery, smoothing: str) -> str:
+def _requirements(design: Machinery, smoothing: str, positions: int) -> str:
     task = design.task
     life = units.format(task.life, "h")
     radius = 1e-3 * np.ceil(1.15e3 * design.cam_radius) if task.space is None else design.room
@@ -390,7 +398,7 @@ source = "assumed: ground profile; the rest: defaults"
 table_step = "{_table_step(design):g} deg"              # chords within a quarter of the tolerance
 
 [solver]
-positions = 72                       # per cam turn; 720 for a sign-off
+positions = {positions}                       # per cam turn; 720 for a sign-off
 
 {"".join(cases)}"""
 

@@ -24,7 +24,7 @@ from camwright.pipeline.preview import preview_case
 from camwright.pipeline.results.check_records import to_be_confirmed
 from camwright.pipeline.results.run_folder import versions
 from camwright.pipeline.studies.design.candidate_search import Candidate, candidates
-from camwright.pipeline.studies.design.design_case import case_text
+from camwright.pipeline.studies.design.design_case import WRITTEN, case_text
 from camwright.pipeline.studies.design.relaxation_search import relaxations
 from camwright.pipeline.studies.design.synthesised_points import (
     Solved,
@@ -138,7 +138,7 @@ def designed(task: DesignTask, out: Path, progress: Progress = SILENT) -> Record
         document["points"] = _write_points(study, points)
         document["chosen"] = _row(best) | _drawing(study, best) | {"file": out.name}
         head = _summary(study, best, points)
-        write_atomic(out, case_text(best.design, out.stem, file, head))
+        write_atomic(out, _written(best, out.stem, file, head))
     else:
         limits = _limits(task, screened, failing)
         document["conflict"] = {"limits": limits, "relaxations": changes}
@@ -245,10 +245,17 @@ def _write_points(study: Study, points: Sequence[Solved]) -> list[Record]:
     for number, point in enumerate(points, start=1):
         name = f"point_{number:02d}"
         head = f"# Point {number} of {len(points)} of the front of ripple against size.\n"
-        text = case_text(point.design, name, study.file, head)
-        write_atomic(study.folder / f"{name}.toml", text)
+        write_atomic(study.folder / f"{name}.toml", _written(point, name, study.file, head))
         rows.append({"file": f"{name}.toml"} | _row(point))
     return rows
+
+
+def _written(point: Solved, name: str, file: str, head: str) -> str:
+    """Case file of a point for a run, whose finite elements need more cam angles than the search.
+
+    The error bars of their residuals are of the values between the angles.
+    """
+    return case_text(point.design, name, file, head, positions=WRITTEN)
 
 
 def _summary(study: Study, best: Solved, points: Sequence[Solved]) -> str:
