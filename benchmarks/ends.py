@@ -229,9 +229,9 @@ def _facet_means(grid: BrickGrid, path: Path) -> Array:
     """Mean displacement (along, across), m, into the block, of the facets of the cells."""
     numbers = _numbers(grid)
     rows = np.genfromtxt(path, skip_header=3)
-    moved = np.zeros(numbers.size + 1)
-    moved[rows[:, 0].astype(int)] = 1e-3 * rows[:, 3]
-    top = moved[numbers[..., 0]]
+    displacement = np.zeros(numbers.size + 1)
+    displacement[rows[:, 0].astype(int)] = 1e-3 * rows[:, 3]
+    top = displacement[numbers[..., 0]]
     across, along = grid.cells
     corners = sum(top[x : x + 2 * across : 2, y : y + 2 * along : 2] for x, y in _CORNERS)
     edges = sum(top[x : x + 2 * across : 2, y : y + 2 * along : 2] for x, y in _EDGES)
