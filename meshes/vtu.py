@@ -5,7 +5,6 @@ ParaView, pyvista and meshio read it; meshio fails on text in field data, which 
 
 from __future__ import annotations
 
-import re
 import zlib
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -18,11 +17,6 @@ QUADRATIC_TRIANGLE, QUADRANGLE, HEXAHEDRON = 22, 9, 12  # cell types of VTK
 _BLOCK = 1 << 16
 _LEVEL = 1  # the highest saves a tenth of the size for three times the time
 _TYPES = {"f8": "Float64", "i4": "Int32", "u1": "UInt8"}
-_TAG = re.compile(
-    r'<DataArray type="(?P<type>Float64|Int32|UInt8)" Name="(?P<name>[^"]*)"'
-    r'( NumberOfComponents="(?P<columns>\d+)")? format="appended" offset="(?P<offset>\d+)"/>'
-)
-_NUMBER = re.compile(r'Name="(?P<name>[^"]*)" NumberOfTuples="1" format="ascii">(?P<value>[^<]*)<')
 
 
 Numbers = NDArray[np.float64] | NDArray[np.int64] | NDArray[np.int32] | NDArray[np.uint8]
@@ -74,52 +68,6 @@ def vtu(grid: Grid) -> bytes:
         '<AppendedData encoding="raw">_'
     )
     return b"".join((head.encode(), *appended.parts, b"\n</AppendedData>\n</VTKFile>\n"))
-
-
-def read_vtu(content: bytes) -> Grid:
-    """Grid of a file of `vtu`.
-
-    Raises
-    ------
-    ValueError
-        If the content is not that of such a file.
-    """
-    head, _, appended = content.partition(b'<AppendedData encoding="raw">_')
-    text = head.decode("utf-8", "replace")
-    try:
-        arrays = {
-            section: {
-                tag["name"]: _unpacked(tag, appended)
-                for tag in _TAG.finditer(text.partition(f"<{section}>")[2].partition("</")[0])
-            }
-            for section in ("Points", "Cells", "PointData", "CellData")
-        }
-        cells = arrays["Cells"]
-        return Grid(
-            arrays["Points"]["points"],
-            cells["connectivity"].reshape(cells["types"].size, -1),
-            int(cells["types"][0]),
-            arrays["PointData"],
-            arrays["CellData"],
-            {tag["name"]: float(tag["value"]) for tag in _NUMBER.finditer(text)},
-        )
-    except (KeyError, IndexError, zlib.error) as error:
-        raise ValueError(f"not a grid written by this program: {error!r}") from None
-
-
-def _unpacked(tag: re.Match[str], appended: bytes) -> Numbers:
-    """Values of a tag (n,) or (n, components)."""
-    start = int(tag["offset"])
-    count = int(np.frombuffer(appended, "<u4", 1, start)[0])
-    sizes = np.frombuffer(appended, "<u4", count, start + 12)
-    ends = start + 12 + 4 * count + np.cumsum(sizes, dtype=int)
-    blocks = [
-        zlib.decompress(appended[end - size : end])
-        for end, size in zip(ends.tolist(), sizes.tolist(), strict=True)
-    ]
-    kind = next(kind for kind, name in _TYPES.items() if name == tag["type"])
-    values = np.frombuffer(b"".join(blocks), f"<{kind}")
-    return values.reshape(-1, int(tag["columns"])) if tag["columns"] else values
 
 
 class _Appended:

@@ -6,11 +6,13 @@ times to single precision. Meshes of three-node triangles in a plane; lengths in
 
 from __future__ import annotations
 
+import zlib
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
+from xml.etree.ElementTree import ParseError
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -19,7 +21,6 @@ from camwright.geometry.arrays import Array
 from camwright.geometry.errors import ResultError
 from camwright.meshes.gmsh_mesher import Index
 from camwright.meshes.mesh_files import UNITS, replacing
-from camwright.meshes.vtu import read_vtu
 
 if TYPE_CHECKING:
     import h5py
@@ -37,6 +38,8 @@ _FORMAT = ("earliest", "v110")
 _BITS = 8  # dropped from the 23 of the mantissa: relative error of point data at most 8e-6
 _COMPRESSION = {"compression": "gzip", "compression_opts": 1, "shuffle": True}
 _UNREADABLE = (OSError, KeyError, ValueError, IndexError, TypeError, RuntimeError, AttributeError)
+
+_END_LOAD = ("cam_angle_deg", "force_N", "moment_Nmm")
 
 Notes = Mapping[str, ArrayLike | Sequence[str]]
 
@@ -241,17 +244,23 @@ def read_end_field(path: Path) -> EndField:
     ResultError
         If the file cannot be read.
     """
+    import meshio
+
     try:
-        grid = read_vtu(path.read_bytes())
+        grid = meshio.vtu.read(path)
+        body, pressure = (grid.cell_data[name][0] for name in ("body", "contact_pressure_MPa"))
         return EndField(
             np.asarray(grid.points, dtype=float),
-            np.asarray(grid.cells, dtype=np.intp),
-            np.asarray(grid.cell_data["body"], dtype=np.intp),
+            np.asarray(grid.cells[0].data, dtype=np.intp),
+            np.asarray(body, dtype=np.intp),
             np.asarray(grid.point_data["von_mises_MPa"], dtype=float),
-            np.asarray(grid.cell_data["contact_pressure_MPa"], dtype=float),
-            *(grid.field_data[name] for name in ("cam_angle_deg", "force_N", "moment_Nmm")),
+            np.asarray(pressure, dtype=float),
+            *(
+                float(grid.field_data[name][0])
+                for name in ("cam_angle_deg", "force_N", "moment_Nmm")
+            ),
         )
-    except _UNREADABLE as error:
+    except (*_UNREADABLE, meshio.ReadError, ParseError, zlib.error) as error:
         raise ResultError(f"{path}: {error}") from None
 
 

@@ -5,6 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from camwright.geometry.errors import ResultError
 from camwright.pipeline.contact.elasticity.elastic_body import Elastic
 from camwright.pipeline.contact.finite_length import length_contact
 from camwright.pipeline.contact.finite_length.axial_drop import (
@@ -22,6 +23,7 @@ from camwright.pipeline.contact.finite_length.length_tiers import (
 )
 from camwright.pipeline.contact.finite_length.pressure_cells import pressure_cells
 from camwright.pipeline.contact.finite_length.subsurface_stress import stress_below
+from camwright.pipeline.results.field_file import read_end_field
 from camwright.pipeline.results.field_output import write_end_field
 
 STEEL = Elastic(210e9, 0.3)
@@ -109,6 +111,17 @@ def test_file_has_both_bodies_on_either_side_of_the_contact(contact, tmp_path):
     assert grid["contact_pressure_MPa"].max() == pytest.approx(1e-6 * contact.pressure.max())
     assert set(np.unique(grid.cell_data["body"])) == {0, 1}
     assert grid["stress_MPa"].shape[1] == 6
+    back = read_end_field(tmp_path / "ends.vtu")
+    np.testing.assert_array_equal(back.points, grid.points)
+    np.testing.assert_array_equal(back.cells.ravel(), grid.cells_dict[12].ravel())
+    np.testing.assert_array_equal(back.von_mises, grid["von_mises_MPa"])
+    np.testing.assert_array_equal(back.pressure, grid["contact_pressure_MPa"])
+    np.testing.assert_array_equal(back.body, grid["body"])
+    assert (back.force, back.moment) == (FORCE, 1e3 * MOMENT)
+    for broken in (b"", b"<VTKFile>", first[:5000], first[:-5000]):
+        (tmp_path / "broken.vtu").write_bytes(broken)
+        with pytest.raises(ResultError, match=r"broken\.vtu"):
+            read_end_field(tmp_path / "broken.vtu")
     write_end_field(tmp_path / "ends.vtu", trial)
     assert (tmp_path / "ends.vtu").read_bytes() == first
     for missing in (None, SimpleNamespace(points=())):
