@@ -6,10 +6,8 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from camwright.geometry.arrays import FULL_TURN, Array, uniform_turn
-from camwright.geometry.errors import InputError
 
 Function = Callable[[Array], Array]
 
@@ -18,9 +16,6 @@ _ZOOMS = 7
 """Each zoom keeps a sixteenth of the bracket: 7 leave 4e-9 of it, whose square is round-off."""
 
 _MINIMA_MAX = 256
-
-_CLOSINGS = 5
-"""3e-8 of the range is left, on which a smooth function is a line but for round-off."""
 
 _GOLDEN = 0.5 * (np.sqrt(5.0) - 1.0)
 _SECTIONS = 50
@@ -55,22 +50,16 @@ def local_minima(function: Function, count: int, *, lowest: bool = False) -> tup
     values = function(theta)
     if (unknown := np.isnan(values)).any():
         return values[unknown][:1], theta[unknown][:1]
-    low = np.flatnonzero(_is_bracketed(values))
-    # a constant function brackets at every sample; the lowest samples are enough
+    low = np.flatnonzero((values <= np.roll(values, 1)) & (values <= np.roll(values, -1)))
     if lowest:
         # The vertex of a parabola is below its sample by an eighth of this at most.
         step = np.abs(values - np.roll(values, 1))
         reach = np.maximum(step, np.roll(step, -1))[low]
         low = low[values[low] - reach <= values.min()]
+    # a constant function brackets at every sample; the lowest samples are enough
     low = low[np.argsort(values[low], kind="stable")[:_MINIMA_MAX]]
     best, where = refined(function, theta[low], FULL_TURN / count, _ZOOMS)
     return best, np.mod(where, FULL_TURN)
-
-
-def _is_bracketed(values: Array) -> NDArray[np.bool_]:
-    """Whether each sample (n,) of a turn is not above its neighbours."""
-    bracketed: NDArray[np.bool_] = (values <= np.roll(values, 1)) & (values <= np.roll(values, -1))
-    return bracketed
 
 
 def refined(function: Function, centre: Array, half: float, zooms: int) -> tuple[Array, Array]:
@@ -131,35 +120,6 @@ def sampled_greatest(values: Array) -> Array:
 def sampled_least(values: Array) -> Array:
     """Minima (...) of smooth periodic functions; see `sampled_greatest`."""
     return -sampled_greatest(-values)
-
-
-def zero_argument(function: Function, low: float, high: float) -> float:
-    """Argument of the only zero of a smooth function between two bounds, of different signs there.
-
-    By 33 points, of which the two on either side of the zero are the next bounds; at last by the
-    line through them.
-
-    Parameters
-    ----------
-    function : callable    (k,) -> (k,)
-
-    Raises
-    ------
-    InputError
-        If the signs are equal.
-    """
-    ends = np.array([low, high], dtype=float)
-    sides = np.array(function(ends), dtype=float)
-    if np.sign(sides[0]) == np.sign(sides[1]):
-        raise InputError("values at both bounds", float(sides[0]), "of different signs")
-    for _ in range(_CLOSINGS):
-        places = 0.5 * (ends[0] + ends[1]) + 0.5 * (ends[1] - ends[0]) * _ZOOM_POINTS
-        values = np.array(function(places), dtype=float)
-        # known at the bounds: computed again, a zero there may have another sign by round-off
-        places[[0, -1]], values[[0, -1]] = ends, sides
-        after = int(np.argmax(np.sign(values) != np.sign(values[0])))
-        ends, sides = places[after - 1 : after + 1], values[after - 1 : after + 1]
-    return float(ends[0] - sides[0] * (ends[1] - ends[0]) / (sides[1] - sides[0]))
 
 
 def least_argument(

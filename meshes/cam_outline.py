@@ -10,7 +10,7 @@ import numpy as np
 from camwright.geometry.arrays import FULL_TURN, Array, positive, rotation
 from camwright.geometry.cutouts import HoleLike, KeywayLike
 from camwright.geometry.errors import GeometryError, InputError, in_millimetres
-from camwright.geometry.extrema import least_argument, zero_argument
+from camwright.geometry.extrema import least_argument
 from camwright.geometry.monotone_cubic import MonotoneCubic
 from camwright.meshes.element_size import EDGES_PER_TURN, SizeField, Sizing
 from camwright.meshes.outline import Piece, Zone, arc, line
@@ -88,16 +88,19 @@ def contour_piece(path: Trace, sizing: Sizing) -> Piece:
 
 def _foot(path: Trace, point: Array, tolerance: float) -> float:
     """Cam angle, rad, of the contour point nearest to `point`, at most `tolerance` (m) from it."""
+    from scipy.optimize import brentq
+
     squared = ((path.points - point[:, None]) ** 2).sum(axis=0)
     near = path.theta[int(np.argmin(squared))]
     step = 2.0 * FULL_TURN / _SAMPLES
 
-    def along(theta: Array) -> Array:
-        offset = path.contour.points(theta) - point[:, None]
-        normal = path.contour.normal(theta)
-        return np.asarray(normal[0] * offset[1] - normal[1] * offset[0])
+    def along(theta: float) -> float:
+        here = np.array([theta])
+        normal = path.contour.normal(here)[:, 0]
+        offset = path.contour.points(here)[:, 0] - point
+        return float(normal[0] * offset[1] - normal[1] * offset[0])
 
-    theta = zero_argument(along, near - step, near + step)
+    theta = float(brentq(along, near - step, near + step, xtol=1e-15))
     distance = float(np.hypot(*(path.contour.points(np.array([theta]))[:, 0] - point)))
     if not distance <= tolerance:
         raise InputError(

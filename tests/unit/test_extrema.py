@@ -3,13 +3,11 @@
 import numpy as np
 import pytest
 
-from camwright.geometry.errors import InputError
 from camwright.geometry.extrema import (
     greatest,
     least,
     local_minima,
     sampled_greatest,
-    zero_argument,
 )
 
 
@@ -81,30 +79,6 @@ def test_a_kink_between_samples_is_bounded_by_its_sides() -> None:
     place = np.arange(-20.0, 20.0)
     values = np.where(place <= 0.4, place, 0.4 - 3.0 * (place - 0.4))
     assert 0.0 <= sampled_greatest(values) <= 0.4 + 1e-12
-
-
-@pytest.mark.parametrize("zero", [0.4999, 0.5, 0.500123456789, 0.52])
-def test_zero_of_a_smooth_function(zero):
-    def function(theta):
-        return np.sin(theta - zero) * (2.0 + np.cos(5.0 * theta))
-
-    assert zero_argument(function, 0.4999, 0.52) == pytest.approx(zero, abs=2e-16)
-
-
-def test_zero_at_a_sample_whose_value_changes_by_round_off():
-    """The middle of the range is the zero; evaluated again, it is negative."""
-    calls: list[int] = []
-
-    def function(theta):
-        calls.append(theta.size)
-        return theta - (1e-17 if len(calls) > 2 else 0.0)
-
-    assert zero_argument(function, -1.0, 1.0) == pytest.approx(0.0, abs=1e-16)
-
-
-def test_zero_needs_a_change_of_sign():
-    with pytest.raises(InputError, match="different signs"):
-        zero_argument(lambda theta: 1.0 + theta**2, -1.0, 1.0)
 
 
 def test_lowest_of_several_minima_beside_a_plateau():
