@@ -23,7 +23,7 @@ from camwright.pipeline.screening.design_screening import screen_designs
 
 ROOT = Path(__file__).resolve().parent.parent
 SECONDS, ALL_IN, MEMORY, EFFICIENCY = 20.0, 4.0, 1.10, 0.85
-DESIGNS, PREVIEWS = 10_000, 120
+DESIGNS, PREVIEWS = 10_000, 240
 STUDY = """
 name = "benchmark"
 case = "case.toml"
@@ -91,10 +91,13 @@ def studied(folder: Path, depth: str, count: int, jobs: int) -> Cost:
         [sys.executable, "-m", "camwright", *arguments],
         cwd=folder, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
     ) as process:  # fmt: skip
-        watched = psutil.Process(process.pid)
+        watched, looked = psutil.Process(process.pid), 0.0
         while process.poll() is None:
-            note(watched, peaks, spent)
-            time.sleep(0.5)  # a look takes milliseconds of a core that the study needs
+            note_peak(process.pid, peaks)  # often: that of its last moments counts
+            if time.perf_counter() - looked > 0.5:  # takes milliseconds of a core that it needs
+                looked = time.perf_counter()
+                note(watched, peaks, spent)
+            time.sleep(0.02)
     wall = time.perf_counter() - start
     assert process.returncode == 0
     cpu = sum(spent.values())  # those that solve are ended, and counted by no process above them
@@ -111,11 +114,17 @@ def note(process: psutil.Process, peaks: dict[int, float], spent: dict[int, floa
     """Greatest memory, bytes, and CPU time, s, of a process and those below it, by number."""
     with contextlib.suppress(psutil.Error, OSError):
         for each in (process, *process.children(recursive=True)):
-            status = Path(f"/proc/{each.pid}/status").read_text().split("VmHWM:")
-            if len(status) == 2:  # a process that has ended states none
-                peaks[each.pid] = 1024.0 * float(status[1].split()[0])
+            note_peak(each.pid, peaks)
             times = each.cpu_times()
             spent[each.pid] = times.user + times.system
+
+
+def note_peak(number: int, peaks: dict[int, float]) -> None:
+    """Greatest memory of a process so far, bytes."""
+    with contextlib.suppress(OSError):
+        status = Path(f"/proc/{number}/status").read_text().split("VmHWM:")
+        if len(status) == 2:  # a process that has ended states none
+            peaks[number] = 1024.0 * float(status[1].split()[0])
 
 
 def told(name: str, value: float, unit: str, budget: float) -> None:

@@ -77,8 +77,11 @@ def at_middle(edges: Array, line: Array) -> Array:
 
     edges (count, m + 1), m; line (count, m).
     """
-    middles = 0.5 * (edges[:, 1:] + edges[:, :-1])
-    return np.array([np.interp(0.0, *row) for row in zip(middles, line, strict=True)])
+    middles, rows = 0.5 * (edges[:, 1:] + edges[:, :-1]), np.arange(len(line))
+    left = np.clip((middles <= 0.0).sum(axis=1) - 1, 0, line.shape[1] - 2)
+    start, end = middles[rows, left], middles[rows, left + 1]
+    share = np.clip(-start / (end - start), 0.0, 1.0)
+    return np.asarray(line[rows, left] + share * (line[rows, left + 1] - line[rows, left]))
 
 
 def means_at_ends(edges: Array, line: Array, length: float) -> tuple[Array, Array]:
@@ -87,18 +90,23 @@ def means_at_ends(edges: Array, line: Array, length: float) -> tuple[Array, Arra
     At small and large y, of pressures (count, m) on cells of edges (count, m + 1), m, from the last
     cell in contact; of the whole contact where that is shorter.
     """
-    touching, rows = line > 0, np.arange(len(line))
-    first = edges[rows, touching.argmax(axis=1)]
-    last = edges[rows, line.shape[1] - touching[:, ::-1].argmax(axis=1)]
-    over = np.minimum(length, last - first)
-    primitive = np.cumsum(np.pad(line * np.diff(edges), ((0, 0), (1, 0))), axis=1)
+    touching, rows, cells = line > 0, np.arange(len(line)), line.shape[1]
+    first = touching.argmax(axis=1)
+    last = cells - touching[:, ::-1].argmax(axis=1)
+    start, end = edges[rows, first], edges[rows, last]
+    over = np.minimum(length, end - start)
+    primitive = np.zeros(edges.shape)
+    np.cumsum(line * np.diff(edges), axis=1, out=primitive[:, 1:])
 
     def integral(place: Array) -> Array:
-        left = np.clip((edges <= place[:, None]).sum(axis=1) - 1, 0, line.shape[1] - 1)
+        left = np.clip((edges <= place[:, None]).sum(axis=1) - 1, 0, cells - 1)
         return np.asarray(primitive[rows, left] + line[rows, left] * (place - edges[rows, left]))
 
-    sums = [integral(first + over) - integral(first), integral(last) - integral(last - over)]
-    return np.stack(sums, axis=1) / over[:, None], last - first
+    sums = [
+        integral(start + over) - primitive[rows, first],
+        primitive[rows, last] - integral(end - over),
+    ]
+    return np.stack(sums, axis=1) / over[:, None], end - start
 
 
 class SignedPressure(NamedTuple):
@@ -124,12 +132,15 @@ def signed_pressure(
     has_corner : bool   whether the pressure grows without bound at the ends
     """
     means, _ = means_at_ends(edges, line, length)
-    middles = 0.5 * (edges[:, 1:] + edges[:, :-1])
-    between = np.abs(middles) <= 0.5 * flat - length
     most = line.argmax(axis=1)
+    greatest = np.take_along_axis(line, most[:, None], axis=1)[:, 0]
     peak_at_corner = ((most == 0) | (most == line.shape[1] - 1)) & has_corner
-    mean, bounded = means.max(axis=1), np.where(between, line, 0.0).max(axis=1)
-    greatest = np.where(peak_at_corner, np.maximum(mean, bounded), line.max(axis=1))
+    at = np.flatnonzero(peak_at_corner)
+    middles = 0.5 * (edges[at, 1:] + edges[at, :-1])
+    between = np.abs(middles) <= 0.5 * flat - length
+    mean, bounded = means.max(axis=1), np.zeros(len(line))
+    bounded[at] = np.where(between, line[at], 0.0).max(axis=1, initial=0.0)
+    greatest[at] = np.maximum(mean, bounded)[at]
     return SignedPressure(greatest, peak_at_corner & (mean >= bounded), at_middle(edges, line))
 
 
