@@ -23,7 +23,7 @@ from camwright.pipeline.case.plausibility import implausible
 from camwright.pipeline.checks.tolerance_corners import corners_record
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.ripple_map import ripple_map
-from camwright.pipeline.iteration import trials_of
+from camwright.pipeline.iteration import solved_already, trials_of
 from camwright.pipeline.remedies.remedy_search import order_of, texts_of, with_remedies
 from camwright.pipeline.results.check_records import governing_id
 from camwright.pipeline.results.field_output import ENDS, Shown, write_end_field, write_fields
@@ -58,6 +58,7 @@ def run_case(
     ahead: Callable[[Path, Crew], object] | None = None,
     also: Callable[[Trial], Mapping[str, Any]] = lambda _: {},
     judged: Callable[[Mapping[str, Torque], Trial], object] = lambda *_: None,
+    solved: Trial | None = None,
 ) -> Run:
     """Trials of a case until a cam passes or the limit that binds is named; writes the run folder.
 
@@ -74,7 +75,9 @@ def run_case(
     report : callable    writes page and pictures into the run folder; None: none are written
     ahead : callable     begins pictures in the worker processes before the certificate
     also : callable      final trial -> further entries of ``run.json``
-    judged : callable    receives engine torques and final trial as soon as it is judged
+    judged : callable    receives engine torques and final trial as soon as it is judged, before
+                         its files are written below CERTIFIED
+    solved : Trial       the only trial, solved at `depth` below CERTIFIED; None: it is solved here
 
     Returns
     -------
@@ -93,7 +96,7 @@ def run_case(
         crew(jobs) as workers,
     ):
         watch = Stopwatch(progress, began)
-        summary = _solved(folder, case, depth, workers, fields, watch, also, ahead, judged)
+        summary = _solved(folder, case, depth, workers, fields, watch, also, ahead, judged, solved)
         if report is not None:
             watch.stage("report")  # the solution, which takes most of the memory, is released
             folder.write_summary(summary | watch.record())
@@ -112,6 +115,7 @@ def _solved(
     also: Callable[[Trial], Mapping[str, Any]],
     ahead: Callable[[Path, Crew], object] | None,
     judged: Callable[[Mapping[str, Torque], Trial], object],
+    solved: Trial | None,
 ) -> dict[str, Any]:
     """Solve a case and write all files but report and records; the contents of ``run.json``."""
     watch.stage("torque")
@@ -130,22 +134,25 @@ def _solved(
     def on_final(trial: Trial) -> None:
         if depth is Tier.CERTIFIED:
             sought.extend(_remedies_begun(trial, workers, folder.path))
+        else:
+            judged(torques, trial)
 
-    final, statement, points = trials_of(
-        case,
-        torques,
-        tier=depth,
-        sink=writer,
-        progress=watch,
-        workers=workers if depth is Tier.CERTIFIED else ALONE,
-        on_final=on_final,
-    )
+    if solved is None:
+        final, statement, points = trials_of(
+            case,
+            torques,
+            tier=depth,
+            sink=writer,
+            progress=watch,
+            workers=workers if depth is Tier.CERTIFIED else ALONE,
+            on_final=on_final,
+        )
+    else:
+        final, statement, points = solved_already(solved, writer, on_final)
     if final.corners:
         folder.write_corners(corners_record(final.case, final.corners))
     summary = summary_of(folder, torques, final, points) | dict(also(final))
 
-    if depth < Tier.CERTIFIED:
-        judged(torques, final)
     if depth >= Tier.CYCLE:
         watch.stage("fields")
         write_fields(folder.fields, final, fields, watch.advance)
@@ -218,7 +225,9 @@ def summary_of(
         "headline": headline(torques, final),
         "load_ends": final.load_ends,
         "prices": None if final.synthesis is None else final.synthesis["prices"],
-        "machine_prices": None if final.synthesis is None else final.synthesis["machine_prices"],
+        "machine_prices": None
+        if final.synthesis is None
+        else final.synthesis.get("machine_prices"),
         "mesh_quality": None if final.mesh is None else asdict(final.mesh.quality),
         **crank_speed,
         "ripple_map": _ripple_map_record(torques, final),

@@ -15,7 +15,7 @@ import time
 from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from pathlib import Path
-from typing import Self
+from typing import Any, Self
 
 import numpy as np
 import psutil
@@ -32,7 +32,7 @@ from camwright.pipeline.studies.batch.answers_yield import Yield
 from camwright.pipeline.studies.batch.case_template import read_templates
 from camwright.pipeline.studies.batch.dataset import read_dataset, table_from
 from camwright.pipeline.studies.batch.design_plan import SHARD_OF, study_versions
-from camwright.pipeline.studies.batch.design_rows import encoded
+from camwright.pipeline.studies.batch.design_rows import CLOCK, encoded
 from camwright.pipeline.studies.batch.design_solver import DesignSolver
 from camwright.pipeline.studies.batch.design_task import Settings, Task, Wanted
 from camwright.pipeline.studies.batch.study_file import read_study
@@ -215,9 +215,9 @@ def test_second_stage_and_kept_runs_are_the_same_with_two_processes(tmp_path: Pa
         for check in ("pressure_angle", "contact_force_margin"):
             limit = data[f"{check}.limit"][row]
             assert rows[check]["limit"] == pytest.approx(limit, rel=1e-12)
-        figure = "utilisation" if depth == "cycle" else "demand"  # a preview without corners
-        stated = data[f"pressure_angle.{figure}"][row]
-        assert rows["pressure_angle"][figure] == pytest.approx(stated, rel=1e-9)
+        stated = data["pressure_angle.utilisation"][row]
+        assert rows["pressure_angle"]["utilisation"] == pytest.approx(stated, rel=1e-9)
+        assert (runs / name / "8_report.html").is_file()
 
 
 @pytest.mark.slow
@@ -438,6 +438,34 @@ def test_a_refused_design_has_a_row_and_no_run(folder: Path) -> None:
     row, files = sent
     assert isinstance(row, dict) and "spring.preload = -1" in str(row["message"])
     assert row["screen"] == "error" and files == {}
+
+
+def test_a_kept_preview_is_solved_once(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Row, run and page of a design come from one solution."""
+    from camwright.pipeline import iteration, preview, run, solver
+
+    solved: list[str] = []
+    for module in (iteration, preview, solver):
+        original = module.solve
+
+        def counted(*arguments: Any, _original: Any = original, **options: Any) -> Any:
+            solved.append("solve")
+            return _original(*arguments, **options)
+
+        monkeypatch.setattr(module, "solve", counted)
+    monkeypatch.setattr(run, "trials_of", None)
+    study = read_study(folder / "study.toml")
+    templates = read_templates(folder, study.cases)
+    plan = study_run.planned(study, templates)
+    task = next(plan.tasks(study.tier)).alone(0)
+    designs, sent = DesignSolver(templates, plan.settings), list[Any]()
+    designs.solved_and_run(task, 0, Wanted("fail"), sent.append)
+    row, files = sent
+    assert row == designs.solved(task, 0) and solved == ["solve"] * 2
+    assert "run.json" in files and "8_report.html" not in files
+    page = designs.presented(files)
+    assert set(files) < set(page) and "8_report.html" in page and solved == ["solve"] * 2
+    assert page == designs.run_folder(task, 0) | {CLOCK: page[CLOCK]}
 
 
 def test_a_design_that_kills_its_process_is_a_row(folder: Path) -> None:

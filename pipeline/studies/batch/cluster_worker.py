@@ -17,6 +17,8 @@ from camwright.pipeline.studies.batch.solver_process import EndedError, SolverPr
 
 Shard = tuple[bytes, bytes, Mapping[str, Files]]
 """Rows and clock figures of a task as Parquet files; files of runs made with the rows, by id."""
+Bare = tuple[str, Files]
+"""Id of a design and the files of its run without the page."""
 
 
 class StudyPlugin(WorkerPlugin):
@@ -49,5 +51,14 @@ def solve_run(task: Task, plugin: str) -> Files:
     study = cast(StudyPlugin, get_worker().plugins[plugin])
     try:
         return study.process.run_folder(task, 0)
+    except EndedError:
+        raise Reschedule from None
+
+
+def make_page(run: Bare, plugin: str) -> Files:
+    """Files of a run with its page."""
+    study = cast(StudyPlugin, get_worker().plugins[plugin])
+    try:
+        return study.process.presented(run[1])
     except EndedError:
         raise Reschedule from None

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import shutil
 import tempfile
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass, field
@@ -140,9 +139,8 @@ class DesignSolver:
             columns = self.screened(task.alone(row))
             return {name: _cell(values[0]) for name, values in columns.items()}
         case, lift = self.design(task, row)
-        torques = engine_torques(case)
         trial = trial_at(case, task.tier, lift, corners=self.settings.corners)
-        return row_of(trial, headline(torques, trial))
+        return row_of(trial, headline(engine_torques(case), trial))
 
     def design(self, task: Task, row: int) -> tuple[Case, Lift | None]:
         """Case of one design, and its lift where the study has one cam for all.
@@ -184,6 +182,8 @@ class DesignSolver:
     ) -> None:
         """Send the cells of one design, then the files of its run, made from the same solution.
 
+        The files lack the page, see `presented`.
+
         Parameters
         ----------
         wanted : Wanted   designs that may be kept; of others no files are made
@@ -201,48 +201,57 @@ class DesignSolver:
 
         files: Files = {}
         try:
-            files = self.run_folder(task, row, judged)
+            files = self._run(task, row, judged)
         except Exception:  # noqa: BLE001 - a refusal is a row; a run that fails is made again alone
             if not cells:
                 send(self.solved(task, row))
         send(files)
 
-    def run_folder(
-        self,
-        task: Task,
-        row: int,
-        judged: Callable[[Mapping[str, Torque], Trial], object] = lambda *_: None,
-    ) -> Files:
+    def run_folder(self, task: Task, row: int) -> Files:
         """Files of the run of one design, by relative name; its clock figures as `CLOCK`.
-
-        Parameters
-        ----------
-        judged : callable   as of `run_case`
 
         Raises
         ------
         CamError
             If the design is refused.
         """
+        return self.presented(self._run(task, row))
+
+    def presented(self, files: Files) -> Files:
+        """Files of a run with its page and pictures, which are made from the others."""
         from camwright.pipeline.results import signoff
-        from camwright.pipeline.run import run_case
         from camwright.reports.sections import report
 
+        with tempfile.TemporaryDirectory(prefix="camwright-run-") as name:
+            path = Path(name) / "run"
+            for each, content in files.items():
+                if each != CLOCK:
+                    write_atomic(path / each, content)
+            report(path)
+            signoff.write(path)
+            made = {each: file.read_bytes() for each, file in files_in(path)}
+        return made | {each: files[each] for each in files if each == CLOCK}
+
+    def _run(
+        self,
+        task: Task,
+        row: int,
+        judged: Callable[[Mapping[str, Torque], Trial], object] = lambda *_: None,
+    ) -> Files:
+        """Files of the run of one design without its page; judged: as of `run_case`."""
+        from camwright.pipeline.results import signoff
+        from camwright.pipeline.run import run_case
+
         case, _ = self.design(task, row)
-        home = Path(tempfile.mkdtemp(prefix="camwright-run-"))
-        path = home / "run"
-
-        def presented(folder: Path) -> None:
-            _without_clock(folder)
-            report(folder)
-
-        try:
-            run_case(case, path, depth=task.tier, jobs=1, report=presented, judged=judged)
+        solved: Trial | None = None
+        if task.tier is Tier.PREVIEW:  # as its row, so that it is solved once
+            solved = trial_at(case, task.tier, None, corners=self.settings.corners)
+        with tempfile.TemporaryDirectory(prefix="camwright-run-") as name:
+            path = Path(name) / "run"
+            run_case(case, path, depth=task.tier, jobs=1, judged=judged, solved=solved)
             clock = _without_clock(path)
             signoff.write(path)  # has the hash of run.json
-            files = {name: file.read_bytes() for name, file in files_in(path)}
-        finally:
-            shutil.rmtree(home, ignore_errors=True)
+            files = {each: file.read_bytes() for each, file in files_in(path)}
         return files | {CLOCK: clock}
 
 

@@ -135,6 +135,11 @@ class SolverProcess:
         with self._lock:
             return self._files(lambda: self._asked("run_folder", task, row))
 
+    def presented(self, files: Files) -> Files:
+        """Files of a run with its page; none where it cannot be made."""
+        with self._lock:
+            return self._files(lambda: self._asked("presented", files))
+
     def _files(self, reply: Callable[[], Any]) -> Files:
         """Files of a reply; none where there is none."""
         with contextlib.suppress(_OutOfTimeError, _OutOfMemoryError, _DiedError):
@@ -257,11 +262,11 @@ def serve(pipe: Connection) -> None:
 
 
 def _answer(method: Callable[..., Any], arguments: tuple[Any, ...]) -> Any:
-    """Result of a method; None of an array solution that fails as a whole, {} of a run."""
+    """Result of a method; None of an array solution that fails as a whole, {} of files."""
     try:
         return method(*arguments)
     except Exception:  # noqa: BLE001 - each design is then solved alone, where it is a row
-        return {} if method.__name__ == "run_folder" else None
+        return {} if method.__name__ in ("run_folder", "presented") else None
 
 
 def main() -> None:

@@ -14,7 +14,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from camwright.geometry.errors import ResultError
-from camwright.pipeline.base.files import Json, json_text, locked, read_json, write_atomic
+from camwright.pipeline.base.files import (
+    Json,
+    files_in,
+    json_text,
+    locked,
+    read_json,
+    write_atomic,
+)
 from camwright.pipeline.studies.batch.case_template import Template
 from camwright.pipeline.studies.batch.dataset import (
     ANSWERS,
@@ -35,7 +42,7 @@ from camwright.pipeline.studies.batch.dataset import (
     require_columns,
     whole_numbers,
 )
-from camwright.pipeline.studies.batch.design_rows import CLOCK
+from camwright.pipeline.studies.batch.design_rows import CLOCK, Files
 
 if TYPE_CHECKING:
     import pyarrow as pa
@@ -165,7 +172,7 @@ class StudyFolder:
             return False
         return all(versions.get(each) == version for each, version in made.items())
 
-    def write_run(self, name: str, files: Mapping[str, bytes]) -> None:
+    def write_run(self, name: str, files: Files) -> None:
         """Write the run folder of a design; a design without result has an empty one."""
         final = self.path / RUNS / name
         aside = final.with_name(f".{name}.tmp")
@@ -181,6 +188,17 @@ class StudyFolder:
             aside.replace(final)
         except OSError as error:
             raise ResultError(f"{final}: {error.strerror or error}") from None
+
+    def lacks_page(self, name: str) -> bool:
+        """Whether the run folder of a design has results and no page."""
+        from camwright.reports import page
+
+        run = self.path / RUNS / name
+        return (run / "run.json").is_file() and not (run / page.PAGE).is_file()
+
+    def files_of_run(self, name: str) -> Files:
+        """Files of the run folder of a design, by relative name."""
+        return {each: path.read_bytes() for each, path in files_in(self.path / RUNS / name)}
 
     def delete_run(self, name: str) -> None:
         """Delete the run folder of a design and its clock figures."""

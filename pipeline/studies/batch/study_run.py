@@ -241,10 +241,10 @@ class _Run:
         """Designs of a depth whose run is made with their row, by those that are solved.
 
         Before a stop rule by those of the dataset wherever it stops. None where no run is kept, or
-        a run takes longer to write than to solve.
+        arrays are solved, which hold no curves.
         """
         kind, most = self.study.kept
-        if not kind or tier < Tier.CYCLE:
+        if not kind or tier < Tier.PREVIEW:
             return None
         return self.figures.of(tier, watch.certain).wanted(kind, most)
 
@@ -270,12 +270,24 @@ class _Run:
             for task in tasks
             if not self.home.holds_run(task.ids[0], task.tier.word, self.plan.settings.versions)
         ]
-        if not missing:
+        if missing:
+            self.progress.stage(f"runs: {len(missing)} designs")
+            for k, (task, files) in enumerate(self.scheduler.runs(missing), start=1):
+                self.home.write_run(task.ids[0], files)
+                self.progress.advance(k, len(missing))
+        self._present(kept)
+
+    def _present(self, kept: Sequence[str]) -> None:
+        """Write the pages of the runs that were made with their rows."""
+        bare = (name for name in kept if self.home.lacks_page(name))
+        runs = ((name, self.home.files_of_run(name)) for name in bare)
+        first = next(runs, None)
+        if first is None:
             return
-        self.progress.stage(f"runs: {len(missing)} designs")
-        for k, (task, files) in enumerate(self.scheduler.runs(missing), start=1):
-            self.home.write_run(task.ids[0], files)
-            self.progress.advance(k, len(missing))
+        self.progress.stage("pages")
+        for (name, _), files in self.scheduler.pages(chain([first], runs)):
+            if files:
+                self.home.write_run(name, files)
 
     @property
     def _second(self) -> Tier:

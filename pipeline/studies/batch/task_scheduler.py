@@ -30,8 +30,9 @@ from camwright.pipeline.studies.batch.solver_process import DEATHS_MAX
 if TYPE_CHECKING:
     from distributed import Client, LocalCluster
 
-    from camwright.pipeline.studies.batch.cluster_worker import Shard
+    from camwright.pipeline.studies.batch.cluster_worker import Bare, Shard
 
+Work = TypeVar("Work")
 Result = TypeVar("Result")
 _AHEAD = 3
 """Tasks at a worker at once: one running, the next ones there."""
@@ -185,19 +186,25 @@ class TaskScheduler:
 
         return self._completed(solve_run, tasks, lambda _: {})
 
+    def pages(self, runs: Iterable[Bare]) -> Iterator[tuple[Bare, Files]]:
+        """Runs without their page, each with its files and page; none where it cannot be made."""
+        from camwright.pipeline.studies.batch.cluster_worker import make_page
+
+        return self._completed(make_page, runs, lambda _: {})
+
     def _completed(
         self,
         method: Callable[..., Result],
-        tasks: Iterable[Task],
-        killed: Callable[[Task], Result],
+        tasks: Iterable[Work],
+        killed: Callable[[Work], Result],
         *arguments: Callable[[], object],
-    ) -> Iterator[tuple[Task, Result]]:
+    ) -> Iterator[tuple[Work, Result]]:
         """Results as they complete; a few tasks a worker are known to the scheduler at once."""
         from distributed import as_completed
         from distributed.scheduler import KilledWorker
 
         waiting = iter(tasks)
-        running: dict[Any, Task] = {}
+        running: dict[Any, Work] = {}
         finished = as_completed(loop=self._client.loop)
 
         def submit() -> bool:
