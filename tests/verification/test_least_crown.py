@@ -160,4 +160,6 @@ def test_finite_elements_agree_on_the_ratio():
     loads = (made.states.curvature, made.states.force, made.states.couple)
     solved = signed_range(SolvedLines(pair, MEAN_LENGTH), *loads, made.tilt)
     _, blocks = both_tiers(pair, FORCE, moment=float(solved.moment[0]))
-    assert blocks.factors.greatest[0] == pytest.approx(crown.ratio, rel=0.025)
+    # The light crown leaves contact up to the corner, where the mean is signed: the greatest
+    # pressure of the elements there scatters between 1.12 and 1.13 with cells of 5 to 20 um.
+    assert blocks.factors.end_means[0].max() == pytest.approx(crown.ratio, rel=0.01)
