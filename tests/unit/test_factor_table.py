@@ -26,8 +26,10 @@ from camwright.pipeline.contact.finite_length.factor_table import GREATEST_MOMEN
 from camwright.pipeline.contact.finite_length.half_space import half_space_compliance
 from camwright.pipeline.contact.finite_length.length_tiers import (
     MEAN_LENGTH,
+    block_grid,
     cycle_sizes,
     half_space_factors,
+    meshes_of,
     plane_strain,
 )
 from camwright.pipeline.contact.finite_length.pressure_cells import CellSizes, pressure_cells
@@ -210,6 +212,15 @@ def test_moment_of_a_tilt_has_that_tilt(share):
     limit = GREATEST_MOMENT * force * LENGTH
     expected = [contact.moment[0], -contact.moment[0], limit]
     np.testing.assert_allclose(moment, expected, rtol=1e-2)
+
+
+@pytest.mark.parametrize("radius", [0.1e-3, 0.3e-3, 1e-3])
+def test_cells_at_rounded_ends_are_elements_of_both_blocks(radius):
+    finite = pair(end=BodyEnd("radius", radius))
+    for half_width in np.geomspace(0.05e-3, 0.4e-3, 7):
+        for cells in meshes_of(finite, half_width, CellSizes()):
+            for body in finite.bodies:
+                assert block_grid(cells, body).cells == (cells.shape[1], cells.shape[0] // 2)
 
 
 def test_ten_thousand_contacts_take_a_tenth_of_a_second():

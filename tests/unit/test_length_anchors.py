@@ -20,7 +20,11 @@ from camwright.pipeline.contact.finite_length.axial_drop import (
     johns_gohar,
 )
 from camwright.pipeline.contact.finite_length.half_space import half_space_compliance
-from camwright.pipeline.contact.finite_length.length_tiers import block_compliance, plane_strain
+from camwright.pipeline.contact.finite_length.length_tiers import (
+    block_compliance,
+    both_tiers,
+    plane_strain,
+)
 from camwright.pipeline.contact.finite_length.pressure_cells import CellSizes, pressure_cells
 
 pytestmark = pytest.mark.slow
@@ -134,6 +138,15 @@ def test_mirrored_ends_of_other_materials(poisson):
 def test_the_mean_at_an_end_converges(ends, tolerance):
     coarse, fine = (solved(ends, sizes=sizes)[0].end_means(1e-4) for sizes in (None, FINE))
     np.testing.assert_allclose(fine, coarse, rtol=tolerance)
+
+
+def test_both_tiers_agree_at_a_rounded_end():
+    roller = FiniteBody(STEEL, 5e-3, BodyEnd("radius", 1e-3), 8e-3)
+    cam = FiniteBody(STEEL, 5e-3, BodyEnd(), 10e-3)
+    rounded = FinitePair((roller, cam), CURVATURE, Straight())
+    halves, blocks = both_tiers(rounded, LINE_LOAD * rounded.contact_length)
+    assert blocks.factors.greatest[0] > 1.5
+    np.testing.assert_allclose(halves.factors.all, blocks.factors.all, rtol=0.01)
 
 
 @pytest.mark.parametrize("tilt", [0.0, 1e-3])

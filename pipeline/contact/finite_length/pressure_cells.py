@@ -172,6 +172,7 @@ def _rounded(flat: float, radius: float, peak: float, sizes: CellSizes) -> Array
     count = graded(flat, _NARROWEST * radius / per_peak, sizes.growth, largest).size - 1
     first = width / per_peak
     inwards = np.concatenate([[0.0], np.cumsum(_steps(flat, first, count, largest))])
+    inwards[-1] = flat  # the edge in the middle is at 0, without round-off
     return np.asarray(np.concatenate([flat - inwards[::-1], flat + width * beyond[1:]]))
 
 
