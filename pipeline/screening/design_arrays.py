@@ -42,7 +42,7 @@ from camwright.pipeline.screening.cam_shapes import (
     Values,
 )
 from camwright.pipeline.screening.design_factors import WoundSprings, wound_spring
-from camwright.pipeline.screening.design_lengths import factors_of
+from camwright.pipeline.screening.design_lengths import factors_of, has_many_shapes
 
 Judged = tuple[Array, Array | float | None]
 """Demand (m,) and limit (m,) of a check, SI; NaN and None are missing."""
@@ -398,13 +398,16 @@ class Designs:
     def _pressures(self, force: Array, rubbing: tuple[Array, Array]) -> tuple[Array, ...]:
         """Greatest pressure of plane strain, in the middle of the line, and signed (m, n), Pa.
 
-        NaN where the contour bounds no body; signed where its factor is not known.
+        NaN where the contour bounds no body; signed where the case lacks an end. With too many
+        shapes of contact that of plane strain, see `has_many_shapes`.
         """
         load, radius = np.maximum(force, 0.0), self.relative_radius
         modulus, width = self.machine.contact_modulus, self.contact_width
         line = np.sqrt(peak_pressure_square(load / width, 1.0 / radius, modulus))
         factors = factors_of(self, load, radius, rubbing)
         crowned, unknown = self.machine.is_crowned, np.full(line.shape, np.nan)
+        if has_many_shapes(self):
+            return line, line, line
         if factors is None:
             return line, unknown if crowned else line, unknown
         signed = line * np.maximum(factors.level, factors.tilted)

@@ -7,6 +7,7 @@ from dataclasses import replace
 from typing import Literal, Protocol
 
 import numpy as np
+from numpy.typing import NDArray
 
 from camwright.geometry.arrays import Array
 from camwright.pipeline.case.limits import END_MEAN_LENGTH
@@ -48,17 +49,15 @@ def factors_of(
 ) -> FactorRange | None:
     """Factors (m, n) of the designs; 1 without contact, NaN where the contour bounds no body.
 
-    None where the case lacks an end, or the designs have too many shapes of contact.
+    None where the case lacks an end, or the designs have too many shapes of contact, see
+    `has_many_shapes`.
 
     Parameters
     ----------
     force, radius : array (m, n)   normal force, N; relative radius, m
     rubbing : two arrays (m, n)    normal loads of guides A and B, N
     """
-    keys = _KEYS if designs.machine.is_crowned else _STRAIGHT
-    varied = [key for key in keys if key in designs.columns]
-    rows = np.concatenate([np.zeros((designs.count, 1)), *(designs.value(k) for k in varied)], 1)
-    shapes, member = np.unique(rows, axis=0, return_inverse=True)
+    varied, shapes, member = _shapes(designs)
     if not designs.machine.finite_pairs or len(shapes) > _SHAPES:
         return None
     tilt, couple = _tilt(designs), _held_couple(designs, rubbing)
@@ -67,7 +66,7 @@ def factors_of(
     whole = FactorRange(one, one.copy(), one.copy(), still, np.zeros(force.shape, dtype=bool))
     for number, shape in enumerate(shapes):
         machine = _of_shape(designs.machine, dict(zip(varied, shape[1:].tolist(), strict=True)))
-        at = (member.ravel() == number)[:, None] & (force > 0) & np.isfinite(radius)
+        at = (member == number)[:, None] & (force > 0) & np.isfinite(radius)
         if not at.any():
             continue
         held = couple[at] + force[at] * machine.stem_offset
@@ -78,6 +77,24 @@ def factors_of(
         for whole_values, values in zip(whole, worst, strict=True):
             whole_values[at] = values
     return whole
+
+
+def has_many_shapes(designs: DesignValues) -> bool:
+    """Whether the pressure of plane strain bounds that along the line of contact from below.
+
+    It does where the line has ends, but of too many shapes for a table each: without a moment the
+    greatest pressure, and that in the middle of a crowned line, are above plane strain.
+    """
+    return bool(designs.machine.finite_pairs) and len(_shapes(designs)[1]) > _SHAPES
+
+
+def _shapes(designs: DesignValues) -> tuple[list[str], Array, NDArray[np.intp]]:
+    """Keys that vary, shapes of contact by their values after a zero, shape of each design (m,)."""
+    keys = _KEYS if designs.machine.is_crowned else _STRAIGHT
+    varied = [key for key in keys if key in designs.columns]
+    rows = np.concatenate([np.zeros((designs.count, 1)), *(designs.value(k) for k in varied)], 1)
+    shapes, member = np.unique(rows, axis=0, return_inverse=True)
+    return varied, shapes, member.ravel()
 
 
 def _of_shape(machine: Machine, values: Mapping[str, float]) -> Machine:

@@ -315,12 +315,12 @@ def _lost_loads(designs: Designs) -> dict[str, NDArray[np.bool_]]:
 def _without_lost_loads(
     designs: Designs, screened: Screened, lost: NDArray[np.bool_] | None
 ) -> tuple[Array, Array | float | None, NDArray[np.bool_]] | None:
-    """Demand (m,), limit, and whether the demand is a bound by the other load cases (m,)."""
+    """Demand (m,), limit, and whether the demand is a bound (m,), as by the other load cases."""
     judged = screened.judged(designs)
     if judged is None:
         return None
     demand, limit = judged
-    bound = np.zeros(designs.count, dtype=bool)
+    bound = np.full(designs.count, screened.is_bound(designs))
     if lost is None or not lost.any():
         return demand, limit, bound
     demand = np.array(np.broadcast_to(demand, bound.shape))

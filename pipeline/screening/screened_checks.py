@@ -20,23 +20,30 @@ from camwright.pipeline.screening import screened_loads as loads
 from camwright.pipeline.screening import screened_shape as shape
 from camwright.pipeline.screening import screened_springs as springs
 from camwright.pipeline.screening.design_arrays import Designs, Judged
+from camwright.pipeline.screening.design_lengths import has_many_shapes
 
 
 def _to_all(designs: Designs) -> NDArray[np.bool_]:
     return np.ones(designs.count, dtype=bool)
 
 
+def _never(_: Designs) -> bool:
+    return False
+
+
 class Screened(NamedTuple):
     """A check that screening judges.
 
     deviation: from the demand of the preview, over the greater of demand and limit, as
-    `tests/verification/test_screening.py` measures it; applies: to which designs, (m,).
+    `tests/verification/test_screening.py` measures it; applies: to which designs, (m,); is_bound:
+    whether the demand is a lower bound, by which it can only fail.
     """
 
     check: str
     judged: Callable[[Designs], Judged | None]
     deviation: float
     applies: Callable[[Designs], NDArray[np.bool_]] = _to_all
+    is_bound: Callable[[Designs], bool] = _never
 
 
 SCREENED: tuple[Screened, ...] = (
@@ -56,14 +63,25 @@ SCREENED: tuple[Screened, ...] = (
     Screened("contact_at_overspeed", loads.contact_at_overspeed, 0.02),
     Screened("jam_index", loads.jam_index, 0.01),
     Screened("jam_index_friction_max", loads.jam_index_friction_max, 0.01),
-    Screened("contact_pressure", contact.contact("contact_pressure", CONTACT_SAFETY), 0.001),
+    Screened(
+        "contact_pressure",
+        contact.contact("contact_pressure", CONTACT_SAFETY),
+        0.001,
+        is_bound=contact.crown_is_bound,
+    ),
     # The friction of the guides, which holds a tilt, is interpolated.
     Screened(
         "edge_pressure",
         contact.contact("contact_pressure", CONTACT_SAFETY, contact.signed_pressure),
         0.01,
+        is_bound=has_many_shapes,
     ),
-    Screened("shakedown", contact.contact("shakedown", SHAKEDOWN_SAFETY), 0.001),
+    Screened(
+        "shakedown",
+        contact.contact("shakedown", SHAKEDOWN_SAFETY),
+        0.001,
+        is_bound=contact.crown_is_bound,
+    ),
     Screened("roller_static", contact.roller_static, 0.005),
     Screened("roller_load_share", contact.roller_load_share, 0.005),
     Screened("roller_radial", contact.roller_radial, 0.005),

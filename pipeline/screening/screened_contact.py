@@ -19,6 +19,7 @@ from camwright.pipeline.contact.hertz import half_width_square
 from camwright.pipeline.follower.flat_face_motion import sliding_pv
 from camwright.pipeline.follower.roller_motion import rating_life, rolling_share
 from camwright.pipeline.screening.design_arrays import Designs, Judged, Turns
+from camwright.pipeline.screening.design_lengths import has_many_shapes
 
 
 def _pressure(_: Designs, turns: Turns) -> Array:
@@ -28,6 +29,11 @@ def _pressure(_: Designs, turns: Turns) -> Array:
 def signed_pressure(_: Designs, turns: Turns) -> Array:
     """Contact pressure (m, n), Pa, with ends and tilt."""
     return turns.p0_signed
+
+
+def crown_is_bound(designs: Designs) -> bool:
+    """Whether the pressure in the middle of a crowned line is at least that of plane strain."""
+    return designs.machine.is_crowned and has_many_shapes(designs)
 
 
 def contact(

@@ -79,6 +79,10 @@ RANGES: Mapping[str, Mapping[str, tuple[float, float]]] = {
 POSITIONS = {"papers/petrescu_c": 720}
 
 
+# Keys of the shape of contact; with more than 16 shapes the pressure along the line is a bound.
+SHAPES = 8
+STRAIGHT = ("cam.width", "roller.width", "follower.face.depth")
+CROWNED = (*STRAIGHT, "cam.prime_radius", "roller.radius", "roller.crown.radius")
 CROWN = {"roller.crown.kind": "circular", "roller.crown.radius": "200 mm"}
 
 
@@ -89,9 +93,12 @@ def stated(name: str) -> Case:
 
 
 def drawn(name: str, count: int, without: tuple[str, ...] = ()) -> dict[str, Array]:
-    """Factors of random designs about a shipped case."""
+    """Factors of random designs about a shipped case, of `SHAPES` shapes of contact."""
     draw = np.random.default_rng(20)
     factors = {key: draw.uniform(*ends, count) for key, ends in RANGES[name].items()}
+    shape = draw.integers(min(SHAPES, count), size=count)
+    shaped = CROWNED if "roller.crown.radius" in factors else STRAIGHT
+    factors |= {key: factors[key][shape] for key in shaped if key in factors}
     return {key: values for key, values in factors.items() if key not in without}
 
 
@@ -174,6 +181,28 @@ def test_a_few_designs_agree_with_their_previews(name: str, count: int) -> None:
     worst = deviations(name, count, without=("guides.spacing",))
     assert {"p0", "force", "contact_pressure"} <= set(worst)
     assert exceeded(worst) == {}
+
+
+def test_many_shapes_of_contact_fail_by_plane_strain_alone() -> None:
+    """Beyond 16 shapes the pressure along the line is bounded by plane strain, from below."""
+    case = read_case(CASES / "gx120.toml")
+    factors = {
+        "cam.width": np.linspace(4e-3, 6e-3, 17),
+        "limits.contact_safety": np.linspace(0.15, 0.9, 17),
+    }
+    many = screen_designs(case, factors, positions=90)
+    few = [
+        screen_designs(case, {key: each[part] for key, each in factors.items()}, positions=90)
+        for part in (slice(0, 9), slice(9, 17))
+    ]
+    status = many["edge_pressure.status"]
+    judged = np.concatenate([each["edge_pressure.status"] for each in few])
+    assert set(status) == {"fail", "not_evaluated"}
+    assert set(judged[status == "fail"]) == {"fail"} and "fail" in judged[status != "fail"]
+    bound = np.asarray(many["edge_pressure.demand"], dtype=float)
+    demand = np.concatenate([each["edge_pressure.demand"] for each in few]).astype(float)
+    assert (demand > bound)[status == "fail"].all()
+    assert np.isnan(bound[status == "not_evaluated"]).all()
 
 
 def test_screening_declares_its_checks() -> None:
