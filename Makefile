@@ -47,7 +47,7 @@ test: lint
 	$(TESTS) || if test $$? = 70; then $(TESTS); else exit 1; fi
 
 verify: .venv/developing
-	$(BIN)/python -m pytest -q -m slow
+	$(BIN)/python -m pytest -q -m slow -n 2 --dist loadfile --max-worker-restart=0 --durations=30
 
 fuzz: .venv/developing
 	$(BIN)/python tests/mutated_inputs.py 20000
