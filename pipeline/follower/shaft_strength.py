@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from itertools import pairwise
+from statistics import NormalDist
 
 import numpy as np
-import scipy
 from numpy.typing import ArrayLike
 
 from camwright.geometry.arrays import Array, distinct, finite, uniform_turn
@@ -147,7 +147,7 @@ def reliability_factor(reliability: float) -> float:
     ----------
     Shigley's Mechanical Engineering Design, 10th ed., eq. 6-29: standard deviation of 8 %.
     """
-    return float(1.0 - 0.08 * scipy.special.ndtri(reliability))
+    return float(1.0 - 0.08 * NormalDist().inv_cdf(reliability))
 
 
 def fibre_stresses(
