@@ -31,6 +31,7 @@ from camwright.pipeline.checks.missing_keys import (
 from camwright.pipeline.contact.oil_film import Lubricant
 from camwright.pipeline.contact.rolling_envelope import Envelope
 from camwright.pipeline.cycle.cycle import Cycle
+from camwright.pipeline.cycle.rolling_history import SweptStress
 from camwright.pipeline.cycle.solution import Solution
 
 CASE_CARBURISED = 1500e6  # Pa, quality MQ
@@ -119,7 +120,7 @@ def _torsion_demand(solution: Solution, measure: Callable[[Envelope], float]) ->
     torsion, safety = card.fatigue_torsion, solution.machine.limits[FATIGUE_SAFETY]
     known = torsion is not None and card.fatigue_bending is not None
     worst = worst_case(
-        solution.cycles, lambda cycle: measure(cycle.rolling.envelope) if known else math.nan
+        solution.cycles, lambda cycle: measure(cycle.rolling.swept.governing) if known else math.nan
     )
     return Demand(
         worst.value,
@@ -185,11 +186,9 @@ def dang_van(solution: Solution) -> Demand:
 def hardened_case(solution: Solution) -> Demand | None:
     """Maximum von Mises stress over the yield strength at its depth; None if not hardened."""
 
-    def use(swept: Envelope, card: Material) -> float:
-        return _use_of_strength(
-            swept.von_mises, swept.depth, card.case_depth,
-            (card.yield_strength, card.core_yield_strength),
-        )  # fmt: skip
+    def use(swept: SweptStress, card: Material) -> float:
+        strengths = card.yield_strength, card.core_yield_strength
+        return _use_of_strength(swept, lambda at: at.von_mises, card.case_depth, strengths)
 
     allowed = 1.0 / solution.machine.limits[CASE_SAFETY]
     return _hardened_demand(solution, use, allowed, ("case_depth", "core_yield_strength"))
@@ -214,11 +213,9 @@ def hardened_case(solution: Solution) -> Demand | None:
 def case_shear(solution: Solution) -> Demand | None:
     """Maximum shear amplitude over the fatigue limit at its depth; None if not hardened."""
 
-    def use(swept: Envelope, card: Material) -> float:
-        return _use_of_strength(
-            0.5 * swept.shear_range, swept.depth, card.case_depth,
-            (card.fatigue_torsion, card.core_fatigue_torsion),
-        )  # fmt: skip
+    def use(swept: SweptStress, card: Material) -> float:
+        strengths = card.fatigue_torsion, card.core_fatigue_torsion
+        return _use_of_strength(swept, lambda at: 0.5 * at.shear_range, card.case_depth, strengths)
 
     allowed = 1.0 / solution.machine.limits[FATIGUE_SAFETY]
     keys = "case_depth", "fatigue_torsion", "core_fatigue_torsion"
@@ -242,7 +239,7 @@ def _untreated(card: Material) -> tuple[str, ...]:
 
 def _hardened_demand(
     solution: Solution,
-    use: Callable[[Envelope, Material], float],
+    use: Callable[[SweptStress, Material], float],
     allowed: float,
     keys: tuple[str, ...],
 ) -> Demand | None:
@@ -256,7 +253,7 @@ def _hardened_demand(
         return None
 
     def of_turn(card: Material) -> Callable[[Cycle], float]:
-        return lambda cycle: use(cycle.rolling.envelope, card)
+        return lambda cycle: use(cycle.rolling.swept, card)
 
     worst = {body: worst_case(solution.cycles, of_turn(card)) for body, card in bodies.items()}
     incomplete = [body for body, card in bodies.items() if math.isnan(_probe(use, card))]
@@ -272,10 +269,10 @@ def _hardened_demand(
     )
 
 
-def _probe(use: Callable[[Envelope, Material], float], card: Material) -> float:
+def _probe(use: Callable[[SweptStress, Material], float], card: Material) -> float:
     """Use of the strength in an envelope without stress: NaN where the card lacks data."""
     one = np.zeros((1, 1))
-    return use(Envelope(one[0], one[0], one, one, one, one), card)
+    return use(SweptStress(lambda: Envelope(one[0], one[0], one, one, one, one)), card)
 
 
 def _rank(value: float) -> float:
@@ -511,11 +508,15 @@ def _greatest_of(field: Array | None) -> float:
 
 
 def _use_of_strength(
-    stress: Array, depth: Array, case: float | None, strengths: tuple[float | None, float | None]
+    swept: SweptStress,
+    stress: Callable[[Envelope], Array],
+    case: float | None,
+    strengths: tuple[float | None, float | None],
 ) -> float:
     """Greatest stress over the strength at its depth; NaN without case depth or a strength."""
     surface, core = strengths
     if case is None or surface is None or core is None:
         return np.nan
-    inward = np.clip(depth / case, 0.0, 1.0)
-    return float((stress / (surface + (core - surface) * inward)).max())
+    at = swept.governing if core <= surface else swept.envelope
+    inward = np.clip(at.depth / case, 0.0, 1.0)
+    return float((stress(at) / (surface + (core - surface) * inward)).max())

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from functools import cached_property, lru_cache
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from camwright.geometry.arrays import FULL_TURN, Array, finite, freeze, readonly, sealed
 from camwright.geometry.errors import InputError
@@ -217,6 +217,7 @@ def swept(
     friction: float = 0.0,
     limits: FatigueLimits | None = None,
     body_stress: ArrayLike | None = None,
+    governing: bool = False,
 ) -> Envelope:
     """Maximum stresses below the contour over one turn.
 
@@ -230,6 +231,7 @@ def swept(
     friction : float                traction over pressure
     limits : FatigueLimits          of the criteria of Crossland and Dang Van
     body_stress : array (m,)        stress along the contour that the real body adds, at theta, Pa
+    governing : bool                only the stations of `governing_stations`
 
     Raises
     ------
@@ -245,6 +247,9 @@ def swept(
     along = np.zeros(at.size)
     if body_stress is not None:
         along = np.interp(at, turn, np.asarray(body_stress, dtype=float), period=FULL_TURN)
+    elif governing:
+        kept = governing_stations(p0, half_width)
+        at, half_width, p0, along = at[kept], half_width[kept], p0[kept], along[kept]
     mises, shear = _with_body(unit, p0, along, pair.cam.poisson)
     scale = p0[:, None]
     body_hydrostatic = (1 + pair.cam.poisson) / 3 * along
@@ -258,6 +263,25 @@ def swept(
         crossland=None if limits is None else _crossland(unit, p0, body_hydrostatic, limits),
         dang_van=None if limits is None else _dang_van(unit, p0, body_hydrostatic, limits),
     )
+
+
+def governing_stations(p0: Array, half_width: Array) -> NDArray[np.intp]:
+    """Stations of which none other has both no less pressure and no less half-width.
+
+    Without stress of the body every stress of a station grows with its pressure, and lies the
+    deeper the wider the contact: the greatest stresses over the turn, and those over a strength
+    that does not rise with depth, are at one of these. All stations where a value is unknown.
+
+    Parameters
+    ----------
+    p0, half_width : array (n,)   of each station
+    """
+    if not np.isfinite(p0 + half_width).all():
+        return np.arange(p0.size)
+    falling = np.lexsort((-half_width, -p0))
+    widest = np.maximum.accumulate(half_width[falling])
+    wider = np.append(True, widest[1:] > widest[:-1])
+    return np.sort(falling[wider])
 
 
 def _between(at: Array, theta: Array, finite_elements: Array, closed_form: Array) -> Array:

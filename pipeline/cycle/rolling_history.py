@@ -56,15 +56,23 @@ class SweptStress:
     Parameters
     ----------
     compute : function   () -> map
+    worst : function     () -> its stations with the greatest stresses; None: all
     """
 
-    def __init__(self, compute: Callable[[], Envelope]) -> None:
-        self._compute = compute
+    def __init__(
+        self, compute: Callable[[], Envelope], worst: Callable[[], Envelope] | None = None
+    ) -> None:
+        self._compute, self._worst = compute, worst
 
     @cached_property
     def envelope(self) -> Envelope:
         """The map."""
         return self._compute()
+
+    @cached_property
+    def governing(self) -> Envelope:
+        """The map at the stations with the greatest stresses; see `governing_stations`."""
+        return self.envelope if self._worst is None else self._worst()
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -177,6 +185,8 @@ def rolling_history(
     if motion.traction_share is not None and follower.friction is not None:
         more = rolling_increase(pair.cam.poisson, follower.friction, motion.traction_share)
         shear, mises = contact.tau_max * more[0], contact.von_mises * more[1]
+    map_ = partial(_envelope, machine, pair, bodies, loads, contact)
+    worst = partial(map_, governing=True) if bodies is None else None
     reach = rolling_pass(pair.cam.poisson).shear_range.max()
     bore = None
     if bodies is not None:
@@ -185,7 +195,7 @@ def rolling_history(
     return RollingHistory(
         shear_range=reach * contact.p0,
         bore=bore,
-        swept=SweptStress(partial(_envelope, machine, pair, bodies, loads, contact)),
+        swept=SweptStress(map_, worst),
         traction_demand=motion.traction_demand,
         sliding=motion.sliding,
         contact=motion.rolling,
@@ -201,8 +211,10 @@ def _envelope(
     bodies: CycleBodies | None,
     loads: Loads,
     contact: ContactHistory,
+    *,
+    governing: bool = False,
 ) -> Envelope:
-    """Map of the maximum stresses, at its own stations."""
+    """Map of the maximum stresses, at its own stations; only at those that govern."""
     stations, theta = uniform_turn(STATIONS), loads.theta
     system = replace(machine.system, rubbing=loads.rubbing)
     there = follower_loads(pair.contour.pitch, system, machine.cam_speed, stations)
@@ -211,7 +223,9 @@ def _envelope(
         limits = FatigueLimits(card.fatigue_torsion, card.fatigue_bending)
     load = np.maximum(there.normal_force, 0.0) / pair.width
     added = None if bodies is None else added_stress(pair, bodies, theta, contact.line_load)
-    return swept(pair, theta, contact, stations, load, limits=limits, body_stress=added)
+    return swept(
+        pair, theta, contact, stations, load, limits=limits, body_stress=added, governing=governing
+    )
 
 
 def added_stress(pair: ContactPair, bodies: CycleBodies, theta: Array, line_load: Array) -> Array:

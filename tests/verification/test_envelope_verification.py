@@ -24,6 +24,7 @@ from camwright.pipeline.contact.follower_body import RollerBody
 from camwright.pipeline.contact.rolling_envelope import (
     STATIONS,
     FatigueLimits,
+    governing_stations,
     greatest_line,
     rolling_pass,
     smallest_sphere,
@@ -34,6 +35,7 @@ from camwright.pipeline.cycle.rolling_history import added_stress
 
 STEEL = Elastic(210e9, 0.3)
 WIDTH = 0.005
+LIMITS = FatigueLimits(300e6, 450e6)
 
 
 def pair_of(stroke, keyway=None):
@@ -162,8 +164,32 @@ def swept_at(count, solve):
     pair = pair_of(0.02)
     theta, stations = uniform_turn(count), uniform_turn(STATIONS)
     contact = solve(pair, theta, force(theta))
-    limits = FatigueLimits(300e6, 450e6)
-    return swept(pair, theta, contact, stations, force(stations) / WIDTH, limits=limits)
+    return swept(pair, theta, contact, stations, force(stations) / WIDTH, limits=LIMITS)
+
+
+def test_governing_stations_hold_the_greatest_stresses_and_uses_of_a_strength():
+    pair, theta, stations = pair_of(0.02), uniform_turn(180), uniform_turn(STATIONS)
+    contact, load = closed_form_history(pair, theta, force(theta)), force(stations) / WIDTH
+    every, few = (
+        swept(pair, theta, contact, stations, load, limits=LIMITS, governing=governing)
+        for governing in (False, True)
+    )
+    assert few.theta.size < 0.1 * every.theta.size
+    for name in ("von_mises", "tau_max", "shear_range", "crossland", "dang_van"):
+        assert getattr(few, name).max() == getattr(every, name).max(), name
+    for case_depth in (0.05e-3, 0.2e-3, 1e-3):
+        use, of_all = (
+            (at.von_mises / (900e6 - 500e6 * np.minimum(at.depth / case_depth, 1.0))).max()
+            for at in (few, every)
+        )
+        assert use == of_all
+
+
+def test_governing_stations_are_those_that_no_other_exceeds_in_both():
+    p0, half_width = np.array([3.0, 2.0, 2.0, 3.0, 1.0]), np.array([1.0, 2.0, 3.0, 1.0, 2.0])
+    np.testing.assert_array_equal(governing_stations(p0, half_width), [0, 2])
+    p0[1] = np.nan
+    np.testing.assert_array_equal(governing_stations(p0, half_width), np.arange(5))
 
 
 def assert_alike(one, two):
