@@ -25,7 +25,7 @@ from camwright.pipeline.case.machine import machines
 from camwright.pipeline.contact.two_scale import CycleBodies, two_scale_history
 from camwright.pipeline.cycle.contact_setup import contact_pair
 from camwright.pipeline.cycle.cycle import Cycle
-from camwright.pipeline.cycle.part_loads import part_loads
+from camwright.pipeline.cycle.part_loads import part_loads, shaft_of
 from camwright.pipeline.cycle.turn import Turn, turn
 from camwright.pipeline.smoothing.required_lift import cam_lift
 
@@ -74,7 +74,9 @@ def main() -> int:
 
     loaded = turned()
     loads = seconds(turned)
-    parts = seconds(lambda: part_loads(loaded, contour, machine.contact_width))
+    parts = seconds(
+        lambda: part_loads(loaded, contour, machine.contact_width, shaft_of(loaded, contour))
+    )
     cycled()  # templates and tables of the process, and the corrections of this cam
     known, new = seconds(cycled), seconds(cycled_anew)
     print(f"{positions} positions: loads and guides {loads:.3f} s, parts {parts:.3f} s")

@@ -30,7 +30,6 @@ from camwright.pipeline.checks.demands import FatiguePoint
 from camwright.pipeline.checks.extremes import Extreme, greatest, over_duty, worst_case
 from camwright.pipeline.checks.missing_keys import lacking, lacking_of_card, unset
 from camwright.pipeline.contact.hertz import contact_modulus
-from camwright.pipeline.cycle.cam_balance import camshaft_loads
 from camwright.pipeline.cycle.cycle import Cycle
 from camwright.pipeline.cycle.solution import Solution
 from camwright.pipeline.follower.camshaft_loads import (
@@ -41,7 +40,7 @@ from camwright.pipeline.follower.camshaft_loads import (
 )
 from camwright.pipeline.follower.roller_motion import rating_life, static_safety
 from camwright.pipeline.follower.shaft_strength import (
-    Section,
+    Sections,
     ShaftBending,
     bending_moment,
     fatigue_safety,
@@ -134,18 +133,20 @@ def shaft_fatigue(solution: Solution) -> Demand:
     finish = surface_factor(shaft.camshaft.surface, tensile)
     rest = reliability_factor(machine.limits[SHAFT_RELIABILITY])
 
-    loads = cache(_loads)  # common to the sections
+    sections, strength = Sections.of(shaft.sections), _endurance(shaft, finish * rest * endurance)
 
-    def least(section: ShaftSection) -> Extreme:
-        notched = _notched(section, finish * rest * endurance, tensile)
+    @cache
+    def safety(cycle: Cycle) -> Array:
+        fibres = fibre_stresses(cycle.theta, *_at_sections(cycle, shaft, sections), sections)
+        return fatigue_safety(*fibres, strength, tensile)
 
-        def safety(cycle: Cycle) -> float:
-            moment, torque = _at_section(loads(cycle), cycle, shaft, section)
-            return fatigue_safety(cycle.theta, moment, torque, notched)
-
-        return worst_case(solution.cycles, safety, at_least=True)
-
-    worst, section = min(((least(one), one) for one in shaft.sections), key=_by_value)
+    worst, section = min(
+        (
+            (worst_case(solution.cycles, _entry(safety, k), at_least=True), section)
+            for k, section in enumerate(shaft.sections)
+        ),
+        key=_by_value,
+    )
     size = size_factor(section.diameter)
     return Demand(
         worst.value,
@@ -163,20 +164,19 @@ def shaft_fatigue(solution: Solution) -> Demand:
     )
 
 
-def _notched(section: ShaftSection, endurance: float, tensile: float) -> Section:
-    """A section with its notch factors; endurance without the factor of size, Pa."""
-    strength = size_factor(section.diameter) * endurance
-    return Section(
-        section.diameter, section.notch_bending, section.notch_torsion, strength, tensile
-    )
+def _endurance(shaft: _Shaft, endurance: float) -> Array:
+    """Fully reversed strength of each section (k,), Pa, from that without the factor of size."""
+    return np.array([size_factor(one.diameter) * endurance for one in shaft.sections])
 
 
-def _at_section(
-    loads: ShaftLoads, cycle: Cycle, shaft: _Shaft, section: ShaftSection
-) -> tuple[Array, Array]:
-    """Bending moment (2, n) and torque (n,) at a section, N m."""
-    moment = bending_moment(loads, shaft.camshaft, section.position)
-    return moment, torque_at(cycle.loads.cam_torque, shaft.camshaft, section.position)
+def _entry(values: Callable[[Cycle], Array], k: int) -> Callable[[Cycle], float]:
+    return lambda cycle: float(values(cycle)[k])
+
+
+def _at_sections(cycle: Cycle, shaft: _Shaft, sections: Sections) -> tuple[Array, Array]:
+    """Bending moment (k, 2, n) and torque (k, n) at the sections, N m."""
+    moment = bending_moment(_loads(cycle), shaft.camshaft, sections.place)
+    return moment, torque_at(cycle.loads.cam_torque, shaft.camshaft, sections.place)
 
 
 def shaft_fatigue_points(solution: Solution) -> list[FatiguePoint]:
@@ -189,20 +189,22 @@ def shaft_fatigue_points(solution: Solution) -> list[FatiguePoint]:
         return []
     factors = surface_factor(shaft.camshaft.surface, tensile)
     factors *= reliability_factor(machine.limits[SHAFT_RELIABILITY])
-    loads, used, points = cache(_loads), dict[str, float](), dict[str, FatiguePoint]()
-    for section in shaft.sections:
-        notched = _notched(section, factors * endurance, tensile)
-        fibres = [
-            fibre_stresses(cycle.theta, *_at_section(loads(cycle), cycle, shaft, section), notched)
-            for cycle in solution.cycles
-        ]
-        amplitude, mean = (np.concatenate(each) for each in zip(*fibres, strict=True))
-        use = amplitude / notched.endurance + mean / tensile
+    sections, strengths = Sections.of(shaft.sections), _endurance(shaft, factors * endurance)
+    fibres = [
+        fibre_stresses(cycle.theta, *_at_sections(cycle, shaft, sections), sections)
+        for cycle in solution.cycles
+    ]
+    amplitudes, means = (np.concatenate(each, axis=1) for each in zip(*fibres, strict=True))
+    used, points = dict[str, float](), dict[str, FatiguePoint]()
+    for section, strength, amplitude, mean in zip(
+        shaft.sections, strengths.tolist(), amplitudes, means, strict=True
+    ):
+        use = amplitude / strength + mean / tensile
         k = int(np.argmax(np.nan_to_num(use)))
         if use[k] > used.get(section.name, 0.0):
             used[section.name] = float(use[k])
             points[section.name] = FatiguePoint(
-                section.name, float(amplitude[k]), float(mean[k]), notched.endurance, tensile
+                section.name, float(amplitude[k]), float(mean[k]), strength, tensile
             )
     return list(points.values())
 
@@ -226,17 +228,18 @@ def shaft_yield(solution: Solution) -> Demand:
     if isinstance(shaft, tuple):
         return Demand(None, None, missing=shaft)
 
-    loads = cache(_loads)  # common to the sections
+    sections = Sections.of(shaft.sections)
 
-    def most(section: ShaftSection) -> Extreme:
-        def stress(cycle: Cycle) -> Array:
-            moment = bending_moment(loads(cycle), shaft.camshaft, section.position)
-            torque = torque_at(cycle.loads.cam_torque, shaft.camshaft, section.position)
-            return greatest_stress(moment, torque, section)
+    @cache
+    def stress(cycle: Cycle) -> Array:
+        return greatest_stress(*_at_sections(cycle, shaft, sections), sections)
 
-        return greatest(solution.cycles, stress)
+    def at_section(k: int) -> Extreme:
+        return greatest(solution.cycles, lambda cycle: stress(cycle)[k])
 
-    worst, section = max(((most(one), one) for one in shaft.sections), key=_by_value)
+    worst, section = max(
+        ((at_section(k), section) for k, section in enumerate(shaft.sections)), key=_by_value
+    )
     card = shaft.material
     return Demand(
         worst.value,
@@ -509,8 +512,9 @@ def _tooth_force(cycle: Cycle, shaft: Camshaft, gear: CamshaftGear) -> Array:
 
 
 def _loads(cycle: Cycle) -> ShaftLoads:
-    shaft, cam = _camshaft(cycle.machine), cycle.machine.cam
-    return camshaft_loads(cycle.loads, shaft, cam, cycle.contour, cycle.cam_speed)
+    if cycle.shaft is None:
+        raise InputError("camshaft", "missing", "described for its checks")
+    return cycle.shaft
 
 
 def _bending(cycle: Cycle, shaft: _Shaft) -> ShaftBending:

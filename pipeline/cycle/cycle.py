@@ -30,9 +30,10 @@ from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.contact.two_scale import CycleBodies
 from camwright.pipeline.cycle.elastic_response import ElasticHistory, elastic_history
 from camwright.pipeline.cycle.length_history import LengthHistory, LineContact, length_histories
-from camwright.pipeline.cycle.part_loads import PartLoads, part_loads, spring_surge
+from camwright.pipeline.cycle.part_loads import PartLoads, part_loads, shaft_of, spring_surge
 from camwright.pipeline.cycle.rolling_history import RollingHistory, rolling_history
 from camwright.pipeline.cycle.turn import Turn
+from camwright.pipeline.follower.camshaft_loads import ShaftLoads
 from camwright.pipeline.follower.follower_forces import Loads, share_left
 from camwright.pipeline.follower.guide_effects import GuideShares, guide_shares
 from camwright.pipeline.follower.guide_reactions import GuideReactions
@@ -77,7 +78,7 @@ class Cycle(Tabled):
         if correction == self.ends:
             return self
         cycle = replace(self, ends=correction)
-        kept = ("parts", "elastic") if self.machine.is_crowned else ("parts", "elastic", "rolling")
+        kept = ("parts", "shaft", "elastic", *(() if self.machine.is_crowned else ("rolling",)))
         known = {name: value for name, value in vars(self).items() if name in kept}
         vars(cycle).update(known)
         return cycle
@@ -168,7 +169,12 @@ class Cycle(Tabled):
     @cached_property
     def parts(self) -> PartLoads:
         """Loads of guides, stem, spring, pin, key and shaft over the turn."""
-        return part_loads(self.turn, self.contour, self.pair.width)
+        return part_loads(self.turn, self.contour, self.pair.width, self.shaft)
+
+    @cached_property
+    def shaft(self) -> ShaftLoads | None:
+        """Loads of the camshaft; None where the case does not describe one."""
+        return shaft_of(self.turn, self.contour)
 
     @cached_property
     def elastic(self) -> ElasticHistory:
@@ -397,6 +403,10 @@ class _ThinnedCycle(Cycle):
     @cached_property
     def parts(self) -> PartLoads:
         return _at_every(self.whole.parts, self.whole.theta.size, self.step)
+
+    @cached_property
+    def shaft(self) -> ShaftLoads | None:
+        return _at_every(self.whole.shaft, self.whole.theta.size, self.step)
 
     @cached_property
     def elastic(self) -> ElasticHistory:

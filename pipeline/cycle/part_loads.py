@@ -132,16 +132,19 @@ class PartLoads(Displayed):
         return {column: values for column, values in columns.items() if values is not None}
 
 
-def part_loads(turn: Turn, contour: Contour, contact_width: float) -> PartLoads:
+def part_loads(
+    turn: Turn, contour: Contour, contact_width: float, shaft: ShaftLoads | None
+) -> PartLoads:
     """Loads of all parts over a turn.
 
     Parameters
     ----------
+    shaft : ShaftLoads      of the turn; None without a camshaft
     contact_width : float   of the line contact, m
     """
     machine, loads, guides = turn.machine, turn.loads, turn.guides
     friction = turn.friction
-    spring, shaft = machine.spring.design, _shaft(machine, contour, loads)
+    spring = machine.spring.design
     amplitude, mean, correction = _ring(machine, contour, loads, contact_width)
     motion, pair = _roller_motion(machine, contour, loads), machine.guides
     nominal = machine.friction.nominal
@@ -216,11 +219,13 @@ def _key_pressure(machine: Machine, loads: Loads) -> Array | None:
     return key_stress(key.application_factor * loads.cam_torque, 2.0 * cam.bore_radius, flanks).hub
 
 
-def _shaft(machine: Machine, contour: Contour, loads: Loads) -> ShaftLoads | None:
+def shaft_of(turn: Turn, contour: Contour) -> ShaftLoads | None:
+    """Loads of the camshaft over a turn; None where the case does not describe one."""
+    machine = turn.machine
     if machine.camshaft is None:
         return None
     shaft, cam = machine.camshaft, machine.cam
-    return camshaft_loads(loads, shaft, cam, contour, machine.cam_speed)
+    return camshaft_loads(turn.loads, shaft, cam, contour, machine.cam_speed)
 
 
 def _roller_motion(machine: Machine, contour: Contour, loads: Loads) -> RollerMotion | None:

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from itertools import pairwise
 from statistics import NormalDist
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from camwright.geometry.arrays import Array, distinct, finite, uniform_turn
+from camwright.geometry.arrays import Array, distinct, finite, freeze, uniform_turn
 from camwright.geometry.errors import InputError
 from camwright.pipeline.base.units import in_unit
 from camwright.pipeline.follower.camshaft_loads import (
@@ -30,31 +29,32 @@ _FINISH: Mapping[Surface, tuple[float, float]] = {
 }
 
 
-@dataclass(frozen=True)
-class Section:
-    """Notched section of the shaft.
+@dataclass(frozen=True, eq=False)
+class Sections:
+    """Notched sections of the shaft, arrays (k,).
 
-    Parameters
-    ----------
-    diameter : float               m
-    notch_bending, notch_torsion   fatigue notch factors, >= 1
-    endurance : float              fully reversed strength in bending of the part, Pa
-    tensile : float                tensile strength, Pa
+    place: m from the first bearing; diameter, m; notch_bending, notch_torsion: fatigue notch
+    factors.
     """
 
-    diameter: float
-    notch_bending: float
-    notch_torsion: float
-    endurance: float
-    tensile: float
+    place: Array
+    diameter: Array
+    notch_bending: Array
+    notch_torsion: Array
 
     def __post_init__(self) -> None:
-        for name in ("diameter", "endurance", "tensile"):
-            if not 0.0 < getattr(self, name) < np.inf:
-                raise InputError(f"camshaft.{name}", getattr(self, name), "> 0")
-        for name in ("notch_bending", "notch_torsion"):
-            if not 1.0 <= getattr(self, name) < np.inf:
-                raise InputError(f"camshaft.{name}", getattr(self, name), ">= 1")
+        freeze(self, **{name: getattr(self, name) for name in self.__dataclass_fields__})
+
+    @classmethod
+    def of(cls, sections: Sequence[ShaftSection]) -> Sections:
+        """Sections of a shaft side by side."""
+        names = ("position", "diameter", "notch_bending", "notch_torsion")
+        return cls(*(np.array([getattr(one, name) for one in sections]) for name in names))
+
+    @property
+    def modulus(self) -> Array:
+        """Section modulus in bending (k,), m3."""
+        return np.asarray(np.pi * self.diameter**3 / 32.0)
 
 
 def judged_sections(
@@ -98,8 +98,12 @@ def judged_sections(
     return (*judged, *others)
 
 
-def bending_moment(loads: ShaftLoads, shaft: Camshaft, place: float) -> Array:
-    """Bending moment (2, n), N m, at a place (m from the first bearing), by force component."""
+def bending_moment(loads: ShaftLoads, shaft: Camshaft, place: ArrayLike) -> Array:
+    """Bending moment (..., 2, n), N m, at places (...), m from the first bearing.
+
+    By force component.
+    """
+    reach = np.asarray(place, dtype=float)[..., None, None]
     acting = [
         (0.0, loads.bearing_1),
         (shaft.bearing_spacing, loads.bearing_2),
@@ -108,14 +112,15 @@ def bending_moment(loads: ShaftLoads, shaft: Camshaft, place: float) -> Array:
     ]
     if shaft.counterweight is not None:
         acting.append((shaft.counterweight.position, loads.counterweight))
-    return np.asarray(sum(force * max(place - at, 0.0) for at, force in acting))
+    return np.asarray(sum(force * np.maximum(reach - at, 0.0) for at, force in acting))
 
 
-def torque_at(torque: Array, shaft: Camshaft, place: float) -> Array:
-    """Torque (n,), N m, at a place: cam torque and drag between gear and cam, none beyond."""
+def torque_at(torque: Array, shaft: Camshaft, place: ArrayLike) -> Array:
+    """Torque (..., n), N m, at places (...): cam torque and drag between gear and cam, 0 beyond."""
     low, high = sorted((shaft.cam_position, shaft.gear_position))
-    within = low - _SAME_PLACE <= place <= high + _SAME_PLACE
-    return torque + shaft.drag if within else np.zeros_like(torque)
+    at = np.asarray(place, dtype=float)[..., None]
+    within = (low - _SAME_PLACE <= at) & (at <= high + _SAME_PLACE)
+    return np.where(within, torque + shaft.drag, 0.0)
 
 
 def surface_factor(surface: Surface, tensile: float) -> float:
@@ -151,75 +156,80 @@ def reliability_factor(reliability: float) -> float:
 
 
 def fibre_stresses(
-    theta: ArrayLike, moment: Array, torque: ArrayLike, section: Section
+    theta: ArrayLike, moment: Array, torque: Array, sections: Sections
 ) -> tuple[Array, Array]:
-    """Von Mises amplitude and mean (m,), Pa, of the fibres of a rotating shaft over a turn.
+    """Von Mises amplitude and mean (k, m), Pa, of the fibres of a rotating shaft over a turn.
 
     Loads are in the engine frame, fibres rotate with the shaft.
 
     Parameters
     ----------
-    theta : array (n,)     angles of the shaft over one turn, rad
-    moment : array (2, n)  N m, in the engine frame
-    torque : array (n,)    N m
-    section : Section
+    theta : array (n,)        angles of the shaft over one turn, rad
+    moment : array (k, 2, n)  at each section, N m, in the engine frame
+    torque : array (k, n)     N m
+    sections : Sections
 
     Returns
     -------
-    amplitude, mean : array (m,)    with the notch factors; NaN with an unknown load
+    amplitude, mean : array (k, m)    with the notch factors; NaN with an unknown load
 
     References
     ----------
     Shigley's Mechanical Engineering Design, sec. 7-4: distortion energy.
     """
-    angle, twist = finite("theta", theta), np.asarray(torque, dtype=float)
-    if not (np.isfinite(moment).all() and np.isfinite(twist).all()):
-        return np.full(_FIBRES, np.nan), np.full(_FIBRES, np.nan)
-    cosine, sine = np.cos(angle), np.sin(angle)
-    on_shaft = np.stack(
-        [moment[0] * cosine + moment[1] * sine, moment[1] * cosine - moment[0] * sine]
-    )
-    fibre = uniform_turn(_FIBRES)
-    modulus = np.pi * section.diameter**3 / 32.0
-    bend = np.stack([np.cos(fibre), np.sin(fibre)], axis=1) @ on_shaft / modulus
-    shear = twist / (2.0 * modulus)
+    angle = finite("theta", theta)
+    if not (np.isfinite(moment).all() and np.isfinite(torque).all()):
+        unknown = np.full((len(moment), _FIBRES), np.nan)
+        return unknown, unknown
+    cosine, sine, (x, y) = np.cos(angle), np.sin(angle), np.moveaxis(moment, 1, 0)
+    on_shaft = np.stack([x * cosine + y * sine, y * cosine - x * sine], axis=1)
+    fibre, modulus = uniform_turn(_FIBRES), sections.modulus
+    bend = np.stack([np.cos(fibre), np.sin(fibre)], axis=1) @ on_shaft / modulus[:, None, None]
+    shear = torque / (2.0 * modulus)[:, None]
 
-    def equivalent(of_bending: Array, of_torsion: float) -> Array:
-        pull = section.notch_bending * of_bending
-        return np.sqrt(pull**2 + 3.0 * (section.notch_torsion * of_torsion) ** 2)
+    def equivalent(of_bending: Array, of_torsion: Array) -> Array:
+        pull = sections.notch_bending[:, None] * of_bending
+        twist = (sections.notch_torsion * of_torsion)[:, None]
+        return np.sqrt(pull**2 + 3.0 * twist**2)
 
-    high, low = bend.max(axis=1), bend.min(axis=1)
-    amplitude = equivalent(0.5 * (high - low), 0.5 * float(np.ptp(shear)))
-    mean = equivalent(0.5 * (high + low), 0.5 * float(shear.max() + shear.min()))
+    high, low = bend.max(axis=2), bend.min(axis=2)
+    most, least = shear.max(axis=1), shear.min(axis=1)
+    amplitude = equivalent(0.5 * (high - low), 0.5 * (most - least))
+    mean = equivalent(0.5 * (high + low), 0.5 * (most + least))
     return amplitude, mean
 
 
-def fatigue_safety(theta: ArrayLike, moment: Array, torque: ArrayLike, section: Section) -> float:
-    """Fatigue safety factor of a rotating shaft by Goodman's line; see `fibre_stresses`.
+def fatigue_safety(amplitude: Array, mean: Array, endurance: Array, tensile: float) -> Array:
+    """Fatigue safety factor (k,) of a rotating shaft by Goodman's line; see `fibre_stresses`.
+
+    Parameters
+    ----------
+    amplitude, mean : array (k, m)   of the fibres, Pa
+    endurance : array (k,)           fully reversed strength in bending of the sections, Pa
+    tensile : float                  tensile strength, Pa
 
     Returns
     -------
-    float    minimum over the fibres; infinite without load, NaN with an unknown load
+    array (k,)    minimum over the fibres; infinite without load, NaN with an unknown load
 
     References
     ----------
     Shigley's Mechanical Engineering Design, sec. 7-4: Goodman's line.
     """
-    amplitude, mean = fibre_stresses(theta, moment, torque, section)
-    used = float(np.max(amplitude / section.endurance + mean / section.tensile))
-    return np.inf if used == 0.0 else 1.0 / used
+    used = (amplitude / endurance[:, None] + mean / tensile).max(axis=1)
+    return np.asarray(np.divide(1.0, used, out=np.full_like(used, np.inf), where=used != 0.0))
 
 
-def greatest_stress(moment: Array, torque: ArrayLike, section: ShaftSection) -> Array:
-    """Von Mises stress (n,) at the notch under bending (2, n) and torsion (n,), N m; Pa.
+def greatest_stress(moment: Array, torque: Array, sections: Sections) -> Array:
+    """Von Mises stress (k, n) at the notches under bending (k, 2, n) and torsion (k, n), N m; Pa.
 
     References
     ----------
     Shigley's Mechanical Engineering Design, 10th ed., eq. 7-15, with the fatigue notch factors.
     """
-    modulus = np.pi * section.diameter**3 / 32.0
-    bend = section.notch_bending * np.hypot(*moment) / modulus
-    shear = section.notch_torsion * np.asarray(torque, dtype=float) / (2.0 * modulus)
+    modulus = sections.modulus[:, None]
+    bend = sections.notch_bending[:, None] * np.hypot(moment[:, 0], moment[:, 1]) / modulus
+    shear = sections.notch_torsion[:, None] * torque / (2.0 * modulus)
     return np.asarray(np.sqrt(bend**2 + 3.0 * shear**2))
 
 
@@ -250,30 +260,17 @@ def shaft_bending(
     stiffness = elastic_modulus * np.pi * diameter**4 / 64.0
     weight = shaft.counterweight
     beside = cam if weight is None else weight.position
-    places = distinct([0.0, span, cam, shaft.gear_position, beside])
-
-    def under_cam(x: float) -> float:
-        """Moment of a unit force at the cam."""
-        first, second = -(1.0 - cam / span), -cam / span
-        acting = ((0.0, first), (span, second), (cam, 1.0))
-        return sum(force * max(x - at, 0.0) for at, force in acting)
-
-    def under_couple(x: float) -> float:
-        """Moment of a unit couple at the first bearing."""
-        return 1.0 - x / span if 0.0 <= x <= span else 0.0
-
-    def under_other_couple(x: float) -> float:
-        return x / span if 0.0 <= x <= span else 0.0
-
-    total = np.zeros((3, *loads.cam.shape))
-    for start, end in pairwise(places):
-        inside = start >= 0.0 and end <= span
-        for at, part in ((start, 1.0), (0.5 * (start + end), 4.0), (end, 1.0)):  # Simpson
-            moment = bending_moment(loads, shaft, at) * part * (end - start) / 6.0
-            total[0] += under_cam(at) * moment
-            if inside:  # a couple leaves the overhung ends without moment
-                total[1] += under_couple(at) * moment
-                total[2] += under_other_couple(at) * moment
+    corners = distinct([0.0, span, cam, shaft.gear_position, beside])
+    start, end = corners[:-1, None], corners[1:, None]
+    places = np.hstack([start, 0.5 * (start + end), end])
+    # moment of a unit force at the cam, and of unit couples at the bearings
+    acting = ((0.0, -(1.0 - cam / span)), (span, -cam / span), (cam, 1.0))
+    under_cam = sum(force * np.maximum(places - at, 0.0) for at, force in acting)
+    inside = (start >= 0.0) & (end <= span)  # a couple leaves the overhung ends without moment
+    units = np.stack([under_cam, inside * (1.0 - places / span), inside * (places / span)])
+    simpson, step = np.array([1.0, 4.0, 1.0])[:, None, None], (end - start)[..., None, None]
+    moment = bending_moment(loads, shaft, places) * simpson * step / 6.0
+    total = (units[..., None, None] * moment).reshape(3, places.size, *loads.cam.shape).sum(axis=1)
     return ShaftBending(*(total / stiffness))
 
 
