@@ -81,9 +81,14 @@ def distinct(values: ArrayLike) -> Array:
     As `numpy.unique`, which imports the masked arrays for it, 20 ms.
     """
     ordered = np.sort(np.asarray(values, dtype=float), axis=None)
+    return ordered[firsts(ordered)]
+
+
+def firsts(ordered: Array) -> NDArray[np.bool_]:
+    """Where each of ascending values (n,) differs from the one before; the first always."""
     first = np.ones(ordered.shape, dtype=bool)
     np.not_equal(ordered[1:], ordered[:-1], out=first[1:])
-    return ordered[first]
+    return first
 
 
 def median(values: Array) -> float:
@@ -106,9 +111,9 @@ def freeze(instance: DataclassInstance, **arrays: ArrayLike) -> None:
 
 def alike(marks: ArrayLike) -> list[NDArray[np.intp]]:
     """Numbers of the columns of bool (k, n) that are equal, one array a pattern, ascending."""
-    packed = np.ascontiguousarray(np.packbits(np.asarray(marks, dtype=bool), axis=0).T)
+    packed = np.packbits(np.asarray(marks, dtype=bool), axis=0)
     if not packed.size:
-        return [np.arange(packed.shape[0])] if packed.shape[0] else []
-    _, pattern = np.unique(packed.view(f"V{packed.shape[1]}").ravel(), return_inverse=True)
-    order = np.argsort(pattern, kind="stable")
-    return np.split(order, np.flatnonzero(np.diff(pattern[order])) + 1)
+        return [np.arange(packed.shape[1])] if packed.shape[1] else []
+    order = np.lexsort(packed[::-1])
+    ends = (packed[:, order[1:]] != packed[:, order[:-1]]).any(axis=0)
+    return np.split(order, np.flatnonzero(ends) + 1)

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from camwright.geometry.arrays import Array, distinct, freeze, uniform_turn
+from camwright.geometry.arrays import Array, distinct, firsts, freeze, uniform_turn
 from camwright.geometry.contour import Contour
 from camwright.geometry.follower_path import FollowerPath
 from camwright.pipeline.base.tables import Column
@@ -388,8 +388,7 @@ def _about(speeds: Array, damping: float) -> Array:
     """Speeds about the resonances, none closer to another than a fifth of the width."""
     width = min(damping, _WIDTH)
     every = np.sort((speeds[:, None] * (1.0 + width * _ABOUT)).ravel())
-    _, kept = np.unique(np.round(np.log(every) / (0.2 * width)), return_index=True)
-    return every[kept]
+    return every[firsts(np.round(np.log(every) / (0.2 * width)))]
 
 
 def _between(grid: Array, worst: set[int]) -> Array:
