@@ -254,35 +254,33 @@ def mean_line_load(line_load: ArrayLike, knots: ArrayLike) -> Array:
     """
     load, at = np.asarray(line_load, dtype=float), np.asarray(knots, dtype=float)
     weights = at[-1] * lobatto(at.size)[1]
-    greater = np.zeros(load.shape[1])
-    for side in (load, -load):
-        push = weights @ np.maximum(side, 0.0)
-        length = _loaded_length(side, at, weights)
-        mean = np.divide(push, length, out=np.zeros_like(push), where=length > 0.0)
-        greater = np.maximum(greater, np.where(np.isnan(push), np.nan, mean))
-    return greater
+    sides = np.stack([load, -load])
+    push = weights @ np.maximum(sides, 0.0)
+    length = _loaded_length(sides, at, weights)
+    mean = np.divide(push, length, out=np.zeros_like(push), where=length > 0.0)
+    return np.asarray(np.where(np.isnan(push), np.nan, mean).max(axis=0))
 
 
-def _loaded_length(side: Array, knots: Array, weights: Array) -> Array:
-    """Length with a positive line load (n,), m, of loads (k, n)."""
-    on = side > 0.0
-    between = np.diff(knots)[:, None]
-    length = (between * (on[:-1] & on[1:])).sum(axis=0)
-    for load, gaps, near in (
-        (side, between, weights),
-        (side[::-1], between[::-1], weights[::-1]),
+def _loaded_length(sides: Array, knots: Array, weights: Array) -> Array:
+    """Length with a positive line load (..., n), m, of loads (..., k, n)."""
+    on, gaps = sides > 0.0, np.diff(knots)[:, None]
+    length = (gaps * (on[..., :-1, :] & on[..., 1:, :])).sum(axis=-2)
+    for load, spaces, near in (
+        (sides, gaps, weights),
+        (sides[..., ::-1, :], gaps[::-1], weights[::-1]),
     ):
-        length += _beyond(load, gaps, near[:, None]).sum(axis=0)
+        length += _beyond(load, spaces, near[:, None]).sum(axis=-2)
     return np.asarray(length)
 
 
 def _beyond(load: Array, gaps: Array, weights: Array) -> Array:
-    """Loaded length beyond a loaded knot before an unloaded one (k - 1, n), m."""
-    here, after = np.maximum(load[:-1], 0.0), load[1:]
-    before = np.vstack([np.zeros_like(load[:1]), here[:-1]])
+    """Loaded length beyond a loaded knot before an unloaded one (..., k - 1, n), m."""
+    here, after = np.maximum(load[..., :-1, :], 0.0), load[..., 1:, :]
+    before = np.zeros_like(here)
+    before[..., 1:, :] = here[..., :-1, :]
     back = np.vstack([gaps[:1], gaps[:-1]])
     # A single loaded knot p of weight w: a triangle of area p w, half of it at the end of a guide.
-    alone = weights[:-1] * np.r_[2.0, np.ones(len(load) - 2)][:, None]
+    alone = weights[:-1] * np.r_[2.0, np.ones(len(gaps) - 1)][:, None]
     falls = before > here
     reach = np.where(falls, back * here / np.where(falls, before - here, 1.0), alone)
     # The line load passes through zero where the next knot is loaded on the other side.
