@@ -286,6 +286,8 @@ def governing_stations(p0: Array, half_width: Array) -> NDArray[np.intp]:
 
 def _between(at: Array, theta: Array, finite_elements: Array, closed_form: Array) -> Array:
     """Finite elements over closed form at `at`; 1 at cam angles without contact."""
+    if finite_elements is closed_form:
+        return np.ones(at.size)
     loaded = closed_form > 0
     ratio = np.where(loaded, finite_elements / np.where(loaded, closed_form, 1.0), 1.0)
     return np.interp(at, theta, ratio, period=FULL_TURN)
