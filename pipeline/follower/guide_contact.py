@@ -85,12 +85,17 @@ class BearingLine:
 
     def law(self, deflection: Array) -> Array:
         """Force of the bore (k, n), N: zero within the clearance, linear beyond."""
-        depth = np.abs(deflection) - self.play[:, None]
-        return np.copysign(self.stiffness[:, None] * np.maximum(depth, 0.0), deflection)
+        force = np.abs(deflection)
+        force -= self.play[:, None]
+        np.maximum(force, 0.0, out=force)
+        force *= self.stiffness[:, None]
+        return np.copysign(force, deflection, out=force)
 
     def law_miss(self, deflection: Array, push: Array) -> Array:
         """Maximum residual of the contact law over the knots (n,), as indentation, m."""
-        miss = np.abs(push - self.law(deflection)) / self.stiffness[:, None]
+        miss = self.law(deflection)
+        np.abs(np.subtract(push, miss, out=miss), out=miss)
+        miss /= self.stiffness[:, None]
         return np.asarray(miss.max(axis=0))
 
     def law_residual(self, push: Array, rigid: Array) -> Array:
@@ -105,10 +110,14 @@ class BearingLine:
 
         Plus the round-off of the deflection, which dominates at small indentations.
         """
-        depth = (np.abs(push) / self.stiffness[:, None]).max(axis=0)
-        terms = np.abs(self.compliance) @ np.abs(push) + self.rigid_modes @ np.abs(rigid)
-        allowed = TOLERANCE * depth + _ROUND_OFF * terms.max(axis=0)
-        return np.asarray(self.law_miss(self.deflection(push, rigid), push) <= allowed)
+        size = np.abs(push)
+        allowed = TOLERANCE * (size / self.stiffness[:, None]).max(axis=0)
+        miss = self.law_miss(self.deflection(push, rigid), push)
+        left = np.flatnonzero(miss > allowed)
+        terms = np.abs(self.compliance) @ size[:, left]
+        terms += self.rigid_modes @ np.abs(rigid[:, left])
+        allowed[left] += _ROUND_OFF * terms.max(axis=0)
+        return np.asarray(miss <= allowed)
 
     @cached_property
     def _bound(self) -> dict[bytes, BoundKnots]:
@@ -275,7 +284,10 @@ def _linear_step(
     """
     deflection = line.deflection(push, rigid)
     touch = np.abs(deflection) >= line.play[:, None]
-    offset = line.rigid_modes @ rigid - np.sign(deflection) * line.play[:, None]
+    side = np.sign(deflection)
+    side *= line.play[:, None]
+    offset = line.rigid_modes @ rigid
+    offset -= side
     far = load / np.array([[1.0], [line.positions[-1]]])
     groups = alike(touch)
     order = np.concatenate([np.zeros(0, dtype=np.intp), *groups])  # those alike side by side

@@ -483,19 +483,26 @@ class DynamicStiffness:
         """Of the moving end."""
         if not self.phase.any():
             return np.zeros_like(self.phase)
-        square = self._decay**2
-        return self._known(1.0j * self._moved * (1.0 + square) / (1.0 - square))
+        square, over_rate = self._decay**2, 1.0j * self._moved
+        over_rate *= 1.0 + square
+        over_rate /= 1.0 - square
+        return self._known(over_rate)
 
     @property
     def fixed(self) -> NDArray[np.complex128]:
         """Of the fixed end."""
         if not self.phase.any():
             return np.zeros_like(self.phase)
-        decay = self._decay
-        return self._known(2.0j * self._moved * decay / (1.0 - decay**2))
+        over_rate = 2.0j * self._moved
+        over_rate *= self._decay
+        over_rate /= 1.0 - self._decay**2
+        return self._known(over_rate)
 
     def _known(self, over_rate: NDArray[np.complex128]) -> NDArray[np.complex128]:
-        return np.where(self.phase == 0.0, 0.0, self.rate * (over_rate - 1.0))
+        over_rate -= 1.0
+        over_rate *= self.rate
+        over_rate[self.phase == 0.0] = 0.0
+        return over_rate
 
 
 def dynamic_stiffness(

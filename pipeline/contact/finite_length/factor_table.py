@@ -414,9 +414,11 @@ def _weighted(columns: Index, weights: Array, table: Array) -> Array:
             (weights.ravel(), columns.ravel(), starts), shape=(count, len(table))
         )
         return np.asarray(matrix @ table)
-    sums = np.zeros((count, table.shape[1]))
+    sums, rows = np.zeros((2, count, table.shape[1]))
     for column, weight in zip(columns.T, weights.T, strict=True):
-        sums += weight[:, None] * table[column]
+        np.take(table, column, axis=0, out=rows, mode="clip")  # unbuffered; none is out of bounds
+        rows *= weight[:, None]
+        sums += rows
     return sums
 
 
