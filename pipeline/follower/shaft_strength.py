@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from statistics import NormalDist
 
 import numpy as np
@@ -57,6 +58,7 @@ class Sections:
         return np.asarray(np.pi * self.diameter**3 / 32.0)
 
 
+@lru_cache(maxsize=8)
 def judged_sections(
     shaft: Camshaft, diameter: float, cam_reach: float, gear_reach: float
 ) -> tuple[ShaftSection, ...]:
