@@ -340,7 +340,7 @@ def _governed(one: Check, tried: Sequence[Outcome]) -> Check:
             one, without=f"at the tolerance corner {bounds[0].corner.name} {bounds[0].lost}"
         )
     known = [outcome for outcome in solved if one.id in outcome.demands]
-    unknown = [outcome for outcome in solved if outcome not in known and outcome not in bounds]
+    unknown = [each for each in solved if one.id not in each.demands and one.id not in each.bounds]
     if unknown:
         return replace(one, corner=unknown[0].corner.name, corner_demand=float("nan"))
     sign = 1.0 if one.sense == "at_most" else -1.0
