@@ -7,6 +7,7 @@ without a limit, unless the limit of the other body is exceeded already.
 from __future__ import annotations
 
 import math
+import sys
 from collections.abc import Callable
 from dataclasses import replace
 from functools import lru_cache
@@ -16,6 +17,7 @@ import numpy as np
 
 from camwright.geometry.arrays import FULL_TURN, Array, uniform_turn
 from camwright.geometry.contour import Contour
+from camwright.pipeline.base import disk_cache
 from camwright.pipeline.base.material import Endurance, Material
 from camwright.pipeline.base.units import shown
 from camwright.pipeline.case.limits import (
@@ -35,7 +37,7 @@ from camwright.pipeline.checks.missing_keys import (
     no_friction,
     unset,
 )
-from camwright.pipeline.contact import hertz
+from camwright.pipeline.contact import hertz, rolling_envelope
 from camwright.pipeline.contact.rolling_envelope import smallest_sphere
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.cycle import Cycle
@@ -124,7 +126,7 @@ def pressure_limits(machine: Machine, cycles: LoadCycles) -> dict[str, LeastLimi
     if ends is not None:
         allowed["edge_pressure"] = _times(endurance, 1.0 / ends)
     if follower.friction is not None:
-        factor = shakedown_factor(follower.friction, least_poisson(machine))
+        factor = float(shakedown_factors(follower.friction, least_poisson(machine))[1][-1])
         allowed["shakedown_traction"] = _times(shear, factor)
         if ends is not None:
             allowed["edge_shakedown"] = _times(shear, factor / ends)
@@ -291,15 +293,24 @@ def _traction_factor(cycle: Cycle) -> Array:
     coefficient = traction_coefficient(cycle)
     if machine.follower.friction is None or np.isnan(coefficient).any():
         return np.full(cycle.theta.size, np.nan)
-    nodes, uses = _shakedown_uses(machine.follower.friction, least_poisson(machine))
-    return SHAKEDOWN * np.interp(coefficient, nodes, uses)
+    nodes, factors = shakedown_factors(machine.follower.friction, least_poisson(machine))
+    return SHAKEDOWN * np.interp(coefficient, nodes, 1.0 / factors)
 
 
 @lru_cache(maxsize=32)
-def _shakedown_uses(friction: float, poisson: float) -> tuple[Array, Array]:
-    """Traction coefficients up to `friction`, and k/p0 at their shakedown limits."""
-    nodes = np.linspace(0.0, friction, _TRACTIONS)
-    return nodes, np.array([1.0 / shakedown_factor(float(node), poisson) for node in nodes])
+def shakedown_factors(friction: float, poisson: float) -> tuple[Array, Array]:
+    """Traction coefficients from 0 to `friction`, and their `shakedown_factor`; kept on disk."""
+
+    def compute() -> dict[str, Array]:
+        nodes = np.linspace(0.0, friction, _TRACTIONS)
+        return {
+            "nodes": nodes,
+            "factors": np.array([shakedown_factor(float(node), poisson) for node in nodes]),
+        }
+
+    modules = sys.modules[__name__], hertz, rolling_envelope
+    known = disk_cache.kept("shakedown", (friction, poisson), compute, modules)
+    return known["nodes"], known["factors"]
 
 
 @check(

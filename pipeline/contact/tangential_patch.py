@@ -16,7 +16,8 @@ from numpy.typing import NDArray
 
 from camwright.geometry.arrays import Array, freeze
 from camwright.pipeline.base import disk_cache
-from camwright.pipeline.contact import contact_patch
+from camwright.pipeline.contact import contact_patch, traction
+from camwright.pipeline.contact.elasticity import plane_stress_measures
 from camwright.pipeline.contact.elasticity.elastic_body import StressRecovery, elements_near
 from camwright.pipeline.contact.elasticity.halfplane import point_force_displacement
 from camwright.pipeline.contact.elasticity.plane_stress_measures import (
@@ -26,7 +27,6 @@ from camwright.pipeline.contact.elasticity.plane_stress_measures import (
 )
 from camwright.pipeline.contact.elasticity.pressure_distribution import PressureShapes
 from camwright.pipeline.contact.elasticity.surface_integrals import normal_loads
-from camwright.pipeline.contact.traction import rolling_traction
 
 _SHARES = 21
 # With traction the maximum is near the surface, where the stress varies strongly.
@@ -79,22 +79,30 @@ def rolling_increase(poisson: float, friction: float, ratio: Array) -> tuple[Arr
     -------
     shear, mises : array (...)   maxima over those without traction
     """
-    shares, shear, mises = _increase(float(poisson), float(friction))
-    return np.interp(ratio, shares, shear), np.interp(ratio, shares, mises)
+    known = _increase(float(poisson), float(friction))
+    shear, mises = (np.interp(ratio, known["shares"], known[name]) for name in ("shear", "mises"))
+    return shear, mises
 
 
 @lru_cache(maxsize=16)
-def _increase(poisson: float, friction: float) -> tuple[Array, Array, Array]:
+def _increase(poisson: float, friction: float) -> disk_cache.Arrays:
+    """Increase of the maxima by share of the friction; cached on disk."""
+    modules = sys.modules[__name__], *contact_patch.RECIPE, plane_stress_measures, traction
+    inputs = poisson, friction
+    return disk_cache.kept("increase", inputs, lambda: _increased(*inputs), modules)
+
+
+def _increased(poisson: float, friction: float) -> dict[str, Array]:
     normal, along = contact_patch.contact_patch(poisson), tangential_patch(poisson)
     centres = normal.shapes.centres
     shares = np.linspace(0.0, 1.0, _SHARES)
     pressure = np.sqrt(np.maximum(1 - centres**2, 0.0))
-    traction = np.stack([rolling_traction(centres, share) for share in shares], axis=1)
-    inside = np.where(np.abs(centres)[:, None] < 1, traction, 0.0)
+    sideways = np.stack([traction.rolling_traction(centres, share) for share in shares], axis=1)
+    inside = np.where(np.abs(centres)[:, None] < 1, sideways, 0.0)
     field = (normal.stress @ pressure)[:, :, None] + friction * (along.stress @ inside)
     shear, _ = along.peaks(shear_in_plane(field))
     mises, _ = along.peaks(von_mises(field, poisson))
-    return shares, shear / shear[0], mises / mises[0]
+    return {"shares": shares, "shear": shear / shear[0], "mises": mises / mises[0]}
 
 
 def _computed(poisson: float, elements_per_half_width: int) -> dict[str, Array]:
