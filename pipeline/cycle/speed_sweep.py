@@ -338,7 +338,7 @@ class _Follower:
             "elastic_force_min": elastic.min(axis=1),
             "elastic_angle": self.theta[soft],
             "elastic_error": _sampling_error(elastic, soft),
-            "surge_force": np.abs(surge).max(axis=1),
+            "surge_force": np.maximum(surge.max(axis=1), -surge.min(axis=1)),
             "torque_min": torque.min(axis=1),
             "torque_max": torque.max(axis=1),
         }
