@@ -200,7 +200,11 @@ class _Tried:
 
     @classmethod
     def at(
-        cls, case: Case, torques: Mapping[str, Torque], contour: Contour, corner: Corner
+        cls,
+        states: Sequence[Machine],
+        torques: Mapping[str, Torque],
+        contour: Contour,
+        corner: Corner,
     ) -> _Tried:
         shape = _shape(contour, corner)
         return cls(
@@ -208,7 +212,7 @@ class _Tried:
             shape,
             tuple(
                 TurnInput(state.at_corner(corner), shape, torques.get(state.load_case))
-                for state in machines(case)
+                for state in states
             ),
         )
 
@@ -224,7 +228,8 @@ def _turns_at(
 
     The bounds of the friction as well, where every check is made there.
     """
-    tried = [_Tried.at(case, torques, contour, each) for each in corners]
+    states = machines(case)
+    tried = [_Tried.at(states, torques, contour, each) for each in corners]
     bounds = declarations is TOLERANCED
     every = turns(
         [state for each in tried for state in each.inputs], POSITIONS, coarse=True, bounds=bounds
@@ -267,16 +272,28 @@ def _outcomes(
     declarations: Sequence[Declaration],
 ) -> Iterator[Outcome]:
     solved: list[tuple[Corner, Solution | CamError]] = []
+    first: dict[Corner, Solution] = {}  # of each set of loads
     for tried, turns_there in turns_at:
         try:
-            solved.append((tried.corner, _solution(case, torques, tried, turns_there)))
+            there = _solution(case, torques, tried, turns_there)
         except CamError as error:
             solved.append((tried.corner, error))
+        else:
+            solved.append((tried.corner, there))
+            first.setdefault(_of_loads(tried.corner), there)
     if declarations is TOLERANCED:
-        cycles = [c for _, each in solved if isinstance(each, Solution) for c in each.cycles]
+        cycles = [cycle for each in first.values() for cycle in each.cycles]
         with suppress(CamError):  # of one corner at least: each on its own
             solve_lengths(cycles)
-    return (_outcome(*each, declarations) for each in solved)
+    for corner, each in solved:
+        if isinstance(each, Solution):
+            each.adopt(first[_of_loads(corner)])
+        yield _outcome(corner, each, declarations)
+
+
+def _of_loads(corner: Corner) -> Corner:
+    """The corner without what changes the crank alone, not the loads of the cam."""
+    return replace(corner, name="", inertia=1.0, phase=0.0)
 
 
 def _outcome(

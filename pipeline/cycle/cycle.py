@@ -44,6 +44,8 @@ PRESSURE_ANGLE = Column("pressure_angle", "deg", "Pressure angle")
 PITCH_RADIUS = Column("pitch_radius_of_curvature", "mm", "Radius of curvature of the pitch curve")
 CONTOUR_RADIUS = Column("contour_radius_of_curvature", "mm", "Radius of curvature of the contour")
 
+_COMPUTED = ("length", "surface", "rolling", "parts", "shaft", "elastic")  # of loads and contact
+
 
 def least_spring_force(spring: Spring, contour: Contour) -> float:
     """Spring force at minimum lift, N."""
@@ -82,6 +84,10 @@ class Cycle(Tabled):
         known = {name: value for name, value in vars(self).items() if name in kept}
         vars(cycle).update(known)
         return cycle
+
+    def adopt(self, other: Cycle) -> None:
+        """Take over what another cycle of the same loads and contact has computed from them."""
+        vars(self).update({name: vars(other)[name] for name in _COMPUTED if name in vars(other)})
 
     @property
     def facts(self) -> Mapping[str, object]:

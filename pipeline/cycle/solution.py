@@ -112,6 +112,13 @@ class Solution(Displayed):
         """The machine in the design load case."""
         return self.machines[0]
 
+    def adopt(self, other: Solution) -> None:
+        """Take over what another solution of the same loads has computed; not the crank speed."""
+        for cycle, same in zip(self.cycles, other.cycles, strict=True):
+            cycle.adopt(same)
+        sweeps = ("speed_sweeps", "hardest_spring")
+        vars(self).update({name: vars(other)[name] for name in sweeps if name in vars(other)})
+
     @cached_property
     def speed_sweeps(self) -> tuple[SpeedSweep, ...]:
         """Sweeps from standstill to over-speed, one for each preload of the load cases."""
