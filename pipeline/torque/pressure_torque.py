@@ -124,7 +124,7 @@ class PressureTorque:
 
 def _lagging(trace: Trace, theta: Array, lag: float) -> Array:
     """Values of a trace at equal angles, by `lag` (rad) later."""
-    values = trace.uniform(theta.size)
+    values = trace.kept_uniform(theta.size)
     if lag == 0.0:
         return values
     return readonly(periodic_cubic(values)((theta - lag) * (FULL_TURN / trace.period)))

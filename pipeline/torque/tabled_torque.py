@@ -75,7 +75,7 @@ class TabledTorque:
 
         Where the table is at least twice as dense, the mean over each step.
         """
-        values = self.trace.uniform(np.size(theta))
+        values = self.trace.kept_uniform(np.size(theta))
         return readonly(values if self.role == "drive" else -values)
 
 
