@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import sys
 from dataclasses import dataclass, replace
+from functools import partial
 from math import pi
 from pathlib import Path
 from typing import Literal
@@ -12,7 +14,9 @@ from numpy.typing import ArrayLike
 
 from camwright.geometry.arrays import Array, readonly
 from camwright.geometry.errors import InputError
+from camwright.pipeline.base import disk_cache
 from camwright.pipeline.base.quantities import Cycle, FileName
+from camwright.pipeline.torque import angle_trace
 from camwright.pipeline.torque.angle_trace import Trace, read_trace
 from camwright.pipeline.torque.machine_torque import MachineTorque, Role
 from camwright.pipeline.torque.trace_file import HeaderText
@@ -104,7 +108,13 @@ def require_cycle(trace: Trace, unit: str) -> None:
 
 
 def _change_halved(trace: Trace) -> float:
-    """Change of the work about its mean with every other row left out, over its swing."""
+    """Change of the work about its mean with every other row left out, over its swing; kept."""
+    modules = sys.modules[__name__], angle_trace
+    compute = partial(_halved, trace)
+    return float(disk_cache.kept("halved", trace.key, compute, modules)["change"])
+
+
+def _halved(trace: Trace) -> dict[str, Array]:
     count = 4 * trace.angle.size
     whole = _swing(trace, count)
     halves = (
@@ -112,7 +122,7 @@ def _change_halved(trace: Trace) -> float:
         for k in (0, 1)
     )
     largest = max(float(np.abs(half - whole).max()) for half in halves)
-    return largest / float(np.ptp(whole))
+    return {"change": np.array(largest / float(np.ptp(whole)))}
 
 
 def _swing(trace: Trace, count: int) -> Array:
