@@ -289,23 +289,18 @@ def _linear_step(
     offset = line.rigid_modes @ rigid
     offset -= side
     far = load / np.array([[1.0], [line.positions[-1]]])
-    groups = alike(touch)
-    order = np.concatenate([np.zeros(0, dtype=np.intp), *groups])  # those alike side by side
-    offset, far = offset[:, order], far[:, order]
-    pushes, motions, end = np.zeros_like(push), np.empty_like(rigid), 0
-    for here in groups:
-        start, end = end, end + here.size
+    pushes, motions = np.zeros_like(push), np.empty_like(rigid)
+    for here in alike(touch):
         bound = line.bound_knots(touch[:, here[0]].tobytes())
+        knots = bound.knots[:, None]
         right = np.empty((bound.knots.size + 2, here.size))
-        np.divide(offset[bound.knots, start:end], bound.scale, out=right[:-2])
-        right[-2:] = far[:, start:end]
+        np.divide(offset[knots, here], bound.scale, out=right[:-2])
+        right[-2:] = far[:, here]
         solution = np.linalg.solve(bound.system, right)
-        pushes[bound.knots, start:end] = solution[:-2]
-        np.multiply(solution[-2:], bound.scale, out=motions[:, start:end])
+        pushes[knots, here] = solution[:-2]
+        motions[:, here] = solution[-2:] * bound.scale
     motions[1] /= line.positions[-1]
-    push, turned = np.empty_like(push), np.empty_like(rigid)
-    push[:, order], turned[:, order] = pushes, motions
-    return push, rigid + turned, touch.sum(axis=0)
+    return pushes, rigid + motions, touch.sum(axis=0)
 
 
 def _best_length(
