@@ -29,28 +29,33 @@ _MULTIPLIER_LEAST = 1e-6
 _REFINED = 0.01  # of a limit: peaks this near to it, or the greatest, are refined between points
 
 
-def synthesise(problem: Problem, ripple_weight: float = 1.0, enough: float | None = None) -> Design:
+def synthesise(
+    problem: Problem,
+    ripple_weight: float = 1.0,
+    enough: float | None = None,
+    worth: float = 0.0,
+) -> Design:
     """Cam of least residual ripple within all limits.
 
     Parameters
     ----------
     problem : Problem
     ripple_weight : float   0: any cam within the limits
-    enough : float          ripple at which the search may end, see `descended`
+    enough, worth : float   ripple and progress at which the search may end, see `descended`
 
     Returns
     -------
     Design   not `feasible` where the search ends outside a limit
     """
     search = started(problem, ripple_weight)
-    descent = descended(search, ripple_weight, enough=enough)
+    descent = descended(search, ripple_weight, enough=enough, worth=worth)
     steps, peaks = descent.steps, _Peaks.of(search, descent.state)
     for _ in range(_ROUNDS - 1):
         between = _between(descent.state, peaks)
         if not between.size:
             break
         search = Search(problem, np.concatenate([search.extra, between]))
-        descent = descended(search, ripple_weight, descent, enough)
+        descent = descended(search, ripple_weight, descent, enough, worth)
         steps, peaks = steps + descent.steps, _Peaks.of(search, descent.state)
     return _design(search, descent, steps, peaks)
 

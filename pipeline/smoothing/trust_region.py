@@ -28,6 +28,7 @@ _PROOF = 0.03  # least trust region in which a foreseen gain proves convergence
 _ADDITIONS = 4
 _CORRECTED = 0.9  # of the foreseen gain: below, the step is corrected
 _VIOLATED = 1e-6
+_PATIENCE = 4  # steps over which the gain of a draft is judged
 
 
 class Descent(NamedTuple):
@@ -49,6 +50,7 @@ def descended(
     ripple_weight: float,
     earlier: Descent | None = None,
     enough: float | None = None,
+    worth: float = 0.0,
 ) -> Descent:
     """Local optimum of a search from its start.
 
@@ -58,6 +60,9 @@ def descended(
     earlier : Descent       end of a search with fewer extra angles, to go on from
     enough : float          ripple at which any cam within the limits is an end, as is one far from
                             both at which little gain is foreseen; None: the least is wanted
+    worth : float           least decrease of the merit over `_PATIENCE` steps within the limits:
+                            means of loads that jump at the reversals of an offset follower are
+                            rough functions of the cam, on which the search creeps
 
     References
     ----------
@@ -72,8 +77,13 @@ def descended(
         model, program = earlier.model, earlier.program
     state, trust = search.state(*start), _TRUST
     penalty = PENALTY if earlier is None else earlier.penalty
+    merits: list[float] = []
     for step in range(1, _STEPS_MAX + 1):
         before, priced = model, program
+        merits.append(state.merit(penalty, ripple_weight))
+        slow = step > _PATIENCE and merits[-1 - _PATIENCE] - merits[-1] < worth
+        if slow and _within(state):
+            return Descent(state, before, priced, step, worth, penalty)
         if enough is not None and state.ripple <= enough and _within(state):
             return Descent(state, before, priced, step, np.inf, penalty)
         model = search.model(state)

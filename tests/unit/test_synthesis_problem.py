@@ -8,9 +8,13 @@ import pytest
 
 from camwright.geometry.errors import InputError
 from camwright.pipeline.case.case_file import parse_case, read_case
+from camwright.pipeline.case.case_values import replaced
 from camwright.pipeline.case.load_case_torque import engine_torques
+from camwright.pipeline.smoothing.constrained_synthesis import started
 from camwright.pipeline.smoothing.problem_setup import problem_of
 from camwright.pipeline.smoothing.sampled_problem import Search
+from camwright.pipeline.smoothing.synthesis_problem import coarsened
+from camwright.pipeline.smoothing.trust_region import descended
 
 DATA = Path(__file__).parents[1] / "data"
 
@@ -224,3 +228,16 @@ def test_an_objective_without_a_term_is_refused(case, torques):
     smoothing = section(case.smoothing, torque_weight=0.0, loss_weight=0.0)
     with pytest.raises(InputError, match=r"smoothing\.torque_weight = 0,"):
         problem_of(section(case, smoothing=smoothing), torques)
+
+
+def test_a_search_ends_within_the_limits_where_four_steps_gain_little(case, torques):
+    """One that converges is not ended; with no gain worth it the ripple is above the least."""
+    every = problem_of(replaced(case, {"cam.offset": 2e-3}), torques)
+    problem = replace(coarsened(every), left_out=frozenset({"torque_reduction"}))
+    least, same, early = (
+        descended(started(problem), 1.0, worth=worth) for worth in (0.0, 1e-3, 10.0)
+    )
+    assert same.state.ripple == least.state.ripple
+    assert early.gain == 10.0
+    assert early.state.violation < 1e-6
+    assert least.state.ripple < early.state.ripple < 1.001 * least.state.ripple

@@ -30,6 +30,7 @@ from camwright.pipeline.solver import judged_at_corners
 from camwright.pipeline.torque.torque import Torque
 
 _BINDING = 0.99  # utilisation
+_WORTH = 1e-3  # of the engine's ripple: progress at which a coarse search goes on
 
 
 @dataclass(frozen=True)
@@ -184,7 +185,7 @@ def rough_point(case: Case, torques: Mapping[str, Torque], *, fine: bool = True)
     every = problem_of(case, torques)
     problem = replace(every, left_out=frozenset({TORQUE_REDUCTION.id}))
     coarse = coarsened(problem)
-    design = continued(problem, approached(coarse)) if fine else synthesise(coarse)
+    design = continued(problem, approached(coarse)) if fine else synthesise(coarse, worth=_WORTH)
     drawn, lift = redrawn(case, design.variables), design.lift()
     contour = drawn.contour(lift)
     uses = dict(design.utilisation)
