@@ -23,6 +23,7 @@ _NEAR = 0.5  # excess that a synthesis may remove
 _ALIKE = 0.02  # relative size within which the lesser ripple replaces
 _GAIN = 0.03  # of the ripple, between points
 _SHRUNK, _GROWN = 0.9, 1.1  # of the prime radius of the screening
+_AT_MOST = 0.999  # of the greatest prime radius, above which it is that one
 _CURABLE = 1.2  # utilisation that a larger cam may cure
 _SHORT = 1.05  # utilisation that a synthesis with corrections may cure
 _FREE_PRELOAD = (0.85, 1.1)  # of the preload of the screening: the spring has room for 1.05
@@ -174,10 +175,13 @@ def draft(study: Study, candidate: Candidate) -> Solved:
     """A screened design with the prime radius and preload of least ripple within all limits.
 
     By the synthesis on few cam angles, both free about the values of the screening. The cam grows
-    where its limits conflict by little otherwise, unless the space is limited.
+    where its limits conflict by little and the prime radius is the greatest one, unless the space
+    is limited.
     """
     point = _free(study, candidate, 1.0)
     if study.task.space is not None or point.passes or not point.use <= _CURABLE:
+        return point
+    if point.record["prime_radius_mm"] < _AT_MOST * 1e3 * point.design.prime_radius:
         return point
     larger = _free(study, candidate, _GROWN)
     return larger if larger.use < point.use else point
