@@ -24,6 +24,7 @@ _ALIKE = 0.02  # relative size within which the lesser ripple replaces
 _GAIN = 0.03  # of the ripple, between points
 _SHRUNK, _GROWN = 0.9, 1.1  # of the prime radius of the screening
 _AT_MOST = 0.999  # of the greatest prime radius, above which it is that one
+_CREDIT = 1.02  # of the gain of the best design by its offset, for that of another
 _CURABLE = 1.2  # utilisation that a larger cam may cure
 _SHORT = 1.05  # utilisation that a synthesis with corrections may cure
 _FREE_PRELOAD = (0.85, 1.1)  # of the preload of the screening: the spring has room for 1.05
@@ -244,8 +245,8 @@ def _rounded(design: Machinery) -> Machinery:
 def drafts(study: Study, screened: Sequence[Candidate], workers: Crew) -> list[Solved]:
     """Drafts of the designs of the screening that may be on the front, those with a cam.
 
-    Without an offset; all that are within their limits or near to them with one, where the best of
-    them is better so.
+    Without an offset; where the best of them is better with one, all others that may pass with its
+    gain as well.
     """
     chosen = promising(study.task, screened)
     points = _drafted(study, chosen, workers)
@@ -254,8 +255,10 @@ def drafts(study: Study, screened: Sequence[Candidate], workers: Crew) -> list[S
         first = min(near, key=lambda k: points[k].use)
         shifted = draft(study, chosen[first].with_offset)
         if shifted.better_than(points[first]):
+            most = _CREDIT * max(points[first].use / shifted.use, 1.0)
+            near = [k for k in near if points[k].use <= most]
             others = [chosen[k].with_offset for k in near if k != first]
-            points = [each for k, each in enumerate(points) if k not in near]
+            points = [each for k, each in enumerate(points) if k not in (first, *near)]
             points += [shifted, *_drafted(study, others, workers)]
     return [each for each in points if each.has_cam]
 
