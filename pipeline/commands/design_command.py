@@ -55,7 +55,7 @@ def design(
     Spring, preload, base circle, roller, guides, shaft and key from the catalogues, the lift by
     the constrained synthesis. Writes the smallest case that passes by closed forms, the front of
     ripple against size in CASE_design, and a picture of the choice. Where none passes, the limits
-    in conflict and the smallest relaxations. What is not given is assumed, and marked so. Exit
+    in conflict and the smallest relaxation. What is not given is assumed, and marked so. Exit
     code 0: a case passes, 1: none does, 2: error; with --run that of the verdict. Solved points are
     cached in CASE_design/solved; run the same command again to resume. The table, and cards.toml
     and springs.toml beside it, are copied beside the case.
@@ -120,7 +120,8 @@ def _show(document: dict[str, Any], out: Path) -> None:
     if conflict["relaxations"]:
         stdout.print(
             "  each: one option alone; the first is the smallest by the ratio of its values within "
-            "2 %; with less than an upper bound a design may pass",
+            "2 %: no other option passes with that ratio; with less than an upper bound a design "
+            "may pass",
             markup=False,
         )
     else:

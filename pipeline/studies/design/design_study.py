@@ -115,7 +115,8 @@ def designed(task: DesignTask, out: Path, progress: Progress = SILENT) -> Record
         changes: list[Record] = []
         if not points:
             progress.stage("smallest relaxation")
-            changes = relaxations(study, out, workers, progress)
+            nearest = failing[0] if failing else None
+            changes = relaxations(study, nearest, out, workers, progress)
     document: Record = {
         "schema": 1,
         "torque": _demand_record(task),

@@ -1,42 +1,48 @@
-"""Smallest change of one option of a design with which a case passes, by bisection."""
+"""Smallest change of one option of a design with which a case passes.
+
+A change is measured by the logarithm of its value over that of the task.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, replace
-from math import copysign, exp, log, sqrt
+from dataclasses import dataclass, field, replace
+from math import copysign, exp, inf, log
 from pathlib import Path
 
 from camwright.pipeline.base import units
 from camwright.pipeline.base.progress import SILENT, Progress
 from camwright.pipeline.base.worker_processes import Crew
-from camwright.pipeline.studies.design.candidate_search import candidates
+from camwright.pipeline.studies.design.candidate_search import Candidate, candidates
 from camwright.pipeline.studies.design.synthesised_points import (
     RESERVE,
     Solved,
     Study,
-    drafts,
-    passing_design,
+    lack,
+    passing_draft,
 )
 from camwright.pipeline.studies.design.torque_task import DesignTask, Options
 from camwright.pipeline.studies.redesign.point_store import Record
 
-WIDTH = 0.02  # relative width of the bisection
+WIDTH = 0.02  # greatest difference of the changes that pass and fail
 _LEAST_REMOVED = 0.25  # of the ripple
 _SLOWEST = 0.4  # of the speeds
 _SHORTEST = 0.05  # of the life
 _FREE_SPACE = 5.0  # of the space
 _SPARE = 1.005  # of the size of a design
-_EQUAL = 1e-9  # difference of equal sizes
-_INNER = 0.1  # least share of a bracket between its ends and the next value
+_EQUAL = 1e-9  # difference of equal changes
+_FIRST = 0.6  # change that is tried first, a factor of 1.8
+_STRIDE = 0.9 * WIDTH  # from the change that a design needs
+_MORE = 0.1 * WIDTH  # above it, for the first trial
+_USUAL = 10  # values tried
 
 
 @dataclass(frozen=True)
 class Lever:
     """An option that is relaxed from the value of the task to a loosest one.
 
-    options: options of the command at a value; reached: the value that a design solved at a value
-    keeps; shown: a value in words.
+    options: options of the command at a value; shown: a value in words; reached: value that a
+    draft keeps, None where it does not tell; order: in which designs are drafted.
     """
 
     name: str
@@ -44,50 +50,98 @@ class Lever:
     loosest: float
     options: Callable[[float], Options]
     shown: Callable[[float], str]
-    reached: Callable[[Solved, float], float] = lambda _point, value: value
+    reached: Callable[[Solved], float] | None = None
+    order: Callable[[Candidate], float] = lack
 
-    def changed(self, size: float) -> float:
-        """The value a logarithm away from that of the task, at most the loosest."""
-        end = log(self.loosest / self.stated)
-        return self.stated * exp(copysign(min(size, abs(end)), end))
+    @property
+    def greatest(self) -> float:
+        """Change to the loosest value."""
+        return abs(self._end)
+
+    @property
+    def _end(self) -> float:
+        return log(self.loosest / self.stated)
+
+    def value(self, change: float) -> float:
+        """Value after a change."""
+        return self.stated * exp(copysign(change, self._end))
+
+    def needed(self, draft: Solved) -> float:
+        """Change with which a design passes, by its draft; infinite: not known."""
+        value = 0.0 if self.reached is None else self.reached(draft)
+        return copysign(1.0, self._end) * log(value / self.stated) if value > 0.0 else inf
 
 
 @dataclass(frozen=True)
 class Bracket:
-    """Two values of an option: no design passes with `failing`, one does with `passing`.
+    """Two changes of an option: no design passes with `failing`, one does with `passing`.
 
-    reached: value that the design at `passing` keeps, at most as far from that of the task.
+    needed: change that the design needs; stride: below it, of the change to be tried next.
     """
 
     lever: Lever
     failing: float
     passing: float
-    reached: float
-
-    @property
-    def size(self) -> float:
-        """Logarithm of the passing value over that of the task."""
-        return abs(log(self.passing / self.lever.stated))
-
-    @property
-    def least(self) -> float:
-        """Logarithm of the failing value over that of the task."""
-        return abs(log(self.failing / self.lever.stated))
+    needed: float
+    stride: float = _STRIDE
 
     @property
     def narrow(self) -> bool:
         """Whether the bracket is as narrow as `WIDTH`."""
-        return self.size - self.least <= WIDTH
+        return self.passing - self.failing <= WIDTH
 
-    def middle(self) -> float:
-        """The value to be tried next: that reached, if it is inside, else the geometric mean."""
-        share = log(self.reached / self.failing) / log(self.passing / self.failing)
-        if _INNER < share < 1.0 - _INNER:
-            return self.reached
-        return sqrt(self.failing * self.passing)
+    def inner(self) -> float:
+        """Change to be tried next: below that needed, that, above it, or the middle."""
+        for change in (self.needed - self.stride, self.needed, self.needed + _STRIDE):
+            if self.failing + _EQUAL < change < self.passing - _EQUAL:
+                return change
+        return 0.5 * (self.failing + self.passing)
 
 
-def relaxations(study: Study, out: Path, workers: Crew, progress: Progress) -> list[Record]:
+@dataclass
+class _Search:
+    """Trials of changes; failing: greatest change known to fail, by option."""
+
+    study: Study
+    workers: Crew
+    progress: Progress
+    failing: dict[str, float] = field(default_factory=dict)
+    tried: int = 0
+
+    def fails(self, lever: Lever, change: float) -> bool:
+        """Whether no design is known to pass with a change, or with any up to the greatest."""
+        return self.failing.get(lever.name, 0.0) > min(change, lever.greatest) - _EQUAL
+
+    def bracket(self, lever: Lever, change: float) -> Bracket | None:
+        """Bracket that passes with a change, at most the greatest; None: no design passes."""
+        self.progress.advance(self.tried, max(_USUAL, self.tried + 1))
+        self.tried += 1
+        change = min(change, lever.greatest)
+        study = self.study
+        own = replace(study, task=study.task.relaxed(lever.options(lever.value(change))))
+        screened = candidates(own.task, own.folder, own.file, SILENT)
+        draft = passing_draft(own, screened, self.workers, lever.order)
+        if draft is None:
+            self.failing[lever.name] = change
+            return None
+        failing = self.failing.get(lever.name, 0.0)
+        return Bracket(lever, failing, change, lever.needed(draft))
+
+    def narrowed(self, bracket: Bracket) -> Bracket:
+        """The bracket as narrow as `WIDTH`."""
+        while not bracket.narrow:
+            change = bracket.inner()
+            inner = self.bracket(bracket.lever, change)
+            if inner is None:
+                bracket = replace(bracket, failing=change)
+            else:
+                bracket = replace(inner, stride=2.0 * bracket.stride)
+        return bracket
+
+
+def relaxations(
+    study: Study, nearest: Solved | None, out: Path, workers: Crew, progress: Progress
+) -> list[Record]:
     """Relaxations of one option each, with the command line of each; the smallest first.
 
     With each the command passes. With the first it does not at `fails_at`, which is nearer to the
@@ -95,58 +149,46 @@ def relaxations(study: Study, out: Path, workers: Crew, progress: Progress) -> l
 
     Parameters
     ----------
-    study : Study   with whose task no design passes
-    out : Path      case file of the command
+    study : Study      with whose task no design passes
+    nearest : Solved   the design that fails by the least
+    out : Path         case file of the command
     """
     levers = tuple(_levers(study.task))
-    tried: list[Bracket | None] = []
-    for k, lever in enumerate(levers):
-        progress.advance(k, len(levers) + 1)
-        tried.append(_loosest(study, lever, workers))
-    progress.advance(len(levers), len(levers) + 1)
-    brackets = _ranked(study, [each for each in tried if each is not None], workers)
-    progress.advance(len(levers) + 1, len(levers) + 1)
+    search = _Search(study, workers, progress)
+    best, larger = _first(search, levers, nearest), list[Bracket]()
+    while best is not None:
+        best = search.narrowed(best)
+        rival = _rival(search, levers, best)
+        if rival is None:
+            break
+        best, larger = rival, [best, *larger]
+    brackets = [] if best is None else [best, *larger]
     return [_record(study.task, each, out, first=k == 0) for k, each in enumerate(brackets)]
 
 
-def _ranked(study: Study, brackets: list[Bracket], workers: Crew) -> list[Bracket]:
-    """The brackets by size; the first narrow, and no other known to allow a smaller change."""
-    brackets = sorted(brackets, key=lambda each: abs(log(each.reached / each.lever.stated)))
-    while brackets:
-        first, *others = brackets
-        rival = next((each for each in others if each.least < first.least - _EQUAL), None)
-        if not first.narrow:
-            brackets[0] = _narrowed(study, first, first.middle(), workers)
-        elif rival is not None:
-            value = rival.lever.changed(first.least)
-            others[others.index(rival)] = _narrowed(study, rival, value, workers)
-            brackets = sorted([first, *others], key=lambda each: each.size)
-        else:
-            break
-    return brackets
+def _first(search: _Search, levers: tuple[Lever, ...], nearest: Solved | None) -> Bracket | None:
+    """A change that passes: what the nearest design needs, one of `_FIRST`, or the greatest."""
+    trials = [(lever, change) for change in (_FIRST, inf) for lever in levers]
+    if nearest is not None and nearest.has_cam:
+        needed = [(lever, lever.needed(nearest) + _MORE) for lever in levers]
+        near = [(lever, change) for lever, change in needed if 0.0 < change < lever.greatest]
+        trials = sorted(near, key=lambda each: each[1]) + trials
+    for lever, change in trials:
+        if not search.fails(lever, change):
+            bracket = search.bracket(lever, change)
+            if bracket is not None:
+                return bracket
+    return None
 
 
-def _loosest(study: Study, lever: Lever, workers: Crew) -> Bracket | None:
-    """Bracket of all values of an option; None: no design passes with the loosest."""
-    point = _passing(study, lever, lever.loosest, workers)
-    if point is None:
-        return None
-    return Bracket(lever, lever.stated, lever.loosest, lever.reached(point, lever.loosest))
-
-
-def _narrowed(study: Study, bracket: Bracket, value: float, workers: Crew) -> Bracket:
-    """The bracket after the search with a value inside it."""
-    point = _passing(study, bracket.lever, value, workers)
-    if point is None:
-        return replace(bracket, failing=value)
-    return replace(bracket, passing=value, reached=bracket.lever.reached(point, value))
-
-
-def _passing(study: Study, lever: Lever, value: float, workers: Crew) -> Solved | None:
-    """A design with which the command passes at a value of an option; None: it does not."""
-    own = replace(study, task=study.task.relaxed(lever.options(value)))
-    screened = candidates(own.task, study.folder, study.file, SILENT)
-    return passing_design(own, drafts(own, screened, workers))
+def _rival(search: _Search, levers: tuple[Lever, ...], best: Bracket) -> Bracket | None:
+    """Another option that passes with the change with which the best one fails."""
+    for lever in levers:
+        if lever is not best.lever and not search.fails(lever, best.failing):
+            bracket = search.bracket(lever, best.failing)
+            if bracket is not None:
+                return bracket
+    return None
 
 
 def _levers(task: DesignTask) -> Iterator[Lever]:
@@ -159,7 +201,7 @@ def _levers(task: DesignTask) -> Iterator[Lever]:
         yield Lever(
             "--space", task.space, _FREE_SPACE * task.space,
             lambda value: {"space": _text(value, "mm")}, lambda value: _text(value, "mm"),
-            lambda point, _value: _SPARE * point.size,
+            lambda draft: _SPARE * draft.size, lambda candidate: candidate.size,
         )  # fmt: skip
     yield Lever(
         "--speed", task.speed, _SLOWEST * task.speed,
@@ -187,9 +229,9 @@ def _slower(task: DesignTask, share: float) -> Options:
     return options
 
 
-def _removed(point: Solved, _value: float) -> float:
+def _removed(draft: Solved) -> float:
     """Share of the ripple that a design removes, less the reserve."""
-    return 1.0 - point.ripple / ((1.0 - RESERVE) * point.design.task.demand.ripple)
+    return 1.0 - draft.ripple / ((1.0 - RESERVE) * draft.design.task.demand.ripple)
 
 
 def _text(value: float, unit: str) -> str:
@@ -202,13 +244,13 @@ def _percent(share: float) -> str:
 
 def _record(task: DesignTask, bracket: Bracket, out: Path, *, first: bool) -> Record:
     """Record of a relaxation; first: whether it is the smallest."""
-    lever = bracket.lever
-    options = lever.options(bracket.passing)
+    lever, value = bracket.lever, bracket.lever.value(bracket.passing)
+    options = lever.options(value)
     return {
         "option": lever.name,
         "from": lever.shown(lever.stated),
-        "to": lever.shown(bracket.passing),
-        "fails_at": lever.shown(bracket.failing) if first else None,
+        "to": lever.shown(value),
+        "fails_at": lever.shown(lever.value(bracket.failing)) if first else None,
         "options": options,
         "command": task.relaxed(options).command(out),
     }

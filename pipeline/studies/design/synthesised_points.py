@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from math import ceil, inf
 from pathlib import Path
+from typing import NamedTuple
 
 from camwright.pipeline.base.progress import Progress
 from camwright.pipeline.base.worker_processes import Crew
@@ -27,6 +28,7 @@ _AT_MOST = 0.999  # of the greatest prime radius, above which it is that one
 _CREDIT = 1.02  # of the gain of the best design by its offset, for that of another
 _CURABLE = 1.2  # utilisation that a larger cam may cure
 _SHORT = 1.05  # utilisation that a synthesis with corrections may cure
+_TOGETHER = 2  # drafts solved at once where the first that passes is enough
 _FREE_PRELOAD = (0.85, 1.1)  # of the preload of the screening: the spring has room for 1.05
 RESERVE = 0.01  # of the ripple allowed, for the corrections by finite elements
 
@@ -141,7 +143,7 @@ def promising(task: DesignTask, screened: Sequence[Candidate]) -> list[Candidate
     chosen += _screened_front(task, screened, _NEAR, _NEAREST)
     left = list(screened)
     for _ in range(_ROLLERS):
-        likely = likeliest(task, left)
+        likely = likeliest(left)
         if likely is None:
             break
         chosen.append(likely)
@@ -162,14 +164,15 @@ def _screened_front(
     return [good[k] for k in thinned(places, figures, most)]
 
 
-def likeliest(task: DesignTask, screened: Sequence[Candidate]) -> Candidate | None:
+def likeliest(screened: Sequence[Candidate]) -> Candidate | None:
     """The screened design with the most room to ripple and limits; None: each is hopeless."""
-
-    def lack(each: Candidate) -> float:
-        return each.ripple / task.ripple_allowed + _NEAR * each.excess
-
     best = min(screened, key=lack, default=None)
     return best if best is not None and lack(best) <= OPTIMISTIC + _NEAR**2 else None
+
+
+def lack(candidate: Candidate) -> float:
+    """Ripple over that allowed, and the excess of the checks, which a synthesis may remove."""
+    return candidate.ripple / candidate.design.task.ripple_allowed + _NEAR * candidate.excess
 
 
 def draft(study: Study, candidate: Candidate) -> Solved:
@@ -242,25 +245,39 @@ def _rounded(design: Machinery) -> Machinery:
     return replace(design, spring=spring, lift=2e-4 * ceil(design.lift / 2e-4))
 
 
-def drafts(study: Study, screened: Sequence[Candidate], workers: Crew) -> list[Solved]:
-    """Drafts of the designs of the screening that may be on the front, those with a cam.
+class Drafts(NamedTuple):
+    """Drafts with a cam; replaced: those in whose place the same design with an offset is."""
+
+    points: list[Solved]
+    replaced: list[Solved]
+
+
+def drafts(study: Study, screened: Sequence[Candidate], workers: Crew) -> Drafts:
+    """Drafts of the designs of the screening that may be on the front.
 
     Without an offset; where the best of them is better with one, all others that may pass with its
     gain as well.
     """
     chosen = promising(study.task, screened)
-    points = _drafted(study, chosen, workers)
+    return _with_offsets(study, chosen, _drafted(study, chosen, workers), workers)
+
+
+def _with_offsets(
+    study: Study, chosen: Sequence[Candidate], points: list[Solved], workers: Crew
+) -> Drafts:
     near = [k for k, each in enumerate(points) if each.use <= _CURABLE]
+    moved: list[int] = []
+    shifted: list[Solved] = []
     if near:
         first = min(near, key=lambda k: points[k].use)
-        shifted = draft(study, chosen[first].with_offset)
-        if shifted.better_than(points[first]):
-            most = _CREDIT * max(points[first].use / shifted.use, 1.0)
-            near = [k for k in near if points[k].use <= most]
-            others = [chosen[k].with_offset for k in near if k != first]
-            points = [each for k, each in enumerate(points) if k not in (first, *near)]
-            points += [shifted, *_drafted(study, others, workers)]
-    return [each for each in points if each.has_cam]
+        best = draft(study, chosen[first].with_offset)
+        if best.better_than(points[first]):
+            most = _CREDIT * max(points[first].use / best.use, 1.0)
+            others = [k for k in near if k != first and points[k].use <= most]
+            moved = [first, *others]
+            shifted = [best, *_drafted(study, [chosen[k].with_offset for k in others], workers)]
+    kept = [each for k, each in enumerate(points) if k not in moved]
+    return Drafts([each for each in kept + shifted if each.has_cam], [points[k] for k in moved])
 
 
 def _drafted(study: Study, chosen: Sequence[Candidate], workers: Crew) -> list[Solved]:
@@ -269,16 +286,18 @@ def _drafted(study: Study, chosen: Sequence[Candidate], workers: Crew) -> list[S
 
 
 def solved_front(
-    study: Study, drafted: Sequence[Solved], workers: Crew, progress: Progress
+    study: Study, drafted: Drafts, workers: Crew, progress: Progress
 ) -> tuple[list[Solved], list[Solved]]:
     """Designs of the front of the drafts that pass, and those that do not, the nearest first.
 
-    Where none of the front passes, the other drafts that pass are solved.
+    Where none of the front passes, the other drafts that pass are solved, those replaced at last.
     """
-    likely = [each for each in drafted if each.passes]
+    likely, last = ([each for each in points if each.passes] for points in drafted)
     passing: list[Solved] = []
-    failing = [each for each in drafted if not each.passes]
-    while likely and not passing:
+    failing = [each for each in drafted.points if not each.passes]
+    while (likely or last) and not passing:
+        if not likely:
+            likely, last = last, []
         batch = _front(likely)
         likely = [each for each in likely if each not in batch]
         waiting = [workers.submit(synthesised, study, each) for each in batch]
@@ -291,11 +310,34 @@ def solved_front(
     return _front(passing), sorted(failing, key=lambda each: each.use)
 
 
-def passing_design(study: Study, drafted: Sequence[Solved]) -> Solved | None:
-    """First design that passes of those of `solved_front`; None: it has none."""
-    likely = sorted((each for each in drafted if each.passes), key=lambda each: each.use)
-    points = (synthesised(study, each) for each in likely)
-    return next((each for each in points if each.has_cam and each.passes), None)
+def passing_draft(
+    study: Study,
+    screened: Sequence[Candidate],
+    workers: Crew,
+    order: Callable[[Candidate], float] = lack,
+) -> Solved | None:
+    """First draft that passes in full of those of `solved_front`; None: none does.
+
+    Those without an offset are drafted first, in an order: where one passes, no other is.
+    """
+    chosen = sorted(promising(study.task, screened), key=order)
+    plain: list[Solved] = []
+    for start in range(0, len(chosen), _TOGETHER):
+        batch = _drafted(study, chosen[start : start + _TOGETHER], workers)
+        first = _passing(study, batch)
+        if first is not None:
+            return first
+        plain += batch
+    return _passing(study, _with_offsets(study, chosen, plain, workers).points)
+
+
+def _passing(study: Study, points: Sequence[Solved]) -> Solved | None:
+    """First of the drafts that passes in full."""
+    for each in points:
+        point = synthesised(study, each) if each.passes else each
+        if point.has_cam and point.passes:
+            return each
+    return None
 
 
 def _front(points: Sequence[Solved]) -> list[Solved]:
