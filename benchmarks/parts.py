@@ -14,10 +14,12 @@ import sys
 import tempfile
 import time
 from collections.abc import Callable
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 
+from camwright.geometry.arrays import Array
 from camwright.pipeline.base import disk_cache
 from camwright.pipeline.case.case_file import read_case
 from camwright.pipeline.case.load_case_torque import engine_torques
@@ -50,6 +52,36 @@ def dense_solution() -> float:
     random = np.random.default_rng(0)
     matrix, right = random.normal(size=(1000, 1000)), random.normal(size=1000)
     return seconds(lambda: np.linalg.solve(matrix, right))
+
+
+@dataclass(frozen=True)
+class _Curve:
+    number: int
+    values: Array
+
+
+def mixed_work() -> float:
+    """CPU seconds of a stored mix of interpreter and small arrays, of which commands are made.
+
+    The solution of dense equations depends on the vector units alone, and changes by a third on the
+    same machine where a command does not.
+    """
+    theta = np.linspace(0.0, 2.0 * np.pi, 361)
+    matrix = np.eye(24) + 0.01 * np.random.default_rng(0).normal(size=(24, 24))
+
+    def work() -> dict[str, float]:
+        curve, figures = _Curve(0, np.sin(theta)), dict[str, float]()
+        for k in range(1400):
+            values = np.interp(theta + 1e-3 * k, theta, curve.values, period=2.0 * np.pi)
+            spectrum = np.fft.rfft(values[:-1])
+            spectrum[60:] = 0.0
+            values = np.append(np.fft.irfft(spectrum), values[-1])
+            solved = np.linalg.solve(matrix, values[:24])
+            curve = replace(curve, number=k, values=np.where(values > 0.0, values, 0.5 * values))
+            figures[f"{k}.demand"] = max(float(solved.max()), float(curve.number))
+        return figures
+
+    return seconds(work)
 
 
 def main() -> int:

@@ -2,7 +2,8 @@
 
 `camwright --help` and `camwright check` as processes, warm; in this process the preview at 180
 angles without its tolerance corners, per load case, and the corners. The budgets are told in
-solutions of 1000 dense equations on the same core; beyond one the exit code is 1.
+rounds of `mixed_work` on the same core: 0.2 s, 1.6 s, 70 ms and 0.8 s where one takes 50 ms. Beyond
+one the exit code is 1.
 """
 
 from __future__ import annotations
@@ -13,7 +14,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-from parts import ROUNDS, dense_solution, seconds
+from parts import ROUNDS, mixed_work, seconds
 
 from camwright.pipeline.case.case_file import read_case
 from camwright.pipeline.case.load_case_torque import engine_torques
@@ -24,7 +25,7 @@ from camwright.pipeline.solver import solve
 
 CASE = Path(__file__).resolve().parent.parent / "cases" / "gx120.toml"
 POSITIONS = 180
-BUDGETS = {"--help": 7.0, "check": 96.0, "preview per load case": 2.8, "corners": 40.0}
+BUDGETS = {"--help": 4.0, "check": 32.0, "preview per load case": 1.4, "corners": 16.0}
 
 
 def process_seconds(*arguments: str) -> float:
@@ -44,7 +45,7 @@ def process_seconds(*arguments: str) -> float:
 
 
 def main() -> int:
-    unit = dense_solution()
+    unit = mixed_work()
     case = read_case(CASE)
     torques = engine_torques(case)
     contour = case.contour(cam_lift(case, torques))
@@ -66,10 +67,10 @@ def main() -> int:
         "preview per load case": seconds(preview) / preview(),
         "corners": seconds(lambda: outcomes(case, torques, contour)),
     }
-    print(f"dense solution {1e3 * unit:.1f} ms")
+    print(f"mixed work {1e3 * unit:.1f} ms")
     for name, value in spent.items():
         ratio = value / unit
-        print(f"{name:>22} {1e3 * value:7.0f} ms, {ratio:5.1f} solutions, budget {BUDGETS[name]:g}")
+        print(f"{name:>22} {1e3 * value:7.0f} ms, {ratio:5.1f} rounds, budget {BUDGETS[name]:g}")
     return int(any(value > BUDGETS[name] * unit for name, value in spent.items()))
 
 
