@@ -266,7 +266,7 @@ def _with_offsets(
     study: Study, chosen: Sequence[Candidate], points: list[Solved], workers: Crew
 ) -> Drafts:
     near = [k for k, each in enumerate(points) if each.use <= _CURABLE]
-    moved: list[int] = []
+    replaced: list[int] = []
     shifted: list[Solved] = []
     if near:
         first = min(near, key=lambda k: points[k].use)
@@ -274,10 +274,10 @@ def _with_offsets(
         if best.better_than(points[first]):
             most = _CREDIT * max(points[first].use / best.use, 1.0)
             others = [k for k in near if k != first and points[k].use <= most]
-            moved = [first, *others]
+            replaced = [first, *others]
             shifted = [best, *_drafted(study, [chosen[k].with_offset for k in others], workers)]
-    kept = [each for k, each in enumerate(points) if k not in moved]
-    return Drafts([each for each in kept + shifted if each.has_cam], [points[k] for k in moved])
+    kept = [each for k, each in enumerate(points) if k not in replaced]
+    return Drafts([each for each in kept + shifted if each.has_cam], [points[k] for k in replaced])
 
 
 def _drafted(study: Study, chosen: Sequence[Candidate], workers: Crew) -> list[Solved]:
