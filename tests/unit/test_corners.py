@@ -1,5 +1,7 @@
 """Tolerance corners: what is tried, which way each moves the demands, which one governs."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 from made_check import made_check
@@ -7,7 +9,8 @@ from small_machine import small_machine
 
 from camwright.geometry.errors import ContactError, InputError
 from camwright.geometry.lift import Lift
-from camwright.pipeline.case.case_file import parse_case
+from camwright.pipeline.case.case_file import parse_case, read_case
+from camwright.pipeline.case.load_case_torque import engine_torques
 from camwright.pipeline.case.machine import Corner, machines
 from camwright.pipeline.checks import tolerance_corners
 from camwright.pipeline.checks.tolerance_corners import (
@@ -19,8 +22,10 @@ from camwright.pipeline.checks.tolerance_corners import (
     unsolved,
 )
 from camwright.pipeline.cycle.turn import turns
+from camwright.pipeline.smoothing.required_lift import cam_lift
 from camwright.pipeline.torque.torque import Torque, uniform_cycle
 
+CASES = Path(__file__).parents[2] / "cases"
 TOLERANCES = """
 [crankshaft]
 inertia = "0.0139 kg m^2"
@@ -152,6 +157,27 @@ def test_phase_and_inertia_move_the_speed_ripple_alone(torque):
     still = set(seen["nominal"]) - {name}
     for other in still:
         assert seen["crank inertia high"][other] == pytest.approx(seen["nominal"][other])
+
+
+@pytest.mark.parametrize("name", ["gx120", "gx120-loads"])
+def test_corners_of_the_same_loads_are_those_solved_alone(name):
+    """Corners of inertia and phase take over what another one has computed of the loads."""
+    shipped = read_case(CASES / f"{name}.toml")
+    known = engine_torques(shipped)
+    contour = shipped.contour(cam_lift(shipped, known))
+    tried = [
+        Corner("nominal"),
+        Corner("crank inertia low", inertia=0.8),
+        Corner("phase high", phase=0.03),
+        Corner("mass", mass=1.1),
+        Corner("mass and inertia", mass=1.1, inertia=1.2, phase=-0.02),
+    ]
+    together = outcomes(shipped, known, contour, tried)
+    for corner, outcome in zip(tried, together, strict=True):
+        (alone,) = outcomes(shipped, known, contour, [corner])
+        assert len(alone.demands) > 20
+        assert outcome.demands == pytest.approx(alone.demands, rel=1e-14)  # order of a sum
+        assert (outcome.bounds, outcome.lost) == (alone.bounds, alone.lost)
 
 
 def test_every_demand_that_a_tolerance_moves_has_a_corner(demands):
