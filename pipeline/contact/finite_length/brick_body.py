@@ -107,6 +107,7 @@ def condensed(grid: BrickGrid, poisson: float, *, free_ends: bool = True) -> Qua
         if gone.between is not None:
             compliance[np.ix_(columns, columns)] += gone.between.T @ gone.between
         compliance += gone.carried.T @ gone.carried
+        del gone  # its dense factors, before the next ones are made
     results = []
     for symmetry in _SYMMETRIES:
         _, _, last = elimination.last_plane(symmetry)
@@ -200,10 +201,13 @@ class _Elimination:
             half = middle.forward(loads.between)
             self._right[:, columns] += loads.plane - middle.outer.T @ half
             ahead[:, columns] += loads.plane - middle.inner.T @ half
-        factor = _cholesky((self._schur + outer)[np.ix_(kept, kept)])
+        # Dense matrices of a plane take most of the memory: each is overwritten by the next.
+        self._schur += outer
+        factor = _cholesky(self._schur[np.ix_(kept, kept)])
         carried = _forward(factor, self._right[kept])
         coupling = _forward(factor, cross[kept])
-        self._schur = inner - coupling.T @ coupling
+        np.matmul(coupling.T, coupling, out=self._schur)
+        np.subtract(inner, self._schur, out=self._schur)
         self._right = ahead - coupling.T @ carried
         self._kept = self.section.supported
         return _Gone(kept, factor, coupling, carried, half, middle)
@@ -324,21 +328,35 @@ class _SlabStiffness:
     def condensed(self, thickness: float) -> tuple[Array, Array, Array, _Middle]:
         """Stiffness of the outer plane, its coupling to the inner one, the latter's; the middle."""
         if thickness not in self._of_thickness:
-            self._of_thickness = {thickness: self._computed(thickness)}
+            self._of_thickness.clear()
+            self._of_thickness[thickness] = self._computed(thickness)
         return self._of_thickness[thickness]
 
     def _computed(self, thickness: float) -> tuple[Array, Array, Array, _Middle]:
         first, second, third = self._parts
         whole = thickness * first + second + third / thickness
         planar = 3 * self._section.planar
-        planes = whole[: 2 * planar, : 2 * planar].toarray()
         supported = self._section.supported_between
         free = 2 * planar + supported
         factor = _cholesky(whole[free][:, free].toarray())
-        coupling = _forward(factor, whole[free][:, : 2 * planar].toarray())
-        planes -= coupling.T @ coupling
-        middle = _Middle(factor, supported, coupling[:, :planar], coupling[:, planar:])
-        return planes[:planar, :planar], planes[:planar, planar:], planes[planar:, planar:], middle
+        outer, inner = slice(planar), slice(planar, 2 * planar)
+        middle = _Middle(
+            factor,
+            supported,
+            *(_forward(factor, whole[free][:, part].toarray()) for part in (outer, inner)),
+        )
+
+        def plane(first: slice, second: slice, left: Array, right: Array) -> Array:
+            stiffness: Array = whole[first, second].toarray()
+            stiffness -= left.T @ right
+            return stiffness
+
+        return (
+            plane(outer, outer, middle.outer, middle.outer),
+            plane(outer, inner, middle.outer, middle.inner),
+            plane(inner, inner, middle.inner, middle.inner),
+            middle,
+        )
 
 
 @dataclass(frozen=True, eq=False)
@@ -404,14 +422,19 @@ def _element_stiffness(
 
 
 def _cholesky(matrix: Array) -> Array:
+    """Lower factor of a matrix, which is overwritten."""
     try:
-        return np.asarray(scipy.linalg.cholesky(matrix, lower=True, check_finite=False))
+        return np.asarray(
+            scipy.linalg.cholesky(matrix.T, lower=True, check_finite=False, overwrite_a=True)
+        )
     except scipy.linalg.LinAlgError as error:
         raise ContactError("stiffness of the block: not positive definite") from error
 
 
 def _forward(factor: Array, right: Array) -> Array:
-    solved = scipy.linalg.solve_triangular(factor, right, lower=True, check_finite=False)
+    solved = scipy.linalg.solve_triangular(
+        factor, np.asfortranarray(right), lower=True, check_finite=False, overwrite_b=True
+    )
     return np.asarray(solved)
 
 
