@@ -221,6 +221,24 @@ def test_second_stage_and_kept_runs_are_the_same_with_two_processes(tmp_path: Pa
 
 
 @pytest.mark.slow
+def test_a_certified_design_with_new_ends_stays_within_the_memory(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The best of the shipped screening, whose ends no cache holds, within 1 GB by default."""
+    monkeypatch.setenv("CAMWRIGHT_CACHE", str(tmp_path / "cache"))
+    (tmp_path / "redesign.toml").write_text((ROOT / "cases" / "gx120-redesign.toml").read_text())
+    (tmp_path / "study.toml").write_text(
+        'name = "best"\ncase = "redesign.toml"\ndepth = "certified"\n'
+        '[[factor]]\nkey = "roller.radius"\nlist = ["24.13 mm"]\n'
+        '[[factor]]\nkey = "cam.prime_radius"\nlist = ["56.2 mm"]\n[sampling]\nmethod = "list"\n'
+    )
+    made = run(tmp_path, "study.toml", "--out", "out", "--jobs", "1")
+    assert made.returncode == 0, made.stderr
+    data = read_dataset(tmp_path / "out")
+    assert data["message"].tolist() == [""] and data["verdict"].tolist() == ["pass"]
+
+
+@pytest.mark.slow
 def test_twenty_seeded_kills_lose_and_double_no_row(tmp_path: Path) -> None:
     """SIGKILL of workers, of their solving processes and of the main process."""
     written(tmp_path, 120)

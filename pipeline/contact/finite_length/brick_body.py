@@ -339,24 +339,14 @@ class _SlabStiffness:
         supported = self._section.supported_between
         free = 2 * planar + supported
         factor = _cholesky(whole[free][:, free].toarray())
-        outer, inner = slice(planar), slice(planar, 2 * planar)
-        middle = _Middle(
-            factor,
-            supported,
-            *(_forward(factor, whole[free][:, part].toarray()) for part in (outer, inner)),
-        )
-
-        def plane(first: slice, second: slice, left: Array, right: Array) -> Array:
-            stiffness: Array = whole[first, second].toarray()
-            stiffness -= left.T @ right
-            return stiffness
-
-        return (
-            plane(outer, outer, middle.outer, middle.outer),
-            plane(outer, inner, middle.outer, middle.inner),
-            plane(inner, inner, middle.inner, middle.inner),
-            middle,
-        )
+        planes = slice(planar), slice(planar, 2 * planar)
+        to_planes = [_forward(factor, whole[free][:, each].toarray()) for each in planes]
+        blocks: list[Array] = []
+        for i, j in ((0, 0), (0, 1), (1, 1)):
+            block = whole[planes[i], planes[j]].toarray()
+            block -= to_planes[i].T @ to_planes[j]
+            blocks.append(block)
+        return blocks[0], blocks[1], blocks[2], _Middle(factor, supported, *to_planes)
 
 
 @dataclass(frozen=True, eq=False)
