@@ -221,14 +221,15 @@ def test_second_stage_and_kept_runs_are_the_same_with_two_processes(tmp_path: Pa
 
 
 @pytest.mark.slow
-def test_a_certified_design_with_new_ends_stays_within_the_memory(
+def test_a_kept_certified_design_with_new_ends_stays_within_the_memory(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """The best of the shipped screening, whose ends no cache holds, within 1 GB by default."""
+    """The best of the shipped screening, whose ends no cache holds, with page and scene: 1 GB."""
     monkeypatch.setenv("CAMWRIGHT_CACHE", str(tmp_path / "cache"))
     (tmp_path / "redesign.toml").write_text((ROOT / "cases" / "gx120-redesign.toml").read_text())
     (tmp_path / "study.toml").write_text(
-        'name = "best"\ncase = "redesign.toml"\ndepth = "certified"\n'
+        'name = "best"\ncase = "redesign.toml"\ndepth = "certified"\nkeep = "best:1"\n'
+        '[[objective]]\ncolumn = "headline.torque_std_after_Nm"\n'
         '[[factor]]\nkey = "roller.radius"\nlist = ["24.13 mm"]\n'
         '[[factor]]\nkey = "cam.prime_radius"\nlist = ["56.2 mm"]\n[sampling]\nmethod = "list"\n'
     )
@@ -236,6 +237,8 @@ def test_a_certified_design_with_new_ends_stays_within_the_memory(
     assert made.returncode == 0, made.stderr
     data = read_dataset(tmp_path / "out")
     assert data["message"].tolist() == [""] and data["verdict"].tolist() == ["pass"]
+    kept = tmp_path / "out" / "runs" / str(data["id"][0])
+    assert {"8_report.html", "scene.html"} <= {each.name for each in kept.iterdir()}
 
 
 @pytest.mark.slow

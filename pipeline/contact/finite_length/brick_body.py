@@ -126,31 +126,36 @@ def displacement(grid: BrickGrid, poisson: float, pressure: Array) -> Array:
     """
     elimination = _Elimination(grid, poisson, 2)
     section, slabs = elimination.section, range(grid.y.size - 1)
-    gone = {}
+    stored = {}
     for slab in reversed(slabs):
         loads = elimination.facets(slab)
         if loads is not None:
             here = pressure[:, slab].T
             loads = _Loads(loads.plane @ here, loads.between @ here)
-        gone[slab] = elimination.without_outer_plane(slab, loads, np.arange(2))
+        stored[slab] = _Stored.of(elimination.without_outer_plane(slab, loads, np.arange(2)))
     shape = (2 * grid.x.size - 1, 2 * grid.y.size - 1, 2 * grid.z.size - 1, 3)
     field = np.full((2, *shape), np.nan)
+    planes = []
     for number, symmetry in enumerate(_SYMMETRIES):
         free, factor, right = elimination.last_plane(symmetry)
         plane = np.zeros(3 * section.planar)
         plane[free] = _backward(factor, right[:, number])
         section.place(field[number, :, 0], plane)
-        for slab in slabs:
-            inner, part = plane, gone[slab]
+        planes.append(plane)
+    for slab in slabs:
+        part, (cross, middle) = stored.pop(slab), elimination.coupled(slab)
+        factor = part.factor
+        for number, inner in enumerate(planes):
             plane = np.zeros_like(inner)
-            right = part.carried[:, number] - part.coupling @ inner
-            plane[part.kept] = _backward(part.factor, right)
+            right = part.carried[:, number] - _forward(factor, cross[part.kept] @ inner)
+            plane[part.kept] = _backward(factor, right)
             between = np.zeros(3 * section.between)
             loaded = 0.0 if part.between is None else part.between[:, number]
-            right = loaded - part.middle.outer @ plane - part.middle.inner @ inner
-            between[part.middle.supported] = _backward(part.middle.factor, right)
+            right = loaded - middle.outer @ plane - middle.inner @ inner
+            between[middle.supported] = _backward(middle.factor, right)
             section.place(field[number, :, 2 * slab + 1], between)
             section.place(field[number, :, 2 * slab + 2], plane)
+            planes[number] = plane
     return field
 
 
@@ -162,16 +167,35 @@ _SYMMETRIES = ((1,), (0, 2))
 class _Gone:
     """Eliminated outer plane of a slab, and the nodes between its planes.
 
-    kept: its unknowns; factor: of their stiffness; coupling to the inner plane, loads `carried`
-    and loads `between`, forward-substituted.
+    kept: its unknowns; factor: of their stiffness; loads `carried` and loads `between`,
+    forward-substituted.
     """
 
     kept: Index
     factor: Array
-    coupling: Array
     carried: Array
     between: Array | None
-    middle: _Middle
+
+
+@dataclass(frozen=True, eq=False)
+class _Stored:
+    """An eliminated plane until it is solved for: its factor in packed form, half of the memory."""
+
+    kept: Index
+    packed: Array
+    carried: Array
+    between: Array | None
+
+    @classmethod
+    def of(cls, gone: _Gone) -> _Stored:
+        packed, _ = scipy.linalg.lapack.dtrttp(gone.factor, uplo="L")
+        return cls(gone.kept, packed, gone.carried, gone.between)
+
+    @property
+    def factor(self) -> Array:
+        """The lower factor (n, n)."""
+        full, _ = scipy.linalg.lapack.dtpttr(self.kept.size, self.packed, uplo="L")
+        return np.asarray(full)
 
 
 class _Elimination:
@@ -210,7 +234,12 @@ class _Elimination:
         np.subtract(inner, self._schur, out=self._schur)
         self._right = ahead - coupling.T @ carried
         self._kept = self.section.supported
-        return _Gone(kept, factor, coupling, carried, half, middle)
+        return _Gone(kept, factor, carried, half)
+
+    def coupled(self, slab: int) -> tuple[Array, _Middle]:
+        """Coupling of the outer plane of a slab to the inner one; the nodes between them."""
+        _, cross, _, middle = self._stiffness.condensed(float(self._steps[slab]))
+        return cross, middle
 
     def last_plane(self, fixed: tuple[int, ...]) -> tuple[Index, Array, Array]:
         """Middle plane: unknowns, factor of their stiffness, forward-substituted loads."""
