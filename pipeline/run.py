@@ -75,8 +75,8 @@ def run_case(
     report : callable    writes page and pictures into the run folder; None: none are written
     ahead : callable     begins pictures in the worker processes before the certificate
     also : callable      final trial -> further entries of ``run.json``
-    judged : callable    receives engine torques and final trial as soon as it is judged, before
-                         its files are written below CERTIFIED
+    judged : callable    receives engine torques and checked final trial; below CERTIFIED before
+                         its files are written
     solved : Trial       the only trial, solved at `depth` below CERTIFIED; None: it is solved here
 
     Returns

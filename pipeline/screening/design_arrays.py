@@ -406,9 +406,9 @@ class Designs:
         line = np.sqrt(peak_pressure_square(load / width, 1.0 / radius, modulus))
         factors = factors_of(self, load, radius, rubbing)
         crowned, unknown = self.machine.is_crowned, np.full(line.shape, np.nan)
-        if has_many_shapes(self):
-            return line, line, line
         if factors is None:
+            if has_many_shapes(self):
+                return line, line, line
             return line, unknown if crowned else line, unknown
         signed = line * np.maximum(factors.level, factors.tilted)
         return line, line * factors.centre if crowned else line, signed
