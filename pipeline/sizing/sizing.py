@@ -82,7 +82,10 @@ _NOT_RAISED: Mapping[str, float] = {}
 _MARGIN = 1.001
 """The ratio of preview and screening changes slightly with the radius."""
 _STIFFER, _LARGER, _TRIES = 1.1, 1.01, 8
-"""Factors of preload or rate and of radius by which a failing preview is repeated; how often."""
+"""Factors of rate and of radius by which a failing preview is repeated; how often."""
+_FIRMER, _DOUBLINGS, _BRACKET = 1.1, 5, 1.01
+"""First factor of the preload or rate of a follower that is not held, its squares tried up to
+_FIRMER**(2**(_DOUBLINGS - 1)), 4.6; ratio of passing to failing value at which the search ends."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -241,10 +244,13 @@ class _Search:
             # the preview adds tolerances, surge, elastic stem and guides to the screening
             screened = self._trial(shape, spring)
             small = _failing(trial, _GROWTH) if PRIME in self.opened.gaps else ()
-            if PRELOAD in self.opened.gaps and _failing(trial, _HELD):
-                spring = more_preload(spring, _STIFFER, _titles(_failing(trial, _HELD)))
-                shape = self._grown(exact, spring, raised)
-            elif small and not _failing(screened, _GROWTH):
+            if self._spring_is_open and _failing(trial, _HELD):
+                firm = self._firm(exact, spring, _titles(_failing(trial, _HELD)), raised)
+                if firm is None:
+                    break
+                spring, shape, (text, case, trial) = firm
+                continue
+            if small and not _failing(screened, _GROWTH):
                 raised |= _raised(small, screened)
                 larger = self._grown(exact, spring, raised)
                 if not larger.prime_radius > shape.prime_radius:
@@ -277,6 +283,11 @@ class _Search:
         """Whether no winding sets the rate; a spring of a catalogue follows it."""
         return RATE in self.opened.gaps and self.opened.case.spring.design is None
 
+    @property
+    def _spring_is_open(self) -> bool:
+        """Whether the preload, or the rate beside a stated one, may grow to hold the follower."""
+        return PRELOAD in self.opened.gaps or self._rate_is_open
+
     def _spring(self, shape: Shape, stiff: ChosenSpring | None = None) -> ChosenSpring:
         parts = (
             self.shapes.cam.lift
@@ -298,6 +309,38 @@ class _Search:
             if not _failing(judged[2], _WOUND):
                 return spring, shape, judged
         return first
+
+    def _firm(
+        self, exact: Shape, start: ChosenSpring, reason: str, raised: Mapping[str, float]
+    ) -> _Tried | None:
+        """The least spring whose preview holds the follower, within 1 %; None if none tried does.
+
+        The preload grows where it is open; what the case states stays, then the rate grows.
+        """
+        grown = more_preload if PRELOAD in self.opened.gaps else stiffer
+
+        def holding(factor: float) -> _Tried | None:
+            spring = grown(start, factor, reason)
+            try:
+                shape = self._grown(exact, spring, raised)
+                judged = self._judged(shape, spring)
+            except CamError:  # contradicts the case, or the catalogue has no such spring
+                return None
+            return None if _failing(judged[2], _HELD) else (spring, shape, judged)
+
+        low, high, least = 1.0, _FIRMER, None
+        for _ in range(_DOUBLINGS):
+            least = holding(high)
+            if least is not None:
+                break
+            low, high = high, high**2
+        if least is None:
+            return None
+        while high > _BRACKET * low:
+            middle = float(np.sqrt(low * high))
+            smaller = holding(middle)
+            low, high, least = (middle, high, least) if smaller is None else (low, middle, smaller)
+        return least
 
     def _values(self, shape: Shape, spring: ChosenSpring) -> dict[str, float]:
         own = {RATE: spring.rate, PRELOAD: spring.preload}

@@ -18,6 +18,7 @@ from camwright.pipeline.sizing.spring_size import (
     PRELOAD_SHARE,
     HoldingCondition,
     SpringSize,
+    least_rate,
     preload_needed,
     smallest_spring,
 )
@@ -39,16 +40,17 @@ def conditions_of(case: Case) -> tuple[HoldingCondition, ...]:
         case.follower.mass, case.tolerances.mass, states[0].system.gravity_along_axis
     )  # fmt: skip
     worst = {
-        "mass": mass * (1.0 + spread),
-        "held": mass * min(gravity * (1.0 - spread), gravity * (1.0 + spread)),
         "damping": case.follower.viscous_damping,
         "rate_factor": 1.0 - spring.rate_tolerance,
         "preload_factor": 1.0 - spring.preload_tolerance,
     }
     margin = case.limits[CONTACT_FORCE_MARGIN]
-    return (
-        HoldingCondition(cam_speed=case.limits[JUMP_SPEED] * speed, **worst),
-        HoldingCondition(cam_speed=speed, share=margin, **worst),
+    ways = ({"cam_speed": case.limits[JUMP_SPEED] * speed}, {"cam_speed": speed, "share": margin})
+    # a heavier follower is thrown off more, and weighs more: its inertia and weight are of one mass
+    return tuple(
+        HoldingCondition(mass=each, held=each * gravity, **way, **worst)
+        for each in (mass * (1.0 - spread), mass * (1.0 + spread))
+        for way in ways
     )
 
 
@@ -69,9 +71,10 @@ class ChosenSpring(NamedTuple):
 def spring_of(
     case: Case, gaps: Sequence[str], lift: LiftParts, stiff: ChosenSpring | None = None
 ) -> ChosenSpring:
-    """Spring of the open keys: its least energy at full lift, or the preload of a given rate.
+    """Spring of the open keys: its least energy at full lift, or the least preload or rate.
 
-    The rate of a spring with a design is that of the design.
+    A stated preload stays: the rate is the least one that holds the follower beside it. The rate
+    of a spring with a design is that of the design.
 
     Parameters
     ----------
@@ -80,7 +83,8 @@ def spring_of(
     Raises
     ------
     InputError
-        If nothing throws the follower off the cam and no rate is given.
+        If nothing throws the follower off the cam and neither rate nor preload is given; if a
+        stated preload holds it at no rate.
     """
     design, rate, rate_by = case.spring.design, case.spring.rate, ""
     conditions, force = conditions_of(case), external_force(case)
@@ -89,6 +93,13 @@ def spring_of(
         rate, rate_by = stiff.rate, stiff.rate_by
     elif RATE in gaps and design is not None:
         rate, rate_by = _to_digits(design.rate), "rate of spring.design"
+    elif RATE in gaps and PRELOAD not in gaps:
+        preload = case.spring.preload
+        rate = _up_to_digits(least_rate(lift, preload, conditions, force))
+        rate_by = "no follower jump over the speed range at the stated preload"
+        if rate == 0.0:
+            rate = _to_digits(preload / lift.stroke)
+            rate_by = "least energy at full lift; the stated preload alone holds the follower"
     elif RATE in gaps:
         rate = _to_digits(smallest_spring(lift, conditions, force=force).rate)
         rate_by = "least energy of the spring at full lift without follower jump"
@@ -101,23 +112,25 @@ def spring_of(
         if share
         else "no follower jump over the speed range"
     )
-    return ChosenSpring(rate, _preload_up(spring.preload), rate_by, preload_by)
+    return ChosenSpring(rate, _up_to_digits(spring.preload), rate_by, preload_by)
 
 
 def more_preload(spring: ChosenSpring, factor: float, reason: str) -> ChosenSpring:
     """A spring with a greater preload, for a reason."""
-    return spring._replace(preload=_preload_up(factor * spring.preload), preload_by=reason)
+    return spring._replace(preload=_up_to_digits(factor * spring.preload), preload_by=reason)
 
 
 def stiffer(spring: ChosenSpring, factor: float, reason: str) -> ChosenSpring:
     """A spring with a greater rate, for a reason."""
-    return spring._replace(rate=_to_digits(factor * spring.rate), rate_by=reason)
+    return spring._replace(rate=_up_to_digits(factor * spring.rate), rate_by=reason)
 
 
-def _preload_up(preload: float) -> float:
-    """A preload, N, to four digits, not below it."""
-    step = 10.0 ** (np.floor(np.log10(preload)) - _DIGITS + 1)
-    return _to_digits(float(np.ceil(preload / step * (1.0 - _ROUND_OFF)) * step))
+def _up_to_digits(value: float) -> float:
+    """A rate or preload, >= 0, to four digits, not below it."""
+    if value == 0.0:
+        return 0.0
+    step = 10.0 ** (np.floor(np.log10(value)) - _DIGITS + 1)
+    return _to_digits(float(np.ceil(value / step * (1.0 - _ROUND_OFF)) * step))
 
 
 def _to_digits(value: float) -> float:

@@ -8,12 +8,14 @@ from functools import partial
 from typing import NamedTuple
 
 import numpy as np
+import scipy.optimize
 
 from camwright.geometry.arrays import Array, positive
 from camwright.geometry.errors import InputError
 from camwright.geometry.extrema import Extremum, least_argument
 from camwright.geometry.lift_parts import LiftParts
 from camwright.pipeline.base.external_force import NO_FORCE, ExternalForce
+from camwright.pipeline.base.units import shown
 
 PRELOAD_SHARE = 0.25
 """Least preload over the force at full lift: a spring works from 20 to 80 % of its travel,
@@ -21,6 +23,8 @@ Associated Spring, Engineering Guide to Spring Design; Shigley ch. 10: verify.""
 
 _RANGE = 6.0
 """Natural logarithm of the greatest rate over the throw per stroke; of the least, its negative."""
+_RATE_TOLERANCE = 1e-9
+"""Relative, of the least rate: far below the digits to which it is rounded up."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -168,3 +172,42 @@ def smallest_spring(
         return spring(float(np.exp(logarithm))).energy(stroke)
 
     return spring(float(np.exp(least_argument(energy, scale - _RANGE, scale + _RANGE))))
+
+
+def least_rate(
+    lift: LiftParts,
+    preload: float,
+    conditions: Sequence[HoldingCondition],
+    force: ExternalForce = NO_FORCE,
+) -> float:
+    """Least rate that holds the follower in all conditions beside a preload, N/m.
+
+    0 if the preload alone holds it. The preload needed, P(k), falls with the rate: it crosses
+    the given one once.
+
+    Parameters
+    ----------
+    preload : float         nominal, N, > 0
+    force : ExternalForce   of the machine on the follower, as of `preload_needed`
+
+    Raises
+    ------
+    InputError
+        If the preload holds the follower at no rate, as where it is thrown off at the base circle.
+    """
+    positive("spring.preload", preload)
+
+    def lacking(rate: float) -> float:
+        return preload_needed(lift, rate, conditions, force).value - preload
+
+    throw = lacking(0.0)
+    if not throw > 0.0:
+        return 0.0
+    greatest = float(np.exp(_RANGE)) * (throw + preload) / lift.stroke
+    least = lacking(greatest)
+    if least > 0.0:
+        limit = (
+            f">= {shown(preload + least, 'N')}, or the follower leaves the cam at any spring.rate"
+        )
+        raise InputError("spring.preload", shown(preload, "N"), limit)
+    return float(scipy.optimize.brentq(lacking, 0.0, greatest, rtol=_RATE_TOLERANCE))

@@ -18,13 +18,14 @@ from camwright.pipeline.case.case_values import replaced
 from camwright.pipeline.case.given_lift import given_lift
 from camwright.pipeline.case.template import first_case
 from camwright.pipeline.commands.size_command import size
-from camwright.pipeline.commands.terminal import PASSED
+from camwright.pipeline.commands.terminal import INCOMPLETE, PASSED
 from camwright.pipeline.sizing.open_case import GAPS, parse_open_case
 from camwright.pipeline.sizing.shapes import RollerShapes, shapes_of
 from camwright.pipeline.sizing.size_record import size_lines, size_record
 from camwright.pipeline.sizing.sizing import sized
 
 CASES = Path(__file__).parents[2] / "cases"
+STRANGERS = Path(__file__).parents[1] / "data" / "strangers"
 EXACT = 1e-6  # mm, of the published digits
 
 Case = dict[str, Any]
@@ -149,29 +150,38 @@ def test_a_roller_has_the_least_contact_pressure() -> None:
 
 @pytest.mark.slow
 def test_the_radius_grows_until_the_contact_holds() -> None:
-    """A soft cam: pressure governs, and a slightly smaller cam fails."""
+    """A soft cam: the pressure along its line governs, and a slightly smaller cam fails by it."""
     case = steep()
     case["materials"]["soft"] = {
         "E": "210 GPa", "nu": 0.3, "yield_strength": "900 MPa", "density": "7850 kg/m^3",
-        "endurance_pressure": "640 MPa", "source": "made up",
+        "endurance_pressure": "850 MPa", "source": "made up",
     }  # fmt: skip
     case["cam"] |= {"material": "soft", "offset": "0 mm"}
     case = without(case, "limits.target_life")
     sizing = sized(parse_open_case(tomli_w.dumps(case)))
-    pressure = {each.id: each for each in sizing.checks}["contact_pressure"]
-    assert pressure.status == "pass"
+    judged = {each.id: each for each in sizing.checks}
+    assert judged["contact_pressure"].status == judged["edge_pressure"].status == "pass"
     assert sizing.shape.prime_radius > sizing.exact.prime_radius * 1.01
-    assert "pressure" in sizing.sources["cam.prime_radius"]
+    assert judged["edge_pressure"].title in sizing.sources["cam.prime_radius"]
     prime = {"cam.prime_radius": 0.97 * sizing.shape.prime_radius}
     smaller = replaced(sizing.case, prime)
     checks = cw.solve(smaller, smaller.contour(given_lift(smaller)), tier=cw.Tier.PREVIEW).checks
-    assert {each.id: each for each in checks}["contact_pressure"].status == "fail"
+    assert {each.id: each for each in checks}["edge_pressure"].status == "fail"
 
 
 @pytest.mark.slow
 def test_a_flat_face_is_sized(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    source = CASES / "papers" / "petrescu_c.toml"
+    """The paper states neither the ends of the face nor a life: with them all checks pass."""
+    stated = (CASES / "papers" / "petrescu_c.toml").read_text(encoding="utf-8")
+    case = tomllib.loads(stated)
+    case["follower"]["face"]["end"] = {"kind": "chamfer", "size": "0.5 mm"}
+    case["limits"] = {"target_life": "100 h"}
+    source = tmp_path / "face.toml"
+    source.write_text(tomli_w.dumps(case), encoding="utf-8")
     free, chart = ["cam.prime_radius", "follower.face.width"], tmp_path / "face.svg"
+    code = size(CASES / "papers" / "petrescu_c.toml", free, "0 mm", None, None, as_json=False)
+    assert code == INCOMPLETE
+    assert "the case lacks\n  limits.target_life, follower.face.end" in capsys.readouterr().out
     assert size(source, free, "0 mm", None, chart, as_json=True) == PASSED
     record = json.loads(capsys.readouterr().out)
     assert record["smallest"]["undercut_factor_min"] == pytest.approx(0.3, abs=1e-9)
@@ -277,13 +287,40 @@ def test_a_spring_of_the_catalogue_is_stiff_enough_for_its_surge() -> None:
     assert sizing.case.spring.design is not None
 
 
+def test_the_rate_is_found_beside_a_stated_preload() -> None:
+    """29.04 lbf/in = 5085.5 N/m beside 2 lbf, by hand in `test_spring_size`; to four digits up."""
+    sizing = cw.size(STRANGERS / "05-shm-imperial" / "free_rate.toml", ["spring.rate"])
+    assert sizing.spring.rate == 5086.0
+    assert sizing.case.spring.preload == pytest.approx(2 * 4.4482216152605)
+    judged = {each.id: each.status for each in sizing.checks}
+    held = ("contact_force_margin", "jump", "jump_speed", "contact_at_overspeed")
+    assert {judged[name] for name in held} == {"pass"}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("free", "word"),
+    [(("spring.preload",), "jump"), (("spring.rate", "spring.preload"), "elastic stem")],
+)
+def test_the_preload_is_the_least_that_holds(free: tuple[str, ...], word: str) -> None:
+    """The elastic stem asks for more than the closed forms; 2 % less preload fails."""
+    sizing = cw.size(STRANGERS / "size_spring.toml", free)
+    assert sizing.verdict == "pass"
+    assert word in sizing.sources["spring.preload"]
+    less = replaced(sizing.case, {"spring.preload": 0.98 * sizing.spring.preload})
+    checks = cw.solve(less, less.contour(given_lift(less)), tier=cw.Tier.PREVIEW).checks
+    judged = {each.id: each.status for each in checks}
+    assert "fail" in (judged["jump_speed"], judged["elastic_contact"])
+
+
 def test_the_preload_holds_against_a_force_of_the_machine() -> None:
     """600 N pull the follower off, of which a fifth of the preload is left: 750 N or more.
 
-    The preload grows by steps of 10 %, its tolerance is 5 %; it is rounded up to four digits.
+    Its tolerance is 5 %; the preload is found within 1 %, with the error bar of the contact and the
+    elastic stem.
     """
     case = without(first(), "spring.preload")
     case["follower"]["external_force"] = "-600 N"
     size = sized(parse_open_case(tomli_w.dumps(case)))
     assert size.verdict == "pass"
-    assert 750.0 <= size.spring.preload <= 750.0 * 1.1 / 0.95 * 1.001
+    assert 750.0 <= size.spring.preload <= 750.0 / 0.95 * 1.03

@@ -12,6 +12,7 @@ from camwright.pipeline.base.external_force import ExternalForce
 from camwright.pipeline.sizing.spring_size import (
     PRELOAD_SHARE,
     HoldingCondition,
+    least_rate,
     preload_needed,
     smallest_spring,
 )
@@ -106,6 +107,41 @@ def test_a_force_of_the_machine_is_held_too(samples: int) -> None:
     assert min(each.min() for each in left) == pytest.approx(0.0, abs=1e-3)
     freer = preload_needed(lift, rate, states).value
     assert needed.value > freer + 20.0
+
+
+def test_least_rate_beside_a_stated_preload() -> None:
+    """A textbook's harmonic cam: 2.5 in in 90 deg, 200 rpm, 8 lb; in lbf and in at 100 001 angles.
+
+    Without a preload 14.98 lbf/in. With 2 lbf, 1.3 times the speed, 3 % more mass, 5 % less rate
+    and preload 29.04 lbf/in.
+    """
+    pound, inch, weight = 4.4482216152605, 0.0254, 8.0
+    gravity = 9.80665
+    theta = np.linspace(0.0, 0.5 * math.pi, 100_001)[1:]
+    s, s2 = 1.25 * (1.0 - np.cos(2.0 * theta)), 5.0 * np.cos(2.0 * theta)
+    lift = rise_and_return("harmonic", 2.5 * inch, 90 * DEG)
+    for preload, more, speed, less, published in (
+        (1e-6, 1.0, 200.0, 1.0, 14.98), (2.0, 1.03, 260.0, 0.95, 29.04)
+    ):  # fmt: skip
+        w, heavy = speed * 2.0 * math.pi / 60.0, more * weight
+        mass = heavy / (gravity / inch)
+        needed = float(np.max(-(heavy + mass * w**2 * s2 + less * preload) / (less * s)))
+        state = HoldingCondition(
+            mass=heavy * pound / gravity, cam_speed=w, held=heavy * pound,
+            rate_factor=less, preload_factor=less,
+        )  # fmt: skip
+        rate = least_rate(lift, preload * pound, [state]) * inch / pound
+        assert rate == pytest.approx(needed, rel=1e-6)
+        assert rate == pytest.approx(published, rel=5e-4)
+
+
+def test_no_rate_helps_a_preload_that_does_not_hold_the_base_circle() -> None:
+    """A force of 50 N lifts the follower off where the lift is zero and the rate does nothing."""
+    lift = rise_and_return("cycloidal", 0.01, 90 * DEG)
+    state = HoldingCondition(mass=1.0, cam_speed=1.0, held=-50.0)
+    with pytest.raises(InputError, match=r"spring\.preload = 40 N, must be >= 50 N"):
+        least_rate(lift, 40.0, [state])
+    assert least_rate(lift, 60.0, [state]) == 0.0
 
 
 def test_a_heavy_follower_needs_no_spring() -> None:
