@@ -1,6 +1,7 @@
 # make run     set up .venv, run the GX120 case into runs/gx120, print verdict and report
 # make test    set up .venv, run ruff, mypy and the tests
-# make verify  the slow certificates      make bench  benchmarks      make lint  ruff and mypy only
+# make verify  the slow tests, or PART="sizes ends" of them; writes docs/verification.md
+# make bench   benchmarks             make lint  ruff and mypy only
 # make fuzz    20,000 mutated input files
 
 PYTHON ?= python3
@@ -47,7 +48,7 @@ test: lint
 	$(TESTS) || if test $$? = 70; then $(TESTS); else exit 1; fi
 
 verify: .venv/developing
-	$(BIN)/python -m pytest -q -m slow -n 2 --dist loadfile --max-worker-restart=0 --durations=30
+	$(BIN)/python tests/slow_parts.py $(PART)
 
 fuzz: .venv/developing
 	$(BIN)/python tests/mutated_inputs.py 20000
