@@ -60,3 +60,7 @@ class ContactError(CamError):
 
 class ResultError(CamError):
     """Result file or run folder that cannot be read or written."""
+
+
+class AlteredError(ResultError):
+    """Finished run that is not as its record says."""

@@ -13,7 +13,7 @@ from typing import Annotated, NoReturn
 
 import typer
 
-from camwright.geometry.errors import CamError
+from camwright.geometry.errors import AlteredError, CamError
 from camwright.pipeline.commands import (
     check_command,
     comparison_commands,
@@ -28,7 +28,7 @@ from camwright.pipeline.commands import (
     size_command,
     study_command,
 )
-from camwright.pipeline.commands.terminal import ERROR, INTERRUPTED, PASSED, say, stdout
+from camwright.pipeline.commands.terminal import ALTERED, ERROR, INTERRUPTED, PASSED, say, stdout
 
 # Parallel by processes; one thread also fixes the order of sums. Set before numpy is imported.
 for _variable in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
@@ -79,7 +79,7 @@ _RESUMED_BY = {
 
 
 def main() -> NoReturn:
-    """Entry point: an error becomes one line and exit code 2."""
+    """Entry point: an error becomes one line and exit code 2, an altered run 4."""
     arguments = [argument for argument in sys.argv[1:] if argument != "--debug"]
     received: list[int] = []
 
@@ -100,7 +100,7 @@ def main() -> NoReturn:
         if "--debug" in sys.argv:
             raise
         say("; ".join((_describe(error), *getattr(error, "__notes__", ()))))
-        code = ERROR
+        code = ALTERED if isinstance(error, AlteredError) else ERROR
     if code == INTERRUPTED:  # returned or raised by the parser
         say("interrupted" + _RESUMED_BY.get(arguments[0] if arguments else "", ""))
         code = _SIGNAL + received[0] if received else INTERRUPTED

@@ -10,6 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from camwright.geometry.arrays import Array
+from camwright.geometry.errors import ResultError
+from camwright.pipeline.base.files import read_npz
 from camwright.pipeline.base.tables import Table
 from camwright.reports.figure_svg import COLOURS, png, style
 from camwright.reports.figures import SERIES
@@ -39,12 +41,12 @@ def over_the_contact(path: Path, cycle: Table, angle: float, half_width: float) 
     pressure is taken; None if the run has no record of the pressure at this angle.
     """
     try:
-        with np.load(path, allow_pickle=False) as entry:
-            rows = np.flatnonzero(np.abs(entry["cam_angle_deg"] - angle) < _NEAR)
-            along, pressure = (
-                entry[name][rows] for name in ("distance_from_contact_mm", "contact_pressure_MPa")
-            )
-    except (OSError, ValueError, KeyError, EOFError, IndexError):
+        entry = read_npz(path)
+        rows = np.flatnonzero(np.abs(entry["cam_angle_deg"] - angle) < _NEAR)
+        along, pressure = (
+            entry[name][rows] for name in ("distance_from_contact_mm", "contact_pressure_MPa")
+        )
+    except (ResultError, KeyError, IndexError, TypeError):
         return None
     if not rows.size or not np.isfinite(pressure).any():
         return None

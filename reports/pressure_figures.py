@@ -11,6 +11,7 @@ import numpy as np
 
 from camwright.geometry.arrays import Array
 from camwright.geometry.errors import ResultError
+from camwright.pipeline.base.files import read_npz
 from camwright.reports.figure_svg import COLOURS, png, style
 from camwright.reports.report_tables import Record
 
@@ -72,11 +73,11 @@ def read_guides(path: Path, load_case: str) -> tuple[GuidePressure, GuidePressur
     ResultError
         If the file cannot be read or lacks the load case.
     """
+    entry = read_npz(path)
     try:
-        with np.load(path, allow_pickle=False) as entry:
-            cases, angle = entry["load_case"], entry["cam_angle_deg"]
-            guides = {side: {n: entry[f"guide_{side}_{n}"] for n in _FIELDS} for side in "AB"}
-    except (OSError, ValueError, EOFError, KeyError) as error:
+        cases, angle = entry["load_case"], entry["cam_angle_deg"]
+        guides = {side: {n: entry[f"guide_{side}_{n}"] for n in _FIELDS} for side in "AB"}
+    except KeyError as error:
         raise ResultError(f"{path}: {error}") from None
     rows = cases == load_case
     if not rows.any():
@@ -235,12 +236,12 @@ def read_axial(path: Path, load_case: str, worst: tuple[str, float] | None) -> A
     ResultError
         If the file cannot be read or lacks the load case.
     """
+    entry = read_npz(path)
     try:
-        with np.load(path, allow_pickle=False) as entry:
-            cases, angle, edges = entry["load_case"], entry["cam_angle_deg"], entry["axial_edge_mm"]
-            level, tilted = entry["level_pressure_MPa"], entry["tilted_pressure_MPa"]
-            mean_length = float(entry["mean_length_mm"])
-    except (OSError, ValueError, EOFError, KeyError) as error:
+        cases, angle, edges = entry["load_case"], entry["cam_angle_deg"], entry["axial_edge_mm"]
+        level, tilted = entry["level_pressure_MPa"], entry["tilted_pressure_MPa"]
+        mean_length = float(entry["mean_length_mm"])
+    except (KeyError, TypeError, ValueError) as error:
         raise ResultError(f"{path}: {error}") from None
     rows = np.flatnonzero(cases == load_case)
     if not rows.size:

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from camwright.geometry.arrays import Array
 from camwright.geometry.errors import ResultError
-from camwright.pipeline.base.files import Json, write_atomic
+from camwright.pipeline.base.files import Json, read_npz, write_atomic
 from camwright.pipeline.results.field_file import EndField, read_end_field
 from camwright.reports import stress_map
 from camwright.reports.interactive import script_safe_json, scripts
@@ -103,10 +103,10 @@ def read_turn_view(folder: Path) -> TurnView:
     path = folder / TURN
     if not path.is_file():
         raise ResultError(f"{path}: no such file; run the case again to write it")
+    entry = read_npz(path)
     try:
-        with np.load(path, allow_pickle=False) as entry:
-            arrays = {name: entry[name] for name in (*_NAMES, "load_case")}
-    except (OSError, ValueError, EOFError, KeyError) as error:
+        arrays = {name: entry[name] for name in (*_NAMES, "load_case")}
+    except KeyError as error:
         raise ResultError(f"{path}: {error}") from None
     return TurnView(
         str(arrays["load_case"]), arrays["cycle_row"], arrays["cam_angle_deg"],

@@ -10,8 +10,7 @@ from pathlib import Path
 from camwright.geometry.errors import InputError, ResultError
 from camwright.pipeline.base.progress import SILENT, Progress
 from camwright.pipeline.base.worker_processes import Crew, Task
-from camwright.pipeline.results.folder_exchange import amended
-from camwright.pipeline.results.run_reader import require_own_case
+from camwright.pipeline.results.folder_exchange import amended, settle_recorded
 from camwright.reports import (
     documents,
     figure_svg,
@@ -103,21 +102,14 @@ class Ahead:
             self._begun |= documents.begun(material, workers)
 
     def write(self, folder: Path) -> dict[str, Sequence[Path]]:
-        """Write the parts; see `report`."""
-        return report(folder, self.parts, self._begun)
+        """Write the parts; see `draw`."""
+        return draw(folder, self.parts, self._begun)
 
 
 def report(
-    folder: Path,
-    parts: Iterable[Part] | None = None,
-    ahead: Mapping[str, Task] | None = None,
-    progress: Progress = SILENT,
+    folder: Path, parts: Iterable[Part] | None = None, progress: Progress = SILENT
 ) -> dict[str, Sequence[Path]]:
     """Write parts of the report of a finished run, all or none; nothing is solved.
-
-    Parameters
-    ----------
-    ahead : mapping   drawings begun before the run was complete
 
     Returns
     -------
@@ -125,12 +117,28 @@ def report(
 
     Raises
     ------
+    AlteredError
+        If the results of the run are not as recorded; nothing is written.
     ResultError
-        If the folder does not hold a finished run, or a signed one, if its case is not that of the
-        run, or if a file cannot be written.
+        If the folder does not hold a finished run, or a signed one, or if a file cannot be written.
     """
     folder = Path(folder)
-    require_own_case(folder)
+    settle_recorded(folder)
+    return draw(folder, parts, progress=progress)
+
+
+def draw(
+    folder: Path,
+    parts: Iterable[Part] | None = None,
+    ahead: Mapping[str, Task] | None = None,
+    progress: Progress = SILENT,
+) -> dict[str, Sequence[Path]]:
+    """Write parts of the report of a run, also of one that has no record yet; see `report`.
+
+    Parameters
+    ----------
+    ahead : mapping   drawings begun before the run was complete
+    """
     written: dict[str, Sequence[Path]] = {}
     try:
         selected = chosen() if parts is None else tuple(parts)

@@ -8,6 +8,7 @@ import numpy as np
 
 from camwright.geometry.arrays import Array
 from camwright.geometry.errors import ResultError
+from camwright.pipeline.base.files import read_npz
 from camwright.reports.figure_svg import COLOURS, FIGURE_WIDTH, png, style
 
 FILE = "5_envelope.npz"
@@ -24,15 +25,12 @@ def read_envelope(path: Path, load_case: str) -> dict[str, Array]:
     ResultError
         If the file cannot be read or lacks the load case.
     """
-    try:
-        with np.load(path, allow_pickle=False) as entry:
-            arrays = {
-                name.removeprefix(f"{load_case}."): entry[name]
-                for name in entry.files
-                if name.startswith(f"{load_case}.")
-            }
-    except (OSError, ValueError, EOFError) as error:
-        raise ResultError(f"{path}: {error}") from None
+    prefix = f"{load_case}."
+    arrays = {
+        name.removeprefix(prefix): values
+        for name, values in read_npz(path).items()
+        if name.startswith(prefix)
+    }
     missing = {"cam_angle_deg", "depth_mm", *(name for name, _ in MAPS)} - set(arrays)
     if missing:
         raise ResultError(f"{path}: no {', '.join(sorted(missing))} for load case {load_case}")

@@ -12,7 +12,6 @@ import hashlib
 import importlib.metadata
 import os
 import sys
-import zipfile
 from collections.abc import Callable, Hashable, Mapping
 from contextlib import suppress
 from functools import lru_cache
@@ -23,15 +22,11 @@ import numpy as np
 
 from camwright.geometry.arrays import Array
 from camwright.geometry.errors import ResultError
-from camwright.pipeline.base.files import npz_bytes, write_atomic
+from camwright.pipeline.base.files import npz_bytes, read_npz, write_atomic
 
 FOLDER, OFF = "CAMWRIGHT_CACHE", "CAMWRIGHT_NO_CACHE"
 LARGEST = 400_000_000  # bytes in all; the least recently used entry is deleted first
 _LIBRARIES = ("camwright", "gmsh", "numpy", "scikit-fem", "scipy")
-_BROKEN = (
-    *(OSError, ValueError, KeyError, EOFError, MemoryError, NotImplementedError),
-    zipfile.BadZipFile,
-)
 
 Arrays = Mapping[str, Array]
 
@@ -103,9 +98,8 @@ def _laid_out(arrays: Arrays) -> dict[str, Array]:
 def _read(path: Path) -> dict[str, Array] | None:
     """Arrays of an entry; None if it is missing, cut short or altered (zip has check sums)."""
     try:
-        with np.load(path, allow_pickle=False) as entry:
-            arrays = {name: entry[name] for name in entry.files}
-    except _BROKEN:
+        arrays = read_npz(path)
+    except ResultError:
         return None
     with suppress(OSError):  # a read-only folder
         path.touch()

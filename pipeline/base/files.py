@@ -5,10 +5,15 @@ from __future__ import annotations
 import hashlib
 import io
 import json
+import math
 import os
 import re
+import stat
+import struct
 import tempfile
 import tomllib
+import zipfile
+import zlib
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from pathlib import Path
@@ -31,6 +36,17 @@ _NO_KEY = re.compile(
     r"|#[^\n]*+",
     re.DOTALL,
 )
+_KINDS = {
+    stat.S_IFLNK: "a link",
+    stat.S_IFIFO: "a named pipe",
+    stat.S_IFSOCK: "a socket",
+    stat.S_IFBLK: "a device",
+    stat.S_IFCHR: "a device",
+}
+DEFLATE_RATIO = 1032
+"""Greatest ratio of length to packed length that deflate reaches."""
+_ARRAYS_MAX = 1 << 30
+"""Bytes of all arrays of an archive."""
 _LONG_KEY = re.compile(rf"(?<![\w-])(?:[\w-]++[ \t]*+\.[ \t]*+){{{_TABLES_DEEP + 1}}}")
 
 
@@ -53,6 +69,54 @@ def inside(folder: Path, name: str, field: str) -> Path:
     if not resolved.is_relative_to(folder.resolve()):
         raise InputError(field, name, limit)
     return resolved
+
+
+def unplain(folder: Path) -> list[tuple[str, str]]:
+    """What is neither file nor folder under a folder, by relative name: `a link`, `a named pipe`.
+
+    Hidden parts included, by name; no link is followed and nothing is opened. A file with further
+    names (hard links) is a plain file: what we write takes the place of a name and leaves the
+    others as they are.
+    """
+    odd: list[tuple[str, str]] = []
+    inner = [folder]
+    while inner:
+        with os.scandir(inner.pop()) as entries:
+            for entry in entries:
+                kind = stat.S_IFMT(entry.stat(follow_symlinks=False).st_mode)
+                if kind == stat.S_IFDIR:
+                    inner.append(Path(entry.path))
+                elif kind != stat.S_IFREG:
+                    name = Path(entry.path).relative_to(folder).as_posix()
+                    odd.append((name, _KINDS.get(kind, "no file")))
+    return sorted(odd)
+
+
+def require_plain(folder: Path, refused: type[ResultError] = ResultError) -> None:
+    """Refuse a folder that holds a link, pipe, socket or device at any depth; nothing is opened.
+
+    Raises
+    ------
+    ResultError
+        Of the class `refused`, naming the first of them; or if a folder cannot be read.
+    """
+    try:
+        odd = unplain(folder)
+    except OSError as error:
+        raise ResultError(f"{error.filename or folder}: {error.strerror or error}") from None
+    if odd:
+        name, kind = odd[0]
+        raise refused(f"{folder / shown_name(name)}: {not_plain(kind)}")
+
+
+def not_plain(kind: str) -> str:
+    """Reason for which an entry of `unplain` is refused."""
+    return f"is {kind}; only files and folders are read"
+
+
+def shown_name(name: str) -> str:
+    """Name of a file as it can be printed."""
+    return name if name.isprintable() else ascii(name)
 
 
 def read_toml(path: Path, field: str, most: int) -> dict[str, Any]:
@@ -116,19 +180,22 @@ def _is_deeper(tables: dict[str, Any], depth: int) -> bool:
 def locked(path: Path, busy: str) -> IO[str] | None:
     """Lock of a file for this process until it is closed, at the latest when the process ends.
 
-    None on Windows, which has no such lock.
+    None on Windows, which has no such lock. A link is not followed.
 
     Raises
     ------
     ResultError
         In the words of `busy`, if another process holds it.
+    OSError
+        If it cannot be opened, as a link cannot.
     """
     try:
         import fcntl
     except ImportError:
         return None
     while True:
-        lock = path.open("a")
+        handle = os.open(path, os.O_RDWR | os.O_CREAT | os.O_NOFOLLOW | os.O_CLOEXEC, 0o644)
+        lock = os.fdopen(handle, "r+")
         try:
             fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except OSError:
@@ -225,6 +292,52 @@ def npz_bytes(arrays: Mapping[str, ArrayLike], *, compressed: bool = True) -> by
     return buffer.getvalue()
 
 
+def read_npz(path: Path) -> dict[str, np.ndarray]:
+    """Arrays by name of a numpy archive, as `npz_bytes` writes it.
+
+    No array is made larger than the file can hold: what a header claims is compared with the length
+    of its member, and that with its packed length and the length of the file.
+
+    Raises
+    ------
+    ResultError
+        If the file is missing, damaged, holds anything but arrays of numbers and text, or claims
+        more than it can hold.
+    """
+    try:
+        with zipfile.ZipFile(path) as archive:
+            members = archive.infolist()
+            packed = sum(each.compress_size for each in members)
+            length = sum(each.file_size for each in members)
+            if packed > path.stat().st_size or length > _ARRAYS_MAX:
+                raise ValueError(f"claims {length} bytes, more than it can hold")
+            return {each.filename.removesuffix(".npy"): _member(archive, each) for each in members}
+    except OSError as error:
+        raise ResultError(f"{path}: {error.strerror or error}") from None
+    except (
+        ValueError, EOFError, KeyError, TypeError, NotImplementedError, RuntimeError, struct.error,
+        zipfile.BadZipFile, zlib.error,
+    ) as error:  # fmt: skip
+        raise ResultError(f"{path}: not an archive of arrays ({error})") from None
+
+
+def _member(archive: zipfile.ZipFile, entry: zipfile.ZipInfo) -> np.ndarray:
+    """Array of an archive; ValueError if its header claims another size than its member has."""
+    if entry.file_size > DEFLATE_RATIO * entry.compress_size:
+        raise ValueError(f"{entry.filename} claims {entry.file_size} bytes")
+    with archive.open(entry) as stream:
+        major, _ = np.lib.format.read_magic(stream)
+        read_header = {
+            1: np.lib.format.read_array_header_1_0, 2: np.lib.format.read_array_header_2_0,
+        }[major]  # fmt: skip
+        shape, by_columns, kind = read_header(stream)
+        size = math.prod(shape) * kind.itemsize
+        if kind.hasobject or size != entry.file_size - stream.tell():
+            raise ValueError(f"{entry.filename} claims an array of {kind} {shape}")
+        content = bytearray(stream.read(size))
+    return np.ndarray(shape, kind, content, order="F" if by_columns else "C")
+
+
 def files_in(folder: Path) -> Iterator[tuple[str, Path]]:
     """Files under a folder by relative name, in order; those of a hidden part are left out."""
     for file in sorted(folder.rglob("*")):
@@ -240,4 +353,5 @@ def file_hashes(folder: Path, wanted: Callable[[str], bool]) -> dict[str, str]:
 
 def sha256_of(path: Path) -> str:
     """SHA-256 of a file."""
-    return hashlib.sha256(path.read_bytes()).hexdigest()
+    with path.open("rb") as file:
+        return hashlib.file_digest(file, "sha256").hexdigest()

@@ -329,10 +329,12 @@ def _of_several(
 
 
 def _comparable(folder: Path, only: Iterable[str]) -> list[CheckRecord]:
-    """Checks of a baseline run that fit a pattern."""
+    """Checks of a baseline run that fit a pattern; AlteredError if it is not as recorded."""
     from camwright.pipeline.results.check_report import fits
     from camwright.pipeline.results.run_reader import read_verdict
+    from camwright.pipeline.results.signoff import require_recorded
 
+    require_recorded(folder)
     checks: list[CheckRecord] = read_verdict(folder)["checks"]
     return [record for record in checks if fits(record, only)]
 
@@ -361,13 +363,14 @@ def _recorded(target: Path, keys: Mapping[str, TrustedKey] | None) -> _Record:
         if keys is not None and target.exists():
             raise InputError("--verify-record", str(target), "stated with run folders")
         return _Record((), None)
+    from camwright.pipeline.base.files import unplain
     from camwright.pipeline.results import signoff
 
     differences = signoff.changes(target)
     lines, signed = [str(each) for each in differences], None
     # A file that was added is in no result; only a signature is on the whole folder.
     faults = [str(each) for each in differences if not each.added]
-    if keys is not None:
+    if keys is not None and not unplain(target):  # the signatures may be a link themselves
         from camwright.pipeline.results.signatures import verified
 
         signed, refused = verified(target, keys)
@@ -387,7 +390,7 @@ def _recomputed(target: Path, angles: int | None, seed: int | None) -> bool:
 
     from camwright.pipeline.recomputation import ANGLES, recompute
     from camwright.pipeline.studies.valve_train import valve_record
-    from camwright.reports.sections import report
+    from camwright.reports.sections import draw
 
     if not target.is_dir():
         raise InputError("--recompute", str(target), "stated with a run folder")
@@ -401,7 +404,7 @@ def _recomputed(target: Path, angles: int | None, seed: int | None) -> bool:
                 seed=drawn,
                 progress=progress,
                 also=valve_record,
-                present=report,
+                present=draw,
             )
         except ResultError as error:
             say(str(error))

@@ -122,7 +122,7 @@ def deck(
     """
     from camwright.pipeline.base import units
     from camwright.pipeline.results import contact_deck as decks
-    from camwright.pipeline.results.folder_exchange import amended
+    from camwright.pipeline.results.folder_exchange import amended, settle_recorded
 
     text = angle if any(c.isalpha() or c == "°" for c in angle) else f"{angle} deg"
     theta = units.parse(text, "deg", "--angle")
@@ -131,6 +131,7 @@ def deck(
     kind = "contact" if contact else "loads"
     default = folder / "exports" / f"{kind}_{units.in_unit(theta, 'deg'):07.3f}.inp"
     target = default if out is None else out
+    settle_recorded(folder)
     with amended(folder) if out is None else nullcontext(folder) as place:
         path = place / target.relative_to(folder) if out is None else out
         path.parent.mkdir(parents=True, exist_ok=True)

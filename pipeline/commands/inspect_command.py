@@ -46,7 +46,7 @@ def inspect(
     """
     from camwright.pipeline.base import units
     from camwright.pipeline.results.drawn_cam import drawn_cam
-    from camwright.pipeline.results.folder_exchange import amended
+    from camwright.pipeline.results.folder_exchange import amended, settle_recorded
     from camwright.pipeline.studies import cam_inspection
     from camwright.reports.comparisons.inspection_pictures import draw
 
@@ -54,6 +54,7 @@ def inspect(
     if width is not None and not width > 0:
         raise InputError("--tolerance", tolerance, "> 0 um")
     points = cam_inspection.read_measured(measured)
+    settle_recorded(folder)
     case, contour = drawn_cam(folder)
     band = case.workshop_order.tolerance if width is None else width
     target = folder / cam_inspection.FOLDER if out is None else out

@@ -113,10 +113,12 @@ def _finished(out: Path, sha256: str, depth: str) -> bool:
     from camwright.pipeline.results.folder_exchange import complete_exchange
     from camwright.pipeline.results.run_folder import versions
     from camwright.pipeline.results.run_reader import read_summary
+    from camwright.pipeline.results.signoff import require_recorded
 
     complete_exchange(out)
     if not (out / "run.json").is_file():
         return False
+    require_recorded(out)
     summary = read_summary(out)
     same = summary["input_sha256"] == sha256 and summary["depth"] == depth
     return bool(same and summary["versions"] == versions())

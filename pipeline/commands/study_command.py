@@ -98,7 +98,7 @@ def write_study_report(folder: Path) -> Path:
     """
     from importlib.util import find_spec
 
-    from camwright.pipeline.base.files import json_text, write_atomic
+    from camwright.pipeline.base.files import json_text, require_plain, write_atomic
     from camwright.pipeline.studies.batch import answers
     from camwright.pipeline.studies.batch.dataset import (
         ANSWERS,
@@ -117,6 +117,7 @@ def write_study_report(folder: Path) -> Path:
             raise ResultError(
                 f'{library} is missing; install it with: pip install "camwright[study]"'
             )
+    require_plain(folder)
     study = read_study(folder / STUDY)
     data = read_dataset(folder)
     record = answers.answered(data, study)

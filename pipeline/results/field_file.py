@@ -6,6 +6,7 @@ times to single precision. Meshes of three-node triangles in a plane; lengths in
 
 from __future__ import annotations
 
+import math
 import zlib
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
@@ -21,6 +22,7 @@ from camwright.geometry.arrays import Array
 from camwright.geometry.errors import ResultError
 from camwright.meshes.gmsh_mesher import Index
 from camwright.meshes.mesh_files import UNITS, replacing
+from camwright.pipeline.base.files import DEFLATE_RATIO
 
 if TYPE_CHECKING:
     import h5py
@@ -272,9 +274,33 @@ def _opened(path: Path) -> Iterator[h5py.Group]:
         raise ResultError(f"{path.name}: no such file")
     try:
         with h5py.File(path, "r") as file:
+            _require_own_data(file, path.stat().st_size)
             yield file["VTKHDF"]
     except _UNREADABLE as error:
         raise ResultError(f"{path.name}: not a field file of a run ({error})") from None
+
+
+def _require_own_data(file: h5py.File, length: int) -> None:
+    """ValueError for data outside of a file, or larger than its length, bytes, can hold."""
+    import h5py
+
+    def outside(name: str, link: object) -> str | None:
+        return f"{name} lies in another file" if isinstance(link, h5py.ExternalLink) else None
+
+    def unbounded(name: str, entry: object) -> str | None:
+        if not isinstance(entry, h5py.Dataset):
+            return None
+        if entry.external or entry.is_virtual:
+            return f"{name} lies in another file"
+        stored = entry.id.get_storage_size()
+        chunk = math.prod(entry.chunks) * entry.dtype.itemsize if entry.chunks else 0
+        if stored > length or max(entry.nbytes, chunk) > DEFLATE_RATIO * stored:
+            return f"{name} claims {entry.nbytes} bytes, more than it can hold"
+        return None
+
+    reason = file.visititems_links(outside) or file.visititems(unbounded)
+    if reason:
+        raise ValueError(reason)
 
 
 def _names(root: h5py.Group) -> list[str]:

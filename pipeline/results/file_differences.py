@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-import io
-import zipfile
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
 
 from camwright.geometry.errors import ResultError
-from camwright.pipeline.base.files import Json, read_json
+from camwright.pipeline.base.files import Json, read_json, read_npz
 from camwright.pipeline.base.tables import CAM_ANGLE, Table, read_table
 from camwright.pipeline.results.workshop_files import WORKSHOP
 
@@ -18,7 +16,7 @@ SAME = 1e-6
 """Relative difference, of the greatest value of a column, that rounding may make."""
 _ROUND_OFF = 1e-9
 _RESIDUAL = "residual"
-_UNREADABLE = (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile)
+_UNREADABLE = (OSError, ValueError, KeyError)
 
 
 def file_differences(
@@ -79,20 +77,20 @@ def _place(table: Table, row: int) -> str:
 
 
 def _arrays(file: Path, other: Path, share: float) -> str:
-    with np.load(io.BytesIO(file.read_bytes()), allow_pickle=False) as one, np.load(other) as two:
-        if sorted(one.files) != sorted(two.files):
-            return f"holds {', '.join(sorted(one.files))}, not {', '.join(sorted(two.files))}"
-        for name in two.files:
-            if one[name].shape != two[name].shape or one[name].dtype != two[name].dtype:
-                return f"{name} is of another shape or type"
-            if two[name].dtype.kind not in "fiu":
-                if not np.array_equal(one[name], two[name]):
-                    return f"{name} differs"
-                continue
-            values, others = one[name].ravel().astype(float), two[name].ravel().astype(float)
-            k = _worst(values, others, _RESIDUAL in name, share)
-            if k is not None:
-                return f"{name}[{k}] = {_shown(values[k])}, recomputed {_shown(others[k])}"
+    one, two = read_npz(file), read_npz(other)
+    if sorted(one) != sorted(two):
+        return f"holds {', '.join(sorted(one))}, not {', '.join(sorted(two))}"
+    for name in two:
+        if one[name].shape != two[name].shape or one[name].dtype != two[name].dtype:
+            return f"{name} is of another shape or type"
+        if two[name].dtype.kind not in "fiu":
+            if not np.array_equal(one[name], two[name]):
+                return f"{name} differs"
+            continue
+        values, others = one[name].ravel().astype(float), two[name].ravel().astype(float)
+        k = _worst(values, others, _RESIDUAL in name, share)
+        if k is not None:
+            return f"{name}[{k}] = {_shown(values[k])}, recomputed {_shown(others[k])}"
     return ""
 
 

@@ -19,8 +19,8 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import IO
 
-from camwright.geometry.errors import ResultError
-from camwright.pipeline.base.files import files_in, locked
+from camwright.geometry.errors import AlteredError, ResultError
+from camwright.pipeline.base.files import files_in, locked, read_json, require_plain, sha256_of
 from camwright.pipeline.results import signoff
 
 STATE, CHUNKS = ".state.json", ".chunks"
@@ -37,6 +37,9 @@ OURS = re.compile(
     rf"|{re.escape(signoff.AMENDMENT)}"
 )
 """Names of the files and folders of an unsigned run."""
+
+_BY_OTHERS = ("inspection/", "exports/")
+"""Folders of a run that `inspect` and `deck` write."""
 
 
 def absolute(out: Path) -> Path:
@@ -130,8 +133,56 @@ def is_complete(partial: Path) -> bool:
 
 
 def _may_be_replaced(out: Path) -> bool:
-    """Whether a path is free, an empty folder or an unsigned run."""
-    return not os.path.lexists(out) or (out.is_dir() and _holds_ours(out))
+    """Whether a path is free, an empty folder or an unsigned run without a file of the user."""
+    if not os.path.lexists(out):
+        return True
+    return out.is_dir() and _holds_ours(out) and not unrecorded(out)
+
+
+def unrecorded(out: Path) -> list[str]:
+    """Files of a run folder, by relative name, that its record does not know; all without one."""
+    known = _hashes_of(out)
+    return [name for name in _names_in(out) if name not in known]
+
+
+def of_the_user(run: Path) -> list[str]:
+    """Files in a run folder that `run` did not write, by name; changed ones are not told.
+
+    In a folder without a record, as of a damaged run, those that no run has by their name.
+    """
+    if not (run / signoff.NAME).is_file():
+        return [each.name for each in run.iterdir() if not OURS.fullmatch(each.name)]
+    by_others = (name for name in _names_in(run) if name.startswith(_BY_OTHERS))
+    return [*unrecorded(run), *by_others]
+
+
+def kept_by_nothing(out: Path) -> list[str]:
+    """Recorded files of a run that a run in its place would not write again as they are.
+
+    Those of `inspect` and `deck`, and those that were changed since they were recorded.
+    """
+    known = _hashes_of(out)
+    return [
+        name
+        for name in _names_in(out)
+        if name.startswith(_BY_OTHERS) or sha256_of(out / name) != known[name]
+    ]
+
+
+def _names_in(out: Path) -> list[str]:
+    """Files under a run folder, hidden ones too, but for record and files on their way into it."""
+    names = (each.relative_to(out).as_posix() for each in out.rglob("*") if each.is_file())
+    own = (signoff.NAME, signoff.SIGNATURES)
+    return sorted(n for n in names if n not in own and not n.startswith(f"{signoff.AMENDMENT}/"))
+
+
+def _hashes_of(out: Path) -> dict[str, str]:
+    """Hashes by file of the record of a run of any schema; none of what is no record."""
+    try:
+        files = read_json(out / signoff.NAME)["files"]
+    except (ResultError, LookupError, TypeError):
+        return {}
+    return files if isinstance(files, dict) else {}
 
 
 def _holds_ours(folder: Path) -> bool:
@@ -145,8 +196,9 @@ def _holds_ours(folder: Path) -> bool:
 def amended(path: Path) -> Iterator[Path]:
     """Folder in which to write files for a finished run; they and its record change together.
 
-    After an exception the run is as before. A record that differs from the files before is left as
-    it is. A run without a record is not finished: its files are written at once, into `path`.
+    After an exception the run is as before. A record that differs from files which are not written
+    anew is left as it is. A run without a record is not finished: its files are written at once,
+    into `path`.
 
     Raises
     ------
@@ -160,9 +212,9 @@ def amended(path: Path) -> Iterator[Path]:
     if (path / signoff.SIGNATURES).exists():
         raise ResultError(f"{path}: is signed, nothing more is written into it; use a copy")
     with staged(path) as place:
-        as_recorded = all(each.added for each in signoff.changes(path))
+        differing = {each.name for each in signoff.changes(path) if not each.added}
         yield place
-        if as_recorded:
+        if differing <= {name for name, _ in files_in(place)}:
             signoff.write_amended(path, place)
 
 
@@ -179,15 +231,32 @@ def complete_amendment(path: Path) -> None:
             pass
 
 
+def settle_recorded(path: Path) -> None:
+    """Complete what an interrupted command was adding to a run; refuse one not as recorded.
+
+    Raises
+    ------
+    AlteredError
+        See `signoff.require_recorded`.
+    ResultError
+        If another process writes into the run, or it cannot be written.
+    """
+    complete_amendment(path)
+    signoff.require_recorded(path)
+
+
 @contextmanager
 def staged(path: Path) -> Iterator[Path]:
     """Folder, not made yet, whose files are moved into a run at the end without an exception.
 
     Raises
     ------
+    AlteredError
+        If the run holds more than files and folders, such as a link; nothing is written then.
     ResultError
         If another process writes into the run, or it cannot be written.
     """
+    require_plain(path, AlteredError)
     home = path / signoff.AMENDMENT
     partial, complete = home / "partial", path / signoff.COMPLETE
     try:
@@ -218,8 +287,6 @@ def _lock_of_amendment(path: Path, home: Path) -> IO[str] | None:
     """Lock of the files to be added to a run; ResultError if another process has it."""
     while True:
         home.mkdir(exist_ok=True)
-        if any(each.is_symlink() for each in (home, *home.iterdir())):
-            raise ResultError(f"{home}: is a link or holds one, delete it")
         with suppress(FileNotFoundError):  # its holder deleted the folder after it was made here
             return locked(home / _LOCK, f"{path}: another process is writing into it")
 

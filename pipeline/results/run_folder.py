@@ -9,7 +9,6 @@ import os
 import platform
 import re
 import shutil
-import zipfile
 from collections.abc import Iterable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass
@@ -29,6 +28,9 @@ from camwright.pipeline.base.files import (
     json_text,
     npz_bytes,
     read_json,
+    read_npz,
+    require_plain,
+    shown_name,
     write_atomic,
 )
 from camwright.pipeline.base.tables import Values, table
@@ -43,10 +45,12 @@ from camwright.pipeline.results.folder_exchange import (
     absolute,
     exchange,
     is_complete,
+    kept_by_nothing,
     lock_of,
     partial_of,
     settle,
     unlock,
+    unrecorded,
 )
 from camwright.pipeline.results.workshop_files import WORKSHOP, stamp_solid
 
@@ -84,13 +88,14 @@ class RunFolder:
     case : Case     as computed, positions included
     depth : Tier    of the run
     resume : bool   continue an interrupted run
-    replace : bool  take the place of a run of an earlier version of the case as well
+    replace : bool  take the place of a run of an earlier version of the case as well, and of files
+                    that were changed or that `inspect` or `deck` wrote
 
     Raises
     ------
     ResultError
-        If `out` holds anything but a run of this case or a signed one, if another process
-        writes to it, or if the interrupted run has another input or other versions.
+        If `out` holds anything but a run of this case or a signed one, or a file of the user; if
+        another process writes to it, or if the interrupted run has another input or other versions.
     """
 
     def __init__(
@@ -106,6 +111,7 @@ class RunFolder:
         self.path = partial_of(self.out)
         self.case = case
         self.depth = depth
+        self._replace = replace
         self.versions = versions()
         self.resumed = False
         self._created: list[Path] = []
@@ -240,6 +246,7 @@ class RunFolder:
         stamp_solid(self.path / WORKSHOP, recorded["input_sha256"], results)
         signoff.write(self.path)
         try:
+            _refuse_strangers(self.out, self.case, replace=self._replace)
             (self.path / STATE).unlink()
             exchange(self.out)
         except OSError as error:
@@ -313,6 +320,7 @@ class RunFolder:
                 raise ResultError(
                     f"{self.path}: cannot be resumed: {differ} differ; run without --resume"
                 )
+            require_plain(self.path)
             self.resumed = True
         # What an interrupted run wrote is written again, with the options of this one.
         self._clear(kept=CHUNKS if self.resumed else "")
@@ -363,11 +371,11 @@ class ContactFiles:
         pieces: dict[int, dict[str, Array]] = {}
         for file in sorted((self.folder / load_case).glob("*.npz")):
             try:
-                with np.load(file, allow_pickle=False) as stored:
-                    if str(stored["key"]) == key:
-                        names = [name for name in stored.files if name.startswith("a_")]
-                        pieces[int(file.stem)] = {n[2:]: readonly(stored[n]) for n in names}
-            except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile):
+                stored = read_npz(file)
+                if str(stored["key"]) == key:
+                    names = [name for name in stored if name.startswith("a_")]
+                    pieces[int(file.stem)] = {n[2:]: readonly(stored[n]) for n in names}
+            except (ResultError, ValueError, KeyError):
                 continue  # damaged by a crash of the machine: solved again
         return pieces
 
@@ -401,13 +409,29 @@ def _refuse_strangers(out: Path, case: Case, *, replace: bool) -> None:
     if strange or "run.json" not in entries:
         name = (strange or entries)[0]
         raise ResultError(f"{out}: holds {name}, which is not of a run; choose another folder")
-    if replace and _name_of(out) == case.name:
-        return
-    summary = run_reader.read_summary(out)
-    if summary["input_sha256"] != case.sha256:
-        other = summary["case"]
-        what = "another input" if other == case.name else f"another case, {other}"
-        raise ResultError(f"{out}: holds the run of {what}; choose another folder or remove it")
+    require_plain(out)
+    if not (replace and _name_of(out) == case.name):
+        summary = run_reader.read_summary(out)
+        if summary["input_sha256"] != case.sha256:
+            other = summary["case"]
+            what = "another input" if other == case.name else f"another case, {other}"
+            raise ResultError(f"{out}: holds the run of {what}; choose another folder or remove it")
+    _refuse_to_delete(out, replace=replace)
+
+
+def _refuse_to_delete(out: Path, *, replace: bool) -> None:
+    """Refuse to delete a run with files that no command wrote.
+
+    Those that were changed, or that `inspect` or `deck` wrote, are deleted where it is replaced.
+    """
+    if not (out / signoff.NAME).is_file():
+        told = f"holds no {signoff.NAME}, by which files of a run are told from others"
+        raise ResultError(f"{out}: {told}; choose another folder or remove it")
+    for name in unrecorded(out)[:1]:
+        raise ResultError(f"{out}: holds {shown_name(name)}, which no run wrote; move it elsewhere")
+    for name in kept_by_nothing(out)[: 0 if replace else 1]:
+        told = f"holds {shown_name(name)}, which a run does not write again as it is"
+        raise ResultError(f"{out}: {told}; --replace deletes it")
 
 
 def _name_of(out: Path) -> Json:

@@ -11,13 +11,14 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypedDict
 
-from camwright.geometry.errors import InputError, ResultError
+from camwright.geometry.errors import AlteredError, InputError, ResultError
 from camwright.pipeline.base.files import (
     Json,
     hash_inputs,
     parse_toml,
     read_json,
     read_text,
+    require_plain,
     sha256_of,
 )
 from camwright.pipeline.base.tables import Table, read_table
@@ -325,9 +326,13 @@ def require_own_case(path: Path) -> None:
 
 
 def read_summary(path: Path) -> Summary:
-    """Contents of ``run.json``; ResultError for a folder that holds no run of this schema."""
+    """Contents of ``run.json``; ResultError for a folder that holds no run of this schema.
+
+    AlteredError where it holds a link, see `files.require_plain`.
+    """
     if not path.is_dir():
         raise ResultError(f"{path}: no such folder")
+    require_plain(path, AlteredError)
     file = path / "run.json"
     if not file.is_file():
         raise ResultError(f"{path}: holds no finished run (run.json is missing)")
@@ -356,8 +361,9 @@ def input_sha256(path: Path) -> str:
     """Hash of the resolved case and its included files, as `Case.sha256` has it."""
     inputs = path / "inputs"
     kept = {
-        f"{inputs.name}/{file.name}": file.read_bytes()
-        for file in (sorted(inputs.iterdir()) if inputs.is_dir() else ())
+        file.relative_to(path).as_posix(): file.read_bytes()
+        for file in inputs.rglob("*")
+        if file.is_file()
     }
     return hash_inputs(read_text(path / "case.toml"), kept)
 

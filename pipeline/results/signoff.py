@@ -12,12 +12,16 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
-from camwright.geometry.errors import ResultError
+from camwright.geometry.errors import AlteredError, ResultError
 from camwright.pipeline.base.files import (
     Json,
     file_hashes,
     json_text,
+    not_plain,
     read_json,
+    require_plain,
+    shown_name,
+    unplain,
     write_atomic,
 )
 from camwright.pipeline.results import check_records, run_reader
@@ -34,6 +38,7 @@ _ADDED = "was added since the sign-off"
 _BY = "`camwright report`, `inspect`, `deck` or `sign`"
 _HALF_MOVED = f"an interrupted {_BY} has not moved all its files into place: run it again"
 _INCOMPLETE = f"belongs to {_BY}, which is running or was interrupted; run again, it removes this"
+_DRAWN = (".html", ".pdf", ".png", ".xlsx")
 _SHA256 = re.compile(r"[0-9a-f]{64}")
 
 
@@ -142,20 +147,30 @@ class Difference(NamedTuple):
     added: bool = False
 
     def __str__(self) -> str:
-        name = self.name if self.name.isprintable() else ascii(self.name)
-        return f"{name}: {self.words}"
+        return f"{shown_name(self.name)}: {self.words}"
+
+    @property
+    def of_results(self) -> bool:
+        """Whether the file is read again: not of one that was added, nor of a page or picture,
+        which follows from the others."""
+        drawn = not self.name.startswith("inputs/") and self.name.endswith(_DRAWN)
+        return not (self.added or drawn)
 
 
 def changes(path: Path) -> list[Difference]:
     """Differences of a run from its record, by name; empty without any.
 
-    The signatures are not among the files, see `signatures.verified`.
+    The signatures are not among the files, see `signatures.verified`. Where the folder holds more
+    than files and folders, that alone is named and no file is read.
 
     Raises
     ------
     ResultError
         If the folder holds no run that can be read.
     """
+    odd = [Difference(name, not_plain(kind)) for name, kind in unplain(path)]
+    if odd:
+        return odd
     if _holds_file(path / COMPLETE):
         return [Difference(AMENDMENT, _HALF_MOVED)]
     try:
@@ -179,6 +194,38 @@ def changes(path: Path) -> list[Difference]:
     if _holds_file(path / AMENDMENT):
         differences.append(Difference(AMENDMENT, _INCOMPLETE, added=True))
     return sorted(differences)
+
+
+def require_recorded(path: Path) -> None:
+    """Refuse a finished run whose results, case or record differ from the record.
+
+    Pages and pictures are not looked at: no number is read from them.
+
+    Raises
+    ------
+    AlteredError
+        Naming each file that differs.
+    ResultError
+        If the folder holds no run that can be read.
+    """
+    require_plain(path, AlteredError)
+    lines = [str(path / str(each)) for each in changes(path) if each.of_results]
+    if lines:
+        raise AlteredError("; ".join(lines))
+
+
+def read_run(path: str | Path) -> run_reader.Run:
+    """Read the folder of a finished run that is as recorded.
+
+    Raises
+    ------
+    AlteredError
+        If a result, the case or the record was changed since the run, or a file is missing.
+    ResultError
+        If the folder holds no run that can be read, or if two records disagree.
+    """
+    require_recorded(Path(path))
+    return run_reader.read_run(path)
 
 
 def _recorded_hashes(path: Path, recorded: Json) -> dict[str, str]:
@@ -205,27 +252,18 @@ def _of_every_run(path: Path) -> tuple[str, ...]:
 
 
 def _unhashed(path: Path) -> Iterator[str]:
-    """What no run writes: hidden files, linked folders, and what is neither file nor folder.
-
-    Files on their way into the run are left out.
-    """
+    """Hidden files, which no run writes. Files on their way into the run are left out."""
     for entry in sorted(path.rglob("*")):
         parts = entry.relative_to(path).parts
         if parts[0] == AMENDMENT and len(parts) > 1:
             continue
-        hidden = any(part.startswith(".") for part in parts) and entry.is_file()
-        if (
-            hidden
-            or (entry.is_symlink() and entry.is_dir())
-            or not (entry.is_file() or entry.is_dir())
-        ):
+        if any(part.startswith(".") for part in parts) and entry.is_file():
             yield "/".join(parts)
 
 
 def _holds_file(folder: Path) -> bool:
-    """Whether anything but folders is in a folder, which is not a link."""
-    inside = () if folder.is_symlink() else folder.rglob("*")
-    return any(entry.is_symlink() or not entry.is_dir() for entry in inside)
+    """Whether anything but folders is in a folder."""
+    return any(not entry.is_dir() for entry in folder.rglob("*"))
 
 
 def _is_sha256(value: Json) -> bool:

@@ -13,7 +13,7 @@ The public names, in the order of the calculation:
 | `Trial`        | a cam with its solution, checks and verdict             |                  |
 | `Check`        | a demand beside its limit, with status and source       |                  |
 | `run_case`     | trials until the checks pass or a limit binds; run folder | `Run`          |
-| `read_run`     | read a run folder                                       | `Run`            |
+| `read_run`     | read a run folder that is as recorded                   | `Run`            |
 | `report`       | page and figures of a run folder                        | files by part    |
 | `design_from_torque` | case file with all parts for a torque table        | record           |
 | `screen_designs` | closed-form checks of thousands of designs at once    | columns          |
@@ -37,7 +37,7 @@ if TYPE_CHECKING:
     from camwright.pipeline.contact.tiers import Tier
     from camwright.pipeline.iteration import synthesize
     from camwright.pipeline.preview import preview_case
-    from camwright.pipeline.results.run_reader import read_run
+    from camwright.pipeline.results.signoff import read_run
     from camwright.pipeline.results.trial import Trial
     from camwright.pipeline.run import run_case
     from camwright.pipeline.screening.design_screening import screen_designs
@@ -57,7 +57,7 @@ _HOMES = {
     "design_from_torque": "pipeline.studies.design.design_study",
     "preview_case": "pipeline.preview",
     "read_case": "pipeline.case.case_file",
-    "read_run": "pipeline.results.run_reader",
+    "read_run": "pipeline.results.signoff",
     "report": "reports.sections",
     "run_case": "pipeline.run",
     "screen_designs": "pipeline.screening.design_screening",

@@ -22,7 +22,7 @@ from cryptography.hazmat.primitives.asymmetric.ed25519 import Ed25519PrivateKey
 from small_machine import small_machine
 from small_run import TORQUE, check, summary, values, write_run, write_trial
 
-from camwright.geometry.errors import ResultError
+from camwright.geometry.errors import AlteredError, ResultError
 from camwright.pipeline.base.files import file_hashes, write_atomic
 from camwright.pipeline.case.case_file import parse_case
 from camwright.pipeline.commands.terminal import ALTERED, ERROR, PASSED
@@ -313,8 +313,8 @@ def test_a_link_in_place_of_added_files_is_not_followed(tmp_path: Path, name: st
     (tmp_path / "home" / "letter.txt").write_text("private")
     (out / name).parent.mkdir(exist_ok=True)
     (out / name).symlink_to(tmp_path / "home")
-    assert [each.name for each in signoff.changes(out)] == [".amendment"]
-    with pytest.raises(ResultError, match="is a link or holds one"):
+    assert [each.name for each in signoff.changes(out)] == [name]
+    with pytest.raises(AlteredError, match=f"{name}: is a link"):
         amend(out)
     assert (tmp_path / "home" / "letter.txt").read_text() == "private"
 

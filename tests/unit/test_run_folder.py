@@ -17,6 +17,7 @@ from camwright.geometry.errors import ResultError
 from camwright.pipeline.base.files import write_atomic
 from camwright.pipeline.case.case_file import parse_case
 from camwright.pipeline.results import run_folder, run_reader
+from camwright.pipeline.results.folder_exchange import amended
 from camwright.pipeline.results.run_folder import RunFolder
 
 
@@ -111,8 +112,8 @@ def test_refuses_foreign_files(tmp_path: Path) -> None:
 
 def test_a_run_with_its_workshop_files_is_no_stranger(tmp_path: Path) -> None:
     out = write_run(tmp_path / "run")
-    (out / "workshop").mkdir()
-    (out / "workshop" / "contour.csv").write_text("")
+    with amended(out) as place:
+        write_atomic(place / "workshop" / "contour.csv", "")
     write_run(out, status="fail")
     assert run_reader.read_run(out).verdict == "fail"
 

@@ -239,11 +239,15 @@ def joined(tables: Sequence[pa.Table]) -> pa.Table:
 
 
 def table_from(content: bytes) -> pa.Table:
-    """The table of the bytes of a Parquet file."""
+    """The table of the bytes of a Parquet file; ValueError for more rows than a study has."""
     import pyarrow.parquet as pq
+
+    from camwright.pipeline.studies.batch.study_file import DESIGNS_MAX
 
     # `read_table` imports the reader of folders, and with it pandas
     with pq.ParquetFile(io.BytesIO(content), page_checksum_verification=True) as file:
+        if file.metadata.num_rows > DESIGNS_MAX:
+            raise ValueError(f"claims {file.metadata.num_rows} rows")
         return file.read()
 
 

@@ -20,8 +20,11 @@ from camwright.pipeline.base.files import (
     json_text,
     locked,
     read_json,
+    require_plain,
+    shown_name,
     write_atomic,
 )
+from camwright.pipeline.results.folder_exchange import of_the_user
 from camwright.pipeline.studies.batch.case_template import Template
 from camwright.pipeline.studies.batch.dataset import (
     ANSWERS,
@@ -49,6 +52,7 @@ if TYPE_CHECKING:
 
 _LOCK = ".lock"
 _OURS = (ANSWERS, PAGE, STUDY, SUMMARY, DATASET, SHARDS, TIMINGS, RUNS, CASES, _LOCK)
+_WRITTEN = (".parquet", ".json", ".tmp")
 _BLOCK = 2000
 """Rows of a row group of the dataset; bounds the memory of its writing."""
 
@@ -95,6 +99,26 @@ class StudyFolder:
             raise ResultError(f"{self.path}: holds {inside[0]} and no {SHARDS}: not a study")
         if inside and not self._resume:
             raise ResultError(f"{self.path}: holds a study; --resume completes it")
+        if inside:
+            require_plain(self.path)
+            for name in self._of_the_user()[:1]:
+                told = f"holds {shown_name(name)}, which no study wrote; move it elsewhere"
+                raise ResultError(f"{self.path}: {told}")
+
+    def _of_the_user(self) -> list[str]:
+        """Files among shards and runs that a resumed study would delete and did not write."""
+        odd = [
+            f"{folder}/{each.name}"
+            for folder in (SHARDS, TIMINGS)
+            for each in (self.path / folder).glob("*")
+            if not each.name.endswith(_WRITTEN)
+        ]
+        for run in (self.path / RUNS).glob("*"):
+            if not run.is_dir():
+                odd.append(f"{RUNS}/{run.name}")
+            elif not run.name.endswith(".tmp"):
+                odd += (f"{RUNS}/{run.name}/{name}" for name in of_the_user(run))
+        return sorted(odd)
 
     def __enter__(self) -> StudyFolder:
         self.require_free()
