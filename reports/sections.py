@@ -10,7 +10,7 @@ from pathlib import Path
 from camwright.geometry.errors import InputError, ResultError
 from camwright.pipeline.base.progress import SILENT, Progress
 from camwright.pipeline.base.worker_processes import Crew, Task
-from camwright.pipeline.results.folder_exchange import amended, settle_recorded
+from camwright.pipeline.results.folder_exchange import amended, is_being_written, settle_recorded
 from camwright.reports import (
     documents,
     figure_svg,
@@ -109,7 +109,9 @@ class Ahead:
 def report(
     folder: Path, parts: Iterable[Part] | None = None, progress: Progress = SILENT
 ) -> dict[str, Sequence[Path]]:
-    """Write parts of the report of a finished run, all or none; nothing is solved.
+    """Write parts of the report of a run, all or none; nothing is solved.
+
+    Of a finished run, or of one that `run_case` is writing.
 
     Returns
     -------
@@ -123,7 +125,8 @@ def report(
         If the folder does not hold a finished run, or a signed one, or if a file cannot be written.
     """
     folder = Path(folder)
-    settle_recorded(folder)
+    if not is_being_written(folder):
+        settle_recorded(folder)
     return draw(folder, parts, progress=progress)
 
 

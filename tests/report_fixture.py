@@ -16,6 +16,7 @@ from scipy.spatial import Delaunay
 
 from camwright.geometry.periodic_spline import periodic_quintic
 from camwright.pipeline.case.scope_section import Scope
+from camwright.pipeline.results import signoff
 from camwright.pipeline.results.check_records import binding_of, verdict_of
 from camwright.pipeline.results.field_file import Block, field_file
 from camwright.pipeline.results.run_reader import SCHEMA, input_sha256
@@ -560,6 +561,7 @@ def write_run(
     }))  # fmt: skip
     if field:
         write_field(folder / "fields" / "stress.vtkhdf", g, worst, cycle)
+    signoff.write(folder)
     return folder
 
 

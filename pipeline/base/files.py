@@ -77,18 +77,26 @@ def unplain(folder: Path) -> list[tuple[str, str]]:
     Hidden parts included, by name; no link is followed and nothing is opened. A file with further
     names (hard links) is a plain file: what we write takes the place of a name and leaves the
     others as they are.
+
+    Raises
+    ------
+    ResultError
+        If a folder cannot be read.
     """
     odd: list[tuple[str, str]] = []
     inner = [folder]
-    while inner:
-        with os.scandir(inner.pop()) as entries:
-            for entry in entries:
-                kind = stat.S_IFMT(entry.stat(follow_symlinks=False).st_mode)
-                if kind == stat.S_IFDIR:
-                    inner.append(Path(entry.path))
-                elif kind != stat.S_IFREG:
-                    name = Path(entry.path).relative_to(folder).as_posix()
-                    odd.append((name, _KINDS.get(kind, "no file")))
+    try:
+        while inner:
+            with os.scandir(inner.pop()) as entries:
+                for entry in entries:
+                    kind = stat.S_IFMT(entry.stat(follow_symlinks=False).st_mode)
+                    if kind == stat.S_IFDIR:
+                        inner.append(Path(entry.path))
+                    elif kind != stat.S_IFREG:
+                        name = Path(entry.path).relative_to(folder).as_posix()
+                        odd.append((name, _KINDS.get(kind, "no file")))
+    except OSError as error:
+        raise ResultError(f"{error.filename or folder}: {error.strerror or error}") from None
     return sorted(odd)
 
 
@@ -100,10 +108,7 @@ def require_plain(folder: Path, refused: type[ResultError] = ResultError) -> Non
     ResultError
         Of the class `refused`, naming the first of them; or if a folder cannot be read.
     """
-    try:
-        odd = unplain(folder)
-    except OSError as error:
-        raise ResultError(f"{error.filename or folder}: {error.strerror or error}") from None
+    odd = unplain(folder)
     if odd:
         name, kind = odd[0]
         raise refused(f"{folder / shown_name(name)}: {not_plain(kind)}")

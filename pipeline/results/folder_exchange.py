@@ -126,6 +126,12 @@ def exchange(out: Path) -> None:
     shutil.rmtree(replaced, ignore_errors=True)
 
 
+def is_being_written(folder: Path) -> bool:
+    """Whether a folder is that in which a run is written; see `partial_of`."""
+    named = folder.name.startswith(".") and folder.suffix == ".partial"
+    return named and (folder / STATE).is_file() and not (folder / signoff.NAME).exists()
+
+
 def is_complete(partial: Path) -> bool:
     """Whether the run in a folder lacks nothing but its final path."""
     whole = not partial.is_symlink() and (partial / signoff.NAME).is_file()

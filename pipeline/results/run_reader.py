@@ -309,7 +309,7 @@ def read_verdict(path: Path) -> dict[str, Any]:
 
 def verify_run(path: Path) -> None:
     """Compare the files of a run with the hashes in ``run.json``; ResultError for a difference."""
-    require_own_case(path)
+    _require_own_case(path)
     summary = read_summary(path)
     for name, digest in summary["files"].items():
         file = path / name
@@ -318,7 +318,7 @@ def verify_run(path: Path) -> None:
             raise ResultError(f"{file}: {state} since the run")
 
 
-def require_own_case(path: Path) -> None:
+def _require_own_case(path: Path) -> None:
     """Refuse a run whose case file or measured data were edited since."""
     summary = read_summary(path)
     if summary["input_sha256"] != input_sha256(path):
@@ -330,9 +330,7 @@ def read_summary(path: Path) -> Summary:
 
     AlteredError where it holds a link, see `files.require_plain`.
     """
-    if not path.is_dir():
-        raise ResultError(f"{path}: no such folder")
-    require_plain(path, AlteredError)
+    require_folder(path)
     file = path / "run.json"
     if not file.is_file():
         raise ResultError(f"{path}: holds no finished run (run.json is missing)")
@@ -348,6 +346,13 @@ def read_summary(path: Path) -> Summary:
         limit = f"must be from 1 to {summary['trials']}"
         raise ResultError(f"{file}: final_trial = {final}, {limit}")
     return summary
+
+
+def require_folder(path: Path) -> None:
+    """Refuse a path that is no folder, and with AlteredError one that holds a link or pipe."""
+    if not path.is_dir():
+        raise ResultError(f"{path}: no such folder")
+    require_plain(path, AlteredError)
 
 
 def require_schema(file: Path, record: Json | Summary) -> None:

@@ -19,7 +19,6 @@ from camwright.pipeline.base.files import (
     json_text,
     not_plain,
     read_json,
-    require_plain,
     shown_name,
     unplain,
     write_atomic,
@@ -208,7 +207,7 @@ def require_recorded(path: Path) -> None:
     ResultError
         If the folder holds no run that can be read.
     """
-    require_plain(path, AlteredError)
+    run_reader.require_folder(path)
     lines = [str(path / str(each)) for each in changes(path) if each.of_results]
     if lines:
         raise AlteredError("; ".join(lines))

@@ -73,14 +73,15 @@ def test_check_never_passes_a_shallow_run(
 
 
 def test_a_verdict_is_not_written_into_a_shallow_run(shallow: Path, tmp_path: Path) -> None:
-    record = json.loads((shallow / "run.json").read_text())
+    text = (shallow / "run.json").read_text()
+    record = json.loads(text)
     (shallow / "run.json").write_text(json.dumps(record | {"verdict": "pass", "screen": None}))
     with pytest.raises(ResultError, match=r"run\.json says pass, the checks of .* None"):
         read_verdict(shallow)
     (shallow / "run.json").write_text(json.dumps(record | {"depth": "certified"}))
     with pytest.raises(ResultError, match=r"run\.json says certified, the final trial "):
         read_verdict(shallow)
-    (shallow / "run.json").write_text(json.dumps(record))
+    (shallow / "run.json").write_text(text)
 
 
 def test_the_page_of_a_shallow_run_states_its_screen(shallow: Path) -> None:

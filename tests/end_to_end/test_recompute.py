@@ -23,7 +23,7 @@ from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.recomputation import MOST_ANGLES, Recomputation, recompute
 from camwright.pipeline.results import check_records, run_reader, signoff
 from camwright.pipeline.run import run_case
-from camwright.reports.sections import report
+from camwright.reports.sections import draw, report
 
 Command = Callable[..., tuple[int, str, str]]
 TRIAL = "trial_1"
@@ -140,7 +140,7 @@ def page_edited(run: Path) -> None:
 
 
 def recomputed(run: Path, **options: Any) -> Recomputation:
-    return recompute(run, jobs=1, present=report, **({"angles": 0} | options))
+    return recompute(run, jobs=1, present=draw, **({"angles": 0} | options))
 
 
 # --- a screening: a second each

@@ -199,3 +199,15 @@ def test_a_resumed_study_deletes_no_file_of_the_user(tmp_path: Path, name: str) 
     ):
         pass
     assert (study.path / name).read_text() == "mine"
+
+
+def test_a_run_is_reported_while_it_is_written_and_then_only_as_recorded(tmp_path: Path) -> None:
+    with RunFolder(tmp_path / "run", small_case()) as folder:
+        write_trial(folder, [check()])
+        folder.write_summary(summary())
+        assert camwright.report(folder.path, []) == {}
+        folder.finish(summary())
+    (tmp_path / "run" / "signoff.json").unlink()
+    write_atomic(tmp_path / "run" / ".state.json", "{}")
+    with pytest.raises(AlteredError, match=r"signoff\.json"):
+        camwright.report(tmp_path / "run", [])

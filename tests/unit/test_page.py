@@ -15,6 +15,7 @@ import report_fixture
 
 from camwright.geometry.errors import ResultError
 from camwright.pipeline.base import files
+from camwright.pipeline.results import signoff
 from camwright.reports import (
     analysis_sheet,
     figure_svg,
@@ -199,6 +200,7 @@ def test_a_run_without_engine_or_optional_columns_is_reported(tmp_path, undrawn)
     drop = [k for k, name in enumerate(lines[0]) if name.startswith("torque_")]
     kept = [",".join(cell for k, cell in enumerate(row) if k not in drop) for row in lines]
     cycle.write_text("\n".join(kept) + "\n")
+    signoff.write(folder)
     html = report_fixture.page_of(folder).read_text(encoding="utf-8")
     assert '<figure id="torque">' not in html
     assert '<figure id="torque-components">' not in html
@@ -217,6 +219,7 @@ def test_several_load_cases_show_the_governing_one_and_a_ribbon(tmp_path, monkey
     margin = next(r for r in records if r["id"] == "contact_force_margin")
     margin.update(status="not_evaluated", demand=None)
     (trial / "6_checks.json").write_text(json.dumps(records))
+    signoff.write(folder)
     seen = []
     monkeypatch.setattr(figure_svg, "svg_of", lambda figure: seen.append(figure) or "<svg/>")
     html = report_fixture.page_of(folder).read_text(encoding="utf-8")
@@ -231,6 +234,7 @@ def test_several_load_cases_show_the_governing_one_and_a_ribbon(tmp_path, monkey
         {"load_case": "rated", "cam_angle_deg": 150.5, "statement": "leaves the cam at 150.5 deg"}
     ]
     (folder / "run.json").write_text(json.dumps(summary))
+    signoff.write(folder)
     html = report_fixture.page_of(folder).read_text(encoding="utf-8")
     assert "Load case idle, in which the follower stays on the cam" in html.replace(
         "\u2068", ""
