@@ -423,9 +423,11 @@ def _shown_fields(folder: Path, trial: Trial) -> Shown:
 
 
 def _drawn_again(folder: Path, copy: Path, present: Callable[[Path], object]) -> Path:
-    """Copy of a run with its pages drawn again."""
+    """Copy of a run with its pages drawn again; a link made since it was read is not followed."""
     left_out = {Path(name).name for name in (*PAGES, *_LAST[1:])}
-    shutil.copytree(folder, copy, ignore=lambda _, names: [n for n in names if n in left_out])
+    shutil.copytree(
+        folder, copy, symlinks=True, ignore=lambda _, names: [n for n in names if n in left_out]
+    )
     present(copy)
     return copy
 

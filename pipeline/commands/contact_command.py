@@ -118,7 +118,7 @@ def deck(
     """Write both bodies at one cam angle as an input deck.
 
     With the contact pressure of the run as nodal forces, for CalculiX and Abaqus; with --contact
-    as a contact pair of which CalculiX finds the pressure.
+    as a contact pair of which CalculiX finds the pressure. Exit code 4: the run is not as recorded.
     """
     from camwright.pipeline.base import units
     from camwright.pipeline.results import contact_deck as decks

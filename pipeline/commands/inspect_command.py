@@ -42,7 +42,7 @@ def inspect(
     """Check a measured cam against its drawing.
 
     Fits the measured points to the contour, solves the measured cam and checks it. Exit code 0:
-    PASS, 1: FAIL, 2: error, 3: INCOMPLETE (data are missing).
+    PASS, 1: FAIL, 2: error, 3: INCOMPLETE (data are missing), 4: the run is not as recorded.
     """
     from camwright.pipeline.base import units
     from camwright.pipeline.results.drawn_cam import drawn_cam

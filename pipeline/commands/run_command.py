@@ -52,7 +52,12 @@ def run(
     ] = False,
     resume: Annotated[bool, typer.Option("--resume", help="Resume an interrupted run.")] = False,
     replace: Annotated[
-        bool, typer.Option("--replace", help="Replace an earlier run of a case of this name.")
+        bool,
+        typer.Option(
+            "--replace",
+            help="Replace an earlier run of a case of this name, with its inspections, decks and "
+            "changed files; files of the user are never deleted.",
+        ),
     ] = False,
     fields: Annotated[
         str,
@@ -136,7 +141,10 @@ def report(
     ] = None,
     show: Annotated[bool, typer.Option("--open", help="Open the page in the browser.")] = False,
 ) -> int:
-    """Write the report of a finished run; nothing is solved."""
+    """Write the report of a finished run; nothing is solved.
+
+    Exit code 4: the run is not as recorded; nothing is written.
+    """
     from camwright.reports import sections
     from camwright.reports.page import PAGE
 
