@@ -345,7 +345,7 @@ def _constrained(task: _Task) -> Iteration:
             CONSTRAINED,
             synthesis=record,
             uses=limits_in_use(design),
-            gain=design.gain,
+            gain=design.ripple_gain,
         )
         judged = trial.checks if margin > 0.0 else ()
         comparisons.append(compared(problem, design, trial.solution, judged))

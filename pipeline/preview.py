@@ -79,12 +79,13 @@ def _kept(case: Case, torques: Mapping[str, Torque], progress: Progress) -> Tria
         trial = _synthesised(case, torques, progress)
         solved.append(trial)
         spring, lift = trial.case.spring, trial.contour.pitch.lift
+        gain = trial.solution.synthesis_gain
         drawn = spring.rate, spring.preload, trial.case.cam.prime_radius
         return {
             "variables": np.array(drawn),
             "theta": lift.theta,
             "lift": lift.values,
-            "gain": np.array(trial.solution.synthesis_gain),
+            "gain": np.array(np.nan if gain is None else gain),
             "record": np.frombuffer(json.dumps(trial.synthesis).encode(), dtype=np.uint8),
         }
 
@@ -95,13 +96,13 @@ def _kept(case: Case, torques: Mapping[str, Torque], progress: Progress) -> Tria
     drawn = redrawn(case, DesignVariables(*cam["variables"].tolist()))
     record = json.loads(cam["record"].tobytes())
     lift, gain = Lift(cam["theta"], cam["lift"]), float(cam["gain"])
-    return _trial_of(drawn, lift, gain, record, torques, progress)
+    return _trial_of(drawn, lift, None if np.isnan(gain) else gain, record, torques, progress)
 
 
 def _trial_of(
     drawn: Case,
     lift: Lift,
-    gain: float,
+    gain: float | None,
     record: SynthesisRecord,
     torques: Mapping[str, Torque],
     progress: Progress,
@@ -145,7 +146,7 @@ def _synthesised(case: Case, torques: Mapping[str, Torque], progress: Progress) 
             first = explored(problem, 1)
             design, problem = first.design, replace(problem, coefficients=first.splines)
         drawn, record = redrawn(case, design.variables), design_record(design, problem)
-        trial = _trial_of(drawn, design.lift(), design.gain, record, torques, progress)
+        trial = _trial_of(drawn, design.lift(), design.ripple_gain, record, torques, progress)
         comparisons.append(compared(problem, design, trial.solution))
         ranked = rank(trial.checks, solved_ripple(trial.cycles))
         if best is None or ranked <= best[0]:

@@ -89,7 +89,8 @@ class Solution(Displayed):
     bore_error : float           discretisation error of the bore stress, relative; None: not known
     coarse : bool                coarse guide mesh, constant crank speed: for ratios of demands
     synthesis_gain : float       of its lift: what another step of the synthesis would gain, of the
-                                 engine's ripple; None: not a synthesis
+                                 engine's ripple; None: not a synthesis, or one without a cam
+                                 within all limits
     """
 
     case: Case

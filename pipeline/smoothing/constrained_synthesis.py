@@ -52,7 +52,7 @@ def synthesise(
     steps, peaks = descent.steps, _Peaks.of(search, descent.state)
     for _ in range(_ROUNDS - 1):
         between = _between(descent.state, peaks)
-        if not between.size:
+        if descent.stuck or not between.size:
             break
         search = Search(problem, np.concatenate([search.extra, between]))
         descent = descended(search, ripple_weight, descent, enough, worth)
@@ -136,6 +136,7 @@ def _design(search: Search, descent: Descent, steps: int, peaks: _Peaks) -> Desi
         strip={name: (theta, np.broadcast_to(use, theta.shape)) for name, use in on_points.items()},
         steps=steps,
         gain=descent.gain,
+        stuck=descent.stuck,
         lagrangian=None
         if descent.model is None or descent.program is None
         else Lagrangian.of(search, state, descent.model, descent.program),

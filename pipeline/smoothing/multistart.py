@@ -103,7 +103,8 @@ class Resolution:
     Parameters
     ----------
     coefficients : int   splines of the turn of the design
-    coarser : int        of the design before; None: the number is that of the case
+    coarser : int        of the design before; None: the number is that of the case, or not settled
+                         since the limits conflict
     change : float       of the ripple between both, over that of the design
     settled : bool       whether it is within the required convergence
     """
@@ -116,6 +117,8 @@ class Resolution:
     @property
     def sentence(self) -> str:
         """The change in words."""
+        if self.coarser is None and not self.settled:
+            return f"{self.coefficients} splines, no more where the limits conflict"
         if self.coarser is None:
             return f"{self.coefficients} splines, as the case states"
         change = f"{self.coarser} splines leave {100 * abs(self.change):.2g} %"
@@ -181,6 +184,8 @@ def resolved(problem: Problem, start: Design | State) -> tuple[list[Design], Res
     if problem.convergence is None:
         return designs, Resolution(problem.lobes * problem.coefficients)
     most = COEFFICIENTS_MAX // problem.lobes
+    if designs[0].stuck:
+        return designs, Resolution(problem.lobes * problem.coefficients, settled=False)
     while True:
         before, count = designs[-1], designs[-1].coefficients.size
         finer = min(round(_REFINEMENT * count), most)

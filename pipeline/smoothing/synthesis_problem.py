@@ -131,6 +131,7 @@ class Design:
     strip : mapping         cam angle, rad, and utilisation at it, by limit
     steps : int             of the search
     gain : float            decrease of the objective that another step of the search foresees
+    stuck : bool            whether no cam near it exceeds the limits by notably less
     lobes : int             equal lobes of the turn
     lagrangian : OfProblems   of the optimum; None: no program was solved
     """
@@ -144,6 +145,7 @@ class Design:
     strip: Mapping[str, tuple[Array, Array]]
     steps: int
     gain: float
+    stuck: bool = False
     lobes: int = 1
     lagrangian: OfProblems | None = None
 
@@ -151,6 +153,11 @@ class Design:
     def converged(self) -> bool:
         """Whether another step would gain next to nothing."""
         return self.gain <= CONVERGED
+
+    @property
+    def ripple_gain(self) -> float | None:
+        """`gain` of a design within all limits; None outside, where the violation outweighs it."""
+        return self.gain if self.feasible else None
 
     @property
     def objective(self) -> float:

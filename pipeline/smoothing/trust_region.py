@@ -19,6 +19,7 @@ from camwright.pipeline.smoothing.synthesis_problem import CONVERGED, FEASIBLE, 
 
 PENALTY, _PENALTY_MAX = 20.0, 2e3
 _HOPELESS = 0.01  # foreseen gain over the excess, where a cam within the limits is not reached
+_CREEPING = 1e-3  # the same, at which a search that is stuck has its end
 _INSIDE = 0.9  # of the trust region
 _RISE = 10.0  # of the penalty outside a limit
 _RAISED = 1e-4  # foreseen gain at `PENALTY`, outside a limit, at which the penalty is raised
@@ -27,6 +28,7 @@ _TRUST, _TRUST_LEAST = 0.3, 1e-7
 _PROOF = 0.03  # least trust region in which a foreseen gain proves convergence
 _ADDITIONS = 4
 _CORRECTED = 0.9  # of the foreseen gain: below, the step is corrected
+_STUCK = 0.1  # of the violation: greatest decrease in the linear models of a search that is stuck
 _VIOLATED = 1e-6
 _PATIENCE = 4  # steps over which the gain of a draft is judged
 
@@ -34,7 +36,8 @@ _PATIENCE = 4  # steps over which the gain of a draft is judged
 class Descent(NamedTuple):
     """End of a descent: state, last model and its program, number of steps.
 
-    gain: decrease of the merit that another step foresees; penalty: of a unit of violation.
+    gain: decrease of the merit that another step foresees; penalty: of a unit of violation. stuck:
+    whether no cam near the end exceeds the limits by notably less.
     """
 
     state: State
@@ -43,6 +46,7 @@ class Descent(NamedTuple):
     steps: int
     gain: float
     penalty: float
+    stuck: bool = False
 
 
 def descended(
@@ -53,6 +57,10 @@ def descended(
     worth: float = 0.0,
 ) -> Descent:
     """Local optimum of a search from its start.
+
+    Outside the limits the search ends, `stuck`, where the least violation of the linear models is
+    that of the cam and a step foresees next to no gain: a greater penalty would gain nothing, and
+    limits that jump at the reversals of the follower make it creep.
 
     Parameters
     ----------
@@ -68,6 +76,8 @@ def descended(
     ----------
     Fletcher, Practical Methods of Optimization (1987), sec. 14.4: sequential programming with an
     exact penalty, second derivatives of the Lagrangian and a trust region.
+    Byrd, Nocedal, Waltz, Optim. Methods Softw. 23 (2008) 197: a penalty steered by the least
+    violation of the linear models.
     """
     start = search.start, search.problem.variables
     model: Model | None = None
@@ -90,7 +100,7 @@ def descended(
         if before is not None and priced is not None:
             bend = lagrangian_curvature(search, state, model, before, priced)
             model = model._replace(curvature=_convex(model.curvature + bend))
-        proven, gain = False, np.inf
+        proven, gain, tested = False, np.inf, False
         while True:
             program, there, model = _program(search, state, model, trust, penalty, ripple_weight)
             if program is None:
@@ -112,6 +122,11 @@ def descended(
                 missing += ripple_weight * max(0.0, state.ripple - enough)
                 if predicted <= _HOPELESS * missing:
                     return Descent(state, model, program, step, gain, penalty)
+            creeping = ripple_weight > 0.0 and predicted <= _CREEPING * penalty * state.violation
+            if outside and creeping and not tested:
+                tested = True
+                if _stuck(search, state, model):
+                    return Descent(state, model, program, step, gain, penalty, stuck=True)
             actual = now - there.merit(penalty, ripple_weight)
             if predicted > least and actual < _CORRECTED * predicted:
                 other = _program(
@@ -147,6 +162,15 @@ def descended(
             if trust < _TRUST_LEAST:
                 return Descent(state, model, program, step, gain, penalty)
     return Descent(state, model, program, _STEPS_MAX, gain, penalty)
+
+
+def _stuck(search: Search, state: State, model: Model) -> bool:
+    """Whether the least violation of the linear models near a state is next to its own."""
+    linear = model._replace(
+        curvature=np.zeros_like(model.curvature), slope=np.zeros_like(model.slope)
+    )
+    program, _, _ = _program(search, state, linear, _TRUST, penalty=1.0, ripple_weight=0.0)
+    return program is not None and program.objective >= (1.0 - _STUCK) * state.violation
 
 
 def _corrected(search: Search, model: Model, program: ConeSolution, there: State) -> Model:

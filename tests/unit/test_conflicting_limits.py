@@ -1,0 +1,109 @@
+"""Work of a synthesis whose limits conflict: it is bounded, and the violation is near the least.
+
+The violations compared with are those of a search that goes on, by penalties of 200 and 2000, until
+its trust region is 1e-7: 667, 1061 and 1089 programs for the three cases.
+"""
+
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from camwright.pipeline.case.case_file import read_case, with_values
+from camwright.pipeline.case.load_case_torque import engine_torques
+from camwright.pipeline.smoothing import trust_region
+from camwright.pipeline.smoothing.constrained_synthesis import approached, started
+from camwright.pipeline.smoothing.multistart import explored
+from camwright.pipeline.smoothing.problem_setup import problem_of
+from camwright.pipeline.smoothing.synthesis_problem import coarsened
+from camwright.pipeline.smoothing.trust_region import PENALTY, descended
+
+CASES = Path(__file__).parents[2] / "cases"
+OFFSET_PUMP = (
+    "machines/hand-pump.toml",
+    {
+        "cam.offset": "-10.5 mm",
+        "cam.profile_tolerance": "11.9672 um",
+        "camshaft.diameter": "31.728 mm",
+        "follower.mass": "1.07624 kg",
+        "guides.b.length": "43.275 mm",
+        "roller.width": "9.716 mm",
+        "solver.positions": 240,
+    },
+)
+FAST_TWO_STROKE = (
+    "machines/two-stroke.toml",
+    {
+        "cam.offset": "4.361 mm",
+        "cam.width": "15.1791 mm",
+        "crankshaft.inertia": "0.00277 kg m^2",
+        "follower.mass": "1.79421 kg",
+        "guides.b.length": "26.841 mm",
+        "limits.overspeed": "2794.72 rpm",
+        "load_case[0].speed": "2445.38 rpm",
+        "roller.width": "11.417 mm",
+        "solver.positions": 72,
+    },
+)
+WIDE_SPEEDS_OF_A_FACE = (
+    "gx120-flat-face.toml",
+    {
+        "cam.width": "16.9977 mm",
+        "follower.overhang_at_max_lift": "33 mm",
+        "limits.overspeed": "9074.74 rpm",
+        "load_case[0].speed": "511.8 rpm",
+        "load_case[1].speed": "8249.76 rpm",
+        "solver.positions": 127,
+        "spring.rate": "152.73 kN/m",
+    },
+)
+
+
+def problem(name, values):
+    case = with_values(read_case(CASES / name), values)
+    return problem_of(case, engine_torques(case))
+
+
+@pytest.fixture
+def programs(monkeypatch):
+    """Sizes of the convex programs that were solved."""
+    sizes, solve = [], trust_region.solved
+
+    def counted(*arguments):
+        sizes.append(arguments[3].size)
+        return solve(*arguments)
+
+    monkeypatch.setattr(trust_region, "solved", counted)
+    return sizes
+
+
+@pytest.mark.parametrize(
+    ("variant", "least"),
+    [(OFFSET_PUMP, 0.3730), (FAST_TWO_STROKE, 0.683), (WIDE_SPEEDS_OF_A_FACE, 1.80)],
+    ids=["offset", "offset and two lobes", "flat face"],
+)
+def test_a_search_that_is_stuck_outside_the_limits_ends(variant, least, programs):
+    """In place of 103, 142 and 131 programs."""
+    state = approached(coarsened(problem(*variant)))
+    assert len(programs) < 50
+    assert state.violation == pytest.approx(least, rel=0.01)
+
+
+def test_limits_that_conflict_are_not_sought_on_more_splines(programs):
+    """The violation, summed over all limits, is within 1 % of the least known."""
+    found = explored(problem(*OFFSET_PUMP), 1)
+    assert len(programs) < 80 and max(programs) == 64
+    assert found.design.stuck and not found.design.feasible
+    assert found.design.violation == pytest.approx(0.3717, rel=0.01)
+    assert found.design.ripple_gain is None
+    assert not found.resolution.settled and found.resolution.coarser is None
+    assert "limits conflict" in found.resolution.sentence
+
+
+def test_a_limit_dearer_than_the_first_penalty_is_kept_all_the_same():
+    """Its violation is no conflict: the linear models lower it, and the penalty is raised."""
+    given = problem(*OFFSET_PUMP)
+    kept = replace(given, left_out=frozenset({"contact_pressure", "torque_reduction"}))
+    end = descended(started(coarsened(kept)), ripple_weight=500.0)
+    assert end.penalty > PENALTY and not end.stuck
+    assert end.state.violation < 1e-5
