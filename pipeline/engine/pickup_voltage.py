@@ -427,7 +427,7 @@ def speed_from_voltage(
 
 def _signals(path: str | Path) -> tuple[str, Array, dict[str, Array]]:
     """Name of a file, times, s, and voltages, V, by column."""
-    text = trace_text(Path(path))
+    text = trace_text(Path(path), "time_s,voltage_V")
     times, volts = columns_of(text.header, "time"), columns_of(text.header, "voltage")
     if len(times) != 1 or not volts:
         limit = "one column of time (s, ms, us) and one or more of voltage (V, mV)"

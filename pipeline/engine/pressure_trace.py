@@ -30,6 +30,8 @@ from camwright.pipeline.torque.trace_file import (
     HeaderText,
     angle_column,
     columns_of,
+    numbered_columns,
+    require_alike,
     trace_text,
 )
 
@@ -41,6 +43,7 @@ BOTTOM_WINDOW = np.radians((170.0, 190.0))  # in which the cylinder is assumed a
 COMPRESSION_WINDOW = np.radians((270.0, 320.0))
 POLYTROPIC_EXPONENT = 1.32
 SCALE_MAX = 2.2  # measured over expected rise in compression; a wrong unit is 10 or more
+UNLIKE = 0.5  # rms difference of columns over the rms about the mean; misfires are near 0.7
 LOSS_ANGLE = radians(0.6)  # typical lead of a motored peak over the dead centre
 
 
@@ -343,7 +346,8 @@ def pressure_from_csv(
     Parameters
     ----------
     path : path
-    column : str                beginning of the headers of the pressure columns
+    column : str                beginning of the headers of the pressure columns; without a header
+                                their numbers, as of `numbered_columns`
     units : (angle, pressure)   of a file without a header, whose first column is the angle
     firing_angle : float        rad, of firing TDC in the file's angles
     gap_max : float             rad, maximum gap between rows
@@ -351,10 +355,11 @@ def pressure_from_csv(
     Raises
     ------
     InputError
-        As `read_trace`; if a cycle is incomplete. `PressureTrace.guarded` checks the values, after
-        pegging.
+        As `read_trace` and `numbered_columns`; if a cycle is incomplete, or columns that are not
+        named are unlike. `PressureTrace.guarded` checks the values, after pegging.
     """
-    text = trace_text(Path(path), headed=units is None)
+    example = "angle_deg,pressure_bar, or engine.angle_unit and engine.pressure_unit"
+    text = trace_text(Path(path), example, headed=units is None)
     name, header = text.name, text.header
     angle_at, angle_factor = angle_column(name, header) if units is None else _bare_angle(units)
     known = ", ".join(QUANTITY_UNITS["pressure"])
@@ -364,7 +369,7 @@ def pressure_from_csv(
         unit = QUANTITY_UNITS["pressure"].get(units[1])
         if unit is None:
             raise InputError("engine.pressure_unit", units[1], f"one of {known}")
-        wanted = dict.fromkeys(range(1, len(header)), unit)
+        wanted = dict.fromkeys(numbered_columns(name, column, len(header)), unit)
     if not wanted:
         limit = f"a column of pressure with its unit ({known})"
         raise InputError(f"{name} header", ", ".join(header), limit)
@@ -375,6 +380,10 @@ def pressure_from_csv(
     spacing = float(np.median(traces[0].spacing))
     count = max(SAMPLES, round(CYCLE_ANGLE / spacing))
     cycles = np.array([trace.uniform(count) for trace in traces])
+    if not column:
+        shapes = cycles.reshape(-1, len(wanted), count).mean(axis=0)
+        shapes = shapes - shapes.mean(axis=1, keepdims=True)
+        require_alike(name, [header[at] for at in wanted], shapes, UNLIKE)
     return PressureTrace(name, cycles, np.zeros(len(cycles))).turned(2.0 * pi - firing_angle)
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Annotated, ClassVar, Literal
@@ -46,9 +46,14 @@ from camwright.pipeline.torque.trace_file import (
     angle_column,
     columns_of,
     has_angle,
+    has_unit,
+    is_series,
+    named_columns,
+    require_alike,
     trace_text,
 )
 
+UNLIKE = 0.2  # rms difference of columns of speed over their rms
 TEETH = 36  # where neither case nor signal states another number
 
 
@@ -142,7 +147,7 @@ def tooth_times(path: str | Path, column: str = "") -> tuple[str, Array]:
     InputError
         As `read_trace`.
     """
-    text = trace_text(Path(path), one_column=True)
+    text = trace_text(Path(path), "time_s", one_column=True)
     wanted = columns_of(text.header, "time", column)
     if not wanted:
         limit = f"a column of time with its unit ({', '.join(QUANTITY_UNITS['time'])})"
@@ -198,7 +203,7 @@ def speed_from_csv(
     InputError
         As `read_trace`, `counted`, `speed_from_edges` and `Calibrator`; if speeds have a reference.
     """
-    text = trace_text(Path(path), one_column=True)
+    text = trace_text(Path(path), "time_s", one_column=True)
     if has_angle(text.header):
         angle, speeds = _speed_table(text, column, unit)
         if calibrator is None:
@@ -254,8 +259,10 @@ def _speed_table(text: TraceText, column: str, unit: str) -> tuple[Array, Array]
     if unit:
         if unit not in QUANTITY_UNITS["speed"]:
             raise InputError("engine.speed_unit", unit, f"one of {known}")
-        bare = [k for k, head in enumerate(header) if head.lower().startswith(column.lower())]
-        wanted = {k: QUANTITY_UNITS["speed"][unit] for k in bare if k != at} | wanted
+        if not wanted:
+            wanted = dict.fromkeys(
+                _without_unit(name, header, column), QUANTITY_UNITS["speed"][unit]
+            )
     if not wanted:
         limit = f"a column of speed with its unit ({known}), or of time"
         raise InputError(f"{name} header", ", ".join(header), limit)
@@ -264,4 +271,17 @@ def _speed_table(text: TraceText, column: str, unit: str) -> tuple[Array, Array]
     angle, values = table[:, 0] * factor, table[:, 1:] * np.array(list(wanted.values()))
     guard_span(name, angle, factor, CYCLE_ANGLE)
     angle, values = without_end(angle, values, CYCLE_ANGLE)
+    if not column:
+        require_alike(name, [header[k] for k in wanted], values.T, UNLIKE)
     return angle, np.asarray(values.T)
+
+
+def _without_unit(name: str, header: Sequence[str], column: str) -> list[int]:
+    """Columns without a unit, of several those named `column` or of one series."""
+    bare = [at for at, head in enumerate(header) if not has_unit(head)]
+    named = named_columns(header, column, bare)
+    if not column and not is_series(header[k] for k in bare):
+        heads = ", ".join(header[k] for k in bare)
+        limit = f"the beginning of the headers of speed in {name}, of {heads}"
+        raise InputError("engine.column", "missing", limit)
+    return named

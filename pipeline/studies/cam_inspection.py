@@ -59,7 +59,7 @@ def read_measured(path: Path) -> Array:
         With file, line, value and limit: if the file is missing, a folder, empty, binary or over
         64 MiB, without these columns, or with a value that is no finite number.
     """
-    text = trace_text(path)
+    text = trace_text(path, ",".join(_PLACES[0]))
     for pair in (*_PLACES, *_POLAR):
         if set(text.header).issuperset(pair):
             first, second = text.numbers([text.header.index(name) for name in pair], gaps=True).T

@@ -131,13 +131,14 @@ def read_trace(
     The first line that is not a comment (`#`) names the columns and their units, in any usual
     form: `crank_angle_deg`, `crank angle [deg]`, `angle (rad)`, `torque_Nm`, `torque [kN m]`.
     Columns are separated by semicolons, tabs or commas; the decimal sign is a point, or a comma
-    where it does not separate columns. Angles increase strictly; if both ends of the period are
-    present, the mean of their values is kept.
+    where it does not separate columns. The units may stand in a second line, and the names in a
+    comment above the rows. Angles increase strictly; if both ends of the period are present, the
+    mean of their values is kept.
 
     Parameters
     ----------
     path : path
-    quantity : str            "torque", "force", "pressure" or "speed"
+    quantity : str            "torque", "force", "pressure", "lift" or "speed"
     column : str, optional    header of the value column, or its beginning; needed if several
                               columns are of the quantity
     period : float            rad
@@ -153,7 +154,8 @@ def read_trace(
     """
     if quantity not in QUANTITY_UNITS:
         raise InputError("quantity", quantity, "one of " + ", ".join(QUANTITY_UNITS))
-    text = trace_text(Path(path))
+    unit = {"lift": "mm", "pressure": "bar"}.get(quantity, next(iter(QUANTITY_UNITS[quantity])))
+    text = trace_text(Path(path), f"angle_deg,{quantity}_{unit}")
     name, header, lines = text.name, text.header, text.line_numbers
     angle_at, angle_factor = angle_column(name, header, part)
     value_at, value_factor = value_column(name, header, quantity, column)

@@ -177,7 +177,7 @@ def press_torque(press: Press, path: str | Path | None = None) -> PressTorque:
         return PressTorque(press, np.array([0.0, press.working_travel]), np.full(2, press.force))
     if path is None:
         raise InputError("torque.file", "missing", "a table of force over travel")
-    text = trace_text(Path(path))
+    text = trace_text(Path(path), "travel_mm,force_kN")
     travel_at, travel_factor = value_column(text.name, text.header, "travel", None)
     force_at, force_factor = value_column(text.name, text.header, "force", press.column or None)
     table = text.numbers((travel_at, force_at)) * np.array([travel_factor, force_factor])

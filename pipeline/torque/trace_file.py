@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import csv
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import zip_longest
 from math import pi
 from pathlib import Path
 from types import MappingProxyType
@@ -96,6 +97,9 @@ QUANTITY_UNITS: Mapping[str, Mapping[str, float]] = MappingProxyType(
     }
 )
 
+_REMARKS = "#", "sep=", "MARK "
+"""Beginnings of lines that are no rows: comments, the separator of a spreadsheet, marks that an
+engine control writes into its log."""
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?", re.ASCII)
 _UNIT_SPELLING = str.maketrans(dict.fromkeys(" ·⋅*.-^_⁻−", "") | {"¹": "1", "º": "°"})
 
@@ -136,7 +140,7 @@ class TraceText:
         header, delimiter = self.header, self.delimiter
         table, row = np.empty((len(self.rows), len(columns))), 0
         for number, line in self.rows:
-            cells = [cell.strip() for cell in _cells(line, delimiter)]
+            cells = _stripped(line, delimiter)
             if len(cells) < len(header) or any(cells[len(header) :]):
                 limit = f"{len(header)} as in the header"
                 raise InputError(f"{self.name} line {number}", f"{len(cells)} cells", limit)
@@ -152,28 +156,72 @@ class TraceText:
         return table[:row]
 
 
-def trace_text(path: Path, *, headed: bool = True, one_column: bool = False) -> TraceText:
+def trace_text(
+    path: Path, example: str, *, headed: bool = True, one_column: bool = False
+) -> TraceText:
     """Text of a trace file.
+
+    The units may stand in a second line of the header, and the header in a comment above the rows.
 
     Parameters
     ----------
-    headed : bool       whether the first line is a header; without, blanks may separate columns
+    example : str       a header for such a file, in the message to who has none
+    headed : bool       whether the first line is a header; without, blanks may separate columns,
+                        which are called column 1, column 2, ...
     one_column : bool   whether a file of one column, without any delimiter, is accepted
 
     Raises
     ------
     InputError
         For a file that is missing, a folder, empty, binary or over 64 MiB, or a header without
-        delimiter.
+        delimiter, or of numbers alone.
     """
-    lines, name = _text_lines(path), path.name
+    (remark, *lines), name = _text_lines(path), path.name
+    if headed and _numeric(lines[0][1]):
+        number, first = lines[0]
+        if _numeric(remark[1]) or len(_parts(remark[1])) != len(_parts(first)):
+            raise InputError(f"{name} line {number}", first, f"a header, such as {example}")
+        lines = [remark, *lines]
     delimiter = _delimiter(name, lines, blanks=not headed, one_column=one_column)
     if headed:
-        header = [cell.strip() for cell in _cells(lines[0][1], delimiter)]
-        return TraceText(name, header, lines[1:], delimiter)
+        header = _stripped(lines[0][1], delimiter)
+        units = _units_below(header, _stripped(lines[1][1], delimiter)) if len(lines) > 1 else []
+        named = [
+            f"{text} [{unit}]" if unit else text
+            for text, unit in zip_longest(header, units, fillvalue="")
+        ]
+        return TraceText(name, named, lines[2:] if units else lines[1:], delimiter)
     rows = [(number, line.rstrip(f"{delimiter} ")) for number, line in lines]
     count = len(_cells(rows[0][1], delimiter))
     return TraceText(name, [f"column {at + 1}" for at in range(count)], rows, delimiter)
+
+
+def _units_below(header: Sequence[str], second: Sequence[str]) -> list[str]:
+    """Units of the columns in a second line of the header; none if the line is no such line."""
+    units = [re.sub(r"^[\[({](.*)[\])}]$", r"\1", cell) for cell in second]
+    known = ANGLE_UNITS, *QUANTITY_UNITS.values()
+    if len(units) != len(header) or any(_is_number(unit) for unit in units):
+        return []
+    seen = (unit_factor(f"[{unit}]", each) for unit in units for each in known)
+    return units if any(factor is not None for factor in seen) else []
+
+
+def _stripped(line: str, delimiter: str) -> list[str]:
+    return [cell.strip() for cell in _cells(line, delimiter)]
+
+
+def _parts(line: str) -> list[str]:
+    """Texts between delimiters of any kind."""
+    return [part for part in re.split(r"[;\t, ]+", line) if part]
+
+
+def _numeric(line: str) -> bool:
+    """Whether a line holds numbers alone."""
+    return all(_is_number(part) for part in _parts(line))
+
+
+def _is_number(cell: str) -> bool:
+    return bool(_NUMBER.fullmatch(cell.strip(' "').replace(",", ".")))
 
 
 def _delimiter(
@@ -192,7 +240,8 @@ def _delimiter(
 
 
 def _text_lines(path: Path) -> list[tuple[int, str]]:
-    """Lines of a text file with their numbers from 1, without empty lines and comments."""
+    """Lines of a text file with their numbers from 1, without empty lines and comments; before
+    them the last comment above the first, empty without one."""
     raw = _bytes(path)
     if raw.startswith((b"\xff\xfe", b"\xfe\xff")):
         raw = raw.decode("utf-16", errors="replace").encode()
@@ -201,12 +250,14 @@ def _text_lines(path: Path) -> list[tuple[int, str]]:
     count = raw.count(b"\n")
     if count > ROWS_MAX:
         raise InputError(path.name, f"{count} lines", f"{ROWS_MAX} lines or fewer")
-    lines = []
+    lines = [(0, "")]
     for number, coded in enumerate(raw.removeprefix(b"\xef\xbb\xbf").splitlines(), start=1):
         line = _decoded(coded).strip(" ")
-        if line.strip() and not line.lstrip('"').startswith(("#", "sep=")):
+        if line.strip() and not line.lstrip('"').startswith(_REMARKS):
             lines.append((number, line))
-    if not lines:
+        elif len(lines) == 1 and line.startswith("#"):
+            lines = [(number, line.strip("# "))]
+    if len(lines) == 1:
         raise InputError(path.name, "an empty file", "a header and rows")
     return lines
 
@@ -247,7 +298,7 @@ def _cells(line: str, delimiter: str) -> list[str]:
     return next(csv.reader([line], delimiter=delimiter))
 
 
-def _unit(header: str, units: Mapping[str, float]) -> float | None:
+def unit_factor(header: str, units: Mapping[str, float]) -> float | None:
     """Factor to SI of the unit at the end of a header: the text in its brackets, else the shortest
     ending that is a unit, so that `M_Nm` is a moment in N m."""
     bracketed = re.search(r"[\[({](.*)[\])}]\s*$", header)
@@ -266,10 +317,85 @@ def _unit(header: str, units: Mapping[str, float]) -> float | None:
     return None
 
 
-def columns_of(header: Sequence[str], quantity: str, prefix: str = "") -> dict[int, float]:
-    """Columns of a quantity whose header begins with `prefix`, and their factors to SI."""
+def has_unit(header: str) -> bool:
+    """Whether a header is a name and a unit of any quantity; `n` is a name."""
+    known = ANGLE_UNITS, *QUANTITY_UNITS.values()
+    name = re.search(r"[\s_/:\[({]", header)
+    return name is not None and any(unit_factor(header, units) is not None for units in known)
+
+
+def columns_of(header: Sequence[str], quantity: str, column: str = "") -> dict[int, float]:
+    """Columns of a quantity, those of the name `column` alone, and their factors to SI."""
     factors = _with_unit(header, QUANTITY_UNITS[quantity])
-    return {at: f for at, f in factors.items() if header[at].lower().startswith(prefix.lower())}
+    return {at: factors[at] for at in named_columns(header, column, factors)}
+
+
+def named_columns(header: Sequence[str], column: str, among: Iterable[int]) -> list[int]:
+    """Those of some columns whose header is `column`, a unit in brackets apart, else begins so."""
+    wanted, places = column.lower(), list(among)
+    exact = [at for at in places if wanted in {(name := header[at].lower()), without_unit(name)}]
+    return exact or [at for at in places if header[at].lower().startswith(wanted)]
+
+
+def numbered_columns(field: str, column: str, count: int) -> list[int]:
+    """Columns of a file without a header by their numbers from 1, `2` or `2 to 9`, from 0.
+
+    Without any the second of two.
+
+    Parameters
+    ----------
+    field : str    names the file in messages
+    count : int    columns of the file, the first of them the angle
+
+    Raises
+    ------
+    InputError
+        If there are no such columns, or several of which none is named.
+    """
+    if not column and count == 2:
+        return [1]
+    named = re.fullmatch(r"(?:column )?(\d{1,6})(?: ?(?:to|-) ?(\d{1,6}))?", column)
+    first, last = (int(each or named[1]) for each in named.groups()) if named else (0, 0)
+    if not 2 <= first <= last <= count:
+        span = f"from 2 to {count}" if count > 1 else "of which there is none"
+        limit = f'the number of a column {span} of {field}, or several as "2 to {max(count, 3)}"'
+        raise InputError("engine.column", column or "missing", limit)
+    return list(range(first - 1, last))
+
+
+def is_series(labels: Iterable[str]) -> bool:
+    """Whether headers are alike but for numbers in them."""
+    return len({re.sub(r"\d+", "", label) for label in labels}) < 2
+
+
+def require_alike(name: str, labels: Sequence[str], values: Array, limit: float) -> None:
+    """Refuse columns of one quantity that are no runs of it, where none is named.
+
+    Parameters
+    ----------
+    name : str             of the file
+    labels : sequence      headers (m,)
+    values : array (m, n)  over the same angles
+    limit : float          greatest rms difference from the greatest column, over its rms; headers
+                           alike but for numbers are those of runs in any case
+
+    Raises
+    ------
+    InputError
+        By the headers of two columns.
+    """
+    sizes = np.linalg.norm(values, axis=1)
+    first = int(sizes.argmax())
+    unlike = np.linalg.norm(values - values[first], axis=1) > limit * sizes[first]
+    if unlike.any() and not is_series(labels):
+        other = labels[int(unlike.argmax())]
+        must = f"the beginning of the headers to read in {name}: {labels[first]} is unlike {other}"
+        raise InputError("engine.column", "missing", must)
+
+
+def without_unit(header: str) -> str:
+    """A header without a unit in brackets at its end."""
+    return re.sub(r"\s*[\[({][^\[({]*[\])}]\s*$", "", header)
 
 
 def has_angle(header: Sequence[str]) -> bool:
@@ -279,7 +405,7 @@ def has_angle(header: Sequence[str]) -> bool:
 
 def _with_unit(header: Sequence[str], units: Mapping[str, float]) -> dict[int, float]:
     """Columns whose header ends with one of the units, and their factors to SI."""
-    factors = {at: _unit(text, units) for at, text in enumerate(header)}
+    factors = {at: unit_factor(text, units) for at, text in enumerate(header)}
     return {at: factor for at, factor in factors.items() if factor is not None}
 
 
@@ -307,8 +433,7 @@ def value_column(
     factors = _with_unit(header, QUANTITY_UNITS[quantity])
     columns = list(factors)
     if column is not None:
-        columns = [at for at in columns if header[at].lower().startswith(column.lower())]
-        columns = [at for at in columns if header[at] == column] or columns
+        columns = named_columns(header, column, columns)
     for word in (quantity, "total"):
         if len(columns) > 1:
             columns = [at for at in columns if word in header[at].lower()] or columns

@@ -274,7 +274,7 @@ def _cycle(path: Path, cycle: str | float | None) -> float:
     """Angle of the cycle, rad; that of the table where it is not given."""
     if cycle is not None:
         return _number(cycle, "deg", "--cycle", above=0.0)
-    text = trace_text(path)
+    text = trace_text(path, "angle_deg,torque_Nm")
     at, factor = angle_column(text.name, text.header)
     written = text.numbers((at,))[:, 0]
     guard_order(text.name, text.line_numbers, written, text.header[at])

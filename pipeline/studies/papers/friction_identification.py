@@ -14,6 +14,12 @@ from scipy.optimize import least_squares
 
 from camwright.geometry.arrays import Array, finite, freeze
 from camwright.geometry.errors import InputError
+from camwright.pipeline.torque.trace_file import (
+    ANGLE_UNITS,
+    QUANTITY_UNITS,
+    trace_text,
+    unit_factor,
+)
 
 GRAVITY = 9.80665
 ROWS_MIN = 20
@@ -153,21 +159,26 @@ def from_run_down(time: ArrayLike, speed: ArrayLike, inertia: float) -> Identifi
 
 
 def read_decay(path: str | Path) -> tuple[Array, Array]:
-    """Time (s) and angle (rad) or speed (rad/s) from a CSV file of two columns with a heading.
+    """Time (s) and angle (rad) or speed (rad/s) from a CSV file of two columns with a header.
+
+    Columns whose header has no unit are in s, rad and rad/s.
 
     Raises
     ------
     InputError
-        If the file is not such a table.
+        If the file is not such a table; see `trace_text`.
     """
-    path = Path(path)
-    try:
-        table = np.loadtxt(path, delimiter=",", skiprows=1, ndmin=2)
-    except (OSError, ValueError) as error:
-        raise InputError(str(path), str(error), "a CSV of two columns of numbers") from None
-    if table.shape[1:] != (2,):
-        raise InputError(str(path), f"{table.shape[1]} columns", "two: time in s, rad or rad/s")
-    return table[:, 0], table[:, 1]
+    text = trace_text(Path(path), "time_s,speed_rad/s")
+    if len(text.header) != 2:
+        raise InputError(text.name, f"{len(text.header)} columns", "two: time in s, rad or rad/s")
+    first, second = text.header
+    signal = ANGLE_UNITS, QUANTITY_UNITS["speed"]
+    factors = [
+        unit_factor(first, QUANTITY_UNITS["time"]) or 1.0,
+        next((factor for known in signal if (factor := unit_factor(second, known))), 1.0),
+    ]
+    time, values = (text.numbers((0, 1)) * factors).T
+    return time, values
 
 
 def _signal(time: ArrayLike, values: ArrayLike) -> tuple[Array, Array]:
