@@ -9,6 +9,7 @@ import gc
 import os
 import signal
 import sys
+import traceback
 from typing import Annotated, NoReturn
 
 import typer
@@ -28,7 +29,15 @@ from camwright.pipeline.commands import (
     size_command,
     study_command,
 )
-from camwright.pipeline.commands.terminal import ALTERED, ERROR, INTERRUPTED, PASSED, say, stdout
+from camwright.pipeline.commands.terminal import (
+    ALTERED,
+    ERROR,
+    INTERRUPTED,
+    PASSED,
+    say,
+    stdout,
+    tell,
+)
 
 # Parallel by processes; one thread also fixes the order of sums. Set before numpy is imported.
 for _variable in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
@@ -96,9 +105,9 @@ def main() -> NoReturn:
         code = leaving.exit_code
     except (KeyboardInterrupt, typer.Abort):
         code = INTERRUPTED
-    except Exception as error:
+    except Exception as error:  # noqa: BLE001 - every error ends in a message and its exit code
         if "--debug" in sys.argv:
-            raise
+            tell(traceback.format_exc())
         say("; ".join((_describe(error), *getattr(error, "__notes__", ()))))
         code = ALTERED if isinstance(error, AlteredError) else ERROR
     if code == INTERRUPTED:  # returned or raised by the parser

@@ -27,6 +27,7 @@ from typing import (
 
 from camwright.geometry.errors import InputError
 from camwright.pipeline.base import units
+from camwright.pipeline.base.printed_text import is_printed
 
 if TYPE_CHECKING:
     import numpy as np
@@ -186,9 +187,6 @@ class Count:
             raise InputError(field, value, f">= {self.at_least} and <= {self.at_most}")
 
 
-_NOT_PRINTED = "\n\t\u200c\u200d\u200e\u200f"  # line ends, joiners, marks of direction
-
-
 @dataclass(frozen=True)
 class Characters:
     """Marks a str field: printable text, its number of characters within bounds.
@@ -227,7 +225,7 @@ class Characters:
 
 
 def _is_printable(text: str) -> bool:
-    return all(character.isprintable() or character in _NOT_PRINTED for character in text)
+    return all(map(is_printed, text))
 
 
 @dataclass(frozen=True)

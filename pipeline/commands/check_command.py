@@ -23,6 +23,7 @@ from camwright.pipeline.commands.terminal import (
     show_all,
     show_failures,
     show_json,
+    show_text,
     stdout,
 )
 
@@ -242,7 +243,7 @@ def _show_missing(target: Path, checks: Sequence[CheckRecord]) -> None:
 
     needed, optional = (missing_keys(checks, must_have=each) for each in (True, False))
     text = added_text(needed, optional, read_case(_case_of(target)).materials)
-    print(text, end="")  # noqa: T201 - rich would wrap it
+    show_text(text.removesuffix("\n"))
 
 
 class _Judged(NamedTuple):

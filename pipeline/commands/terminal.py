@@ -8,11 +8,13 @@ import textwrap
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, TextIO
 
 import typer
-from rich.console import Console
+from rich.console import Console, ConsoleOptions, RenderableType
+from rich.segment import Segment
 
+from camwright.pipeline.base.printed_text import with_escapes
 from camwright.pipeline.base.progress import Bars, Lines, Progress
 
 if TYPE_CHECKING:
@@ -26,7 +28,17 @@ WIDTH = 100
 """Columns of a line in a file or pipe; a path that is longer stays whole."""
 
 
-class _Output(Console):
+class _Console(Console):
+    """Console of which no text steers the terminal, whoever wrote it."""
+
+    def render(
+        self, renderable: RenderableType, options: ConsoleOptions | None = None
+    ) -> Iterator[Segment]:
+        for text, style, control in super().render(renderable, options):
+            yield Segment(text if control else with_escapes(text), style, control)
+
+
+class _Output(_Console):
     """Console that wraps a text between words in a file; a terminal wraps it itself."""
 
     def print(self, *objects: Any, **options: Any) -> None:
@@ -51,7 +63,7 @@ def _wrapped(text: str) -> str:
 
 
 stdout = _Output(highlight=False, soft_wrap=True, width=None if sys.stdout.isatty() else WIDTH)
-stderr = Console(stderr=True, highlight=False, soft_wrap=True)
+stderr = _Console(stderr=True, highlight=False, soft_wrap=True)
 
 CaseArgument = Annotated[Path, typer.Argument(metavar="CASE", help="Case file (TOML).")]
 DirArgument = Annotated[Path, typer.Argument(metavar="DIR", help="Run folder.")]
@@ -59,13 +71,30 @@ NoCacheOption = Annotated[bool, typer.Option("--no-cache", help="Do not use the 
 
 
 def say(text: str) -> None:
-    """Print a line on the error stream."""
-    print(f"camwright: {text}", file=sys.stderr)  # noqa: T201 - rich would parse markup
+    """Print a message on the error stream."""
+    tell(f"camwright: {text}")
+
+
+def tell(text: str) -> None:
+    """Print text on the error stream at once."""
+    _print(text, sys.stderr)
+
+
+def show_text(text: str) -> None:
+    """Print text on the output stream, unwrapped."""
+    _print(text, sys.stdout)
 
 
 def show_json(document: object) -> None:
-    """Print a document as JSON on the output stream."""
-    print(json.dumps(document, indent=2, ensure_ascii=False))  # noqa: T201 - rich would wrap it
+    """Print a document as JSON on the output stream.
+
+    Characters that steer a terminal, which stand in strings alone, are escaped as JSON has it.
+    """
+    show_text(with_escapes(json.dumps(document, indent=2, ensure_ascii=False), json.dumps))
+
+
+def _print(text: str, stream: TextIO) -> None:
+    print(with_escapes(text), file=stream, flush=True)  # rich would parse and wrap it
 
 
 def use_cache(enabled: bool) -> None:
@@ -83,7 +112,7 @@ def progress_shown() -> Iterator[Progress]:
         with Bars(stderr) as bars:
             yield bars
     else:
-        yield Lines(lambda text: print(text, file=sys.stderr, flush=True))  # noqa: T201
+        yield Lines(tell)
 
 
 def page_of(folder: Path) -> str:

@@ -5,17 +5,22 @@ The page, its scripts, the PDF and the scene have such tests beside their own.
 
 from __future__ import annotations
 
+import io
 import json
+import os
 import sys
 import tomllib
 import xml.etree.ElementTree as ET
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "unit"))
 import small_run
+from rich.table import Table
 from small_machine import small_machine
 
 from camwright.geometry.arrays import uniform_turn
@@ -24,6 +29,7 @@ from camwright.geometry.lift import Lift
 from camwright.meshes.gmsh_mesher import session
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_file import parse_case
+from camwright.pipeline.commands import terminal
 from camwright.pipeline.results import run_reader, signoff
 from camwright.pipeline.results.junit_report import junit, junit_suite
 from camwright.pipeline.results.run_folder import RunFolder
@@ -113,3 +119,117 @@ def test_what_steers_a_terminal_or_turns_a_text_round_is_refused(letter: str) ->
     escaped = json.dumps(f"a{letter}b")
     with pytest.raises(InputError, match="printable text"):
         parse_case(small_machine("part").replace('"What is this design for?"', escaped))
+
+
+STEERING = "\x1b[31m\x1b]0;title\x07\x9b2J\r\x7f\u202e\x00"
+"""Colour, title of the window, bell, clearing, carriage return, delete, override, nothing."""
+NAME = STEERING.replace("\x00", "")  # of a file
+RAW = "\x1b[31m\x1b]0;title\x07\x9b2J"  # in a text file, within a line
+WRITTEN = "\x1b[31m\u202e"  # what no message may shorten away
+
+
+def assert_steers_nothing(*texts: str) -> None:
+    for text in texts:
+        assert not {c for c in text if not c.isprintable()} - {"\n"}, ascii(text)
+
+
+@pytest.mark.parametrize(
+    ("was", "becomes"),
+    [
+        ("[follower]", f"[{json.dumps(WRITTEN)}]\n[follower]"),
+        ("[follower]", f"[follower]\n{json.dumps(WRITTEN)} = 1"),
+        ("[follower]", f"[follower]\nkind = {json.dumps(WRITTEN)}"),
+        ("[follower]", f"[follower]\nviscous_damping = {json.dumps('1 ' + WRITTEN)}"),
+        ("[follower]", f"[follower]\nexternal_force_file = {json.dumps(WRITTEN)}"),
+        ("[cam]", f"[cam]\nmaterial = {json.dumps(WRITTEN)}"),
+        ("[cam]", f"[cam]\nsource = {json.dumps(WRITTEN)}"),
+        ("[[load_case]]", f"[sources]\n{json.dumps(WRITTEN)} = 'x'\n\n[[load_case]]"),
+        ("schema_version", f"{json.dumps(WRITTEN)}.x = {json.dumps(WRITTEN)}\nschema_version"),
+        ("schema_version", f"# {WRITTEN}\nschema_version"),
+    ],
+)
+def test_no_word_of_a_case_file_steers_the_terminal(
+    was: str, becomes: str, tmp_path: Path, command: Callable[..., tuple[int, str, str]]
+) -> None:
+    text = small_machine("part")
+    assert was in text
+    file = tmp_path / "case.toml"
+    file.write_text(text.replace(was, becomes, 1), encoding="utf-8")
+    for words in (["check", file], ["check", file, "--json"], ["explain", WRITTEN]):
+        code, out, err = command(*words)
+        assert code == 2
+        assert_steers_nothing(out, err)
+
+
+@pytest.mark.parametrize("name", [NAME, os.fsdecode(b"no\xffutf8")])
+def test_no_name_of_a_file_steers_the_terminal(
+    name: str, tmp_path: Path, command: Callable[..., tuple[int, str, str]]
+) -> None:
+    folder = tmp_path / name
+    folder.mkdir()
+    (folder / "case.toml").write_text("schema_version = 2", encoding="utf-8")
+    table, keys = folder / f"{name}.csv", folder / "key"
+    table.write_text(f"angle {RAW},torque {RAW}\n1,2{RAW}\n", encoding="utf-8")
+    absent = folder / "absent"
+    for words in (
+        ["check", absent], ["check", folder / "case.toml"], ["check", folder], ["run", absent],
+        ["report", folder], ["sign", folder], ["inspect", folder, table], ["deck", folder],
+        ["size", absent], ["study", absent], ["redesign", absent], ["crown", absent],
+        ["design", table, "--speed", "100 rpm", "--out", folder / "made.toml"],
+        ["keygen", keys], ["keygen", keys], [name], ["check", f"--{name}"],
+    ):  # fmt: skip
+        _, out, err = command(*words)
+        assert out or err, words
+        assert_steers_nothing(out, err)
+
+
+def test_no_line_of_a_data_file_or_study_steers_the_terminal(
+    tmp_path: Path, command: Callable[..., tuple[int, str, str]]
+) -> None:
+    table, study = tmp_path / "table.csv", tmp_path / "study.toml"
+    for header, row in ((f"{RAW}a,{RAW}b", "1,2"), ("crank_angle_deg,torque_Nm", f"1,2{RAW}")):
+        table.write_text(f"{header}\n{row}\n" * 2, encoding="utf-8")
+        code, out, err = command(
+            "design", table, "--speed", "100 rpm", "--out", tmp_path / "made.toml"
+        )
+        assert code == 2
+        assert_steers_nothing(out, err)
+    study.write_text(f"{json.dumps(WRITTEN)} = 1\n", encoding="utf-8")
+    code, out, err = command("study", study)
+    assert code == 2
+    assert_steers_nothing(out, err)
+
+
+def test_no_word_of_a_run_steers_the_terminal(
+    tmp_path: Path, command: Callable[..., tuple[int, str, str]]
+) -> None:
+    """Also of a run whose records were written by another program than this one."""
+    run = tmp_path / "run"
+    words = {"title": STEERING, "note": STEERING, "source": STEERING, "method": STEERING}
+    with RunFolder(run, case()) as folder:
+        small_run.write_trial(folder, [
+            small_run.check(status, id=f"one_{status}", **words)
+            for status in ("pass", "fail", "not_evaluated")
+        ])  # fmt: skip
+        folder.finish(small_run.summary("fail") | {"binding": [f"one{STEERING}"]})
+    for options in ([], ["--all"], ["--json"], ["--missing"], ["--verify-record"]):
+        _, out, err = command("check", run, *options)
+        assert out or err
+        assert_steers_nothing(out, err)
+    document = json.loads(command("check", run, "--json")[1])
+    assert STEERING in {check["title"] for check in document["checks"]}  # whole, to a program
+
+
+def test_bars_and_tables_on_a_terminal_have_their_own_escapes_alone() -> None:
+    table = Table(STEERING)
+    table.add_row(STEERING, style="red")
+    screen = io.StringIO()
+    console = terminal._Console(force_terminal=True, file=screen, color_system="standard")
+    options: dict[str, Any] = {"markup": False}
+    console.print(table, STEERING, f"a {STEERING}", **options)
+    with terminal.Bars(console) as bars:
+        bars.stage(STEERING)
+        bars.note(STEERING)
+    written = screen.getvalue()
+    assert "\x1b[31m" in written  # the red of the row
+    assert not any(sign in written for sign in ("\x1b]", "\x9b", "\x07", "\x7f", "\u202e"))
