@@ -10,6 +10,7 @@ from collections.abc import Callable, Iterable, Mapping
 from itertools import groupby
 from pathlib import Path
 
+from camwright.pipeline.base.missing_kinds import MISSING_KINDS
 from camwright.pipeline.base.tables import Column
 from camwright.pipeline.case.case_file import read_case
 from camwright.pipeline.case.keys import (
@@ -148,6 +149,15 @@ def model_limits() -> str:
     return "\n".join(f"- {each.statement}" for each in MODEL_LIMITS)
 
 
+def missing_kinds() -> str:
+    """Kinds that are not done, the words of a case file that name them, and what comes nearest."""
+    rows = (
+        (each.name.rstrip(","), each.area, ", ".join(each.words), each.instead)
+        for each in MISSING_KINDS
+    )
+    return markdown(("not done", "part", "called in a case file", "nearest to it"), rows)
+
+
 def screening() -> str:
     """Checks that screening judges, with the deviation of each from the preview."""
     rows = []
@@ -242,6 +252,7 @@ def study_keys() -> str:
 
 TABLES: Mapping[str, Callable[[], str]] = {
     "limits": limits,
+    "missing_kinds": missing_kinds,
     "checks": checks,
     "columns": columns,
     "arrays": arrays,

@@ -6,6 +6,7 @@ In the order of use:
 | ------------------ | -------------------------------------------------------- | ---------------- |
 | `units`            | unit strings to SI and back; units of column names       |                  |
 | `printed_text`     | text with escapes for what steers a terminal             |                  |
+| `missing_kinds`    | kinds of cams, followers and springs that are not done   |                  |
 | `quantities`       | quantities of an input: unit and bounds of a field       | SI               |
 | `material`         | material card: elastic constants, strengths, source      | E, Pa; nu; S, Pa |
 | `external_force`   | force over the cam angle, linear between samples         | F_e, N           |

@@ -6,15 +6,33 @@ below ``[added.guides.a]`` is added to the table of that name, wherever in the f
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from copy import deepcopy
+from dataclasses import replace
 from itertools import groupby
+from pathlib import Path
+from typing import Any
 
 import tomli_w
 
 from camwright.geometry.errors import InputError
 from camwright.pipeline.base.material import Material
-from camwright.pipeline.case.keys import TABLE, Key, case_keys, keys_at, keys_in
+from camwright.pipeline.case.cards.card_filling import fill_cards, known_cards
+from camwright.pipeline.case.case import Case
+from camwright.pipeline.case.case_values import steps_of
+from camwright.pipeline.case.error_text import MissingKeysError, Written, grouped
+from camwright.pipeline.case.keys import (
+    MATERIAL,
+    NAME,
+    REQUIRED,
+    TABLE,
+    Key,
+    case_keys,
+    keys_at,
+    keys_in,
+    sections,
+)
+from camwright.pipeline.case.scope_section import is_stand_in
 from camwright.pipeline.case.toml_text import Tables, TomlValue
 
 ADDED = "added"
@@ -79,6 +97,22 @@ def added_text(
     return "\n".join(parts) or NOTHING
 
 
+def _completing(rows: Sequence[tuple[str, Key]]) -> str:
+    """Tables ``[[added]]`` with an example for each key that a case cannot be read without.
+
+    Keys of a row of a list, which no added table reaches, stand in comments.
+
+    Parameters
+    ----------
+    rows : sequence   dotted path and key of each, in the order of a case file
+    """
+    reached = [row for row in rows if "[" not in row[0]]
+    text = _HEAD + (_block(reached, {}) if reached else "")
+    return text + "".join(
+        f"# {path.rpartition('.')[0]}: {line_of(key)}\n" for path, key in rows if "[" in path
+    )
+
+
 def _rows(paths: Iterable[str]) -> list[tuple[str, Key]]:
     """Paths with their keys in the order of a case file; a table as the keys that it needs."""
     rows: dict[str, Key] = {}
@@ -139,3 +173,90 @@ def _card_of(table: str, materials: Mapping[str, Material]) -> str:
     *parents, name = table.split(".")
     card = materials.get(name) if parents == ["materials"] else None
     return name if card is not None and card.source.startswith(f"card {name}: ") else ""
+
+
+_WORTH = 2  # least number of required keys that a card spares
+_SAME = {f"guides.{side}.diameter": "follower.stem_diameter" for side in "ab"}
+"""Keys whose example is the value of another."""
+
+Rows = dict[str, Key]
+"""Keys by their dotted paths."""
+
+
+def with_examples(error: MissingKeysError, tables: Tables, folder: Path | None) -> MissingKeysError:
+    """The refusal of a case with all the required keys that it lacks, and an example of each.
+
+    Parameters
+    ----------
+    tables : dict   resolved tables of the case, as far as they are there
+    folder : Path   of the case, for its cards; None: shipped cards alone
+    """
+    written = Written(tables)
+    missing = [key for key in error.keys if not is_stand_in(tables, key)]
+    if "roller" not in tables and written.value(("follower", "kind")) != "flat":
+        missing.append("roller")
+    rows = {path: key for each in missing for path, key in _within(each)}
+    for path, other in _SAME.items():
+        if path in rows:
+            like = rows[other].example if other in rows else written.value(steps_of(other))
+            rows[path] = rows[path] if like is None else replace(rows[path], example=like)
+    rows |= _materials(rows, written, folder)
+    order = {key.path: place for place, key in enumerate(case_keys())}
+    rows = dict(sorted(rows.items(), key=lambda row: (order[row[1].path], row[0])))
+    listed = grouped({path: line_of(key) for path, key in rows.items()})
+    return MissingKeysError(tuple(rows), listed, _completing(list(rows.items())))
+
+
+def _within(path: str) -> Iterator[tuple[str, Key]]:
+    """A key, or the required keys of a table in place of it."""
+    keys = keys_at(path)
+    if not keys or keys[0].accepted != TABLE:
+        yield from ((path, key) for key in keys[:1])
+        return
+    required = [key for key in keys_in(path) if key.default == REQUIRED]
+    if keys[0].header.startswith("[["):
+        row: TomlValue = [{key.name: key.example for key in required}]
+        yield path, replace(keys[0], example=row)
+        return
+    spared: Tables = {}
+    for card in keys_at(f"{path}.card")[:1]:
+        filled = _filled(path, card)
+        if sum(key.name in filled for key in required) >= _WORTH:
+            yield f"{path}.card", card
+            spared = filled
+    yield from ((f"{path}.{key.name}", key) for key in required if key.name not in spared)
+    for name, field in _section(path).model_fields.items():
+        if field.is_required():
+            for key in keys_at(f"{path}.{field.alias or name}")[:1]:
+                if key.accepted == TABLE:
+                    yield from _within(key.path)
+
+
+def _filled(path: str, card: Key) -> Tables:
+    """The table of a path as its example card fills it."""
+    tables: Any = {card.name: card.example}
+    table = tables
+    for step in reversed(path.split(".")):
+        tables = {step: tables}
+    fill_cards(tables, None)
+    return dict(table)
+
+
+def _section(path: str) -> type[Any]:
+    return next(each.section for each in sections(Case, "") if each.path == path)
+
+
+def _materials(rows: Rows, written: Written, folder: Path | None) -> Rows:
+    """Cards of the materials that rows and case name, and the case does not have."""
+    stated = written.value(("materials",))
+    known, shipped = stated if isinstance(stated, dict) else {}, known_cards(folder)["materials"]
+    names: Iterable[object] = (
+        *(key.example for key in rows.values() if key.accepted == MATERIAL),
+        *(written.value(key.path.split(".")) for key in case_keys() if key.accepted == MATERIAL),
+    )
+    (card,) = keys_at(f"materials.{NAME}.card")
+    return {
+        f"materials.{name}.card": replace(card, example=name) if name in shipped else card
+        for name in names
+        if isinstance(name, str) and name not in known
+    }

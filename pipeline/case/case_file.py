@@ -14,16 +14,17 @@ from camwright.pipeline.base import units
 from camwright.pipeline.base.files import inside, parse_toml
 from camwright.pipeline.base.material import Material
 from camwright.pipeline.base.quantities import In
-from camwright.pipeline.case.added_tables import with_added
+from camwright.pipeline.case.added_tables import with_added, with_examples
 from camwright.pipeline.case.cards.card_filling import fill_cards
 from camwright.pipeline.case.cards.part_table import read_part
 from camwright.pipeline.case.case import Case, includes, kept_as
 from camwright.pipeline.case.case_values import quantity_of, refused_as_written, steps_of
 from camwright.pipeline.case.consistency import check_sections
-from camwright.pipeline.case.error_text import Written, first_error
+from camwright.pipeline.case.error_text import MissingKeysError, Written, first_error
 from camwright.pipeline.case.external_load import external_force
 from camwright.pipeline.case.given_lift import given_lift
 from camwright.pipeline.case.renamed_keys import with_new_keys
+from camwright.pipeline.case.scope_section import with_stand_ins
 from camwright.pipeline.case.section import named
 from camwright.pipeline.case.toml_text import Tables, TomlValue, tables_of
 
@@ -87,12 +88,16 @@ def completed(case: Case, folder: Path | None) -> Case:
 
 def case_of(data: Tables, folder: Path | None = None) -> Case:
     """A case from its tables and the cards of `folder`; included files are not read."""
-    return validated(resolved(data, folder))
+    tables = resolved(data, folder)
+    try:
+        return validated(tables)
+    except MissingKeysError as error:
+        raise with_examples(error, tables, folder) from None
 
 
 def resolved(data: Tables, folder: Path | None = None) -> Tables:
-    """Tables of a case with those added and the keys of its cards."""
-    tables = with_new_keys(with_added(data))
+    """Tables of a case with those added, stand-ins of parts out of scope and keys of its cards."""
+    tables = with_stand_ins(with_new_keys(with_added(data)))
     fill_cards(tables, folder)
     return tables
 

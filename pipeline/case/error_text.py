@@ -9,6 +9,7 @@ from typing import Any
 from pydantic import ValidationError
 
 from camwright.geometry.errors import InputError
+from camwright.pipeline.base.missing_kinds import missing_kind
 from camwright.pipeline.base.quantities import PURE
 from camwright.pipeline.base.units import rounded
 from camwright.pipeline.case.engine_section import KINDS
@@ -17,6 +18,7 @@ from camwright.pipeline.case.toml_text import Tables, TomlValue
 from camwright.pipeline.case.torque_section import TORQUE_KINDS
 
 _NUMBERS = ("a whole number", PURE, "true or false")
+_NAMING = ("kind", "law")  # last words of the keys whose values name a kind
 _KINDS = {"engine": KINDS, "torque": TORQUE_KINDS, "lift": LIFT_KINDS}
 _WORDS = {
     "missing": "given",
@@ -68,22 +70,67 @@ def as_written(value: object, digits: int = 4) -> str:
     return rounded(repr(value) if isinstance(value, float) else str(value), digits)
 
 
+class MissingKeysError(InputError):
+    """Required keys that a file leaves out.
+
+    Parameters
+    ----------
+    keys : tuple     dotted, all of them
+    examples : str   lines of TOML with an example each, by their tables; "": none is known
+    toml : str       the same as text to be pasted
+    """
+
+    def __init__(self, keys: tuple[str, ...], examples: str = "", toml: str = "") -> None:
+        self.keys, self.toml = keys, toml
+        limit = "given"
+        if examples:
+            count = f", as all {len(keys)} missing keys" if len(keys) > 1 else ""
+            paste = "camwright check CASE --missing prints them as TOML to be pasted"
+            limit = f"given{count}; with examples: {examples}; {paste}"
+        elif len(keys) > 1:
+            names = {key: key.rpartition(".")[2] for key in keys[1:]}
+            limit = f"given, and so must {grouped(names)}"
+        super().__init__(keys[0], "missing", limit)
+
+
+def grouped(texts: Mapping[str, str]) -> str:
+    """Texts of dotted keys in one line, each table once: ``[cam] width, end; [roller] radius``.
+
+    Parameters
+    ----------
+    texts : mapping   by dotted key, such as its last word, or a line of TOML
+    """
+    tables: dict[str, list[str]] = {}
+    for key, text in texts.items():
+        tables.setdefault(key.rpartition(".")[0], []).append(text)
+    parts = ((f"[{table}] " if table else "", ", ".join(each)) for table, each in tables.items())
+    return "; ".join(f"{table}{each}" for table, each in parts)
+
+
 def first_error(error: ValidationError, section: str = "") -> InputError:
-    """First error in one line; an unknown key comes before a missing one, often its misspelling."""
+    """First error in one line, with the keys of the others.
+
+    An unknown key comes before a missing one, often its misspelling.
+    """
     errors = error.errors(include_url=False)
+    within = {entry["loc"][:k] for entry in errors for k in range(len(entry["loc"]))}
+    # a list without its refused rows is too short, too
+    errors = [each for each in errors if each["type"] != "too_short" or each["loc"] not in within]
     errors.sort(key=lambda entry: "unknown_key" not in entry.get("ctx", {}))
-    first, others = errors[0], len(errors) - 1
-    context = dict(first.get("ctx", {}))
-    key, value = f"{section}.{_dotted(first['loc'])}".strip("."), first["input"]
+    keys = tuple(dict.fromkeys(_key_of(entry, section) for entry in errors))
+    if all(entry["type"] == "missing" for entry in errors):
+        return MissingKeysError(keys)
+    first, key = errors[0], keys[0]
+    context, value = dict(first.get("ctx", {})), first["input"]
+    word = value if isinstance(value, str) else ""
     if "field" in context:
-        key, value = f"{key}.{context['field']}", _stated(first["input"], context)
+        value = _stated(first["input"], context)
+        word = str(value)
     elif "unknown_key" in context:
-        key = f"{key}.{context['unknown_key']}".lstrip(".")
+        word = str(value.get("kind", "")) if context["unknown_key"] == "kind" else ""
         value = "unknown key"
-    elif first["type"] == "missing":
-        value = "missing"
     elif first["type"] == "union_tag_invalid":
-        key, value = f"{key}.kind", context["tag"]
+        value = word = context["tag"]
     if first["type"] == "union_tag_not_found":
         context["kinds"] = " or ".join(f'"{kind}"' for kind in _kinds(first["loc"]))
     quoted = isinstance(value, str)
@@ -92,8 +139,21 @@ def first_error(error: ValidationError, section: str = "") -> InputError:
     limit = _WORDS.get(first["type"], first["msg"]).format_map(context)
     if quoted and limit in _NUMBERS:
         value, limit = f'"{value}"', f"{limit}, not in quotes"
-    more = f" (and {others} more)" if others else ""
-    return InputError(key or "case", as_written(value), f"{limit}{more}")
+    named = key.rpartition(".")[2] in _NAMING or value == "unknown key"
+    kind = missing_kind(key, word) if named else None
+    limit += f"; {kind.sentence}" if kind is not None else ""
+    limit += f" (and {', '.join(keys[1:])})" if keys[1:] else ""
+    return InputError(key or "case", as_written(value), limit)
+
+
+def _key_of(entry: Mapping[str, Any], section: str) -> str:
+    """Dotted key of an error."""
+    context = entry.get("ctx", {})
+    key = f"{section}.{_dotted(entry['loc'])}".strip(".")
+    if entry["type"] == "union_tag_invalid":
+        return f"{key}.kind"
+    inner = context.get("field", context.get("unknown_key", ""))
+    return f"{key}.{inner}".strip(".")
 
 
 def _stated(table: object, context: Mapping[str, Any]) -> object:

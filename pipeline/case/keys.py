@@ -27,6 +27,8 @@ NAME = "NAME"
 REQUIRED = "required"
 TABLE = "table"
 """What a key that is a table accepts."""
+MATERIAL = "name of a material"
+"""What the key of a material accepts."""
 DIGITS = 6
 """Digits of a default."""
 _SAME_TEXTS = {
@@ -237,7 +239,7 @@ def accepted(field: FieldInfo) -> str:
         return " or ".join(f"`{word}`" for word in words)
     names = {
         str: "text", bool: "`true` or `false`", float: "number", int: "whole number",
-        Material: "name of a material",
+        Material: MATERIAL,
     }  # fmt: skip
     leaves = [
         names.get(hint, getattr(hint, "__name__", ""))

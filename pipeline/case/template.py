@@ -10,6 +10,7 @@ import tomllib
 from typing import Literal, NamedTuple, get_args
 
 from camwright.geometry.errors import InputError
+from camwright.pipeline.base.missing_kinds import missing_kind
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_file import case_of
 from camwright.pipeline.case.load_case_torque import engine_torque
@@ -54,7 +55,9 @@ def first_case(name: str, kind: str = "cylinder") -> FirstCase:
         raise InputError("name", name, "1 to 40 letters, digits, '_', '-' or '.'")
     known = next((each for each in KINDS if each == kind), None)
     if known is None:
-        raise InputError("--kind", kind, f"one of: {', '.join(KINDS)}")
+        missing = missing_kind("", kind)
+        listed = f"; {missing.sentence}" if missing is not None else ""
+        raise InputError("--kind", kind, f"one of: {', '.join(KINDS)}{listed}")
     text = _text(name, known)
     if known not in _MEASURED:
         return FirstCase(text, "", "")

@@ -126,6 +126,9 @@ def check(
     patterns, keys = only or [], _trusted_keys(trusted) if verify_record else None
     signatures: Sequence[Signature] = ()
     if len(targets) == 1:
+        if missing and (text := _unreadable_without(targets[0])):
+            show_text(text)
+            return INCOMPLETE
         record = _recorded(targets[0], keys)
         if record.faults or (recompute and not _recomputed(targets[0], angles, seed)):
             return ALTERED
@@ -233,6 +236,19 @@ def schema(
 def _case_of(target: Path) -> Path:
     """The case file of a target of `check`."""
     return target if target.is_file() else target / "case.toml"
+
+
+def _unreadable_without(target: Path) -> str:
+    """TOML of the keys without which a case file cannot be read; "" where it can."""
+    from camwright.pipeline.case.case_file import read_case
+    from camwright.pipeline.case.error_text import MissingKeysError
+
+    try:
+        if target.is_file():
+            read_case(target)
+    except MissingKeysError as error:
+        return error.toml.removesuffix("\n")
+    return ""
 
 
 def _show_missing(target: Path, checks: Sequence[CheckRecord]) -> None:

@@ -38,6 +38,7 @@ def explain(
 
 
 def _explained(word: str) -> str:
+    from camwright.pipeline.base.missing_kinds import missing_kind
     from camwright.pipeline.case.keys import keys_at
     from camwright.pipeline.checks.registry import DECLARED
 
@@ -45,6 +46,9 @@ def _explained(word: str) -> str:
     if word in DECLARED:
         parts.append(_of_check(word))
     if not parts:
+        missing = missing_kind("", word)
+        if missing is not None:
+            return _text(f"{word}: {missing.sentence}", ())
         raise InputError("KEY", word, f"a key or table of a case file, or a check{_closest(word)}")
     return "\n\n".join(parts)
 

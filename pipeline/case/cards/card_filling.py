@@ -15,6 +15,7 @@ from pathlib import Path
 from camwright.geometry.errors import InputError
 from camwright.pipeline.base import units
 from camwright.pipeline.base.files import read_toml
+from camwright.pipeline.base.missing_kinds import missing_kind
 from camwright.pipeline.case.cards.bearing_cards import BearingCard, bearing_keys
 from camwright.pipeline.case.cards.part_table import read_part
 from camwright.pipeline.case.cards.provenance import (
@@ -63,9 +64,10 @@ def _fill_places(case: Tables, folder: Path | None) -> None:
         name = table.pop("card")
         card = cards[kind].get(name) if isinstance(name, str) else None
         if card is None:
-            raise InputError(
-                f"{field}.card", str(name), f"one of: {', '.join(sorted(cards[kind]))}"
-            )
+            missing = missing_kind(field, str(name))
+            listed = f"; {missing.sentence}" if missing is not None else ""
+            limit = f"one of: {', '.join(sorted(cards[kind]))}{listed}"
+            raise InputError(f"{field}.card", str(name), limit)
         place = f"cards.{kind}.{name}"
         words = {key: source_words(card, key, place) for key in numbers_of(card)}
         if kind == "oils":

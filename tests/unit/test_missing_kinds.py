@@ -1,0 +1,120 @@
+"""Kinds that are not done: refused by a sentence that says so and where they are listed."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from small_machine import small_machine
+
+from camwright.geometry.errors import InputError
+from camwright.pipeline.base.missing_kinds import LISTED, MISSING_KINDS, missing_kind
+from camwright.pipeline.case.case_file import parse_case, read_case
+from camwright.pipeline.case.template import first_case
+
+ROOT = Path(__file__).parents[2]
+STRANGERS = ROOT / "tests" / "data" / "strangers" / "14-missing-kinds"
+SENTENCE = {kind.name: kind.sentence for kind in MISSING_KINDS}
+WRITTEN = {
+    "follower": ("[follower]", 'kind = "{}"'),
+    "cam": ("[cam]", 'kind = "{}"'),
+    "spring": ("[spring]", 'kind = "{}"'),
+    "guides": ("[guides.a]", 'card = "{}"'),
+    "drive": ("[engine]", 'kind = "{}"'),
+}
+"""A line of a case file that names a kind, below the table of its part."""
+LIFT = """[lift]
+kind = "segments"
+segment = [{{ law = "{}", angle = "180 deg", stroke = "9 mm" }},
+           {{ law = "cycloidal", angle = "180 deg", stroke = "-9 mm" }}]
+"""
+
+
+def refused(text: str) -> str:
+    with pytest.raises(InputError) as error:
+        parse_case(text)
+    return str(error.value)
+
+
+@pytest.mark.parametrize(
+    ("name", "start", "kind"),
+    [
+        ("osc", "follower.kind = oscillating, must be", "an oscillating (swinging) follower"),
+        ("uni", "lift.segment[0].law = uniform, must be", "constant velocity"),
+        ("cv", "lift.segment[0].law = constant_velocity, must be", "constant velocity"),
+        ("groove", "cam.kind = unknown key, must be", "a groove (track, face) cam"),
+    ],
+)
+def test_kinds_of_strangers_are_refused_by_name(name: str, start: str, kind: str) -> None:
+    with pytest.raises(InputError) as error:
+        read_case(STRANGERS / f"{name}.toml")
+    message = str(error.value)
+    assert message.startswith(start)
+    (sentence,) = (words for each, words in SENTENCE.items() if each.startswith(kind))
+    assert sentence in message
+    assert "is not done" in sentence and LISTED in sentence
+
+
+def written(area: str, word: str) -> str:
+    """The small machine with a word as the kind of a part."""
+    text = small_machine("part")
+    if area == "lift":
+        start, end = text.index("[engine]"), text.index("[mechanism]")
+        return text[:start] + LIFT.format(word) + text[end:]
+    table, line = WRITTEN[area]
+    head, rest = re.split(rf"{re.escape(table)}[^\n]*\n", text, maxsplit=1)
+    stated = f"{line.partition(' = ')[0]} = "
+    own, bracket, others = rest.partition("\n[")
+    kept = "\n".join(each for each in own.split("\n") if not each.startswith(stated))
+    return f"{head}{table}\n{line.format(word)}\n{kept}{bracket}{others}"
+
+
+@pytest.mark.parametrize("kind", MISSING_KINDS, ids=lambda kind: kind.words[0])
+def test_every_word_of_every_kind_is_refused_by_its_sentence(kind) -> None:
+    for word in kind.words:
+        spelt = word.replace("_", "-").title()
+        message = refused(written(kind.area, spelt))
+        assert kind.sentence in message, word
+        assert spelt in message or "unknown key" in message
+
+
+@pytest.mark.parametrize("kind", [each for each in MISSING_KINDS if each.keys],
+                         ids=lambda kind: kind.words[0])  # fmt: skip
+def test_keys_and_tables_of_a_kind_are_refused_by_its_sentence(kind) -> None:
+    tables = {"follower": "[follower]", "cam": "[cam]", "spring": "[spring]", "guides": "[guides]"}
+    for key in kind.keys:
+        table = tables[kind.area]
+        assert kind.sentence in refused(
+            small_machine("part").replace(f"{table}\n", f'{table}\n{key} = "5 mm"\n', 1)
+        ), key
+        assert missing_kind(key, "") is not None
+
+
+def test_what_is_done_and_what_is_misspelt_is_not_called_missing() -> None:
+    for key, word in (
+        ("follower.kind", "roler"), ("lift.segment[0].law", "cycloid"), ("cam.face_width", ""),
+        ("spring.constant", ""), ("follower.weight", ""), ("cam.diameter", ""),
+        ("lift.step", ""), ("engine.kind", "cylinders"), ("sprung", ""),
+    ):  # fmt: skip
+        assert missing_kind(key, word) is None, (key, word)
+
+
+def test_the_first_case_and_explain_know_them(command: Callable[..., tuple[int, str, str]]) -> None:
+    with pytest.raises(InputError, match=r"an oscillating .* is not done"):
+        first_case("demo", "oscillating")
+    code, out, _ = command("explain", "desmodromic")
+    assert code == 0
+    assert "desmodromic (positively driven) cam is not done" in out
+
+
+def test_the_list_in_the_documents_is_this_one() -> None:
+    page = (ROOT / "docs" / "theory.md").read_text(encoding="utf-8")
+    section = page[page.index("## Kinds that are not done") :]
+    rows = [line for line in section.splitlines() if line.startswith("| ")][2:]
+    assert len(rows) == len(MISSING_KINDS)
+    for row, kind in zip(rows, MISSING_KINDS, strict=True):
+        assert row.startswith(f"| {kind.name.rstrip(',')} | {kind.area} | {', '.join(kind.words)}")
+    readme = (ROOT / "README.md").read_text(encoding="utf-8")
+    assert "(docs/theory.md#kinds-that-are-not-done)" in readme
