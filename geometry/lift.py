@@ -111,7 +111,8 @@ class Lift(Displayed):
             where = f"a gap of {gaps.max():.6g} rad after {angle[np.argmax(gaps)]:.6g} rad"
             raise InputError("lift.theta", where, f"without gaps above {GAP_MAX:.6g} rad")
         if not value.min() >= -NEGATIVE_TOLERANCE:
-            raise InputError("lift.values", float(value.min()), ">= 0 m")
+            at = f"{1e3 * value.min():.4g} mm at {np.degrees(angle[value.argmin()]):.4g} deg"
+            raise InputError("lift.values", at, ">= 0 mm; lift.noise fits a measured lift")
         even = uniform_turn(len(angle))
         if np.abs(angle - even).max() <= ANGLE_TOLERANCE:
             return cls(even, value, closure)

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import comb
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from camwright.geometry.arrays import FULL_TURN, Array, finite, freeze, uniform_turn
 from camwright.geometry.errors import InputError
-from camwright.geometry.lift import Lift, one_turn
+from camwright.geometry.lift import NEGATIVE_TOLERANCE, Lift, one_turn
 from camwright.geometry.periodic_spline import DEGREE, LEAST_SAMPLES, interpolant
 
 POINTS_MIN = DEGREE + 1
@@ -18,6 +19,14 @@ _GROWTH = 1.25
 """Ratio of successive numbers of spline parts."""
 _POINTS_PER_PART = 2.0
 """Minimum: fewer would fit the noise."""
+_ORDER = 4
+"""Of the differences from which the noise is estimated: a smooth lift leaves nothing in them."""
+_SIGMA = 1.4826
+"""Standard deviation of a normal distribution over its median magnitude."""
+EVEN = 1e-3
+"""Of a step: departure of angles that count as evenly spaced, the last digit of a table."""
+BELOW_ZERO = 5.0
+"""Depth below zero that errors explain, over their standard deviation: one value of 3e6."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -27,11 +36,13 @@ class FittedLift:
     lift : Lift
     parts : int                 spline parts per turn
     residual : array (n,)       table minus lift, m
+    noise : float               standard deviation of the table's errors, m
     """
 
     lift: Lift
     parts: int
     residual: Array
+    noise: float
 
     def __post_init__(self) -> None:
         freeze(self, residual=self.residual)
@@ -66,7 +77,86 @@ def lift_through(theta: ArrayLike, values: ArrayLike) -> Lift:
         raise InputError("lift.point", f"{len(angle)} points", f">= {POINTS_MIN} points")
     spline = interpolant(np.append(angle, angle[0] + FULL_TURN), value)
     even = uniform_turn(_SAMPLED)
+    _refuse_overshoot(angle, value, even, spline(even))
     return Lift(even, spline(even))
+
+
+def _refuse_overshoot(angle: Array, value: Array, theta: Array, lift: Array) -> None:
+    """Refuse a spline (lift over theta) that falls below zero between points that do not."""
+    depth, place = float(lift.min()), float(theta[lift.argmin()])
+    if depth >= -NEGATIVE_TOLERANCE or value.min() < -NEGATIVE_TOLERANCE:
+        return
+    after = int(np.searchsorted(angle, place)) % angle.size
+    ends = (after - 1) % angle.size, after
+    turned = np.array([0.0, FULL_TURN if after == 0 else 0.0])  # the last point and the first
+    points = " and ".join(
+        f"{np.degrees(angle[k] + turn):.6g} deg ({1e3 * value[k]:.4g} mm)"
+        for k, turn in zip(ends, turned, strict=True)
+    )
+    raise InputError(
+        "lift.point",
+        f"a spline down to {1e3 * depth:.4g} mm",
+        f">= 0 mm: it overshoots at {np.degrees(place):.4g} deg, between the points at {points};"
+        ' write dwells as segments (lift.kind = "segments", law = "dwell") or set more points',
+    )
+
+
+def overshoot(theta: ArrayLike, values: ArrayLike, lift: Lift) -> tuple[float, float]:
+    """Greatest departure of a lift from two equal neighbouring points, m, and its cam angle, rad.
+
+    Parameters
+    ----------
+    theta : array (n,)     of the points, rad, increasing
+    values : array (n,)    s of the points, m
+    """
+    angle, value = _table(theta, values)
+    even = uniform_turn(_SAMPLED)
+    after = np.searchsorted(angle, even, side="right") % angle.size
+    level = value[(after - 1) % angle.size]
+    away = np.where(level == value[after], lift(even) - level, 0.0)
+    most = int(np.abs(away).argmax())
+    return float(away[most]), float(even[most])
+
+
+def estimated_noise(theta: ArrayLike, values: ArrayLike) -> float | None:
+    """Standard deviation of the errors of a table, m, from its differences; None: uneven angles.
+
+    The fourth difference of white noise has the variance of the noise times 70, the sum of the
+    squares of its weights; the median magnitude ignores the few at steps of the acceleration.
+
+    Parameters
+    ----------
+    theta : array (n,)     rad, strictly increasing within one turn
+    values : array (n,)    s, m
+
+    References
+    ----------
+    von Neumann, Ann. Math. Stat. 12 (1941) 367: variance from successive differences.
+    """
+    angle, value = _table(theta, values)
+    even = uniform_turn(angle.size) + angle[0]
+    if np.abs(angle - even).max() > EVEN * (FULL_TURN / angle.size):
+        return None
+    rounds = np.append(value, value[:_ORDER])
+    scale = np.sqrt(float(comb(2 * _ORDER, _ORDER)))
+    return float(_SIGMA * np.median(np.abs(np.diff(rounds, _ORDER))) / scale)
+
+
+def measured_lift(theta: ArrayLike, values: ArrayLike) -> FittedLift | None:
+    """Lift fitted to a measured table by the noise that its differences show.
+
+    None where they show none: angles unevenly spaced, or noise that no spline reaches.
+
+    Raises
+    ------
+    InputError
+        As `fitted_lift`, for a table; not for its noise.
+    """
+    noise = estimated_noise(theta, values)
+    if not noise:
+        return None
+    angle, value = _table(theta, values)
+    return _fit_within(angle, value, noise)[0]
 
 
 def fitted_lift(theta: ArrayLike, values: ArrayLike, noise: float) -> FittedLift:
@@ -84,7 +174,7 @@ def fitted_lift(theta: ArrayLike, values: ArrayLike, noise: float) -> FittedLift
     ------
     InputError
         If no spline with at least two points per part fits: the noise is understated or the
-        lift has corners.
+        lift has corners; if a value lies further below zero than noise explains.
 
     References
     ----------
@@ -93,23 +183,37 @@ def fitted_lift(theta: ArrayLike, values: ArrayLike, noise: float) -> FittedLift
     if not 0.0 < noise < np.inf:
         raise InputError("lift.noise", noise, "> 0 m")
     angle, value = _table(theta, values)
+    fit, closest = _fit_within(angle, value, noise)
+    if fit is None:
+        limit = f">= {1e6 * closest:.4g} um, the rms residual of the closest smooth lift"
+        raise InputError("lift.noise", f"{1e6 * noise:.4g} um", limit)
+    return fit
+
+
+def _fit_within(angle: Array, value: Array, noise: float) -> tuple[FittedLift | None, float]:
+    """Fit of fewest parts within a noise, m, None without one; rms residual of the last, m."""
+    lowest = float(value.min())
+    if not lowest >= -BELOW_ZERO * noise:
+        at = f"{1e3 * lowest:.4g} mm at {np.degrees(angle[value.argmin()]):.4g} deg"
+        limit = (
+            f">= {-BELOW_ZERO * 1e3 * noise:.4g} mm, {BELOW_ZERO:g} times the noise of"
+            f" {1e6 * noise:.4g} um: state the lift from the base circle"
+        )
+        raise InputError("lift.values", at, limit)
     parts_max = int(len(angle) / _POINTS_PER_PART)
     if parts_max < LEAST_SAMPLES:
         raise InputError("lift.file", f"{len(angle)} rows", f">= {2 * LEAST_SAMPLES} rows")
     parts = LEAST_SAMPLES
     while True:
-        fit = _least_squares(angle, value, parts)
+        fit = _least_squares(angle, value, parts, noise)
         if fit.residual_rms <= noise:
-            return fit
+            return fit, fit.residual_rms
         if parts == parts_max:
-            limit = (
-                f">= {1e6 * fit.residual_rms:.4g} um, the rms residual of the closest smooth lift"
-            )
-            raise InputError("lift.noise", f"{1e6 * noise:.4g} um", limit)
+            return None, fit.residual_rms
         parts = min(int(np.ceil(parts * _GROWTH)), parts_max)
 
 
-def _least_squares(angle: Array, value: Array, parts: int) -> FittedLift:
+def _least_squares(angle: Array, value: Array, parts: int, noise: float) -> FittedLift:
     from scipy.interpolate import BSpline
 
     step = FULL_TURN / parts
@@ -125,7 +229,7 @@ def _least_squares(angle: Array, value: Array, parts: int) -> FittedLift:
     values = _not_below_zero(at_knots(uniform_turn(parts)))
     spacing = float(np.diff(angle, append=angle[0] + FULL_TURN).max())
     lift = Lift(uniform_turn(parts), values, spacing=spacing)
-    return FittedLift(lift, parts, value - lift(angle))
+    return FittedLift(lift, parts, value - lift(angle), noise)
 
 
 def _not_below_zero(values: Array) -> Array:

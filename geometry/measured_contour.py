@@ -11,6 +11,7 @@ from camwright.geometry.arrays import FULL_TURN, Array, finite, freeze, rotation
 from camwright.geometry.contour import Contour
 from camwright.geometry.errors import GeometryError, InputError
 from camwright.geometry.lift import Lift
+from camwright.geometry.lift_fit import measured_lift
 
 POINTS_MIN = 48
 HARMONICS_MAX = 60
@@ -106,6 +107,33 @@ def inspected(contour: Contour, points: ArrayLike) -> Inspection:
     phase = float(np.mod(phase + np.pi, FULL_TURN) - np.pi)
     scatter = float(np.sqrt(np.mean(residual**2)))
     return Inspection(phase, float(size), np.mod(theta, FULL_TURN), distance, cosine, sine, scatter)
+
+
+def surface_of_lift(contour: Contour, theta: ArrayLike, values: ArrayLike) -> Array:
+    """Surface points (2, n), m, of a part from its lift, measured by the follower of the drawing.
+
+    The contour of the fitted lift, and what the fit leaves of each value along the normal. The
+    base circle, which a lift does not tell, is that of the drawing.
+
+    Parameters
+    ----------
+    contour : Contour      nominal
+    theta : array (n,)     cam angle, rad, strictly increasing within one turn
+    values : array (n,)    measured lift, m; its zero is the base circle
+
+    Raises
+    ------
+    InputError
+        For angles that do not increase, gaps above 30 degrees, an open end, or NaN.
+    """
+    angle, value = finite("lift.theta", theta), finite("lift.values", values)
+    low = float(value.min())
+    fit = measured_lift(angle, value - low)
+    lift = Lift.from_samples(angle, value - low) if fit is None else fit.lift
+    height = contour.pitch.height_base + low
+    real = replace(contour, pitch=contour.pitch.with_lift(lift, height))
+    left = (value - low - lift(angle)) * np.cos(real.pitch.pressure_angle(angle))
+    return np.asarray(real.points(angle) + left * real.normal(angle))
 
 
 def real_contour(contour: Contour, inspection: Inspection, *, keep_phase: bool = False) -> Contour:

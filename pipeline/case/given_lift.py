@@ -5,11 +5,19 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Protocol
 
+import numpy as np
+
 from camwright.geometry.arrays import FULL_TURN
 from camwright.geometry.eccentric import Eccentric, face_lift
 from camwright.geometry.errors import InputError
-from camwright.geometry.lift import Lift
-from camwright.geometry.lift_fit import FittedLift, fitted_lift, lift_through
+from camwright.geometry.lift import NEGATIVE_TOLERANCE, Lift
+from camwright.geometry.lift_fit import (
+    FittedLift,
+    fitted_lift,
+    lift_through,
+    measured_lift,
+    overshoot,
+)
 from camwright.pipeline.case.lift_section import (
     GivenLift,
     LiftEccentric,
@@ -56,9 +64,7 @@ def given_lift(case: LiftSource) -> Lift:
     if isinstance(section, LiftSegments):
         return motion_of(section).lift()
     if isinstance(section, LiftPoints):
-        return lift_through(
-            [point.angle for point in section.points], [point.lift for point in section.points]
-        )
+        return lift_through(*_points(section))
     if isinstance(section, LiftEccentric):
         if case.follower.kind == "flat":
             return face_lift(section.eccentricity)
@@ -76,10 +82,19 @@ def lift_origin(case: LiftSource) -> str:
     """Origin of the lift in one line, with the residual of a fitted table."""
     section, fit = case.lift, _fitted(case)
     if fit is not None:
+        stated = isinstance(section, LiftTable) and section.noise is not None
+        words = f"noise of {1e6 * fit.noise:.3g} um, estimated from its differences"
+        noise = "" if stated else f" that falls below zero, without lift.noise: {words}"
         return (
-            f"the lift is fitted to a table: residual {1e6 * fit.residual_rms:.3g} um rms, "
+            f"the lift is fitted to a table{noise}: residual {1e6 * fit.residual_rms:.3g} um rms, "
             f"{1e6 * fit.residual_max:.3g} um at most, by {fit.parts} spline parts"
         )
+    if isinstance(section, LiftPoints):
+        angles, lifts = _points(section)
+        away, place = overshoot(angles, lifts, given_lift(case))
+        over = f"; between equal points it overshoots by {1e3 * abs(away):.3g} mm at "
+        over += f"{np.degrees(place):.4g} deg"
+        return "the lift is a spline through points" + over * (abs(away) > NEGATIVE_TOLERANCE)
     if isinstance(section, LiftSegments):
         laws = dict.fromkeys(part.law for part in section.segments)
         times = f", {section.repeat} times a turn" if section.repeat > 1 else ""
@@ -89,9 +104,19 @@ def lift_origin(case: LiftSource) -> str:
     return "the lift is given"
 
 
+def _points(section: LiftPoints) -> tuple[list[float], list[float]]:
+    """Cam angles, rad, and lifts, m, of points."""
+    return [point.angle for point in section.points], [point.lift for point in section.points]
+
+
 def _fitted(case: LiftSource) -> FittedLift | None:
+    """Lift fitted to a table with noise, stated or shown by values below zero; else None."""
     section = case.lift
-    if not isinstance(section, LiftTable) or section.noise is None:
+    if not isinstance(section, LiftTable):
         return None
     trace = read_trace(case.path(section.file), "lift", period=FULL_TURN)
-    return fitted_lift(trace.angle, trace.values, section.noise)
+    if section.noise is not None:
+        return fitted_lift(trace.angle, trace.values, section.noise)
+    if trace.values.min() >= -NEGATIVE_TOLERANCE:
+        return None
+    return measured_lift(trace.angle, trace.values)

@@ -81,14 +81,15 @@ def with_stand_ins(tables: Tables) -> Tables:
         return tables
     if "roller_bearing" in left_out and isinstance(roller, dict) and "bearing" not in roller:
         words = _STAND_IN.format(PART_WORDS["roller_bearing"])
-        bearing: Tables = {"bearing": {"name": "none", "source": words}}
-        own: Tables = {"roller": roller | bearing}
-        tables = tables | own
+        own: Tables = dict(roller)
+        own["bearing"] = {"name": "none", "source": words}
+        tables = tables | {"roller": own}
     if "guides" in left_out and "guides" not in tables:
         tables = tables | {"guides": _guides(tables.get("follower"))}
         sources, words = tables.get("sources", {}), _STAND_IN.format(PART_WORDS["guides"])
         if isinstance(sources, dict):
-            tables["sources"] = {"guides.spacing": words} | sources
+            stated: Tables = {"guides.spacing": words}
+            tables["sources"] = stated | sources
     return tables
 
 

@@ -21,7 +21,7 @@ from camwright.pipeline.commands.terminal import (
 def inspect(
     folder: DirArgument,
     measured: Annotated[
-        Path, typer.Argument(metavar="MEASURED", help="Measured surface points (CSV).")
+        Path, typer.Argument(metavar="MEASURED", help="Measured surface points or lift (CSV).")
     ],
     tolerance: Annotated[
         str | None,
@@ -41,8 +41,9 @@ def inspect(
 ) -> int:
     """Check a measured cam against its drawing.
 
-    Fits the measured points to the contour, solves the measured cam and checks it. Exit code 0:
-    PASS, 1: FAIL, 2: error, 3: INCOMPLETE (data are missing), 4: the run is not as recorded.
+    Fits the measured points, or the surface below a measured lift, to the contour, solves the
+    measured cam and checks it. Exit code 0: PASS, 1: FAIL, 2: error, 3: INCOMPLETE (data are
+    missing), 4: the run is not as recorded.
     """
     from camwright.pipeline.base import units
     from camwright.pipeline.results.drawn_cam import drawn_cam
@@ -53,9 +54,9 @@ def inspect(
     width = None if tolerance is None else units.parse(tolerance, "um", "--tolerance")
     if width is not None and not width > 0:
         raise InputError("--tolerance", tolerance, "> 0 um")
-    points = cam_inspection.read_measured(measured)
     settle_recorded(folder)
     case, contour = drawn_cam(folder)
+    points = cam_inspection.read_measured(measured, contour)
     band = case.workshop_order.tolerance if width is None else width
     target = folder / cam_inspection.FOLDER if out is None else out
     writing = amended(folder) if out is None else nullcontext(folder)

@@ -10,10 +10,10 @@ from typing import Any
 
 import numpy as np
 
-from camwright.geometry.arrays import Array
+from camwright.geometry.arrays import FULL_TURN, Array
 from camwright.geometry.contour import Contour
 from camwright.geometry.errors import InputError
-from camwright.geometry.measured_contour import Inspection, inspected, real_contour
+from camwright.geometry.measured_contour import Inspection, inspected, real_contour, surface_of_lift
 from camwright.pipeline.base import units
 from camwright.pipeline.base.files import Json, json_text, write_atomic
 from camwright.pipeline.base.progress import SILENT, Progress
@@ -24,6 +24,7 @@ from camwright.pipeline.results import check_records, run_reader
 from camwright.pipeline.results.run_records import cycle_columns
 from camwright.pipeline.results.trial import Trial
 from camwright.pipeline.solver import solve
+from camwright.pipeline.torque.angle_trace import read_trace
 from camwright.pipeline.torque.trace_file import trace_text
 
 Record = dict[str, Any]
@@ -32,6 +33,7 @@ FOLDER = "inspection"
 _WAVES_LISTED = 12
 
 _PLACES = (("measured_x_mm", "measured_y_mm"), ("x_mm", "y_mm"))
+_LIFT = ("cam_angle_deg", "lift_mm")
 _POLAR = (("polar_angle_deg", "measured_radius_mm"), ("angle_deg", "radius_mm"))
 
 
@@ -44,14 +46,19 @@ class RealPart:
     trial: Trial
 
 
-def read_measured(path: Path) -> Array:
+def read_measured(path: Path, contour: Contour) -> Array:
     """Measured surface points, (2, n), m, from a CSV file with a header.
 
     Columns, in mm and deg about the cam axis: ``measured_x_mm, measured_y_mm`` (the completed
     inspection sheet), or ``x_mm, y_mm``, or ``polar_angle_deg, measured_radius_mm``, or
-    ``angle_deg, radius_mm``. Columns are separated by semicolons, tabs or commas; the decimal sign
-    is a point, or a comma where it does not separate columns. Rows with empty measured cells are
-    skipped.
+    ``angle_deg, radius_mm``; or a column of the cam angle and one of the lift over it, in any unit,
+    such as ``cam_angle_deg, lift_mm``: see `surface_of_lift`. Columns are separated by semicolons,
+    tabs or commas; the decimal sign is a point, or a comma where it does not separate columns. Rows
+    with empty measured cells are skipped; a table of the lift has none.
+
+    Parameters
+    ----------
+    contour : Contour   nominal, under the follower with which a lift was measured
 
     Raises
     ------
@@ -67,7 +74,11 @@ def read_measured(path: Path) -> Array:
                 return np.stack([first, second]) * units.factor("mm")
             turned = np.radians(first)
             return np.stack([np.cos(turned), np.sin(turned)]) * second * units.factor("mm")
-    known = " or ".join(", ".join(pair) for pair in (*_PLACES, *_POLAR))
+    lifts = [name for name in text.header if "lift" in name.lower()]
+    if len(lifts) == 1:
+        trace = read_trace(path, "lift", column=lifts[0], period=FULL_TURN, part="cam")
+        return surface_of_lift(contour, trace.angle, trace.values)
+    known = " or ".join(", ".join(pair) for pair in (*_PLACES, *_POLAR, _LIFT))
     raise InputError(f"{text.name} header", ", ".join(text.header)[:200], known)
 
 

@@ -1,10 +1,19 @@
 """Lifts through points and near noisy tables."""
 
+import re
+
 import numpy as np
 import pytest
 
 from camwright.geometry.errors import InputError
-from camwright.geometry.lift_fit import fitted_lift, lift_through
+from camwright.geometry.lift_fit import (
+    BELOW_ZERO,
+    estimated_noise,
+    fitted_lift,
+    lift_through,
+    measured_lift,
+    overshoot,
+)
 from camwright.geometry.motion_laws import Motion, Segment
 
 MOTION = Motion((Segment("polynomial_4567", np.pi, 0.01), Segment("polynomial_4567", np.pi, -0.01)))
@@ -70,3 +79,49 @@ def test_bad_tables_are_refused():
         lift_through(np.linspace(0, 6, 8), np.zeros(7))
     with pytest.raises(InputError, match="finite"):
         lift_through(np.linspace(0, 6, 8), np.full(8, np.nan))
+
+
+@pytest.mark.parametrize("noise", [1e-7, 2e-6, 2e-5])
+@pytest.mark.parametrize("law", ["cycloidal", "polynomial_345", "parabolic"])
+def test_noise_is_estimated_from_the_differences(noise, law):
+    """Within 20 %: three standard errors of the median of 360 correlated differences."""
+    half = np.pi / 2
+    motion = Motion(
+        (Segment(law, half, 0.01), Segment("dwell", half), Segment(law, half, -0.01),
+         Segment("dwell", half))
+    )  # fmt: skip
+    theta = np.arange(360) * 2 * np.pi / 360
+    table = motion(theta) + np.random.default_rng(1).normal(0, noise, theta.size)
+    assert estimated_noise(theta, table) == pytest.approx(noise, rel=0.2)
+    fit = measured_lift(theta, table)
+    assert fit is None or fit.residual_rms <= fit.noise
+    assert estimated_noise(np.delete(theta, 3), np.delete(table, 3)) is None
+
+
+def test_a_value_below_zero_by_more_than_its_errors_is_refused():
+    table = noisy() - 1e-4
+    deep = table.copy()
+    deep[0] = -1.01 * BELOW_ZERO * NOISE
+    limit = r"lift\.values = -0\.02525 mm at 0 deg, must be >= -0\.025 mm, 5 times"
+    with pytest.raises(InputError, match=limit):
+        fitted_lift(ROWS, deep, NOISE)
+    deep[0] = -0.99 * BELOW_ZERO * NOISE
+    assert fitted_lift(ROWS, deep, 1.1 * NOISE).noise == 1.1 * NOISE
+
+
+def test_a_spline_that_overshoots_says_where_and_by_how_much():
+    angle = np.radians([0, 60, 120, 180, 240, 300.0])
+    value = np.array([0, 0, 0.01, 0.01, 0.01, 0.0])
+    with pytest.raises(InputError) as error:
+        lift_through(angle, value)
+    spline = lift_through(angle, value + 0.005)  # the same, above zero
+    depth = spline.lowest.value - 0.005
+    message = str(error.value)
+    assert f"a spline down to {1e3 * depth:.3g}" in message
+    place, start, end = (float(each) for each in re.findall(r"([\d.]+) deg", message))
+    assert start < place < end
+    assert {start % 360.0, end % 360.0} <= set(np.degrees(angle).round(9))
+    away, at = overshoot(angle, value + 0.005, spline)
+    assert abs(away) >= 0.99 * abs(depth)
+    levels = [abs(spline(at) - 0.005 - level) for level in (0.0, 0.01)]
+    assert min(levels) == pytest.approx(abs(away))
