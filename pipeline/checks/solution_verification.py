@@ -73,19 +73,19 @@ guide_equilibrium_force = _residual(
     "guide_equilibrium_force",
     lambda cycle: np.maximum(np.abs(cycle.guides.force_residual), cycle.turn.friction_residual),
     title="Force equilibrium residual of the guides",
-    formula="max |sum F| / |F_t| <= c; F: guide and side forces across the stem, F_t: side force,"
-    " c: limits.equilibrium; likewise the forces along the stem over the axial force",
-    method="greatest sum of guide and side forces over the side force, beam on elastic supports; or"
-    " of cam, spring, inertia and friction forces over the cam force",
+    formula="max |sum F| / sum |F| <= c; F: guide and side forces across the stem, c:"
+    " limits.equilibrium; likewise the forces along the stem over the axial force",
+    method="greatest sum of guide and side forces over the sum of their magnitudes, beam on elastic"
+    " supports; or of cam, spring, inertia and friction forces over the cam force",
     allowed=lambda solution: solution.machine.limits[EQUILIBRIUM],
 )
 guide_equilibrium_moment = _residual(
     "guide_equilibrium_moment",
     lambda cycle: np.abs(cycle.guides.moment_residual),
     title="Moment equilibrium residual of the guides",
-    formula="max |sum M| / |M_t| <= c; M: moments on the stem, M_t: moment of the side force, c:"
+    formula="max |sum M| / sum |M| <= c; M: moments on the stem about the roller, c:"
     " limits.equilibrium",
-    method="greatest sum of moments over that of the side force, beam on elastic supports",
+    method="greatest sum of moments over the sum of their magnitudes, beam on elastic supports",
     allowed=lambda solution: solution.machine.limits[EQUILIBRIUM],
 )
 contact_equilibrium = _residual(

@@ -16,7 +16,7 @@ from camwright.geometry.errors import ContactError
 MAX_STEPS = 60
 TOLERANCE = 1e-10  # of the contact law, over the maximum indentation
 _ROUND_OFF = 1e-14
-_LEAST_DENT = 1e-12  # indentation over slack below which a load is scaled up
+_LEAST_DENT = 1e-10  # indentation over slack below which a load is scaled up
 _LEAST_GUESSED = 1e-7  # indentation over slack from which solutions are interpolated
 _LEAST_LENGTH = 1e-15  # lower bound of a step length
 _FEW = 500  # loads solved from the rigid beam each
@@ -98,11 +98,21 @@ class BearingLine:
         miss /= self.stiffness[:, None]
         return np.asarray(miss.max(axis=0))
 
+    def terms(self, push: Array, rigid: Array) -> Array:
+        """Maximum sum of magnitudes (n,), m, of the terms of a deflection: its round-off scale."""
+        terms = np.abs(self.compliance) @ np.abs(push)
+        terms += self.rigid_modes @ np.abs(rigid)
+        return np.asarray(terms.max(axis=0))
+
     def law_residual(self, push: Array, rigid: Array) -> Array:
-        """Maximum residual of the contact law over maximum deflection, (n,)."""
-        deflection = self.deflection(push, rigid)
-        scale = np.abs(deflection).max(axis=0)
-        miss = self.law_miss(deflection, push)
+        """Maximum residual of the contact law over the terms of the deflection, (n,).
+
+        References
+        ----------
+        Higham, Accuracy and Stability of Numerical Algorithms (2002), sec. 7.2: backward error.
+        """
+        scale = self.terms(push, rigid)
+        miss = self.law_miss(self.deflection(push, rigid), push)
         return np.asarray(np.divide(miss, scale, out=np.zeros_like(scale), where=scale > 0.0))
 
     def settled(self, push: Array, rigid: Array) -> NDArray[np.bool_]:
@@ -110,14 +120,17 @@ class BearingLine:
 
         Plus the round-off of the deflection, which dominates at small indentations.
         """
-        size = np.abs(push)
-        allowed = TOLERANCE * (size / self.stiffness[:, None]).max(axis=0)
+        allowed = TOLERANCE * (np.abs(push) / self.stiffness[:, None]).max(axis=0)
         miss = self.law_miss(self.deflection(push, rigid), push)
         left = np.flatnonzero(miss > allowed)
-        terms = np.abs(self.compliance) @ size[:, left]
-        terms += self.rigid_modes @ np.abs(rigid[:, left])
-        allowed[left] += _ROUND_OFF * terms.max(axis=0)
+        allowed[left] += _ROUND_OFF * self.terms(push[:, left], rigid[:, left])
         return np.asarray(miss <= allowed)
+
+    def sides(self, push: Array, rigid: Array) -> NDArray[np.int8]:
+        """Side of the bore that each knot (k, n) is in contact with: -1, 1, or 0 for none."""
+        deflection = self.deflection(push, rigid)
+        side = np.where(self.play[:, None] > 0.0, np.sign(deflection), 1.0)
+        return np.asarray(side * (np.abs(deflection) >= self.play[:, None]), dtype=np.int8)
 
     @cached_property
     def _bound(self) -> dict[bytes, BoundKnots]:
@@ -192,7 +205,8 @@ def settle(
     The energy of beam and bores is convex and piecewise quadratic in the bore forces p and the end
     motion r:  p G p/2 + sum K depth^2/2 - load r. Each step solves the linear problem of the knots
     in contact and takes the step length of minimum energy, so that it cannot cycle; it ends when
-    the set of knots in contact is unchanged. Initial guess: a given solution of similar loads, or
+    the contact law holds, or two steps have not changed the set of knots in contact: what is left
+    is round-off. Initial guess: a given solution of similar loads, or
     the rigid beam in contact with two edges for some loads and an interpolation for those between.
 
     Parameters
@@ -221,14 +235,20 @@ def settle(
     idle = np.abs(load).max(axis=0) == 0.0
     push[:, idle], rigid[:, idle] = 0.0, 0.0
     unsettled, guessed = np.flatnonzero(~idle), np.ones(idle.shape, dtype=bool)
+    steady = np.zeros(idle.shape, dtype=bool)  # the last step changed no contact
     for _ in range(MAX_STEPS):
         if not len(unsettled):
-            return push / enlargement, rigid
+            return _reduced(line, push, rigid, load, enlargement)
         now, at, on = push[:, unsettled], rigid[:, unsettled], load[:, unsettled]
         next_push, next_rigid, knots = _linear_step(line, now, at, on)
         # A guess that has lost the bores is not in equilibrium and may never touch them again.
         lost = guessed[unsettled] & (knots < 2)
         settled = line.settled(next_push, next_rigid) & ~lost
+        left = np.flatnonzero(~settled & ~lost)
+        sides = line.sides(now[:, left], at[:, left])
+        kept = (sides == line.sides(next_push[:, left], next_rigid[:, left])).all(axis=0)
+        settled[left] = kept & steady[unsettled[left]]
+        steady[unsettled[left]] = kept
         push[:, unsettled[settled]] = next_push[:, settled]
         rigid[:, unsettled[settled]] = next_rigid[:, settled]
         if lost.any():
@@ -288,8 +308,19 @@ def _linear_step(
     side *= line.play[:, None]
     offset = line.rigid_modes @ rigid
     offset -= side
+    pushes, motions = _bound_solution(line, touch, offset, load)
+    return pushes, rigid + motions, touch.sum(axis=0)
+
+
+def _bound_solution(
+    line: BearingLine, touch: NDArray[np.bool_], offset: Array, load: Array
+) -> tuple[Array, Array]:
+    """Bore forces (k, n) and end motions (2, n) of loads (2, n) on knots bound to the bore.
+
+    The knots of `touch` (k, n) are indented by `offset` (k, n), m, before the load acts.
+    """
     far = load / np.array([[1.0], [line.positions[-1]]])
-    pushes, motions = np.zeros_like(push), np.empty_like(rigid)
+    pushes, motions = np.zeros_like(offset), np.empty_like(load)
     for here in alike(touch):
         bound = line.bound_knots(touch[:, here[0]].tobytes())
         knots = bound.knots[:, None]
@@ -300,7 +331,24 @@ def _linear_step(
         pushes[knots, here] = solution[:-2]
         motions[:, here] = solution[-2:] * bound.scale
     motions[1] /= line.positions[-1]
-    return pushes, rigid + motions, touch.sum(axis=0)
+    return pushes, motions
+
+
+def _reduced(
+    line: BearingLine, push: Array, rigid: Array, load: Array, enlargement: Array
+) -> tuple[Array, Array]:
+    """Bore forces and end motions of loads (2, n), those that were scaled up at their own size.
+
+    Bore forces are in proportion to so small a load; so is what it adds to the end motion of the
+    unloaded beam in contact. Neither has the round-off of the clearance then.
+    """
+    small = np.flatnonzero(enlargement > 1.0)
+    if small.size:
+        bound, factor = push[:, small] != 0.0, enlargement[small]
+        at_size = load[:, small] / factor
+        push[:, small], added = _bound_solution(line, bound, np.zeros(bound.shape), at_size)
+        rigid[:, small] -= (factor - 1.0) * added
+    return push, rigid
 
 
 def _best_length(

@@ -167,7 +167,8 @@ class GuideReactions(Displayed):
     positive against F_t, at `knots_*` (m from the middle of the guide, away from the roller).
     `rubbing_load_*`: sum of the normal forces on both sides of the bore, where the reaction is
     their difference; friction is proportional to it. Residuals of force and of moment about the
-    roller, over the load, and maximum residual of the contact law over maximum deflection.
+    roller, over the sum of their magnitudes, and maximum residual of the contact law over the terms
+    of the deflection.
     """
 
     tangential_force: Array
@@ -328,23 +329,28 @@ def bush_foundation_modulus(
 
 
 class _Carried(NamedTuple):
-    """Reactions and couples of both guides on the stem, (n,), signed as in `GuideReactions`."""
+    """Reactions, couples and rubbing loads of both guides on the stem, (n,), signed as in
+    `GuideReactions`.
+    """
 
     reaction_a: Array
     reaction_b: Array
     couple_a: Array
     couple_b: Array
+    rubbing_a: Array
+    rubbing_b: Array
 
-    def force_residual(self, force: Array, moment: Array, spacing: float) -> Array:
-        """Residual of the forces over the load (n,)."""
+    def force_residual(self, force: Array) -> Array:
+        """Residual of the forces over the sum of their magnitudes (n,)."""
         miss = self.reaction_a - self.reaction_b - force
-        return _relative(miss, np.abs(force) + np.abs(moment) / spacing)
+        return _relative(miss, self.rubbing_a + self.rubbing_b + np.abs(force))
 
-    def moment_residual(self, force: Array, moment: Array, reach: Array, spacing: float) -> Array:
-        """Residual of the moments about the roller over the load (n,)."""
+    def moment_residual(self, moment: Array, reach: Array, spacing: float) -> Array:
+        """Residual of the moments about the roller over the sum of their magnitudes (n,)."""
         far = reach + spacing
         turned = self.couple_a + self.couple_b + self.reaction_a * reach - self.reaction_b * far
-        return _relative(turned - moment, np.abs(force) * far + np.abs(moment))
+        scale = self.rubbing_a * reach + self.rubbing_b * far + np.abs(moment)
+        return _relative(turned - moment, scale)
 
 
 def guide_reactions(
@@ -400,7 +406,14 @@ def guide_reactions(
     from_a = line.positions[:knots] - half_a
     from_b = line.positions[knots:] - half_a - guides.spacing
     in_a, in_b = push[:knots], push[knots:]
-    carried = _Carried(in_a.sum(axis=0), -in_b.sum(axis=0), from_a @ in_a, from_b @ in_b)
+    carried = _Carried(
+        reaction_a=in_a.sum(axis=0),
+        reaction_b=-in_b.sum(axis=0),
+        couple_a=from_a @ in_a,
+        couple_b=from_b @ in_b,
+        rubbing_a=np.abs(in_a).sum(axis=0),
+        rubbing_b=np.abs(in_b).sum(axis=0),
+    )
     tilt = rigid[1] - slopes @ push
     over = end_flexibility(arm, stem)
     result = GuideReactions(
@@ -422,11 +435,11 @@ def guide_reactions(
         line_pressure_b=in_b / weights_b[:, None],
         knots_a=from_a,
         knots_b=from_b,
-        rubbing_load_a=np.abs(in_a).sum(axis=0),
-        rubbing_load_b=np.abs(in_b).sum(axis=0),
+        rubbing_load_a=carried.rubbing_a,
+        rubbing_load_b=carried.rubbing_b,
         stem_diameter=stem.diameter,
-        force_residual=carried.force_residual(force, moment, guides.spacing),
-        moment_residual=carried.moment_residual(force, moment, reach, guides.spacing),
+        force_residual=carried.force_residual(force),
+        moment_residual=carried.moment_residual(moment, reach, guides.spacing),
         complementarity_residual=line.law_residual(push, rigid),
     )
     _certify(result)

@@ -282,15 +282,16 @@ def test_an_unsettled_position_raises(monkeypatch):
         guide_reactions(FORCE, OVERHANG, STEM, PAIR)
 
 
+@pytest.mark.parametrize("size", [1.0, 1e-22])
 @pytest.mark.parametrize(("spoilt", "name"), [(0, "force_residual"), (1, "complementarity")])
-def test_a_residual_that_is_not_met_raises(monkeypatch, spoilt, name):
+def test_a_residual_that_is_not_met_raises(monkeypatch, spoilt, name, size):
     def careless(line, force, moment, start=None):
         push, rigid = guide_contact.settle(line, force, moment, start)
         return (push * (1 + 1e-7), rigid) if spoilt == 0 else (push, rigid * (1 + 1e-6))
 
     monkeypatch.setattr(guides_module, "settle", careless)
     with pytest.raises(ContactError, match=name):
-        guide_reactions(FORCE, OVERHANG, STEM, PAIR)
+        guide_reactions(size * FORCE, OVERHANG, STEM, PAIR)
 
 
 def test_guides_of_a_case_take_the_bush_unless_a_stiffness_is_given():

@@ -336,6 +336,54 @@ def test_many_guides_settle_in_equilibrium():
     assert worst <= 1e-11
 
 
+def any_guides(rng):
+    """A stem and guides: spacings to 9 m, bores to 9e11 N/m, tight or with clearance."""
+    diameter = 10 ** rng.uniform(-2.5, -1.3)
+
+    def bore():
+        length = diameter * 10 ** rng.uniform(-1.5, 0.7)
+        modulus = min(9e11 / length, 10 ** rng.uniform(9.0, 13.5))
+        clearance = diameter * 10 ** rng.uniform(-4.5, -2.0) * (rng.random() < 0.8)
+        made = guide(length, clearance, modulus)
+        return replace(made, diameter=diameter)
+
+    a, b = bore(), bore()
+    spacing = min(9.0, 0.5 * (a.length + b.length) * (1.0 + 10 ** rng.uniform(-2.0, 2.5)))
+    return Stem(diameter, 210e9, shear=bool(rng.integers(2))), GuidePair(spacing=spacing, a=a, b=b)
+
+
+def test_stems_of_any_length_settle_in_bores_of_any_stiffness():
+    """Loads from 1e-25 N, as splines leave them in dwells, to 10 kN: residuals below 5e-10.
+
+    In the last one round-off leaves the contact law at more than 1e-10 of the indentation.
+    """
+    for seed in (*range(100), 888):
+        rng = np.random.default_rng(seed)
+        stem, pair = any_guides(rng)
+        force = rng.choice([-1.0, 1.0], 60) * 10 ** rng.uniform(-25.0, 4.0, 60)
+        reach = 0.5 * pair.a.length + pair.spacing * 10 ** rng.uniform(-1.0, 1.5)
+        moment = force * rng.choice([0.0, 0.01, 0.5]) * rng.uniform(-1.0, 1.0, 60)
+        solved = guide_reactions(force, reach + np.linspace(0.0, 0.02, 60), stem, pair, moment)
+        for name in ("force_residual", "moment_residual", "complementarity_residual"):
+            assert getattr(solved, name).max() <= 5e-10, (seed, name)
+
+
+def test_a_small_load_is_carried_by_two_edges():
+    """Statics on the outer edges of two bores with clearance, R = F (1 + x/l), and F x/l.
+
+    The rigid stem rests at half the clearance on either side there.
+    """
+    stem, pair = STEM, guide_pair(length=0.03, clearance=3e-5, modulus=1e12, spacing=0.3)
+    force, reach = np.array([-6e-22, 6e-22, 1e-16, 1e-12]), 0.06
+    solved = guide_reactions(force, reach, stem, pair)
+    lever = (reach - 0.015) / 0.33
+    np.testing.assert_allclose(solved.reaction_a, force * (1.0 + lever), rtol=1e-12, atol=0)
+    np.testing.assert_allclose(solved.reaction_b, force * lever, rtol=1e-12, atol=0)
+    tilted = np.sign(force) * (1.5e-5 + 3e-5 * lever)
+    np.testing.assert_allclose(solved.roller_deflection, tilted, rtol=1e-12, atol=0)
+    assert solved.complementarity_residual.max() <= 1e-12
+
+
 def test_many_loads_solved_at_once_are_those_solved_few_at_a_time():
     """Those solved at once start from solutions of similar loads; the deflections agree to 1e-7.
 
