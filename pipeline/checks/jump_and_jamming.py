@@ -27,6 +27,7 @@ from camwright.pipeline.cycle.cycle import Cycle, least_spring_force
 from camwright.pipeline.cycle.elastic_response import ElasticHistory
 from camwright.pipeline.cycle.solution import Solution
 from camwright.pipeline.cycle.speed_sweep import SpeedSweep, highest_speed
+from camwright.pipeline.follower.follower_flight import LONGEST, Flight
 
 _TIE = 1e-9  # relative difference up to which two forces are equal, and one is none
 
@@ -318,16 +319,28 @@ def _flights(histories: list[ElasticHistory]) -> str:
     flights = [flight for history in histories for flight in history.flights]
     if not flights:
         return ""
-    high = max(flights, key=lambda flight: flight.height)
-    lift_off, landing = (
-        f"{np.degrees(angle) % 360.0:.1f} deg" for angle in (high.jump, high.landing)
-    )
+    high = max(flights, key=lambda flight: (not flight.lands, flight.height))
     force = max(history.force_max for history in histories)
     return (
         f"{len(flights)} losses of contact per turn; the highest flight starts at"
-        f" {lift_off} and ends at {landing}, {shown(high.height, 'mm', 3)} high,"
-        f" with {shown(high.landing_speed, 'm/s', 3)}; greatest impact force {shown(force, 'N')}"
+        f" {_place(high.jump)} and {_landing(high)}; greatest impact force {shown(force, 'N')}"
     )
+
+
+def _landing(flight: Flight) -> str:
+    """Landing of a flight, and its height, in words."""
+    height = f"{shown(flight.height, 'mm', 3)} high"
+    if not flight.lands:
+        return f"has not landed after {LONGEST:g} turns, {height}"
+    later = {0: "", 1: " of the next turn"}.get(
+        flight.turns_later, f", {flight.turns_later} turns later"
+    )
+    speed = shown(flight.landing_speed, "m/s", 3)
+    return f"ends at {_place(flight.landing)}{later}, {height}, with {speed}"
+
+
+def _place(angle: float) -> str:
+    return f"{np.degrees(angle) % 360.0:.1f} deg"
 
 
 def _jump_speed(cycle: Cycle) -> Array:

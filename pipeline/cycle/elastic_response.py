@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+import numpy as np
+
 from camwright.geometry.arrays import Array, freeze, uniform_turn
 from camwright.geometry.lift import Lift
 from camwright.geometry.periodic_spline import PeriodicPolynomial, periodic_quintic
@@ -18,6 +20,7 @@ from camwright.pipeline.follower.elastic_follower import (
 from camwright.pipeline.follower.follower_flight import Flight, bounce
 
 BOUNCE_TURNS = 1.0
+_BEFORE = 0.1  # of a turn before a loss of contact, from where the motion is integrated
 
 
 @dataclass(frozen=True, eq=False)
@@ -25,8 +28,9 @@ class ElasticHistory:
     """One turn; arrays (n,) SI.
 
     response is the periodic one with the contact kept, deflection the shortening of the train.
-    flights are the losses of contact in one turn from that state, if its contact force becomes
-    negative; force_max is the maximum contact force. method states speed and solution.
+    flights are the losses of contact in one turn, which begins with the state of that response in
+    its longest contact; force_max is the maximum contact force. method states speed and
+    solution.
     """
 
     response: Response
@@ -79,10 +83,27 @@ def elastic_history(
     lost: tuple[Flight, ...] = ()
     force = float(response.contact_force.max())
     if response.lost and flights:
-        start = (float(response.position[0]), float(response.velocity[0]))
-        jump = bounce(lift, _law(cam_speed), follower, BOUNCE_TURNS, start)
+        k = _held(response.contact_force)
+        start = (float(response.position[k]), float(response.velocity[k]))
+        first = float(response.theta[k])
+        jump = bounce(lift, _law(cam_speed), follower, BOUNCE_TURNS, start, first)
         lost, force = jump.flights, float(jump.contact_force.max())
     return ElasticHistory(response, at - response.position, lost, force, _method(cam_speed))
+
+
+def _held(contact_force: Array) -> int:
+    """Index of a position in the longest contact (n,); of the greatest force without any.
+
+    `_BEFORE` its end, at least in its middle: the response with the contact kept is least disturbed
+    there by what would follow a loss of contact.
+    """
+    lost, count = np.flatnonzero(contact_force < 0.0), contact_force.size
+    if lost.size == count:
+        return int(np.argmax(contact_force))
+    spans = np.diff(lost, append=lost[0] + count)
+    k = int(np.argmax(spans))
+    back = min(spans[k] // 2, int(_BEFORE * count))
+    return int((lost[k] + spans[k] - max(back, 1)) % count)
 
 
 def _law(cam_speed: Array) -> float | PeriodicPolynomial:

@@ -8,8 +8,9 @@ from typing import NamedTuple
 
 import numpy as np
 import scipy
+from numpy.typing import NDArray
 
-from camwright.geometry.arrays import FULL_TURN, Array, freeze
+from camwright.geometry.arrays import FULL_TURN, Array, Values, freeze
 from camwright.geometry.errors import ContactError, InputError
 from camwright.geometry.lift import Lift
 from camwright.geometry.periodic_spline import PeriodicPolynomial
@@ -17,19 +18,34 @@ from camwright.pipeline.follower.elastic_follower import ElasticFollower, quasi_
 
 _EVENTS_MAX = 2000
 _TOLERANCE = 1e-11
+_CONTACT_STEP, _FLIGHT_STEP = 0.02 * FULL_TURN, 0.25 * FULL_TURN  # at most
+_GAPS_MAX = 100_000  # angles at which the gap of a flight is looked at
+LONGEST = 100.0
+"""Turns of the cam after which a follower that has not landed counts as one that never does."""
 
 
 class Flight(NamedTuple):
     """A flight: cam angles of jump and landing, rad, may exceed a turn.
 
     `height`: maximum gap between foot and cam, m; `landing_speed`: closing speed of the gap, m/s,
-    >= 0.
+    >= 0. A follower that has not landed after `LONGEST` turns has an infinite angle of landing, and
+    NaN as speed.
     """
 
     jump: float
     landing: float
     height: float
     landing_speed: float
+
+    @property
+    def lands(self) -> bool:
+        """Whether the follower lands."""
+        return self.landing < np.inf
+
+    @property
+    def turns_later(self) -> int:
+        """Number of cam turns between the turn of the jump and that of the landing."""
+        return int(self.landing // FULL_TURN - self.jump // FULL_TURN)
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,11 +82,15 @@ def bounce(
     follower: ElasticFollower,
     turns: float = 1.0,
     start: tuple[float, float] | None = None,
+    first: float = 0.0,
 ) -> Bounce:
     """Motion of the follower over the cam angle with loss of contact.
 
     Phases in contact and in flight are integrated to a tolerance of 1e-11. A phase ends where the
-    contact force, or the gap between cam and the foot on its relaxed stem, decreases to zero.
+    contact force, or the gap between cam and the foot on its relaxed stem, decreases to zero; a
+    damped stem that has not relaxed ends its flight where the contact force would increase again. A
+    flight that has begun is followed to its landing, beyond the last angle and over whole turns, at
+    most `LONGEST`.
 
     Parameters
     ----------
@@ -78,7 +98,8 @@ def bounce(
     cam_speed : float, or function of the angle   rad/s, > 0
     follower : ElasticFollower
     turns : float            of the cam
-    start : (x, v)           m, m/s at angle 0; None: the quasi-static state
+    start : (x, v)           m, m/s at the first angle; None: the quasi-static state
+    first : float            first cam angle, rad
 
     Raises
     ------
@@ -93,20 +114,20 @@ def bounce(
     Solving Ordinary Differential Equations I (1993): DOP853.
     """
     motion = _Motion(lift, _law(cam_speed), follower)
-    end = turns * FULL_TURN
-    s, u = motion.foot(0.0)
+    end = first + turns * FULL_TURN
+    s, u = motion.foot(first)
     if start is None:
-        start = (float(quasi_static(s, follower)), u)
+        start = (float(quasi_static(s, follower, first)), u)
     state = np.array([*start, 0.0, 0.0, 0.0])
-    touching = motion.force(0.0, state) >= 0.0
-    angle, phases, flights = 0.0, [], []
+    touching = motion.force(first, state) >= 0.0
+    angle, phases, flights = first, [], []
     for _ in range(_EVENTS_MAX):
-        phase = motion.phase(angle, end, state, touching)
+        phase = motion.contact(angle, end, state) if touching else motion.flight(angle, state)
         phases.append(phase)
-        if not touching:
-            flights.append(motion.flight(phase))
+        if phase.flight is not None:
+            flights.append(phase.flight)
         angle, state = float(phase.theta[-1]), phase.state[:, -1].copy()
-        if phase.last:
+        if phase.last or angle >= end:
             return motion.record(phases, tuple(flights))
         if touching:  # the massless stem relaxes at once; its damper dissipates the energy
             state[3] += 0.5 * follower.stiffness * (motion.foot(angle)[0] - state[0]) ** 2
@@ -125,12 +146,15 @@ def _law(cam_speed: float | PeriodicPolynomial) -> PeriodicPolynomial:
 
 
 class _Phase(NamedTuple):
-    """Cam angles (k,), rad, and states (5, k) in contact or in flight; whether it is the last."""
+    """Cam angles (k,), rad, and states (5, k) of a phase; its flight, None in contact.
+
+    `last`: whether no other phase follows.
+    """
 
     theta: Array
     state: Array
-    touching: bool
     last: bool
+    flight: Flight | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -157,47 +181,91 @@ class _Motion:
         f = self.follower
         return float(f.stiffness * (s - state[0]) + f.damping * (u - state[1]))
 
-    def phase(self, angle: float, end: float, state: Array, touching: bool) -> _Phase:
+    def contact(self, angle: float, end: float, state: Array) -> _Phase:
+        """Phase in contact, to the jump or the last angle."""
+        solution = self._integrated(angle, end, state, touching=True)
+        return _Phase(solution.t, solution.y, last=solution.status == 0)
+
+    def flight(self, angle: float, state: Array) -> _Phase:
+        """Phase in flight, to the landing."""
+        solution = self._integrated(angle, angle + LONGEST * FULL_TURN, state, touching=False)
+        theta, gaps, shut = self._look(solution)
+        early = np.flatnonzero(shut & (theta > angle) & (theta < solution.t[-1]))
+        if early.size:  # on a nose of the cam within one step, which shows no change of sign
+            solution = self._integrated(angle, theta[early[0]], state, touching=False)
+            theta, gaps, _ = self._look(solution)
+        landing, closing = np.inf, np.nan
+        if solution.status == 1 or early.size:
+            landing = float(solution.t[-1])
+            closing = max(self.foot(landing)[1] - float(solution.y[1, -1]), 0.0)
+        k = int(np.argmax(gaps))
+        around = theta[max(k - 1, 0)], theta[min(k + 1, theta.size - 1)]
+        peak = scipy.optimize.minimize_scalar(
+            lambda at: self.foot(at)[0] - float(solution.sol(at)[0]),
+            bounds=around,
+            method="bounded",
+        )
+        height = max(float(gaps[k]), -float(peak.fun), 0.0)
+        flown = Flight(angle, landing, height, closing)
+        return _Phase(solution.t, solution.y, last=not flown.lands, flight=flown)
+
+    def shut(self, foot: Values, foot_speed: Values, position: Values, velocity: Values) -> Array:
+        """Indentation (...), m, at which a follower in flight is in contact again: positive.
+
+        Of the relaxed stem, or less while its damper still holds the foot off the cam.
+        """
+        f, indentation = self.follower, foot - position
+        held = indentation + f.damping / f.stiffness * (foot_speed - velocity)
+        return np.minimum(indentation, held)
+
+    def _look(
+        self, solution: scipy.optimize.OptimizeResult
+    ) -> tuple[Array, Array, NDArray[np.bool_]]:
+        """Cam angles (k,), rad, of a flight, the gaps there, m, and whether the contact is shut."""
+        first, last = solution.t[0], solution.t[-1]
+        count = int((last - first) / FULL_TURN * self.lift.search_count)
+        theta = np.linspace(first, last, min(max(64, count), _GAPS_MAX))
+        x, v = solution.sol(theta)[:2]
+        s, slope = self.lift.derivatives(theta, 1)
+        return theta, np.asarray(x - s), self.shut(s, slope * self.speed(theta), x, v) > 0.0
+
+    def _integrated(
+        self, angle: float, end: float, state: Array, *, touching: bool
+    ) -> scipy.optimize.OptimizeResult:
         """One phase, to the change of contact or the last angle."""
         f = self.follower
 
         def rates(at: float, y: Array) -> list[float]:
-            s, u = self.foot(at)
-            pace = 1.0 / float(self.speed(at))
-            approach = u - y[1]
-            push = f.stiffness * (s - y[0]) + f.damping * approach if touching else 0.0
-            load = self.load(at)
-            lost = f.guide_damping * y[1] ** 2 + (f.damping * approach**2 if touching else 0.0)
-            acceleration = (
-                push - f.spring_rate * y[0] - f.preload - load - f.guide_damping * y[1]
-            ) / f.mass
-            work = push * u - load * y[1]
-            return [pace * y[1], pace * acceleration, pace * work, pace * lost, pace]
+            pace, load = 1.0 / float(self.speed(at)), self.load(at)
+            drag, work = f.guide_damping * y[1], -load * y[1]
+            force, lost = -f.spring_rate * y[0] - f.preload - load - drag, drag * y[1]
+            if touching:
+                s, u = self.foot(at)
+                approach = u - y[1]
+                push = f.stiffness * (s - y[0]) + f.damping * approach
+                force, work, lost = force + push, work + push * u, lost + f.damping * approach**2
+            return [pace * y[1], pace * force / f.mass, pace * work, pace * lost, pace]
 
         stem = np.sqrt(f.stiffness / f.mass)
-        solution = scipy.integrate.solve_ivp(
+        return scipy.integrate.solve_ivp(
             rates,
             (angle, end),
             state,
             method="DOP853",
             events=_ContactChange(self, touching),
+            dense_output=not touching,
             rtol=_TOLERANCE,
             atol=[1e-14, 1e-14 * stem, 1e-12, 1e-12, 1e-12],
-            max_step=min(0.02 * FULL_TURN, end),
+            max_step=min(_CONTACT_STEP if touching else _FLIGHT_STEP, end - angle),
         )
-        return _Phase(solution.t, solution.y, touching, last=solution.status == 0)
-
-    def flight(self, phase: _Phase) -> Flight:
-        theta = phase.theta
-        gaps = [x - self.foot(t)[0] for t, x in zip(theta, phase.state[0], strict=True)]
-        closing = self.foot(theta[-1])[1] - phase.state[1, -1]
-        return Flight(float(theta[0]), float(theta[-1]), float(max(gaps)), float(max(closing, 0.0)))
 
     def record(self, phases: Sequence[_Phase], flights: tuple[Flight, ...]) -> Bounce:
         f = self.follower
         theta = np.concatenate([phase.theta for phase in phases])
         x, v, work, lost, time = np.concatenate([phase.state for phase in phases], axis=1)
-        touching = np.concatenate([np.full(phase.theta.size, phase.touching) for phase in phases])
+        touching = np.concatenate(
+            [np.full(phase.theta.size, phase.flight is None) for phase in phases]
+        )
         s, slope = self.lift.derivatives(theta, 1)
         squeeze = np.where(touching, s - x, 0.0)
         approach = np.where(touching, slope * self.speed(theta) - v, 0.0)
@@ -232,4 +300,4 @@ class _ContactChange:
     def __call__(self, angle: float, state: Array) -> float:
         if self.touching:
             return self.motion.force(angle, state)
-        return self.motion.foot(angle)[0] - float(state[0])
+        return float(self.motion.shut(*self.motion.foot(angle), state[0], state[1]))
