@@ -15,6 +15,7 @@ from camwright.geometry.errors import ContactError
 
 MAX_STEPS = 60
 TOLERANCE = 1e-10  # of the contact law, over the maximum indentation
+_UNCHANGED = 5e-10  # of the contact law over the terms of the deflection, in an unchanged contact
 _ROUND_OFF = 1e-14
 _LEAST_DENT = 1e-10  # indentation over slack below which a load is scaled up
 _LEAST_GUESSED = 1e-7  # indentation over slack from which solutions are interpolated
@@ -205,9 +206,10 @@ def settle(
     The energy of beam and bores is convex and piecewise quadratic in the bore forces p and the end
     motion r:  p G p/2 + sum K depth^2/2 - load r. Each step solves the linear problem of the knots
     in contact and takes the step length of minimum energy, so that it cannot cycle; it ends when
-    the contact law holds, or two steps have not changed the set of knots in contact: what is left
-    is round-off. Initial guess: a given solution of similar loads, or
-    the rigid beam in contact with two edges for some loads and an interpolation for those between.
+    the contact law holds to `TOLERANCE`, or where two steps have not changed the set of knots in
+    contact to `_UNCHANGED`: the rest is round-off. Initial guess: a given solution of similar
+    loads, or the rigid beam in contact with two edges for some loads and an interpolation for those
+    between.
 
     Parameters
     ----------
@@ -245,8 +247,9 @@ def settle(
         lost = guessed[unsettled] & (knots < 2)
         settled = line.settled(next_push, next_rigid) & ~lost
         left = np.flatnonzero(~settled & ~lost)
-        sides = line.sides(now[:, left], at[:, left])
-        kept = (sides == line.sides(next_push[:, left], next_rigid[:, left])).all(axis=0)
+        after = next_push[:, left], next_rigid[:, left]
+        kept = (line.sides(now[:, left], at[:, left]) == line.sides(*after)).all(axis=0)
+        kept &= line.law_residual(*after) <= _UNCHANGED
         settled[left] = kept & steady[unsettled[left]]
         steady[unsettled[left]] = kept
         push[:, unsettled[settled]] = next_push[:, settled]

@@ -7,7 +7,12 @@ import pytest
 from skfem import Basis, BilinearForm, ElementLineHermite, MeshLine
 from skfem.helpers import dd, ddot
 
+from camwright.geometry.arrays import uniform_turn
+from camwright.geometry.lift import Lift
+from camwright.geometry.pitch_curve import PitchCurve
 from camwright.pipeline.base.material import Material
+from camwright.pipeline.follower.follower_forces import FollowerSystem
+from camwright.pipeline.follower.friction_coupling import guided_loads
 from camwright.pipeline.follower.guide_contact import BearingLine, settle
 from camwright.pipeline.follower.guide_reactions import (
     KNOTS,
@@ -17,6 +22,7 @@ from camwright.pipeline.follower.guide_reactions import (
     guide_reactions,
     lobatto,
 )
+from camwright.pipeline.follower.spring import Spring
 from camwright.pipeline.follower.stem_beam import Stem, end_flexibility, stem_compliance
 
 # Virtual work of unit bending stiffness, the integral of u'' v''.
@@ -414,3 +420,38 @@ def test_more_play_more_tilt_and_longer_guides_less_pressure():
         for n in (0.005, 0.01, 0.02, 0.03)
     ]
     assert (np.diff(peak) < 0.0).all()
+
+
+def test_friction_balances_where_the_guides_have_round_off():
+    """A long stem whose rubbing loads scatter by 2e-12 is solved to 1e-10 of the axial force."""
+    theta = uniform_turn(90)
+    for seed in (3, 27):
+        rng = np.random.default_rng(seed)
+        stem, pair = any_guides(rng)
+        rise, back = np.clip((theta - 0.5) / 2.0, 0.0, 1.0), np.clip((theta - 3.5) / 1.5, 0.0, 1.0)
+        size = 10 ** rng.uniform(-3.0, -1.3)
+        shape = [x - np.sin(2.0 * np.pi * x) / (2.0 * np.pi) for x in (rise, back)]
+        lift = Lift(theta, np.maximum(size * (shape[0] - shape[1]), 0.0))
+        system = FollowerSystem(
+            mass=10 ** rng.uniform(-1.0, 1.0),
+            spring=Spring(rate=10 ** rng.uniform(2.0, 5.0), preload=10 ** rng.uniform(0.0, 3.0)),
+            guide_spacing=pair.spacing,
+            overhang_at_max_lift=0.5 * pair.a.length
+            + size
+            + pair.spacing * 10 ** rng.uniform(-1.0, 0.5),
+            friction_a=rng.uniform(0.0, 0.4),
+            friction_b=rng.uniform(0.0, 0.4),
+        )
+        pitch, speed = PitchCurve(lift, rng.uniform(2.0, 5.0) * size), 10 ** rng.uniform(-1.0, 1.5)
+        knots = int(rng.choice([5, 25]))
+        solved = guided_loads(pitch, system, stem, pair, speed, theta, knots=knots)
+        assert solved.residual.max() <= 1e-10
+
+
+def test_small_loads_among_many_settle_in_tight_guides():
+    """Started between solutions of loads 1e30 times as great: three steps, not two."""
+    rng = np.random.default_rng(7)
+    force = rng.choice([-1.0, 1.0], 700) * 10 ** rng.uniform(-28.0, 3.0, 700)
+    solved = guide_reactions(force, rng.uniform(0.02, 0.05, 700), STEM, guide_pair())
+    for name in ("force_residual", "moment_residual", "complementarity_residual"):
+        assert getattr(solved, name).max() <= 5e-10, name
