@@ -11,7 +11,7 @@ all others.
 from __future__ import annotations
 
 import re
-from decimal import Decimal, InvalidOperation
+from decimal import ROUND_CEILING, Decimal, InvalidOperation
 from functools import lru_cache
 from math import ceil, degrees, isfinite, isnan, log10
 from typing import TYPE_CHECKING, NamedTuple
@@ -296,6 +296,14 @@ def shown(value: float, unit: str, digits: int = 4) -> str:
     """A value in SI as text in a unit, such as ``12.5 mm``."""
     number = f"{in_unit(value, unit):.{digits}g}"
     return f"{number} {unit}" if unit not in ("", "-") else number
+
+
+def shown_up(value: float, unit: str, digits: int = 4) -> str:
+    """As `shown`, of a number at least as great as the value, > 0: for a bound that suffices."""
+    number = in_unit(value, unit)
+    last = Decimal(1).scaleb(Decimal(number).adjusted() - digits + 1)
+    rounded = Decimal(number).quantize(last, rounding=ROUND_CEILING)
+    return f"{rounded.normalize():f} {unit}"
 
 
 def used(utilisation: float | None) -> str:

@@ -12,6 +12,9 @@ import numpy as np
 from camwright.geometry.arrays import FULL_TURN, Array
 from camwright.geometry.pitch_curve import magnitude
 
+CONTACT_FLOOR = 0.01
+"""Least normal force over the least spring force in the quotients by the normal force."""
+
 
 class FatiguePoint(NamedTuple):
     """Stress of a part in its Goodman diagram, Pa.
@@ -58,6 +61,17 @@ def greatest_unloading(inertia: Array, closing: Array) -> Array:
 def force_left(closing: Array, inertia: Array, least_spring: float | Array) -> Array:
     """Sum of closing and inertia force over the least spring force, without friction."""
     return (closing + inertia) / least_spring
+
+
+def over_contact_force(needed: Array, normal: Array, least_spring: float | Array) -> Array:
+    """A force over the normal force (...), which counts as `CONTACT_FLOOR` at least.
+
+    About to lose the contact, no quotient by its force says more than that; infinite without
+    contact, NaN where the normal force is.
+    """
+    held = np.maximum(normal, CONTACT_FLOOR * least_spring)
+    share = np.divide(needed, held, out=np.full_like(held, np.inf), where=held > 0.0)
+    return np.where(normal <= 0.0, np.inf, np.where(np.isnan(normal), np.nan, share))
 
 
 def jam_outward(lift_slope: Array, jam_index: Array) -> Array:

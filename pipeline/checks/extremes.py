@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
 
-from camwright.geometry.arrays import Array
+from camwright.geometry.arrays import FULL_TURN, Array
 from camwright.pipeline.cycle.cycle import Cycle
+from camwright.pipeline.follower.follower_forces import Loads
 
 
 class Extreme(NamedTuple):
@@ -47,6 +48,44 @@ def greatest(cycles: Iterable[Cycle], measure: Callable[[Cycle], Array]) -> Extr
 def least(cycles: Iterable[Cycle], measure: Callable[[Cycle], Array]) -> Extreme:
     """Least value over all load cases and angles; NaN if any is."""
     return _extreme(cycles, measure, -1.0)
+
+
+def greatest_force(cycles: Sequence[Cycle], measure: Callable[[Cycle, Loads], Array]) -> Extreme:
+    """Greatest value of forces over all load cases and angles, between the solved ones as well.
+
+    The vertex of the parabola through three of the angles of `Cycle.loads_between`; NaN if any is.
+
+    Parameters
+    ----------
+    measure : callable   cycle, its forces at angles (m,) -> array (m,)
+    """
+    return _vertex(cycles, measure, 1.0)
+
+
+def least_force(cycles: Sequence[Cycle], measure: Callable[[Cycle, Loads], Array]) -> Extreme:
+    """Least value of forces over all load cases and angles; see `greatest_force`."""
+    return _vertex(cycles, measure, -1.0)
+
+
+def _vertex(
+    cycles: Sequence[Cycle], measure: Callable[[Cycle, Loads], Array], sign: float
+) -> Extreme:
+    values = {cycle.load_case: measure(cycle, cycle.loads_between) for cycle in cycles}
+    worst = _extreme(cycles, lambda cycle: values[cycle.load_case], sign)
+    if worst.cam_angle is None:
+        return worst
+    of_case = values[worst.load_case]
+    step = FULL_TURN / of_case.size
+    near = (round(worst.cam_angle / step) + np.arange(-1, 2)) % of_case.size
+    before, here, after = of_case[near]
+    bend = sign * (before - 2.0 * here + after)
+    if not bend < 0.0:  # a constant, or without a value beside it
+        return worst
+    place = sign * 0.5 * (before - after) / bend
+    return worst._replace(
+        value=float(here - 0.25 * (before - after) * place),
+        cam_angle=float((worst.cam_angle + place * step) % FULL_TURN),
+    )
 
 
 def worst_case(
@@ -161,7 +200,7 @@ def _extreme(
         value = float(values[worst])
         if extreme.load_case and not (np.isnan(value) or sign * value > sign * extreme.value):
             continue
-        theta = float(cycle.theta[worst]) if error is None else None
+        theta = FULL_TURN * worst / values.size if error is None else None
         share = _sampling_error(values, sign) if error is None and cycle.error_bars else 0.0
         extreme, at = Extreme(value, cycle.load_case, theta, share), cycle
     if error is None or at is None or not at.error_bars:

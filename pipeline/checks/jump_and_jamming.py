@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from camwright.geometry.arrays import Array
-from camwright.pipeline.base.units import shown
+from camwright.pipeline.base.units import shown, shown_up
 from camwright.pipeline.case.limits import (
     CONTACT_FORCE_MARGIN,
     JAM_INDEX,
@@ -20,7 +20,13 @@ from camwright.pipeline.case.limits import (
 from camwright.pipeline.case.machine import Machine
 from camwright.pipeline.checks import demands
 from camwright.pipeline.checks.check import SPEED_RANGE, Demand, check
-from camwright.pipeline.checks.extremes import Extreme, greatest, least
+from camwright.pipeline.checks.extremes import (
+    Extreme,
+    greatest,
+    greatest_force,
+    least,
+    least_force,
+)
 from camwright.pipeline.checks.missing_keys import unset
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.cycle import Cycle, least_spring_force
@@ -28,14 +34,17 @@ from camwright.pipeline.cycle.elastic_response import ElasticHistory
 from camwright.pipeline.cycle.solution import Solution
 from camwright.pipeline.cycle.speed_sweep import SpeedSweep, highest_speed
 from camwright.pipeline.follower.follower_flight import LONGEST, Flight
+from camwright.pipeline.follower.follower_forces import Loads
 
+_DIGITS = 5  # of the force and of the preload of a follower that leaves the cam
 _TIE = 1e-9  # relative difference up to which two forces are equal, and one is none
 
 
 @check(
     CONTACT_FORCE_MARGIN,
     title="Minimum contact force / least spring force",
-    method="least normal force over the turn, guide friction and inertia included",
+    method="least normal force over the turn, guide friction and inertia included, refined between"
+    " samples",
     lift_can_help=True,
     tier=Tier.SCREENING,
     forecast=True,
@@ -47,15 +56,21 @@ _TIE = 1e-9  # relative difference up to which two forces are equal, and one is 
 )
 def contact_force_margin(solution: Solution) -> Demand:
     """Minimum contact force over the least spring force."""
-    worst = least(solution.cycles, lambda c: c.loads.normal_force / c.least_spring_force)
-    limit = solution.machine.limits[CONTACT_FORCE_MARGIN]
-    return Demand(worst.value, limit, worst, note=_lifts_off(solution.cycles))
+    worst = least_force(
+        solution.cycles, lambda cycle, loads: loads.normal_force / cycle.least_spring_force
+    )
+    limit, lowest = solution.machine.limits[CONTACT_FORCE_MARGIN], _lowest(solution.cycles)
+    if lowest.value < 0.0:
+        worst = lowest
+    worst = worst._replace(value=float(np.maximum(worst.value, 0.0)))
+    return Demand(worst.value, limit, worst, note=_lifts_off(solution.cycles, lowest))
 
 
 @check(
     JUMP,
     title="Maximum unloading inertia force / closing force",
-    method="greatest -m w^2 s'' / F_c over the turn; the jump speed is w / sqrt of it",
+    method="greatest -m w^2 s'' / F_c over the turn, refined between samples; the jump speed is"
+    " w / sqrt of it",
     lift_can_help=True,
     tier=Tier.SCREENING,
     forecast=True,
@@ -67,11 +82,9 @@ def contact_force_margin(solution: Solution) -> Demand:
 )
 def jump(solution: Solution) -> Demand:
     """Maximum unloading inertia force over the closing force."""
-    worst = greatest(
+    worst = greatest_force(
         solution.cycles,
-        lambda cycle: demands.greatest_unloading(
-            cycle.loads.inertia_force, cycle.loads.closing_force
-        ),
+        lambda _, loads: demands.greatest_unloading(loads.inertia_force, loads.closing_force),
     )
     return Demand(worst.value, solution.machine.limits[JUMP], worst)
 
@@ -131,7 +144,8 @@ def jam_index_friction_max(solution: Solution) -> Demand:
     JUMP_SPEED,
     title="Machine speed at follower jump",
     unit="rpm",
-    method="least w sqrt(F_c / (-m w^2 s'')) where the follower decelerates, without friction",
+    method="least w sqrt(F_c / (-m w^2 s'')) where the follower decelerates, without friction,"
+    " refined between samples",
     lift_can_help=True,
     tier=Tier.SCREENING,
     formula="min(w sqrt(F_c / (-m w^2 s''))) >= limits.jump_speed times limits.overspeed; w: crank"
@@ -143,7 +157,7 @@ def jam_index_friction_max(solution: Solution) -> Demand:
 )
 def jump_speed(solution: Solution) -> Demand | None:
     """Minimum crank speed of follower jump, rad/s; None for a round cam, which has no jump."""
-    worst = least(solution.cycles, _jump_speed)._replace(load_case="")
+    worst = least_force(solution.cycles, _jump_speed)._replace(load_case="")
     if np.isposinf(worst.value):
         return None
     over = overspeed(solution.machines)
@@ -156,7 +170,8 @@ def jump_speed(solution: Solution) -> Demand | None:
     CONTACT_FORCE_MARGIN,
     id="contact_at_overspeed",
     title="Minimum contact force / least spring force at overspeed",
-    method="least closing force plus m w^2 s'' at the overspeed, without friction",
+    method="least closing force plus m w^2 s'' at the overspeed, without friction, refined between"
+    " samples",
     lift_can_help=True,
     tier=Tier.SCREENING,
     formula="min(F_c + m w^2 s'') / F_0 >= limits.contact_force_margin at w of limits.overspeed;"
@@ -172,12 +187,13 @@ def contact_at_overspeed(solution: Solution) -> Demand:
     if over is None:
         return Demand(None, limit, missing=unset(solution.machine.limits, OVERSPEED))
 
-    def force(cycle: Cycle) -> Array:
-        scale, loads = (over / cycle.machine.crank_speed) ** 2, cycle.loads
-        inertia, held = scale * loads.inertia_force, cycle.least_spring_force
-        return np.asarray(demands.force_left(loads.closing_force, inertia, held))
+    def force(cycle: Cycle, loads: Loads) -> Array:
+        scale, held = (over / cycle.machine.crank_speed) ** 2, cycle.least_spring_force
+        return np.asarray(
+            demands.force_left(loads.closing_force, scale * loads.inertia_force, held)
+        )
 
-    worst = least(solution.cycles, force)._replace(load_case="")
+    worst = least_force(solution.cycles, force)._replace(load_case="")
     return Demand(worst.value, limit, worst)
 
 
@@ -251,15 +267,20 @@ def elastic_contact(solution: Solution) -> Demand:
     )
 
 
-def _lifts_off(cycles: Sequence[Cycle]) -> str:
+def _lowest(cycles: Sequence[Cycle]) -> Extreme:
+    """Least axial force without guide friction, N; negative where the follower leaves the cam."""
+    return least_force(cycles, lambda _, loads: loads.required_force)
+
+
+def _lifts_off(cycles: Sequence[Cycle], worst: Extreme) -> str:
     """Least axial force of a follower that leaves the cam, and the preload that keeps it on."""
-    worst = least(cycles, lambda cycle: cycle.loads.required_force)
     if not worst.value < 0.0:
         return ""
     preload = max(each.machine.spring.preload for each in cycles) - worst.value
     return (
-        f"the follower leaves the cam: axial force without friction {shown(worst.value, 'N')};"
-        f" a preload above {shown(preload, 'N')} keeps it on the cam"
+        "the follower leaves the cam: axial force without friction"
+        f" {shown(worst.value, 'N', _DIGITS)} at {shown(worst.cam_angle or 0.0, 'deg')};"
+        f" a preload above {shown_up(preload, 'N', _DIGITS)} keeps it on the cam"
     )
 
 
@@ -343,11 +364,11 @@ def _place(angle: float) -> str:
     return f"{np.degrees(angle) % 360.0:.1f} deg"
 
 
-def _jump_speed(cycle: Cycle) -> Array:
+def _jump_speed(cycle: Cycle, loads: Loads) -> Array:
     """Crank speed of follower jump by cam angle (n,), rad/s; NaN where not known."""
-    pull = -cycle.loads.inertia_force
+    pull = -loads.inertia_force
     slows = pull > _TIE * np.abs(pull).max()  # in a dwell the acceleration is round-off
-    closing = cycle.loads.closing_force
+    closing = loads.closing_force
     ratio = np.sqrt(np.where(closing < 0.0, 0.0, closing) / np.where(slows, pull, 1.0))
     free = np.where(np.isnan(pull), np.nan, np.where(closing <= 0.0, 0.0, np.inf))
     return np.where(slows, cycle.machine.crank_speed * ratio, free)

@@ -44,7 +44,7 @@ def load_ends(solution: Solution) -> tuple[LoadEnd, ...]:
 
 def _end(cycle: Cycle) -> tuple[float, str] | None:
     stall = cycle.turn.driven.stall
-    return cycle.loads.end or (None if stall is None else (stall, STALLS))
+    return cycle.end or (None if stall is None else (stall, STALLS))
 
 
 def without_lost_loads(checks: Iterable[Check], solution: Solution) -> tuple[Check, ...]:

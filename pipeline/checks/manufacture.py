@@ -81,7 +81,8 @@ def wave_amplitude(cam: CamBody) -> float:
     tier=Tier.SCREENING,
     formula="max m a (2 pi v/lambda)^2 / N <= c; m: moving mass, a: half of"
     " cam.profile_tolerance, v: speed of the contact along the contour, lambda:"
-    " cam.waviness_length, N: contact force, c: limits.waviness",
+    " cam.waviness_length, N: contact force, at least 1 % of the least spring force, c:"
+    " limits.waviness",
     reason="Waves of the ground surface unload the contact and mark it.",
     method="m delta (2 pi v/lambda)^2, waves over the full profile tolerance",
 )
@@ -93,10 +94,7 @@ def profile_waviness(solution: Solution) -> Demand:
     def force(cycle: Cycle) -> Array:
         along = cycle.cam_speed * np.abs(cycle.contour.speed(cycle.theta))
         added = demands.waviness_force(cycle.machine.mass, wave_amplitude(cam), along, length)
-        nominal = cycle.loads.normal_force
-        held = nominal > 0
-        share = np.where(held, added / np.where(held, nominal, 1.0), np.inf)
-        return np.where(np.isnan(nominal), np.nan, share)
+        return demands.over_contact_force(added, cycle.loads.normal_force, cycle.least_spring_force)
 
     worst = greatest(solution.cycles, force) if band is not None else NOWHERE
     return Demand(

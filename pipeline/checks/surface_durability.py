@@ -19,6 +19,7 @@ from camwright.pipeline.case.limits import (
     TRACTION_SHARE,
 )
 from camwright.pipeline.case.machine import Machine
+from camwright.pipeline.checks import demands
 from camwright.pipeline.checks.check import NONE, Demand, check
 from camwright.pipeline.checks.contact_strength import endurance_of, peak_pressure
 from camwright.pipeline.checks.extremes import greatest, least, worst_case
@@ -48,7 +49,8 @@ RULE_RATIO = 1.5
     lift_can_help=True,
     needs="roller",
     formula="T/N <= mu; T: tangential force of rolling without slip, from the inertia of the roller"
-    " and the drag of its bearing, N: normal force, mu: roller.friction",
+    " and the drag of its bearing, N: normal force, at least 1 % of the least spring force, mu:"
+    " roller.friction",
     reason="a roller that slips wears the track, and its endurance is that of sliding",
 )
 def traction_demand(solution: Solution) -> Demand:
@@ -488,10 +490,12 @@ def gear_limit(card: Material) -> float | None:
 
 def _traction(cycle: Cycle) -> Array:
     """Traction coefficient (n,), 0 where unloaded; NaN where it is not known."""
-    demand = cycle.rolling.traction_demand
+    demand, normal = cycle.rolling.traction_demand, cycle.loads.normal_force
     if demand is None:
         return np.full(cycle.theta.size, np.nan)
-    return np.where(np.isnan(demand), 0.0, demand)
+    force = demand * normal
+    share = demands.over_contact_force(force, normal, cycle.least_spring_force)
+    return np.where(np.isnan(demand), 0.0, share)
 
 
 def _lambda(cycle: Cycle) -> Array:

@@ -343,8 +343,9 @@ def _phased(each: Turn, corner: Corner) -> Turn:
 def _governed(one: Check, tried: Sequence[Outcome]) -> Check:
     """Check with its worst corner; a demand without a value at a solved corner is missing.
 
-    Where a load case has no loads at a corner, the demand of the others can only fail the check;
-    see `lost_loads`.
+    The demand of the run times the ratio of the closed forms at the corner and without it; that at
+    the corner where the nominal one lacks a load case. Where a load case has no loads at a corner,
+    the demand of the others can only fail the check; see `lost_loads`.
     """
     nominal = tried[0]
     nominal_demand, here = one.demand, nominal.demands.get(one.id)
@@ -365,5 +366,7 @@ def _governed(one: Check, tried: Sequence[Outcome]) -> Check:
     if worst is nominal:
         return replace(one, corner="nominal", corner_demand=one.demand)
     there = worst.demands[one.id]
-    demand = nominal_demand * there / here if here and np.isfinite(here) else there
+    # over the same load cases, and on the same side of zero
+    comparable = one.id not in nominal.bounds and np.isfinite(here) and nominal_demand * here > 0.0
+    demand = nominal_demand * there / here if comparable else there
     return replace(one, corner=worst.corner.name, corner_demand=float(demand))

@@ -10,7 +10,7 @@ from typing import TypeVar
 
 import numpy as np
 
-from camwright.geometry.arrays import Array
+from camwright.geometry.arrays import FULL_TURN, Array, uniform_turn
 from camwright.geometry.contour import Contour
 from camwright.pipeline.base.tables import (
     CAM_ANGLE,
@@ -34,7 +34,7 @@ from camwright.pipeline.cycle.part_loads import PartLoads, part_loads, shaft_of,
 from camwright.pipeline.cycle.rolling_history import RollingHistory, rolling_history
 from camwright.pipeline.cycle.turn import Turn
 from camwright.pipeline.follower.camshaft_loads import ShaftLoads
-from camwright.pipeline.follower.follower_forces import Loads, share_left
+from camwright.pipeline.follower.follower_forces import Loads, follower_loads, share_left
 from camwright.pipeline.follower.guide_effects import GuideShares, guide_shares
 from camwright.pipeline.follower.guide_reactions import GuideReactions
 from camwright.pipeline.follower.spring import Spring
@@ -44,6 +44,11 @@ PRESSURE_ANGLE = Column("pressure_angle", "deg", "Pressure angle")
 PITCH_RADIUS = Column("pitch_radius_of_curvature", "mm", "Radius of curvature of the pitch curve")
 CONTOUR_RADIUS = Column("contour_radius_of_curvature", "mm", "Radius of curvature of the contour")
 
+BETWEEN = 8  # angles of the closed forms of the forces, over those at which guides are solved
+_ALONG = (
+    *("spring_force", "applied_force", "inertia_force", "viscous_force"),
+    *("normal_force", "lift_slope", "jam_index"),
+)
 _COMPUTED = ("length", "surface", "rolling", "parts", "shaft", "elastic")  # of loads and contact
 
 
@@ -120,6 +125,33 @@ class Cycle(Tabled):
     def loads(self) -> Loads:
         """Forces on the follower."""
         return self.turn.loads
+
+    @cached_property
+    def loads_between(self) -> Loads:
+        """Forces at `BETWEEN` times the angles, for extremes between those that are solved.
+
+        The closed forms with the rubbing load of the guides linear between the angles, and linear
+        between them too what the solved forces of `_ALONG` differ by.
+        """
+        machine, solved = self.machine, self.loads
+        theta = uniform_turn(BETWEEN * self.theta.size)
+        system = replace(machine.system, rubbing=solved.rubbing)
+        closed = follower_loads(self.contour.pitch, system, machine.cam_speed, theta)
+
+        def corrected(name: str) -> Array:
+            form = getattr(closed, name)
+            off = getattr(solved, name) - form[::BETWEEN]
+            return np.asarray(form + np.interp(theta, self.theta, off, period=FULL_TURN))
+
+        return replace(closed, **{name: corrected(name) for name in _ALONG})
+
+    @cached_property
+    def end(self) -> tuple[float, str] | None:
+        """Cam angle, rad, at which the loads of the turn end, and why, between solved angles too.
+
+        None: nowhere; see `Loads.end`.
+        """
+        return self.loads_between.end
 
     @property
     def guides(self) -> GuideReactions:

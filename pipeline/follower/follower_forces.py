@@ -312,9 +312,20 @@ class Loads(Displayed):
 
     @property
     def end(self) -> tuple[float, str] | None:
-        """Cam angle, rad, at which the loads of one follower end, and why; None: nowhere."""
+        """Cam angle, rad, at which the loads of one follower end, and why; None: nowhere.
+
+        Where it leaves the cam, the zero of the line through the forces before and after.
+        """
         lost, first, leaves = self.ends
-        return (float(self.theta[first]), LEAVES if leaves else LOCKS) if lost else None
+        if not lost:
+            return None
+        theta = float(self.theta[first])
+        if not leaves:
+            return theta, LOCKS
+        before, after = self.required_force[first - 1], self.required_force[first]
+        step = float((self.theta[first] - self.theta[first - 1]) % FULL_TURN)
+        back = after / (after - before) if after < 0.0 < before else 0.0
+        return (theta - float(back) * step) % FULL_TURN, LEAVES
 
     @property
     def friction_force(self) -> Array:

@@ -102,7 +102,7 @@ class Preview:
         solved, contour = self.solved, self.solved.contour
         cam, first = solved.case.cam, solved.cycles[0]
         # as in the headline of a run: after the follower has left the cam the loads are not its own
-        sound = [cycle for cycle in solved.cycles if cycle.loads.end is None]
+        sound = [cycle for cycle in solved.cycles if cycle.end is None]
         after = first.turn.torque_after if first in sound else None
         pressures = [float(np.max(cycle.contact.p0)) for cycle in sound]
         disc = unbalance(contour, cam.bore_radius, cam.keyway, cam.width, cam.material.density)

@@ -220,7 +220,7 @@ def remedies(
 
 def _greatest_line_load(base: Preview) -> float | None:
     """Greatest line load of the cycles whose loads hold, N/m; None where none is known."""
-    held = [cycle.contact.line_load for cycle in base.solved.cycles if cycle.loads.end is None]
+    held = [cycle.contact.line_load for cycle in base.solved.cycles if cycle.end is None]
     known = [float(np.nanmax(each)) for each in held if not np.isnan(each).all()]
     return max(known, default=None)
 

@@ -130,7 +130,7 @@ def hardest(cycles: Sequence[Cycle]) -> int:
     A load case in which the follower leaves the cam or locks counts only where every one does: its
     loads are no results.
     """
-    whole = [cycle.loads.end is None for cycle in cycles]
+    whole = [cycle.end is None for cycle in cycles]
     counted = whole if any(whole) else [True] * len(cycles)
     pressures = [cycle.contact.p0_hertz.max() for cycle in cycles]
     return int(np.argmax(np.where(counted, pressures, -np.inf)))

@@ -178,7 +178,7 @@ def headline(torques: Mapping[str, Torque], trial: Trial) -> dict[str, float | N
     """
     first, contour = trial.cycles[0], trial.contour
     design = torques.get(first.load_case)
-    loaded = [cycle for cycle in trial.cycles if cycle.loads.end is None]
+    loaded = [cycle for cycle in trial.cycles if cycle.end is None]
 
     def over(measure: Callable[[Cycle], Array]) -> float | None:
         worst = max((float(np.max(measure(cycle))) for cycle in loaded), default=np.nan)
@@ -342,7 +342,7 @@ def hertz_difference(cycles: Sequence[Cycle]) -> dict[str, Json] | None:
     }
     for cycle in cycles:
         contact = cycle.contact
-        if contact.tier not in (Tier.CYCLE, Tier.CERTIFIED) or cycle.loads.end is not None:
+        if contact.tier not in (Tier.CYCLE, Tier.CERTIFIED) or cycle.end is not None:
             continue
         on = (contact.p0_hertz > 0) & ~contact.unsolved & ~contact.below_round_off
         whole, cam, other = (

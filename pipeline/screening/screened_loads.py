@@ -123,8 +123,8 @@ def profile_waviness(designs: Designs) -> Judged:
     def share(turns: Turns) -> Array:
         speed = turns.cam_speed * along
         added = demands.waviness_force(designs.value("follower.mass"), 0.5 * band, speed, length)
-        force = turns.loads.normal_force
-        return np.divide(added, force, out=np.full_like(force, np.inf), where=force > 0.0)
+        held = _least_spring_force(turns)
+        return demands.over_contact_force(added, turns.loads.normal_force, held)
 
     worst = np.max([share(turns).max(axis=-1) for turns in designs.turns], axis=0)
     return worst, designs.limit(WAVINESS)

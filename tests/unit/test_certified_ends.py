@@ -46,7 +46,7 @@ def test_a_load_case_that_locks_is_not_certified(trial):
     index[np.argmax(turn.loads.lift_slope)] = 1.0
     jammed = replace(turn, loads=replace(turn.loads, jam_index=index))
     cycles[number] = replace(cycles[number], turn=jammed)
-    assert cycles[number].loads.end is not None
+    assert cycles[number].end is not None
     assert first.load_case not in {load.load_case for load in length_loads(cycles, [])}
     alone = length_loads(cycles[number : number + 1], [])
     assert [load.theta for load in alone] == [first.theta]

@@ -203,7 +203,8 @@ def test_the_worst_load_case_and_angle_are_named():
     assert (check.load_case, degrees(check)) == ("rated", pytest.approx(90.0))
     assert check.demand == pytest.approx(990e6)
     lightest = jump_and_jamming.contact_force_margin(solution)
-    assert (lightest.load_case, degrees(lightest)) == ("start", pytest.approx(270.0))
+    place = pytest.approx(270.0, abs=0.05)  # of the closed forms between the made-up forces
+    assert (lightest.load_case, degrees(lightest)) == ("start", place)
     assert torque_balance.torque_reduction(solution).load_case == "rated"
 
 

@@ -184,7 +184,7 @@ def test_an_undercut_contour_has_no_line_load(case: Case, radius: str, undercut:
     changed = with_values(case, {"roller.radius": radius, "cam.prime_radius": "34 mm"})
     base = Judge(engine_torques(changed), None, {}).preview(changed, [], undercut=True)
     known = np.concatenate(
-        [cycle.contact.line_load for cycle in base.solved.cycles if cycle.loads.end is None]
+        [cycle.contact.line_load for cycle in base.solved.cycles if cycle.end is None]
     )
     assert np.isnan(known).all() == undercut
     assert _greatest_line_load(base) == (None if undercut else known.max())

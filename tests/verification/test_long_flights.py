@@ -70,7 +70,7 @@ def same(one: Flight, other: Flight) -> None:
 def test_a_snail_cam_lets_its_follower_fall_beyond_the_turn() -> None:
     """Rigid, by hand: from 350 deg to 82.5 deg of the next turn, 20.33 mm high, with 0.249 m/s.
 
-    Within 0.1 %, 0.12 deg of 92.5 deg: the stem is elastic, the corners are those of a spline at 0.0125 deg.
+    Within 0.1 %, 0.12 deg of 92.5 deg: an elastic stem, and corners of a spline at 0.0125 deg.
     """
     run = bounce(snail(28800), SPEED, SOFT, 0.2, first=np.radians(300.0))
     fall = highest(run.flights)

@@ -54,6 +54,8 @@ KELVIN = 273.15
 MARGINS = (
     "contact_force_margin", "contact_at_overspeed", "contact_over_speed", "elastic_contact",
 )  # fmt: skip
+REFINED = ("contact_force_margin", "contact_at_overspeed", "jump", "jump_speed")
+"""Checks of the contact force between the solved angles."""
 NORMAL_FORCE = (
     "roller_static", "roller_radial", "roller_static_radial", "roller_load_share", "roller_pin",
     "roller_pin_shear", "roller_pin_pressure", "cheek_pressure", "bore_pressure",
@@ -326,7 +328,9 @@ def guide_closure(case, guide, celsius):
 @pytest.mark.parametrize("name", EACH)
 def test_a_constraint_is_that_of_its_check(case, solved, checks, problem, corrections, name):
     kept, ratings = own(case, solved.machine, name)
-    at_peak = name in {each.check for each in SHAPE} and checks[name].cam_angle is not None
+    refined = name in REFINED
+    at_peak = refined or name in {each.check for each in SHAPE}
+    at_peak &= checks[name].cam_angle is not None
     swept = name in ("contact_over_speed", "elastic_contact")
     theta = uniform_turn(ANGLES if swept else POSITIONS)
     if at_peak:
@@ -336,6 +340,8 @@ def test_a_constraint_is_that_of_its_check(case, solved, checks, problem, correc
     # Closed forms with the ratios of the solved cycle are the solved values to round-off; the sweep
     # interpolates friction over axial force, the constraint its ratio to that of point supports.
     tolerance = 1e-4 if swept else 1e-8
+    if refined:  # a parabola through angles of 0.375 deg, with friction linear between
+        tolerance = 1e-5
     if name == "keyway_root":  # wall at minimum lift, and at the least contour radius
         tolerance = 1e-6
     if name == "guide_gap":  # the greatest radius lies between the angles

@@ -14,6 +14,7 @@ from scipy.linalg import eigh
 from stated_loads import stated_loads
 
 from camwright.geometry.arrays import uniform_turn
+from camwright.geometry.extrema import sampled_greatest, sampled_least
 from camwright.geometry.lift import Lift
 from camwright.pipeline.case.case_file import read_case
 from camwright.pipeline.checks import jump_and_jamming, spring_strength
@@ -385,12 +386,11 @@ def test_margin_and_jump_from_motion_in_time(solved):
         rub = mu[0] * cycle.guides.rubbing_load_a + mu[1] * cycle.guides.rubbing_load_b
         axial = hold + inertia + np.sign(np.where(np.abs(rate) > 1e-9, rate, 0.0)) * rub
         slant = np.arctan(rate / (machine.cam.prime_radius + s))
-        margin.append((axial / np.cos(slant)).min() / machine.spring.preload)
-        unloading.append((-inertia / hold).max())
-        slows = bend < 0.0
-        speeds.append(np.sqrt((hold / (-machine.mass * bend))[slows].min()))
+        margin.append(float(sampled_least(axial / np.cos(slant))) / machine.spring.preload)
+        unloading.append(float(sampled_greatest(-inertia / hold)))
+        speeds.append(w / np.sqrt(unloading[-1]))
         fast = machine.mass * bend * (0.5 * 3600.0 * RPM) ** 2
-        over.append((hold + fast).min() / machine.spring.preload)
+        over.append(float(sampled_least(hold + fast)) / machine.spring.preload)
         assert loads.lift == pytest.approx(s, abs=1e-9)
     found = {
         each.id: each(solved)
