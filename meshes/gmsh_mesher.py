@@ -47,8 +47,6 @@ _OPTIONS = {
 
 TRIANGLES_MAX = 60_000
 """Maximum number of triangles of a body; twice as many need more than 6 GB to be solved."""
-_GRID_BITS = 12  # of the shortest edge of the outline, whose coordinates are rounded for gmsh
-
 
 _IGNORED = 1  # SIG_IGN of C
 
@@ -112,16 +110,18 @@ class Triangulation:
 
 
 def triangulate(
-    loops: Sequence[Sequence[Facets]], size: SizeField, *, on_grid: bool = False
+    loops: Sequence[Sequence[Facets]], size: SizeField, *, grid_bits: int = 12
 ) -> Triangulation:
     """Quadratic triangles of the region on the left of the `loops`, the outer one first.
 
-    Corners are numbered first, those on the outline in its order, then mid-side nodes.
+    Corners are numbered first, those on the outline in its order, then mid-side nodes. gmsh gets
+    outline and sizes rounded to a grid, so that their round-off does not change the triangles; the
+    corners on the outline remain exact.
 
     Parameters
     ----------
-    on_grid : bool   give gmsh outline and sizes rounded to a grid, so that round-off of the outline
-                     does not change the triangles; the corners on it remain exact
+    grid_bits : int   the step of the grid is at most 2^-grid_bits of the shortest edge of the
+                      outline
 
     Raises
     ------
@@ -138,13 +138,11 @@ def triangulate(
         x, y = crossed / MILLIMETRE
         where = f"({x:.3f}, {y:.3f}) mm"
         raise GeometryError(f"outline = crosses itself at {where}, must be free of crossings")
-    rounded = corners
-    if on_grid:
-        step = _grid_step(corners, rings)
-        rounded, size = np.rint(corners / step) * step, size.on_grid(step)
+    step = _grid_step(corners, rings, grid_bits)
     try:
         with session() as gmsh:
-            points, triangles = _fill(gmsh, rounded, rings, size)
+            rounded = np.rint(corners / step) * step
+            points, triangles = _fill(gmsh, rounded, rings, size.on_grid(step))
             points[:, : corners.shape[1]] = corners  # exact
     except MeshError:
         raise
@@ -212,14 +210,14 @@ def _fill(
     return points, _counter_clockwise(points, triangles)
 
 
-def _grid_step(corners: Array, rings: Sequence[Index]) -> float:
+def _grid_step(corners: Array, rings: Sequence[Index], bits: int) -> float:
     """Step, m, of the grid on which gmsh, which decides by the last bit, sees no round-off.
 
-    A power of two, at most 2^-12 of the shortest edge, so that the shape of the elements is kept.
+    A power of two, at most 2^-bits of the shortest edge, so that the shape of the elements is kept.
     """
     edges = [corners[:, np.roll(ring, -1)] - corners[:, ring] for ring in rings]
     shortest = min(float(np.hypot(*edge).min()) for edge in edges)
-    return float(2.0 ** (int(np.frexp(shortest)[1]) - 1 - _GRID_BITS))
+    return float(2.0 ** (int(np.frexp(shortest)[1]) - 1 - bits))
 
 
 def _impose(gmsh: ModuleType, size: SizeField) -> None:

@@ -1,5 +1,7 @@
 """Meshes against exact figures: areas, curves, constant strain and element counts."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from cam_parts import Keyway, mesh_area
@@ -10,7 +12,13 @@ from camwright.geometry.contour import RollerContour
 from camwright.geometry.errors import MeshError
 from camwright.geometry.lift import Lift
 from camwright.geometry.pitch_curve import PitchCurve
-from camwright.meshes.body_mesh import block_mesh, cam_mesh, half_disc_mesh, roller_mesh
+from camwright.meshes.body_mesh import (
+    block_mesh,
+    cam_mesh,
+    face_mesh,
+    half_disc_mesh,
+    roller_mesh,
+)
 from camwright.meshes.element_size import Sizing
 from camwright.meshes.gmsh_mesher import session
 from camwright.meshes.mesh_quality import gate, quality
@@ -80,6 +88,24 @@ def test_round_off_of_the_lift_does_not_change_the_triangles_of_a_cam(lift, half
     for mesh in meshes[1:]:
         assert np.array_equal(mesh.triangles, meshes[0].triangles)
         # 1e-13 of the lift is 3e-15 m; arc length and foot of the contact add to it
+        np.testing.assert_allclose(mesh.points, meshes[0].points, rtol=0.0, atol=1e-12)
+
+
+@pytest.mark.parametrize(
+    "made",
+    [
+        lambda size: roller_mesh(0.008, 0.0025, 0.7, size),
+        lambda size: face_mesh(0.024, 0.006, 0.01, replace(size, contact_point=np.zeros(2))),
+        lambda size: half_disc_mesh(0.004, size),
+    ],
+)
+def test_round_off_of_the_contact_does_not_change_the_triangles_of_a_follower(made):
+    """A half-width known to 1e-13, the last digits of another processor, gives the same mesh."""
+    draw = np.random.default_rng(2)
+    sizes = HALF_WIDTH * (1.0 + np.append(0.0, 1e-13 * draw.uniform(-1.0, 1.0, 5)))
+    meshes = [made(Sizing.from_half_width(float(each), 1e-3)) for each in sizes]
+    for mesh in meshes[1:]:
+        assert np.array_equal(mesh.triangles, meshes[0].triangles)
         np.testing.assert_allclose(mesh.points, meshes[0].points, rtol=0.0, atol=1e-12)
 
 
