@@ -6,6 +6,7 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from camwright.geometry.arrays import FULL_TURN, Array, uniform_turn
 
@@ -16,6 +17,9 @@ _ZOOMS = 7
 """Each zoom keeps a sixteenth of the bracket: 7 leave 4e-9 of it, whose square is round-off."""
 
 _MINIMA_MAX = 256
+
+TIE = 1e-9
+"""Values this close, over the greatest magnitude among them, are equal: round-off orders them."""
 
 _GOLDEN = 0.5 * (np.sqrt(5.0) - 1.0)
 _SECTIONS = 50
@@ -29,6 +33,38 @@ class Extremum(NamedTuple):
     theta: float
 
 
+def first_greatest(values: ArrayLike) -> int:
+    """Number of the greatest of values (n,), the first of those that are equal within `TIE`.
+
+    Which of equal values is the greatest depends on the processor and its libraries. The first NaN,
+    where there is one.
+    """
+    array = np.asarray(values, dtype=float)
+    return int(first_greatest_of_rows(array[None, :])[0])
+
+
+def first_least(values: ArrayLike) -> int:
+    """Number of the least of values (n,), the first of equal ones; see `first_greatest`."""
+    return first_greatest(-np.asarray(values, dtype=float))
+
+
+def first_greatest_of_rows(values: Array) -> NDArray[np.intp]:
+    """Numbers (m,) of the greatest value of each row (m, n); see `first_greatest`."""
+    top = values.max(axis=1, keepdims=True)
+    size = np.maximum(top, -values.min(axis=1, keepdims=True))
+    if not np.isfinite(size).all():
+        size = np.where(np.isfinite(values), np.abs(values), 0.0).max(axis=1, keepdims=True)
+    near = values >= top - TIE * size
+    if np.isnan(top).any():
+        near = np.where(np.isnan(top), np.isnan(values), near)
+    return np.asarray(near.argmax(axis=1))
+
+
+def to_rank(value: float) -> float:
+    """Value by which to sort, to 9 digits: round-off does not order equal ones."""
+    return float(f"{value:.9g}")
+
+
 def local_minima(function: Function, count: int, *, lowest: bool = False) -> tuple[Array, Array]:
     """Local minima of a smooth periodic function and their angles, rad.
 
@@ -39,7 +75,8 @@ def local_minima(function: Function, count: int, *, lowest: bool = False) -> tup
     ----------
     function : callable    array of angles (rad) of any shape -> array of the same shape
     count : int            samples per turn; two minima must not share a sample interval
-    lowest : bool          only those that may be the lowest one
+    lowest : bool          only those that may be the lowest one, in the order of their angles;
+                           where the function is constant within `TIE`, its samples
 
     Returns
     -------
@@ -50,15 +87,25 @@ def local_minima(function: Function, count: int, *, lowest: bool = False) -> tup
     values = function(theta)
     if (unknown := np.isnan(values)).any():
         return values[unknown][:1], theta[unknown][:1]
-    low = np.flatnonzero((values <= np.roll(values, 1)) & (values <= np.roll(values, -1)))
+    equal = TIE * float(np.abs(values).max()) if lowest else 0.0
+    above = np.minimum(np.roll(values, 1), np.roll(values, -1)) + equal
+    low = np.flatnonzero(values <= above)
+    step = np.abs(values - np.roll(values, 1))
+    reach = np.maximum(step, np.roll(step, -1))
     if lowest:
         # The vertex of a parabola is below its sample by an eighth of this at most.
-        step = np.abs(values - np.roll(values, 1))
-        reach = np.maximum(step, np.roll(step, -1))[low]
-        low = low[values[low] - reach <= values.min()]
+        low = low[values[low] - reach[low] <= values.min() + equal]
     # a constant function brackets at every sample; the lowest samples are enough
-    low = low[np.argsort(values[low], kind="stable")[:_MINIMA_MAX]]
-    best, where = refined(function, theta[low], FULL_TURN / count, _ZOOMS)
+    ranked = np.maximum(values[low], values.min() + equal)
+    low = low[np.argsort(ranked, kind="stable")[:_MINIMA_MAX]]
+    if not lowest:
+        best, where = refined(function, theta[low], FULL_TURN / count, _ZOOMS)
+        return best, np.mod(where, FULL_TURN)
+    low.sort()
+    best, where = values[low], theta[low]
+    bent = reach[low] > equal
+    if bent.any():
+        best[bent], where[bent] = refined(function, where[bent], FULL_TURN / count, _ZOOMS)
     return best, np.mod(where, FULL_TURN)
 
 
@@ -82,10 +129,12 @@ def refined(function: Function, centre: Array, half: float, zooms: int) -> tuple
 
 
 def least(function: Function, count: int) -> Extremum:
-    """Minimum of a smooth periodic function over the continuous turn; see `local_minima`."""
+    """Minimum of a smooth periodic function over the continuous turn; see `local_minima`.
+
+    Of equal minima the angle is that of the first, see `first_greatest`.
+    """
     values, theta = local_minima(function, count, lowest=True)
-    lowest = int(np.argmin(values))
-    return Extremum(float(values[lowest]), float(theta[lowest]))
+    return Extremum(float(values.min()), float(theta[first_least(values)]))
 
 
 def greatest(function: Function, count: int) -> Extremum:

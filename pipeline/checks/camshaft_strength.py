@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 
 from camwright.geometry.arrays import Array
 from camwright.geometry.errors import InputError
+from camwright.geometry.extrema import first_greatest, first_least
 from camwright.pipeline.base.material import Material
 from camwright.pipeline.base.units import shown
 from camwright.pipeline.case.limits import (
@@ -200,7 +201,7 @@ def shaft_fatigue_points(solution: Solution) -> list[FatiguePoint]:
         shaft.sections, strengths.tolist(), amplitudes, means, strict=True
     ):
         use = amplitude / strength + mean / tensile
-        k = int(np.argmax(np.nan_to_num(use)))
+        k = first_greatest(np.nan_to_num(use))
         if use[k] > used.get(section.name, 0.0):
             used[section.name] = float(use[k])
             points[section.name] = FatiguePoint(
@@ -363,7 +364,7 @@ def shaft_bearing_life(solution: Solution) -> Demand:
         return over_duty(solution.cycles, life, life=True)
 
     both = [of_bearing(lambda loads: loads.load_1), of_bearing(lambda loads: loads.load_2)]
-    worst = min(both, key=lambda each: -np.inf if np.isnan(each.value) else each.value)
+    worst = both[first_least([each.value for each in both])]
     if np.isfinite(worst.value):  # the other bearing may be the worse one within its error
         least = min(each.value * (1.0 - each.error_share) for each in both)
         worst = worst._replace(error_share=1.0 - least / worst.value)

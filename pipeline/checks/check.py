@@ -8,6 +8,7 @@ from dataclasses import dataclass, field, replace
 from typing import Literal
 
 from camwright.geometry.display import Displayed
+from camwright.geometry.extrema import to_rank
 from camwright.pipeline.base.units import in_unit, shown
 from camwright.pipeline.case.limits import TORQUE_REDUCTION, AnyLimit, Sense
 from camwright.pipeline.case.machine import Machine
@@ -538,7 +539,7 @@ def in_order(checks: Iterable[Check]) -> tuple[Check, ...]:
 def _place(one: Check) -> tuple[int, float, str]:
     if one.utilisation is None:
         return 0, 0.0 if one.must_have else 1.0, one.id
-    return 1, -one.utilisation, one.id
+    return 1, -to_rank(one.utilisation), one.id
 
 
 def _shown(value: float | None, unit: str = "") -> float | None:

@@ -17,6 +17,7 @@ import numpy as np
 
 from camwright.geometry.arrays import FULL_TURN, Array, uniform_turn
 from camwright.geometry.contour import Contour
+from camwright.geometry.extrema import first_least
 from camwright.pipeline.base import disk_cache
 from camwright.pipeline.base.material import Endurance, Material
 from camwright.pipeline.base.units import shown
@@ -99,7 +100,7 @@ def least_of_bodies(
     missing = tuple(
         key for body in limits if body not in known for key in lacks(body, machine.bodies[body])
     )
-    body = min(known, key=lambda each: known[each]) if known else "cam"
+    body = list(known)[first_least(list(known.values()))] if known else "cam"
     return LeastLimit(known.get(body), body, machine.bodies[body], missing)
 
 
@@ -421,7 +422,7 @@ def signed_sentence(solution: Solution, worst: Extreme) -> str:
     """What the signed pressure is where it is greatest; "" where it is not known."""
     for cycle in solution.cycles:
         if cycle.load_case == worst.load_case and cycle.length and worst.cam_angle is not None:
-            place = int(np.argmin(np.abs(cycle.theta - worst.cam_angle)))
+            place = first_least(np.abs(cycle.theta - worst.cam_angle))
             return cycle.length.sentence(place)
     return ""
 

@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from camwright.geometry.extrema import TIE, first_greatest
 from camwright.pipeline.checks.check import ROUNDING, Check, Error
 from camwright.pipeline.cycle.solution import Solution
 
@@ -103,8 +104,8 @@ def length_error(solution: Solution) -> float:
     error, most = 0.0, 0.0
     for cycle in solution.cycles:
         if cycle.length is not None:
-            place = int(np.argmax(cycle.signed_pressure))
-            if not cycle.signed_pressure[place] <= most:
+            place = first_greatest(cycle.signed_pressure)
+            if not cycle.signed_pressure[place] <= most * (1.0 + TIE):
                 error, most = float(cycle.length.error[place]), cycle.signed_pressure[place]
     return error
 

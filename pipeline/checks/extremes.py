@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from camwright.geometry.arrays import FULL_TURN, Array
+from camwright.geometry.extrema import TIE, first_greatest
 from camwright.pipeline.cycle.cycle import Cycle
 from camwright.pipeline.follower.follower_forces import Loads
 
@@ -148,7 +149,7 @@ def over_duty(
         return NOWHERE
     parts = duty_parts(running, measure, life=life)
     value = _mean(parts, life)
-    most = max(parts, key=lambda name: np.inf if np.isnan(parts[name]) else parts[name])
+    most = list(parts)[first_greatest(list(parts.values()))]
     error = 0.0
     if all(cycle.error_bars for cycle in running):
         steps = set.intersection(*(set(cycle.thinned) for cycle in running))
@@ -196,9 +197,9 @@ def _extreme(
     extreme, at = NOWHERE, None
     for cycle in cycles:
         values = np.asarray(measure(cycle), dtype=float)
-        worst = int(np.argmax(sign * values))  # the first NaN, where there is one
-        value = float(values[worst])
-        if extreme.load_case and not (np.isnan(value) or sign * value > sign * extreme.value):
+        worst = first_greatest(sign * values)  # the first NaN, where there is one
+        value = sign * float(np.max(sign * values))
+        if extreme.load_case and not (np.isnan(value) or _beyond(value, extreme.value, sign)):
             continue
         theta = FULL_TURN * worst / values.size if error is None else None
         share = _sampling_error(values, sign) if error is None and cycle.error_bars else 0.0
@@ -206,6 +207,12 @@ def _extreme(
     if error is None or at is None or not at.error_bars:
         return extreme
     return extreme._replace(error_share=error(at, extreme.value))
+
+
+def _beyond(value: float, other: float, sign: float) -> bool:
+    """Whether a value is greater than another, or less at sign -1, and not equal within `TIE`."""
+    tie = TIE * abs(other) if np.isfinite(other) else 0.0
+    return sign * value > sign * other + tie
 
 
 def _sampling_error(values: Array, sign: float) -> float:

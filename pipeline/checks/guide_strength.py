@@ -8,6 +8,7 @@ from typing import Literal, NamedTuple
 import numpy as np
 
 from camwright.geometry.arrays import Array
+from camwright.geometry.extrema import first_greatest
 from camwright.pipeline.base.material import ROOM
 from camwright.pipeline.base.units import celsius, shown
 from camwright.pipeline.case.limits import GUIDE_LENGTH
@@ -151,7 +152,7 @@ def _pushes(solution: Solution, side: Side, worst: Extreme) -> str:
     Their sum is the rubbing load, their difference the reaction.
     """
     cycle = next(each for each in solution.cycles if each.load_case == worst.load_case)
-    k = int(np.argmax(_bearing_load(cycle, side)))
+    k = first_greatest(_bearing_load(cycle, side))
     both, net = float(_rubbing_load(cycle, side)[k]), abs(float(_reaction(cycle, side)[k]))
     greater, less = (shown(0.5 * each, "N", 4) for each in (both + net, both - net))
     alone = shown(net / guide_of(cycle.machine, side).projected_area, "MPa", 3)

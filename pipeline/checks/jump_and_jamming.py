@@ -9,6 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from camwright.geometry.arrays import Array
+from camwright.geometry.extrema import first_greatest, first_least
 from camwright.pipeline.base.units import shown, shown_up
 from camwright.pipeline.case.limits import (
     CONTACT_FORCE_MARGIN,
@@ -315,7 +316,7 @@ def _least_over_speed(
 
     for sweep in solution.speed_sweeps:
         force, angle, error = measure(sweep)
-        k = int(np.argmin(force))  # the first NaN, where there is one
+        k = first_least(force)  # the first NaN, where there is one
         value = float(force[k]) / held(sweep)
         if np.isnan(value) or value < worst.value:
             share = float(error[k] / abs(force[k])) if force[k] else 0.0
@@ -340,7 +341,8 @@ def _flights(histories: list[ElasticHistory]) -> str:
     flights = [flight for history in histories for flight in history.flights]
     if not flights:
         return ""
-    high = max(flights, key=lambda flight: (not flight.lands, flight.height))
+    highest = [flight for flight in flights if not flight.lands] or flights
+    high = highest[first_greatest([flight.height for flight in highest])]
     force = max(history.force_max for history in histories)
     return (
         f"{len(flights)} losses of contact per turn; the highest flight starts at"

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from camwright.geometry.arrays import FULL_TURN, Array
+from camwright.geometry.extrema import first_greatest
 from camwright.pipeline.base.units import shown
 from camwright.pipeline.case.limits import (
     CAM_RADIUS,
@@ -126,7 +127,7 @@ def chord_error(solution: Solution) -> Demand:
     step = np.hypot(*(np.roll(points, -1, axis=1) - points))
     bend = np.abs(1.0 / contour.radius_of_curvature(theta))
     sag = step**2 * np.maximum(bend, np.roll(bend, -1)) / 8.0
-    worst = int(np.argmax(sag))
+    worst = first_greatest(sag)
     return Demand(
         float(sag[worst]),
         None if tolerance is None else limits[CHORD_SHARE] * tolerance,

@@ -8,6 +8,7 @@ from math import radians
 import numpy as np
 
 from camwright.geometry.arrays import Array
+from camwright.geometry.extrema import first_greatest
 from camwright.meshes.mesh_quality import (
     LEAST_ANGLE_DEG,
     LEAST_SCALED_JACOBIAN,
@@ -47,7 +48,7 @@ def _residual(
     allowed: Callable[[Solution], float],
     limit: bool = True,
 ) -> Declaration:
-    """Check of a relative residual."""
+    """Check of a relative residual; of one within its limit no place: it is that of round-off."""
     row = {"guide_equilibrium_force": EQUILIBRIUM, "guide_equilibrium_moment": EQUILIBRIUM}
 
     @check(
@@ -63,8 +64,8 @@ def _residual(
         tier=Tier.CYCLE,
     )
     def residual(solution: Solution) -> Demand:
-        worst = greatest(solution.cycles, measure)
-        return Demand(worst.value, allowed(solution), worst)
+        worst, limit = greatest(solution.cycles, measure), allowed(solution)
+        return Demand(worst.value, limit, Extreme(worst.value) if worst.value <= limit else worst)
 
     return residual
 
@@ -154,7 +155,7 @@ def _certified(
     if not points:
         return Demand(None, allowed, note=NO_CERTIFICATE)
     values = np.array([share(point) for point in points])
-    k = int(np.argmax(values))
+    k = first_greatest(values)
     worst = points[k]
     at = Extreme(values[k], "", worst.theta)
     return Demand(float(values[k]), allowed, at, method=method(worst))
@@ -295,7 +296,7 @@ def _uncertainty(name: str, figure: Callable[[CertificatePoint], Convergence]) -
         points, allowed = solution.certificate, solution.machine.limits[MESH_UNCERTAINTY]
         if not points:
             return Demand(None, allowed, note=NO_CERTIFICATE)
-        worst = max(points, key=lambda point: _gci(figure(point)))
+        worst = points[first_greatest([_gci(figure(point)) for point in points])]
         gci = figure(worst).gci
         method = f"{meshes}; {_order(figure(worst))}"
         return Demand(gci, allowed, Extreme(gci, "", worst.theta), method=method)
@@ -323,8 +324,9 @@ mesh_tau_max = _uncertainty("tau_max", lambda point: point.tau_max)
 )
 def mesh_reaction(solution: Solution) -> Demand:
     """Discretisation uncertainty of the guide reaction, relative."""
-    cycle = max(solution.cycles, key=lambda c: float(np.max(np.abs(c.guides.reaction_a))))
-    k = int(np.argmax(np.abs(cycle.guides.reaction_a)))
+    reactions = [np.abs(cycle.guides.reaction_a) for cycle in solution.cycles]
+    worst = first_greatest([each.max() for each in reactions])
+    cycle, k = solution.cycles[worst], first_greatest(reactions[worst])
     loads, machine = cycle.loads, cycle.machine
     at = loads.tangential_force[[k]], loads.overhang[[k]]
     couple = loads.end_moment[[k]]

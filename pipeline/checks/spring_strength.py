@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike
 
 from camwright.geometry.arrays import Array
 from camwright.geometry.errors import InputError
+from camwright.geometry.extrema import first_greatest
 from camwright.pipeline.base.units import celsius, shown
 from camwright.pipeline.case.limits import SPRING_FATIGUE, SPRING_SOLID, SPRING_SURGE, Limit, Sense
 from camwright.pipeline.checks.check import NONE, SPEED_RANGE, Declaration, Demand, check
@@ -158,7 +159,7 @@ def _over_speed(solution: Solution, use: Callable[[SpringSweep], Array]) -> Over
     if sweep is None:
         return OverSpeed(np.nan, np.nan, "")
     values = np.max(use(sweep), axis=0)
-    k = int(np.argmax(values))  # the first NaN, where there is one
+    k = first_greatest(values)  # the first NaN, where there is one
     value, further = float(values[k]), None if damped is None else damped.hardest_spring
     most = value if further is None else max(float(np.max(use(further))), value)
     return OverSpeed(
@@ -240,9 +241,8 @@ def spring_fatigue_points(solution: Solution) -> list[FatiguePoint]:
     if design is None or sweep is None or not np.isfinite(sweep.greatest).all():
         return []
     amplitude, mean = design.fatigue_stress(sweep.least, sweep.greatest)
-    worst = np.unravel_index(
-        np.argmax(design.fatigue_use(sweep.least, sweep.greatest)), amplitude.shape
-    )
+    use = design.fatigue_use(sweep.least, sweep.greatest)
+    worst = np.unravel_index(first_greatest(use.ravel()), amplitude.shape)
     endurance, strength = design.fatigue_strengths
     if not endurance > 0.0:
         return []
@@ -343,9 +343,10 @@ def spring_surge(solution: Solution) -> Demand:
     top = highest_speed(solution.machines) / machine.gear_ratio
     lift = solution.contour.pitch.lift.values
     highest, ratio, margin = surge_harmonics(lift, top, design.surge_frequency)
-    worst = [(float(each.surge_force.max()), each) for each in solution.speed_sweeps]
-    added, sweep = max(worst, key=lambda each: each[0])
-    speed = float(sweep.crank_speed[int(np.argmax(sweep.surge_force))])
+    sweeps = solution.speed_sweeps
+    sweep = sweeps[first_greatest([each.surge_force.max() for each in sweeps])]
+    added = float(sweep.surge_force.max())
+    speed = float(sweep.crank_speed[first_greatest(sweep.surge_force)])
     return Demand(
         ratio,
         machine.limits[SPRING_SURGE],

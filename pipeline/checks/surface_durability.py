@@ -9,6 +9,7 @@ from math import inf
 import numpy as np
 
 from camwright.geometry.arrays import Array
+from camwright.geometry.extrema import first_greatest
 from camwright.pipeline.base.material import Material
 from camwright.pipeline.base.units import shown
 from camwright.pipeline.case.limits import (
@@ -260,7 +261,8 @@ def _hardened_demand(
     worst = {body: worst_case(solution.cycles, of_turn(card)) for body, card in bodies.items()}
     incomplete = [body for body, card in bodies.items() if math.isnan(_probe(use, card))]
     known = [body for body in bodies if body not in incomplete]
-    governing = max(known or bodies, key=lambda body: _rank(worst[body].value))
+    judged = known or list(bodies)
+    governing = judged[first_greatest([worst[body].value for body in judged])]
     extreme = worst[governing]
     return Demand(
         None if incomplete and not extreme.value > allowed else extreme.value,
@@ -275,10 +277,6 @@ def _probe(use: Callable[[SweptStress, Material], float], card: Material) -> flo
     """Use of the strength in an envelope without stress: NaN where the card lacks data."""
     one = np.zeros((1, 1))
     return use(SweptStress(lambda: Envelope(one[0], one[0], one, one, one, one)), card)
-
-
-def _rank(value: float) -> float:
-    return inf if math.isnan(value) else value
 
 
 def _signed_depth(cycle: Cycle) -> Array:

@@ -17,6 +17,7 @@ from camwright.geometry.arrays import uniform_turn
 from camwright.geometry.contour import Contour
 from camwright.geometry.display import Displayed
 from camwright.geometry.errors import CamError
+from camwright.geometry.extrema import first_greatest
 from camwright.geometry.lift import Lift
 from camwright.pipeline.base.files import Json
 from camwright.pipeline.base.units import in_unit
@@ -362,7 +363,7 @@ def _governed(one: Check, tried: Sequence[Outcome]) -> Check:
     if unknown:
         return replace(one, corner=unknown[0].corner.name, corner_demand=float("nan"))
     sign = 1.0 if one.sense == "at_most" else -1.0
-    worst = max(known, key=lambda outcome: sign * outcome.demands[one.id])
+    worst = known[first_greatest([sign * outcome.demands[one.id] for outcome in known])]
     if worst is nominal:
         return replace(one, corner="nominal", corner_demand=one.demand)
     there = worst.demands[one.id]

@@ -7,6 +7,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from camwright.geometry.arrays import FULL_TURN, Array
+from camwright.geometry.extrema import first_least
 from camwright.pipeline.base.units import shown
 from camwright.pipeline.case.limits import (
     CONTACT_TORQUE,
@@ -120,7 +121,7 @@ def speed_reduction(solution: Solution) -> Demand | None:
     }
     if not shares:
         return None
-    worst = min(shares, key=lambda name: -np.inf if np.isnan(shares[name]) else shares[name])
+    worst = list(shares)[first_least(list(shares.values()))]
     value, halved = shares[worst], solution.crank_speed_halved.get(worst)
     # change with every second crank angle alone
     error = 0.0 if halved is None else _relative(share(worst, halved) - value, abs(value))

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from camwright.geometry.arrays import Array, freeze
 from camwright.geometry.display import Displayed
+from camwright.geometry.extrema import first_greatest
 from camwright.pipeline.contact.elasticity.mesh_convergence import Convergence
 from camwright.pipeline.contact.tiers import Tier
 
@@ -161,7 +162,7 @@ class CertificatePoint(Displayed):
     def spread_of(self) -> str:
         """Name of the figure with the largest difference, or without a number."""
         names = list(self.figures)
-        return names[int(np.argmax([self.difference(name) for name in names]))]
+        return names[first_greatest([self.difference(name) for name in names])]
 
     def difference(self, name: str) -> float:
         """Relative difference of cycle and certificate in one figure."""
@@ -177,4 +178,4 @@ class CertificatePoint(Displayed):
     def gci_of(self) -> str:
         """Name of the figure with the largest index, or without a number."""
         names = list(self.figures)
-        return names[int(np.argmax([self.figures[name][0].gci for name in names]))]
+        return names[first_greatest([self.figures[name][0].gci for name in names])]

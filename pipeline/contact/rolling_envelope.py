@@ -17,6 +17,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from camwright.geometry.arrays import FULL_TURN, Array, finite, freeze, readonly, sealed
 from camwright.geometry.errors import InputError
+from camwright.geometry.extrema import first_greatest
 from camwright.pipeline.base import disk_cache
 from camwright.pipeline.contact import hertz
 from camwright.pipeline.contact.contact_history import ContactHistory
@@ -199,7 +200,7 @@ class Envelope:
     def worst(self, name: str) -> tuple[float, float, float]:
         """Maximum of a map, Pa, and its place: theta rad, depth m."""
         values = getattr(self, name)
-        station, level = np.unravel_index(int(np.argmax(values)), values.shape)
+        station, level = np.unravel_index(first_greatest(values.ravel()), values.shape)
         return (
             float(values[station, level]),
             float(self.theta[station]),

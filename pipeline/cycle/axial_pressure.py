@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from camwright.geometry.arrays import Array
+from camwright.geometry.extrema import first_greatest
 from camwright.pipeline.base.tables import Column
 from camwright.pipeline.contact.finite_length.axial_drop import FinitePair
 from camwright.pipeline.contact.finite_length.length_contact import rebinned
@@ -68,7 +69,7 @@ def axial_arrays(cycles: Sequence[Cycle]) -> Mapping[str, ArrayLike] | None:
         np.hstack([one[:, :low], other[:, high:]]) * p0[rows, None]
         for one, other in zip(left, right, strict=True)
     )
-    worse = max(tilted, key=lambda pressure: float(pressure.max()))
+    worse = tilted[first_greatest([pressure.max() for pressure in tilted])]
     arrays: dict[str, ArrayLike] = {
         "load_case": np.repeat([c.load_case for c in cycles], [c.theta.size for c in cycles]),
         "cam_angle_deg": np.degrees(np.concatenate([c.theta for c in cycles])),
@@ -89,7 +90,7 @@ def _cells(
 
     At a corner the last cell is that of the mean.
     """
-    table, worst = length_table(pair, mean_length), int(np.argmax(at[1]))
+    table, worst = length_table(pair, mean_length), first_greatest(at[1])
     edges = table.edges_of_line(*(float(each[worst]) for each in at))
     if pair.has_singular_end:
         edges = with_end_cells(edges, mean_length)

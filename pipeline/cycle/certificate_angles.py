@@ -9,6 +9,7 @@ import numpy as np
 
 from camwright.geometry.arrays import Array
 from camwright.geometry.errors import ResultError
+from camwright.geometry.extrema import first_greatest, first_least
 from camwright.pipeline.base.worker_processes import Crew, Task
 from camwright.pipeline.contact.certificate import (
     EDGES,
@@ -45,7 +46,7 @@ def positions_to_certify(cycles: Sequence[Cycle], count: int) -> tuple[tuple[int
 
     for extreme in _EXTREMES:
         for case, cycle in enumerate(cycles):
-            take(case, int(np.argmax(extreme(cycle.contact))))
+            take(case, first_greatest(extreme(cycle.contact)))
     size = cycles[0].theta.size
     for index in np.linspace(0, size, 4 * count, endpoint=False).astype(int):
         take(0, int(index))
@@ -63,13 +64,13 @@ def length_loads(cycles: Sequence[Cycle], angles: Sequence[float]) -> tuple[Leng
     pressures = [np.nan_to_num(cycle.signed_pressure) for cycle in cycles]
     whole = [cycle.loads.end is None for cycle in cycles]
     worst = [
-        (case, int(np.argmax(pressure)))
+        (case, first_greatest(pressure))
         for case, pressure in enumerate(pressures)
         if (whole[case] or not any(whole)) and pressure.max() > 0
     ]
     if not worst:
         return ()
-    first = max(worst, key=lambda at: float(pressures[at[0]][at[1]]))
+    first = worst[first_greatest([pressures[case][k] for case, k in worst])]
     chosen = {at: _length_load(cycles, at) for at in (first, *worst)}
     width = _half_width(chosen[first])
     chosen = {
@@ -79,7 +80,7 @@ def length_loads(cycles: Sequence[Cycle], angles: Sequence[float]) -> tuple[Leng
     }
     for angle in angles:
         apart = np.abs(np.angle(np.exp(1j * (cycles[0].theta - angle))))
-        at = 0, int(np.argmin(np.where(pressures[0] > 0, apart, np.inf)))
+        at = 0, first_least(np.where(pressures[0] > 0, apart, np.inf))
         if pressures[0][at[1]] > 0 and at not in chosen:
             chosen[at] = _length_load(cycles, at)
     return tuple(chosen.values())
@@ -106,7 +107,7 @@ def _length_load(cycles: Sequence[Cycle], at: tuple[int, int]) -> LengthLoad:
         signed_factor(length_table(pair, cycle.length.mean_length), curvature, force, moment)
         for pair, moment in tried
     ]
-    chosen = int(np.argmax([line.value[0] for line in lines]))
+    chosen = first_greatest([line.value[0] for line in lines])
     pair, moment = tried[chosen]
     return LengthLoad(
         load_case=cycle.load_case,
@@ -139,8 +140,11 @@ def finest_positions(
     cycles: Sequence[Cycle], chosen: Sequence[tuple[int, int]]
 ) -> tuple[tuple[int, int], ...]:
     """Of chosen (load case, position) the two of the greatest contact pressure."""
-    by_pressure = sorted(chosen, key=lambda at: -float(cycles[at[0]].contact.p0[at[1]]))
-    return tuple(by_pressure[:FINEST])
+    left, taken = list(chosen), list[tuple[int, int]]()
+    while left and len(taken) < FINEST:
+        pressures = [cycles[case].contact.p0[k] for case, k in left]
+        taken.append(left.pop(first_greatest(pressures)))
+    return tuple(taken)
 
 
 @dataclass(frozen=True, eq=False)

@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike
 
 from camwright.geometry.arrays import Array
 from camwright.geometry.errors import ContactError
+from camwright.geometry.extrema import first_greatest
 from camwright.pipeline.base.tables import Column
 from camwright.pipeline.case.machine import Machine
 from camwright.pipeline.contact.pin_in_hole import Conforming, pin_in_hole
@@ -61,7 +62,7 @@ def guide_arrays(cycles: Sequence[Cycle]) -> Mapping[str, ArrayLike]:
     machine = cycles[0].machine
     for side, guide in (("a", machine.guides.a), ("b", machine.guides.b)):
         lines = np.concatenate([getattr(c.guides, f"line_pressure_{side}") for c in cycles], axis=1)
-        row = int(np.argmax(np.abs(lines).max(axis=0)))
+        row = first_greatest(np.abs(lines).max(axis=0))
         knots = getattr(cycles[0].guides, f"knots_{side}")
         slices = loaded_length(knots, lines[:, row])
         loads = np.interp(slices, knots, lines[:, row])

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from camwright.geometry.arrays import Array, freeze
+from camwright.geometry.extrema import TIE
 from camwright.pipeline.base.units import shown
 from camwright.pipeline.case.limits import END_MEAN_LENGTH
 from camwright.pipeline.case.machine import Machine
@@ -270,7 +271,7 @@ def factor_range(pair: FinitePair, mean_length: float, loads: ContactLoads) -> F
     solved = signed_factor(table, np.tile(curvature, count), np.tile(force, count), moments)
     parts = zip(*(np.split(values, count) for values in solved), strict=True)
     level, *tilts = (SignedPressure(*part) for part in parts)
-    worse = tilts[0].value > tilts[-1].value
+    worse = tilts[0].value > tilts[-1].value * (1.0 + TIE)
     tilted = np.where(worse, tilts[0].value, tilts[-1].value)
     corner = np.where(worse, tilts[0].at_corner, tilts[-1].at_corner)
     at_corner = np.where(level.value > tilted, level.at_corner, corner)
@@ -289,7 +290,8 @@ def worst_of(ranges: Sequence[FactorRange]) -> FactorRange:
     """The worse of the contacts at both ends, at each place; the greater pressure of the middle."""
     worst = ranges[0]
     for other in ranges[1:]:
-        worse = np.maximum(other.level, other.tilted) > np.maximum(worst.level, worst.tilted)
+        least = np.maximum(worst.level, worst.tilted) * (1.0 + TIE)
+        worse = np.maximum(other.level, other.tilted) > least
         chosen = (np.where(worse, new, old) for new, old in zip(other, worst, strict=True))
         worst = FactorRange(*chosen)._replace(centre=np.maximum(worst.centre, other.centre))
     return worst

@@ -10,6 +10,7 @@ import numpy as np
 
 from camwright.geometry.arrays import FULL_TURN, Array, freeze, uniform_turn
 from camwright.geometry.display import Displayed
+from camwright.geometry.extrema import first_greatest
 from camwright.pipeline.base.files import Json
 from camwright.pipeline.base.tables import Column
 from camwright.pipeline.case.machine import Machine
@@ -285,7 +286,7 @@ def _worst_record(turn: RollingHistory) -> dict[str, Json]:
 
 
 def _worst_bore_record(bore: BoreStress) -> dict[str, Json]:
-    k = int(bore.von_mises.argmax())
+    k = first_greatest(bore.von_mises)
     return {
         "von_mises_MPa": _MPA * float(bore.von_mises[k]),
         "x_mm": _MM * float(bore.x[k]),

@@ -12,6 +12,7 @@ from camwright.geometry.arrays import Array
 from camwright.geometry.contour import Contour
 from camwright.geometry.display import Displayed
 from camwright.geometry.errors import CamError
+from camwright.geometry.extrema import TIE, first_greatest
 from camwright.meshes.body_mesh import BodyMesh
 from camwright.meshes.mesh_quality import Quality, gate, quality
 from camwright.pipeline.base.progress import SILENT, Progress
@@ -370,8 +371,8 @@ def bore_error(pair: ContactPair, cycles: tuple[Cycle, ...]) -> float | None:
         bore = cycle.rolling.bore
         if bore is None or np.isnan(bore.away_from_edges).any():
             return None
-        k = int(np.argmax(bore.away_from_edges))
-        if worst is None or bore.away_from_edges[k] > worst[0]:
+        k = first_greatest(bore.away_from_edges)
+        if worst is None or bore.away_from_edges[k] > worst[0] * (1.0 + TIE):
             worst = float(bore.away_from_edges[k]), cycle, k
     if worst is None or not worst[0] > 0:
         return None
@@ -403,8 +404,8 @@ def meshed(pair: ContactPair, turns: tuple[Turn, ...]) -> ContactMesh | None:
     worst = None
     for each in turns:
         history = closed_form_history(pair, each.theta, each.loads.normal_force)
-        k = int(np.argmax(history.p0))
-        if history.p0[k] > 0 and (worst is None or history.p0[k] > worst[0]):
+        k = first_greatest(history.p0)
+        if history.p0[k] > 0 and (worst is None or history.p0[k] > worst[0] * (1.0 + TIE)):
             worst = (history.p0[k], float(each.theta[k]), float(history.half_width[k]))
     if worst is None:
         return None

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from camwright.geometry.arrays import Array, distinct, firsts, freeze, uniform_turn
 from camwright.geometry.contour import Contour
+from camwright.geometry.extrema import first_greatest, first_greatest_of_rows, first_least
 from camwright.geometry.follower_path import FollowerPath
 from camwright.pipeline.base.tables import Column
 from camwright.pipeline.case.limits import OVERSPEED
@@ -124,9 +125,9 @@ def speed_sweep(
     grid = follower.resonant.grid(machine, np.asarray(speeds) / ratio)
     swept = follower.extremes(grid)
     worst = {
-        int(np.argmin(swept["contact_force_min"])),
-        int(np.argmin(swept["elastic_force_min"])),
-        int(np.argmax(swept["surge_force"])),
+        first_least(swept["contact_force_min"]),
+        first_least(swept["elastic_force_min"]),
+        first_greatest(swept["surge_force"]),
     }
     finer = _between(grid, worst)
     more = follower.extremes(finer)
@@ -191,7 +192,7 @@ def spring_sweep(
     known = softest * np.asarray(speeds) / machine.gear_ratio
     grid = resonant.grid(machine, known)
     least, greatest = resonant.end_forces(grid)
-    finer = _between(grid, {int(np.argmax(np.max(greatest - least, axis=0)))})
+    finer = _between(grid, {first_greatest(np.max(greatest - least, axis=0))})
     more = resonant.end_forces(finer)
     swept = machine.gear_ratio * np.concatenate([grid, finer]) / nominal
     return SpringSweep(
@@ -329,7 +330,7 @@ class _Follower:
         torque = np.maximum(push, 0.0, out=push)
         torque *= self.arm
         elastic = self.elastic(speed, moving)
-        lowest, soft = np.argmin(normal, axis=1), np.argmin(elastic, axis=1)
+        lowest, soft = first_greatest_of_rows(-normal), first_greatest_of_rows(-elastic)
         return {
             "contact_force_min": normal.min(axis=1),
             "contact_force_max": np.maximum(normal.max(axis=1), 0.0),

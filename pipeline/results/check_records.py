@@ -11,6 +11,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple, Protocol, TypedDict, TypeVar
 
 from camwright.geometry.display import Displayed, html_table, in_brief, panels_of
+from camwright.geometry.extrema import to_rank
 from camwright.pipeline.base.columns import data_frame
 
 if TYPE_CHECKING:
@@ -185,7 +186,7 @@ def governing_of(checks: Iterable[AnyCheck]) -> AnyCheck | None:
     the first by its id.
     """
     ranked = [
-        (-used, str(check["id"]), check)
+        (-to_rank(used), str(check["id"]), check)
         for check in checks
         if _governs(check) and (used := utilisation_of(check)) is not None
     ]

@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike
 
 from camwright.geometry.arrays import Array, uniform_turn
 from camwright.geometry.cutouts import KeywayLike
+from camwright.geometry.extrema import first_greatest
 from camwright.meshes.mesh_files import write_hexahedra
 from camwright.pipeline.base.files import npz_bytes, write_atomic
 from camwright.pipeline.base.tables import Column
@@ -133,13 +134,13 @@ def hardest(cycles: Sequence[Cycle]) -> int:
     whole = [cycle.end is None for cycle in cycles]
     counted = whole if any(whole) else [True] * len(cycles)
     pressures = [cycle.contact.p0_hertz.max() for cycle in cycles]
-    return int(np.argmax(np.where(counted, pressures, -np.inf)))
+    return first_greatest(np.where(counted, pressures, -np.inf))
 
 
 def shown_positions(cycle: Cycle, shown: Shown, certified: Sequence[int]) -> IntArray:
     """Positions of a cycle in order; by default every `STEP`, the certified ones and the worst."""
     count = cycle.theta.size
-    worst = int(cycle.contact.p0_hertz.argmax())
+    worst = first_greatest(cycle.contact.p0_hertz)
     if shown is Shown.WORST:
         return np.array([worst])
     stride = max(1, round(float(STEP / (cycle.theta[1] - cycle.theta[0]))))

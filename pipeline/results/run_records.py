@@ -10,6 +10,7 @@ import numpy as np
 from camwright.geometry.arrays import Array, uniform_turn
 from camwright.geometry.contour import Contour
 from camwright.geometry.errors import CamError
+from camwright.geometry.extrema import first_greatest
 from camwright.geometry.lift import Lift
 from camwright.pipeline.base.files import Json
 from camwright.pipeline.base.tables import CAM_ANGLE, CRANK_ANGLE, Cells, Column, Values
@@ -227,10 +228,10 @@ def _body_stresses(trial: Trial, loaded: Sequence[Cycle]) -> dict[str, float | N
     bodies = trial.solution.machine.bodies.values()
     (own, at), (other, there) = (von_mises_peak(card.nu) for card in bodies)
     known = [c for c in loaded if trial.mesh is not None or trial.depth < Tier.CYCLE]
-    worst = max(known, key=lambda c: float(np.max(c.contact.von_mises)), default=None)
     stress = depth = np.nan
-    if worst is not None:
-        k = int(np.argmax(worst.contact.von_mises))
+    if known:
+        worst = known[first_greatest([c.contact.von_mises.max() for c in known])]
+        k = first_greatest(worst.contact.von_mises)
         stress = _MPA * float(worst.contact.von_mises[k])
         depth = _MM * float(worst.contact.von_mises_depth[k])
     rings = [

@@ -1,9 +1,16 @@
 """Extremes of periodic functions whose places are known."""
 
+import re
+from pathlib import Path
+
 import numpy as np
 import pytest
 
+from camwright.geometry import extrema
 from camwright.geometry.extrema import (
+    first_greatest,
+    first_greatest_of_rows,
+    first_least,
     greatest,
     least,
     local_minima,
@@ -94,3 +101,51 @@ def test_lowest_of_several_minima_beside_a_plateau():
     assert best.theta == pytest.approx(1.0, abs=1e-6)
     few, _ = local_minima(function, 720, lowest=True)
     assert len(few) < len(every)
+
+
+@pytest.mark.parametrize(
+    ("values", "place"),
+    [
+        ([1.0, 3.0, 3.0 + 1e-12, 2.0], 1),
+        ([3.0 + 1e-8, 3.0, 3.0 + 2e-8], 2),
+        ([-5.0, 1e-12, 0.0], 1),  # round-off of the greatest magnitude
+        ([1.0, np.nan, np.inf], 1),
+        ([1.0, np.inf, np.inf], 1),
+        ([-np.inf, -np.inf], 0),
+        ([-np.inf, -2.0, -2.0 + 1e-12], 1),
+    ],
+)
+def test_of_equal_values_the_first_is_the_greatest(values, place):
+    assert first_greatest(values) == place
+    assert first_least(-np.array(values)) == place
+    rows = np.array([values, values[::-1]])
+    assert first_greatest_of_rows(rows)[0] == place
+
+
+@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("count", [72, 720])
+def test_round_off_does_not_move_the_place_of_an_extreme(seed, count):
+    """A dwell and two equal humps: value and angle are those without round-off."""
+
+    def dwell(theta):
+        return 0.04 * np.where(theta < 2.0, 0.0, np.sin(0.5 * (theta - 2.0)) ** 2)
+
+    def humps(theta):
+        return np.cos(2.0 * theta)
+
+    noise = np.random.default_rng(seed)
+    for function in (dwell, humps, np.ones_like):
+        for extreme in (least, greatest):
+            exact = extreme(function, count)
+            rough = extreme(
+                lambda t, f=function: f(t) * (1 + 1e-15 * noise.normal(size=t.shape)) + 1e-18, count
+            )
+            assert rough.value == pytest.approx(exact.value, abs=1e-14)
+            assert np.cos(rough.theta - exact.theta) == pytest.approx(1.0, abs=1e-12)
+
+
+def test_no_record_rests_on_the_order_of_equal_values():
+    """What chooses a place of a solution takes the first of equal ones; see `first_greatest`."""
+    root = Path(extrema.__file__).parents[1] / "pipeline"
+    files = (file for part in ("checks", "cycle") for file in (root / part).rglob("*.py"))
+    assert [file.name for file in files if re.search(r"\barg(max|min)\(", file.read_text())] == []
