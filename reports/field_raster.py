@@ -13,7 +13,7 @@ from camwright.geometry.arrays import Array
 from camwright.geometry.errors import ResultError
 from camwright.pipeline.base.files import read_npz
 from camwright.pipeline.base.tables import Table
-from camwright.reports.figure_svg import COLOURS, png, style
+from camwright.reports.figure_svg import COLOURS, png, shipped, style
 from camwright.reports.figures import SERIES
 
 if TYPE_CHECKING:
@@ -150,6 +150,7 @@ def _scale_bar(ax: Axes, extent: tuple[float, float, float, float], bar: tuple[f
     ax.set_ylim(extent[2], extent[3])
 
 
+@shipped()
 def triangles_picture(
     points: Array, triangles: NDArray[np.int64], values: Array,
     window: tuple[float, float, float, float], clim: tuple[float, float], log: bool,

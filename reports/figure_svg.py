@@ -11,12 +11,14 @@ import hashlib
 import io
 import pickle
 import re
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+import sys
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import chdir, contextmanager, suppress
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
-from typing import TYPE_CHECKING, TypeAlias
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 from markupsafe import Markup
@@ -46,7 +48,8 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure as Canvas
     from matplotlib.typing import RcKeyType
 
-_CSS = (Path(__file__).parent / "templates" / "report.css").read_text(encoding="utf-8")
+_TEMPLATES = Path(__file__).parent / "templates"  # with an empty matplotlibrc
+_CSS = (_TEMPLATES / "report.css").read_text(encoding="utf-8")
 COLOURS = dict(re.findall(r"--([\w-]+): (#[0-9a-f]{6});", _CSS[: _CSS.index("}")]))
 """Colours of the page's light theme by name."""
 STYLE: dict[RcKeyType, str | float] = {
@@ -130,11 +133,39 @@ def write(material: Material) -> list[Path]:
 
 
 @contextmanager
-def style(salt: str) -> Iterator[None]:
-    """Settings of all drawings; `salt` makes the ids in the SVG unique on a page."""
-    from matplotlib import rc_context
+def shipped(settings: Mapping[RcKeyType, str | float] = MappingProxyType({})) -> Iterator[None]:
+    """The settings that matplotlib is shipped with, and further ones; none of the user's.
 
-    with rc_context({**STYLE, "svg.hashsalt": salt}):
+    A drawing depends on no matplotlibrc, of the user or of the working folder. The settings are
+    afterwards as before.
+    """
+    import_matplotlib()
+    from matplotlib import rc_context, rcParamsDefault
+
+    own: dict[Any, Any] = dict(rcParamsDefault)
+    del own["backend"]
+    with rc_context({**own, **settings}):
+        yield
+
+
+def import_matplotlib() -> None:
+    """Import matplotlib for the first time, also where it cannot read a matplotlibrc.
+
+    It reads one as it is imported, that of the working folder first, and fails where that is no
+    text.
+    """
+    if "matplotlib" in sys.modules:
+        return
+    with chdir(_TEMPLATES):
+        import matplotlib as mpl
+    with suppress(ValueError, OSError, RuntimeError):  # for other figures of this process
+        mpl.rcParams.update(mpl.rc_params())
+
+
+@contextmanager
+def style(salt: str) -> Iterator[None]:
+    """Settings of the drawings; `salt` makes the ids in the SVG unique on a page."""
+    with shipped({**STYLE, "svg.hashsalt": salt}):
         yield
 
 

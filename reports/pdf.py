@@ -16,7 +16,7 @@ from camwright.geometry.errors import ResultError
 from camwright.pipeline.base.files import Json
 from camwright.reports.drawing import drawing_svg
 from camwright.reports.drawing.drawing_shapes import Drawing
-from camwright.reports.figure_svg import COLOURS, Drawn
+from camwright.reports.figure_svg import COLOURS, Drawn, import_matplotlib
 from camwright.reports.picture_list import Picture
 from camwright.reports.report_tables import isolated, plain
 
@@ -116,6 +116,7 @@ def _parted(word: re.Match[str]) -> str:
 
 def _fonts() -> Path:
     """Folder of the fonts of the matplotlib package."""
+    import_matplotlib()
     from matplotlib import get_data_path
 
     return Path(get_data_path()) / "fonts" / "ttf"

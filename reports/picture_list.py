@@ -20,6 +20,7 @@ from camwright.reports import (
     report_tables,
     stress_map,
 )
+from camwright.reports.figure_svg import shipped
 from camwright.reports.report_data import FIGURES, Material
 
 FIELD = Path("fields") / "stress.vtkhdf"
@@ -47,6 +48,7 @@ class Picture:
 
 
 @lru_cache(maxsize=1)
+@shipped()
 def stress_pictures(material: Material) -> Sequence[Picture]:
     """Stress field below the contact and in both bodies."""
     turn, path = material.turn, material.run.path / FIELD
@@ -92,6 +94,7 @@ def stress_pictures(material: Material) -> Sequence[Picture]:
 
 
 @lru_cache(maxsize=1)
+@shipped()
 def envelope_pictures(material: Material) -> Sequence[Picture]:
     """Maps of the maximum stress below the contour; none for a contour that encloses no body."""
     file = material.run.final.path / stress_map.FILE
@@ -133,6 +136,7 @@ def envelope_pictures(material: Material) -> Sequence[Picture]:
 
 
 @lru_cache(maxsize=1)
+@shipped()
 def guide_pictures(material: Material) -> Sequence[Picture]:
     """Pressure in both guides; none for a contour that encloses no body."""
     file = material.run.final.path / pressure_figures.FILE
@@ -164,6 +168,7 @@ def guide_pictures(material: Material) -> Sequence[Picture]:
 
 
 @lru_cache(maxsize=1)
+@shipped()
 def axial_pictures(material: Material) -> Sequence[Picture]:
     """Pressure along the line of contact; none where the case lacks an end."""
     final = material.run.final

@@ -3,20 +3,24 @@
 from __future__ import annotations
 
 from pathlib import Path
-
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure as Canvas
+from typing import TYPE_CHECKING
 
 from camwright.pipeline.base.files import write_atomic
-from camwright.reports.figure_svg import COLOURS, png, style
+from camwright.reports.figure_svg import COLOURS, png, shipped, style
 from camwright.reports.figures import SERIES
 from camwright.reports.report_tables import Record
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 _SIZE = (6.4, 5.2)
 
 
+@shipped()
 def draw(document: Record, out: Path) -> Path:
     """Write the picture of the record of a least crown as PNG."""
+    from matplotlib.figure import Figure as Canvas
+
     with style(out.stem):
         canvas = Canvas(figsize=_SIZE, layout="constrained")
         pressure, drop = canvas.subplots(2, 1, sharex=True)

@@ -3,20 +3,23 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
 from camwright.pipeline.base.files import write_atomic
 from camwright.pipeline.base.tables import Table, read_table
 from camwright.pipeline.results.run_reader import read_run
-from camwright.reports.figure_svg import png
+from camwright.reports.figure_svg import png, shipped
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 _EXAGGERATED = 0.12
 """Maximum deviation as drawn on the contour, as a share of the mean radius."""
 
 
+@shipped()
 def draw(run: Path, tolerance_um: float, folder: Path) -> Path:
     """Write ``deviation.png`` into the folder of an inspection.
 
@@ -24,6 +27,8 @@ def draw(run: Path, tolerance_um: float, folder: Path) -> Path:
     -------
     Path   the picture
     """
+    from matplotlib.figure import Figure
+
     deviation, real = read_table(folder / "deviation.csv"), read_table(folder / "cycle.csv")
     nominal = read_run(run).final
     figure = Figure(figsize=(10, 8), layout="constrained")

@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
-from matplotlib.figure import Figure as Canvas
 
 from camwright.pipeline.base.files import write_atomic
-from camwright.reports.figure_svg import COLOURS, png, style
+from camwright.reports.figure_svg import COLOURS, png, shipped, style
 from camwright.reports.figures import SERIES
 from camwright.reports.report_tables import Record
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure as Canvas
 
 _PAIRS = {
     "shaft": ("shaft", "blue"),
@@ -21,6 +24,7 @@ _PAIRS = {
 }
 
 
+@shipped()
 def draw(document: Record, out: Path) -> tuple[Path, ...]:
     """Write the figures of a comparison as PNG files."""
     space = document["workspace"]
@@ -49,6 +53,8 @@ def draw(document: Record, out: Path) -> tuple[Path, ...]:
 
 
 def _energies(document: Record) -> Canvas:
+    from matplotlib.figure import Figure as Canvas
+
     rows = []
     for one in document["mechanisms"]:
         rows.append((one["name"], one["losses_J"]))
@@ -73,6 +79,8 @@ def _energies(document: Record) -> Canvas:
 
 
 def _turn(document: Record) -> Canvas:
+    from matplotlib.figure import Figure as Canvas
+
     with style("turn"):
         canvas = Canvas(figsize=(6.4, 4.6), layout="constrained")
         upper, lower = canvas.subplots(2, 1, sharex=True)
@@ -94,6 +102,8 @@ def _turn(document: Record) -> Canvas:
 
 def _maps(space: Record, label: str, *wanted: tuple[str, str]) -> Canvas:
     """Friction energy above the best cam over the workspace; white where the sizes do not fit."""
+    from matplotlib.figure import Figure as Canvas
+
     crank, ratio = np.array(space["crank_mm"]), np.array(space["rod_over_crank"])
     tables = [np.array(space[f"{name}_above_best_percent"], dtype=float) for name, _ in wanted]
     with style(label):

@@ -5,10 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-from matplotlib.figure import Figure
-
 from camwright.pipeline.base.files import write_atomic
-from camwright.reports.figure_svg import COLOURS, png
+from camwright.reports.figure_svg import COLOURS, png, shipped
 from camwright.reports.page import study_page
 from camwright.reports.picture_list import Picture
 from camwright.reports.report_content import Block, Note, Pictures, Section, Tabular
@@ -49,8 +47,11 @@ def write(folder: Path, document: Record) -> Path:
     return write_atomic(folder / "redesign.html", _page(document, picture))
 
 
+@shipped()
 def drawn(document: Record) -> bytes:
     """Ripple left over size or mass: evaluated designs, front, initial design; PNG."""
+    from matplotlib.figure import Figure
+
     name, label = AXES[document["against"]]
     canvas = Figure(figsize=(7.2, 4.4), layout="constrained")
     axes = canvas.add_subplot()

@@ -4,20 +4,24 @@ from __future__ import annotations
 
 import io
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
-from matplotlib.figure import Figure as Canvas
 
 from camwright.pipeline.base.files import write_atomic
-from camwright.reports.figure_svg import COLOURS, png, style
+from camwright.reports.figure_svg import COLOURS, png, shipped, style
 from camwright.reports.figures import SERIES
 from camwright.reports.report_tables import Record
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure as Canvas
 
 _WIDTH, _HEIGHT = 6.4, 2.5
 _HEADROOM = 1.9
 """Greatest value of a panel over the greater of limit and value at the sized radius."""
 
 
+@shipped()
 def draw(document: Record, out: Path) -> Path:
     """Write the chart of the record of a sizing as PNG or SVG, by the end of its name."""
     with style(out.stem):
@@ -30,6 +34,8 @@ def draw(document: Record, out: Path) -> Path:
 
 
 def _chart(document: Record) -> Canvas:
+    from matplotlib.figure import Figure as Canvas
+
     chart = document["chart"]
     panels, size = chart["panels"], chart["base_radius_mm"]
     canvas = Canvas(figsize=(_WIDTH, 0.5 + _HEIGHT * len(panels)), layout="constrained")

@@ -9,11 +9,10 @@ from itertools import cycle
 from pathlib import Path
 
 import numpy as np
-from matplotlib.figure import Figure
 
 from camwright.geometry.arrays import Array
 from camwright.pipeline.base.files import write_atomic
-from camwright.reports.figure_svg import COLOURS, png, style
+from camwright.reports.figure_svg import COLOURS, png, shipped, style
 from camwright.reports.figures import CAM_STEP, SERIES
 from camwright.reports.page import study_page
 from camwright.reports.picture_list import Picture
@@ -83,8 +82,11 @@ def write(
     )
 
 
+@shipped()
 def drawn(lifts: Mapping[str, Array]) -> bytes:
     """Lifts over one cam turn, PNG."""
+    from matplotlib.figure import Figure
+
     with style("smoothers"):
         canvas = Figure(figsize=(8.0, 3.6), layout="constrained")
         axes = canvas.add_subplot()

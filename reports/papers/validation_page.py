@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from camwright.pipeline.base.files import Json
-from camwright.reports.figure_svg import png, style
+from camwright.reports.figure_svg import png, shipped, style
 from camwright.reports.page import study_page
 from camwright.reports.papers.paper_chart import Chart, drawn
 from camwright.reports.picture_list import Picture
@@ -66,6 +66,7 @@ def _paper(document: Record, key: str) -> Section:
     return Section(key, key, blocks, f"{paper['citation']}{doi}")
 
 
+@shipped()
 def _picture(figure: Record) -> Picture:
     """Curves behind a group of rows."""
     chart = Chart(figure)

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
 from camwright.pipeline.base.files import write_atomic
-from camwright.reports.figure_svg import COLOURS, png
+from camwright.reports.figure_svg import COLOURS, png, shipped
 from camwright.reports.report_tables import Record
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 _MOST = 3.0  # of the sizes of the front: candidates further away are left out
 
@@ -25,8 +27,11 @@ def write(path: Path, document: Record) -> Path:
     return write_atomic(path, drawn(document))
 
 
+@shipped()
 def drawn(document: Record) -> bytes:
     """Torque before and with the cam, ripple over size, cam with roller, values; PNG."""
+    from matplotlib.figure import Figure
+
     canvas = Figure(figsize=(11.0, 7.8), layout="constrained")
     axes = canvas.subplots(2, 2)
     _torque(axes[0, 0], document)
