@@ -24,6 +24,7 @@ from camwright.geometry.arrays import Array
 from camwright.geometry.errors import ResultError
 from camwright.pipeline.results.field_file import ZONE, Step, read_series
 from camwright.reports import field_raster
+from camwright.reports.figure_svg import import_matplotlib
 from camwright.reports.report_tables import Record
 
 WINDOWS = ("vtkEGLRenderWindow", "vtkOSOpenGLRenderWindow")
@@ -256,6 +257,7 @@ def deformed(field: Field, view: View) -> Array:
 
 def _paint(field: Field, view: View) -> Array:
     """Render one view, in the child process."""
+    import_matplotlib()  # as pyvista does
     import pyvista
 
     xy = view.placed(deformed(field, view))
