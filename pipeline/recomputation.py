@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import shutil
 import tempfile
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, cast
@@ -18,6 +18,7 @@ import numpy as np
 
 from camwright.geometry.contour import Contour
 from camwright.geometry.errors import InputError, ResultError
+from camwright.pipeline.base import disk_cache
 from camwright.pipeline.base.files import Json, files_in, read_json
 from camwright.pipeline.base.progress import SILENT, Progress
 from camwright.pipeline.base.units import in_unit
@@ -27,11 +28,12 @@ from camwright.pipeline.case.case_file import read_case
 from camwright.pipeline.case.given_lift import given_lift
 from camwright.pipeline.case.load_case_torque import engine_torques
 from camwright.pipeline.checks.error_bars import contact_error
-from camwright.pipeline.checks.solution_verification import synthesis_converged
+from camwright.pipeline.checks.solution_verification import RESIDUALS, synthesis_converged
 from camwright.pipeline.checks.tolerance_corners import corners_record
 from camwright.pipeline.contact.contact_history import CertificatePoint
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.certificate_angles import begun
+from camwright.pipeline.preview import smoothing_record
 from camwright.pipeline.results import check_records, run_reader, signoff
 from camwright.pipeline.results.check_records import AnyCheck
 from camwright.pipeline.results.drawn_cam import drawn_cam
@@ -48,11 +50,12 @@ from camwright.pipeline.results.file_differences import (
     file_differences,
     record_differences,
 )
+from camwright.pipeline.results.file_kinds import FileClass, Origin, classes_of
 from camwright.pipeline.results.model_limits import limitations
 from camwright.pipeline.results.run_folder import RunFolder, versions
 from camwright.pipeline.results.run_reader import Run, TrialRecord, read_run, results_sha256
 from camwright.pipeline.results.run_records import torque_columns, trial_record
-from camwright.pipeline.results.trial import SmoothingRecord, Trial, TrialPoint
+from camwright.pipeline.results.trial import CONSTRAINED, SmoothingRecord, Trial, TrialPoint
 from camwright.pipeline.results.trial_writer import TrialWriter
 from camwright.pipeline.results.workshop_files import WORKSHOP, stamp_solid, write_workshop
 from camwright.pipeline.run import judged_of, summary_of
@@ -65,18 +68,17 @@ ANGLES = 8
 """Cam angles drawn, if none are stated."""
 MOST_ANGLES = 360
 LARGEST_SEED = 2**32 - 1
-_OTHER_VERSION = 0.02
-"""Relative difference by other versions of the libraries, where no certificate states one."""
 _BY_THE_SEARCH = ("prices", "machine_prices", "trial_points", "trials", "statement")
 """Entries of the summary that rest on the search for the lift, which is not repeated."""
-_LAST = ("run.json", signoff.NAME, signoff.SIGNATURES)
-_BY_ENTRY = ("6_checks.json", "trial.json")
-"""Files of a trial that are compared entry by entry."""
-PAGES = (
-    "8_report.html", "scene.html", "8_signoff.pdf", "workshop/drawing.pdf",
-    "workshop/contour.xlsx", "workshop/inspection.xlsx", "5_cycle.xlsx",
-)  # fmt: skip
-"""Pages, sheets and spreadsheets that are drawn again and compared; the last of the final trial."""
+_OF_THE_COMPUTER = ("platform", "started", "timings_s", "versions")
+"""Entries of the summary that say where and when the run was solved."""
+_OF_THE_TRIAL = ("why", "synthesis", "prices")
+"""Entries of the record of the final trial that rest on the search for the lift."""
+_LAST = (signoff.NAME, signoff.SIGNATURES)
+_HASHES = "mesh.sha256"
+_NEGLIGIBLE = 1e-3
+_ELSEWHERE = "rests on more than the run holds and cannot be made again; make it anew"
+PAGE = "8_report.html"
 _LISTED = 5
 """Differences of a record that are listed."""
 _OF_A_CHECK = ("demand", "corner_demand", "error", "utilisation", "margin")
@@ -116,7 +118,9 @@ class Recomputation:
     judged : mapping      their verdict, see `check_records.judgement`
     differences : tuple   of the folder, one line each, with the file
     angles : tuple        drawn angles; empty below the certified depth
-    unseen : tuple        files that do not follow from case and lift, and were not compared
+    unseen : tuple        files, folders and entries of records that do not follow from case and
+                          lift, and were not compared; none of them is cut or run
+    versions : tuple      of the run, where they are not those of this installation, in words
     """
 
     checks: tuple[AnyCheck, ...]
@@ -124,6 +128,7 @@ class Recomputation:
     differences: tuple[str, ...]
     angles: tuple[Angle, ...]
     unseen: tuple[str, ...]
+    versions: tuple[str, ...]
 
 
 def recompute(
@@ -134,13 +139,14 @@ def recompute(
     jobs: int | None = None,
     progress: Progress = SILENT,
     also: Callable[[Trial], Mapping[str, Any]] = lambda _: {},
-    present: Callable[[Path], object] | None = None,
+    present: Callable[[Path, Collection[str]], object] | None = None,
 ) -> Recomputation:
     """Compute a finished run again from its case and the lift of its final trial, and compare it.
 
     Taken from the folder: the case; the lift, where a synthesis chose it; whether that synthesis
     converged; reason and number of the trial. A check may differ by its error bar, as
-    computed again.
+    computed again. No entry of the disk cache is read, and whatever versions the run states, every
+    file is compared.
 
     Parameters
     ----------
@@ -148,7 +154,7 @@ def recompute(
     seed : int        of their choice
     jobs : int        processes for the certificate; None: number of processors, at most 4
     also : callable   final trial -> further entries of ``run.json``
-    present : callable   writes the pages into a run folder; None: they are not compared
+    present : callable   draws files of a run folder by their names; None: a page is a difference
 
     Raises
     ------
@@ -159,8 +165,21 @@ def recompute(
         raise InputError("--angles", angles, f">= 0 and <= {MOST_ANGLES}")
     if not 0 <= seed <= LARGEST_SEED:
         raise InputError("--seed", seed, f">= 0 and <= {LARGEST_SEED}")
-    run = read_run(folder)
-    case, contour = drawn_cam(folder)
+    with disk_cache.left_out():
+        return _recomputed(read_run(folder), angles, seed, jobs, progress, also, present)
+
+
+def _recomputed(
+    run: Run,
+    angles: int,
+    seed: int,
+    jobs: int | None,
+    progress: Progress,
+    also: Callable[[Trial], Mapping[str, Any]],
+    present: Callable[[Path, Collection[str]], object] | None,
+) -> Recomputation:
+    """See `recompute`."""
+    case, contour = drawn_cam(run.path)
     torques = engine_torques(case)
     record = run.final.record
     trial = solve(
@@ -174,7 +193,7 @@ def recompute(
     )
     trial = replace(
         trial, number=run.summary["final_trial"], why=record["why"],
-        smoothing=_smoothing(run.final), synthesis=record["synthesis"],
+        smoothing=_smoothing(case, run.final), synthesis=record["synthesis"],
     )  # fmt: skip
     drawn = _drawn_angles(run, trial, angles, seed, jobs, progress)
     differences = [
@@ -184,14 +203,26 @@ def recompute(
     checks = tuple(one.as_record() for one in trial.checks)
     differences += _check_differences(run.final, checks)
     progress.stage("files")
-    of_files, unseen = _of_files(run, trial, torques, also, present)
-    differences += of_files
+    files = _Files(run, trial)
+    files.compare(torques, also, present)
     return Recomputation(
         cast("tuple[AnyCheck, ...]", checks),
         check_records.judgement(checks, trial.depth.word),
-        tuple(differences),
+        (*differences, *files.differences),
         drawn,
-        unseen,
+        tuple(dict.fromkeys(files.unseen)),
+        _other_versions(run),
+    )
+
+
+def _other_versions(run: Run) -> tuple[str, ...]:
+    """Versions of a run that are not those here, such as ``numpy 2.5.0, here 2.4.6``."""
+    own, stated = versions(), run.summary["versions"]
+    names = {**own, **stated}
+    return tuple(
+        f"{name} {stated.get(name)}, here {own.get(name)}"
+        for name in names
+        if stated.get(name) != own.get(name)
     )
 
 
@@ -206,15 +237,18 @@ def _recorded_gain(final: TrialRecord) -> float | None:
     return _number(final, f"demand of {name}", stated[0]) if stated else None
 
 
-def _smoothing(final: TrialRecord) -> SmoothingRecord:
-    record = final.record
-    width = _number(final, "smoothing_width_deg", record["smoothing_width_deg"])
-    return SmoothingRecord(
-        record["smoothing_kind"],
-        record["smoothing_description"],
-        _number(final, "smoothing_strength", record["smoothing_strength"]),
-        None if width is None else float(np.radians(width)),
-    )
+def _smoothing(case: Case, final: TrialRecord) -> SmoothingRecord:
+    """Smoothing of the final trial, by the case and the recorded strength."""
+    if case.smoothing.kind == "constrained":
+        return CONSTRAINED
+    return smoothing_record(_smoother(case, final) if case.balances else None)
+
+
+def _smoother(case: Case, final: TrialRecord) -> Smoother:
+    """Smoother of the case, of the strength of the final trial."""
+    smoother = Smoother.from_case(case.smoothing, case.period)
+    strength = _number(final, "smoothing_strength", final.record["smoothing_strength"])
+    return smoother if strength is None else smoother.stretched(strength)
 
 
 def _number(final: TrialRecord, name: str, value: object) -> float | None:
@@ -231,7 +265,7 @@ def _lift_differences(
 
     Spring and prime radius are within their ranges where they are free, else those of the case.
     """
-    record, lift = run.final.record, contour.pitch.lift
+    lift = contour.pitch.lift
     if case.smoothing.kind == "constrained":
         stated = _chosen(read_case(run.path / "case.toml"))
         for name, value in _chosen(case).items():
@@ -244,11 +278,7 @@ def _lift_differences(
     if not case.balances:
         expected = given_lift(case)
     else:
-        smoother = Smoother.from_case(case.smoothing, case.period)
-        strength = _number(run.final, "smoothing_strength", record["smoothing_strength"])
-        if strength is not None:
-            smoother = smoother.stretched(strength)
-        expected = cam_lift(case, torques, smoother)
+        expected = cam_lift(case, torques, _smoother(case, run.final))
     apart = float(np.max(np.abs(lift(lift.theta) - expected(lift.theta))))
     if not apart <= SAME * expected.highest.value:
         words = f"the lift differs by {in_unit(apart, 'um'):.3g} um from that of the case"
@@ -269,6 +299,8 @@ def _check_differences(final: TrialRecord, checks: Sequence[Mapping[str, Any]]) 
     file = f"{final.path.name}/6_checks.json"
     stored = {record["id"]: record for record in final.checks}
     again = {str(record["id"]): record for record in checks}
+    if len(stored) < len(final.checks):
+        yield f"{file}: a check stands twice"
     for name in {**again, **stored}:
         if name not in stored or name not in again:
             what = "is missing" if name not in stored else "is none of the case"
@@ -279,6 +311,8 @@ def _check_differences(final: TrialRecord, checks: Sequence[Mapping[str, Any]]) 
         if two["demand"] and two["error"]:
             share = max(SAME, abs(two["error"] / two["demand"]))
         bars = [{key: each.pop(key, None) for key in _OF_A_CHECK} for each in (one, two)]
+        if all(_is_round_off(each) for each in (stored[name], again[name])):
+            bars = [{}, {}]
         for each in (one, two):
             each.pop("remedy", None)
         words = (
@@ -286,6 +320,17 @@ def _check_differences(final: TrialRecord, checks: Sequence[Mapping[str, Any]]) 
             *record_differences(cast("Json", bars[0]), cast("Json", bars[1]), share),
         )
         yield from (f"{file}: {name}: {each}" for each in words)
+
+
+def _is_round_off(record: Mapping[str, Any]) -> bool:
+    """Whether a demand is that of round-off, which is another one on another computer.
+
+    A residual within its limit, or evidence of less than a thousandth of its limit.
+    """
+    demand, limit = record["demand"], record["limit"]
+    if not record["evidence"] or record["sense"] != "at_most" or demand is None or limit is None:
+        return False
+    return abs(demand) <= (limit if record["id"] in RESIDUALS else _NEGLIGIBLE * limit)
 
 
 # --- drawn angles
@@ -339,48 +384,134 @@ def _angle(run: Run, trial: Trial, number: int, k: int, point: CertificatePoint)
 # --- files
 
 
-def _of_files(
-    run: Run,
-    trial: Trial,
-    torques: Mapping[str, Torque],
-    also: Callable[[Trial], Mapping[str, Any]],
-    present: Callable[[Path], object] | None,
-) -> tuple[list[str], tuple[str, ...]]:
-    """Differences of the files of a run, and those that were not compared."""
-    exact = run.summary["versions"] == versions()
-    bar = contact_error(trial.solution)
-    share = SAME if exact else max(SAME, _OTHER_VERSION if bar is None else bar)
-    with tempfile.TemporaryDirectory(prefix="camwright-") as home:
+class _Files:
+    """Differences of the files of a run, and what was not compared.
+
+    Parameters
+    ----------
+    run : Run       as stored
+    trial : Trial   its final trial, computed again
+    """
+
+    def __init__(self, run: Run, trial: Trial) -> None:
+        self._run, self._trial = run, trial
+        self._final = run.final.path.name
+        self.differences: list[str] = []
+        self.unseen: list[str] = []
+        recorded = read_json(run.path / signoff.NAME).get("files", {})
+        self._classes: dict[str, FileClass] = {}
+        for name, _ in files_in(run.path):
+            known = classes_of(name, run.final.number)
+            if known:
+                self._classes[name] = known[0]
+            elif name in recorded:
+                self.differences.append(f"{name}: is no file that a command writes")
+            else:
+                self.unseen.append(name)
+
+    def compare(
+        self,
+        torques: Mapping[str, Torque],
+        also: Callable[[Trial], Mapping[str, Any]],
+        present: Callable[[Path, Collection[str]], object] | None,
+    ) -> None:
+        """Compare every file by its class, and the records by their entries."""
+        with tempfile.TemporaryDirectory(prefix="camwright-") as home:
+            self._solved(Path(home) / "run", torques, also)
+            self._drawn(Path(home) / "drawn", present)
+        for name, each in self._classes.items():
+            if each.origin is Origin.ELSEWHERE:
+                self.differences.append(f"{name}: {_ELSEWHERE}")
+            elif each.origin is Origin.SEARCH:
+                own = name.startswith(f"{self._final}/")
+                self.unseen.append(name if own else f"{name.partition('/')[0]}/")
+
+    def _solved(
+        self,
+        folder: Path,
+        torques: Mapping[str, Torque],
+        also: Callable[[Trial], Mapping[str, Any]],
+    ) -> None:
+        """Compare what follows from case and lift."""
+        run, trial = self._run, self._trial
         case = read_case(run.path / "case.toml")
-        with RunFolder(Path(home) / "run", case, depth=trial.depth) as again:
+        with RunFolder(folder, case, depth=trial.depth) as again:
             summary = _written(again, run, trial, torques) | dict(also(trial))
-            compared = [name for name, _ in files_in(again.path) if not name.endswith(_BY_ENTRY)]
-            differences = list(file_differences(run.path, again.path, compared, share, exact))
+            made = [name for name, _ in files_in(again.path)]
+            classes = {name: classes_of(name, trial.number)[0] for name in made}
+            solved = {n: each.kind for n, each in classes.items() if each.origin is Origin.SOLVED}
+            self._add(file_differences(run.path, again.path, solved.items()))
             again.discard()
-        cycle = f"{run.final.path.name}/{PAGES[-1]}"
-        pages = [name for name in (*PAGES[:-1], cycle) if (run.path / name).is_file()]
-        if exact and present is not None and pages:
-            drawn = _drawn_again(run.path, Path(home) / "drawn", present)
-            pages = [name for name in pages if (drawn / name).is_file()]
-            differences += file_differences(run.path, drawn, pages, share, exact)
-            compared += pages
-    left_out = () if exact else ("sha256",)
-    of_trial = record_differences(
-        cast("Json", run.final.record), trial_record(trial), share, left_out=left_out
-    )
-    differences += _few(f"{run.final.path.name}/trial.json", of_trial)
-    stored = {key: run.summary.get(key) for key in summary if key not in _BY_THE_SEARCH}
-    expected = {key: summary[key] for key in stored}
-    of_summary = record_differences(cast("Json", stored), expected, share)
-    differences += _few("run.json", of_summary)
-    differences += _recorded_limits(run) if exact else ()
-    known = {*compared, *_LAST, *(f"{run.final.path.name}/{name}" for name in _BY_ENTRY)}
-    return differences, tuple(name for name, _ in files_in(run.path) if name not in known)
+        self.differences += (
+            f"{name}: is none of the case"
+            for name, each in self._classes.items()
+            if each.origin is Origin.SOLVED and name not in solved
+        )
+        self._trial_record()
+        self._summary(summary, case)
+        self.differences += _recorded_limits(run)
+
+    def _add(self, found: Iterator[tuple[str, str]]) -> list[str]:
+        """Add differences of files; their names."""
+        pairs = list(found)
+        self.differences += (f"{name}: {words}" for name, words in pairs)
+        return [name for name, _ in pairs]
+
+    def _trial_record(self) -> None:
+        """Compare ``trial.json``; the hashes of a mesh are those of its last bits."""
+        file, record = f"{self._final}/trial.json", self._run.final.record
+        words = list(record_differences(cast("Json", record), trial_record(self._trial)))
+        of_bits = [line for line in words if line.startswith(_HASHES)]
+        self.differences += _few(file, [line for line in words if line not in of_bits])
+        self.unseen += [f"{file}: {_HASHES}"] if of_bits else []
+        stated = {key: value for key, value in record.items() if key in _OF_THE_TRIAL and value}
+        self.unseen += (f"{file}: {key}" for key in stated)
+        checks = self._run.final.checks
+        if any(check.get("remedy") for check in checks):
+            self.unseen.append(f"{self._final}/6_checks.json: remedy")
+        if any(check["id"] == synthesis_converged.id for check in checks):
+            self.unseen.append(f"{self._final}/6_checks.json: {synthesis_converged.id}")
+
+    def _summary(self, again: Mapping[str, Any], case: Case) -> None:
+        """Compare ``run.json``; its hashes are compared with the files by the sign-off record."""
+        stored = dict[str, Any](self._run.summary)
+        here: Mapping[str, Any] = {"platform": signoff.environment(), "versions": versions()}
+        for key in (*_BY_THE_SEARCH, *_OF_THE_COMPUTER):
+            value = stored.pop(key, None)
+            if value is not None and value != here.get(key):
+                self.unseen.append(f"run.json: {key}")
+        expected = {
+            key: value
+            for key, value in again.items()
+            if key not in _BY_THE_SEARCH and (key in stored or value is not None)
+        }
+        expected |= {"schema": run_reader.SCHEMA, "case": case.name}
+        expected |= {key: stored[key] for key in ("input_sha256", "files")}
+        words = record_differences(cast("Json", stored), cast("Json", expected))
+        self.differences += _few("run.json", list(words))
+
+    def _drawn(self, copy: Path, present: Callable[[Path, Collection[str]], object] | None) -> None:
+        """Compare pages, sheets and pictures, drawn again from the tables of the run."""
+        names = {n: each.kind for n, each in self._classes.items() if each.origin is Origin.DRAWN}
+        if present is None or not names:
+            self.unseen += names
+            return
+        shutil.copytree(self._run.path, copy, symlinks=True)  # a link made since is not followed
+        for name in (*names, *_LAST):
+            (copy / name).unlink(missing_ok=True)
+        present(copy, names)
+        made = {name: kind for name, kind in names.items() if (copy / name).is_file()}
+        found = dict(file_differences(self._run.path, copy, made.items()))
+        if PAGE in found:  # it names the pictures that lie in the folder as it is drawn
+            present(copy, (PAGE,))
+            found.pop(PAGE)
+            found |= file_differences(self._run.path, copy, [(PAGE, names[PAGE])])
+        self._add(iter(found.items()))
+        self.differences += (f"{n}: is none of the run's pages" for n in names if n not in made)
 
 
-def _few(file: str, words: Iterator[str]) -> Iterator[str]:
+def _few(file: str, lines: Sequence[str]) -> Iterator[str]:
     """Lines of the first differences of a record, and the number of the others."""
-    lines = list(words)
     yield from (f"{file}: {line}" for line in lines[:_LISTED])
     if len(lines) > _LISTED:
         yield f"{file}: {len(lines) - _LISTED} more entries differ"
@@ -420,16 +551,6 @@ def _shown_fields(folder: Path, trial: Trial) -> Shown:
     if count == trial.cycles[0].theta.size:
         return Shown.ALL
     return Shown.WORST if count == 1 else Shown.DEFAULT
-
-
-def _drawn_again(folder: Path, copy: Path, present: Callable[[Path], object]) -> Path:
-    """Copy of a run with its pages drawn again; a link made since it was read is not followed."""
-    left_out = {Path(name).name for name in (*PAGES, *_LAST[1:])}
-    shutil.copytree(
-        folder, copy, symlinks=True, ignore=lambda _, names: [n for n in names if n in left_out]
-    )
-    present(copy)
-    return copy
 
 
 def _recorded_limits(run: Run) -> Iterator[str]:

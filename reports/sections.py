@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from fnmatch import fnmatch
 from functools import partial
 from pathlib import Path
 
 from camwright.geometry.errors import InputError, ResultError
 from camwright.pipeline.base.progress import SILENT, Progress
+from camwright.pipeline.base.spreadsheets import SUFFIX
 from camwright.pipeline.base.worker_processes import Crew, Task
 from camwright.pipeline.results.folder_exchange import amended, is_being_written, settle_recorded
 from camwright.reports import (
@@ -18,26 +20,28 @@ from camwright.reports import (
     picture_list,
     scene_page,
 )
-from camwright.reports.report_data import Material, read_material
+from camwright.reports.report_data import FIGURES, Material, read_material
 
 
 @dataclass(frozen=True)
 class Part:
     """A part of a report.
 
-    `write` writes the files of the part into the run folder and returns them. A part `on_request`
-    is written only if its name is stated; those `as_png` are the pictures as files.
+    `write` writes the files of the part into the run folder and returns them; `files` is the
+    pattern of their names. A part `on_request` is written only if its name is stated; those
+    `as_png` are the pictures as files.
     """
 
     name: str
     words: str
     write: Callable[[Material], Sequence[Path]]
+    files: str
     on_request: bool = False
     as_png: bool = False
 
 
 def _pictures(name: str, words: str, write: Callable[[Material], Sequence[Path]]) -> Part:
-    return Part(name, f"{words} as PNG", write, on_request=True, as_png=True)
+    return Part(name, f"{words} as PNG", write, f"{FIGURES}/*.png", on_request=True, as_png=True)
 
 
 PARTS = (
@@ -50,12 +54,14 @@ PARTS = (
               partial(picture_list.write_pictures, picture_list.guide_pictures)),
     _pictures("envelope", "maps of the maximum stress below the contour",
               partial(picture_list.write_pictures, picture_list.envelope_pictures)),
-    Part("scene", f"{scene_page.FILE}, interactive 3-D view", scene_page.write),
-    Part("sheet", f"{documents.SIGNOFF}, one page to sign", documents.write_signoff),
-    Part("drawing", f"{documents.DRAWING}, dimensioned drawing", documents.write_drawing),
-    Part("tables", "tables as spreadsheets", documents.write_tables),
-    Part("pdf", documents.PDF, documents.write_report, on_request=True),
-    Part("page", page.PAGE, page.write),  # last: it links to the others
+    Part("scene", f"{scene_page.FILE}, interactive 3-D view", scene_page.write, scene_page.FILE),
+    Part("sheet", f"{documents.SIGNOFF}, one page to sign", documents.write_signoff,
+         documents.SIGNOFF),
+    Part("drawing", f"{documents.DRAWING}, dimensioned drawing", documents.write_drawing,
+         documents.DRAWING),
+    Part("tables", "tables as spreadsheets", documents.write_tables, f"*{SUFFIX}"),
+    Part("pdf", documents.PDF, documents.write_report, documents.PDF, on_request=True),
+    Part("page", page.PAGE, page.write, page.PAGE),  # last: it links to the others
 )  # fmt: skip
 
 
@@ -155,3 +161,14 @@ def draw(
         return written
     except OSError as error:
         raise ResultError(f"{folder}: {error.strerror or error}") from None
+
+
+def redraw(folder: Path, names: Collection[str]) -> None:
+    """Write the parts to which files of these names belong; see `report`.
+
+    Those on request come last, as they are added to a run that has its page already.
+    """
+    wanted = [part for part in PARTS if any(fnmatch(name, part.files) for name in names)]
+    for late in (False, True):
+        if parts := [part for part in wanted if part.on_request is late]:
+            draw(folder, parts)

@@ -12,8 +12,8 @@ import hashlib
 import importlib.metadata
 import os
 import sys
-from collections.abc import Callable, Hashable, Mapping
-from contextlib import suppress
+from collections.abc import Callable, Hashable, Iterator, Mapping
+from contextlib import contextmanager, suppress
 from functools import lru_cache
 from pathlib import Path
 from types import ModuleType
@@ -51,6 +51,20 @@ def folder() -> Path | None:
 def switch_off() -> None:
     """Neither read nor write entries any more, in this process and those it starts."""
     os.environ[OFF] = "1"
+
+
+@contextmanager
+def left_out() -> Iterator[None]:
+    """Neither read nor write entries meanwhile, in this process and those it starts."""
+    before = os.environ.get(OFF)
+    switch_off()
+    try:
+        yield
+    finally:
+        if before is None:
+            del os.environ[OFF]
+        else:
+            os.environ[OFF] = before
 
 
 def key(kind: str, inputs: Hashable, modules: tuple[ModuleType, ...]) -> str:

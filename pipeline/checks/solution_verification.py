@@ -108,6 +108,17 @@ contact_complementarity = _residual(
     allowed=lambda solution: solution.machine.limits[COMPLEMENTARITY],
 )
 
+RESIDUALS = tuple(
+    each.id
+    for each in (
+        guide_equilibrium_force,
+        guide_equilibrium_moment,
+        contact_equilibrium,
+        contact_complementarity,
+    )
+)
+"""Checks whose demand is a rounding error."""
+
 
 @check(
     title="Peak pressure, finite elements vs. Hertz",

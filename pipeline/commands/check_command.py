@@ -407,7 +407,7 @@ def _recomputed(target: Path, angles: int | None, seed: int | None) -> bool:
 
     from camwright.pipeline.recomputation import ANGLES, recompute
     from camwright.pipeline.studies.valve_train import valve_record
-    from camwright.reports.sections import draw
+    from camwright.reports.sections import redraw
 
     if not target.is_dir():
         raise InputError("--recompute", str(target), "stated with a run folder")
@@ -421,7 +421,7 @@ def _recomputed(target: Path, angles: int | None, seed: int | None) -> bool:
                 seed=drawn,
                 progress=progress,
                 also=valve_record,
-                present=draw,
+                present=redraw,
             )
         except ResultError as error:
             say(str(error))
@@ -431,6 +431,8 @@ def _recomputed(target: Path, angles: int | None, seed: int | None) -> bool:
     say(f"recomputed: {made.judged['verdict_line']}")
     for line in made.differences:
         say(f"{target / line}")
+    if made.differences and made.versions:
+        say(f"the run was solved by {', '.join(made.versions)}")
     if made.unseen:
         say(f"not compared: {', '.join(made.unseen)}")
     return not made.differences

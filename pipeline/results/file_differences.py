@@ -1,61 +1,87 @@
-"""Differences of the files of a run from the same files computed again."""
+"""Differences of the files of a run from the same files computed or drawn again.
+
+Nothing depends on the versions that the run states: numbers are compared as numbers, texts by their
+words and numbers, solids and fields by what they hold, pictures by their pixels, all else to the
+byte.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+import base64
+import io
+import re
+import zipfile
+import zlib
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from itertools import takewhile, zip_longest
 from pathlib import Path
 
 import numpy as np
 
 from camwright.geometry.errors import ResultError
-from camwright.pipeline.base.files import Json, read_json, read_npz
+from camwright.pipeline.base.files import Json, read_json, read_npz, read_text
 from camwright.pipeline.base.tables import CAM_ANGLE, Table, read_table
-from camwright.pipeline.results.workshop_files import WORKSHOP
+from camwright.pipeline.results.file_kinds import Kind
 
 SAME = 1e-6
 """Relative difference, of the greatest value of a column, that rounding may make."""
 _ROUND_OFF = 1e-9
+_ON_A_DRAWING = 1e-6
+"""Difference of a coordinate, mm, that is none."""
+_OF_A_FIELD = 2.0**-14
+"""Relative difference of the values of a field, whose mantissas are cut to 15 bits."""
 _RESIDUAL = "residual"
-_UNREADABLE = (OSError, ValueError, KeyError)
+_ANGLE, _TURN = "angle_deg", 360.0
+_NUMBER = re.compile(r"(?<![\w.])([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)")
+_REAL = re.compile(r"[.eE]")
+_PICTURE = re.compile(r"data:image/png;base64,([A-Za-z0-9+/=]+)")
+_ENTITY = re.compile(r"#(\d+)=([^;]*);\n")
+_REFERENCE = re.compile(r"#(\d+)\b")
+_OFFSET = re.compile(r' offset="\d+"')
+_BEFORE = 40  # characters shown before a difference
+_PATCH = 8  # pixels
+_SHADE = 10.0  # of 255: mean over a patch, as another processor draws the edges of a field
+_UNREADABLE = (
+    *(OSError, ValueError, KeyError, EOFError, RecursionError, RuntimeError, TypeError),
+    zipfile.BadZipFile, zlib.error,
+)  # fmt: skip
 
 
 def file_differences(
-    stored: Path, again: Path, names: Sequence[str], share: float, exact: bool
-) -> Iterator[str]:
-    """Differences of files by relative name, one line a file.
+    stored: Path, again: Path, names: Iterable[tuple[str, Kind]]
+) -> Iterator[tuple[str, str]]:
+    """Names of files that differ, and how.
 
     Parameters
     ----------
-    again : Path    folder of the files computed again, all of which exist
-    share : float   difference of a number that is none, relative to the greatest of its column
-    exact : bool    whether a file that is no table, record or array must be the same bytes; else it
-                    is not compared
+    again : Path       folder of the files computed or drawn again, all of which exist
+    names : iterable   relative names and how each is compared
     """
-    for name in names:
+    for name, kind in names:
         file, other = stored / name, again / name
         if not file.is_file():
-            yield f"{name}: is missing"
+            yield name, "is missing"
         elif file.read_bytes() != other.read_bytes():
-            words = _compared(file, other, share, exact)
+            words = _compared(file, other, kind)
             if words:
-                yield f"{name}: {words}"
+                yield name, words
 
 
-def _compared(file: Path, other: Path, share: float, exact: bool) -> str:
+def _compared(file: Path, other: Path, kind: Kind) -> str:
     """The first difference of two files in words; "" without one."""
+    compare = _BY_KIND.get(kind)
+    if compare is None:
+        return "is not the file that the case gives"
     try:
-        if file.suffix == ".csv" and file.parent.name != WORKSHOP:  # those may have empty columns
-            return _tables(file, other, share)
-        if file.suffix == ".json":
-            return next(record_differences(read_json(file), read_json(other), share), "")
-        if file.suffix == ".npz":
-            return _arrays(file, other, share)
+        return compare(file, other)
     except (ResultError, *_UNREADABLE) as error:
         return f"cannot be read ({error})"
-    return "is not the file that the case gives" if exact else ""
 
 
-def _tables(file: Path, other: Path, share: float) -> str:
+# --- tables and arrays
+
+
+def _tables(file: Path, other: Path) -> str:
     """The first difference of two tables."""
     one, two = read_table(file), read_table(other)
     if one.keys() != two.keys() or len(one) != len(two):
@@ -63,7 +89,7 @@ def _tables(file: Path, other: Path, share: float) -> str:
     if one.load_cases != two.load_cases:
         return f"has the load cases {', '.join(one.load_cases)}"
     for header, values in two.numbers.items():
-        k = _worst(one[header], values, _RESIDUAL in header, share)
+        k = _worst(one[header], values, header)
         if k is not None:
             at = f"{header}{_place(two, k)}"
             return f"{at} = {_shown(one[header][k])}, recomputed {_shown(values[k])}"
@@ -76,39 +102,258 @@ def _place(table: Table, row: int) -> str:
     return f" in row {row + 1}" if angle is None else f" at {angle[row]:.4g} deg{state}"
 
 
-def _arrays(file: Path, other: Path, share: float) -> str:
+def _arrays(file: Path, other: Path) -> str:
     one, two = read_npz(file), read_npz(other)
     if sorted(one) != sorted(two):
         return f"holds {', '.join(sorted(one))}, not {', '.join(sorted(two))}"
     for name in two:
-        if one[name].shape != two[name].shape or one[name].dtype != two[name].dtype:
-            return f"{name} is of another shape or type"
-        if two[name].dtype.kind not in "fiu":
-            if not np.array_equal(one[name], two[name]):
-                return f"{name} differs"
-            continue
-        values, others = one[name].ravel().astype(float), two[name].ravel().astype(float)
-        k = _worst(values, others, _RESIDUAL in name, share)
-        if k is not None:
-            return f"{name}[{k}] = {_shown(values[k])}, recomputed {_shown(others[k])}"
+        words = _array(name, one[name], two[name])
+        if words:
+            return words
     return ""
 
 
-def _worst(one: np.ndarray, two: np.ndarray, residual: bool, share: float) -> int | None:
-    """Place of the greatest difference beyond the share; None without any."""
+def _array(name: str, one: np.ndarray, two: np.ndarray) -> str:
+    """The first difference of two arrays of a name."""
+    if one.shape != two.shape or one.dtype != two.dtype:
+        return f"{name} is of another shape or type"
+    if two.dtype.kind not in "fiu":
+        return "" if np.array_equal(one, two) else f"{name} differs"
+    values, others = one.ravel().astype(float), two.ravel().astype(float)
+    k = _worst(values, others, name, _OF_A_FIELD if two.dtype == np.float32 else 0.0)
+    return "" if k is None else f"{name}[{k}] = {_shown(values[k])}, recomputed {_shown(others[k])}"
+
+
+def _worst(one: np.ndarray, two: np.ndarray, name: str, digits: float = 0.0) -> int | None:
+    """Place of the greatest difference that is one; None without any.
+
+    digits : float   relative difference that the digits of the values make
+    """
     if not two.size:
         return None
     finite = np.isfinite(two)
-    if (np.isfinite(one) != finite).any():
-        return int(np.argmax(np.isfinite(one) != finite))
-    apart = np.where(finite, np.abs(np.where(finite, one, 0.0) - np.where(finite, two, 0.0)), 0.0)
-    greatest = float(np.max(np.abs(two[finite]), initial=0.0))
-    k = int(np.argmax(apart))
-    return k if apart[k] > _allowed(greatest, residual, share) else None
+    odd = (np.isfinite(one) != finite) | (~finite & (one != two) & ~(np.isnan(one) & np.isnan(two)))
+    if odd.any():
+        return int(np.argmax(odd))
+    apart = np.abs(np.where(finite, one, 0.0) - np.where(finite, two, 0.0))
+    if name.endswith(_ANGLE):
+        apart = np.minimum(apart, np.abs(_TURN - apart))
+    size = np.abs(np.where(finite, two, 0.0))
+    beyond = apart - digits * size - _allowed(name, float(size.max()))
+    k = int(np.argmax(beyond))
+    return k if beyond[k] > 0.0 else None
+
+
+def _fields(file: Path, other: Path) -> str:
+    read = _grid if file.suffix == ".vtu" else _members
+    one, two = read(file), read(other)
+    if one.keys() != two.keys():
+        odd = sorted(one.keys() ^ two.keys())[0]
+        return f"{odd} is {'missing' if odd in two else 'none of the case'}"
+    return next(filter(None, (_array(name, one[name], two[name]) for name in two)), "")
+
+
+def _grid(file: Path) -> dict[str, np.ndarray]:
+    """Everything in a VTU file: arrays by name, and the tags that describe them."""
+    import meshio
+
+    tags = file.read_bytes().partition(b"<AppendedData")[0].decode()
+    mesh = meshio.read(file)
+    return {
+        "tags": np.asarray(_OFFSET.sub("", tags)),
+        "points": mesh.points,
+        **{f"{cells.type} {k}": cells.data for k, cells in enumerate(mesh.cells)},
+        **{f"{name} at points": np.asarray(values) for name, values in mesh.point_data.items()},
+        **{
+            f"{name} in cells {k}": np.asarray(values)
+            for name, parts in mesh.cell_data.items()
+            for k, values in enumerate(parts)
+        },
+    }
+
+
+def _members(file: Path) -> dict[str, np.ndarray]:
+    """Everything in a VTKHDF file by its path: data, attributes, and where links point to."""
+    import h5py
+
+    members: dict[str, np.ndarray] = {}
+
+    def note(name: str, group: h5py.Group | h5py.Dataset) -> None:
+        for key, value in group.attrs.items():
+            members[f"{name}@{key}"] = np.asarray(value)
+        if isinstance(group, h5py.Dataset):
+            if group.is_virtual or group.external:
+                raise ResultError(f"{name} lies in another file")
+            values = np.asarray(group[()])
+            members[name] = values.astype("S") if values.dtype.hasobject else values
+            return
+        for key in group:
+            link = group.get(key, getlink=True)
+            if isinstance(link, h5py.HardLink):
+                note(f"{name}/{key}", group[key])
+            elif isinstance(link, h5py.SoftLink):
+                members[f"{name}/{key}"] = np.asarray(link.path)
+            else:
+                raise ResultError(f"{name}/{key} lies in another file")
+
+    with h5py.File(file, "r") as root:
+        note("", root)
+    return members
+
+
+# --- texts, solids, pages, pictures
+
+
+def text_difference(one: str, two: str, absolute: float = _ROUND_OFF) -> str:
+    """The first difference of two texts: their words, or a number by more than its round-off.
+
+    A count, written without a decimal point, must be the same.
+
+    Parameters
+    ----------
+    absolute : float   difference of two numbers that is none; besides `SAME` of the number
+    """
+    parts, others = _NUMBER.split(one), _NUMBER.split(two)
+    for place, (a, b) in enumerate(zip_longest(parts, others, fillvalue="")):
+        if a == b or (place % 2 and a and b and _equal(a, b, absolute)):
+            continue
+        pairs = () if place % 2 else zip(a, b, strict=False)
+        alike = sum(1 for _ in takewhile(lambda pair: pair[0] == pair[1], pairs))
+        before = ("".join(parts[max(0, place - 4) : place]) + a[:alike])[-_BEFORE:]
+        return f"'{before}{_shown(a[alike:])}', recomputed '{_shown(b[alike:])}'"
+    return ""
+
+
+def _equal(one: str, two: str, absolute: float) -> bool:
+    """Whether two numbers of a text are the same."""
+    if not (_REAL.search(one) or _REAL.search(two)):
+        return False
+    a, b = float(one), float(two)
+    return abs(a - b) <= absolute + _ROUND_OFF * abs(b)
+
+
+def _texts(file: Path, other: Path) -> str:
+    return text_difference(read_text(file), read_text(other), _ON_A_DRAWING)
+
+
+def _solids(file: Path, other: Path) -> str:
+    """The first difference of two STEP files, whatever the numbers of their entities.
+
+    Equal entities are written once, so that round-off can change how many there are.
+    """
+    (head, one), (other_head, two) = (_entities(read_text(each)) for each in (file, other))
+    words = text_difference(head, other_head, _ON_A_DRAWING)
+    if words:
+        return words
+    roots, other_roots = _roots(one), _roots(two)
+    if len(roots) != len(other_roots):
+        return f"has {len(roots)} parts, recomputed {len(other_roots)}"
+    left, same = list(zip(roots, other_roots, strict=True)), set[tuple[str, str]]()
+    while left:
+        pair = left.pop()
+        if pair in same:
+            continue
+        same.add(pair)
+        a, b = one[pair[0]], two[pair[1]]
+        words = text_difference(_REFERENCE.sub("#", a), _REFERENCE.sub("#", b), _ON_A_DRAWING)
+        if words:
+            return words
+        left += zip(_REFERENCE.findall(a), _REFERENCE.findall(b), strict=True)
+    return ""
+
+
+def _entities(text: str) -> tuple[str, dict[str, str]]:
+    """Text of a STEP file besides its entities, and the entities by number.
+
+    Raises
+    ------
+    ResultError
+        If a number stands twice, or one that is referred to nowhere.
+    """
+    listed = _ENTITY.findall(text)
+    entities = dict(listed)
+    referred = {each for words in entities.values() for each in _REFERENCE.findall(words)}
+    if len(entities) != len(listed) or not referred <= entities.keys():
+        raise ResultError("an entity stands twice or nowhere")
+    return _ENTITY.sub("", text), entities
+
+
+def _roots(entities: Mapping[str, str]) -> list[str]:
+    """Entities that no other one refers to, in their order."""
+    referred = {each for words in entities.values() for each in _REFERENCE.findall(words)}
+    return [number for number in entities if number not in referred]
+
+
+def _pages(file: Path, other: Path) -> str:
+    one, two = read_text(file), read_text(other)
+    words = text_difference(_PICTURE.sub("", one), _PICTURE.sub("", two))
+    if words:
+        return words
+    pairs = zip(_PICTURE.findall(one), _PICTURE.findall(two), strict=True)
+    drawn = (
+        _pixels(*(base64.b64decode(each) for each in pair)) for pair in pairs if len({*pair}) > 1
+    )
+    return next(filter(None, drawn), "")
+
+
+def _books(file: Path, other: Path) -> str:
+    with zipfile.ZipFile(file) as one, zipfile.ZipFile(other) as two:
+        if sorted(one.namelist()) != sorted(two.namelist()):
+            return "has other sheets"
+        for name in two.namelist():
+            a, b = one.read(name), two.read(name)
+            words = "" if a == b else text_difference(a.decode(), b.decode())
+            if words:
+                return f"{name}: {words}"
+    return ""
+
+
+def _pictures(file: Path, other: Path) -> str:
+    return _pixels(file.read_bytes(), other.read_bytes())
+
+
+def _pixels(one: bytes, two: bytes) -> str:
+    """Difference of two PNG pictures; the edges of a field differ by a shade in some pixels."""
+    from PIL import Image
+
+    pictures = []
+    for each in (one, two):
+        with Image.open(io.BytesIO(each), formats=["PNG"]) as picture:
+            pictures.append(np.asarray(picture.convert("RGBA"), dtype=float))
+    a, b = pictures
+    if a.shape != b.shape:
+        return (
+            f"a picture has {a.shape[1]} x {a.shape[0]} pixels, redrawn {b.shape[1]} x {b.shape[0]}"
+        )
+    apart = np.abs(a - b)
+    rows, columns = (-(-size // _PATCH) for size in a.shape[:2])
+    padded = np.zeros((rows * _PATCH, columns * _PATCH, 4))
+    padded[: a.shape[0], : a.shape[1]] = apart
+    patches = padded.reshape(rows, _PATCH, columns, _PATCH, 4).mean(axis=(1, 3))
+    return "a picture shows something else" if patches.max() > _SHADE else ""
+
+
+_BY_KIND: Mapping[Kind, Callable[[Path, Path], str]] = {
+    Kind.TABLE: _tables,
+    Kind.RECORD: lambda file, other: next(
+        record_differences(read_json(file), read_json(other)), ""
+    ),
+    Kind.ARRAYS: _arrays,
+    Kind.FIELD: _fields,
+    Kind.GEOMETRY: _texts,
+    Kind.SOLID: _solids,
+    Kind.PAGE: _pages,
+    Kind.BOOK: _books,
+    Kind.PICTURE: _pictures,
+}
+"""Comparisons of files that are not the same bytes; of all other kinds such a file differs."""
+
+
+# --- records
 
 
 def record_differences(
-    one: Json, two: Json, share: float, place: str = "", left_out: Sequence[str] = ()
+    one: Json, two: Json, share: float = SAME, place: str = "", left_out: Sequence[str] = ()
 ) -> Iterator[str]:
     """Differences of two JSON values in words.
 
@@ -133,15 +378,26 @@ def record_differences(
         for k, (a, b) in enumerate(zip(one, two, strict=True)):
             yield from record_differences(a, b, share, f"{place}[{k}]", left_out)
     elif isinstance(one, float) and isinstance(two, int | float) and not isinstance(two, bool):
-        if not abs(one - two) <= _allowed(abs(two), _RESIDUAL in place, share):
+        apart = abs(one - two)
+        if place.endswith(_ANGLE):
+            apart = min(apart, abs(_TURN - apart))
+        if not apart <= _allowed(place, abs(two), share):
             yield f"{place} = {_shown(one)}, recomputed {_shown(two)}"
-    elif one != two:
+    elif isinstance(one, str) and isinstance(two, str):
+        if one != two and text_difference(one, two):
+            yield f"{place} = {_shown(one)}, recomputed {_shown(two)}"
+    elif one != two or isinstance(one, bool) != isinstance(two, bool):
         yield f"{place} = {_shown(one)}, recomputed {_shown(two)}"
 
 
-def _allowed(greatest: float, residual: bool, share: float) -> float:
-    """Difference that is none; a residual is itself a rounding error."""
-    return SAME if residual else share * greatest + _ROUND_OFF
+def _allowed(name: str, greatest: float, share: float = SAME) -> float:
+    """Difference of numbers of a name that is none.
+
+    A residual is itself a rounding error; an angle is one of the whole turn.
+    """
+    if _RESIDUAL in name:
+        return SAME
+    return share * (_TURN if name.endswith(_ANGLE) else greatest) + _ROUND_OFF
 
 
 def _shown(value: object) -> str:

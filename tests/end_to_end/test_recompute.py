@@ -23,7 +23,7 @@ from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.recomputation import MOST_ANGLES, Recomputation, recompute
 from camwright.pipeline.results import check_records, run_reader, signoff
 from camwright.pipeline.run import run_case
-from camwright.reports.sections import draw, report
+from camwright.reports.sections import redraw, report
 
 Command = Callable[..., tuple[int, str, str]]
 TRIAL = "trial_1"
@@ -140,7 +140,7 @@ def page_edited(run: Path) -> None:
 
 
 def recomputed(run: Path, **options: Any) -> Recomputation:
-    return recompute(run, jobs=1, present=draw, **({"angles": 0} | options))
+    return recompute(run, jobs=1, present=redraw, **({"angles": 0} | options))
 
 
 # --- a screening: a second each
@@ -202,7 +202,7 @@ def test_options_out_of_bounds_are_refused(
     ("key", "value", "message"),
     [
         ("number", "../../../escaped", "trial.json: number = ../../../escaped, recomputed 1"),
-        ("smoothing_strength", "x", "smoothing_strength must be a number"),
+        ("smoothing_strength", "x", "smoothing_strength = x, recomputed None"),
         ("closure_mm", None, "2_spline.csv|trial.json"),
         ("synthesis", 3, "trial.json|synthesis"),
     ],
@@ -244,7 +244,12 @@ def test_a_certified_run_is_what_its_case_gives(certified: Path, command: Comman
     assert len(made.angles) == 3
     for angle in made.angles:
         assert 0.0 < angle.difference < angle.allowed < 0.02
-    assert set(made.unseen) <= {f"{TRIAL}/2_limits.csv"}
+    assert made.versions == ()
+    assert set(made.unseen) <= {
+        f"{TRIAL}/trial.json: why", f"{TRIAL}/6_checks.json: remedy",
+        *(f"run.json: {key}"
+          for key in ("started", "statement", "timings_s", "trial_points", "trials")),
+    }  # fmt: skip
     code, out, err = command("check", certified, "--recompute", "--angles", "3")
     assert code == command("check", certified)[0]
     assert f"recomputed: {made.judged['verdict_line']}" in err and "verdict: " in out
