@@ -101,19 +101,29 @@ def _refuse_overshoot(angle: Array, value: Array, theta: Array, lift: Array) -> 
     )
 
 
-def overshoot(theta: ArrayLike, values: ArrayLike, lift: Lift) -> tuple[float, float]:
-    """Greatest departure of a lift from two equal neighbouring points, m, and its cam angle, rad.
+def overshoot(
+    theta: ArrayLike, values: ArrayLike, lift: Lift, *, level: bool = False
+) -> tuple[float, float]:
+    """Greatest distance of a lift from the range of two neighbouring points, m, and its cam angle.
 
     Parameters
     ----------
     theta : array (n,)     of the points, rad, increasing
     values : array (n,)    s of the points, m
+    level : bool           between equal neighbours alone, as in a dwell
+
+    Returns
+    -------
+    away, place : float    m, < 0 below the points; rad
     """
     angle, value = _table(theta, values)
     even = uniform_turn(_SAMPLED)
     after = np.searchsorted(angle, even, side="right") % angle.size
-    level = value[(after - 1) % angle.size]
-    away = np.where(level == value[after], lift(even) - level, 0.0)
+    ends = np.stack([value[(after - 1) % angle.size], value[after]])
+    drawn = lift(even)
+    away = drawn - np.clip(drawn, ends.min(axis=0), ends.max(axis=0))
+    if level:
+        away = np.where(ends[0] == ends[1], away, 0.0)
     most = int(np.abs(away).argmax())
     return float(away[most]), float(even[most])
 

@@ -91,7 +91,7 @@ def lift_origin(case: LiftSource) -> str:
         )
     if isinstance(section, LiftPoints):
         angles, lifts = _points(section)
-        away, place = overshoot(angles, lifts, given_lift(case))
+        away, place = overshoot(angles, lifts, given_lift(case), level=True)
         over = f"; between equal points it overshoots by {1e3 * abs(away):.3g} mm at "
         over += f"{np.degrees(place):.4g} deg"
         return "the lift is a spline through points" + over * (abs(away) > NEGATIVE_TOLERANCE)
@@ -102,6 +102,18 @@ def lift_origin(case: LiftSource) -> str:
     if isinstance(section, LiftEccentric):
         return "the lift is that of an eccentric circle"
     return "the lift is given"
+
+
+def table_overshoot(case: LiftSource) -> tuple[float, float] | None:
+    """Share of the stroke by which the curve through a lift table overshoots, and its cam angle.
+
+    None for another lift, or one fitted to its table.
+    """
+    if not isinstance(case.lift, LiftTable) or _fitted(case) is not None:
+        return None
+    trace = read_trace(case.path(case.lift.file), "lift", period=FULL_TURN)
+    away, place = overshoot(trace.angle, trace.values, Lift.from_samples(trace.angle, trace.values))
+    return abs(away) / float(np.ptp(trace.values)), place
 
 
 def _points(section: LiftPoints) -> tuple[list[float], list[float]]:

@@ -18,6 +18,7 @@ from camwright.pipeline.base.units import in_unit, shown
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_values import text_of, value_of
 from camwright.pipeline.case.external_load import closing_preload
+from camwright.pipeline.case.given_lift import table_overshoot
 from camwright.pipeline.case.load_case_torque import pressure
 from camwright.pipeline.engine.crankshaft import energy_swing
 from camwright.pipeline.engine.pressure_trace import PressureTable
@@ -66,6 +67,7 @@ def implausible(case: Case, torques: Mapping[str, Torque]) -> tuple[Finding, ...
             value = value_of(case, key)
             if isinstance(value, float):
                 judged.append(usual.finding(key, value, f"{key} = {text_of(case, key)}"))
+    judged.append(_lift_finding(case))
     judged += _torque_findings(case, torques)
     judged += _pressure_findings(case)
     judged += _motor_findings(case, torques)
@@ -73,6 +75,23 @@ def implausible(case: Case, torques: Mapping[str, Torque]) -> tuple[Finding, ...
     if not {one.title for one in findings} & {"spring.rate", "spring.preload", *_TORQUES}:
         findings += _spring_findings(case, torques)
     return tuple(findings)
+
+
+_OVERSHOOT = 0.01
+"""Share of the stroke by which a smooth lift leaves its points 4 deg apart at most: t^2 s''/8 of a
+cycloidal rise in 60 deg is 0.4 %."""
+
+
+def _lift_finding(case: Case) -> Finding | None:
+    """The curve through a lift table beyond its points, as beside a step or a kink of the lift."""
+    over = table_overshoot(case)
+    if over is None or over[0] <= _OVERSHOOT:
+        return None
+    share, place = over
+    words = f"lift.file: the curve through its points leaves them by {share:.2%} of the stroke at "
+    words += f"{shown(place, 'deg')}; loads and flights there are those of the curve: set more "
+    words += "points where the lift bends sharply, or state lift.noise of a measured table"
+    return Finding(PLAUSIBILITY, "lift.file", share, 0.0, "-", words)
 
 
 _TORQUES = ("engine", "engine.file", "torque", "torque.file")

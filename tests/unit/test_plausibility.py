@@ -144,3 +144,20 @@ def test_a_run_warns_goes_on_and_records_it(tmp_path: Path) -> None:
     assert (finding["given"], finding["implied"], finding["flagged"]) == (0.0, 0.1, True)
     assert finding["title"] == "engine.file"
     assert consistency_line(finding) == f"plausibility: {finding['how']}"
+
+
+def test_a_curve_that_overshoots_its_table_is_told(tmp_path: Path) -> None:
+    """A fall of 20 mm in 10 deg, by points 2 deg apart; a cycloidal lift leaves its points less."""
+    snail = Path(__file__).parents[1] / "data" / "strangers" / "14-missing-kinds"
+    (told,) = implausible(read_case(snail / "snail_table.toml"), {})
+    assert told.title == "lift.file"
+    assert "leaves them by 1.69% of the stroke at 0.75 deg" in told.how
+    x = np.arange(0.0, 360.0, 4.0)
+    up = np.clip(np.minimum(x, 180.0 - x) / 60.0, 0.0, 1.0)
+    lift = 20.0 * (up - np.sin(2.0 * np.pi * up) / (2.0 * np.pi))
+    rows = [f"{angle:g},{value:.9g}" for angle, value in zip(x, lift, strict=True)]
+    text = "\n".join(("cam_angle_deg,lift_mm", *rows))
+    (tmp_path / "snail.csv").write_text(text, encoding="utf-8")
+    case = (snail / "snail_table.toml").read_text(encoding="utf-8")
+    (tmp_path / "smooth.toml").write_text(case, encoding="utf-8")
+    assert implausible(read_case(tmp_path / "smooth.toml"), {}) == ()
