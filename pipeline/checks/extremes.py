@@ -79,8 +79,10 @@ def _vertex(
     step = FULL_TURN / of_case.size
     near = (round(worst.cam_angle / step) + np.arange(-1, 2)) % of_case.size
     before, here, after = of_case[near]
+    if not np.isfinite(of_case[near]).all():  # no jump at any speed, or no load, beside it
+        return worst
     bend = sign * (before - 2.0 * here + after)
-    if not bend < 0.0:  # a constant, or without a value beside it
+    if not bend < 0.0:  # a constant
         return worst
     place = sign * 0.5 * (before - after) / bend
     return worst._replace(
