@@ -6,17 +6,21 @@ A key is that of the case file: ``spring.rate``, ``roller.bearing.C``, ``load_ca
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import fields, replace
+from dataclasses import dataclass, fields, replace
 from typing import Any, TypeVar, get_args
 
+import numpy as np
+
+from camwright.geometry.arrays import Array
 from camwright.geometry.errors import InputError, Refused
 from camwright.pipeline.base import units
 from camwright.pipeline.base.quantities import Count, In, Part
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.error_text import as_written
 from camwright.pipeline.case.section import Section, section_of, suggestion
+from camwright.pipeline.follower.spring import Treatment, WoundWire
 
 _STEP = re.compile(r"([A-Za-z_0-9]+)(?:\[(0|[1-9][0-9]{0,3})\])?")
 Node = TypeVar("Node", Section, Part)
@@ -185,7 +189,15 @@ def replaced(case: Case, values: Mapping[str, float]) -> Case:
         # the values of a table are compared with one another when all of them are there
         tables.setdefault(tuple(path), {})[last] = value
     for table, numbers in tables.items():
-        case = _put(case, table, numbers)
+        try:
+            case = _put(case, table, numbers)
+        except InputError as error:
+            head, _, rest = error.field.partition(".")
+            if head == table[0] or not rest:
+                raise
+            # of a part that does not know its place: a guide
+            place = ".".join(map(str, table))
+            raise InputError(f"{place}.{rest}", error.value, error.limit) from None
     return case
 
 
@@ -206,3 +218,44 @@ def _put(node: Any, path: Sequence[str | int], values: Mapping[str | int, Any]) 
             raise InputError(key, str(named[name]), "left out: it follows from other keys")
         return replace(node, **named).with_derived()  # type: ignore[type-var]
     return node.model_copy(update=named)
+
+
+WIRE = (
+    "wire_diameter", "mean_diameter", "coils", "free_length", "end_factor", "shear_modulus",
+    "elastic_modulus", "density", "strength_at_1mm", "strength_exponent", "relaxation",
+)  # fmt: skip
+_LEFT_OUT = ("elastic_modulus", "relaxation")
+
+
+@dataclass(frozen=True, eq=False)
+class WoundSprings(WoundWire[Array]):
+    """Springs of many designs, each value (m,)."""
+
+    wire_diameter: Array
+    mean_diameter: Array
+    coils: Array
+    free_length: Array
+    end_factor: Array
+    shear_modulus: Array
+    elastic_modulus: Array | None
+    density: Array
+    strength_at_1mm: Array
+    strength_exponent: Array
+    treatment: Treatment
+    temperature: float | None
+    relaxation: Array | None
+
+
+def wound_spring(case: Case, at: Callable[[str], Array]) -> WoundSprings | None:
+    """Springs of designs; None where the case has no spring design.
+
+    Parameters
+    ----------
+    at : callable   dotted key -> values (m,), SI; NaN where the case leaves it out
+    """
+    design = case.spring.design
+    if design is None:
+        return None
+    values: dict[str, Any] = {name: at(f"spring.design.{name}") for name in WIRE}
+    values |= {name: None for name in _LEFT_OUT if np.isnan(values[name]).all()}
+    return WoundSprings(**values, treatment=design.treatment, temperature=design.temperature)

@@ -3,20 +3,19 @@
 from __future__ import annotations
 
 import re
-from typing import TYPE_CHECKING
+from collections.abc import Callable, Iterator
+from functools import cache
+from math import nan
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
 
 from camwright.geometry.arrays import FULL_TURN
 from camwright.geometry.errors import InputError
 from camwright.pipeline.base.quantities import In
 from camwright.pipeline.base.units import shown
-from camwright.pipeline.case.case_values import quantity_of, text_of
+from camwright.pipeline.case.case_values import quantity_of, text_of, value_of, wound_spring
 from camwright.pipeline.case.lift_section import LiftSegments, motion_of
-from camwright.pipeline.case.limits import (
-    OVERSPEED,
-    PRESSURE_ANGLE,
-    RETURN_PRESSURE_ANGLE,
-    TOOL_RADIUS,
-)
 from camwright.pipeline.case.requirements_section import OVER_SPEED, STANDSTILL, Tolerances
 from camwright.pipeline.case.value_sources import require_known
 from camwright.pipeline.contact.cam_body import CamBody
@@ -24,7 +23,6 @@ from camwright.pipeline.engine.cylinder import CylinderEngine
 from camwright.pipeline.engine.pickup_voltage import VoltageTable
 from camwright.pipeline.engine.speed_file import SpeedTable
 from camwright.pipeline.follower.guide_friction import friction_limits
-from camwright.pipeline.follower.roller import Roller
 from camwright.pipeline.follower.spring import Spring
 from camwright.pipeline.torque.machine_torque import require_marks
 from camwright.pipeline.torque.period import ratio_text
@@ -38,6 +36,25 @@ _DIGITS = (4, 8, 17)  # more where a value and its limit would read alike
 _ROUND_OFF = 1e-9  # of a share of the friction, and of an angle
 _POSITIONS_MIN = 36  # of the cam per cycle of the machine
 _SHARES = 1e-6  # of the sum of the duty
+
+
+At = Callable[[str], Any]
+"""Value of a key, SI, or array (m,) of those of many designs; NaN where the case leaves it out."""
+
+
+class Rule(NamedTuple):
+    """A relation that the numbers of a case keep, for one case or many designs at once.
+
+    key : str           that is refused
+    breaks : callable   whether the relation is broken, bool or array (m,); NaN breaks none
+    limit : str         ``{KEY}``: the key and its value as written; ``{}``: the bound
+    bound : callable    of the value at the key, SI
+    """
+
+    key: str
+    breaks: Callable[[At], Any]
+    limit: str
+    bound: Callable[[At], Any] | None = None
 
 
 def check_sections(case: Case) -> None:
@@ -54,13 +71,81 @@ def check_sections(case: Case) -> None:
 
 def check_numbers(case: Case) -> None:
     """As `check_sections`, but for the names of the values with a source or a confirmation."""
-    _check_start(case)
-    _check_geometry(case)
-    _check_names(case)
+    at = _values(case)
+    for rule in rules(case):
+        if rule.breaks(at):
+            _refuse(case, rule, at)
+
+
+def _values(case: Case) -> At:
+    """The numbers of a case by their keys, each looked up once."""
+
+    @cache
+    def at(key: str) -> float:
+        value = value_of(case, key)
+        return nan if value is None else float(value)
+
+    return at
+
+
+def rules(case: Case) -> Iterator[Rule]:
+    """Relations of the numbers of a case, in the order of their refusals.
+
+    They depend on its structure alone: those of many designs are those of the case that they share.
+
+    Raises
+    ------
+    InputError
+        For a contradiction that is none of numbers, in its place of the order.
+    """
+    yield from _start(case)
+    yield from _geometry(case)
+    yield from _load_cases(case)
     _check_duty(case)
     _check_film(case)
-    _check_tolerances(case)
-    _check_mass(case)
+    yield from _tolerances(case)
+    share = case.follower.spring_share
+    limit = "> {}, the share {follower.spring_share} of the spring's mass"
+    yield _more("follower.mass", lambda at: share * _spring_mass(case, at), limit)
+
+
+def _less(key: str, bound: Callable[[At], Any], limit: str) -> Rule:
+    return Rule(key, lambda at: at(key) >= bound(at), limit, bound)
+
+
+def _at_most(key: str, bound: Callable[[At], Any], limit: str) -> Rule:
+    return Rule(key, lambda at: at(key) > bound(at), limit, bound)
+
+
+def _more(key: str, bound: Callable[[At], Any], limit: str) -> Rule:
+    return Rule(key, lambda at: at(key) <= bound(at), limit, bound)
+
+
+def _at_least(key: str, bound: Callable[[At], Any], limit: str) -> Rule:
+    return Rule(key, lambda at: at(key) < bound(at), limit, bound)
+
+
+def _equal(key: str, bound: Callable[[At], Any], limit: str) -> Rule:
+    return Rule(key, lambda at: at(key) != bound(at), limit, bound)  # broken by a missing bound
+
+
+def _left_out(key: str, limit: str) -> Rule:
+    return Rule(key, lambda at: at(key) == at(key), limit)  # not NaN
+
+
+def _fixed(value: Any) -> Callable[[At], Any]:
+    return lambda _: value
+
+
+def _or_zero(value: Any) -> Any:
+    """A value, or an array (m,), with 0 in place of NaN."""
+    return np.nan_to_num(value)
+
+
+def _spring_mass(case: Case, at: At) -> Any:
+    """Mass of the spring as wound, kg; 0 without a spring design."""
+    wound = wound_spring(case, at)
+    return 0.0 if wound is None else wound.mass
 
 
 def _check_values(case: Case) -> None:
@@ -72,7 +157,7 @@ def _check_values(case: Case) -> None:
         require_known(tables, "confirmed.value", each.value)
 
 
-def _check_start(case: Case) -> None:
+def _start(case: Case) -> Iterator[Rule]:
     """A case starts either at the torque of an engine or a machine, or at a lift."""
     driven = case.engine is not None or case.torque is not None
     if driven == (case.lift is not None):
@@ -92,58 +177,62 @@ def _check_start(case: Case) -> None:
         _ = case.roller  # refuses a case without roller
     elif case.roller_given is not None:
         raise InputError("roller", "a table", 'left out with follower.kind = "flat"')
-    _check_period(case)
+    yield from _period(case)
     engine = case.engine
     if isinstance(engine, (SpeedTable, VoltageTable)) and case.crankshaft is None:
         raise InputError(
             "crankshaft.inertia", "missing", "given, for the torque of a measured speed"
         )
-    if case.balances and not case.load_cases[0].speed > 0:
-        raise InputError(
-            "load_case[0].speed", "0 rpm", "> 0 rpm, as its torque is that of the cam design"
-        )
+    if case.balances:
+        limit = "> 0 rpm, as its torque is that of the cam design"
+        yield _more("load_case[0].speed", _fixed(0.0), limit)
     freed = {"spring_rate", "preload"} & set(case.smoothing.free)
     if freed and case.spring.shape is not None:
         limit = f'left out with spring.kind = "{case.spring.kind}"'
         raise InputError("smoothing.free", min(freed), limit)
-    share, constrained = case.mechanism.compensation, case.smoothing.kind == "constrained"
-    if share != 1.0 and (not case.balances or constrained):
+    constrained = case.smoothing.kind == "constrained"
+    if not case.balances or constrained:
         limit = "1 with a lift" if not case.balances else '1 with smoothing.kind = "constrained"'
-        _require(case, "mechanism.compensation", False, limit)
+        yield _equal("mechanism.compensation", _fixed(1.0), limit)
     for k, load_case in enumerate(case.load_cases):
-        if constrained and load_case.preload is not None:
+        if constrained:
             limit = 'left out with smoothing.kind = "constrained", which has one spring'
-            _require(case, f"load_case[{k}].preload", False, limit)
-        if case.spring.shape is not None and load_case.preload is not None:
+            yield _left_out(f"load_case[{k}].preload", limit)
+        if case.spring.shape is not None:
             limit = f'left out with spring.kind = "{case.spring.kind}"'
-            _require(case, f"load_case[{k}].preload", False, limit)
+            yield _left_out(f"load_case[{k}].preload", limit)
         for name in ("torque", "torque_reduction", "speed_reduction"):
-            unused = case.balances or getattr(load_case, name) is None
-            _require(case, f"load_case[{k}].{name}", unused, "left out with a lift")
+            if not case.balances and getattr(load_case, name) is not None:
+                yield Rule(f"load_case[{k}].{name}", _fixed(True), "left out with a lift")
         modelled = isinstance(case.engine, CylinderEngine) and load_case.torque is None
         if not modelled and (load_case.intake_pressure is not None or not load_case.fired):
             name = "fired" if load_case.intake_pressure is None else "intake_pressure"
             limit = 'left out unless engine.kind = "cylinder" without a torque file'
-            _require(case, f"load_case[{k}].{name}", False, limit)
+            yield Rule(f"load_case[{k}].{name}", _fixed(True), limit)
 
 
-def _check_period(case: Case) -> None:
+def _period(case: Case) -> Iterator[Rule]:
     """A cam turn holds whole cycles, which the smoothing and the positions resolve."""
     period, smoothing = case.period, case.smoothing
     cycle = shown(period.angle, "deg")
+
+    def fill(at: At) -> Any:
+        return period.angle / at("smoothing.spacing")
+
     if case.torque is not None:
         require_marks(case.torque.marks, case.torque.cycle)
     if case.balances:
-        fill = period.angle / smoothing.spacing
         words = f"a cycle of {cycle} over {{smoothing.spacing}}"
-        fits = smoothing.points <= fill * (1.0 + _ROUND_OFF)
-        _require(case, "smoothing.points", fits, f"<= {fill:.4g}, {words}")
-        fits = smoothing.kind != "moving_average" or smoothing.points < fill * (1.0 - _ROUND_OFF)
-        limit = f"< {fill:.4g}, {words}: over all of it the average is zero"
-        _require(case, "smoothing.points", fits, limit)
+        key = "smoothing.points"
+        over = lambda at: at(key) > fill(at) * (1.0 + _ROUND_OFF)  # noqa: E731
+        yield Rule(key, over, f"<= {{}}, {words}", fill)
+        if smoothing.kind == "moving_average":
+            limit = f"< {{}}, {words}: over all of it the average is zero"
+            whole = lambda at: at(key) >= fill(at) * (1.0 - _ROUND_OFF)  # noqa: E731
+            yield Rule(key, whole, limit, fill)
         for name in ("width", "cutoff"):
-            fits = getattr(smoothing, name) <= period.angle * (1.0 + _ROUND_OFF)
-            _require(case, f"smoothing.{name}", fits, f"<= {cycle}, a cycle")
+            most = period.angle * (1.0 + _ROUND_OFF)
+            yield _at_most(f"smoothing.{name}", _fixed(most), f"<= {cycle}, a cycle")
     for order in smoothing.harmonic_orders:
         waves = order * period.angle / FULL_TURN
         if abs(waves - round(waves)) > _ROUND_OFF * waves:
@@ -151,54 +240,52 @@ def _check_period(case: Case) -> None:
             raise InputError("smoothing.harmonic_orders", order, limit)
     least = _POSITIONS_MIN * period.cycles
     limit = f">= {least}, {_POSITIONS_MIN} per cycle of {cycle}"
-    _require(case, "solver.positions", case.solver.positions >= least, limit)
+    yield _at_least("solver.positions", _fixed(least), limit)
+
+
+def _no_tighter() -> Iterator[Rule]:
+    """Tolerances are not tighter than their default."""
+    usual = Tolerances()
+    least = {
+        "tolerances.friction": usual.friction,
+        "tolerances.mass": usual.mass,
+        "tolerances.inertia": usual.inertia,
+        "tolerances.phase": usual.phase,
+        "spring.rate_tolerance": Spring.rate_tolerance,
+        "spring.preload_tolerance": Spring.preload_tolerance,
+        "cam.profile_tolerance": CamBody.profile_tolerance,
+    }
+    for key, bound in least.items():
+        yield _at_least(key, _fixed(bound), ">= {}")
+    share = usual.friction * (1.0 - _ROUND_OFF)
+
+    def band(side: str, end: int) -> Callable[[At], Any]:
+        return lambda at: friction_limits(at(f"guides.{side}.friction"), None, None, share)[end]
+
+    for side in "ab":
+        yield _at_most(f"guides.{side}.friction_min", band(side, 0), "<= {}")
+        yield _at_least(f"guides.{side}.friction_max", band(side, 1), ">= {}")
 
 
 def tightened_tolerances(case: Case) -> dict[str, tuple[str, str]]:
     """Tolerances tighter than their default, by dotted name: value and bound of the default."""
-    stated, usual, spring = case.tolerances, Tolerances(), case.spring
-    least: dict[str, tuple[float, float, str]] = {
-        "tolerances.friction": (stated.friction, usual.friction, ""),
-        "tolerances.mass": (stated.mass, usual.mass, ""),
-        "tolerances.inertia": (stated.inertia, usual.inertia, ""),
-        "tolerances.phase": (stated.phase, usual.phase, "deg"),
-        "spring.rate_tolerance": (spring.rate_tolerance, Spring.rate_tolerance, ""),
-        "spring.preload_tolerance": (spring.preload_tolerance, Spring.preload_tolerance, ""),
-        "cam.profile_tolerance": (
-            case.cam.profile_tolerance, CamBody.profile_tolerance, "mm",
-        ),
-    }  # fmt: skip
-    tight = {
-        name: (shown(value, unit), f">= {shown(bound, unit)}")
-        for name, (value, bound, unit) in least.items()
-        if value < bound
+    at = _values(case)
+    return {
+        rule.key: (text_of(case, rule.key), rule.limit.format(_bound_text(rule, at, 4)))
+        for rule in _no_tighter()
+        if rule.breaks(at)
     }
-    share = usual.friction * (1.0 - _ROUND_OFF)
-    for side, guide in (("a", case.guides.a), ("b", case.guides.b)):
-        low, high = map(float, friction_limits(guide.friction, None, None, share))
-        if guide.friction_min is not None and guide.friction_min > low:
-            bounds = shown(guide.friction_min, ""), f"<= {shown(low, '')}"
-            tight[f"guides.{side}.friction_min"] = bounds
-        if guide.friction_max is not None and guide.friction_max < high:
-            bounds = shown(guide.friction_max, ""), f">= {shown(high, '')}"
-            tight[f"guides.{side}.friction_max"] = bounds
-    return tight
 
 
-def _check_tolerances(case: Case) -> None:
+def _tolerances(case: Case) -> Iterator[Rule]:
     """A tolerance is tighter than its default only with a source."""
-    sources = {f"guides.{side}": getattr(case.guides, side).source for side in "ab"}
-    for name, (value, bound) in tightened_tolerances(case).items():
-        part = name.rpartition(".")[0]
-        if not (case.tolerances.source.strip() or sources.get(part, "").strip()):
-            raise InputError(name, value, f"{bound} without tolerances.source")
-
-
-def _check_mass(case: Case) -> None:
-    """The mass of the follower contains a share of the spring's."""
-    share = case.spring_mass
-    limit = "> {}, the share {follower.spring_share} of the spring's mass"
-    _require(case, "follower.mass", case.follower.mass > share, limit, share)
+    if case.tolerances.source.strip():
+        return
+    for rule in _no_tighter():
+        part = rule.key.rpartition(".")[0]
+        guide = value_of(case, part) if part.startswith("guides.") else None
+        if guide is None or not guide.source.strip():
+            yield rule._replace(limit=f"{rule.limit} without tolerances.source")
 
 
 def _check_film(case: Case) -> None:
@@ -215,67 +302,86 @@ def _check_film(case: Case) -> None:
             raise InputError(field, "missing", 'given, as lubricant.film is "mixed"')
 
 
-def _check_geometry(case: Case) -> None:
-    cam, roller, face = case.cam, case.roller_given, case.follower.face
-    _check_ends(case)
-    if roller is not None:
-        _check_roller(case, roller)
-    smaller = "smaller than {cam.prime_radius}"
-    _require(case, "cam.offset", abs(cam.offset) < cam.prime_radius, smaller)
-    back = case.limits[RETURN_PRESSURE_ANGLE]
-    steeper = back is None or back >= case.limits[PRESSURE_ANGLE]
-    _require(case, "limits.return_pressure_angle", steeper, ">= {limits.pressure_angle}")
-    _check_ring(case)
-    tool, largest = case.workshop.tool_radius, case.limits[TOOL_RADIUS]
-    if tool is not None and largest is not None:
-        _require(case, "workshop.tool_radius", tool <= largest, "<= {limits.tool_radius}")
-    if cam.keyway is not None:
-        most = _KEYWAY_WIDTH * cam.bore_radius
+def _geometry(case: Case) -> Iterator[Rule]:
+    yield from _ends(case)
+    if case.roller_given is not None:
+        yield from _roller(case)
+    yield Rule(
+        "cam.offset",
+        lambda at: abs(at("cam.offset")) >= at("cam.prime_radius"),
+        "smaller than {cam.prime_radius}",
+    )
+    key = "limits.return_pressure_angle"
+    yield _at_least(key, lambda at: at("limits.pressure_angle"), ">= {limits.pressure_angle}")
+    yield from _ring(case)
+    key = "workshop.tool_radius"
+    yield _at_most(key, lambda at: at("limits.tool_radius"), "<= {limits.tool_radius}")
+    if case.cam.keyway is not None:
         limit = f"< {{}}, {_KEYWAY_WIDTH:g} times {{cam.bore_radius}}"
-        _require(case, "cam.keyway.width", cam.keyway.width < most, limit, most)
-    _check_key(case)
-    for side, guide in (("a", case.guides.a), ("b", case.guides.b)):
-        wide = guide.diameter >= case.follower.stem_diameter
-        _require(case, f"guides.{side}.diameter", wide, ">= {follower.stem_diameter}")
-    least, overhang = 0.5 * case.guides.a.length, case.follower.overhang_at_max_lift
-    part = "roller" if face is None else "face"
+        yield _less("cam.keyway.width", lambda at: _KEYWAY_WIDTH * at("cam.bore_radius"), limit)
+    yield from _key(case)
+    for side in "ab":
+        limit = ">= {follower.stem_diameter}"
+        yield _at_least(f"guides.{side}.diameter", lambda at: at("follower.stem_diameter"), limit)
+    part = "roller" if case.follower.face is None else "face"
     limit = f">= {{}}, half of {{guides.a.length}}, or the {part} enters guide A"
-    _require(case, "follower.overhang_at_max_lift", overhang >= least, limit, least)
+    key = "follower.overhang_at_max_lift"
+    yield _at_least(key, _half("guides.a.length"), limit)
 
 
-def _check_ends(case: Case) -> None:
+def _half(key: str) -> Callable[[At], Any]:
+    return lambda at: 0.5 * at(key)
+
+
+def _width_of(table: str) -> str:
+    """Key of the width of a body along the line of contact."""
+    return f"{table}.{'depth' if table == 'follower.face' else 'width'}"
+
+
+def _flat(table: str, at: At) -> Any:
+    """Width of a body without its ends, m."""
+    return at(_width_of(table)) - 2.0 * _or_zero(at(f"{table}.end.size"))
+
+
+def _ends(case: Case) -> Iterator[Rule]:
     """Each body keeps a flat between its ends, and each crown fits the contact."""
-    other = case.facing
-    width = "roller.width" if case.roller_given is not None else "follower.face.depth"
-    for part, key in ((case.cam, "cam.width"), (other, width)):
+    for part in (case.cam, case.facing):
+        width = _width_of(part.table)
         if part.end is not None:
-            most = 0.5 * part.line_width + part.end.size
-            limit = f"< {{}}, half of {{{key}}}"
-            _require(case, f"{part.table}.end.size", part.line_width > 0.0, limit, most)
-        crowned = case.cam.crown is not None or other.crown is not None
+            limit = f"< {{}}, half of {{{width}}}"
+            yield _less(f"{part.table}.end.size", _half(width), limit)
+        crowned = case.cam.crown is not None or case.facing.crown is not None
         if crowned and part.end is None:
             raise InputError(f"{part.table}.end", "missing", "given with a crown")
         if part.crown is not None and part.crown.kind == "iso16281" and case.roller_given is None:
             raise InputError(f"{part.table}.crown.kind", "iso16281", "that of a cam with a roller")
 
 
-def _check_ring(case: Case) -> None:
+def _ring(case: Case) -> Iterator[Rule]:
     """Steel is left between the bore with its keyway and the base circle of the cam."""
-    cam, roller, surface = case.cam, case.roller_given, case.base_circle
-    base = "{cam.prime_radius}" + ("" if roller is None else " less {roller.radius}")
-    if roller is not None and roller.radius > cam.bore_radius:
-        most = cam.prime_radius - cam.bore_radius
+    roller = case.roller_given is not None
+    base = "{cam.prime_radius}" + (" less {roller.radius}" if roller else "")
+
+    def surface(at: At) -> Any:
+        return at("cam.prime_radius") - (at("roller.radius") if roller else 0.0)
+
+    def most(at: At) -> Any:
+        return at("cam.prime_radius") - at("cam.bore_radius")
+
+    if roller:  # the greater of the two is at fault
         limit = "< {}, {cam.prime_radius} less {cam.bore_radius}"
-        _require(case, "roller.radius", roller.radius < most, limit, most)
-    limit = f"< {{}}, the base circle: {base}"
-    _require(case, "cam.bore_radius", cam.bore_radius < surface, limit, surface)
-    if cam.keyway is not None:
-        wall = surface - cam.bore_radius
+        large = _less("roller.radius", most, limit)
+        yield large._replace(
+            breaks=lambda at: large.breaks(at) & (at("roller.radius") > at("cam.bore_radius"))
+        )
+    yield _less("cam.bore_radius", surface, f"< {{}}, the base circle: {base}")
+    if case.cam.keyway is not None:
         limit = f"< {{}}, the wall around the bore: {base} less {{cam.bore_radius}}"
-        _require(case, "cam.keyway.depth", cam.keyway.depth < wall, limit, wall)
+        yield _less("cam.keyway.depth", lambda at: surface(at) - at("cam.bore_radius"), limit)
 
 
-def _check_key(case: Case) -> None:
+def _key(case: Case) -> Iterator[Rule]:
+    """The key has flanks; none of its dimensions is one of many designs."""
     cam = case.cam
     if cam.key is None:
         return
@@ -284,52 +390,54 @@ def _check_key(case: Case) -> None:
     flanks = cam.key_flanks
     if flanks is None:
         return
-    ends = "> {cam.keyway.width}, the round ends of form A"
-    _require(case, "cam.key.length", flanks.length > 0.0, ends)
-    _require(case, "cam.key.shaft_depth", flanks.shaft_height > 0.0, "> {cam.key.chamfer}")
-    limit = "> {cam.key.shaft_depth} plus {cam.key.chamfer}"
-    _require(case, "cam.key.height", flanks.hub_height > 0.0, limit)
+    for name, length, limit in (
+        ("length", flanks.length, "> {cam.keyway.width}, the round ends of form A"),
+        ("shaft_depth", flanks.shaft_height, "> {cam.key.chamfer}"),
+        ("height", flanks.hub_height, "> {cam.key.shaft_depth} plus {cam.key.chamfer}"),
+    ):
+        yield Rule(f"cam.key.{name}", _fixed(not length > 0.0), limit)
 
 
-def _check_roller(case: Case, roller: Roller) -> None:
-    radius, width = roller.radius, roller.width
-    _require(case, "roller.radius", radius < case.cam.prime_radius, "< {cam.prime_radius}")
-    _require(case, "roller.hub_radius", roller.hub_radius < radius, "< {roller.radius}")
-    reach = 0.5 * (case.cam.line_width + roller.line_width)
+def _roller(case: Case) -> Iterator[Rule]:
+    yield _less("roller.radius", lambda at: at("cam.prime_radius"), "< {cam.prime_radius}")
+    yield _less("roller.hub_radius", lambda at: at("roller.radius"), "< {roller.radius}")
     limit = "< {}, beyond which the roller runs beside the cam"
-    _require(case, "roller.axial_offset", (roller.axial_offset or 0.0) < reach, limit, reach)
-    ring = roller.bearing.ring
-    if ring is not None:
-        # A ring is stated to a micrometre; a tyre on it may be larger.
-        least = 0.5 * ring.outer_diameter
-        limit = ">= {}, half of {roller.bearing.ring.outer_diameter}"
-        _require(case, "roller.radius", radius >= least - 1e-6, limit, least)
-    pin = roller.pin
+    yield _less(
+        "roller.axial_offset", lambda at: 0.5 * (_flat("cam", at) + _flat("roller", at)), limit
+    )
+    # A ring is stated to a micrometre; a tyre on it may be larger.
+    ring = "roller.bearing.ring.outer_diameter"
+    limit = f">= {{}}, half of {{{ring}}}"
+    yield Rule(
+        "roller.radius",
+        lambda at: at("roller.radius") < 0.5 * at(ring) - 1e-6,
+        limit,
+        _half(ring),
+    )
+    pin = case.roller.pin
     if pin is not None and pin.mounting == "straddled":
-        _require(case, "roller.pin.span", pin.span >= width, ">= {roller.width}")
+        yield _at_least("roller.pin.span", lambda at: at("roller.width"), ">= {roller.width}")
 
 
-def _require(case: Case, key: str, holds: bool, limit: str, bound: float | None = None) -> None:
-    """Refuse the number at a key unless it holds.
-
-    Parameters
-    ----------
-    limit : str     ``{KEY}``: the key and its value as written; ``{}``: the bound
-    bound : float   SI
-    """
-    if holds:
-        return
-    quantity = quantity_of(key)
-    unit = quantity.unit if isinstance(quantity, In) else ""
+def _refuse(case: Case, rule: Rule, at: At) -> None:
+    """Refuse the number at the key of a broken rule, with more digits where two read alike."""
     for digits in _DIGITS:
-        value = text_of(case, key, digits)
-        texts = {"": shown(bound or 0.0, unit, digits)}
-        for other in re.findall(r"{([^}]+)}", limit):
+        value = text_of(case, rule.key, digits)
+        texts = {"": _bound_text(rule, at, digits)}
+        for other in re.findall(r"{([^}]+)}", rule.limit):
             texts[other] = text_of(case, other, digits)
         if value not in texts.values():
             break
     texts |= {other: f"{other} = {text}" for other, text in texts.items() if other}
-    raise InputError(key, value, re.sub(r"{([^}]*)}", lambda match: texts[match[1]], limit))
+    limit = re.sub(r"{([^}]*)}", lambda match: texts[match[1]], rule.limit)
+    raise InputError(rule.key, value, limit)
+
+
+def _bound_text(rule: Rule, at: At, digits: int) -> str:
+    """Bound of a rule in the unit of its key."""
+    quantity = quantity_of(rule.key)
+    unit = quantity.unit if isinstance(quantity, In) else ""
+    return shown(0.0 if rule.bound is None else float(rule.bound(at)), unit, digits)
 
 
 def _check_duty(case: Case) -> None:
@@ -346,17 +454,17 @@ def _check_duty(case: Case) -> None:
         raise InputError("load_case.duty", f"{sum(stated):.6g} in sum", "1 in sum")
 
 
-def _check_names(case: Case) -> None:
+def _load_cases(case: Case) -> Iterator[Rule]:
+    """Names differ; speeds are those of their names, and none is above the over-speed."""
     seen: set[str] = set()
-    over = case.limits[OVERSPEED]
     for k, load_case in enumerate(case.load_cases):
-        name, speed = load_case.name.casefold(), load_case.speed
+        name = load_case.name.casefold()
         if name in seen:
             raise InputError(f"load_case[{k}].name", load_case.name, "unlike every other")
         seen.add(name)
         key = f"load_case[{k}].speed"
-        at_rest = not name.startswith(STANDSTILL) or speed == 0.0
-        _require(case, key, at_rest, "0 rpm at standstill")
-        _require(case, key, over is None or speed <= over, "<= {limits.overspeed}")
-        at_most = not name.startswith(OVER_SPEED) or speed == over
-        _require(case, key, at_most, "{limits.overspeed}")
+        if name.startswith(STANDSTILL):
+            yield _at_most(key, _fixed(0.0), "0 rpm at standstill")
+        yield _at_most(key, lambda at: at("limits.overspeed"), "<= {limits.overspeed}")
+        if name.startswith(OVER_SPEED):
+            yield _equal(key, lambda at: at("limits.overspeed"), "{limits.overspeed}")

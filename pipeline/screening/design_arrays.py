@@ -16,6 +16,7 @@ from camwright.geometry.extrema import sampled_greatest, sampled_least
 from camwright.geometry.periodic_spline import knot_derivatives, knot_integrals
 from camwright.pipeline.base.external_force import ExternalForce
 from camwright.pipeline.case.case import Case
+from camwright.pipeline.case.case_values import WoundSprings, wound_spring
 from camwright.pipeline.case.limits import OVERSPEED, TORQUE_REDUCTION, AnyLimit
 from camwright.pipeline.case.load_case_torque import engine_torque
 from camwright.pipeline.case.machine import CREEP, Machine, machine
@@ -41,7 +42,6 @@ from camwright.pipeline.screening.cam_shapes import (
     RollerShape,
     Values,
 )
-from camwright.pipeline.screening.design_factors import WoundSprings, wound_spring
 from camwright.pipeline.screening.design_lengths import factors_of, has_many_shapes
 
 Judged = tuple[Array, Array | float | None]

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from math import isfinite
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,21 +16,14 @@ from camwright.pipeline.base import units
 from camwright.pipeline.base.quantities import In
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_file import with_values
-from camwright.pipeline.case.case_values import quantity_of, replaced, value_of
-from camwright.pipeline.case.consistency import check_numbers
+from camwright.pipeline.case.case_values import WIRE, quantity_of, replaced, value_of, wound_spring
+from camwright.pipeline.case.consistency import check_numbers, rules
 from camwright.pipeline.case.limits import LIMITS
 from camwright.pipeline.case.machine import machine
-from camwright.pipeline.case.requirements_section import Tolerances
 from camwright.pipeline.case.toml_text import TomlValue
-from camwright.pipeline.follower.guide_friction import friction_limits
 from camwright.pipeline.follower.guide_reactions import require_fit
-from camwright.pipeline.follower.spring import INDEX_MAX, INDEX_MIN, Treatment, WoundWire
+from camwright.pipeline.follower.spring import INDEX_MAX, INDEX_MIN
 
-WIRE = (
-    "wire_diameter", "mean_diameter", "coils", "free_length", "end_factor", "shear_modulus",
-    "elastic_modulus", "density", "strength_at_1mm", "strength_exponent", "relaxation",
-)  # fmt: skip
-_LEFT_OUT = ("elastic_modulus", "relaxation")
 ARRAYS: tuple[str, ...] = (
     "spring.rate", "spring.preload", "spring.travel_max",
     *(f"spring.design.{name}" for name in WIRE),
@@ -72,40 +64,6 @@ def is_array(case: Case, key: str, values: Factor) -> bool:
         still = any(_number(In("rpm"), _plain(each)) == 0.0 for each in speeds)
         return key.endswith((".preload", ".speed")) and not still
     return key in ARRAYS
-
-
-@dataclass(frozen=True, eq=False)
-class WoundSprings(WoundWire[Array]):
-    """Springs of many designs, each value (m,)."""
-
-    wire_diameter: Array
-    mean_diameter: Array
-    coils: Array
-    free_length: Array
-    end_factor: Array
-    shear_modulus: Array
-    elastic_modulus: Array | None
-    density: Array
-    strength_at_1mm: Array
-    strength_exponent: Array
-    treatment: Treatment
-    temperature: float | None
-    relaxation: Array | None
-
-
-def wound_spring(case: Case, at: Callable[[str], Array]) -> WoundSprings | None:
-    """Springs of designs; None where the case has no spring design.
-
-    Parameters
-    ----------
-    at : callable   dotted key -> values (m,), SI; NaN where the case leaves it out
-    """
-    design = case.spring.design
-    if design is None:
-        return None
-    values: dict[str, Any] = {name: at(f"spring.design.{name}") for name in WIRE}
-    values |= {name: None for name in _LEFT_OUT if np.isnan(values[name]).all()}
-    return WoundSprings(**values, treatment=design.treatment, temperature=design.temperature)
 
 
 @dataclass(frozen=True, eq=False)
@@ -272,19 +230,8 @@ def _suspects(
     with np.errstate(invalid="ignore"):  # a comparison with NaN, of a missing value, is false
         if travel is not None:
             wrong |= at("follower.face.width") <= travel
-        surface = at("cam.prime_radius") - np.nan_to_num(at("roller.radius"))
-        inside = at("cam.bore_radius") + np.nan_to_num(at("cam.keyway.depth"))
-        wrong |= (np.abs(at("cam.offset")) >= at("cam.prime_radius")) | (surface <= 0.0)
-        wrong |= (inside >= surface) | (at("cam.keyway.width") >= 1.8 * at("cam.bore_radius"))
-        wrong |= at("roller.hub_radius") >= at("roller.radius")
-        wrong |= at("roller.radius") < 0.5 * at("roller.bearing.ring.outer_diameter")
-        flats = [
-            at(f"{part}.{width}") - 2.0 * np.nan_to_num(at(f"{part}.end.size"))
-            for part, width in (("cam", "width"), ("roller", "width"), ("follower.face", "depth"))
-        ]
-        wrong |= (flats[0] <= 0.0) | (flats[1] <= 0.0) | (flats[2] <= 0.0)
-        wrong |= at("roller.axial_offset") >= 0.5 * (flats[0] + flats[1])
-        wrong |= at("roller.pin.span") < at("roller.width")
+        for rule in rules(case):
+            wrong |= rule.breaks(at)
         if (wound := wound_spring(case, at)) is not None:
             index = wound.index
             wrong |= (
@@ -292,31 +239,17 @@ def _suspects(
                 | (index > INDEX_MAX)
                 | (wound.solid_length >= wound.free_length)
             )
-            wrong |= at("follower.mass") <= case.follower.spring_share * wound.mass
-        wrong |= at("workshop.tool_radius") > at("limits.tool_radius")
         half = 0.5 * (at("guides.a.length") + at("guides.b.length"))
         wrong |= at("guides.spacing") <= half
         for side in "ab":
             friction = at(f"guides.{side}.friction")
             wrong |= at(f"guides.{side}.friction_min") > friction
             wrong |= at(f"guides.{side}.friction_max") < friction
-            usual = friction_limits(friction, None, None, Tolerances().friction)[1]
-            if not case.tolerances.source.strip():
-                wrong |= at(f"guides.{side}.friction_max") < usual
-        mouth = at("follower.overhang_at_max_lift")
-        wrong |= mouth < 0.5 * at("guides.a.length")
-        reach = mouth + highest + at("guides.spacing") + 0.5 * at("guides.b.length")
+        reach = (
+            at("follower.overhang_at_max_lift")
+            + highest
+            + at("guides.spacing")
+            + 0.5 * at("guides.b.length")
+        )
         wrong |= at("follower.stem_length") < reach
-        for k, state in enumerate(case.load_cases):
-            speed = at(f"load_case[{k}].speed")
-            wrong |= speed > at("limits.overspeed")
-            if state.name.casefold().startswith(("standstill", "over-speed")):
-                wrong |= speed != state.speed
-            if k == 0 and case.balances:
-                wrong |= ~(speed > 0.0)
-        if not case.tolerances.source.strip() or case.smoothing.kind == "constrained":
-            stated = ("tolerances.", "cam.profile_tolerance", "load_case[")
-            for key, column in values.items():
-                if key.startswith(stated):
-                    wrong |= column != value_of(case, key)
     return np.asarray(wrong)

@@ -8,6 +8,7 @@ import numpy as np
 
 from camwright.geometry.arrays import FULL_TURN, Array
 from camwright.pipeline.base.units import celsius
+from camwright.pipeline.case.case_values import WoundSprings
 from camwright.pipeline.case.limits import (
     SPRING_FATIGUE,
     SPRING_SOLID,
@@ -23,7 +24,6 @@ from camwright.pipeline.checks.spring_strength import (
 )
 from camwright.pipeline.follower.spring_kinds import GasSpring, TorsionSpring
 from camwright.pipeline.screening.design_arrays import Designs, Judged
-from camwright.pipeline.screening.design_factors import WoundSprings
 
 
 def of_spring(

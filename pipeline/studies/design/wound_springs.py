@@ -8,9 +8,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from camwright.geometry.arrays import Array
+from camwright.pipeline.case.case_values import WoundSprings
 from camwright.pipeline.case.limits import SPRING_FATIGUE, SPRING_SURGE
 from camwright.pipeline.follower.spring import HelicalSpring
-from camwright.pipeline.screening.design_factors import WoundSprings
 
 WIRES = (1.0, 1.25, 1.6, 2.0, 2.5, 3.0, 3.6, 4.0, 4.5, 5.0, 5.5, 6.0, 6.5, 7.0, 8.0, 8.5, 9.0,
          10.0, 11.0, 12.0, 13.0, 14.0, 15.0, 16.0)  # fmt: skip
