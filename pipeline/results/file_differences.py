@@ -115,8 +115,13 @@ def _arrays(file: Path, other: Path) -> str:
 
 def _array(name: str, one: np.ndarray, two: np.ndarray) -> str:
     """The first difference of two arrays of a name."""
-    if one.shape != two.shape or one.dtype != two.dtype:
+    texts = one.dtype.kind == two.dtype.kind == "U"
+    if one.shape != two.shape or (one.dtype != two.dtype and not texts):
         return f"{name} is of another shape or type"
+    if texts:
+        pairs = zip(one.ravel().tolist(), two.ravel().tolist(), strict=True)
+        words = next(filter(None, (text_difference(a, b) for a, b in pairs if a != b)), "")
+        return f"{name}: {words}" if words else ""
     if two.dtype.kind not in "fiu":
         return "" if np.array_equal(one, two) else f"{name} differs"
     values, others = one.ravel().astype(float), two.ravel().astype(float)
@@ -220,7 +225,7 @@ def text_difference(one: str, two: str, absolute: float = _ROUND_OFF) -> str:
         pairs = () if place % 2 else zip(a, b, strict=False)
         alike = sum(1 for _ in takewhile(lambda pair: pair[0] == pair[1], pairs))
         before = ("".join(parts[max(0, place - 4) : place]) + a[:alike])[-_BEFORE:]
-        return f"'{before}{_shown(a[alike:])}', recomputed '{_shown(b[alike:])}'"
+        return f"'{_shown(before + a[alike:])}', recomputed '{_shown(b[alike:])}'"
     return ""
 
 
