@@ -61,8 +61,8 @@ def first_greatest_of_rows(values: Array) -> NDArray[np.intp]:
 
 
 def to_rank(value: float) -> float:
-    """Value by which to sort, to 9 digits: round-off does not order equal ones."""
-    return float(f"{value:.9g}")
+    """Value by which to sort, to 9 digits and decimals: round-off does not order equal ones."""
+    return round(float(f"{value:.9g}"), 9)
 
 
 def local_minima(function: Function, count: int, *, lowest: bool = False) -> tuple[Array, Array]:

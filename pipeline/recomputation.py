@@ -309,7 +309,9 @@ def _check_differences(final: TrialRecord, checks: Sequence[Mapping[str, Any]]) 
         one, two = dict(stored[name]), dict(again[name])
         share = SAME
         if two["demand"] and two["error"]:
-            share = max(SAME, abs(two["error"] / two["demand"]))
+            share = max(share, abs(two["error"] / two["demand"]))
+        if two["demand"] and two["limit"] and two["evidence"]:  # a small part of its limit
+            share = max(share, SAME * abs(two["limit"] / two["demand"]))
         bars = [{key: each.pop(key, None) for key in _OF_A_CHECK} for each in (one, two)]
         if all(_is_round_off(each) for each in (stored[name], again[name])):
             bars = [{}, {}]
