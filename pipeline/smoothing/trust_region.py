@@ -123,7 +123,9 @@ def descended(
                 if predicted <= _HOPELESS * missing:
                     return Descent(state, model, program, step, gain, penalty)
             creeping = ripple_weight > 0.0 and predicted <= _CREEPING * penalty * state.violation
-            if outside and creeping and not tested:
+            # Beyond a limit, not beyond its reserve alone.
+            beyond = any(value > 1.0 for value in state.utilisation.values())
+            if beyond and creeping and not tested:
                 tested = True
                 if _stuck(search, state, model):
                     return Descent(state, model, program, step, gain, penalty, stuck=True)
