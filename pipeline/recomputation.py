@@ -47,10 +47,12 @@ from camwright.pipeline.results.field_output import (
 )
 from camwright.pipeline.results.file_differences import (
     SAME,
+    FileClass,
+    Origin,
+    classes_of,
     file_differences,
     record_differences,
 )
-from camwright.pipeline.results.file_kinds import FileClass, Origin, classes_of
 from camwright.pipeline.results.model_limits import limitations
 from camwright.pipeline.results.run_folder import RunFolder, versions
 from camwright.pipeline.results.run_reader import Run, TrialRecord, read_run, results_sha256

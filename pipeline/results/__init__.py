@@ -27,7 +27,6 @@ In the order of a run:
 | `check_report`         | checks of a run as table and lines                                    |
 | `junit_report`         | checks of runs and cases as JUnit XML                                 |
 | `verdict_summary`      | verdict in few lines: failures, missing data, headline                |
-| `file_kinds`           | class of each file of a run: how it is compared, whence it follows     |
 | `file_differences`     | differences of the files of a run from those computed again           |
 | `baseline_comparison`  | changes of the checks against a baseline run                          |
 

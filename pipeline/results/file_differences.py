@@ -1,4 +1,4 @@
-"""Differences of the files of a run from the same files computed or drawn again.
+"""Files of a run: from what each follows, how it is compared, and how it differs when made again.
 
 Nothing depends on the versions that the run states: numbers are compared as numbers, texts by their
 words and numbers, solids and fields by what they hold, pictures by their pixels, all else to the
@@ -13,15 +13,17 @@ import re
 import zipfile
 import zlib
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from enum import StrEnum
 from itertools import takewhile, zip_longest
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
 from camwright.geometry.errors import ResultError
 from camwright.pipeline.base.files import Json, read_json, read_npz, read_text
 from camwright.pipeline.base.tables import CAM_ANGLE, Table, read_table
-from camwright.pipeline.results.file_kinds import Kind
+from camwright.pipeline.results import signoff
 
 SAME = 1e-6
 """Relative difference, of the greatest value of a column, that rounding may make."""
@@ -45,6 +47,86 @@ _UNREADABLE = (
     *(OSError, ValueError, KeyError, EOFError, RecursionError, RuntimeError, TypeError),
     zipfile.BadZipFile, zlib.error,
 )  # fmt: skip
+
+
+# --- classes
+
+
+class Kind(StrEnum):
+    """How two files are compared."""
+
+    TEXT = "byte by byte"
+    TABLE = "numbers by column"
+    RECORD = "entries"
+    ARRAYS = "arrays"
+    FIELD = "arrays of a field"
+    GEOMETRY = "text and coordinates"
+    SOLID = "entities of a solid"
+    PAGE = "text, numbers and pictures"
+    BOOK = "sheets"
+    DOCUMENT = "bytes of a document"
+    PICTURE = "pixels"
+
+
+class Origin(StrEnum):
+    """From what a file follows."""
+
+    SOLVED = "case and lift"
+    DRAWN = "the other files of the run"
+    SEARCH = "the search for the lift, which is not repeated"
+    ELSEWHERE = "what the run does not hold"
+    RECORD = "the whole run"
+
+
+class FileClass(NamedTuple):
+    """A class of files: pattern of the name, with ``N`` for the number of the final trial."""
+
+    pattern: str
+    kind: Kind
+    origin: Origin
+
+
+_INNER = r"[^/]+"
+CLASSES = (
+    FileClass(r"case\.toml", Kind.TEXT, Origin.SOLVED),
+    FileClass(rf"inputs/{_INNER}", Kind.TEXT, Origin.SOLVED),
+    FileClass(r"1_(torque|speed)\.csv", Kind.TABLE, Origin.SOLVED),
+    FileClass(r"corners\.json", Kind.RECORD, Origin.SOLVED),
+    FileClass(r"trial_N/2_limits\.csv", Kind.TABLE, Origin.SEARCH),
+    FileClass(r"trial_N/(2_lift|2_spline|3_contour|5_cycle|5_speed_sweep)\.csv",
+              Kind.TABLE, Origin.SOLVED),
+    FileClass(r"trial_N/4_mesh\.msh", Kind.GEOMETRY, Origin.SOLVED),
+    FileClass(r"trial_N/5_(pressure|guides|length|envelope)\.npz", Kind.ARRAYS, Origin.SOLVED),
+    FileClass(r"trial_N/(6_checks|trial)\.json", Kind.RECORD, Origin.RECORD),
+    FileClass(rf"trial_(?!N/)\d+/{_INNER}", Kind.TEXT, Origin.SEARCH),
+    FileClass(r"fields/(stress\.vtkhdf|ends\.vtu)", Kind.FIELD, Origin.SOLVED),
+    FileClass(r"fields/turn\.npz", Kind.ARRAYS, Origin.SOLVED),
+    FileClass(r"fields/view_stress\.py", Kind.TEXT, Origin.SOLVED),
+    FileClass(r"workshop/(contour|cutter|inspection|crown_(cam|roller|face))\.csv",
+              Kind.TABLE, Origin.SOLVED),
+    FileClass(r"workshop/dimensions\.json", Kind.RECORD, Origin.SOLVED),
+    FileClass(r"workshop/contour\.dxf", Kind.GEOMETRY, Origin.SOLVED),
+    FileClass(r"workshop/cam\.step", Kind.SOLID, Origin.SOLVED),
+    FileClass(r"8_report\.html|scene\.html", Kind.PAGE, Origin.DRAWN),
+    FileClass(r"8_signoff\.pdf|8_report\.pdf|workshop/drawing\.pdf", Kind.DOCUMENT, Origin.DRAWN),
+    FileClass(r"(workshop/(contour|inspection)|trial_N/5_cycle)\.xlsx", Kind.BOOK, Origin.DRAWN),
+    FileClass(rf"figures/{_INNER}\.png", Kind.PICTURE, Origin.DRAWN),
+    FileClass(rf"(inspection|exports)/{_INNER}", Kind.TEXT, Origin.ELSEWHERE),
+    FileClass(r"run\.json", Kind.RECORD, Origin.RECORD),
+    FileClass(re.escape(signoff.NAME), Kind.RECORD, Origin.RECORD),
+    FileClass(re.escape(signoff.SIGNATURES), Kind.RECORD, Origin.RECORD),
+)  # fmt: skip
+"""Classes of the files of a run; every file that a command writes into one has exactly one."""
+
+
+def classes_of(name: str, final_trial: int) -> tuple[FileClass, ...]:
+    """Classes of the file of a relative name; one, or none of a file that no command writes."""
+    return tuple(
+        each for each in CLASSES if re.fullmatch(each.pattern.replace("N", str(final_trial)), name)
+    )
+
+
+# --- differences of files
 
 
 def file_differences(

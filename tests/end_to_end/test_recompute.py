@@ -26,7 +26,7 @@ from camwright.pipeline.case.case_file import read_case
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.recomputation import MOST_ANGLES, Recomputation, recompute
 from camwright.pipeline.results import check_records, run_reader, signoff
-from camwright.pipeline.results.file_kinds import Kind, Origin, classes_of
+from camwright.pipeline.results.file_differences import Kind, Origin, classes_of
 from camwright.pipeline.run import run_case
 from camwright.reports.sections import PARTS, redraw, report
 

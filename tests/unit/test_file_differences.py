@@ -28,8 +28,14 @@ from camwright.meshes.mesh_files import write_hexahedra, write_msh
 from camwright.pipeline.base import disk_cache
 from camwright.pipeline.base.files import npz_bytes
 from camwright.pipeline.base.spreadsheets import spreadsheet
-from camwright.pipeline.results.file_differences import file_differences, record_differences
-from camwright.pipeline.results.file_kinds import CLASSES, Kind, Origin, classes_of
+from camwright.pipeline.results.file_differences import (
+    CLASSES,
+    Kind,
+    Origin,
+    classes_of,
+    file_differences,
+    record_differences,
+)
 from camwright.pipeline.results.workshop_files import write_workshop
 from camwright.reports.sections import PARTS
 
