@@ -383,7 +383,7 @@ def pressure_from_csv(
     if not column:
         shapes = cycles.reshape(-1, len(wanted), count).mean(axis=0)
         shapes = shapes - shapes.mean(axis=1, keepdims=True)
-        require_alike(name, [header[at] for at in wanted], shapes, UNLIKE)
+        require_alike(name, [header[at] for at in wanted], shapes, UNLIKE, headed=units is None)
     return PressureTrace(name, cycles, np.zeros(len(cycles))).turned(2.0 * pi - firing_angle)
 
 

@@ -125,6 +125,11 @@ class TraceText:
     def line_numbers(self) -> list[int]:
         return [number for number, _ in self.rows]
 
+    def cells(self, column: int) -> list[str]:
+        """Texts of a column; "" in rows that are too short."""
+        rows = (_stripped(line, self.delimiter) for _, line in self.rows)
+        return [row[column] if column < len(row) else "" for row in rows]
+
     def numbers(self, columns: Sequence[int], *, gaps: bool = False) -> Array:
         """Cells of some columns as numbers, (rows, columns).
 
@@ -340,7 +345,7 @@ def named_columns(header: Sequence[str], column: str, among: Iterable[int]) -> l
 def numbered_columns(field: str, column: str, count: int) -> list[int]:
     """Columns of a file without a header by their numbers from 1, `2` or `2 to 9`, from 0.
 
-    Without any the second of two.
+    Without any all but the first.
 
     Parameters
     ----------
@@ -350,17 +355,19 @@ def numbered_columns(field: str, column: str, count: int) -> list[int]:
     Raises
     ------
     InputError
-        If there are no such columns, or several of which none is named.
+        If there are no such columns.
     """
-    if not column and count == 2:
-        return [1]
     named = re.fullmatch(r"(?:column )?(\d{1,6})(?: ?(?:to|-) ?(\d{1,6}))?", column)
     first, last = (int(each or named[1]) for each in named.groups()) if named else (0, 0)
+    if not column:
+        first, last = 2, count
     if not 2 <= first <= last <= count:
-        span = f"from 2 to {count}" if count > 1 else "of which there is none"
-        limit = f'the number of a column {span} of {field}, or several as "2 to {max(count, 3)}"'
-        raise InputError("engine.column", column or "missing", limit)
+        raise InputError("engine.column", column or "missing", _numbers_of(field, count))
     return list(range(first - 1, last))
+
+
+def _numbers_of(field: str, count: int) -> str:
+    return f'the number of a column of {field}, from 2 to {count}, or of several as "2 to {count}"'
 
 
 def is_series(labels: Iterable[str]) -> bool:
@@ -368,7 +375,9 @@ def is_series(labels: Iterable[str]) -> bool:
     return len({re.sub(r"\d+", "", label) for label in labels}) < 2
 
 
-def require_alike(name: str, labels: Sequence[str], values: Array, limit: float) -> None:
+def require_alike(
+    name: str, labels: Sequence[str], values: Array, limit: float, *, headed: bool = True
+) -> None:
     """Refuse columns of one quantity that are no runs of it, where none is named.
 
     Parameters
@@ -378,6 +387,7 @@ def require_alike(name: str, labels: Sequence[str], values: Array, limit: float)
     values : array (m, n)  over the same angles
     limit : float          greatest rms difference from the greatest column, over its rms; headers
                            alike but for numbers are those of runs in any case
+    headed : bool          whether the file has a header, else its columns have numbers alone
 
     Raises
     ------
@@ -387,9 +397,12 @@ def require_alike(name: str, labels: Sequence[str], values: Array, limit: float)
     sizes = np.linalg.norm(values, axis=1)
     first = int(sizes.argmax())
     unlike = np.linalg.norm(values - values[first], axis=1) > limit * sizes[first]
-    if unlike.any() and not is_series(labels):
+    if unlike.any() and not (headed and is_series(labels)):
         other = labels[int(unlike.argmax())]
-        must = f"the beginning of the headers to read in {name}: {labels[first]} is unlike {other}"
+        must = f"the beginning of the headers to read in {name}"
+        if not headed:
+            must = _numbers_of(name, len(labels) + 1)
+        must += f": {labels[first]} is unlike {other}"
         raise InputError("engine.column", "missing", must)
 
 

@@ -65,6 +65,17 @@ def test_columns_without_a_header_are_named_by_number(tmp_path, column):
         indicated(tmp_path, "no_header.toml", "fdaq.txt", "", engine)
 
 
+def test_columns_without_a_header_that_are_cycles_are_read_without_their_numbers(tmp_path):
+    """Cycles of one cylinder differ by some per cent, a current beside them by all of them."""
+    cycles = np.array([1.0, 1.15, 0.9])[:, None] * PRESSURE
+    path = write(tmp_path, "", DEGREES, *cycles)
+    read = pressure_from_csv(path, units=("deg", "bar")).cycles
+    np.testing.assert_allclose(read, 1e5 * cycles, rtol=1e-6)
+    path = write(tmp_path, "", DEGREES, *cycles, np.where(abs(DEGREES - 355.0) < 2.0, 8.0, 0.0))
+    with pytest.raises(InputError, match=r"from 2 to 5, .*: column 3 is unlike column 5"):
+        pressure_from_csv(path, units=("deg", "bar"))
+
+
 def test_every_cycle_of_a_file_without_a_header_can_be_named(tmp_path):
     path = write(tmp_path, "", DEGREES, PRESSURE, 1.1 * PRESSURE, DEGREES)
     cycles = pressure_from_csv(path, units=("deg", "bar"), column="2 to 3").cycles
