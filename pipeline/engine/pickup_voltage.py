@@ -21,6 +21,7 @@ from camwright.pipeline.engine.tooth_pattern import (
     Recording,
     ToothPattern,
     extra_teeth,
+    middles_by_gaps,
     regular,
     runs_of,
     tooth_pattern,
@@ -93,7 +94,8 @@ class VoltageTable(WheelTable):
         if teeth is None:
             limit = f"stated, as {field} shows {shown.words}"
             raise InputError("engine.teeth", "missing", limit)
-        return replace(self, teeth=teeth, missing_teeth=shown.missing_teeth).wheel
+        stated = replace(self, teeth=teeth, missing_teeth=shown.missing_teeth).wheel
+        return replace(stated, rows=shown.rows)
 
 
 @dataclass(frozen=True, eq=False)
@@ -118,8 +120,12 @@ class Crossings:
     def mirrored(self) -> bool:
         """Whether the rising crossings, not the falling ones, are the middles of the teeth.
 
-        They are the steep ones; of vertical ones those with less jitter.
+        Those divide the gaps of the wheel in two. Without a gap, or a crossing in it, the steep
+        ones are the teeth; of vertical ones those with less jitter.
         """
+        middles = middles_by_gaps(self.times[~self.rising], self.times[self.rising])
+        if middles:
+            return middles == 2
         falling, rising = (
             float(np.median(np.abs(self.slopes[kind]))) for kind in (~self.rising, self.rising)
         )
@@ -405,7 +411,8 @@ def speed_from_voltage(
 ) -> SpeedTrace:
     """Crank speed from a CSV file of time and voltage.
 
-    Every voltage column is a run, or several between which the crank stood still.
+    Every voltage column, or each of those that `column` names, is a run, or several between which
+    the crank stood still.
 
     Parameters
     ----------
@@ -418,24 +425,24 @@ def speed_from_voltage(
     """
 
     def read(file: str | Path) -> tuple[EdgeRecord, Recording]:
-        return edges_of_signals(*_signals(file), table)
+        return edges_of_signals(*_signals(file, table.column), table)
 
     record, recording = read(path)
     trace = speed_of_record(record, table.band, calibrator, lambda file: read(file)[0])
     return replace(trace, recording=recording)
 
 
-def _signals(path: str | Path) -> tuple[str, Array, dict[str, Array]]:
+def _signals(path: str | Path, column: str) -> tuple[str, Array, dict[str, Array]]:
     """Name of a file, times, s, and voltages, V, by column."""
     text = trace_text(Path(path), "time_s,voltage_V")
-    times, volts = columns_of(text.header, "time"), columns_of(text.header, "voltage")
+    times, volts = columns_of(text.header, "time"), columns_of(text.header, "voltage", column)
     if len(times) != 1 or not volts:
         limit = "one column of time (s, ms, us) and one or more of voltage (V, mV)"
         raise InputError(f"{text.name} header", ", ".join(text.header), limit)
     columns = text.numbers((*times, *volts))
     signals = {
-        f"{text.name} {text.header[column]}": factor * columns[:, k]
-        for k, (column, factor) in enumerate(volts.items(), start=1)
+        f"{text.name} {text.header[at]}": factor * columns[:, k]
+        for k, (at, factor) in enumerate(volts.items(), start=1)
     }
     return text.name, columns[:, 0] * next(iter(times.values())), signals
 

@@ -22,8 +22,9 @@ from camwright.pipeline.engine.speed_trace import (
     speed_from_edges,
     speed_from_teeth,
 )
-from camwright.pipeline.engine.tooth_pattern import Recording, ToothPattern
+from camwright.pipeline.engine.tooth_pattern import Recording, ToothPattern, tooth_pattern
 from camwright.pipeline.engine.trigger_wheel import (
+    Edges,
     MissingTeeth,
     Teeth,
     ToothShare,
@@ -51,8 +52,11 @@ from camwright.pipeline.torque.trace_file import (
     named_columns,
     require_alike,
     trace_text,
+    without_unit,
 )
 
+PRIMARY = "PriLevel"
+_LEVELS = [{low, high} for low, high in (("0", "1"), ("0.0", "1.0"), ("0,0", "1,0"))]
 UNLIKE = 0.2  # rms difference of columns of speed over their rms
 TEETH = 36  # where neither case nor signal states another number
 
@@ -71,6 +75,7 @@ class WheelTable(Part):
     defaults: ClassVar[Mapping[str, str]] = {"pitch_tolerance": "that of wheel_class"}
 
     file: FileName
+    column: HeaderText = ""
     teeth: Teeth | None = None
     missing_teeth: MissingTeeth | None = None
     reference_angle: Angle = 0.0
@@ -128,7 +133,6 @@ class SpeedTable(WheelTable):
     kind: Literal["speed"] = "speed"
     teeth: Teeth = TEETH
     missing_teeth: MissingTeeth = 0
-    column: HeaderText = ""
     speed_unit: HeaderText = ""
     edges: Annotated[int, Count(1, 2)] = 2
     tooth_share: ToothShare = 0.5
@@ -139,36 +143,96 @@ class SpeedTable(WheelTable):
         return replace(super().wheel, tooth_share=self.tooth_share)
 
 
-def tooth_times(path: str | Path, column: str = "") -> tuple[str, Array]:
-    """Times of edges from a CSV file, a column per run: array (runs, edges), s.
+def edges_from_csv(
+    path: str | Path, wheel: TriggerWheel, both_edges: bool = True, column: str = ""
+) -> EdgeRecord:
+    """Edges from a CSV file: a column of their times for each run, or levels over time.
+
+    Columns of levels, 0 and 1, are those named `column`, else ``PriLevel``, the primary trigger in
+    the composite log of an engine control, else the only one. Of a wheel with several gaps the
+    record shows the teeth between them.
 
     Raises
     ------
     InputError
-        As `read_trace`.
+        As `read_trace` and `counted`; if one of several levels is to be named.
     """
     text = trace_text(Path(path), "time_s", one_column=True)
+    levels = _levels(text, column)
+    runs = _changes(text, levels) if levels else _times(text, column)
+    both = both_edges or bool(levels)
+    edges = []
+    for label, run in runs.items():
+        # The gap lies between teeth; if it does between rising and falling edges, teeth are at 0.
+        inverted = bool(levels and wheel.missing_teeth) and _longest(run[1:]) > _longest(run)
+        run_edges, wheel = _counted(f"{text.name} {label}", run[int(inverted) :], wheel, both)
+        edges.append(run_edges[: 1 + both_edges])
+    return EdgeRecord(text.name, edges, wheel)
+
+
+def _longest(times: Array) -> float:
+    """Greatest time from a falling edge to the next, over the usual one; the first edge rises."""
+    between = times[2::2] - times[1:-1:2]
+    return float(between.max() / np.median(between)) if between.size else 0.0
+
+
+def _counted(
+    field: str, run: Array, wheel: TriggerWheel, both: bool
+) -> tuple[tuple[Edges, ...], TriggerWheel]:
+    """Edges of a run, and the wheel with the rows of teeth between several gaps."""
+    if wheel.missing_teeth and not wheel.rows and (np.diff(run) > 0.0).all():
+        kinds = (run[::2], run[1::2]) if both else (run,)
+        for kind in kinds:
+            shown = tooth_pattern(kind)
+            stated = (shown.teeth, shown.missing_teeth) == (wheel.teeth, wheel.missing_teeth)
+            if shown.rows and stated:
+                wheel = replace(wheel, rows=shown.rows)
+    return counted(field, run, wheel, both), wheel
+
+
+def _times(text: TraceText, column: str) -> dict[str, Array]:
+    """Times of edges (n,), s, of each run by its header."""
     wanted = columns_of(text.header, "time", column)
     if not wanted:
         limit = f"a column of time with its unit ({', '.join(QUANTITY_UNITS['time'])})"
         raise InputError(f"{text.name} header", ", ".join(text.header), limit)
     table = text.numbers(tuple(wanted))
-    return text.name, np.asarray((table * np.array(list(wanted.values()))).T)
+    return {text.header[at]: factor * table[:, k] for k, (at, factor) in enumerate(wanted.items())}
 
 
-def edges_from_csv(
-    path: str | Path, wheel: TriggerWheel, both_edges: bool = True, column: str = ""
-) -> EdgeRecord:
-    """Edges from a CSV file of their times, a column per run.
+def _levels(text: TraceText, column: str) -> list[int]:
+    """Columns of levels to read; none in a file of times."""
+    header = text.header
+    bare = [at for at, head in enumerate(header) if not has_unit(head)]
+    levels = [at for at in bare if set(text.cells(at)) in _LEVELS]
+    if column:
+        return named_columns(header, column, levels)
+    if len(levels) > 1:
+        levels = named_columns(header, PRIMARY, levels)
+        if len(levels) != 1:
+            limit = f"the header of a level in {text.name}: {', '.join(header)}"
+            raise InputError("engine.column", "missing", limit)
+    return levels
 
-    Raises
-    ------
-    InputError
-        As `read_trace` and `counted`.
-    """
-    name, runs = tooth_times(path, column)
-    edges = [counted(f"{name} run {k + 1}", run, wheel, both_edges) for k, run in enumerate(runs)]
-    return EdgeRecord(name, edges, wheel)
+
+def _changes(text: TraceText, levels: Sequence[int]) -> dict[str, Array]:
+    """Times of the changes of levels (n,), s, by header; the first is a rising one."""
+    header = text.header
+    times = columns_of(header, "time")
+    if len(times) > 1:
+        times = {at: factor for at, factor in times.items()
+                 if without_unit(header[at]).lower() == "time"}  # fmt: skip
+    if len(times) != 1:
+        limit = f"one column of time with its unit ({', '.join(QUANTITY_UNITS['time'])})"
+        raise InputError(f"{text.name} header", ", ".join(header), limit)
+    ((time_at, factor),) = times.items()
+    table = text.numbers((time_at, *levels))
+    runs = {}
+    for k, at in enumerate(levels, start=1):
+        change = np.flatnonzero(np.diff(table[:, k])) + 1
+        first = int(table[change[0], k] < 1.0)
+        runs[header[at]] = factor * table[change[first:], 0]
+    return runs
 
 
 def speed_from_csv(
@@ -184,8 +248,8 @@ def speed_from_csv(
 ) -> SpeedTrace:
     """Crank speed from a CSV file: tooth times, or speed per tooth against crank angle.
 
-    A file with a column of crank angle has speeds, a column per run; any other has the times of
-    edges, a column per run. Without a gap the cycle begins with the record; the turn with the
+    A file with a column of crank angle has speeds, a column per run; any other has edges; see
+    `edges_from_csv`. Without a gap the cycle begins with the record; the turn with the
     expansion follows from the speed.
 
     Parameters
@@ -218,7 +282,7 @@ def speed_from_csv(
         return edges_from_csv(reference, wheel, both_edges)
 
     trace = speed_of_record(record, band, calibrator, read)
-    pattern = ToothPattern(wheel.teeth, wheel.missing_teeth)
+    pattern = ToothPattern(wheel.teeth, wheel.missing_teeth, rows=record.wheel.rows)
     return replace(trace, recording=Recording(len(record.runs), pattern))
 
 

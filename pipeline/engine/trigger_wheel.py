@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from math import pi
-from typing import Annotated, ClassVar
+from typing import Annotated, ClassVar, NoReturn
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -15,7 +15,8 @@ from camwright.pipeline.base.quantities import Angle, Count, In, Part
 
 FULL_TURN = 2.0 * pi
 NEIGHBOURS = 9  # intervals in the local median
-REGULAR = (0.6, 1.4)  # interval over local median; speed ripple stays well inside
+CYCLES_MIN = 3  # of a record, to compare intervals with those of other cycles
+REGULAR = (0.6, 1.4)  # time of a pitch over those beside it; an edge missed makes 1.5 or 2
 
 
 Teeth = Annotated[int, Count(4, 720)]
@@ -27,13 +28,17 @@ ToothShare = Annotated[float, In(above=0, below=1)]
 class TriggerWheel(Part):
     """A wheel with `teeth` equal pitches whose last `missing_teeth` teeth are left out.
 
+    One with several gaps of so many teeth has `rows` of teeth between them.
+
     Parameters
     ----------
     teeth : int                n, pitches of the wheel
     missing_teeth : int        m, <= n/4; 0: no gap, no reference
     reference_angle : float    rad, crank angle of the first rising edge after the first gap
-                               recorded; without a gap that of the first edge recorded
+                               recorded, of several gaps that before the first row; without a gap
+                               that of the first edge recorded
     tooth_share : float        of the pitch, from the rising to the falling edge
+    rows : tuple of int        teeth of each row, the longest first; empty: one row
     rising, falling : array (n - m,), optional   rad from the reference, instead of equal pitches
 
     Raises
@@ -43,12 +48,13 @@ class TriggerWheel(Part):
     """
 
     table: ClassVar[str] = "engine"
-    labels: ClassVar[tuple[str, ...]] = ("rising", "falling")
+    labels: ClassVar[tuple[str, ...]] = ("rows", "rising", "falling")
 
     teeth: Teeth = 36
     missing_teeth: MissingTeeth = 0
     reference_angle: Angle = 0.0
     tooth_share: ToothShare = 0.5
+    rows: tuple[int, ...] = ()
     rising: Array | None = None
     falling: Array | None = None
 
@@ -57,6 +63,8 @@ class TriggerWheel(Part):
         if self.missing_teeth > self.teeth // 4:
             limit = f"<= {self.teeth // 4}, a quarter of engine.teeth"
             raise InputError("engine.missing_teeth", self.missing_teeth, limit)
+        if self.rows and self.present + len(self.rows) * self.missing_teeth != self.teeth:
+            raise InputError("wheel.rows", self.rows, f"{self.teeth} teeth with their gaps")
         for name in ("rising", "falling"):
             angles = getattr(self, name)
             if angles is not None:
@@ -68,7 +76,25 @@ class TriggerWheel(Part):
 
     @property
     def present(self) -> int:
-        return self.teeth - self.missing_teeth
+        """Teeth that are not left out."""
+        return sum(self.rows) if self.rows else self.teeth - self.missing_teeth
+
+    @property
+    def steps(self) -> Array:
+        """Pitches from each tooth to the next (n - m,)."""
+        rows = self.rows or (self.present,)
+        steps = np.ones(self.present)
+        steps[np.cumsum(rows) - 1] += self.missing_teeth
+        return steps
+
+    @property
+    def places(self) -> Array:
+        """Places of the teeth (n - m,), in pitches from the reference."""
+        return np.cumsum(self.steps) - self.steps
+
+    def number(self, place: Array) -> NDArray[np.intp]:
+        """Number of the tooth at a place counted from the reference, or of the last one before."""
+        return np.searchsorted(self.places, np.mod(place, self.teeth), side="right") - 1
 
     @property
     def regular(self) -> TriggerWheel:
@@ -78,7 +104,7 @@ class TriggerWheel(Part):
     def displaced(self, errors: Array) -> TriggerWheel:
         """The wheel of equal pitches with its edges later by angles (rad): rising edges (n - m,)
         first, then falling ones."""
-        at = np.arange(self.present) * self.pitch
+        at = self.places * self.pitch
         rising, falling = errors[: self.present], errors[self.present :]
         between = at[: falling.size] + self.tooth_share * self.pitch
         return replace(
@@ -93,7 +119,7 @@ class TriggerWheel(Part):
         known = self.falling if falling else self.rising
         at = tooth * self.pitch + (self.tooth_share * self.pitch if falling else 0.0)
         if known is not None:
-            at = known[np.minimum(tooth, self.present - 1).astype(int)]
+            at = known[self.number(tooth)]
         return np.asarray(self.reference_angle + turn * FULL_TURN + at)
 
 
@@ -111,8 +137,7 @@ class Edges:
 
     def numbers(self, wheel: TriggerWheel) -> NDArray[np.intp]:
         """Numbers (n,) of the edges on the wheel: rising ones first, then falling ones."""
-        tooth = np.mod(self.places, wheel.teeth).astype(np.intp)
-        return np.asarray(tooth + (wheel.present if self.falling else 0))
+        return wheel.number(self.places) + (wheel.present if self.falling else 0)
 
 
 def counted(field: str, times: ArrayLike, wheel: TriggerWheel, both: bool) -> tuple[Edges, ...]:
@@ -141,12 +166,27 @@ def counted(field: str, times: ArrayLike, wheel: TriggerWheel, both: bool) -> tu
     places = tooth_places(field, rising, wheel)
     edges = [Edges(rising, places, False)]
     if both:
+        _guard_kinds(field, at, np.diff(places) > 1.0)
         edges.append(Edges(at[1::2], places[: at[1::2].size], True))
     return tuple(edges)
 
 
+def _guard_kinds(field: str, times: Array, gaps: NDArray[np.bool_]) -> None:
+    """Refuse edges whose gaps, of the intervals between rising ones (n,), are before falling ones:
+    one before was missed or is too many, or the first is a falling one."""
+    rising, falling = times[::2], times[1::2]
+    late = falling[: gaps.size] - rising[:-1] > 0.5 * np.diff(rising)
+    if (gaps & late).any():
+        k = int(np.argmax(gaps & late))
+        limit = "one that rises; the first edge falls, or one is missing or too many"
+        raise InputError(f"{field} gap after {rising[k]:.6g} s", "before an edge that falls", limit)
+
+
 def tooth_places(field: str, times: Array, wheel: TriggerWheel) -> Array:
     """Places (n,) of the teeth whose edges of one kind have `times` (s).
+
+    The first edge is that of the tooth with which the speed changes least from interval to
+    interval, so that a gap may pass at another speed than its neighbours.
 
     Raises
     ------
@@ -154,23 +194,89 @@ def tooth_places(field: str, times: Array, wheel: TriggerWheel) -> Array:
         As `counted`.
     """
     intervals = np.diff(times)
+    steps = np.resize(wheel.steps, intervals.size + wheel.present)
+    starts = range(wheel.present if wheel.missing_teeth else 1)
+    changes = [
+        np.abs(np.diff(np.log(intervals / steps[first : first + intervals.size]))).sum()
+        for first in starts
+    ]
+    first = int(np.argmin(changes))
+    expected = steps[first : first + intervals.size]
+    origin = wheel.present - first if wheel.missing_teeth else 0
+    slowness, cycle = np.log(intervals / expected), 2 * wheel.present
+    gaps = np.flatnonzero(expected > 1.0)
+    fits = not wheel.missing_teeth or (
+        origin <= intervals.size and _fits_gap(slowness, gaps, cycle, wheel.missing_teeth)
+    )
+    if not fits or not _is_steady(slowness, cycle):
+        _refuse(field, times, wheel)
+    places = np.concatenate([[0.0], np.cumsum(expected)])
+    return np.asarray(places - places[origin])
+
+
+def _is_steady(slowness: Array, cycle: int) -> bool:
+    """Whether no logarithm of the time of a pitch (n,) stands out.
+
+    It is compared with those beside it. Where the speed changes much within a pitch, it is compared
+    with those at the same place in other cycles, of `cycle` intervals; what then stands out in both
+    turns of a cycle is a fault of the wheel.
+    """
+    if all(_regular(_off_neighbours(slowness, reach)).all() for reach in (1, 2)):
+        return True
+    whole = slowness.size // cycle * cycle
+    if whole < CYCLES_MIN * cycle:
+        return False
+    usual = np.median(slowness[:whole].reshape(-1, cycle), axis=0)
+    turns = (usual - 0.5 * (np.roll(usual, 1) + np.roll(usual, -1))).reshape(2, -1)
+    alike = _regular(slowness - np.resize(usual, slowness.size))
+    return bool(alike.all() and _regular(turns).any(axis=0).all())
+
+
+def _regular(off: Array) -> NDArray[np.bool_]:
+    """Whether logarithms of ratios are within `REGULAR`."""
+    return np.asarray((off > np.log(REGULAR[0])) & (off < np.log(REGULAR[1])))
+
+
+def _off_neighbours(values: Array, reach: int) -> Array:
+    """Values (n,) less the mean of the two `reach` before and behind."""
+    padded = np.pad(values, reach, mode="reflect") if values.size > 1 else np.resize(values, 3)
+    return np.asarray(values - 0.5 * (padded[: values.size] + padded[-values.size :]))
+
+
+def _fits_gap(slowness: Array, gaps: NDArray[np.intp], cycle: int, missing: int) -> bool:
+    """Whether the gaps are nearer to the stated missing teeth than to one more or less, at the
+    place in the cycle where the speed changes least."""
+    off, places = _off_neighbours(slowness, 1)[gaps], np.mod(gaps, cycle)
+    usual = [float(np.median(off[places == place])) for place in np.unique(places)]
+    low, high = -0.5 * np.log1p(1.0 / missing), 0.5 * np.log1p(1.0 / (missing + 1.0))
+    return bool(low < min(usual, key=abs) < high)
+
+
+def _refuse(field: str, times: Array, wheel: TriggerWheel) -> NoReturn:
+    """Refuse times that are not those of a wheel, by the first interval that shows it."""
+    intervals = np.diff(times)
     share = intervals / local_median(intervals)
     expected = np.ones_like(share)
     if wheel.missing_teeth:
         expected[share > 1.0 + 0.5 * wheel.missing_teeth] = 1.0 + wheel.missing_teeth
     off = (share / expected < REGULAR[0]) | (share / expected > REGULAR[1])
-    if off.any():
-        k = int(np.flatnonzero(off)[0])
-        what = "a missing tooth" if share[k] > 1.0 else "an edge too many"
-        value = f"{share[k]:.3g} times its neighbours ({what})"
-        limit = f"1, or {1 + wheel.missing_teeth} in the gap" if wheel.missing_teeth else "near 1"
-        raise InputError(f"{field} interval after {times[k]:.6g} s", value, limit)
-    gaps = [int(k) for k in np.flatnonzero(expected > 1.0)]
-    if wheel.missing_teeth:
-        _guard_gaps(field, times, gaps, wheel)
-    steps = np.concatenate([[0.0], np.cumsum(expected)])
-    origin = steps[gaps[0] + 1] if wheel.missing_teeth else 0.0
-    return np.asarray(steps - origin)
+    gaps = np.flatnonzero(expected > 1.0)
+    if wheel.missing_teeth and not off.any():
+        if not gaps.size:
+            limit = f"a gap of {wheel.missing_teeth} missing teeth in every turn"
+            raise InputError(field, "no gap", limit)
+        ends = np.diff(gaps)
+        beyond = np.array([gaps[0] + 1, times.size - 1 - gaps[-1]])
+        wrong = np.flatnonzero(ends != wheel.present)
+        k = int(wrong[0]) if wrong.size else 0
+        number = int(ends[k]) if wrong.size else int(beyond.max())
+        where = f"{field} between gaps from {times[gaps[k]]:.6g} s"
+        raise InputError(where, f"{number} teeth", f"{wheel.present} of {wheel.teeth} places")
+    k = int(np.abs(np.log(share / expected)).argmax()) if not off.any() else int(off.argmax())
+    what = "a missing tooth" if share[k] > 1.0 else "an edge too many"
+    value = f"{share[k]:.3g} times its neighbours ({what})"
+    limit = f"1, or {1 + wheel.missing_teeth} in the gap" if wheel.missing_teeth else "near 1"
+    raise InputError(f"{field} interval after {times[k]:.6g} s", value, limit)
 
 
 def local_median(intervals: Array) -> Array:
@@ -180,18 +286,3 @@ def local_median(intervals: Array) -> Array:
     medians = np.median(np.lib.stride_tricks.sliding_window_view(intervals, NEIGHBOURS), axis=1)
     first = np.arange(intervals.size) - NEIGHBOURS // 2
     return np.asarray(medians[np.clip(first, 0, medians.size - 1)])
-
-
-def _guard_gaps(field: str, times: Array, gaps: list[int], wheel: TriggerWheel) -> None:
-    """Refuse a gap that does not recur after every n - m teeth."""
-    if not gaps:
-        limit = f"a gap of {wheel.missing_teeth} missing teeth in every turn"
-        raise InputError(field, "no gap", limit)
-    ends = np.diff(gaps)
-    wrong = np.flatnonzero(ends != wheel.present)
-    first, last = gaps[0] + 1, times.size - 1 - gaps[-1]
-    if wrong.size or first > wheel.present or last > wheel.present:
-        k = int(wrong[0]) if wrong.size else 0
-        number = int(ends[k]) if wrong.size else int(max(first, last))
-        where = f"{field} between gaps from {times[gaps[k]]:.6g} s"
-        raise InputError(where, f"{number} teeth", f"{wheel.present} of {wheel.teeth} places")

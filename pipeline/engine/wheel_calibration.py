@@ -147,10 +147,15 @@ class Calibrator:
         return Inertia(self.inertia, varying)
 
 
+def _between(rows: tuple[int, ...]) -> str:
+    return f" between rows of {', '.join(map(str, rows))}" if rows else ""
+
+
 def _alike(record: EdgeRecord, second: EdgeRecord) -> tuple[EdgeRecord, EdgeRecord]:
     """Two records with the kinds of edges that both have; another wheel is refused."""
     value, limit = (
-        f"{wheel.teeth} teeth, {wheel.missing_teeth} missing" for _, _, wheel in (second, record)
+        f"{wheel.teeth} teeth, {wheel.missing_teeth} missing{_between(wheel.rows)}"
+        for _, _, wheel in (second, record)
     )
     if value != limit:
         raise InputError(f"engine.reference.file {second.source}", value, limit)
