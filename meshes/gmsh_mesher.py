@@ -48,23 +48,30 @@ _OPTIONS = {
 TRIANGLES_MAX = 60_000
 """Maximum number of triangles of a body; twice as many need more than 6 GB to be solved."""
 
-_IGNORED = 1  # SIG_IGN of C
+_STATE_BYTES = 1024  # more than a `struct sigaction` of C, of which 152 bytes are used by Linux
 
 
 @contextmanager
-def _broken_pipes_as_before() -> Iterator[None]:
-    """Keeps what a broken pipe does in this process.
+def signals_kept() -> Iterator[None]:
+    """Keeps what each signal does in this process.
 
-    gmsh sets it back to the default on starting: a write to a process that has ended would end this
-    one without a word. By C, since Python allows the main thread alone.
+    gmsh on starting sets SIGTERM, SIGHUP, SIGPIPE and those of faults back to the default, by which
+    the process would end without a word or clean-up. Python reads and sets its own handlers alone,
+    and in the main thread alone: so by C. A signal that comes meanwhile waits.
     """
-    handle = ctypes.CDLL(None).signal
-    handle.argtypes, handle.restype = (ctypes.c_int, ctypes.c_void_p), ctypes.c_void_p
-    before = handle(signal.SIGPIPE, _IGNORED)
+    action = ctypes.CDLL(None).sigaction
+    kept = {}
+    blocked = signal.pthread_sigmask(signal.SIG_BLOCK, signal.valid_signals())
+    for number in range(1, signal.NSIG):
+        state = ctypes.create_string_buffer(_STATE_BYTES)
+        if action(number, None, state) == 0:
+            kept[number] = state
     try:
         yield
     finally:
-        handle(signal.SIGPIPE, before)
+        for number, state in kept.items():
+            action(number, state, None)
+        signal.pthread_sigmask(signal.SIG_SETMASK, blocked)
 
 
 @contextmanager
@@ -78,7 +85,7 @@ def session() -> Iterator[ModuleType]:
 
     running = bool(gmsh.isInitialized())
     if not running:
-        with _broken_pipes_as_before():
+        with signals_kept():
             gmsh.initialize(readConfigFiles=False, interruptible=False)
     kept_options = {option: gmsh.option.getNumber(option) for option in _OPTIONS}
     kept_model = gmsh.model.getCurrent()

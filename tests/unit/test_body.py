@@ -1,9 +1,11 @@
 """Meshes of the bodies: boundaries, numbering, limits and repeatability."""
 
+import os
 import signal
 import subprocess
 import sys
 from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -16,6 +18,7 @@ from camwright.geometry.lift import Lift
 from camwright.geometry.pitch_curve import PitchCurve
 from camwright.meshes.body_mesh import BodyMesh, block_mesh, cam_mesh, half_disc_mesh, roller_mesh
 from camwright.meshes.element_size import Sizing
+from camwright.meshes.gmsh_mesher import signals_kept
 from camwright.meshes.mesh_quality import quality
 
 HALF_WIDTH = 1e-4
@@ -328,22 +331,33 @@ def test_a_worker_thread_can_mesh(roller):
     assert mesh.sha256 == roller.sha256
 
 
-def test_a_broken_pipe_is_an_error_after_meshing():
-    """gmsh would have the process ended by SIGPIPE, as when a worker process dies."""
-    script = (
-        "import os\n"
-        "from camwright.meshes.body_mesh import roller_mesh\n"
-        "from camwright.meshes.element_size import Sizing\n"
-        "roller_mesh(0.008, 0.003, 0.0, Sizing(far_size=2e-3))\n"
-        "reader, writer = os.pipe()\n"
-        "os.close(reader)\n"
-        "try:\n    os.write(writer, b'0')\n"
-        "except BrokenPipeError:\n    print('an error')\n"
-    )
-    process = subprocess.run(
-        [sys.executable, "-c", script], capture_output=True, text=True, check=False, timeout=120
-    )
-    assert (process.returncode, process.stdout) == (0, "an error\n"), process.stderr
+def dispositions() -> dict[str, int]:
+    """Signals that this process ignores and catches, as bits, but those of the C library."""
+    status = Path("/proc/self/status").read_text().splitlines()
+    words = dict(line.split(":", 1) for line in status if line.startswith("Sig"))
+    ours = ~(0b11 << 31)
+    return {name: int(words[name], 16) & ours for name in ("SigIgn", "SigCgt", "SigBlk")}
+
+
+@pytest.mark.skipif(not Path("/proc/self/status").exists(), reason="states no signals")
+def test_meshing_keeps_what_each_signal_does():
+    """gmsh sets eight back to the default, by which the process would end without a word."""
+    caught = (signal.SIGHUP, signal.SIGINT, signal.SIGQUIT, signal.SIGTERM, signal.SIGUSR1)
+    before = {number: signal.getsignal(number) for number in caught}
+    received = []
+    try:
+        for number in caught:
+            signal.signal(number, lambda number, _: received.append(number))
+        there = dispositions()
+        roller_mesh(0.008, 0.003, 0.0, Sizing(far_size=2e-3))
+        assert dispositions() == there
+        with signals_kept():
+            os.kill(os.getpid(), signal.SIGTERM)
+            assert received == []
+        assert received == [signal.SIGTERM]
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
 
 
 def test_gmsh_ends_with_the_mesh():
