@@ -9,7 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from camwright.geometry.display import panels_of
-from camwright.geometry.errors import InputError, ResultError
+from camwright.geometry.errors import InputError
+from camwright.pipeline.base.extras import require_extra
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -20,12 +21,9 @@ Cells = NDArray[np.float64] | NDArray[np.str_]
 
 def data_frame(columns: Mapping[str, object]) -> pd.DataFrame:
     """A data frame of pandas; ResultError where pandas is not installed."""
-    try:
-        import pandas as pd
-    except ImportError:
-        raise ResultError(
-            "a data frame needs the package pandas: pip install 'camwright[notebook]'"
-        ) from None
+    require_extra("notebook", "a data frame")
+    import pandas as pd
+
     return pd.DataFrame(dict(columns))
 
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from camwright.geometry.errors import InputError, ResultError
+from camwright.geometry.errors import InputError
 from camwright.pipeline.commands.terminal import PASSED, progress_shown, stdout
 
 if TYPE_CHECKING:
@@ -94,10 +94,10 @@ def write_study_report(folder: Path) -> Path:
     Raises
     ------
     InputError, ResultError
-        If the study file or the dataset cannot be read, or they contradict each other.
+        If the study file or the dataset cannot be read, they contradict each other, or a library
+        is missing.
     """
-    from importlib.util import find_spec
-
+    from camwright.pipeline.base.extras import require_extra
     from camwright.pipeline.base.files import json_text, require_plain, write_atomic
     from camwright.pipeline.studies.batch import answers
     from camwright.pipeline.studies.batch.dataset import (
@@ -112,11 +112,7 @@ def write_study_report(folder: Path) -> Path:
     from camwright.reports import page
     from camwright.reports.study import study_page
 
-    for library in ("pyarrow", "SALib"):
-        if find_spec(library) is None:
-            raise ResultError(
-                f'{library} is missing; install it with: pip install "camwright[study]"'
-            )
+    require_extra("study", "the report of a study")
     require_plain(folder)
     study = read_study(folder / STUDY)
     data = read_dataset(folder)

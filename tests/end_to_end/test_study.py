@@ -167,7 +167,7 @@ def test_local_processes_listen_on_loopback_alone() -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
 def test_a_signal_ends_in_one_line(folder: Path, number: signal.Signals) -> None:
     out = f"signal{number}"
     main = subprocess.Popen(
@@ -428,6 +428,52 @@ def test_an_address_without_scheduler_is_refused(
             read_study(path), path.read_text(), tmp_path, tmp_path / "out", scheduler=address
         )
     assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize(
+    ("words", "reason"),
+    [
+        (None, r"\(no answer within 1 s\)"),
+        (b"", ""),
+        (b"SSH-2.0-OpenSSH_9.2\r\n", ""),
+        (b"HTTP/1.1 400 Bad Request\r\n\r\n", ""),
+    ],
+    ids=["silent", "closes", "ssh", "http"],
+)
+def test_an_address_of_something_else_is_refused(
+    monkeypatch: pytest.MonkeyPatch, words: bytes | None, reason: str
+) -> None:
+    """What accepts the connection and is no scheduler, within the time."""
+    from camwright.pipeline.studies.batch import task_scheduler
+
+    monkeypatch.setattr(task_scheduler, "_CONNECT_S", 1)
+    accepted = []
+
+    def serve(listening: socket.socket) -> None:
+        with contextlib.suppress(OSError):
+            while True:
+                connection, _ = listening.accept()
+                accepted.append(connection)
+                if words is not None:
+                    connection.sendall(words)
+                    connection.shutdown(socket.SHUT_WR)
+
+    with socket.create_server(("127.0.0.1", 0)) as listening:
+        threading.Thread(target=serve, args=(listening,), daemon=True).start()
+        address = f"tcp://127.0.0.1:{listening.getsockname()[1]}"
+        start = time.monotonic()
+        with (
+            pytest.raises(
+                InputError, match=rf"--scheduler = {address} {reason}.*running scheduler"
+            ),
+            TaskScheduler(1, address, (), Settings({}, {}, "own", 36, False, (), 1.0, 1)) as there,
+        ):
+            there.begin()
+        assert time.monotonic() - start < 10.0
+        assert accepted
+        listening.shutdown(socket.SHUT_RDWR)
+    for connection in accepted:
+        connection.close()
 
 
 @pytest.mark.slow

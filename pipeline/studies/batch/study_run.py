@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from camwright.geometry.errors import InputError, ResultError
+from camwright.pipeline.base.extras import require_extra
 from camwright.pipeline.base.files import Json, sha256_of
 from camwright.pipeline.base.progress import SILENT, Progress
 from camwright.pipeline.contact.tiers import Tier
@@ -76,8 +77,10 @@ def run_study(
     Raises
     ------
     CamError
-        If the study, a case or the folder is refused, or the cluster is lost.
+        If the study, a case or the folder is refused, a library is missing, or the cluster is
+        lost.
     """
+    require_extra("study", "a study")
     progress.stage("designs")
     templates = read_templates(folder, study.cases)
     axes, settings = _axes(study, templates), _settings(study, templates)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import contextlib
 import functools
 import logging
@@ -39,7 +40,6 @@ _AHEAD = 3
 _CONNECT_S = 30
 _LOOPBACK = "127.0.0.1:0"  # any free port
 _ADDRESS = re.compile(r"(?:(?:tcp|tls)://)?(?:[\w.-]+|\[[0-9A-Fa-f:.]+\]):([0-9]{1,5})", re.ASCII)
-MISSING = 'Dask is missing; install it with: pip install "camwright[study]"'
 
 
 def require_address(address: str) -> None:
@@ -65,15 +65,27 @@ def _options() -> dict[str, object]:
     }
 
 
+async def _reach(address: str) -> None:
+    """Connect to a scheduler and exchange the first words, for which a client waits for ever."""
+    from distributed import Security
+    from distributed.comm import connect
+
+    words = Security().get_connection_args("client")
+    await (await connect(address, timeout=_CONNECT_S, **words)).close()
+
+
 def _client_at(address: str) -> Client:
-    """Client of a running cluster; InputError if no scheduler answers."""
+    """Client of a running cluster; InputError if no scheduler answers in `_CONNECT_S`."""
     from distributed import Client
 
     try:
+        asyncio.run(asyncio.wait_for(_reach(address), _CONNECT_S))
         return Client(address, timeout=_CONNECT_S)
-    except (OSError, ValueError, TypeError) as error:  # TypeError: tls without certificates
-        words = " ".join(str(error).split())[:200]
-        raise InputError("--scheduler", f"{address} ({words})", "a running scheduler") from None
+    except TimeoutError:
+        reason = f"no answer within {_CONNECT_S} s"
+    except (Exception, CancelledError) as error:  # noqa: BLE001 - by what answers: many
+        reason = " ".join(str(error).split())[:200] or type(error).__name__
+    raise InputError("--scheduler", f"{address} ({reason})", "a running scheduler")
 
 
 class TaskScheduler:
@@ -88,8 +100,6 @@ class TaskScheduler:
 
     Raises
     ------
-    ResultError
-        On `begin`, if Dask is not installed.
     InputError
         On `begin`, if no scheduler answers at the address.
     """
@@ -114,12 +124,9 @@ class TaskScheduler:
         """Reach the cluster, or start the local processes and do not wait for them."""
         if self._local is not None or self._connected is not None:
             return
-        try:
-            import dask
-            import distributed
-            import pyarrow as pa  # noqa: F401 - needed by the workers and for the dataset
-        except ImportError:
-            raise ResultError(MISSING) from None
+        import dask
+        import distributed
+
         with contextlib.ExitStack() as stack:
             stack.enter_context(dask.config.set(_options()))
             stack.callback(logging.disable, logging.root.manager.disable)
