@@ -9,12 +9,14 @@ import gc
 import os
 import signal
 import sys
+import time
 import traceback
-from typing import Annotated, NoReturn
+from typing import Annotated, Any, NoReturn
 
 import typer
+from typer.core import TyperGroup
 
-from camwright.geometry.errors import AlteredError, CamError
+from camwright.geometry.errors import AlteredError, CamError, ResultError
 from camwright.pipeline.commands import (
     check_command,
     comparison_commands,
@@ -29,6 +31,7 @@ from camwright.pipeline.commands import (
     size_command,
     study_command,
 )
+from camwright.pipeline.commands.output_streams import open_streams
 from camwright.pipeline.commands.terminal import (
     ALTERED,
     ERROR,
@@ -45,8 +48,20 @@ for _variable in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
 # Pydantic would search all installed packages for plugins, and uses none here.
 os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")
 
+
+class _Commands(TyperGroup):
+    """The commands; the parser would end with code 1, that of FAIL, after a broken pipe."""
+
+    def invoke(self, ctx: Any) -> Any:
+        try:
+            return super().invoke(ctx)
+        except BrokenPipeError as error:  # not of the output: see `output_streams`
+            raise ResultError("a process or pipe that was written to has ended") from error
+
+
 app = typer.Typer(
     name="camwright",
+    cls=_Commands,
     help="Design a torque-balancing cam from the engine torque and check it.",
     add_completion=False,
     pretty_exceptions_enable=False,
@@ -78,6 +93,10 @@ for _command in (
     app.command()(_command)
 
 _SIGNAL = 128  # plus the number of a signal: the exit code after it
+_END = (signal.SIGTERM, signal.SIGHUP)  # beside the keyboard interrupt
+_ONCE_S = (
+    2.0  # a terminal that closes sends its signal twice: the second does not stop the clean-up
+)
 _COLLECT_AFTER = 50_000  # new objects
 _RESUMED_BY = {
     "run": "; run the command again with --resume to resume",
@@ -88,15 +107,25 @@ _RESUMED_BY = {
 
 
 def main() -> NoReturn:
-    """Entry point: an error becomes one line and exit code 2, an altered run 4."""
+    """Entry point: an error becomes one line and exit code 2, an altered run 4.
+
+    A signal becomes one line and 128 + its number; one that is ignored at the start, as by
+    ``nohup``, stays ignored.
+    """
+    open_streams()
     arguments = [argument for argument in sys.argv[1:] if argument != "--debug"]
-    received: list[int] = []
+    received: dict[int, float] = {}
 
     def interrupt(number: int, _: object) -> None:
-        received.append(number)
+        now = time.monotonic()
+        if now - received.get(number, -_ONCE_S) < _ONCE_S:
+            return
+        received[number] = now
         raise KeyboardInterrupt
 
-    signal.signal(signal.SIGTERM, interrupt)
+    for number in _END:
+        if signal.getsignal(number) is not signal.SIG_IGN:
+            signal.signal(number, interrupt)
     # Arrays go by their counts of references; the search for cycles costs 6 % of a short command.
     gc.set_threshold(_COLLECT_AFTER)
     try:
@@ -112,7 +141,12 @@ def main() -> NoReturn:
         code = ALTERED if isinstance(error, AlteredError) else ERROR
     if code == INTERRUPTED:  # returned or raised by the parser
         say("interrupted" + _RESUMED_BY.get(arguments[0] if arguments else "", ""))
-        code = _SIGNAL + received[0] if received else INTERRUPTED
+        code = _SIGNAL + next(iter(received)) if received else INTERRUPTED
+    try:
+        sys.stdout.flush()
+    except OSError as error:
+        say(_describe(error))
+        code = ERROR
     gc.freeze()  # the interpreter would search all objects for cycles once more as it ends
     sys.exit(code if isinstance(code, int) else PASSED)
 

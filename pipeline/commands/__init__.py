@@ -2,6 +2,7 @@
 
 | module                | responsibility                                          |
 | --------------------- | ------------------------------------------------------- |
+| `output_streams`      | output streams whose reader may leave before the end    |
 | `terminal`            | exit codes, output streams, progress, text of a verdict |
 | `run_command`         | `run`, `report`, `init`                                 |
 | `check_command`       | `check` of a run or the preview of a case; `schema`     |

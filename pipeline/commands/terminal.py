@@ -62,7 +62,8 @@ def _wrapped(text: str) -> str:
     )
 
 
-stdout = _Output(highlight=False, soft_wrap=True, width=None if sys.stdout.isatty() else WIDTH)
+_ON_TERMINAL = sys.stdout is not None and sys.stdout.isatty()  # None: closed
+stdout = _Output(highlight=False, soft_wrap=True, width=None if _ON_TERMINAL else WIDTH)
 stderr = _Console(stderr=True, highlight=False, soft_wrap=True)
 
 CaseArgument = Annotated[Path, typer.Argument(metavar="CASE", help="Case file (TOML).")]

@@ -81,10 +81,11 @@ def ended(process: subprocess.Popen[str], line: int, after: float, how: int) -> 
     assert not psutil.wait_procs(workers, timeout=30)[1], "processes are left"
     if process.returncode == 0:
         return False
-    if number == signal.SIGTERM and process.returncode == 143:
-        assert "interrupted; run the command again with --resume" in errors
-    else:  # as SIGTERM does before the program has begun to handle it
+    if number == signal.SIGKILL:
         assert process.returncode == -number
+    else:  # whatever library has been used until then
+        assert process.returncode == 128 + number, errors
+        assert "interrupted; run the command again with --resume" in errors
     assert "Traceback" not in errors
     return True
 

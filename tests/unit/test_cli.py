@@ -20,6 +20,8 @@ from small_machine import small_machine
 from small_run import check, small_case, summary, write_run, write_trial
 
 from camwright.geometry.errors import ContactError, ResultError
+from camwright.meshes.body_mesh import roller_mesh
+from camwright.meshes.element_size import Sizing
 from camwright.pipeline.case.case_file import read_case
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.results.run_folder import RunFolder
@@ -157,6 +159,7 @@ def test_bad_arguments(
         (OSError(errno.ENOSPC, "No space left on device", "a.vtu"), "a.vtu: No space left"),
         (ZeroDivisionError("x"), "unexpected ZeroDivisionError: x (--debug shows the traceback)"),
         (MemoryError(), "unexpected MemoryError"),
+        (BrokenPipeError(errno.EPIPE, "Broken pipe"), "a process or pipe that was written to"),
     ],
 )
 def test_errors_of_the_run(
@@ -200,11 +203,14 @@ def test_debug_shows_where(case_file: Path, command: Command, runner: Any) -> No
     assert "Traceback" in err and "in fails" in err
 
 
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
 def test_a_signal_says_how_to_go_on(
     case_file: Path, command: Command, runner: Any, number: signal.Signals
 ) -> None:
+    """After a mesh, too: gmsh would leave the process to end at once, without a word."""
+
     def stopped(case: Any, out: Path, **_: Any) -> None:
+        roller_mesh(0.008, 0.003, 0.0, Sizing(far_size=2e-3))
         with RunFolder(out, case) as folder:
             folder.contact_store(1).save("idle", 0, {"p0": np.array([1.0])}, key="a")
             os.kill(os.getpid(), number)
@@ -216,6 +222,41 @@ def test_a_signal_says_how_to_go_on(
     assert "--resume" in err
     assert Path(".run.partial").is_dir()
     assert not Path("run").exists()
+
+
+@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGHUP])
+def test_a_signal_that_is_ignored_at_the_start_stays_ignored(
+    case_file: Path, command: Command, runner: Any, number: signal.Signals
+) -> None:
+    """As SIGHUP is by `nohup`."""
+
+    def signalled(case: Any, out: Path, **options: Any) -> None:
+        os.kill(os.getpid(), number)
+        short_run(case, out, **options)
+
+    runner(signalled)
+    before = signal.signal(number, signal.SIG_IGN)
+    try:
+        assert command("run", case_file, "--out", "run")[0] == 0
+    finally:
+        signal.signal(number, before)
+
+
+def test_a_signal_that_comes_twice_does_not_stop_the_clean_up(
+    case_file: Path, command: Command, runner: Any
+) -> None:
+    """A terminal that closes signals its processes, and its shell does once more."""
+
+    def stopped(case: Any, out: Path, **_: Any) -> None:
+        try:
+            os.kill(os.getpid(), signal.SIGHUP)
+        finally:
+            os.kill(os.getpid(), signal.SIGHUP)
+            Path("cleaned").touch()
+
+    runner(stopped)
+    assert command("run", case_file, "--out", "run")[0] == 128 + signal.SIGHUP
+    assert Path("cleaned").exists()
 
 
 @pytest.mark.parametrize(
