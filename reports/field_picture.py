@@ -22,6 +22,7 @@ from numpy.typing import NDArray
 
 from camwright.geometry.arrays import Array
 from camwright.geometry.errors import ResultError
+from camwright.pipeline.base.worker_processes import module_command
 from camwright.pipeline.results.field_file import ZONE, Step, read_series
 from camwright.reports import field_raster
 from camwright.reports.figure_svg import import_matplotlib
@@ -221,7 +222,7 @@ def render(path: Path, views: Sequence[View]) -> list[Raster]:
             (out / "views.json").write_text(json.dumps([asdict(view) for view in views]))
             try:
                 child = subprocess.run(  # noqa: S603 - our own interpreter and module
-                    [sys.executable, "-m", __name__, str(path.resolve()), str(out)],
+                    module_command(__name__, str(path.resolve()), str(out)),
                     env=os.environ | {"VTK_DEFAULT_OPENGL_WINDOW": window}, check=False,
                     capture_output=True, timeout=PATIENCE_S,
                 )  # fmt: skip

@@ -11,12 +11,13 @@ In the order of use:
 | `material`         | material card: elastic constants, strengths, source      | E, Pa; nu; S, Pa |
 | `external_force`   | force over the cam angle, linear between samples         | F_e, N           |
 | `files`            | files read, written in one step, hashed; JSON records    | SHA-256          |
+| `extras`           | libraries that are not installed with the package        |                  |
 | `columns`          | data frame and figure of columns, for a notebook         |                  |
 | `fits`             | sizes with limit deviations: bores and keyways           | m                |
 | `tables`           | columns with unit and meaning; CSV files                 |                  |
 | `spreadsheets`     | CSV tables as .xlsx, rounded and ready to print          |                  |
 | `disk_cache`       | arrays that depend on their key alone, kept between runs |                  |
-| `worker_processes` | processes of one BLAS thread for independent tasks       |                  |
+| `worker_processes` | processes with one BLAS thread and a safe import path    |                  |
 | `progress`         | progress of a run on the terminal                        | s                |
 
 Imports `geometry` alone. A column stands beside its values, in the `columns()` of the class that

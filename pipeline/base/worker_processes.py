@@ -1,10 +1,15 @@
-"""Worker processes for independent tasks, each with one BLAS thread."""
+"""Processes of this program: workers for independent tasks, and modules of the package.
+
+Each has one BLAS thread, and none imports from the working folder or from the folder of the user's
+script: a file there may be named as a library is.
+"""
 
 from __future__ import annotations
 
 import copyreg
 import os
 import signal
+import subprocess
 import sys
 import threading
 import time
@@ -16,16 +21,25 @@ from importlib import import_module
 from multiprocessing import active_children
 from multiprocessing.context import SpawnContext, SpawnProcess
 from multiprocessing.popen_spawn_posix import Popen
-from multiprocessing.process import BaseProcess
+from multiprocessing.process import (  # type: ignore[attr-defined]
+    ORIGINAL_DIR,
+    BaseProcess,
+)
+from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Protocol
+
+from camwright.geometry.errors import InputError
 
 if TYPE_CHECKING:
     from concurrent.futures import ProcessPoolExecutor
 
 _JOBS_MOST = 4
 THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
+_SAFE_PATH = "PYTHONSAFEPATH"
 _LOOK_EVERY_S = 1.0
+_HOME = str(Path(__file__).absolute().parents[3])
+"""Folder from which this package is imported."""
 
 
 def _read_only(table: dict[Any, Any]) -> MappingProxyType[Any, Any]:
@@ -44,8 +58,28 @@ def workers_for(jobs: int | None, tasks: int) -> int:
     return max(1, min(jobs or min(os.cpu_count() or 1, _JOBS_MOST), tasks))
 
 
+def import_path() -> list[str]:
+    """Import path of this process without the working folder and the folder of the script.
+
+    What PYTHONPATH names stays, and the folder of this package.
+    """
+    named = filter(None, os.environ.get("PYTHONPATH", "").split(os.pathsep))
+    wanted = {_HOME, *(str(Path(each).absolute()) for each in named)}
+    script = getattr(sys.modules["__main__"], "__file__", None)
+    near = {"", str(Path.cwd()), ORIGINAL_DIR or ""}
+    if script is not None:
+        near |= {str(Path(script).absolute().parent), str(Path(script).resolve().parent)}
+    return [place for place in sys.path if place in wanted or place not in near]
+
+
+def module_command(module: str, *arguments: str) -> list[str]:
+    """Command that runs a module of the package in a new interpreter with the flags of this one."""
+    flags = subprocess._args_from_interpreter_flags()  # type: ignore[attr-defined]
+    return [sys.executable, *flags, "-P", "-m", module, *arguments]
+
+
 class _Process(SpawnProcess):
-    """Spawned process that does not run the user's script again.
+    """Spawned process that does not run the user's script again, nor import from its folder.
 
     A spawned process imports the script of its parent for the functions defined there; the tasks
     here are functions of the package. So a script needs no ``if __name__ == "__main__"``.
@@ -57,9 +91,11 @@ class _Process(SpawnProcess):
         hidden = script.copy()
         script.pop("__file__", None)
         script["__spec__"] = None
+        path, sys.path = sys.path, import_path()
         try:
             return Popen(process_obj)
         finally:
+            sys.path = path
             script.update(hidden)
 
 
@@ -77,9 +113,18 @@ def pool(workers: int) -> Iterator[ProcessPoolExecutor]:
     The number of threads is set before the processes load a BLAS: many processes of one thread are
     faster than few of many. Workers ignore the keyboard interrupt, which the parent handles, and
     end by themselves where the parent is killed.
+
+    Raises
+    ------
+    InputError
+        If Python ignores the environment, by which the processes learn not to import from the
+        working folder, and is not told so by a flag either.
     """
-    before = {name: os.environ.get(name) for name in THREADS}
-    os.environ.update(dict.fromkeys(THREADS, "1"))
+    if sys.flags.ignore_environment and not sys.flags.safe_path:
+        raise InputError("python", "-E", "-E -P, or -I, to start processes")
+    variables = (*THREADS, _SAFE_PATH)
+    before = {name: os.environ.get(name) for name in variables}
+    os.environ.update(dict.fromkeys(variables, "1"))
     from concurrent.futures import BrokenExecutor, ProcessPoolExecutor
 
     workers_pool = ProcessPoolExecutor(

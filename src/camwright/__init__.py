@@ -24,7 +24,14 @@ The public names, in the order of the calculation:
 All values are in SI units: m, N, Pa, rad, s, kg. A name is imported when it is first used.
 """
 
-from __future__ import annotations
+import sys
+
+if sys.argv[:1] == ["-m"] and not sys.flags.safe_path:
+    # Python has put the working folder first on the path, before its own library. It is taken out
+    # where Python runs a module of this package, `python -m camwright`, and not one of a user.
+    _word = sys.orig_argv[-len(sys.argv)]
+    if (_word.partition("m")[2] if _word[0] == "-" else _word).split(".")[0] == __name__:
+        del sys.path[0]
 
 from importlib import import_module
 from typing import TYPE_CHECKING

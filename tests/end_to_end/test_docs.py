@@ -18,6 +18,7 @@ from types import ModuleType
 import numpy as np
 import pytest
 from small_machine import small_machine
+from trap_folder import Traps
 
 from camwright.geometry import motion_laws
 from camwright.pipeline.base.tables import table
@@ -67,19 +68,28 @@ def shell(command: str, folder: Path) -> subprocess.CompletedProcess[str]:
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A folder in which the commands of README and tutorial have run in their order, once each."""
+    """A folder in which the commands of README and tutorial have run in their order, once each.
+
+    Beside them lies a file with the name of each library, and beside the cases, too: none is
+    imported. The snippets of Python come later, since a script imports from its own folder.
+    """
     folder = tmp_path_factory.mktemp("docs")
     for name in ("cases", "studies"):
         shutil.copytree(ROOT / name, folder / name)
+    marks = tmp_path_factory.mktemp("marks")
+    traps = [Traps.set_in(place, marks) for place in (folder, folder / "cases")]
     lines = [
         line for page in ("README.md", "docs/tutorial.md") for line in commands(page, "camwright")
     ]
     for line in dict.fromkeys(lines):
         result = shell(line, folder)
         allowed = (0, 1, 3) if line.startswith("camwright check") else (0,)
+        assert traps[0].sprung() == [], line
         assert result.returncode in allowed, f"{line}: {result.stderr}"
         if line.startswith("camwright init"):
             with_a_small_certificate(folder)
+    for each in traps:
+        each.remove()
     return folder
 
 

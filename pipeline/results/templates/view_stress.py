@@ -6,6 +6,10 @@ a picture a window opens. Left both bodies, right the contact. Needs pyvista.
 # mypy: ignore-errors
 
 import sys
+
+if not getattr(sys.flags, "safe_path", False):
+    del sys.path[0]  # the folder of this file, where nothing is a library
+
 from pathlib import Path
 
 import numpy as np

@@ -20,7 +20,7 @@ from pathlib import Path
 from typing import Any
 
 from camwright.geometry.errors import ResultError
-from camwright.pipeline.base.worker_processes import THREADS, as_worker
+from camwright.pipeline.base.worker_processes import THREADS, as_worker, module_command
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.studies.batch import design_rows
 from camwright.pipeline.studies.batch.case_template import Template
@@ -82,7 +82,7 @@ class SolverProcess:
         environment.pop(_TRIMMED, None)
         with theirs:
             process = subprocess.Popen(  # noqa: S603 - this interpreter, this module
-                [sys.executable, "-m", __name__, str(theirs.fileno())],
+                module_command(__name__, str(theirs.fileno())),
                 pass_fds=[theirs.fileno()],
                 stdin=subprocess.DEVNULL,
                 stdout=subprocess.DEVNULL,

@@ -1,0 +1,79 @@
+"""The commands that README and tutorial do not run, in a folder of traps.
+
+`test_docs` runs those of README and tutorial in one.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from trap_folder import Traps
+
+from camwright.pipeline.cli import app
+
+ROOT = Path(__file__).resolve().parents[2]
+SECONDS = 60.0
+"""After which a command is ended: its libraries are then imported, its processes started."""
+COMMANDS = {
+    "init table --kind table": 0,
+    "init rig --kind eccentric": 0,
+    "run rig.toml --out run --depth cycle --positions 36 --jobs 2": 0,
+    "report run": 0,
+    "check rig.toml --remedies": 3,
+    "deck run --angle 10 --out deck.inp": 0,
+    "inspect run measured.csv --jobs 2": 3,
+    "crown rig.toml --out crown": 0,
+    "gallery table.toml --out gallery": 0,
+    "papers p15-cams --out papers": 0,
+    "validate --out papers": 0,
+    "compare table.toml --out compare": 0,
+    "compare-mechanisms {cases}/papers/mechanisms.toml --out mechanisms": 0,
+    "redesign {cases}/gx120.toml --out redesign --jobs 2": 0,
+    "design table_torque.csv --speed 1500rpm --out design.toml": 0,
+}
+
+
+@pytest.mark.slow
+def test_the_other_commands_import_none_of_the_folder(tmp_path: Path) -> None:
+    traps = Traps.set_in(tmp_path / "here", tmp_path / "marks")
+    program = str(Path(sys.executable).parent / "camwright")
+    environment = os.environ | {"CAMWRIGHT_CACHE": str(tmp_path / "cache")}
+    sprung, codes = {}, {}
+    for line, expected in COMMANDS.items():
+        words = line.format(cases=ROOT / "cases").split()
+        if words[0] == "inspect":
+            rows = (traps.folder / "run/trial_1/3_contour.csv").read_text().splitlines()[1:]
+            points = [",".join(row.split(",")[3:5]) for row in rows]
+            (traps.folder / "measured.csv").write_text("\n".join(["x_mm,y_mm", *points, ""]))
+        with subprocess.Popen(
+            [program, *words], cwd=traps.folder, stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL, env=environment,
+        ) as running:  # fmt: skip
+            try:
+                code = running.wait(timeout=SECONDS)
+            except subprocess.TimeoutExpired:
+                running.terminate()
+                code = running.wait(timeout=60)
+        if code not in (expected, 128 + signal.SIGTERM):
+            codes[line] = code
+        sprung[line] = traps.sprung()
+    assert {line: names for line, names in sprung.items() if names} == {}
+    assert codes == {}
+
+
+def test_every_command_is_run_in_a_folder_of_traps() -> None:
+    pages = [
+        (ROOT / name).read_text(encoding="utf-8") for name in ("README.md", "docs/tutorial.md")
+    ]
+    lines = [line for page in pages for line in re.findall(r"^camwright (\S+)", page, re.MULTILINE)]
+    names = {
+        (each.name or each.callback.__name__) for each in app.registered_commands if each.callback
+    }
+    run = {*lines, *(line.split()[0] for line in COMMANDS)}
+    assert {name.replace("_", "-") for name in names} <= run
