@@ -56,6 +56,8 @@ _MODULES = (
     *(cylinder, working_gas, valves, combustion, heat_loss),
     *(indicated_cycle, indicated_cycle_solver, engine_torque_module, torque_module),
 )
+RIPPLE_MIN = 1e-6  # N m; no machine has less
+ROUND_OFF = 1e-9  # of the greatest torque
 CRANKING = SPEED_RANGE[0]
 """Cranking speed of an engine at rest, rad/s."""
 
@@ -107,6 +109,40 @@ def engine_torque(case: TorqueSource, state: LoadCase) -> Torque:
         If a file cannot be read or has wrong contents; by file and line.
     """
     return over_cam_turn(_torque_of_cycle(case, state), case.period)
+
+
+def torque_key(case: TorqueSource, load_case: str) -> str:
+    """Key of the case that has the torque of a load case, by its name."""
+    number = [state.name for state in case.load_cases].index(load_case)
+    if case.load_cases[number].torque is not None:
+        return f"load_case[{number}].torque"
+    key, source = ("torque", case.torque) if case.engine is None else ("engine", case.engine)
+    return f"{key}.file" if hasattr(source, "file") else key
+
+
+def require_ripple(case: TorqueSource, torques: Mapping[str, Torque]) -> None:
+    """Refuse a torque that is constant but for round-off, where its ripple is to be least.
+
+    Parameters
+    ----------
+    torques : mapping   torque by load case
+
+    Raises
+    ------
+    InputError
+        By the key of the torque, in a load case whose ripple counts or is to be reduced.
+    """
+    for state in case.load_cases:
+        counts = state.ripple_weight > 0.0 or state.torque_reduction
+        if not counts or state.name not in torques:
+            continue
+        total = torques[state.name].total
+        if float(np.ptp(total)) > max(RIPPLE_MIN, ROUND_OFF * float(np.abs(total).max())):
+            continue
+        text = f"a constant torque of {float(total.mean()):.4g} N m"
+        limit = "one that varies over the cycle, for smoothing.kind = constrained: there is no"
+        limit += " ripple to balance"
+        raise InputError(torque_key(case, state.name), text, limit)
 
 
 def _torque_of_cycle(case: TorqueSource, state: LoadCase) -> Torque:

@@ -19,7 +19,7 @@ from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_values import text_of, value_of
 from camwright.pipeline.case.external_load import closing_preload
 from camwright.pipeline.case.given_lift import table_overshoot
-from camwright.pipeline.case.load_case_torque import pressure
+from camwright.pipeline.case.load_case_torque import pressure, torque_key
 from camwright.pipeline.engine.crankshaft import energy_swing
 from camwright.pipeline.engine.pressure_trace import PressureTable
 from camwright.pipeline.engine.torque_consistency import Finding
@@ -103,9 +103,7 @@ def _torque_findings(case: Case, torques: Mapping[str, Torque]) -> Iterator[Find
         torque = torques.get(state.name)
         if torque is None or (state.torque is None and k > 0):
             continue
-        stated = "torque" if case.engine is None else "engine"
-        measured = f"{stated}.file" if hasattr(getattr(case, stated), "file") else stated
-        key = measured if state.torque is None else f"load_case[{k}].torque"
+        key = torque_key(case, state.name)
         swing = float(np.ptp(torque.total))
         level = "torque" if swing > 0.0 else "constant torque"
         text = f"{key}: {level}, peak to peak = {shown(swing, 'N m')}"

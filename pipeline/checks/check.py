@@ -31,6 +31,8 @@ BY_DUTY = (
 NONE = "none: the shape of the cam or a part as drawn"
 RIPPLE = "those with an engine torque and a required reduction"
 SPEED_RANGE = "every speed from standstill to over-speed"
+BOUNDLESS = 1e12
+"""Record, SI, of a demand without bound that keeps its limit: JSON has no infinity."""
 ROUNDING = 1e-9
 """Relative error of closed forms and exact integrals: no uncertainty of a demand."""
 
@@ -458,12 +460,17 @@ class Check(Displayed):
     def as_record(self) -> Record:
         """JSON record, in `unit` and degrees; NaN and infinity become null.
 
+        A demand without bound that keeps its limit, such as the fatigue safety factor of a constant
+        load, is recorded as `BOUNDLESS`.
+
         The demand of a check `without` the loads of a load case is null as well, unless it fails.
         A utilisation of null is infinite with the status `fail`, missing with `not_evaluated`.
         """
         unit = self.unit
         bound = self.is_bound
         demand, corner = (None, None) if bound else (self.demand, self.corner_demand)
+        if self.sense == "at_least":
+            demand, corner = (BOUNDLESS if each == math.inf else each for each in (demand, corner))
         return {
             "id": self.id,
             "title": self.title,

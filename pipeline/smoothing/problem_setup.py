@@ -16,7 +16,7 @@ from camwright.pipeline.case.cards.substitution import with_roller
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.external_load import closing_preload, dead_load, require_closing
 from camwright.pipeline.case.limits import OVERSPEED
-from camwright.pipeline.case.load_case_torque import engine_torque
+from camwright.pipeline.case.load_case_torque import engine_torque, require_ripple
 from camwright.pipeline.case.machine import Machine, machines
 from camwright.pipeline.case.requirements_section import LoadCase
 from camwright.pipeline.engine.cylinder import CylinderEngine
@@ -41,13 +41,14 @@ def problem_of(case: Case, torques: Mapping[str, Torque]) -> Problem:
     Raises
     ------
     InputError
-        If the case has no engine, no load case whose ripple counts, or a free preload beside
-        that of a load case.
+        If the case has no engine, no load case whose ripple counts, a torque without ripple in one
+        whose ripple counts, or a free preload beside that of a load case.
     """
     if not torques:
         raise InputError("smoothing.kind", "constrained", "a smoother: the case has no engine")
     if not any(state.ripple_weight > 0 for state in case.load_cases):
         raise InputError("load_case.ripple_weight", 0.0, "> 0 in one load case")
+    require_ripple(case, torques)
     smoothing = case.smoothing
     if "preload" in smoothing.free and any(s.preload is not None for s in case.load_cases):
         raise InputError("smoothing.free", "preload", "a preload common to all load cases")
