@@ -12,10 +12,17 @@ import tempfile
 import time
 import traceback
 from collections.abc import Callable, Iterable, Iterator
+from functools import partial
 from pathlib import Path
 from typing import NamedTuple, TypeVar
 
+import numpy as np
+
+from camwright.geometry.arrays import uniform_turn
+from camwright.geometry.contour import RollerContour
 from camwright.geometry.errors import CamError
+from camwright.geometry.lift import Lift
+from camwright.geometry.pitch_curve import PitchCurve
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_file import read_case
 from camwright.pipeline.case.given_lift import given_lift
@@ -27,6 +34,8 @@ from camwright.pipeline.studies.batch.study_file import read_study
 from camwright.pipeline.studies.cam_inspection import read_measured
 
 ROOT = Path(__file__).parents[1]
+ROUND = RollerContour(PitchCurve(Lift(uniform_turn(36), np.zeros(36)), 0.05), 0.01)
+"""Round cam to which measured files are read."""
 SECONDS_MAX, MEBIBYTES_MAX = 5.0, 500  # CPU time and growth of the memory for one input
 _CYLINDER_SHARE = 0.1  # of the cases whose working cycle is solved, 0.1 s each
 _PREVIEW_SHARE = 0.02  # of the cases that are solved and checked, seconds each and not timed
@@ -101,7 +110,7 @@ def sources() -> list[Source]:
     every.append(Source("lift.csv", files, _case_beside))
     every += _alone(sorted((ROOT / "studies").glob("*.toml"))[:2], read_study)
     sheet = {"sheet.csv": ("angle_deg,radius_mm\n" + rows).encode()}
-    every.append(Source("sheet.csv", sheet, read_measured))
+    every.append(Source("sheet.csv", sheet, partial(read_measured, contour=ROUND)))
     return every
 
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from camwright.geometry.arrays import Array, freeze, uniform_turn
+from camwright.geometry.extrema import first_greatest
 from camwright.geometry.lift import Lift
 from camwright.geometry.periodic_spline import PeriodicPolynomial, periodic_quintic
 from camwright.pipeline.base.external_force import ExternalForce
@@ -99,9 +100,9 @@ def _held(contact_force: Array) -> int:
     """
     lost, count = np.flatnonzero(contact_force < 0.0), contact_force.size
     if lost.size == count:
-        return int(np.argmax(contact_force))
+        return first_greatest(contact_force)
     spans = np.diff(lost, append=lost[0] + count)
-    k = int(np.argmax(spans))
+    k = first_greatest(spans)
     back = min(spans[k] // 2, int(_BEFORE * count))
     return int((lost[k] + spans[k] - max(back, 1)) % count)
 

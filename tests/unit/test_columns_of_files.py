@@ -1,9 +1,11 @@
 """A column of a data file is used if its header or the case identifies it, in every reader."""
 
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 import pytest
+from mutated_inputs import ROUND
 
 from camwright.geometry.errors import InputError
 from camwright.pipeline.case.case_file import read_case
@@ -92,7 +94,7 @@ READERS = {
     "voltage": (
         lambda path: speed_from_voltage(path, VoltageTable(file="f.csv")), "time_s,voltage_V"
     ),
-    "contour": (read_measured, "measured_x_mm,measured_y_mm"),
+    "contour": (partial(read_measured, contour=ROUND), "measured_x_mm,measured_y_mm"),
     "torque of a task": (lambda path: _cycle(path, None), "angle_deg,torque_Nm"),
     "decay": (read_decay, "time_s,speed_rad/s"),
 }  # fmt: skip

@@ -169,10 +169,10 @@ def test_preview_and_screening_agree():
     trial = preview_case(case(), corners=False)
     checks = {each.id: each for each in trial.checks}
     assert checks["friction_balance"].demand < 1e-6
-    columns = screen_designs(case(), {"follower.mass": np.array([0.25, 0.3])}, positions=72)
+    columns = screen_designs(case(), {"follower.mass": np.array([0.25, 0.3])}, positions=144)
     for name, apart in (("torque_reduction", 1e-3), ("jump", 3e-3)):
         demand = columns[f"{name}.demand"][0]
-        # the preview has samples, the screening vertices
+        # the preview refines between its samples, the screening has vertices of its own
         error = checks[name].error_share or 0.0
         assert demand == pytest.approx(checks[name].demand, rel=apart + error), name
 
@@ -315,7 +315,7 @@ def test_screening_judges_the_limits_of_the_maker():
     checks = {each.id: each for each in preview_case(limited, corners=False).checks}
     for name in ("gas_pressure", "gas_stroke", "gas_speed", "gas_temperature"):
         demand = in_unit(checks[name].demand, checks[name].unit)
-        # the preview has samples, the screening vertices
+        # the preview refines between its samples, the screening has vertices of its own
         rel = 1e-5 + (checks[name].error_share or 0.0)
         assert columns[f"{name}.demand"] == pytest.approx([demand] * 2, rel=rel), name
         assert set(columns[f"{name}.status"]) == {checks[name].status}, name

@@ -10,19 +10,14 @@ import numpy as np
 import pytest
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
-from mutated_inputs import Source, sources, tried
+from mutated_inputs import ROUND, Source, sources, tried
 
-from camwright.geometry.arrays import uniform_turn
-from camwright.geometry.contour import RollerContour
 from camwright.geometry.errors import CamError
-from camwright.geometry.lift import Lift
-from camwright.geometry.pitch_curve import PitchCurve
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.studies.batch.study_file import Study
 from camwright.pipeline.studies.cam_inspection import read_measured
 from camwright.pipeline.torque.angle_trace import read_trace
 
-ROUND = RollerContour(PitchCurve(Lift(uniform_turn(36), np.zeros(36)), 0.05), 0.01)
 HEAD = "crank_angle_deg,torque_Nm\n"
 
 

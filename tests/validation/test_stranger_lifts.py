@@ -22,13 +22,16 @@ MEASURED, POINTS = STRANGERS / "18-inspect-lift", STRANGERS / "19-points-dwell"
 
 @pytest.mark.parametrize("name", ["case", "no_noise", "noise_2um"])
 def test_a_measured_lift_has_undercut_and_jump_of_the_law_behind_it(name: str) -> None:
-    """Cycloidal, 10 mm in 120 deg: 0.588 and 6648 rpm; the fit is within 0.5 % of the jump."""
+    """Cycloidal, 10 mm in 120 deg: 0.588, and 6635.38 rpm by the least quotient at 500 000 angles.
+
+    At the 72 positions of the case it is 6648 rpm; the fit is within 0.5 % of the jump.
+    """
     case = read_case(MEASURED / f"{name}.toml")
     contour = case.contour(given_lift(case))
     checks = {check.id: check for check in solve(case, contour, tier=Tier.SCREENING).checks}
     assert checks["undercut"].demand == pytest.approx(0.588, abs=5e-4)
     rpm = checks["jump_speed"].as_record()["demand"]
-    assert rpm == pytest.approx(6648.0, rel=1e-4 if name == "case" else 5e-3)
+    assert rpm == pytest.approx(6635.38, rel=1e-5 if name == "case" else 5e-3)
 
 
 def test_the_noise_of_a_table_below_zero_is_stated() -> None:

@@ -341,6 +341,10 @@ def strain(check, ambient):
     return check.utilisation
 
 
+REFINED = {"contact_force_margin", "contact_at_overspeed", "jump", "jump_speed"}
+"""Checks of the contact force between the solved angles."""
+
+
 def own_limits(case):
     """Ratings with the limit of one check alone where the synthesis keeps the least of several."""
     machine = machines(case)[0]
@@ -374,7 +378,7 @@ def test_each_constraint_is_its_check_on_a_solved_cam(drawn):
         check = checks[name]
         shaped = name in SHAPE_LIMITS and check.cam_angle is not None
         angles = uniform_turn(720 if name in SWEPT else 240)
-        angles = np.array([check.cam_angle]) if shaped else angles
+        angles = np.array([check.cam_angle]) if shaped or name in REFINED else angles
         jet, top = Jet(*pitch.lift.derivatives(angles, 3)), pitch.lift.highest.value
         uses = dict(shape_utilisations(jet, variables, ratings, {name}))
         if not shaped and name not in uses:
@@ -395,6 +399,8 @@ def test_each_constraint_is_its_check_on_a_solved_cam(drawn):
         # The sweep interpolates friction over axial force; the wall of the keyway is at the
         # minimum lift, and at the least radius.
         tolerance = 1e-4 if name in SWEPT else 1e-6 if name == "keyway_root" else 1e-8
+        # A refined check is a parabola, at angles an eighth apart, with friction linear between.
+        tolerance = 1e-5 if name in REFINED else tolerance
         seen = float(np.max(uses[name]))
         assert seen == pytest.approx(strain(check, ambient), rel=tolerance), name
 
