@@ -142,6 +142,9 @@ def main() -> NoReturn:
     if code == INTERRUPTED:  # returned or raised by the parser
         say("interrupted" + _RESUMED_BY.get(arguments[0] if arguments else "", ""))
         code = _SIGNAL + next(iter(received)) if received else INTERRUPTED
+        # Python remembers an interrupt that has passed an `exec` of text, as where a dataclass is
+        # made, and would end `python -m` by SIGINT whatever the code; the next one forgets it.
+        exec("")  # noqa: S102
     try:
         sys.stdout.flush()
     except OSError as error:

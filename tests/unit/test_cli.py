@@ -224,6 +224,23 @@ def test_a_signal_says_how_to_go_on(
     assert not Path("run").exists()
 
 
+def test_a_signal_while_a_dataclass_is_made_has_the_same_code(tmp_path: Path) -> None:
+    """Python runs text by `exec` then, and would end `python -m` by SIGINT."""
+    (tmp_path / "stopped.py").write_text(
+        "import sys\n"
+        "from camwright.pipeline import cli\n"
+        "def invoke(*_):\n"
+        "    exec('import os, signal; os.kill(os.getpid(), signal.SIGTERM)')\n"
+        "cli._Commands.invoke = invoke\n"
+        "sys.argv = ['camwright', 'explain', 'spring']\n"
+        "cli.main()\n"
+    )
+    ended = subprocess.run(
+        [sys.executable, "-m", "stopped"], cwd=tmp_path, stderr=subprocess.DEVNULL, check=False
+    )
+    assert ended.returncode == 128 + signal.SIGTERM
+
+
 @pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGHUP])
 def test_a_signal_that_is_ignored_at_the_start_stays_ignored(
     case_file: Path, command: Command, runner: Any, number: signal.Signals
