@@ -47,6 +47,7 @@ DEFLATE_RATIO = 1032
 """Greatest ratio of length to packed length that deflate reaches."""
 _ARRAYS_MAX = 1 << 30
 """Bytes of all arrays of an archive."""
+_HALF_SIGN = re.compile(r"\\u[dD][89a-fA-F]")
 _LONG_KEY = re.compile(rf"(?<![\w-])(?:[\w-]++[ \t]*+\.[ \t]*+){{{_TABLES_DEEP + 1}}}")
 
 
@@ -143,12 +144,13 @@ def read_toml(path: Path, field: str, most: int) -> dict[str, Any]:
 
 
 def parse_toml(content: bytes | str, field: str) -> dict[str, Any]:
-    """Tables of a TOML text, at most 16 deep.
+    """Tables of a TOML text, at most 16 deep, with integers of 64 bits as TOML 1.0 has them.
 
     Raises
     ------
     InputError
-        Naming `field`, if the text is nested more deeply or is not TOML in UTF-8.
+        Naming `field`, if the text is nested more deeply, has a longer integer or is not TOML in
+        UTF-8.
     """
     try:
         text = content if isinstance(content, str) else content.decode("utf-8-sig")
@@ -156,12 +158,15 @@ def parse_toml(content: bytes | str, field: str) -> dict[str, Any]:
         nested = _LONG_KEY.search(_NO_KEY.sub(_blank, text)) is not None
         tables = {} if nested else tomllib.loads(text)
         nested = nested or _is_deeper(tables, _TABLES_DEEP)
+        long = None if nested else _long_integer(tables)
     except RecursionError:
         nested = True
     except ValueError as error:  # UnicodeDecodeError and TOMLDecodeError alike
         raise InputError(field, " ".join(str(error).split()), "UTF-8 text in TOML") from None
     if nested:
         raise InputError(field, "nested too deeply", f"at most {_TABLES_DEEP} tables deep")
+    if long is not None:
+        raise InputError(field, f"an integer of {long.bit_length()} bits", "integers of 64 bits")
     return tables
 
 
@@ -180,6 +185,19 @@ def _is_deeper(tables: dict[str, Any], depth: int) -> bool:
             if isinstance(entry, (dict, list))
         ]
     return bool(level)
+
+
+def _long_integer(entry: Any) -> int | None:
+    """First integer beyond 64 bits of a table, array or value."""
+    if isinstance(entry, int):
+        return None if _is_short(entry) else entry
+    inner = entry.values() if isinstance(entry, dict) else entry if isinstance(entry, list) else ()
+    return next((long for each in inner if (long := _long_integer(each)) is not None), None)
+
+
+def _is_short(number: int) -> bool:
+    """Whether an integer has 64 bits."""
+    return -(2**63) <= number < 2**63
 
 
 def locked(path: Path, busy: str) -> IO[str] | None:
@@ -258,9 +276,22 @@ def read_text(path: Path) -> str:
 
 
 def read_json(path: Path) -> Any:
-    """Contents of a JSON file, for the caller to check; ResultError if it is none."""
+    """Contents of a JSON file, for the caller to check.
+
+    Raises
+    ------
+    ResultError
+        If it is none, or other programs may read it otherwise: a key that stands twice, a number
+        beyond 64 bits or the range of a float, half of a surrogate pair.
+    """
+    text = read_text(path)
     try:
-        return json.loads(read_text(path), parse_constant=_no_constant)
+        if _HALF_SIGN.search(text):
+            json.dumps(json.loads(text), ensure_ascii=False).encode()
+        return json.loads(
+            text, parse_constant=_no_constant, parse_int=_integer, parse_float=_finite,
+            object_pairs_hook=each_key_once,
+        )  # fmt: skip
     except (ValueError, RecursionError) as error:
         raise ResultError(f"{path}: not JSON ({' '.join(str(error).split())})") from None
 
@@ -285,8 +316,28 @@ def _plain(value: np.generic | np.ndarray | Mapping[str, Json]) -> Json:
     raise TypeError(f"{type(value).__name__} cannot be written as JSON")
 
 
+def each_key_once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    """Object of JSON by its pairs; ValueError if a key stands twice."""
+    whole = dict(pairs)
+    if len(whole) != len(pairs):
+        raise ValueError("a key stands twice")
+    return whole
+
+
 def _no_constant(name: str) -> float:
     raise ValueError(f"{name} is no number")
+
+
+def _integer(digits: str) -> int:
+    if len(digits) > 20 or not _is_short(number := int(digits)):
+        raise ValueError(f"an integer of {len(digits)} digits")
+    return number
+
+
+def _finite(digits: str) -> float:
+    if not math.isfinite(number := float(digits)):
+        raise ValueError(f"{digits[:40]} is beyond the range of a number")
+    return number
 
 
 def npz_bytes(arrays: Mapping[str, ArrayLike], *, compressed: bool = True) -> bytes:

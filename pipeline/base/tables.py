@@ -261,6 +261,7 @@ def _in_unit(column: Column, values: Array) -> Array:
 
 def _parsed(path: Path, header: str, cells: Sequence[str]) -> Array:
     try:
+        _require_digits("".join(cells))
         values = np.array([float(cell) if cell else math.nan for cell in cells])
     except ValueError:
         values = np.array([_number(cell) for cell in cells])
@@ -271,8 +272,15 @@ def _parsed(path: Path, header: str, cells: Sequence[str]) -> Array:
     return readonly(values)
 
 
+def _require_digits(text: str) -> None:
+    """Refuse what Python alone takes for a number: digits of other scripts, 1_000."""
+    if not text.isascii() or "_" in text:
+        raise ValueError
+
+
 def _number(cell: str) -> float:
     try:
+        _require_digits(cell)
         return float(cell)
     except ValueError:
         return math.nan

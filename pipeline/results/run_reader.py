@@ -6,6 +6,7 @@ Reading needs no solver and no case parser.
 from __future__ import annotations
 
 import hashlib
+import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -41,6 +42,13 @@ if TYPE_CHECKING:
 
 SCHEMA = 7
 """Number of the form of a run folder; a folder of another form is refused."""
+_TYPES: Mapping[str, tuple[tuple[type, ...], str]] = {
+    "str": ((str,), "text"), "int": ((int,), "a whole number"), "None": ((type(None),), "null"),
+    "float": ((float, int), "a number"), "bool": ((bool,), "true or false"),
+    "list": ((list,), "a list"), "dict": ((dict,), "an object"),
+}  # fmt: skip
+"""Types of JSON by the words of an annotation, and what they are called."""
+_ITEMS = re.compile(r"\[(?:[^][]|\[[^][]*\])*\]")
 HEADLINE = (
     *("torque_std_before_Nm", "torque_std_after_Nm", "torque_p2p_before_Nm", "torque_p2p_after_Nm"),
     *("lift_max_mm", "pressure_angle_max_deg", "pitch_radius_of_curvature_min_mm"),
@@ -336,13 +344,11 @@ def read_summary(path: Path) -> Summary:
         raise ResultError(f"{path}: holds no finished run (run.json is missing)")
     summary: Summary = read_json(file)
     require_schema(file, summary)
-    _require(file, summary, SummaryOfAnyRun.__annotations__)
-    if not isinstance(summary["trials"], int) or summary["trials"] < 1:
+    _require(file, summary, SummaryOfAnyRun)
+    if summary["trials"] < 1:
         raise ResultError(f"{file}: trials = {summary['trials']}, must be a count >= 1")
-    if not isinstance(summary["files"], dict):
-        raise ResultError(f"{file}: files must be hashes by name")
     final = summary["final_trial"]
-    if not isinstance(final, int) or not 1 <= final <= summary["trials"]:
+    if not 1 <= final <= summary["trials"]:
         limit = f"must be from 1 to {summary['trials']}"
         raise ResultError(f"{file}: final_trial = {final}, {limit}")
     return summary
@@ -443,7 +449,7 @@ def read_trial_record(trial: Path) -> TrialContents:
     """Contents of ``trial.json`` in the folder of a trial."""
     file = trial / "trial.json"
     record: TrialContents = read_json(file)
-    _require(file, record, ContentsOfAnyTrial.__annotations__)
+    _require(file, record, ContentsOfAnyTrial)
     return record
 
 
@@ -464,7 +470,7 @@ def read_records(file: Path) -> tuple[CheckRecord, ...]:
     if not isinstance(records, list):
         raise ResultError(f"{file}: must be a list of checks")
     for record in records:
-        _require(file, record, CheckRecordOfAnyCheck.__annotations__, "a check ")
+        _require(file, record, CheckRecordOfAnyCheck, "a check ")
         status = record["status"]
         if status not in STATUSES:
             raise ResultError(f"{file}: {record['id']}: status {status} is unknown")
@@ -475,7 +481,16 @@ def read_records(file: Path) -> tuple[CheckRecord, ...]:
     return CheckList(records)
 
 
-def _require(file: Path, record: Mapping[str, object], keys: Iterable[str], what: str = "") -> None:
-    missing = [key for key in keys if not isinstance(record, dict) or key not in record]
+def _require(file: Path, record: Mapping[str, object], kind: type, what: str = "") -> None:
+    """Refuse a record without the keys of a typed dictionary, or with a value of another type."""
+    types = kind.__annotations__
+    missing = [key for key in types if not isinstance(record, dict) or key not in record]
     if missing:
         raise ResultError(f"{file}: {what}lacks {', '.join(missing)}")
+    for key, each in types.items():
+        named = set(_ITEMS.sub("", each.__forward_arg__).split(" | "))
+        if named <= _TYPES.keys() and type(record[key]) not in {
+            one for name in named for one in _TYPES[name][0]
+        }:
+            limit = " or ".join(sorted(_TYPES[name][1] for name in named))
+            raise ResultError(f"{file}: {what}has {key} = {record[key]!r:.40}, must be {limit}")

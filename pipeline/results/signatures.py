@@ -21,7 +21,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from camwright.geometry.errors import InputError, ResultError
-from camwright.pipeline.base.files import read_text, sha256_of, write_atomic
+from camwright.pipeline.base.files import each_key_once, read_text, sha256_of, write_atomic
 from camwright.pipeline.results import signoff
 from camwright.pipeline.results.folder_exchange import staged
 from camwright.pipeline.results.signing_keys import ROLES, TrustedKey, bytes_of, fingerprint
@@ -256,17 +256,10 @@ def _is_date(text: str) -> bool:
 def _parsed(text: str | bytes, what: str, keys: tuple[str, ...]) -> dict[str, Any]:
     """JSON object of exactly these keys, each once."""
     try:
-        value = json.loads(text, object_pairs_hook=_once)
+        value = json.loads(text, object_pairs_hook=each_key_once)
     except (ValueError, RecursionError):
         raise _RefusedError(f"the {what} is no JSON object") from None
     return _closed(value, what, keys)
-
-
-def _once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
-    whole = dict(pairs)
-    if len(whole) != len(pairs):
-        raise ValueError("a key stands twice")
-    return whole
 
 
 def _closed(value: Any, what: str, keys: tuple[str, ...]) -> dict[str, Any]:

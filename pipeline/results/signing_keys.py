@@ -159,7 +159,7 @@ def read_trusted(path: Path | None) -> dict[str, TrustedKey]:
     Raises
     ------
     InputError
-        If the file cannot be read, or a line is none of these.
+        If the file cannot be read, a line is none of these, or a key stands twice with other roles.
     """
     if path is None:
         path = own_keys()
@@ -169,14 +169,17 @@ def read_trusted(path: Path | None) -> dict[str, TrustedKey]:
         text = bytes_of(path, "--trusted").decode("utf-8")
     except UnicodeDecodeError:
         raise InputError("--trusted", str(path), "text in UTF-8") from None
-    keys: dict[str, TrustedKey] = {}
-    for block in _PEM.findall(text):
-        one = TrustedKey(_public(block, path, "PEM block"))
-        keys[fingerprint(one.public)] = one
+    found = [TrustedKey(_public(block, path, "PEM block")) for block in _PEM.findall(text)]
     for number, line in enumerate(_PEM.sub(_lines_alone, text).splitlines(), start=1):
         if line.strip() and not line.lstrip().startswith("#"):
-            one = _trusted_line(line.strip(), path, number)
-            keys[fingerprint(one.public)] = one
+            found.append(_trusted_line(line.strip(), path, number))
+    keys: dict[str, TrustedKey] = {}
+    for one in found:
+        key = fingerprint(one.public)
+        if keys.setdefault(key, one).roles != one.roles:
+            raise InputError(
+                "--trusted", f"{path}, key {key}", "stated once, or twice with the same roles"
+            )
     return keys
 
 
@@ -188,7 +191,7 @@ def _lines_alone(block: re.Match[str]) -> str:
 def _trusted_line(line: str, path: Path, number: int) -> TrustedKey:
     before, algorithm, after = line.partition(_OPENSSH)
     roles = tuple(part for part in before.strip().split(",") if part)
-    if not algorithm or any(role not in ROLES for role in roles):
+    if not algorithm or bool(before) != bool(roles) or any(role not in ROLES for role in roles):
         limit = f"`[{','.join(ROLES)}] {_OPENSSH} KEY [OWNER]`"
         raise InputError("--trusted", f"{path}, line {number}", limit)
     key, _, owner = after.strip().partition(" ")

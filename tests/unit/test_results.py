@@ -191,8 +191,8 @@ def test_the_result_is_the_final_trial_whether_or_not_it_is_the_last(tmp_path: P
     assert record["verdict"] == "pass"
 
 
-@pytest.mark.parametrize("final", [0, 3, None])
-def test_a_final_trial_that_was_not_solved_is_refused(tmp_path: Path, final: int | None) -> None:
+@pytest.mark.parametrize("final", [0, 3])
+def test_a_final_trial_that_was_not_solved_is_refused(tmp_path: Path, final: int) -> None:
     out = write_run(tmp_path / "run")
     record = json.loads((out / "run.json").read_text())
     (out / "run.json").write_text(json.dumps(record | {"final_trial": final}))
@@ -241,7 +241,6 @@ def test_no_checks_is_no_pass(tmp_path: Path) -> None:
         {"demand": None},
         {"limit": None},
         {"demand": 3.0},
-        {"demand": "1"},
         {"demand": 1.0, "limit": 2.0, "sense": "at_least"},
         {"corner": "mass high", "corner_demand": 2.01},
         {"corner": "mass high", "corner_demand": None},
