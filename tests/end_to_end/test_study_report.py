@@ -152,7 +152,7 @@ def test_a_folder_that_is_no_study_is_refused(tmp_path: Path) -> None:
 
 
 def test_a_missing_library_is_named(made: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("importlib.util.find_spec", lambda _: None)
+    monkeypatch.setattr("camwright.pipeline.base.extras.find_spec", lambda _: None)
     with pytest.raises(ResultError, match=r"pip install .camwright\[study\]"):
         write_study_report(made)
 
