@@ -15,6 +15,7 @@ sys.path.insert(0, str(Path(__file__).parents[1]))
 from browser_fixture import Tab, chromium
 
 from camwright.geometry.errors import InputError, ResultError
+from camwright.pipeline.base import extras
 from camwright.pipeline.base.files import write_atomic
 from camwright.pipeline.commands.study_command import write_study_report
 from camwright.pipeline.studies.batch.dataset import (
@@ -152,7 +153,7 @@ def test_a_folder_that_is_no_study_is_refused(tmp_path: Path) -> None:
 
 
 def test_a_missing_library_is_named(made: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("camwright.pipeline.base.extras.find_spec", lambda _: None)
+    monkeypatch.setattr(extras, "find_spec", lambda _: None)
     with pytest.raises(ResultError, match=r"pip install .camwright\[study\]"):
         write_study_report(made)
 

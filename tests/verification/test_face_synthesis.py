@@ -399,8 +399,8 @@ def test_each_constraint_is_its_check_on_a_solved_cam(drawn):
         # The sweep interpolates friction over axial force; the wall of the keyway is at the
         # minimum lift, and at the least radius.
         tolerance = 1e-4 if name in SWEPT else 1e-6 if name == "keyway_root" else 1e-8
-        # A refined check is a parabola, at angles an eighth apart, with friction linear between.
-        tolerance = 1e-5 if name in REFINED else tolerance
+        # The refined margin has friction linear between angles.
+        tolerance = 1e-5 if name == "contact_force_margin" else tolerance
         seen = float(np.max(uses[name]))
         assert seen == pytest.approx(strain(check, ambient), rel=tolerance), name
 
