@@ -2,7 +2,7 @@
 # make test    set up .venv, run ruff, mypy and the tests
 # make verify  the slow tests, or PART="sizes ends" of them; writes docs/verification.md
 # make bench   benchmarks             make lint  ruff and mypy only
-# make fuzz    20,000 mutated input files
+# make fuzz    20,000 mutated input files     make pins   write the pinned figures of the cases anew
 
 PYTHON ?= python3
 CASE ?= cases/gx120.toml
@@ -14,7 +14,7 @@ PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
 export OMP_NUM_THREADS ?= 1
 export OPENBLAS_NUM_THREADS ?= 1
 
-.PHONY: help setup run test verify fuzz lint bench clean
+.PHONY: help setup run test verify fuzz pins lint bench clean
 
 help:
 	@sed -n 's/^# make/make/p' Makefile
@@ -52,6 +52,9 @@ verify: .venv/developing
 
 fuzz: .venv/developing
 	$(BIN)/python tests/mutated_inputs.py 20000
+
+pins: .venv/developing
+	$(BIN)/python tests/pins.py
 
 lint: .venv/developing
 	$(BIN)/ruff check .
