@@ -18,6 +18,8 @@ In the order of use:
 | `spreadsheets`     | CSV tables as .xlsx, rounded and ready to print          |                  |
 | `disk_cache`       | arrays that depend on their key alone, kept between runs |                  |
 | `worker_processes` | processes with one BLAS thread and a safe import path    |                  |
+| `value_groups`     | dotted keys on which checks rest, in groups              |                  |
+| `levers`           | levers of a check: keys, direction, range                | factor           |
 | `progress`         | progress of a run on the terminal                        | s                |
 
 Imports `geometry` alone. A column stands beside its values, in the `columns()` of the class that

@@ -7,6 +7,7 @@ import numpy as np
 from camwright.geometry.arrays import FULL_TURN
 from camwright.geometry.cutter_path import tool_interference
 from camwright.geometry.extrema import Extremum
+from camwright.pipeline.base import levers
 from camwright.pipeline.base.units import shown
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.limits import (
@@ -72,6 +73,8 @@ def closure(solution: Solution) -> Demand:
     reason="A jump of the acceleration is a jump of the contact force and excites the follower at"
     " every frequency.",
     load_cases=NONE,
+    levers=levers.smoothing(1),
+    page="Cam",
 )
 def acceleration_step(solution: Solution) -> Demand:
     """Greatest discontinuity of the acceleration over its range."""
@@ -100,6 +103,8 @@ def acceleration_step(solution: Solution) -> Demand:
     forecast=True,
     needs="roller",
     load_cases=NONE,
+    levers=(*levers.SHAPE, *levers.SPRING),
+    page="Cam",
 )
 def pressure_angle(solution: Solution) -> Demand:
     """Greatest angle between contact normal and follower axis, rad; of the stroke that governs."""
@@ -127,6 +132,8 @@ def pressure_angle(solution: Solution) -> Demand:
     forecast=True,
     needs="roller",
     load_cases=NONE,
+    levers=(levers.one("roller.radius", -1, 2.0), *levers.SHAPE),
+    page="Cam",
 )
 def curvature_ratio(solution: Solution) -> Demand:
     """Least convex radius of the pitch curve over the roller radius."""
@@ -148,6 +155,8 @@ def curvature_ratio(solution: Solution) -> Demand:
     lift_can_help=True,
     forecast=True,
     load_cases=NONE,
+    levers=(levers.one("roller.radius", -1, 2.0), *levers.SHAPE),
+    page="Cam",
 )
 def undercut(solution: Solution) -> Demand:
     """Undercut factor: 1 - r kappa, of a face (r + s + s'')/(r + s)."""
@@ -172,6 +181,8 @@ def undercut(solution: Solution) -> Demand:
     lift_can_help=True,
     moved_by_tolerance=False,
     load_cases=NONE,
+    levers=levers.SHAPE,
+    page="Cam",
 )
 def self_intersection(solution: Solution) -> Demand:
     """Number of crossings of the contour with itself."""
@@ -190,6 +201,8 @@ def self_intersection(solution: Solution) -> Demand:
     lift_can_help=True,
     moved_by_tolerance=False,
     load_cases=NONE,
+    levers=levers.SHAPE,
+    page="Cam",
 )
 def second_contact(solution: Solution) -> Demand:
     """Penetration of the follower into the contour outside the contact, m."""
@@ -212,6 +225,8 @@ def second_contact(solution: Solution) -> Demand:
     forecast=True,
     needs="roller",
     load_cases=NONE,
+    levers=(levers.TOOL, *levers.SHAPE),
+    page="Cam",
 )
 def concave_radius(solution: Solution) -> Demand | None:
     """Least concave radius of the contour, m; None for a convex cam."""
@@ -239,6 +254,8 @@ def concave_radius(solution: Solution) -> Demand | None:
     " other point of it, R: radius of cutter or grinding wheel, d: limits.second_contact_depth",
     reason="A wheel that fits the concave radius can still cut a flank across it.",
     load_cases=NONE,
+    levers=(levers.TOOL, *levers.SHAPE),
+    page="Cam",
 )
 def tool_gouge(solution: Solution) -> Demand:
     """Depth to which the tool cuts the contour outside its contact, m; 0 for a convex cam."""
@@ -270,6 +287,7 @@ def least_concave_radius(case: Case) -> float | None:
     " limits.curvature_rate",
     reason="Decides where the case sets the limit: its value depends on the grinding machine.",
     load_cases=NONE,
+    page="Cam",
 )
 def curvature_rate(solution: Solution) -> Demand:
     """Greatest change of the contour's curvature per length, 1/m^2."""
@@ -294,6 +312,8 @@ def curvature_rate(solution: Solution) -> Demand:
     method="least contour radius over bore radius plus keyway depth",
     forecast=True,
     load_cases=NONE,
+    levers=(levers.SEAT, *levers.SHAPE),
+    page="Cam",
 )
 def minimum_wall(solution: Solution) -> Demand:
     """Least contour radius over the radius of bore and keyway.
@@ -317,6 +337,9 @@ def minimum_wall(solution: Solution) -> Demand:
     forecast=True,
     moved_by_tolerance=False,
     load_cases=NONE,
+    values=("spring.travel_max",),
+    levers=(*levers.SPRING, *levers.GENTLER),
+    page="Spring",
 )
 def spring_travel(solution: Solution) -> Demand:
     """Maximum lift, m, against the spring travel."""

@@ -12,6 +12,8 @@ from numpy.typing import ArrayLike
 from camwright.geometry.arrays import Array
 from camwright.geometry.errors import InputError
 from camwright.geometry.extrema import first_greatest, first_least
+from camwright.pipeline.base import levers
+from camwright.pipeline.base import value_groups as given
 from camwright.pipeline.base.material import Material
 from camwright.pipeline.base.units import shown
 from camwright.pipeline.case.limits import (
@@ -119,6 +121,16 @@ def _place(section: ShaftSection) -> str:
     " factors of surface, size and reliability, S: limits.shaft_safety. Least over cam, gear, both"
     " bearings and camshaft.sections, and over all load cases",
     reason=BREAKS,
+    values=(
+        *given.SHAFT,
+        "camshaft.material.tensile_strength",
+        "camshaft.material.fatigue_bending",
+        "camshaft.*notch_*",
+        "limits.shaft_reliability",
+    ),
+    levers=(levers.one("camshaft.diameter", most=2.0), *levers.LOAD),
+    page="Camshaft",
+    scales_with=("normal_force", 1.0),
 )
 def shaft_fatigue(solution: Solution) -> Demand:
     """Least fatigue safety of the sections of the camshaft in bending and torsion."""
@@ -222,6 +234,10 @@ def shaft_fatigue_points(solution: Solution) -> list[FatiguePoint]:
     " torque at one angle, W = pi d^3/32, R_p: yield strength of the core, S:"
     " limits.shaft_yield_safety. Greatest over all sections, angles and load cases",
     reason=f"a bent camshaft turns out of true; {BREAKS}",
+    values=(*given.SHAFT, "camshaft.material.*yield_strength", "camshaft.*notch_*"),
+    levers=(levers.one("camshaft.diameter", most=2.0), *levers.LOAD),
+    page="Camshaft",
+    scales_with=("normal_force", 1.0),
 )
 def shaft_yield(solution: Solution) -> Demand:
     """Greatest von Mises stress of the sections of the camshaft, Pa."""
@@ -261,6 +277,10 @@ def shaft_yield(solution: Solution) -> Demand:
     formula="f/l <= limits.shaft_deflection; f: greatest deflection at the cam by the unit-load"
     " method, l: bearing spacing",
     reason="the deflection is an error of the lift and tilts the contact line",
+    values=(*given.SHAFT, "camshaft.material.E"),
+    levers=(levers.one("camshaft.diameter", most=2.0), *levers.LOAD),
+    page="Camshaft",
+    scales_with=("normal_force", 1.0),
 )
 def shaft_deflection(solution: Solution) -> Demand:
     """Greatest deflection of the camshaft at the cam over the bearing spacing."""
@@ -287,6 +307,10 @@ def shaft_deflection(solution: Solution) -> Demand:
     " method",
     reason="beyond their slope the balls run on the edge of the groove, and the rating"
     " life does not hold",
+    values=(*given.SHAFT, "camshaft.material.E"),
+    levers=(levers.one("camshaft.diameter", most=2.0), *levers.LOAD),
+    page="Camshaft",
+    scales_with=("normal_force", 1.0),
 )
 def shaft_slope(solution: Solution) -> Demand:
     """Greatest slope of the camshaft at its bearings, rad."""
@@ -312,6 +336,10 @@ def shaft_slope(solution: Solution) -> Demand:
     formula="C0/P0 >= limits.shaft_bearing_static_safety; C0: camshaft.bearing_static_rating, P0:"
     " greatest radial load of either bearing over all load cases and angles",
     reason="dents of the raceway under the greatest load are permanent",
+    values=(*given.SHAFT, "camshaft.bearing_static_rating"),
+    levers=(levers.one("camshaft.bearing_static_rating"), *levers.LOAD),
+    page="Camshaft",
+    scales_with=("normal_force", 1.0),
 )
 def shaft_bearing_static(solution: Solution) -> Demand:
     """Static safety factor s0 of the camshaft bearing with the greater load."""
@@ -343,6 +371,10 @@ def shaft_bearing_static(solution: Solution) -> Demand:
     " camshaft.bearing_rating, P_m: cube mean of the radial load over the turn, P <= C/2"
     f" throughout. Least over both bearings; over the load cases {BY_DUTY}",
     reason=BREAKS,
+    values=(*given.SHAFT, "camshaft.bearing_rating"),
+    levers=(levers.one("camshaft.bearing_rating"), *levers.LOAD),
+    page="Camshaft",
+    scales_with=("normal_force", 3.0),
 )
 def shaft_bearing_life(solution: Solution) -> Demand:
     """Rating life of the camshaft bearing with the greater load, s."""
@@ -389,6 +421,14 @@ def shaft_bearing_life(solution: Solution) -> Demand:
     formula="F K_A/(b m pi y) <= 0.7 s_F / S; F = |T + drag|/r, y = 0.154 - 0.912/z: Lewis, s_F:"
     " camshaft.gear.bending_limit, 0.7: reversed torque, S: limits.gear_bending_safety",
     reason="a broken tooth stops the camshaft",
+    values=(
+        *given.LOADS,
+        "camshaft.gear.bending_limit",
+        "camshaft.gear.application_factor",
+        "camshaft.drag",
+    ),
+    levers=(levers.one("camshaft.gear.width"), *levers.GENTLER),
+    page="Camshaft",
 )
 def gear_bending(solution: Solution) -> Demand:
     """Tooth root bending stress of the gear on the camshaft, Pa."""
@@ -408,6 +448,15 @@ def gear_bending(solution: Solution) -> Demand:
     formula="as gear_bending, with the teeth of the pinion and camshaft.gear.pinion_bending_limit;"
     " fewer teeth are thinner at the root",
     reason="a broken tooth stops the camshaft, and the pinion has the weaker tooth",
+    values=(
+        *given.LOADS,
+        "camshaft.gear.pinion_bending_limit",
+        "camshaft.gear.bending_limit",
+        "camshaft.gear.application_factor",
+        "camshaft.drag",
+    ),
+    levers=(levers.one("camshaft.gear.width"), *levers.GENTLER),
+    page="Camshaft",
 )
 def pinion_bending(solution: Solution) -> Demand:
     """Tooth root bending stress of the pinion on the machine shaft, Pa."""
@@ -449,6 +498,16 @@ def _bending_of(solution: Solution, teeth: int, key: str, figure: str) -> Demand
     " wheel and ratio of teeth, s_H: lower contact limit of gear and pinion, S:"
     " limits.gear_contact_safety",
     reason="pitted flanks break",
+    values=(
+        *given.LOADS,
+        "camshaft.gear.*contact_limit",
+        "camshaft.gear.application_factor",
+        "camshaft.drag",
+        "camshaft.gear.material.E",
+        "camshaft.gear.material.nu",
+    ),
+    levers=(levers.one("camshaft.gear.width"), *levers.GENTLER),
+    page="Camshaft",
 )
 def gear_contact(solution: Solution) -> Demand:
     """Contact pressure on the tooth flanks of the driving gear, Pa."""

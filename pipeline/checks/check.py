@@ -9,6 +9,7 @@ from typing import Literal
 
 from camwright.geometry.display import Displayed
 from camwright.geometry.extrema import to_rank
+from camwright.pipeline.base.levers import Lever
 from camwright.pipeline.base.units import in_unit, shown
 from camwright.pipeline.case.limits import TORQUE_REDUCTION, AnyLimit, Sense
 from camwright.pipeline.case.machine import Machine
@@ -22,6 +23,20 @@ Verdict = Literal["pass", "incomplete", "fail"]
 Screen = Literal["open", "fail"]
 Error = Literal["sampling", "contact", "ends", "guides", "guide_edges", "bore", "unknown"]
 RestsOn = Literal["", "contact", "loads"]
+Page = Literal[
+    "",
+    "Torque",
+    "Cam",
+    "Contact",
+    "Follower",
+    "Roller",
+    "Flat face",
+    "Guides",
+    "Spring",
+    "Camshaft",
+]
+"""Parts of the mechanism in the order of the flow of force; "": of evidence."""
+Scaling = tuple[Literal["normal_force", "contact_pressure"], float]
 Record = dict[str, str | float | bool | list[str] | None]
 EVERY = "all, standstill and over-speed included"
 BY_DUTY = (
@@ -110,6 +125,15 @@ class Declaration:
     load_cases : str           load cases in which it is made, in words
     rests_on : str             "loads": of the cam, none where the follower has left it or locked;
                                "contact": with it; "": neither, such as the contact force itself
+    values : tuple             values besides its own limit on which it rests, dotted names in a
+                               case, see `value_groups`
+    levers : tuple             changes of the case that can turn it to pass; (): none, its data are
+                               missing, or what it compares is stated in the case
+    page : str                 part of the mechanism that it judges
+    certified_by : str         certified quantity of its error on the contact; "": that of the
+                               greatest error
+    scales_with : tuple        "normal_force" or "contact_pressure", and the power of its greatest
+                               value with which the utilisation grows, about; (): neither
     demand : callable          solution -> demand; None where the check does not apply
     """
 
@@ -134,6 +158,11 @@ class Declaration:
     reason: str
     load_cases: str
     rests_on: RestsOn
+    values: tuple[str, ...]
+    levers: tuple[Lever, ...]
+    page: Page
+    certified_by: str
+    scales_with: Scaling | tuple[()]
     demand: Callable[[Solution], Demand | None] = field(repr=False)
 
     def __call__(self, solution: Solution) -> Check | None:
@@ -218,6 +247,11 @@ def check(
     reason: str = "",
     load_cases: str = EVERY,
     rests_on: RestsOn | None = None,
+    values: tuple[str, ...] = (),
+    levers: tuple[Lever, ...] = (),
+    page: Page = "",
+    certified_by: str = "",
+    scales_with: Scaling | tuple[()] = (),
 ) -> Callable[[Callable[[Solution], Demand | None]], Declaration]:
     """Declare a check of the demand that the decorated function returns; see `Declaration`.
 
@@ -251,6 +285,11 @@ def check(
             reason=reason,
             load_cases=load_cases,
             rests_on=rests_on,
+            values=values,
+            levers=levers,
+            page=page,
+            certified_by=certified_by,
+            scales_with=scales_with,
             demand=demand,
         )
 

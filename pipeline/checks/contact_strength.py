@@ -18,7 +18,8 @@ import numpy as np
 from camwright.geometry.arrays import FULL_TURN, Array, uniform_turn
 from camwright.geometry.contour import Contour
 from camwright.geometry.extrema import first_least
-from camwright.pipeline.base import disk_cache
+from camwright.pipeline.base import disk_cache, levers
+from camwright.pipeline.base import value_groups as given
 from camwright.pipeline.base.material import Endurance, Material
 from camwright.pipeline.base.units import shown
 from camwright.pipeline.case.limits import (
@@ -329,6 +330,10 @@ def shakedown_factors(friction: float, poisson: float) -> tuple[Array, Array]:
     " least endurance pressure of cam and follower, of rolling for a roller and of rolling with"
     " sliding for a flat face, S: limits.contact_safety",
     reason="above the endurance pressure the track pits",
+    values=(*given.CONTACT, *given.bodies("*endurance_pressure")),
+    levers=(levers.RECROWNED, *levers.ENDURANCE),
+    page="Contact",
+    certified_by="p0",
 )
 def contact_pressure(solution: Solution) -> Demand:
     """Maximum contact pressure, Pa, against the least endurance of cam and follower."""
@@ -350,6 +355,9 @@ def contact_pressure(solution: Solution) -> Demand:
     formula="sigma_v <= Y / S; sigma_v: greatest von Mises stress with traction, stresses along the"
     " surface included, Y: least yield strength of cam and follower, S: limits.yield_safety",
     reason="a contact above first yield may shake down, see shakedown_traction",
+    values=(*given.CONTACT, *given.bodies("yield_strength")),
+    page="Contact",
+    certified_by="von_mises",
 )
 def first_yield(solution: Solution) -> Demand:
     """Maximum von Mises stress with traction, Pa; shakedown permits values above first yield."""
@@ -381,6 +389,10 @@ def _stress_with_traction(cycle: Cycle) -> Array:
     formula="p0 <= 4 k / S; k = Y/sqrt(3): least shear yield strength of cam and follower, S:"
     " limits.shakedown_safety",
     reason="above the limit every passage adds plastic strain",
+    values=(*given.CONTACT, *given.bodies("yield_strength")),
+    levers=(levers.RECROWNED, *levers.YIELD),
+    page="Contact",
+    certified_by="p0",
 )
 def shakedown(solution: Solution) -> Demand:
     """Maximum contact pressure, Pa, against elastic shakedown of free rolling."""
@@ -404,6 +416,15 @@ def shakedown(solution: Solution) -> Demand:
     " the body in limits.target_life; a body without A and B keeps its endurance pressure up to its"
     " endurance_cycles",
     reason="the target life may need more load cycles than the endurance pressure",
+    values=(
+        *given.LENGTH,
+        *given.bodies("*endurance_slope", "*endurance_intercept"),
+        "limits.contact_safety",
+    ),
+    levers=(levers.CROWNED, levers.NARROWER, *levers.ENDURANCE),
+    page="Contact",
+    certified_by="p0",
+    scales_with=("contact_pressure", 1.0),
 )
 def contact_pressure_at_life(solution: Solution) -> Demand:
     """Maximum contact pressure, Pa, against the endurance at the target life."""
@@ -466,6 +487,11 @@ _SIGNED = (
     formula="K p0 <= p_E / S; p0: contact pressure of plane strain, K: signed pressure over it, p_E"
     " and S as of contact_pressure",
     reason="a line contact fails at its ends first, and most where it is tilted",
+    values=(*given.LENGTH, *given.bodies("*endurance_pressure"), "limits.contact_safety"),
+    levers=(levers.CROWNED, levers.NARROWER, *levers.ENDURANCE),
+    page="Contact",
+    certified_by="p0",
+    scales_with=("contact_pressure", 1.0),
 )
 def edge_pressure(solution: Solution) -> Demand:
     """Greatest signed contact pressure, Pa, against the least endurance of cam and follower."""
@@ -488,6 +514,16 @@ def edge_pressure(solution: Solution) -> Demand:
     formula="K p_eq <= 4 k / S; K: as of edge_pressure, p_eq: equivalent pressure of plane strain,"
     " see shakedown_traction",
     reason="the ends yield first, and an end that does not shake down is rolled out",
+    values=(
+        *given.LENGTH,
+        *given.TRACTION,
+        *given.bodies("yield_strength"),
+        "follower.face.friction",
+    ),
+    levers=(levers.CROWNED, levers.NARROWER, *levers.YIELD),
+    page="Contact",
+    certified_by="p0",
+    scales_with=("contact_pressure", 1.0),
 )
 def edge_shakedown(solution: Solution) -> Demand:
     """Equivalent signed pressure, Pa, against shakedown."""
@@ -510,6 +546,15 @@ def edge_shakedown(solution: Solution) -> Demand:
     formula="p_eq = 4 p0 / lambda(t) <= 4 k / S; t: traction coefficient, lambda = p0/k at"
     " shakedown: 1/max|tau_xz| below the surface, von Mises at the surface above about 0.3",
     reason="traction brings the plastic strain to the surface and lowers the limit",
+    values=(
+        *given.CONTACT,
+        *given.bodies("yield_strength"),
+        "roller.friction",
+        "follower.face.friction",
+    ),
+    levers=(levers.RECROWNED, *levers.YIELD),
+    page="Contact",
+    certified_by="p0",
 )
 def shakedown_traction(solution: Solution) -> Demand:
     """Maximum equivalent contact pressure with traction, Pa, against shakedown."""
@@ -530,6 +575,8 @@ def shakedown_traction(solution: Solution) -> Demand:
     " roller, both without ends",
     reason="beyond it the contact is shorter and beside the middle of both bodies",
     load_cases=NONE,
+    values=("roller.axial_offset",),
+    page="Roller",
 )
 def roller_overlap(solution: Solution) -> Demand | None:
     """Axial offset of the roller from the middle of the cam, m; None under a flat face."""

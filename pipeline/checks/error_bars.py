@@ -12,25 +12,6 @@ from camwright.pipeline.checks.check import ROUNDING, Check, Error
 from camwright.pipeline.cycle.solution import Solution
 
 GUIDE_ERROR = "mesh_reaction"
-FIGURES = {
-    **dict.fromkeys(
-        (
-            "contact_pressure",
-            "contact_pressure_at_life",
-            "edge_pressure",
-            "edge_shakedown",
-            "shakedown",
-            "shakedown_traction",
-            "pressure_by_hardness",
-            "pressure_by_gear_limits",
-        ),
-        "p0",
-    ),
-    **dict.fromkeys(("first_yield", "hardened_case"), "von_mises"),
-    "case_shear": "tau_max",
-    "held_distance": "half_width",
-}
-"""Certified quantity of a demand by check; a demand on several has the greatest error of all."""
 GUIDE_EDGE_ERROR = 0.06
 """Relative error of loaded length and greatest line load of a guide of 25 knots.
 
@@ -55,7 +36,7 @@ def with_error_bars(solution: Solution, checks: Iterable[Check]) -> tuple[Check,
     guides = None if beam in ([], [None]) else float(beam[0] or 0.0)
 
     def share(one: Check) -> float | None:
-        plane = contact_error(solution, FIGURES.get(one.id))
+        plane = contact_error(solution, one.declaration.certified_by or None)
         contact = None if plane is None else plane + centre
         meshes: dict[Error, float | None] = {
             "contact": contact,

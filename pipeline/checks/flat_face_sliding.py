@@ -5,6 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from camwright.geometry.arrays import Array
+from camwright.pipeline.base import levers
+from camwright.pipeline.base import value_groups as given
 from camwright.pipeline.checks.check import Demand, check
 from camwright.pipeline.checks.extremes import greatest
 from camwright.pipeline.checks.missing_keys import lacking
@@ -24,6 +26,8 @@ from camwright.pipeline.cycle.solution import Solution
     formula="2 (|s' - e| + a) <= w; s': slope of the lift, e: cam.offset, a: half-width of the"
     " contact, w: follower.face.width",
     reason="beyond the face the contact runs on its edge",
+    levers=(levers.one("follower.face.width"), *levers.GENTLER),
+    page="Flat face",
 )
 def face_width(solution: Solution) -> Demand | None:
     """Required width of the face, contact half-width included, m."""
@@ -50,6 +54,9 @@ def face_width(solution: Solution) -> Demand | None:
     formula="pi/4 p0 omega (r + s) <= PV; p0: contact pressure, omega: speed of the cam, r: base"
     " radius, s: lift, PV: follower.face.pv_limit",
     reason="a face slides at all angles, and beyond its PV limit it seizes or melts",
+    values=(*given.CONTACT, "follower.face.pv_limit"),
+    levers=(levers.one("follower.face.depth"), *levers.GENTLER),
+    page="Flat face",
 )
 def face_pv(solution: Solution) -> Demand | None:
     """Mean contact pressure times sliding speed, Pa m/s."""

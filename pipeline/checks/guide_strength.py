@@ -9,6 +9,8 @@ import numpy as np
 
 from camwright.geometry.arrays import Array
 from camwright.geometry.extrema import first_greatest
+from camwright.pipeline.base import levers
+from camwright.pipeline.base import value_groups as given
 from camwright.pipeline.base.material import ROOM
 from camwright.pipeline.base.units import celsius, shown
 from camwright.pipeline.case.limits import GUIDE_LENGTH
@@ -121,6 +123,15 @@ def _guide_pressure(side: Side) -> Declaration:
         " its temperature T and at T_p, guides.*.pressure_limit_temperature.",
         reason="a bush above the pressure of its maker creeps and wears; opposite pushes"
         " at both ends of a guide load it although they cancel in the reaction.",
+        values=(
+            *given.LOADS,
+            *given.of_guide(
+                side, "pressure_limit*", "material.yield_strength", "material.strength_at"
+            ),
+            *given.heat(side),
+        ),
+        levers=levers.guide(side, "pressure_limit"),
+        page="Guides",
     )
     def pressure(solution: Solution) -> Demand:
         """Maximum over the turn of the mean pressure in a guide, Pa."""
@@ -189,6 +200,9 @@ def _guide_pv(side: Side) -> Declaration:
         " guides.*.pv_limit, or the limit of nylon by guides.*.lubrication.",
         reason="the heat that a bush can carry off and its wear rate are stated by its"
         " maker as a PV value.",
+        values=(*given.LOADS, *given.of_guide(side, "pv_limit")),
+        levers=levers.guide(side, "pv_limit"),
+        page="Guides",
     )
     def pv(solution: Solution) -> Demand:
         """PV value in a guide, mean over the turn, Pa m/s."""
@@ -255,6 +269,13 @@ def _guide_edge_pressure(side: Side) -> Declaration:
         " the guide is greatest, R: yield strength of the bush at its temperature T.",
         reason="an edge above the yield strength is pressed out, and the guide loses its"
         " length and its clearance.",
+        values=(
+            *given.LOADS,
+            *given.of_guide(side, "material.yield_strength", "material.strength_at"),
+            *given.heat(side),
+        ),
+        levers=levers.guide(side, "pressure_limit"),
+        page="Guides",
     )
     def edge(solution: Solution) -> Demand:
         """Maximum guide edge pressure, Pa."""
@@ -292,6 +313,16 @@ def _guide_temperature(side: Side) -> Declaration:
         " guides.*.wall, R_housing: guides.*.housing_resistance; guides.*.thermal_resistance in"
         " place of both; T_amb: guides.ambient_temperature; T_max: temperature limit of the bush.",
         reason="strength, clearance and wear of a bush depend on its temperature.",
+        values=(
+            *given.LOADS,
+            *given.of_guide(side, "material.temperature_limit"),
+            *given.heat(side),
+        ),
+        levers=(
+            levers.one(f"guides.{side.lower()}.housing_resistance", -1),
+            *levers.guide(side, "friction_max"),
+        ),
+        page="Guides",
     )
     def temperature(solution: Solution) -> Demand:
         """Steady temperature of a guide, degC."""
@@ -332,6 +363,9 @@ def _guide_speed(side: Side) -> Declaration:
         formula="max |v| <= v_max; v: speed of the stem in the bush, v_max: guides.*.speed_limit.",
         reason="a PV limit holds up to the greatest speed of the bush; above it the"
         " rubbing surface overheats at any load.",
+        values=(*given.LOADS, *given.of_guide(side, "speed_limit")),
+        levers=levers.rubbing_speed(side),
+        page="Guides",
     )
     def speed(solution: Solution) -> Demand:
         """Maximum sliding speed, m/s."""
@@ -364,6 +398,7 @@ guide_speed_a, guide_speed_b = _guide_speed("A"), _guide_speed("B")
     reason="a rule of proportion; the reactions, jam index and pressures that it"
     " guards on the drawing board are computed, and are must-have.",
     load_cases=NONE,
+    page="Guides",
 )
 def guide_length(solution: Solution) -> Demand:
     """Distance of the outer ends of the guides over the maximum overhang."""
@@ -386,6 +421,7 @@ def guide_length(solution: Solution) -> Demand:
     ' follower.anti_rotation; "not_needed" holds for a flat face alone.',
     reason="a roller that turns about the stem runs on its edge, and no other check sees it.",
     load_cases=NONE,
+    page="Follower",
 )
 def anti_rotation(solution: Solution) -> Demand:
     """Number of free rotations of the stem about its axis."""

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from camwright.pipeline.base import levers
+from camwright.pipeline.base import value_groups as given
 from camwright.pipeline.base.material import ROOM, Material
 from camwright.pipeline.base.units import shown
 from camwright.pipeline.case.limits import TARGET_LIFE, WEAR_DEPTH, LimitValues
@@ -39,6 +41,14 @@ def _guide_expansion(side: Side) -> Declaration:
         " the greater of the bounds, d: bore, a_b, a_s: thermal expansion of bush and stem, T:"
         " temperature of the guide, C: guides.*.clearance.",
         reason="a stem that binds in a hot or wet bush jams, whatever its loads.",
+        values=(
+            *given.LOADS,
+            *given.of_guide(side, "material.expansion", "material.swelling"),
+            "follower.stem_material.expansion",
+            *given.heat(side),
+        ),
+        levers=(levers.one(f"guides.{side.lower()}.clearance"),),
+        page="Guides",
     )
     def expansion(solution: Solution) -> Demand:
         """Expansion of guide and stem, m, against the clearance between them."""
@@ -126,6 +136,12 @@ def _guide_wear(side: Side) -> Declaration:
         " limits.wear_depth. Without a duty the greatest PV_i counts for the whole life.",
         reason="wear opens the clearance that jamming and edge pressure are computed"
         " with, and no other check limits it over the life.",
+        values=(*given.LOADS, *given.of_guide(side, "wear_rate"), "limits.target_life"),
+        levers=(
+            levers.one(f"guides.{side.lower()}.wear_rate", -1),
+            *levers.guide(side, "pv_limit"),
+        ),
+        page="Guides",
     )
     def wear(solution: Solution) -> Demand:
         """Wear depth of a guide over the target life, m."""

@@ -10,6 +10,8 @@ import numpy as np
 
 from camwright.geometry.arrays import Array
 from camwright.geometry.extrema import first_greatest, first_least
+from camwright.pipeline.base import levers
+from camwright.pipeline.base import value_groups as given
 from camwright.pipeline.base.units import shown, shown_up
 from camwright.pipeline.case.limits import (
     CONTACT_FORCE_MARGIN,
@@ -54,6 +56,9 @@ _TIE = 1e-9  # relative difference up to which two forces are equal, and one is 
     " lift",
     reason="A follower that leaves the cam lands on it with an impact.",
     rests_on="",
+    values=given.LOADS,
+    levers=levers.CONTACT,
+    page="Follower",
 )
 def contact_force_margin(solution: Solution) -> Demand:
     """Minimum contact force over the least spring force."""
@@ -80,6 +85,9 @@ def contact_force_margin(solution: Solution) -> Demand:
     " weight and external force",
     reason="At 1 the inertia of the follower lifts it off the cam.",
     rests_on="",
+    values=given.MOTION,
+    levers=levers.CONTACT,
+    page="Follower",
 )
 def jump(solution: Solution) -> Demand:
     """Maximum unloading inertia force over the closing force."""
@@ -103,6 +111,9 @@ def jump(solution: Solution) -> Demand:
     " of a guide, mu: its nominal friction, F_a: axial force of the cam, j: limits.jam_index.",
     reason="at 1 the follower locks on the rise and the cam or the stem breaks.",
     rests_on="contact",
+    values=given.LOADS,
+    levers=levers.JAM,
+    page="Guides",
 )
 def jam_index(solution: Solution) -> Demand:
     """Friction of the guides over the axial cam force on the rise."""
@@ -134,6 +145,9 @@ def jam_index(solution: Solution) -> Demand:
     reason="friction of bushes scatters by a factor, and it is the greatest that locks"
     " the follower.",
     rests_on="contact",
+    values=given.LOADS,
+    levers=levers.JAM,
+    page="Guides",
 )
 def jam_index_friction_max(solution: Solution) -> Demand:
     """Jam index at the maximum friction coefficients of both guides."""
@@ -155,6 +169,9 @@ def jam_index_friction_max(solution: Solution) -> Demand:
     reason="An engine exceeds its governed speed, and damping and tolerances are not known"
     " closely.",
     load_cases=SPEED_RANGE,
+    values=given.MOTION,
+    levers=levers.CONTACT,
+    page="Follower",
 )
 def jump_speed(solution: Solution) -> Demand | None:
     """Minimum crank speed of follower jump, rad/s; None for a round cam, which has no jump."""
@@ -181,6 +198,9 @@ def jump_speed(solution: Solution) -> Demand | None:
     reason="The synthesis keeps the contact by this closed form; the sweep adds friction"
     " and surge.",
     load_cases=SPEED_RANGE,
+    values=given.LOADS,
+    levers=levers.CONTACT,
+    page="Follower",
 )
 def contact_at_overspeed(solution: Solution) -> Demand:
     """Minimum contact force at the overspeed over the least spring force."""
@@ -215,6 +235,9 @@ def contact_at_overspeed(solution: Solution) -> Demand:
     reason="Between the load cases a harmonic of the lift may meet a natural frequency of"
     " the spring and lift the follower off the cam.",
     load_cases=SPEED_RANGE,
+    values=(*given.LOADS, *given.SURGE),
+    levers=levers.CONTACT,
+    page="Follower",
 )
 def contact_over_speed(solution: Solution) -> Demand:
     """Minimum contact force over the least spring force, surge included, over all speeds."""
@@ -240,6 +263,16 @@ def contact_over_speed(solution: Solution) -> Demand:
     reason="The resonance of the follower on its own stiffness unloads the contact more"
     " than the rigid follower shows.",
     load_cases=SPEED_RANGE,
+    values=(
+        *given.LOADS,
+        "follower.stiffness",
+        "follower.damping_ratio",
+        "roller.material.E",
+        "roller.material.nu",
+        "roller.bearing.ring.*",
+    ),
+    levers=levers.CONTACT,
+    page="Follower",
 )
 def elastic_contact(solution: Solution) -> Demand:
     """Minimum contact force with an elastic stem over the least spring force."""

@@ -8,6 +8,8 @@ from typing import NamedTuple
 import numpy as np
 
 from camwright.geometry.arrays import Array, Values
+from camwright.pipeline.base import levers
+from camwright.pipeline.base import value_groups as given
 from camwright.pipeline.base.material import Material
 from camwright.pipeline.base.units import shown
 from camwright.pipeline.case.limits import (
@@ -55,6 +57,9 @@ TINY = 1e-12
     " diameter, l_tr: bearing length, h, t1, s: height, shaft depth and chamfer of the key, "
     + ALLOWED,
     reason=LOOSE,
+    values=given.KEY,
+    levers=(levers.Scaled(("cam.key.length", "cam.width"), 1), *levers.GENTLER),
+    page="Camshaft",
 )
 def key_pressure(solution: Solution) -> Demand:
     """Pressure of the key on its keyway in the cam, Pa."""
@@ -72,6 +77,9 @@ def key_pressure(solution: Solution) -> Demand:
     formula="p = 2 K_A T/(d l_tr (t1 - s)) <= f S R_e; as key_pressure, with the depth t1 of the"
     " keyway in the shaft",
     reason=LOOSE,
+    values=given.KEY,
+    levers=(levers.Scaled(("cam.key.length", "cam.width"), 1), *levers.GENTLER),
+    page="Camshaft",
 )
 def key_pressure_shaft(solution: Solution) -> Demand | None:
     """Pressure of the key on its keyway in the shaft, Pa; None if the shaft is not covered."""
@@ -94,6 +102,9 @@ def key_pressure_shaft(solution: Solution) -> Demand | None:
     formula="tau = 2 K_A T/(d b l_tr) <= f S R_e/sqrt(3); b: width of the key, R_e: yield strength"
     " of the key, else as key_pressure",
     reason=LOOSE,
+    values=given.KEY,
+    levers=(levers.Scaled(("cam.key.length", "cam.width"), 1), *levers.GENTLER),
+    page="Camshaft",
 )
 def key_shear(solution: Solution) -> Demand:
     """Shear stress in the section of the cam's key, Pa."""
@@ -111,6 +122,9 @@ def key_shear(solution: Solution) -> Demand:
     " factor of the key, or 1 without one",
     reason="where the torque reverses, a seat that slips within the clearance of its key"
     " frets, and fretting starts fatigue cracks",
+    values=(*given.KEY, "camshaft.slip_torque"),
+    levers=(levers.one("camshaft.slip_torque"), *levers.GENTLER),
+    page="Camshaft",
 )
 def cam_slip(solution: Solution) -> Demand | None:
     """Slip torque of the cam's seat over its torque; None if the torque does not reverse."""
@@ -143,6 +157,15 @@ def cam_slip(solution: Solution) -> Demand | None:
     " t2, r: depth and root radius of the keyway, S_e = k_a k_e S_e':"
     " endurance of the cam's material with factors of surface and limits.shaft_reliability",
     reason="a crack from the root of the keyway splits the cam",
+    values=(
+        *given.KEY,
+        *given.CONTACT,
+        "cam.material.fatigue_bending",
+        "cam.material.tensile_strength",
+        "limits.shaft_reliability",
+    ),
+    levers=(levers.one("cam.keyway.root_radius"), levers.one("cam.width"), *levers.GENTLER),
+    page="Cam",
 )
 def keyway_root(solution: Solution) -> Demand:
     """Fatigue safety factor of the keyway's root in the cam."""

@@ -6,6 +6,8 @@ import numpy as np
 
 from camwright.geometry.arrays import FULL_TURN, Array
 from camwright.geometry.extrema import first_greatest
+from camwright.pipeline.base import levers
+from camwright.pipeline.base import value_groups as given
 from camwright.pipeline.base.units import shown
 from camwright.pipeline.case.limits import (
     CAM_RADIUS,
@@ -36,6 +38,8 @@ from camwright.pipeline.cycle.solution import Solution
     method="end of guide A less maximum contour radius, and less the follower, at maximum lift",
     lift_can_help=True,
     load_cases=NONE,
+    levers=(levers.one("follower.overhang_at_max_lift", most=2.0),),
+    page="Guides",
 )
 def guide_gap(solution: Solution) -> Demand:
     """Gap between guide A and the nearest part of cam and follower, m."""
@@ -58,6 +62,8 @@ def guide_gap(solution: Solution) -> Demand:
     method="greatest radius of the contour, refined between samples",
     lift_can_help=True,
     load_cases=NONE,
+    levers=(levers.one("cam.prime_radius", -1, 2.0), *levers.SPRING, *levers.GENTLER),
+    page="Cam",
 )
 def cam_radius(solution: Solution) -> Demand:
     """Maximum radius of the cam, m, against the installation space."""
@@ -86,6 +92,9 @@ def wave_amplitude(cam: CamBody) -> float:
     " limits.waviness",
     reason="Waves of the ground surface unload the contact and mark it.",
     method="m delta (2 pi v/lambda)^2, waves over the full profile tolerance",
+    values=(*given.LOADS, "cam.waviness_length", "cam.profile_tolerance"),
+    levers=(levers.one("cam.profile_tolerance", -1, 10.0), levers.MASS, *levers.SPRING),
+    page="Cam",
 )
 def profile_waviness(solution: Solution) -> Demand:
     """Inertia force of the follower on a wavy contour over the contact force."""
@@ -118,6 +127,8 @@ def profile_waviness(solution: Solution) -> Demand:
     method="greatest step^2/(8 rho) between the points of workshop/contour.csv",
     moved_by_tolerance=False,
     load_cases=NONE,
+    levers=(levers.one("workshop.table_step", -1),),
+    page="Cam",
 )
 def chord_error(solution: Solution) -> Demand:
     """Distance of the chords of the contour table from the contour, m."""
@@ -149,6 +160,8 @@ def chord_error(solution: Solution) -> Demand:
     must_have=False,
     moved_by_tolerance=False,
     load_cases=RIPPLE,
+    values=given.LOADS,
+    page="Cam",
 )
 def phase_tolerance(solution: Solution) -> Demand | None:
     """Ripple reduction at the ends of the phase tolerance of key and gear."""

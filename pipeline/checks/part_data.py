@@ -9,7 +9,7 @@ from camwright.pipeline.base.quantities import Part
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.parts_section import Follower
 from camwright.pipeline.case.scope_section import PART_WORDS, PartName
-from camwright.pipeline.checks.check import NONE, Declaration, Demand, check
+from camwright.pipeline.checks.check import NONE, Declaration, Demand, Page, check
 from camwright.pipeline.cycle.solution import Solution
 
 Tables = Mapping[str, Part | Follower | None]
@@ -22,6 +22,8 @@ def _data(
     needs: Literal["", "roller", "face"] = "",
     described_by: tuple[str, ...] = (),
     applies: Callable[[Case], bool] = lambda _: True,
+    *,
+    page: Page,
 ) -> Declaration:
     """Check that a part is described and lacks no datum; None if the scope leaves it out.
 
@@ -45,6 +47,7 @@ def _data(
         moved_by_tolerance=False,
         load_cases=NONE,
         needs=needs,
+        page=page,
     )
     def data(solution: Solution) -> Demand | None:
         machine = solution.machine
@@ -85,45 +88,65 @@ def _gear(case: Case) -> Tables:
     return {"camshaft.gear": None if case.camshaft is None else case.camshaft.gear}
 
 
-data_cam = _data("cam", lambda case: {"cam": case.cam})
-data_follower = _data("follower", lambda case: {"follower": case.follower})
-data_roller = _data("roller", lambda case: {"roller": case.roller}, "roller")
-data_face = _data("face", lambda case: {"follower.face": case.follower.face}, "face")
-data_roller_bearing = _data("roller_bearing", _roller_bearing, "roller")
+data_cam = _data("cam", lambda case: {"cam": case.cam}, page="Cam")
+data_follower = _data("follower", lambda case: {"follower": case.follower}, page="Follower")
+data_roller = _data("roller", lambda case: {"roller": case.roller}, "roller", page="Roller")
+data_face = _data(
+    "face", lambda case: {"follower.face": case.follower.face}, "face", page="Flat face"
+)
+data_roller_bearing = _data("roller_bearing", _roller_bearing, "roller", page="Roller")
 data_pin = _data(
-    "pin", lambda case: {"roller.pin": case.roller.pin}, "roller", described_by=("roller.pin",)
+    "pin",
+    lambda case: {"roller.pin": case.roller.pin},
+    "roller",
+    described_by=("roller.pin",),
+    page="Roller",
 )
 data_fork = _data(
-    "fork", lambda case: {"roller.fork": case.roller.fork}, "roller", described_by=("roller.fork",)
+    "fork",
+    lambda case: {"roller.fork": case.roller.fork},
+    "roller",
+    described_by=("roller.fork",),
+    page="Roller",
 )
 data_spring = _data(
     "spring",
     _spring,
     described_by=("spring.design",),
     applies=lambda case: case.spring.shape is None,
+    page="Spring",
 )
 data_gas_spring = _data(
     "gas_spring",
     _gas_spring,
     described_by=("spring.gas",),
     applies=lambda case: case.spring.gas is not None,
+    page="Spring",
 )
 data_torsion_spring = _data(
     "torsion_spring",
     lambda case: {"spring": case.spring, "spring.torsion": case.spring.torsion},
     described_by=("spring.torsion",),
     applies=lambda case: case.spring.torsion is not None,
+    page="Spring",
 )
-data_guides = _data("guides", _guides)
+data_guides = _data("guides", _guides, page="Guides")
 data_camshaft = _data(
-    "camshaft", lambda case: {"camshaft": case.camshaft}, described_by=("camshaft",)
+    "camshaft",
+    lambda case: {"camshaft": case.camshaft},
+    described_by=("camshaft",),
+    page="Camshaft",
 )
 data_camshaft_bearings = _data(
     "camshaft_bearings",
     lambda _: {},
     described_by=("camshaft.bearing_rating", "camshaft.bearing_static_rating"),
+    page="Camshaft",
 )
 data_key = _data(
-    "key", lambda case: {"cam.keyway": case.cam.keyway}, described_by=("cam.keyway", "cam.key")
+    "key",
+    lambda case: {"cam.keyway": case.cam.keyway},
+    described_by=("cam.keyway", "cam.key"),
+    page="Camshaft",
 )
-data_gear = _data("gear", _gear, described_by=("camshaft.gear",))
+data_gear = _data("gear", _gear, described_by=("camshaft.gear",), page="Camshaft")

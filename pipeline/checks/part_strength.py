@@ -8,6 +8,8 @@ import numpy as np
 
 from camwright.geometry.arrays import Array, uniform_turn
 from camwright.geometry.errors import InputError
+from camwright.pipeline.base import levers
+from camwright.pipeline.base import value_groups as given
 from camwright.pipeline.base.material import Material
 from camwright.pipeline.base.units import shown
 from camwright.pipeline.case.limits import (
@@ -47,6 +49,9 @@ from camwright.pipeline.follower.roller_parts import Fork, OuterRing, Pin
     " one, N: greatest normal force over all load cases and angles, l: span, b: roller width, d:"
     " pin diameter, Y: yield strength, x: limits.pin_share. Fatigue: roller_pin_fatigue.",
     reason="a bent pin drops the roller",
+    values=(*given.LOADS, "roller.pin.material.yield_strength"),
+    levers=(levers.one("roller.pin.diameter", most=2.0), *levers.LOAD),
+    page="Roller",
 )
 def roller_pin(solution: Solution) -> Demand:
     """Bending stress of the roller pin, Pa."""
@@ -135,6 +140,14 @@ def _normal_force(solution: Solution, factor: float) -> Extreme:
     " fibre over a turn, s_W: fatigue strength in bending, R_m: tensile strength, S:"
     " limits.pin_fatigue_safety; worst fibre and load case.",
     reason="force and direction change with each turn of the cam, and bend the pin to and fro",
+    values=(
+        *given.LOADS,
+        "roller.pin.material.tensile_strength",
+        "roller.pin.material.fatigue_bending",
+    ),
+    levers=(levers.one("roller.pin.diameter", most=2.0), *levers.LOAD),
+    page="Roller",
+    scales_with=("normal_force", 1.0),
 )
 def roller_pin_fatigue(solution: Solution) -> Demand:
     """Fatigue safety factor of the roller pin."""
@@ -171,6 +184,9 @@ def roller_pin_fatigue(solution: Solution) -> Demand:
     " greatest normal force over all load cases and angles, A: section, Y: yield strength, x:"
     " limits.pin_share.",
     reason="a short pin shears before it bends",
+    values=(*given.LOADS, "roller.pin.material.yield_strength"),
+    levers=(levers.one("roller.pin.diameter", most=2.0), *levers.LOAD),
+    page="Roller",
 )
 def roller_pin_shear(solution: Solution) -> Demand:
     """Shear stress of the roller pin, Pa."""
@@ -193,6 +209,13 @@ def roller_pin_shear(solution: Solution) -> Demand:
     " diameter, b: roller width, R_m: tensile strength of the pin, softer than the ring, x:"
     " limits.pin_pressure_share.",
     reason="a seat that yields comes loose and frets",
+    values=(
+        *given.LOADS,
+        "roller.pin.material.tensile_strength",
+        "roller.fork.material.*_strength",
+    ),
+    levers=(levers.one("roller.pin.diameter", most=2.0), *levers.LOAD),
+    page="Roller",
 )
 def roller_pin_pressure(solution: Solution) -> Demand:
     """Pressure of the roller pin in the bore of its bearing, Pa."""
@@ -217,6 +240,14 @@ def roller_pin_pressure(solution: Solution) -> Demand:
     " cases and angles, d: pin diameter, t: cheek width, l: cheek to bearing centre, R_m: lower"
     " tensile strength of fork and pin, x: limits.pin_pressure_share.",
     reason="a seat that yields lets the pin tilt and the roller run on its edge",
+    values=(
+        *given.LOADS,
+        "roller.pin.material.tensile_strength",
+        "roller.fork.material.*_strength",
+        "roller.fork.pressure_limit",
+    ),
+    levers=(levers.one("roller.fork.cheek_width"), *levers.LOAD),
+    page="Roller",
 )
 def cheek_pressure(solution: Solution) -> Demand:
     """Pressure of the roller pin in its fork, Pa."""
@@ -246,6 +277,16 @@ def cheek_pressure(solution: Solution) -> Demand:
     " x: limits.follower_mass_ratio.",
     reason="every force of inertia and the jump speed rest on a mass that the parts exceed",
     load_cases=NONE,
+    values=(
+        "follower.mass",
+        "follower.stem_material.density",
+        "roller.material.density",
+        "roller.pin.material.density",
+        "roller.fork.material.density",
+        "spring.design.density",
+    ),
+    levers=(levers.one("follower.mass", most=2.0),),
+    page="Follower",
 )
 def follower_mass(solution: Solution) -> Demand:
     """Mass of the parts that move with the follower, kg, against the stated mass."""
@@ -314,6 +355,15 @@ def moving_masses(solution: Solution) -> tuple[dict[str, float], tuple[str, ...]
     " newton, times the greatest normal force over all load cases and angles, R_m, s_W: tensile and"
     " fatigue strength of the ring. A ring in a roller of its own is held by it: not judged.",
     reason="the ring without a housing bends at every ball",
+    values=(
+        *given.LOADS,
+        "roller.material.E",
+        "roller.material.nu",
+        "roller.bearing.C0",
+        "roller.bearing.ring.*",
+    ),
+    levers=(levers.Catalogued(levers.BEARING, "C0"), *levers.LOAD),
+    page="Roller",
 )
 def roller_ring_fatigue(solution: Solution) -> Demand:
     """Stress amplitude of the outer ring rolling on the cam, Pa."""
@@ -366,6 +416,13 @@ def _ring_amplitude(parts: PartLoads, tensile_strength: float | None) -> Array:
     formula="F_n/(d b) <= limits.bore_share R_m; F_n: greatest normal force over all load cases and"
     " angles, d: bore diameter, b: cam width, R_m: lower tensile strength of cam and camshaft",
     reason="a widened bore loosens the cam on its shaft",
+    values=(
+        *given.LOADS,
+        "cam.material.tensile_strength",
+        "camshaft.material.tensile_strength",
+    ),
+    levers=(levers.one("cam.width"), levers.one("cam.bore_radius", most=2.0), *levers.LOAD),
+    page="Cam",
 )
 def bore_pressure(solution: Solution) -> Demand:
     """Mean pressure of the bore on the shaft, Pa."""
@@ -408,6 +465,8 @@ def bore_pressure_limit(machine: Machine) -> float | None:
     formula="n <= 0; n: sign changes of T + drag over the turn, greatest over the load cases",
     reason="not a must-have: the torque of a balancing cam reverses by its purpose; the effects"
     " decide: key_pressure, key_shear, cam_slip, gear_bending, pinion_bending",
+    values=given.LOADS,
+    page="Torque",
 )
 def torque_reversals(solution: Solution) -> Demand:
     """Number of torque reversals at gear and key per turn."""
@@ -429,6 +488,14 @@ def torque_reversals(solution: Solution) -> Demand:
     " greatest cam speed of all load cases",
     reason="the force m e w^2 loads shaft, bearings and frame at every speed",
     rests_on="",
+    values=(
+        "cam.material.density",
+        "camshaft.rotor_mass",
+        "limits.overspeed",
+        *given.BENCH,
+    ),
+    levers=(levers.Drilled(),),
+    page="Camshaft",
 )
 def cam_unbalance(solution: Solution) -> Demand:
     """Eccentricity times speed of the rotor, m/s, and the counter-hole for it."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from camwright.geometry.arrays import Array
+from camwright.pipeline.base import value_groups as given
 from camwright.pipeline.base.units import shown
 from camwright.pipeline.case.limits import BORE_SAFETY
 from camwright.pipeline.checks.check import NONE, Demand, check
@@ -33,6 +34,7 @@ SUBSURFACE = 0.3  # half-widths: a shallower maximum is a singularity or an elem
     tier=Tier.CYCLE,
     error="contact",
     rests_on="loads",
+    certified_by="half_width",
 )
 def held_distance(solution: Solution) -> Demand:
     """Minimum distance of the contact from a fixed boundary, in half-widths."""
@@ -80,6 +82,12 @@ def excluded_zone(solution: Solution) -> Demand | None:
     lift_can_help=True,
     tier=Tier.CYCLE,
     error="bore",
+    values=(
+        *given.CONTACT,
+        "cam.material.yield_strength",
+        "cam.material.core_yield_strength",
+    ),
+    page="Cam",
 )
 def bore_stress(solution: Solution) -> Demand | None:
     """Maximum von Mises stress at bore and keyway without the excluded zones, Pa."""

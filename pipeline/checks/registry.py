@@ -68,6 +68,8 @@ MODULES: tuple[ModuleType, ...] = (
 CHECKS: tuple[Declaration, ...] = tuple(
     each for module in MODULES for each in vars(module).values() if isinstance(each, Declaration)
 )
+OF_THE_DESIGN = tuple(each.id for each in CHECKS if not each.evidence)
+"""Ids of the checks of the design."""
 FORECAST = tuple(each for each in CHECKS if each.forecast)
 """Quick checks of the design, to forecast a smoother."""
 TOLERANCED = tuple(each for each in CHECKS if each.moved_by_tolerance and not each.evidence)
@@ -130,7 +132,7 @@ def all_checks(solution: Solution) -> tuple[Check, ...]:
 
     Those that a deeper solution judges are not evaluated.
     """
-    made = with_values_to_confirm(checks_of(solution), solution.case)
+    made = with_values_to_confirm(checks_of(solution), solution.case, OF_THE_DESIGN)
     if solution.tier < Tier.CYCLE:
         mark = f"{solution.tier.word}: "
         made = tuple(replace(one, method=mark + one.method) for one in made)

@@ -14,6 +14,8 @@ import scipy
 
 from camwright.geometry.arrays import Array, Values
 from camwright.geometry.errors import InputError
+from camwright.pipeline.base import levers
+from camwright.pipeline.base import value_groups as given
 from camwright.pipeline.base.units import factor, in_unit
 from camwright.pipeline.case.limits import (
     ROLLER_LIFE,
@@ -103,6 +105,9 @@ def _known(force: Array) -> bool:
     formula="C0/N >= S; C0: static rating, N: greatest normal force over all load cases and angles,"
     " S: limits.roller_static_safety",
     reason="beyond it the balls dent the raceways",
+    values=(*given.LOADS, "roller.bearing.C0"),
+    levers=(levers.Catalogued(levers.BEARING, "C0", inverse=True), *levers.LOAD),
+    page="Roller",
 )
 def roller_static(solution: Solution) -> Demand:
     """Static safety factor s0 of the bearing."""
@@ -130,6 +135,9 @@ def roller_static(solution: Solution) -> Demand:
     formula="N/C <= x; N: greatest normal force over all load cases and angles, C: dynamic rating,"
     " x: limits.roller_load_share",
     reason="beyond it the balls yield in their raceways and no rating life is valid",
+    values=(*given.LOADS, "roller.bearing.C"),
+    levers=(levers.Catalogued(levers.BEARING, "C", inverse=True), *levers.LOAD),
+    page="Roller",
 )
 def roller_load_share(solution: Solution) -> Demand:
     """Greatest normal force over the dynamic rating."""
@@ -158,6 +166,15 @@ def roller_load_share(solution: Solution) -> Demand:
     " revolutions of the roller, n: its mean speed, L: limits.roller_life. Over the load cases"
     f" {BY_DUTY}.",
     reason="the bearing has to last; a clean bearing that lasts longer is not credited",
+    values=(
+        *given.LOADS,
+        *given.SURGE,
+        "roller.bearing.C",
+        "roller.bearing.fatigue_load_limit",
+        "roller.bearing.viscosity",
+    ),
+    levers=(levers.Catalogued(levers.BEARING, "C"), *levers.LOAD),
+    page="Roller",
 )
 def roller_life(solution: Solution) -> Demand:
     """L10 rating life of the bearing, s."""
@@ -208,6 +225,22 @@ def _life(cycle: Cycle, rating: float | None) -> float:
     " viscosity ratio and of e_C P_u/P, e_C: of roller.bearing.contamination, P_u: fatigue load"
     f" limit, L: limits.roller_life. Over the load cases {BY_DUTY}.",
     reason="a thin or dirty film shortens the life to a tenth",
+    values=(
+        *given.LOADS,
+        *given.SURGE,
+        "roller.bearing.C",
+        "roller.bearing.C0",
+        "roller.bearing.fatigue_load_limit",
+        "roller.bearing.viscosity",
+        "roller.bearing.*pitch_diameter",
+        "limits.roller_reliability",
+    ),
+    levers=(
+        levers.Catalogued(levers.BEARING, "C"),
+        levers.one("roller.bearing.viscosity"),
+        *levers.LOAD,
+    ),
+    page="Roller",
 )
 def roller_modified_life(solution: Solution) -> Demand:
     """Modified rating life L_nm of the bearing, s."""
@@ -261,6 +294,13 @@ def roller_modified_life(solution: Solution) -> Demand:
     formula="w (|dP/dtheta| - r)/r <= x n_g; P: pitch curve, r: roller radius, n_g: limiting speed,"
     " x: limits.roller_speed_share",
     reason="beyond it seals and grease overheat",
+    values=("roller.bearing.speed_limit", "limits.overspeed"),
+    levers=(
+        levers.Catalogued(levers.BEARING, "speed_limit", inverse=True),
+        *levers.SPRING,
+        *levers.GENTLER,
+    ),
+    page="Roller",
 )
 def roller_speed(solution: Solution) -> Demand:
     """Maximum speed of the roller on its pin, rad/s."""
@@ -289,6 +329,9 @@ def _outer_ring(name: str, words: str, symbol: str, reason: str, key: str) -> De
         formula=f"N <= {symbol}; N: greatest normal force over all load cases and angles, {symbol}:"
         f" maximum {words} load of an outer ring without a housing",
         reason=reason,
+        values=(*given.LOADS, f"roller.bearing.{key}"),
+        levers=(levers.Catalogued(levers.BEARING, key, inverse=True), *levers.LOAD),
+        page="Roller",
     )
     def against_the_ring(solution: Solution) -> Demand:
         """Maximum normal force, N, against the rating of an unsupported outer ring."""
@@ -330,6 +373,9 @@ roller_static_radial = _outer_ring(
     formula="v/v1 >= k; v: viscosity in operation, v1: rated viscosity of ISO 281 at the mean speed"
     " of the roller and the pitch diameter of its balls, k: limits.viscosity_ratio",
     reason="below it the film is torn, and the modified life does not count the wear",
+    values=("roller.bearing.viscosity", "roller.bearing.*pitch_diameter"),
+    levers=(levers.one("roller.bearing.viscosity"),),
+    page="Roller",
 )
 def bearing_lubrication(solution: Solution) -> Demand:
     """Viscosity ratio of the roller bearing."""
@@ -405,6 +451,16 @@ def _mean_speed(cycle: Cycle) -> float:
     reason="a bearing greased for life ends with its grease",
     load_cases=NONE,
     rests_on="loads",
+    values=(
+        *given.LOADS,
+        "roller.bearing.C",
+        "roller.bearing.temperature",
+        "roller.bearing.grease_life",
+        "roller.bearing.relubrication_interval",
+        "limits.target_life",
+    ),
+    levers=(levers.Catalogued(levers.BEARING, "C"), *levers.LOAD),
+    page="Roller",
 )
 def grease_life(solution: Solution) -> Demand | None:
     """Life of the grease, s; None with oil."""

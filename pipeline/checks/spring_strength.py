@@ -14,6 +14,9 @@ from numpy.typing import ArrayLike
 from camwright.geometry.arrays import Array
 from camwright.geometry.errors import InputError
 from camwright.geometry.extrema import first_greatest
+from camwright.pipeline.base import levers
+from camwright.pipeline.base import value_groups as given
+from camwright.pipeline.base.levers import Lever
 from camwright.pipeline.base.units import celsius, shown
 from camwright.pipeline.case.limits import SPRING_FATIGUE, SPRING_SOLID, SPRING_SURGE, Limit, Sense
 from camwright.pipeline.checks.check import NONE, SPEED_RANGE, Declaration, Demand, check
@@ -99,6 +102,8 @@ def _slow(
     source: str = "",
     note: Callable[[HelicalSpring], str] = lambda _: "",
     lift_can_help: bool = True,
+    values: tuple[str, ...] = (),
+    cured_by: tuple[Lever, ...] = (),
 ) -> Declaration:
     """Check of the spring design at the upper ends of its tolerances, without surge."""
 
@@ -117,6 +122,9 @@ def _slow(
         formula=formula,
         reason=reason,
         load_cases=NONE,
+        values=values,
+        levers=cured_by,
+        page="Spring",
     )
     def demand(solution: Solution) -> Demand:
         design = _design(solution)
@@ -185,6 +193,9 @@ def _over_speed(solution: Solution, use: Callable[[SpringSweep], Array]) -> Over
     " follower on the cam.",
     load_cases=SPEED_RANGE,
     rests_on="loads",
+    values=(*given.SPRING, *given.SURGE, *given.WIRE, "limits.overspeed"),
+    levers=(levers.one("spring.design.wire_diameter", most=2.0), *levers.GENTLER),
+    page="Spring",
 )
 def spring_stress(solution: Solution) -> Demand:
     """Greatest shear stress of the wire with surge over the static strength."""
@@ -218,6 +229,9 @@ def spring_stress(solution: Solution) -> Demand:
     reason="A broken spring releases the follower.",
     load_cases=SPEED_RANGE,
     rests_on="loads",
+    values=(*given.SPRING, *given.SURGE, *given.WIRE, "limits.overspeed"),
+    levers=(levers.one("spring.design.wire_diameter", most=2.0), *levers.GENTLER),
+    page="Spring",
 )
 def spring_fatigue(solution: Solution) -> Demand:
     """Least fatigue safety of the wire with surge over the speed range."""
@@ -259,6 +273,11 @@ spring_solid = _slow(
     formula="(L0 - Lc - s_max) / s_max >= limits.spring_solid; L0, Lc: free and solid length,"
     " s_max = P/k + h: deflection at maximum lift h, preload P high",
     reason="A spring that goes solid stops the follower.",
+    values=(*given.SPRING, *given.RATE),
+    cured_by=(
+        levers.one("spring.design.free_length", most=2.0),
+        *levers.GENTLER,
+    ),
 )
 spring_coil_gap = _slow(
     "spring_coil_gap",
@@ -272,6 +291,11 @@ spring_coil_gap = _slow(
     formula="L0 - Lc - s_max >= 1.5 n (0.0015 D^2/d + 0.1 d); L0, Lc: free and solid length, s_max:"
     " deflection at maximum lift with the preload high, n: active coils, D: mean diameter, d: wire",
     reason="Below it coils touch before the solid length, the rate rises and the wire wears.",
+    values=(*given.SPRING, *given.RATE),
+    cured_by=(
+        levers.one("spring.design.free_length", most=2.0),
+        *levers.GENTLER,
+    ),
 )
 spring_solid_stress = _slow(
     "spring_solid_stress",
@@ -286,6 +310,8 @@ spring_solid_stress = _slow(
     reason="A spring is pressed solid when it is coiled, mounted and over-run, and sets"
     " beyond this stress.",
     lift_can_help=False,
+    values=(*given.SPRING, *given.RATE, *given.WIRE),
+    cured_by=(levers.one("spring.design.free_length", -1, 2.0),),
 )
 spring_buckling = _slow(
     "spring_buckling",
@@ -301,6 +327,10 @@ spring_buckling = _slow(
     " coefficient",
     reason="A spring that buckles rubs on the stem and loses its force.",
     note=lambda design: STABLE if np.isinf(design.buckling_deflection) else "",
+    cured_by=(
+        levers.one("spring.design.mean_diameter", most=2.0),
+        *levers.GENTLER,
+    ),
 )
 
 
@@ -315,6 +345,9 @@ spring_buckling = _slow(
     formula="|G d^4 / (8 D^3 n) / k - 1| <= tolerance of the rate; k: spring.rate",
     reason="All loads are those of spring.rate, all stresses those of the design.",
     load_cases=NONE,
+    values=("spring.rate", *given.RATE),
+    levers=(levers.one("spring.design.coils"), levers.one("spring.design.coils", -1)),
+    page="Spring",
 )
 def spring_rate(solution: Solution) -> Demand:
     """Deviation of the rate of the spring design from that of the case, relative."""
@@ -336,6 +369,8 @@ def spring_rate(solution: Solution) -> Demand:
     reason="Below it strong harmonics of the lift drive the coils, and the force on the"
     " cam depends on a damping that is hardly known.",
     load_cases=SPEED_RANGE,
+    values=(*given.SURGE, "limits.overspeed"),
+    page="Spring",
 )
 def spring_surge(solution: Solution) -> Demand:
     """First natural frequency of the spring over the highest cam frequency."""
@@ -371,6 +406,13 @@ def spring_surge(solution: Solution) -> Demand:
     " force lost in 48 h at spring.design.temperature, F_max: force at maximum lift, P: preload",
     reason="A relaxed spring no longer has the preload on which every force is based.",
     load_cases=NONE,
+    values=(
+        *given.SPRING,
+        *given.RATE,
+        "spring.design.relaxation",
+        "spring.design.temperature",
+    ),
+    page="Spring",
 )
 def spring_relaxation(solution: Solution) -> Demand:
     """Loss of preload by relaxation at temperature, relative."""
@@ -417,6 +459,8 @@ def _gas_check(
     needs: tuple[str, ...] = (),
     lift_can_help: bool = True,
     corner: str = "",
+    values: tuple[str, ...],
+    cured_by: tuple[Lever, ...] = (),
 ) -> Declaration:
     """Check of a gas spring against the limit of its maker, `spring.gas.<allowed>`."""
     in_display_unit = celsius if unit == "degC" else float
@@ -434,6 +478,9 @@ def _gas_check(
         formula=formula,
         reason=reason,
         load_cases=NONE,
+        values=values,
+        levers=cured_by,
+        page="Spring",
     )
     def demand(solution: Solution) -> Demand:
         gas = _gas(solution)
@@ -472,6 +519,11 @@ gas_pressure = _gas_check(
     " tolerance, A: area; above the pressure of the surroundings",
     reason="beyond it seals and cylinder of the spring fail.",
     corner=HARDEST,
+    values=given.SPRING,
+    cured_by=(
+        levers.one("spring.gas.volume", most=2.0),
+        *levers.GENTLER,
+    ),
 )
 gas_stroke = _gas_check(
     "gas_stroke",
@@ -482,6 +534,11 @@ gas_stroke = _gas_check(
     method="greatest lift, between samples too",
     formula="h <= spring.gas.stroke; h: maximum lift",
     reason="a gas spring that strikes its stop breaks.",
+    values=("spring.gas.stroke",),
+    cured_by=(
+        *levers.SPRING,
+        *levers.GENTLER,
+    ),
 )
 gas_speed = _gas_check(
     "gas_speed",
@@ -493,6 +550,11 @@ gas_speed = _gas_check(
     formula="max|w s'| <= spring.gas.speed_limit over all load cases; w: cam speed, s': slope of"
     " the lift",
     reason="a faster seal overheats and wears.",
+    values=(*given.MOTION, "spring.gas.speed_limit"),
+    cured_by=(
+        *levers.SPRING,
+        *levers.GENTLER,
+    ),
 )
 gas_temperature = _gas_check(
     "gas_temperature",
@@ -505,6 +567,7 @@ gas_temperature = _gas_check(
     reason="seals and oil of the spring age above it.",
     needs=("temperature",),
     lift_can_help=False,
+    values=("spring.gas.*temperature*",),
 )
 
 
@@ -547,6 +610,9 @@ def _torsion_check(
         formula=formula,
         reason=reason,
         load_cases=NONE,
+        values=given.SPRING,
+        levers=(levers.one("spring.torsion.wire_diameter", most=2.0), *levers.GENTLER),
+        page="Spring",
     )
     def demand(solution: Solution) -> Demand:
         spring = solution.machine.spring

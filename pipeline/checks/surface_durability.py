@@ -10,6 +10,8 @@ import numpy as np
 
 from camwright.geometry.arrays import Array
 from camwright.geometry.extrema import first_greatest
+from camwright.pipeline.base import levers
+from camwright.pipeline.base import value_groups as given
 from camwright.pipeline.base.material import Material
 from camwright.pipeline.base.units import shown
 from camwright.pipeline.case.limits import (
@@ -53,6 +55,8 @@ RULE_RATIO = 1.5
     " and the drag of its bearing, N: normal force, at least 1 % of the least spring force, mu:"
     " roller.friction",
     reason="a roller that slips wears the track, and its endurance is that of sliding",
+    values=given.TRACTION,
+    page="Contact",
 )
 def traction_demand(solution: Solution) -> Demand:
     """Maximum tangential over normal force of rolling without slip."""
@@ -70,6 +74,8 @@ def traction_demand(solution: Solution) -> Demand:
     formula="T/N <= c mu; c: limits.traction_share, others as of traction_demand",
     reason="a reserve against a friction coefficient lower than stated; grip itself is"
     " traction_demand",
+    values=given.TRACTION,
+    page="Contact",
 )
 def traction_reserve(solution: Solution) -> Demand:
     """Maximum tangential over normal force of rolling, against a share of friction."""
@@ -96,6 +102,14 @@ def _traction_demand(solution: Solution, share: float) -> Demand:
     " surfaces in line contact, Rq: rms roughness of cam and follower",
     reason="the endurance rows hold for lubricated cams in mixed lubrication too, and at"
     " reversals of the motion no film of steady rolling exists",
+    values=(
+        *given.CONTACT,
+        "lubricant.*viscosity",
+        "cam.roughness",
+        "roller.roughness",
+        "follower.face.roughness",
+    ),
+    page="Contact",
 )
 def film_ratio(solution: Solution) -> Demand:
     """Minimum film thickness over roughness; at standstill there is none to judge."""
@@ -148,6 +162,8 @@ def _torsion_demand(solution: Solution, measure: Callable[[Envelope], float]) ->
     " fatigue limits of the cam in torsion and bending, S: limits.fatigue_safety",
     reason="the endurance pressure is measured, this criterion is transferred from"
     " torsion and bending",
+    values=(*given.CONTACT, *given.CAM_FATIGUE),
+    page="Contact",
 )
 def surface_fatigue(solution: Solution) -> Demand:
     """Maximum Crossland stress of a passage of the contact, Pa."""
@@ -168,6 +184,8 @@ def surface_fatigue(solution: Solution) -> Demand:
     " surface_fatigue",
     reason="without credit for compression the criterion is on the safe side, but the"
     " published form of the cap is recalled, not read",
+    values=(*given.CONTACT, *given.CAM_FATIGUE),
+    page="Contact",
 )
 def dang_van(solution: Solution) -> Demand:
     """Maximum Dang Van stress of a passage of the contact, Pa."""
@@ -185,6 +203,16 @@ def dang_van(solution: Solution) -> Demand:
     formula="max sigma_v(z)/Y(z) <= 1 / S; Y(z): yield strength, linear from surface to core over"
     " the case depth, S: limits.case_safety",
     reason="of a hardened surface: a core that yields lets the case break in",
+    values=(
+        *given.CONTACT,
+        "cam.material.yield_strength",
+        "cam.material.core_yield_strength",
+        "cam.material.case_depth",
+    ),
+    levers=levers.CASE,
+    page="Cam",
+    certified_by="von_mises",
+    scales_with=("contact_pressure", 1.0),
 )
 def hardened_case(solution: Solution) -> Demand | None:
     """Maximum von Mises stress over the yield strength at its depth; None if not hardened."""
@@ -212,6 +240,17 @@ def hardened_case(solution: Solution) -> Demand | None:
     " limits.fatigue_safety",
     reason="of a hardened surface: cracks start below the case, where the strength has"
     " fallen and the shear has not",
+    values=(
+        *given.CONTACT,
+        *given.TRACTION,
+        "cam.material.case_depth",
+        "cam.material.fatigue_torsion",
+        "cam.material.core_fatigue_torsion",
+    ),
+    levers=levers.CASE,
+    page="Cam",
+    certified_by="tau_max",
+    scales_with=("contact_pressure", 1.0),
 )
 def case_shear(solution: Solution) -> Demand | None:
     """Maximum shear amplitude over the fatigue limit at its depth; None if not hardened."""
@@ -296,6 +335,10 @@ def _signed_depth(cycle: Cycle) -> Array:
     formula="d / z >= limits.case_depth_ratio; d: case_depth, z: greatest depth of the maximum"
     " shear stress over all load cases, of plane strain times the factor of edge_pressure",
     reason="of a hardened surface: the maximum shear stress must lie within the case",
+    values=(*given.LENGTH, "cam.material.case_depth"),
+    levers=levers.CASE,
+    page="Cam",
+    scales_with=("normal_force", 0.5),
 )
 def case_depth(solution: Solution) -> Demand | None:
     """Effective case depth over the greatest depth of maximum shear; None if not hardened."""
@@ -331,6 +374,9 @@ def case_depth(solution: Solution) -> Demand | None:
     error="contact",
     formula="p0 <= 2.76 HB - 70 MPa; HB: hardness_brinell, at most 400",
     reason="an estimate from the hardness alone; contact_pressure has the endurance of the card",
+    values=(*given.CONTACT, "cam.material.hardness*"),
+    page="Contact",
+    certified_by="p0",
 )
 def pressure_by_hardness(solution: Solution) -> Demand | None:
     """Maximum contact pressure, Pa, against the Buckingham estimate of the softer bodies.
@@ -363,6 +409,9 @@ def pressure_by_hardness(solution: Solution) -> Demand | None:
     formula="p0 <= sigma_Hlim; carburised 1500 MPa, induction hardened 0.541 HV + 882 MPa,"
     " through-hardened 1.313 HV + 373 MPa; HV: hardness_vickers",
     reason="allowable stress of gear flanks, for comparison",
+    values=(*given.CONTACT, "cam.material.hardness*"),
+    page="Contact",
+    certified_by="p0",
 )
 def pressure_by_gear_limits(solution: Solution) -> Demand:
     """Maximum contact pressure, Pa, against the allowable stress of gear flanks."""
@@ -424,6 +473,7 @@ def _estimate(
     reason="rules for different tests may differ; a greater ratio shows that one of them"
     " does not hold for this card",
     load_cases=NONE,
+    values=given.bodies("*endurance_pressure", "hardness*"),
 )
 def endurance_rules(solution: Solution) -> Demand:
     """Greatest ratio of the endurance rules for the material of cam or follower."""

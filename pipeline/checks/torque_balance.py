@@ -8,6 +8,8 @@ import numpy as np
 
 from camwright.geometry.arrays import FULL_TURN, Array
 from camwright.geometry.extrema import first_least
+from camwright.pipeline.base import levers
+from camwright.pipeline.base import value_groups as given
 from camwright.pipeline.base.units import shown
 from camwright.pipeline.case.limits import (
     CONTACT_TORQUE,
@@ -40,6 +42,9 @@ _CHORD = 1e-5
     " without it",
     forecast=True,
     load_cases=RIPPLE,
+    values=given.LOADS,
+    levers=levers.STRONGER,
+    page="Torque",
 )
 def torque_reduction(solution: Solution) -> Demand | None:
     """Reduction of the torque ripple by the cam; None without an engine."""
@@ -99,6 +104,9 @@ def least_reduction(
     method="1 - std of the speed with the cam over that of the machine alone,"
     " inertia of shaft and follower included",
     load_cases=RIPPLE,
+    values=(*given.LOADS, "crankshaft.inertia", "crankshaft.mechanism_inertia"),
+    levers=levers.STRONGER,
+    page="Torque",
 )
 def speed_reduction(solution: Solution) -> Demand | None:
     """Reduction of the crank speed ripple by the cam; None without a crankshaft."""

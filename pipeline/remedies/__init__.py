@@ -4,7 +4,6 @@ In the order of the calculation:
 
 | module              | responsibility                                    | symbol, unit   |
 | ------------------- | ------------------------------------------------- | -------------- |
-| `levers`            | levers of each check: keys, direction, range      | factor         |
 | `lever_steps`       | values of a lever in a case; the case with them   | SI             |
 | `remedy`            | remedy of a check in one line, side effects       | N m; MPa; g    |
 | `case_judge`        | checks of a changed case, its side effects        | utilisation, - |

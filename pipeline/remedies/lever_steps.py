@@ -11,6 +11,17 @@ from pathlib import Path
 from typing import NamedTuple
 
 from camwright.pipeline.base import units
+from camwright.pipeline.base.levers import (
+    BEARING,
+    BUSH_A,
+    BUSH_B,
+    CAM_MATERIAL,
+    Catalogued,
+    Crowned,
+    Drilled,
+    Lever,
+    Scaled,
+)
 from camwright.pipeline.base.material import Material
 from camwright.pipeline.base.quantities import Count, In, marks_of
 from camwright.pipeline.case.cards.bearing_cards import BearingCard
@@ -29,17 +40,6 @@ from camwright.pipeline.case.toml_text import TomlValue
 from camwright.pipeline.contact.cam_body import BalanceHole
 from camwright.pipeline.follower.guide_reactions import Guide
 from camwright.pipeline.follower.roller_parts import Bearing
-from camwright.pipeline.remedies.levers import (
-    BEARING,
-    BUSH_A,
-    BUSH_B,
-    CAM_MATERIAL,
-    Catalogued,
-    Crowned,
-    Drilled,
-    Lever,
-    Scaled,
-)
 
 PARTS = (BEARING, CAM_MATERIAL, BUSH_A, BUSH_B)
 """Keys whose value is the name of a card."""

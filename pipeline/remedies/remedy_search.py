@@ -18,6 +18,14 @@ import numpy as np
 from camwright.geometry.errors import CamError
 from camwright.geometry.lift import Lift
 from camwright.pipeline.base import units
+from camwright.pipeline.base.levers import (
+    LENGTHS,
+    Catalogued,
+    Crowned,
+    Drilled,
+    Lever,
+    Scaled,
+)
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_file import parse_case, with_values
 from camwright.pipeline.case.case_values import value_of
@@ -28,15 +36,6 @@ from camwright.pipeline.checks.registry import DECLARED
 from camwright.pipeline.follower.follower_forces import LEAVES, LOCKS
 from camwright.pipeline.remedies.case_judge import Judge, Preview, effects, newly_failing, used
 from camwright.pipeline.remedies.lever_steps import Step, Workbench, without_exponent
-from camwright.pipeline.remedies.levers import (
-    LENGTHS,
-    LEVERS,
-    Catalogued,
-    Crowned,
-    Drilled,
-    Lever,
-    Scaled,
-)
 from camwright.pipeline.remedies.remedy import Remedy
 from camwright.pipeline.results.trial import Trial
 
@@ -78,7 +77,7 @@ def failures_of(trial: Trial) -> tuple[Failure, ...]:
     failing = [
         one
         for one in trial.checks
-        if one.must_have and one.status == "fail" and not one.evidence and one.id in LEVERS
+        if one.must_have and one.status == "fail" and not one.evidence and one.declaration.levers
     ]
     made = [Failure(one.id, used(one), _worst_corners(trial, one)) for one in failing]
     return tuple(sorted(made, key=lambda each: (-each.used, each.check)))
@@ -207,7 +206,7 @@ def remedies(
     failures : sequence   of the case
     sought : collection   ids of the checks whose remedy is sought; None: of all failures
     """
-    known = {each.check: each for each in failures if each.check in LEVERS}
+    known = {each.check: each for each in failures if DECLARED[each.check].levers}
     wanted = {name: each for name, each in known.items() if sought is None or name in sought}
     if not wanted:
         return {}
@@ -322,7 +321,7 @@ class _Search:
         """Levers that act in the case, with the checks that each can cure."""
         table: dict[Lever, list[str]] = {}
         for name in names:
-            for lever in LEVERS[name]:
+            for lever in DECLARED[name].levers:
                 table.setdefault(lever, []).append(name)
         return [(lever, checks) for lever, checks in table.items() if self.bench.acts(lever)]
 
@@ -492,7 +491,7 @@ class _Search:
     def _needed(self, name: str) -> tuple[str, ...]:
         """Rating that a check would need at the loads of the case; empty without one."""
         value = self.failures[name].used
-        for lever in LEVERS[name]:
+        for lever in DECLARED[name].levers:
             if isinstance(lever, Catalogued) and lever.inverse and self.bench.acts(lever):
                 here = self.bench.rating_here(lever)
                 if here is not None and math.isfinite(value):

@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import re
 from fnmatch import fnmatchcase
-from typing import NamedTuple
+from typing import NamedTuple, get_args
 
 from camwright.pipeline.base.units import shown
 from camwright.pipeline.case.keys import DIGITS, NAME, Key
 from camwright.pipeline.case.limits import AnyLimit
-from camwright.pipeline.checks.check import Declaration
-from camwright.pipeline.checks.confirmation import RESTS_ON
+from camwright.pipeline.checks.check import Declaration, Page
 from camwright.pipeline.checks.registry import DECLARED
 from camwright.pipeline.results.check_report import sentence
 
@@ -63,8 +62,18 @@ def check_text(one: Declaration) -> CheckText:
         decision=f"{decides}. {sentence(one.reason)}",
         load_end=_LOAD_END[one.rests_on],
         depth=depth,
-        rests_on=RESTS_ON.get(one.id, ()),
+        rests_on=one.values,
     )
+
+
+PAGES: tuple[Page, ...] = get_args(Page)
+"""Parts of the mechanism that a check may judge, in the order of the flow of force; "": none."""
+
+
+def page_of(name: str) -> Page:
+    """Part of the mechanism that a check judges by its id; "": evidence, or unknown."""
+    one = DECLARED.get(name)
+    return "" if one is None else one.page
 
 
 def default_of(row: AnyLimit) -> str:
@@ -86,7 +95,7 @@ def checks_with(key: Key) -> tuple[str, ...]:
         one.id
         for one in DECLARED.values()
         if (one.limit is not None and key.path == f"limits.{one.limit.id}")
-        or any(fnmatchcase(key.path, _of_card(rest)) for rest in RESTS_ON.get(one.id, ()))
+        or any(fnmatchcase(key.path, _of_card(rest)) for rest in one.values)
         or _named(key.path, one.formula)
     )
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 from typing import Literal, NamedTuple, TypedDict
@@ -27,15 +27,8 @@ from camwright.pipeline.case.limits import (
     VISCOSITY_RATIO,
 )
 from camwright.pipeline.case.machine import Machine, machines
-from camwright.pipeline.checks import (
-    camshaft_strength,
-    contact_strength,
-    part_strength,
-    surface_durability,
-)
 from camwright.pipeline.checks.cam_shape import least_concave_radius
 from camwright.pipeline.checks.camshaft_strength import tooth_torque_limits
-from camwright.pipeline.checks.check import Declaration
 from camwright.pipeline.checks.contact_strength import (
     FACE_PASSES,
     LoadCycles,
@@ -54,6 +47,7 @@ from camwright.pipeline.checks.part_strength import (
     ring_force_limit,
     seat_pressure,
 )
+from camwright.pipeline.checks.registry import CHECKS
 from camwright.pipeline.checks.roller_bearing import Grease, allowed_spin, grease_of, least_speed
 from camwright.pipeline.checks.spring_strength import (
     Work,
@@ -313,30 +307,6 @@ def surge_of(solved: Solution) -> Surge | None:
     )
 
 
-_SCALED: Mapping[str, tuple[Declaration, float]] = {
-    each.id: (each, power)
-    for each, power in (
-        (part_strength.roller_pin_fatigue, 1.0),
-        (surface_durability.case_depth, 0.5),
-        (camshaft_strength.shaft_fatigue, 1.0),
-        (camshaft_strength.shaft_yield, 1.0),
-        (camshaft_strength.shaft_deflection, 1.0),
-        (camshaft_strength.shaft_slope, 1.0),
-        (camshaft_strength.shaft_bearing_static, 1.0),
-        (camshaft_strength.shaft_bearing_life, 3.0),
-    )
-}
-"""Checks whose utilisation grows about with a power of the greatest normal force."""
-_SCALED_PRESSURE = (
-    contact_strength.edge_pressure,
-    contact_strength.edge_shakedown,
-    contact_strength.contact_pressure_at_life,
-    surface_durability.hardened_case,
-    surface_durability.case_shear,
-)
-"""Checks whose utilisation grows about with the greatest contact pressure."""
-
-
 def scaled_limits(solved: Solution) -> tuple[dict[str, float], dict[str, float]]:
     """Normal force, N, and contact pressure, Pa, at the limit of further checks, by their ids.
 
@@ -345,18 +315,17 @@ def scaled_limits(solved: Solution) -> tuple[dict[str, float], dict[str, float]]
     """
     force = max(float(cycle.loads.normal_force.max()) for cycle in solved.cycles)
     pressure = max(float(cycle.surface.p0.max()) for cycle in solved.cycles)
-    forces = {name: (force, each, power) for name, (each, power) in _SCALED.items()}
-    pressures = {each.id: (pressure, each, 1.0) for each in _SCALED_PRESSURE}
-    limits = []
-    for known in (forces, pressures):
-        allowed = {}
-        for name, (value, declared, power) in known.items():
-            made = declared(solved)
-            use = None if made is None else made.utilisation
-            if use is not None and 0.0 < use < np.inf and value > 0.0:
-                allowed[name] = value / use ** (1.0 / power)
-        limits.append(allowed)
-    return limits[0], limits[1]
+    greatest = {"normal_force": force, "contact_pressure": pressure}
+    limits: dict[str, dict[str, float]] = {name: {} for name in greatest}
+    for declared in CHECKS:
+        if not declared.scales_with:
+            continue
+        measure, power = declared.scales_with
+        made, value = declared(solved), greatest[measure]
+        use = None if made is None else made.utilisation
+        if use is not None and 0.0 < use < np.inf and value > 0.0:
+            limits[measure][declared.id] = value / use ** (1.0 / power)
+    return limits["normal_force"], limits["contact_pressure"]
 
 
 def corrected_ratings(ratings: Ratings, solved: Solution) -> Ratings:

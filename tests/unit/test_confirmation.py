@@ -14,8 +14,8 @@ from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_file import case_of
 from camwright.pipeline.case.value_sources import values_at
 from camwright.pipeline.checks.check import Check
-from camwright.pipeline.checks.confirmation import RESTS_ON, with_values_to_confirm
-from camwright.pipeline.checks.registry import CHECKS
+from camwright.pipeline.checks.confirmation import with_values_to_confirm
+from camwright.pipeline.checks.registry import CHECKS, DECLARED, OF_THE_DESIGN
 from camwright.pipeline.preview import preview_case
 
 ENDURANCE = "materials.steel.endurance_pressure"
@@ -42,19 +42,31 @@ def contact(case: Case) -> Check:
     (declared,) = (each for each in CHECKS if each.id == "contact_pressure")
     check = declared(solved)
     assert check is not None
-    (checked,) = with_values_to_confirm([check], case)
+    (checked,) = with_values_to_confirm([check], case, OF_THE_DESIGN)
     return checked
 
 
 def sourced(text: str) -> dict[str, str]:
     """Source of each value on which the contact pressure rests."""
     own = case_of(tables()).tables()
-    rests = (value for path in RESTS_ON["contact_pressure"] for value in values_at(own, path))
+    rests = (
+        value for path in DECLARED["contact_pressure"].values for value in values_at(own, path)
+    )
     return dict.fromkeys(rests, text)
 
 
+DRAWN = {
+    "acceleration_step", "anti_rotation", "cam_radius", "chord_error", "concave_radius",
+    "curvature_rate", "curvature_ratio", "face_width", "guide_gap", "guide_length", "minimum_wall",
+    "pressure_angle", "second_contact", "self_intersection", "spring_buckling", "tool_gouge",
+    "undercut",
+}  # fmt: skip
+"""Checks of lengths alone, which the drawing fixes."""
+
+
 def test_every_check_of_the_design_states_the_values_it_rests_on():
-    assert {each.id for each in CHECKS if not each.evidence} <= set(RESTS_ON)
+    without = {each.id for each in CHECKS if not each.evidence and not each.values}
+    assert {name for name in without if not name.startswith("data_")} == DRAWN
 
 
 def test_values_with_a_source_leave_nothing_to_confirm():
@@ -88,7 +100,7 @@ def test_a_limit_of_the_table_with_a_recalled_source_counts_until_the_case_state
     def open_values(case):
         check = declared(made.solution(case=case))
         assert check is not None
-        return with_values_to_confirm([check], case)[0].unconfirmed
+        return with_values_to_confirm([check], case, OF_THE_DESIGN)[0].unconfirmed
 
     assert open_values(stated()) == ("limits.guide_gap",)
     own = tables()["limits"] | {"sources": {"guide_gap": "drawing 12"}}
@@ -101,13 +113,18 @@ def test_the_recalled_source_that_a_check_declares_counts():
     case = stated()
     check = declared(made.solution(case=case))
     assert check is not None
-    assert "checks.pressure_by_gear_limits" in with_values_to_confirm([check], case)[0].unconfirmed
+    assert (
+        "checks.pressure_by_gear_limits"
+        in with_values_to_confirm([check], case, OF_THE_DESIGN)[0].unconfirmed
+    )
     entry = {"value": "checks.pressure_by_gear_limits", "source": "ISO 6336-5:2016, figure 9"}
-    confirmed = with_values_to_confirm([check], stated(confirmed=[entry]))[0].unconfirmed
+    confirmed = with_values_to_confirm([check], stated(confirmed=[entry]), OF_THE_DESIGN)[
+        0
+    ].unconfirmed
     assert "checks.pressure_by_gear_limits" not in confirmed
     entry["value"] = "checks.pressure_by_gear_limit"
     with pytest.raises(InputError, match=r"did you mean checks\.pressure_by_gear_limits"):
-        with_values_to_confirm([check], stated(confirmed=[entry]))
+        with_values_to_confirm([check], stated(confirmed=[entry]), OF_THE_DESIGN)
 
 
 def test_the_residual_of_a_counterweight_counts_until_it_is_confirmed():
@@ -119,7 +136,7 @@ def test_the_residual_of_a_counterweight_counts_until_it_is_confirmed():
         case = stated(camshaft=tables()["camshaft"] | {"counterweight": weight}, **more)
         check = declared(made.solution(case=case))
         assert check is not None
-        return value in with_values_to_confirm([check], case)[0].unconfirmed
+        return value in with_values_to_confirm([check], case, OF_THE_DESIGN)[0].unconfirmed
 
     assert unconfirmed("assumed: G 2.5")
     assert not unconfirmed("balancing sheet 12")
@@ -130,7 +147,7 @@ def test_a_check_without_data_rests_on_nothing():
     case = stated(sources=sourced("recalled"))
     check = contact(case)
     assert check.unconfirmed
-    missing = with_values_to_confirm([replace(check, demand=None)], case)
+    missing = with_values_to_confirm([replace(check, demand=None)], case, OF_THE_DESIGN)
     assert missing[0].unconfirmed == ()
 
 
@@ -219,7 +236,9 @@ def moved(value: str) -> set[str]:
 def resting_on(value: str) -> set[str]:
     """Checks that state that they rest on a value."""
     own = case_of(tables()).tables()
-    return {name for name, paths in RESTS_ON.items() for p in paths if value in values_at(own, p)}
+    return {
+        name for name, one in DECLARED.items() for p in one.values if value in values_at(own, p)
+    }
 
 
 DATA = (

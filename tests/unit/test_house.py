@@ -278,3 +278,39 @@ def test_prose_is_in_the_terms_of_the_field() -> None:
         if DIALECT.search(line)
     ]
     assert wrong == []
+
+
+# Modules that name a check by its id besides its declaration: tables of screening and synthesis,
+# and texts, records or columns of the same name.
+NAME_CHECKS = {
+    "geometry.cam_size", "pipeline.base.missing_kinds", "pipeline.case.cards.substitution",
+    "pipeline.case.consistency", "pipeline.case.limits", "pipeline.case.plausibility",
+    "pipeline.case.requirements_section", "pipeline.cycle.cycle", "pipeline.cycle.guide_pressure",
+    "pipeline.cycle.part_loads", "pipeline.cycle.rolling_history",
+    "pipeline.follower.elastic_follower", "pipeline.follower.flat_face_motion",
+    "pipeline.follower.roller_parts", "pipeline.iteration", "pipeline.recomputation",
+    "pipeline.results.model_limits", "pipeline.results.run_records",
+    "pipeline.screening.screened_checks", "pipeline.sizing.sizing", "pipeline.smoothing.allowables",
+    "pipeline.smoothing.bounds", "pipeline.smoothing.constraints",
+    "pipeline.smoothing.part_constraints", "pipeline.smoothing.problem_setup",
+    "pipeline.smoothing.scenario", "pipeline.smoothing.shadow_prices",
+    "pipeline.studies.design.candidate_search", "pipeline.studies.design.synthesised_points",
+    "pipeline.studies.papers.figures_2015_valve", "pipeline.studies.papers.petrescu_2015",
+    "pipeline.studies.redesign.design_point", "pipeline.studies.redesign.redesign_study",
+    "pipeline.studies.valve_cam", "reports.analysis_sheet", "reports.comparisons.redesign_page",
+    "reports.part_figures", "reports.picture_list", "reports.report_content",
+}  # fmt: skip
+
+
+def test_the_facts_of_a_check_stand_in_its_declaration() -> None:
+    """No other module gains a table by the ids of checks; one that loses it leaves the list."""
+    from camwright.pipeline.checks.registry import DECLARED
+
+    naming = {
+        _own(name)
+        for name, path in modules().items()
+        if not _own(name).startswith("pipeline.checks.")
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
+        if isinstance(node, ast.Constant) and node.value in DECLARED
+    }
+    assert naming == NAME_CHECKS

@@ -11,6 +11,15 @@ import numpy as np
 import pytest
 
 from camwright.geometry.errors import InputError
+from camwright.pipeline.base.levers import (
+    BEARING,
+    BUSH_A,
+    CAM_MATERIAL,
+    Catalogued,
+    Crowned,
+    Drilled,
+    Scaled,
+)
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_file import read_case, with_values
 from camwright.pipeline.case.case_values import quantity_of, value_of
@@ -20,16 +29,6 @@ from camwright.pipeline.checks.registry import DECLARED
 from camwright.pipeline.follower.follower_forces import LEAVES, LOCKS
 from camwright.pipeline.remedies.case_judge import Judge
 from camwright.pipeline.remedies.lever_steps import PARTS, Workbench, without_exponent
-from camwright.pipeline.remedies.levers import (
-    BEARING,
-    BUSH_A,
-    CAM_MATERIAL,
-    LEVERS,
-    Catalogued,
-    Crowned,
-    Drilled,
-    Scaled,
-)
 from camwright.pipeline.remedies.remedy import WIDTH, Remedy
 from camwright.pipeline.remedies.remedy_search import LEVELS, _greatest_line_load, needed_first
 
@@ -47,14 +46,14 @@ def bench(case: Case) -> Workbench:
 
 
 def test_every_lever_belongs_to_a_must_have_check_of_the_design() -> None:
-    for name, levers in LEVERS.items():
-        assert DECLARED[name].must_have and not DECLARED[name].evidence, name
-        assert levers and len(set(levers)) == len(levers), name
+    for name, one in DECLARED.items():
+        assert not one.levers or (one.must_have and not one.evidence), name
+        assert len(set(one.levers)) == len(one.levers), name
 
 
 def test_every_scaled_key_is_a_number_of_the_case_file() -> None:
-    for levers in LEVERS.values():
-        for lever in levers:
+    for one in DECLARED.values():
+        for lever in one.levers:
             if not isinstance(lever, Scaled):
                 continue
             assert 1.0 < lever.most <= math.exp(LEVELS[-1]) * (1.0 + 1e-9), lever

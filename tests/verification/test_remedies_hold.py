@@ -15,9 +15,9 @@ import pytest
 from small_machine import small_machine
 
 from camwright.pipeline.case.case_file import case_of, read_case, with_values
+from camwright.pipeline.checks.registry import DECLARED
 from camwright.pipeline.preview import preview_case
 from camwright.pipeline.remedies.lever_steps import Workbench
-from camwright.pipeline.remedies.levers import LEVERS
 from camwright.pipeline.remedies.remedy import WIDTH
 from camwright.pipeline.remedies.remedy_search import (
     IN_A_RUN,
@@ -76,7 +76,7 @@ def test_a_remedy_read_back_cures_its_check(trial: Trial) -> None:
 
 def test_no_failure_costs_nothing_and_evidence_has_no_remedy(trial: Trial) -> None:
     assert remedies(trial.case, None, None, ()) == {}
-    assert "held_distance" not in LEVERS
+    assert DECLARED["held_distance"].levers == ()
     assert remedies(trial.case, None, None, [Failure("held_distance", 2.0, ())]) == {}
 
 

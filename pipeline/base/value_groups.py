@@ -1,0 +1,60 @@
+"""Groups of values of a case on which checks rest, besides their own limits.
+
+Dotted names in a case, with wildcards in the last word, a material by the part made of it. A length
+that the designer chooses is not listed: the drawing fixes it, not a source.
+"""
+
+from __future__ import annotations
+
+from typing import Literal
+
+SPRING = ("spring.rate", "spring.preload", "spring.gas.*", "spring.torsion.*")
+MOTION = (*SPRING, "follower.mass", "limits.overspeed")
+LOADS = (
+    *MOTION,
+    *("guides.a.friction*", "guides.a.material.E", "guides.a.material.nu"),
+    *("guides.b.friction*", "guides.b.material.E", "guides.b.material.nu"),
+    *("follower.stem_material.E", "follower.stem_material.nu"),
+)
+_BODIES = ("cam.material", "roller.material", "follower.face.material")
+CAM_FATIGUE = ("cam.material.fatigue_torsion", "cam.material.fatigue_bending")
+KEY = (
+    *LOADS,
+    *("cam.key.application_factor", "cam.key.material.yield_strength", "limits.key_reversal"),
+    *("cam.material.*yield_strength", "camshaft.material.*yield_strength"),
+)
+BENCH = ("camshaft.counterweight.residual",)
+SHAFT = (*LOADS, "camshaft.drag", "camshaft.rotor_mass", "cam.material.density", *BENCH)
+SURGE = ("spring.design.shear_modulus", "spring.design.density", "spring.design.damping_ratio")
+TRACTION = (
+    *LOADS,
+    *("roller.friction", "roller.inertia", "roller.material.density"),
+    *("roller.bearing.drag_torque", "roller.bearing.friction"),
+)
+WIRE = ("spring.design.strength_at_1mm", "spring.design.strength_exponent")
+RATE = ("spring.design.shear_modulus",)
+
+
+def bodies(*keys: str) -> tuple[str, ...]:
+    """Keys of the materials of cam and follower."""
+    return tuple(f"{body}.{key}" for body in _BODIES for key in keys)
+
+
+CONTACT = (*LOADS, *bodies("E", "nu"))
+LENGTH = (
+    *CONTACT,
+    *("cam.end.*", "roller.end.*", "follower.face.end.*"),
+    *("cam.crown.*", "roller.crown.*", "follower.face.crown.*"),
+    *("guides.a.clearance", "guides.b.clearance", "roller.axial_offset"),
+)
+
+
+def of_guide(side: Literal["A", "B"], *keys: str) -> tuple[str, ...]:
+    """Keys of guide A or B."""
+    return tuple(f"guides.{side.lower()}.{key}" for key in keys)
+
+
+def heat(side: Literal["A", "B"]) -> tuple[str, ...]:
+    """Keys of the temperature of guide A or B."""
+    path = of_guide(side, "material.conductivity", "thermal_resistance", "housing_resistance")
+    return (*path, "guides.ambient_temperature")
