@@ -15,6 +15,7 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 
 Values = TypeVar("Values", NDArray[np.float64], NDArray[np.complex128])
+Value = float | NDArray[np.float64]
 """Real values, or complex ones while a derivative is taken by a complex step."""
 
 FULL_TURN = 2.0 * np.pi

@@ -18,8 +18,9 @@ from camwright.geometry.arrays import FULL_TURN, Array, positive
 from camwright.geometry.eccentric import Eccentric
 from camwright.geometry.errors import InputError
 from camwright.geometry.extrema import Extremum, least_argument
+from camwright.geometry.lift import Jet
 from camwright.geometry.lift_parts import LiftPart, LiftParts
-from camwright.geometry.pitch_curve import speed_and_curvature
+from camwright.geometry.pitch_curve import RollerMotion
 
 _BALANCED = 1e-9
 """Offset over the range of its search, below which rise and return are alike: no offset."""
@@ -123,7 +124,7 @@ class RollerCam(ABC):
         height = float(np.sqrt(prime_radius**2 - offset**2))
 
         def curvature(s: Array, s1: Array, s2: Array) -> Array:
-            return speed_and_curvature(s1 - offset, height + s, s1, s2)[1]
+            return _motion(Jet(s, s1, s2), height, offset).path_curvature
 
         convex, concave = parts.greatest(curvature), parts.least(curvature)
         return PitchExtremes(
@@ -319,14 +320,19 @@ def _angles(parts: LiftParts, height: float, offset: float) -> tuple[Extremum, E
 
     On the other stroke s' counts as zero, which the bottom of the lift has in any case.
     """
+
+    def angle(jet: Jet) -> Array:
+        return np.abs(_motion(jet, height, offset).pressure_angle)
+
     return (
-        parts.greatest(lambda s, s1, _: _angle(np.maximum(s1, 0.0), offset, height + s)),
-        parts.greatest(lambda s, s1, _: _angle(np.minimum(s1, 0.0), offset, height + s)),
+        parts.greatest(lambda s, s1, s2: angle(Jet(s, np.maximum(s1, 0.0), s2))),
+        parts.greatest(lambda s, s1, s2: angle(Jet(s, np.minimum(s1, 0.0), s2))),
     )
 
 
-def _angle(slope: Array, offset: float, height: Array) -> Array:
-    return np.arctan2(np.abs(slope - offset), height)
+def _motion(jet: Jet, height: float, offset: float) -> RollerMotion:
+    """Motion of the roller centre; its radius is not needed."""
+    return RollerMotion(jet, height, offset, np.nan)
 
 
 def _height_of_curvature(slope: Array, bend: Array, offset: float, curvature: float) -> Array:

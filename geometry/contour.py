@@ -15,10 +15,10 @@ from camwright.geometry.display import Displayed, panels_of
 from camwright.geometry.errors import GeometryError, InputError, in_millimetres
 from camwright.geometry.extrema import Extremum, greatest, least
 from camwright.geometry.follower_height import roller_height
-from camwright.geometry.follower_path import FollowerPath, cam_axes, reciprocal
+from camwright.geometry.follower_path import FollowerPath, Motion, cam_axes, reciprocal
 from camwright.geometry.interference import SecondContact, crossings, second_contact
-from camwright.geometry.lift import Lift
-from camwright.geometry.pitch_curve import PitchCurve
+from camwright.geometry.lift import Jet, Lift
+from camwright.geometry.pitch_curve import PitchCurve, RollerMotion
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -107,8 +107,15 @@ class Contour(Displayed, ABC):
         """Contact point with its outward normal and its tangent."""
 
     @abstractmethod
+    def motion(self, jet: Jet, friction: float = 0.0) -> Motion:
+        """Motion of the follower under the lift of this cam, at the angles of its jet.
+
+        friction: of the follower on the cam
+        """
+
     def speed(self, theta: ArrayLike) -> Array:
         """Velocity of the contact point along the tangent, m/rad; negative where undercut."""
+        return self.motion(self.lift.jet(theta, 2)).contour_speed
 
     @abstractmethod
     def factor(self, theta: ArrayLike) -> Array:
@@ -413,13 +420,12 @@ class RollerContour(Contour):
         inset = self.roller_radius
         return cam_axes(theta, height - inset * across, self.pitch.offset + inset * along)
 
-    def speed(self, theta: ArrayLike) -> Array:
-        speed, curvature = self.pitch.speed_and_curvature(theta)
-        return speed * (1.0 - self.roller_radius * curvature)
+    def motion(self, jet: Jet, friction: float = 0.0) -> RollerMotion:  # noqa: ARG002
+        return RollerMotion(jet, self.pitch.height_base, self.pitch.offset, self.roller_radius)
 
     def factor(self, theta: ArrayLike) -> Array:
         """Undercut factor 1 - roller radius x pitch curvature; zero at a cusp, 1 if straight."""
-        return 1.0 - self.roller_radius * self.pitch.curvature(theta)
+        return 1.0 - self.motion(self.lift.jet(theta, 2)).sharpness
 
     def undercut(self) -> Undercut:
         curvature, theta = self.pitch.curvature_max()

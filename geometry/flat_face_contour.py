@@ -9,13 +9,14 @@ from typing import Self
 import numpy as np
 from numpy.typing import ArrayLike
 
-from camwright.geometry.arrays import Array
+from camwright.geometry.arrays import Array, Value
 from camwright.geometry.contour import Contour, Frame, Undercut
 from camwright.geometry.errors import InputError, in_millimetres
 from camwright.geometry.extrema import Extremum, greatest, least
 from camwright.geometry.follower_height import face_height
-from camwright.geometry.follower_path import FollowerPath, reciprocal, require_offset
-from camwright.geometry.lift import Lift
+from camwright.geometry.follower_path import FollowerPath, Reaction, reciprocal, require_offset
+from camwright.geometry.lift import Jet, Lift
+from camwright.geometry.pitch_curve import magnitude
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -97,6 +98,110 @@ class FacePath(FollowerPath):
         return np.abs(radius), reciprocal(radius)
 
 
+@dataclass(frozen=True, eq=False)
+class FaceMotion:
+    """Flat face on the unloaded cam at cam angles, its contact s' beside the cam axis.
+
+    See `Motion`.
+
+    Parameters
+    ----------
+    jet : Jet             lift and its derivatives
+    base_height : float   r, height of the face at zero lift
+    offset : float        e
+    friction : float      of the face on the cam
+    """
+
+    jet: Jet
+    base_height: Value
+    offset: Value
+    friction: Value
+
+    @cached_property
+    def height(self) -> Array:
+        """Height of the face over the cam axis."""
+        return self.base_height + self.jet.lift
+
+    @cached_property
+    def radius(self) -> Array:
+        """Radius of curvature of the contour, r + s + s''."""
+        return self.height + self.jet.bend
+
+    @property
+    def size(self) -> Array:
+        return self.height
+
+    @property
+    def pressure_angle(self) -> Array:
+        """Zero: the face is square to the stem."""
+        return np.zeros(self.jet.slope.shape)
+
+    @property
+    def side(self) -> Array:
+        """Side force on the stem over the axial force: friction along the face."""
+        return np.broadcast_to(self.friction, self.jet.slope.shape)
+
+    @cached_property
+    def arm(self) -> Array:
+        """Lever arm s' - e of the contact force about the stem axis."""
+        return self.jet.slope - self.offset
+
+    @property
+    def path_speed(self) -> Array:
+        """Speed of the contact point, m/rad."""
+        return magnitude(self.radius)
+
+    @property
+    def path_curvature(self) -> Array:
+        """Curvature of the contour, 1/m; infinite at a cusp."""
+        return reciprocal(self.radius)
+
+    @cached_property
+    def sharpness(self) -> Array:
+        """-s''/(r + s): 1 at a cusp."""
+        return 1.0 - self.radius / self.height
+
+    @property
+    def gain(self) -> float:
+        """One: the face is square to the stem."""
+        return 1.0
+
+    @property
+    def sliding(self) -> Array:
+        return self.friction * self.height
+
+    @cached_property
+    def contour_radius(self) -> Array:
+        return np.sqrt(self.height**2 + self.jet.slope**2)
+
+    @property
+    def contour_speed(self) -> Array:
+        return self.radius
+
+    @property
+    def curvature_slope(self) -> Array:
+        return -(self.jet.slope + self.jet.jerk) / self.radius**3
+
+    @property
+    def rolling(self) -> float:
+        """Zero: the face slides."""
+        return 0.0
+
+    def radius_at(self, lift: Value) -> Array:
+        return self.height - self.jet.lift + lift
+
+    def reactions(self, lever: tuple[Array, Array], spacing: Value) -> tuple[Reaction, Reaction]:
+        """Of the friction along the face, and of the axial force beside the stem axis."""
+        tilt = self.arm / spacing
+        along = [self.friction * each for each in lever]
+        whole = [each + magnitude(tilt) for each in along]
+        on_a, on_b = (
+            Reaction(one, one - magnitude(each - tilt))
+            for one, each in zip(whole, along, strict=True)
+        )
+        return on_a, on_b
+
+
 @dataclass(frozen=True, eq=False, repr=False)
 class FlatFaceContour(Contour):
     """Cam surface under a flat face: the envelope of the face's line.
@@ -131,12 +236,12 @@ class FlatFaceContour(Contour):
     def local_frame(self, theta: ArrayLike) -> Frame:
         return Frame(self.pitch.points(theta), self.normal(theta), self.tangent(theta))
 
-    def speed(self, theta: ArrayLike) -> Array:
-        return self.radius_of_curvature(theta)
+    def motion(self, jet: Jet, friction: float = 0.0) -> FaceMotion:
+        return FaceMotion(jet, self.pitch.base_radius, self.pitch.offset, friction)
 
     def factor(self, theta: ArrayLike) -> Array:
         """Undercut factor (r + s + s'')/(r + s); zero at a cusp, 1 in a dwell."""
-        return self.radius_of_curvature(theta) / self.pitch.height(theta)
+        return 1.0 - self.motion(self.lift.jet(theta, 2)).sharpness
 
     def undercut(self) -> Undercut:
         return self._undercut

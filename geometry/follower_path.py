@@ -5,16 +5,112 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Self
+from typing import NamedTuple, Protocol, Self
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from camwright.geometry.arrays import Array, positive
+from camwright.geometry.arrays import Array, Value, positive
 from camwright.geometry.display import Displayed
 from camwright.geometry.errors import InputError, in_millimetres
 from camwright.geometry.extrema import Extremum, greatest, least
-from camwright.geometry.lift import Lift
+from camwright.geometry.lift import Jet, Lift
+
+
+class Reaction(NamedTuple):
+    """Load of a guide over the axial force, (..., n).
+
+    whole: sum of the loads of point supports by the side force and by the couple, which the finite
+    elements correct; slack: that sum less the load by both at once, None without a couple.
+    """
+
+    whole: Array
+    slack: Array | None = None
+
+    @property
+    def on_points(self) -> Array:
+        """Reaction of a point support."""
+        return self.whole if self.slack is None else self.whole - self.slack
+
+    def corrected(self, fix: Array) -> Array:
+        """Load with a correction, >= 0; 1: that of a point support."""
+        if self.slack is None:
+            return self.whole * fix
+        load = self.whole * fix - self.slack
+        return np.where(np.real(load) > 0.0, load, 0.0 * load)
+
+
+class Motion(Protocol):
+    """Motion of a follower on the unloaded cam at cam angles.
+
+    Arrays (..., n), real or complex, m. Contour, checks, screening and synthesis evaluate them.
+    """
+
+    @property
+    def jet(self) -> Jet:
+        """Lift and its derivatives."""
+
+    @property
+    def height(self) -> Array:
+        """Height of the reference point of the follower over the cam axis."""
+
+    @property
+    def pressure_angle(self) -> Array:
+        """Pressure angle, rad."""
+
+    @property
+    def path_speed(self) -> Array:
+        """Path length of the reference point per radian, m/rad."""
+
+    @property
+    def path_curvature(self) -> Array:
+        """Curvature of that path, 1/m, positive where convex."""
+
+    @property
+    def sharpness(self) -> Array:
+        """1 less the undercut factor: 1 at a cusp."""
+
+    @property
+    def size(self) -> Value:
+        """Relative radius of the contact over the undercut factor."""
+
+    @property
+    def gain(self) -> Value:
+        """Normal over axial force."""
+
+    @property
+    def side(self) -> Array:
+        """Side force on the stem over the axial force."""
+
+    @property
+    def arm(self) -> Array:
+        """Distance of the axial force from the stem axis."""
+
+    @property
+    def sliding(self) -> Value:
+        """Torque of the friction on the cam over the axial force."""
+
+    @property
+    def rolling(self) -> Value:
+        """Turn of a roller over that of the cam."""
+
+    @property
+    def contour_radius(self) -> Array:
+        """Distance of the contact from the cam axis."""
+
+    @property
+    def contour_speed(self) -> Array:
+        """Speed of the contact along the contour, m/rad; negative where undercut."""
+
+    @property
+    def curvature_slope(self) -> Array:
+        """Change of the contour's curvature along it, 1/m^2."""
+
+    def radius_at(self, lift: Value) -> Array:
+        """Radius of the contour in a dwell at a lift."""
+
+    def reactions(self, lever: tuple[Array, Array], spacing: Value) -> tuple[Reaction, Reaction]:
+        """Loads of guides on points over the axial force."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -41,6 +41,25 @@ _RESAMPLED = 720
 _DRAWN = 721
 _SEARCH = 4
 """Search points per sample: a quintic has at most four extremes per part."""
+
+
+_UNKNOWN = readonly(np.nan)
+
+
+class Jet(NamedTuple):
+    """Lift and its derivatives by the cam angle, m/rad^k, (..., n), real or complex.
+
+    jerk: NaN () where it is not evaluated.
+    """
+
+    lift: Array
+    slope: Array
+    bend: Array
+    jerk: Array = _UNKNOWN
+
+    def at(self, take: Callable[[Array], Array]) -> Jet:
+        """The jet at some of its angles."""
+        return Jet(*(each if each is _UNKNOWN else take(each) for each in self))
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -141,6 +160,10 @@ class Lift(Displayed):
         if derivative not in range(DEGREE):
             raise InputError("derivative", derivative, "0, 1, 2, 3 or 4")
         return self.spline(theta, derivative)
+
+    def jet(self, theta: ArrayLike, order: int = 3) -> Jet:
+        """Lift and its derivatives up to `order`, 2 or 3, see `derivatives`."""
+        return Jet(*self.derivatives(theta, order))
 
     def derivatives(self, theta: ArrayLike, order: int = 3) -> Array:
         """Lift s and its derivatives up to `order`, m/rad^k, by one look-up.

@@ -13,10 +13,16 @@ from typing import Self
 import numpy as np
 from numpy.typing import ArrayLike
 
-from camwright.geometry.arrays import Array, Values
+from camwright.geometry.arrays import Array, Value, Values
 from camwright.geometry.extrema import Extremum, greatest
-from camwright.geometry.follower_path import FollowerPath, cam_axes, reciprocal, require_offset
-from camwright.geometry.lift import Lift
+from camwright.geometry.follower_path import (
+    FollowerPath,
+    Reaction,
+    cam_axes,
+    reciprocal,
+    require_offset,
+)
+from camwright.geometry.lift import Jet, Lift
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -119,6 +125,127 @@ class PitchCurve(FollowerPath):
     def radius_of_curvature(self, theta: ArrayLike) -> Array:
         """Signed radius of curvature, m; infinite at an inflection."""
         return reciprocal(self.curvature(theta))
+
+
+@dataclass(frozen=True, eq=False)
+class RollerMotion:
+    """Roller on the unloaded cam at cam angles; see `Motion`.
+
+    Parameters
+    ----------
+    jet : Jet             lift and its derivatives
+    base_height : float   height of the roller centre at zero lift, sqrt(r^2 - e^2)
+    offset : float        e
+    size : float          roller radius
+    """
+
+    jet: Jet
+    base_height: Value
+    offset: Value
+    size: Value
+
+    @cached_property
+    def along(self) -> Array:
+        """Velocity of the roller centre along the follower axis, s' - e, m/rad."""
+        return self.jet.slope - self.offset
+
+    @cached_property
+    def height(self) -> Array:
+        """Height of the roller centre; its velocity across the axis, m/rad, too."""
+        return self.base_height + self.jet.lift
+
+    @cached_property
+    def tangent(self) -> Array:
+        """Tangent of the pressure angle."""
+        return self.along / self.height
+
+    @property
+    def pressure_angle(self) -> Array:
+        return np.arctan(self.tangent)
+
+    @property
+    def side(self) -> Array:
+        return self.tangent
+
+    @property
+    def arm(self) -> Array:
+        """Zero: the contact force passes through the roller centre, on the stem's axis."""
+        return np.zeros(self.jet.slope.shape)
+
+    @cached_property
+    def _path(self) -> tuple[Array, Array]:
+        return speed_and_curvature(self.along, self.height, self.jet.slope, self.jet.bend)
+
+    @property
+    def path_speed(self) -> Array:
+        """Path length of the roller centre per radian, m/rad."""
+        return self._path[0]
+
+    @property
+    def path_curvature(self) -> Array:
+        """Curvature of the pitch curve, 1/m, positive where convex."""
+        return self._path[1]
+
+    @cached_property
+    def sharpness(self) -> Array:
+        """Roller radius times curvature of the pitch curve: 1 at a cusp."""
+        return self.size * self.path_curvature
+
+    @cached_property
+    def gain(self) -> Array:
+        return np.sqrt(1.0 + self.tangent**2)
+
+    @property
+    def sliding(self) -> float:
+        """Zero: the roller rolls."""
+        return 0.0
+
+    @cached_property
+    def contour_radius(self) -> Array:
+        inset = self.size / self.path_speed
+        return np.sqrt((self.height * (1.0 - inset)) ** 2 + (self.offset + inset * self.along) ** 2)
+
+    @property
+    def contour_speed(self) -> Array:
+        return self.path_speed * (1.0 - self.sharpness)
+
+    @property
+    def curvature_slope(self) -> Array:
+        """Change of the contour's curvature along it, 1/m^2.
+
+        The contour is shorter than the pitch curve by the undercut factor, its curvature greater.
+        """
+        jet = self.jet
+        change = curvature_slope(self.along, self.height, jet.slope, jet.bend, jet.jerk)
+        return change / ((1.0 - self.sharpness) ** 3 * self.path_speed)
+
+    @property
+    def rolling(self) -> Array:
+        return rolling_share(self.path_speed, self.size)
+
+    @property
+    def prime_radius(self) -> Array:
+        """Radius of the prime circle."""
+        height = self.height - self.jet.lift
+        return np.sqrt(height**2 + self.offset**2)
+
+    def radius_at(self, lift: Value) -> Array:
+        height = self.height - self.jet.lift + lift
+        return np.sqrt(height**2 + self.offset**2) - self.size
+
+    def reactions(
+        self,
+        lever: tuple[Array, Array],
+        spacing: Value,  # noqa: ARG002
+    ) -> tuple[Reaction, Reaction]:
+        """Loads of guides on points by the side force through the roller centre."""
+        side = magnitude(self.tangent)
+        return Reaction(side * lever[0]), Reaction(side * lever[1])
+
+
+def rolling_share(pitch_speed: Values, roller_radius: Value) -> Values:
+    """Spin of the roller relative to the follower over cam speed, of |dP/dtheta|, m/rad."""
+    return pitch_speed / roller_radius - 1.0
 
 
 def magnitude(values: Values) -> Values:

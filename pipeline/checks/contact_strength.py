@@ -18,6 +18,7 @@ import numpy as np
 from camwright.geometry.arrays import FULL_TURN, Array, uniform_turn
 from camwright.geometry.contour import Contour
 from camwright.geometry.extrema import first_least
+from camwright.geometry.pitch_curve import rolling_share
 from camwright.pipeline.base import disk_cache, levers
 from camwright.pipeline.base import value_groups as given
 from camwright.pipeline.base.material import Endurance, Material
@@ -45,7 +46,6 @@ from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.cycle import Cycle
 from camwright.pipeline.cycle.length_history import factor_at_pressure
 from camwright.pipeline.cycle.solution import Solution
-from camwright.pipeline.follower.roller_motion import rolling_share
 
 PSI = 6894.757293168  # Pa
 SHAKEDOWN = 4.0  # p0 / k, free rolling line contact

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from camwright.geometry.arrays import Array, Values, finite, freeze, positive
+from camwright.geometry.arrays import Array, Value, Values, finite, freeze, positive
 from camwright.geometry.errors import InputError
 
 _TURNS_MAX = 50
@@ -122,7 +122,7 @@ class RollingContact:
 
 
 def rolling_demand(
-    drag: Drag, normal_force: Values, spin: Values, spin_acceleration: Values, radius: float
+    drag: Drag, normal_force: Values, spin: Values, spin_acceleration: Values, radius: Value
 ) -> Values:
     """Tangential force of rolling without slip (...), N: inertia and bearing drag of the roller."""
     resisting = np.sign(np.real(spin)) * drag.bearing_torque(normal_force)

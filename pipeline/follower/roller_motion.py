@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 
 from camwright.geometry.arrays import FULL_TURN, Array, Values, finite, freeze
 from camwright.geometry.errors import InputError
-from camwright.geometry.pitch_curve import PitchCurve, magnitude
+from camwright.geometry.pitch_curve import PitchCurve, magnitude, rolling_share
 
 BALL_LIFE_EXPONENT = 3.0  # ISO 281: 3 for ball bearings, 10/3 for roller bearings
 RATED_REVOLUTIONS = 1e6  # of the dynamic rating, ISO 281
@@ -107,11 +107,6 @@ def path_speed_slope(
 ) -> Values:
     """Derivative of |dP/dtheta|, m/rad2, of the roller centre: s' - e along, d + s across."""
     return (along * bend + across * slope) / speed
-
-
-def rolling_share(pitch_speed: Values, roller_radius: float | Array) -> Values:
-    """Spin of the roller relative to the follower over cam speed, of |dP/dtheta|, m/rad."""
-    return pitch_speed / roller_radius - 1.0
 
 
 def wear(normal_force: Values, spin: Values, exponent: float = BALL_LIFE_EXPONENT) -> Values:

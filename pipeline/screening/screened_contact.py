@@ -7,6 +7,7 @@ from collections.abc import Callable
 import numpy as np
 
 from camwright.geometry.arrays import Array
+from camwright.geometry.pitch_curve import rolling_share
 from camwright.pipeline.case.limits import (
     ROLLER_LIFE,
     ROLLER_LOAD_SHARE,
@@ -17,7 +18,7 @@ from camwright.pipeline.case.limits import (
 from camwright.pipeline.checks.contact_strength import LeastLimit, LoadCycles, pressure_limits
 from camwright.pipeline.contact.hertz import half_width_square
 from camwright.pipeline.follower.flat_face_motion import sliding_pv
-from camwright.pipeline.follower.roller_motion import rating_life, rolling_share
+from camwright.pipeline.follower.roller_motion import rating_life
 from camwright.pipeline.screening.design_arrays import Designs, Judged, Turns
 from camwright.pipeline.screening.design_lengths import has_many_shapes
 

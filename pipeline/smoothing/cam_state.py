@@ -13,24 +13,16 @@ from typing import Generic, Literal, NamedTuple, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from camwright.geometry.arrays import Array
+from camwright.geometry.arrays import Array, Value
 from camwright.geometry.errors import GeometryError
-from camwright.geometry.pitch_curve import curvature_slope, magnitude, speed_and_curvature
+from camwright.geometry.flat_face_contour import FaceMotion
+from camwright.geometry.follower_path import Motion, Reaction
+from camwright.geometry.lift import Jet
+from camwright.geometry.pitch_curve import RollerMotion
 from camwright.pipeline.case.limits import AnyLimit, Limit, OpenLimit
-from camwright.pipeline.checks import demands
 from camwright.pipeline.follower.follower_forces import levers
-from camwright.pipeline.follower.roller_motion import rolling_share
 from camwright.pipeline.follower.spring_kinds import SpringShape, rise, shaped_deflection
-from camwright.pipeline.smoothing.scenario import DesignVariables, Ratings, Scenario, Value
-
-
-class Jet(NamedTuple):
-    """Lift and its derivatives by the cam angle, m/rad^k, each (n,)."""
-
-    lift: Array
-    slope: Array
-    bend: Array
-    jerk: Array
+from camwright.pipeline.smoothing.scenario import DesignVariables, Ratings, Scenario
 
 
 def lift_jet(energy: tuple[Array, ...], variables: DesignVariables) -> Jet:
@@ -66,187 +58,12 @@ def _shaped_jet(energy: tuple[Array, ...], variables: DesignVariables, shape: Sp
     return Jet(lift=lift, slope=slope, bend=bend, jerk=jerk)
 
 
-class Reaction(NamedTuple):
-    """Load of a guide over the axial force, (..., n).
-
-    whole: sum of the loads of point supports by the side force and by the couple, which the finite
-    elements correct; slack: that sum less the load by both at once, None without a couple.
-    """
-
-    whole: Array
-    slack: Array | None = None
-
-    @property
-    def on_points(self) -> Array:
-        """Reaction of a point support."""
-        return self.whole if self.slack is None else self.whole - self.slack
-
-    def corrected(self, fix: Array) -> Array:
-        """Load with a correction, >= 0; 1: that of a point support."""
-        if self.slack is None:
-            return self.whole * fix
-        load = self.whole * fix - self.slack
-        return np.where(np.real(load) > 0.0, load, 0.0 * load)
-
-
-class RollerMotion(NamedTuple):
-    """Roller on the unloaded cam; arrays (n,), m.
-
-    along, across: velocity of its centre along and across the follower axis, m/rad; speed and
-    curvature: of the pitch curve. Of any follower: height of its reference point over the cam axis;
-    bend: 1 less the undercut factor; size: relative radius of the contact over the undercut factor;
-    gain: normal over axial force; sliding: torque of the friction on the cam over the axial force;
-    contour_radius: of the contact about the cam axis; contour_speed: of the contact along the
-    contour, m/rad; curvature_slope: change of the contour's curvature along it, 1/m^2; rolling:
-    turn of a roller over that of the cam; radius_at: radius of the contour in a dwell at a lift.
-    """
-
-    jet: Jet
-    along: Array
-    across: Array
-    speed: Array
-    curvature: Array
-    offset: float
-    size: float
-
-    @property
-    def tangent(self) -> Array:
-        """Tangent of the pressure angle."""
-        return self.along / self.across
-
-    @property
-    def height(self) -> Array:
-        return self.across
-
-    @property
-    def bend(self) -> Array:
-        """Roller radius times curvature of the pitch curve: 1 at a cusp."""
-        return self.size * self.curvature
-
-    @property
-    def gain(self) -> Array:
-        return np.sqrt(1.0 + self.tangent**2)
-
-    @property
-    def sliding(self) -> float:
-        """Zero: the roller rolls."""
-        return 0.0
-
-    @property
-    def contour_radius(self) -> Array:
-        inset = self.size / self.speed
-        return demands.contour_radius(self.along, self.across, self.offset, inset)
-
-    @property
-    def contour_speed(self) -> Array:
-        return self.speed * (1.0 - self.bend)
-
-    @property
-    def curvature_slope(self) -> Array:
-        jet = self.jet
-        change = curvature_slope(self.along, self.across, jet.slope, jet.bend, jet.jerk)
-        # the contour is shorter than the pitch curve by the undercut factor, its curvature greater
-        return change / ((1.0 - self.bend) ** 3 * self.speed)
-
-    @property
-    def rolling(self) -> Array:
-        return rolling_share(self.speed, self.size)
-
-    def radius_at(self, lift: Value) -> Array:
-        height = self.across - self.jet.lift + lift
-        return np.sqrt(height**2 + self.offset**2) - self.size
-
-    def reactions(
-        self,
-        lever: tuple[Array, Array],
-        spacing: Value,  # noqa: ARG002
-    ) -> tuple[Reaction, Reaction]:
-        """Of the side force through the roller centre."""
-        side = magnitude(self.tangent)
-        return Reaction(side * lever[0]), Reaction(side * lever[1])
-
-
-class FaceMotion(NamedTuple):
-    """Flat face on the unloaded cam, its contact s' beside the cam axis; see `FacePath`.
-
-    radius: of curvature of the contour, r + s + s''; friction: of the face on the cam. Else as
-    `RollerMotion`.
-    """
-
-    jet: Jet
-    height: Array
-    radius: Array
-    offset: float
-    friction: float
-
-    @property
-    def arm(self) -> Array:
-        """Lever arm of the contact force about the stem axis, m."""
-        return self.jet.slope - self.offset
-
-    @property
-    def bend(self) -> Array:
-        """-s''/(r + s): 1 at a cusp."""
-        return 1.0 - self.radius / self.height
-
-    @property
-    def size(self) -> Array:
-        return self.height
-
-    @property
-    def gain(self) -> float:
-        """One: the face is square to the stem."""
-        return 1.0
-
-    @property
-    def sliding(self) -> Array:
-        return self.friction * self.height
-
-    @property
-    def contour_radius(self) -> Array:
-        return np.sqrt(self.height**2 + self.jet.slope**2)
-
-    @property
-    def contour_speed(self) -> Array:
-        return self.radius
-
-    @property
-    def curvature_slope(self) -> Array:
-        return -(self.jet.slope + self.jet.jerk) / self.radius**3
-
-    @property
-    def rolling(self) -> float:
-        """Zero: the face slides."""
-        return 0.0
-
-    def radius_at(self, lift: Value) -> Array:
-        return self.height - self.jet.lift + lift
-
-    def reactions(self, lever: tuple[Array, Array], spacing: Value) -> tuple[Reaction, Reaction]:
-        """Of the friction along the face, and of the axial force beside the stem axis."""
-        tilt = self.arm / spacing
-        along = [self.friction * each for each in lever]
-        whole = [each + magnitude(tilt) for each in along]
-        on_a, on_b = (
-            Reaction(one, one - magnitude(each - tilt))
-            for one, each in zip(whole, along, strict=True)
-        )
-        return on_a, on_b
-
-
-Motion = RollerMotion | FaceMotion
-
-
 def motion(jet: Jet, variables: DesignVariables, ratings: Ratings) -> Motion:
     """Motion of the translating follower of the ratings; see `PitchCurve` and `FacePath`."""
-    face, offset = ratings.face, ratings.offset
+    prime, face, offset = variables.prime_radius, ratings.face, ratings.offset
     if face is not None:
-        height = variables.prime_radius + jet.lift
-        return FaceMotion(jet, height, height + jet.bend, offset, face.friction)
-    along = jet.slope - offset
-    across = np.sqrt(variables.prime_radius**2 - offset**2) + jet.lift
-    speed, curvature = speed_and_curvature(along, across, jet.slope, jet.bend)
-    return RollerMotion(jet, along, across, speed, curvature, offset, ratings.roller_radius)
+        return FaceMotion(jet, prime, offset, face.friction)
+    return RollerMotion(jet, np.sqrt(prime**2 - offset**2), offset, ratings.roller_radius)
 
 
 class Forces(NamedTuple):

@@ -18,6 +18,7 @@ from typing import Literal
 import numpy as np
 
 from camwright.geometry.arrays import Array
+from camwright.geometry.lift import Jet
 from camwright.geometry.pitch_curve import magnitude
 from camwright.pipeline.case.limits import (
     CAM_RADIUS,
@@ -34,7 +35,6 @@ from camwright.pipeline.checks import demands
 from camwright.pipeline.follower.roller_motion import BALL_LIFE_EXPONENT, wear
 from camwright.pipeline.smoothing.cam_state import (
     Constraint,
-    Jet,
     Loads,
     Mean,
     Shape,
@@ -111,7 +111,7 @@ def _concave_radius(cam: Shape, hollow: float) -> Array | None:
     """No constraint where the roller is larger: it cannot roll in a smaller hollow."""
     path = roller_of(cam.path)
     room = hollow - path.size
-    return -path.curvature * room if room > 0.0 else None
+    return -path.path_curvature * room if room > 0.0 else None
 
 
 def _inertia(at: Loads, cam_speed: float) -> Array:
@@ -178,10 +178,10 @@ SHAPE: tuple[Constraint[Shape], ...] = (
     Constraint(
         "curvature_ratio",
         CURVATURE_RATIO,
-        lambda cam, limit: cam.path.bend * limit,
+        lambda cam, limit: cam.path.sharpness * limit,
         needs="roller",
     ),
-    Constraint("undercut", UNDERCUT_FACTOR, lambda cam, limit: cam.path.bend / (1.0 - limit)),
+    Constraint("undercut", UNDERCUT_FACTOR, lambda cam, limit: cam.path.sharpness / (1.0 - limit)),
     Constraint(
         "concave_radius", lambda ratings: ratings.hollow_radius, _concave_radius, needs="roller"
     ),

@@ -10,6 +10,7 @@ import numpy as np
 import scipy
 
 from camwright.geometry.arrays import Array
+from camwright.geometry.pitch_curve import rolling_share
 from camwright.pipeline.base.material import ROOM
 from camwright.pipeline.base.units import in_unit
 from camwright.pipeline.case.limits import TORQUE_REDUCTION
@@ -19,7 +20,6 @@ from camwright.pipeline.cycle.cycle import Cycle
 from camwright.pipeline.cycle.solution import Solution
 from camwright.pipeline.cycle.speed_sweep import SpeedSweep, SweptForces, swept_forces
 from camwright.pipeline.follower.follower_forces import Loads, levers
-from camwright.pipeline.follower.roller_motion import rolling_share
 from camwright.pipeline.follower.spring import spring_energy
 from camwright.pipeline.smoothing.allowables import corrected_ratings, softening
 from camwright.pipeline.smoothing.infeasibility import ConflictRecord

@@ -8,7 +8,8 @@ from typing import NamedTuple
 import numpy as np
 
 from camwright.geometry.arrays import Array
-from camwright.pipeline.smoothing.cam_state import Jet, Mean, lift_jet
+from camwright.geometry.lift import Jet
+from camwright.pipeline.smoothing.cam_state import Mean, lift_jet
 from camwright.pipeline.smoothing.scenario import DesignVariables
 
 Function = Callable[[Jet, float, DesignVariables], Mapping[str, "Array | Mean"]]

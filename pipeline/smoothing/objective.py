@@ -14,12 +14,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from camwright.geometry.arrays import FULL_TURN, Array
+from camwright.geometry.arrays import FULL_TURN, Array, Value
 from camwright.geometry.errors import InputError
 from camwright.geometry.pitch_curve import magnitude
 from camwright.pipeline.follower.spring_kinds import rise
 from camwright.pipeline.smoothing.cam_state import Loads, Mean
-from camwright.pipeline.smoothing.scenario import DesignVariables, Scenario, Value
+from camwright.pipeline.smoothing.scenario import DesignVariables, Scenario
 
 
 class Scale(NamedTuple):

@@ -11,8 +11,8 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from camwright.geometry.arrays import Array
-from camwright.geometry.pitch_curve import magnitude
+from camwright.geometry.arrays import Array, Value
+from camwright.geometry.pitch_curve import magnitude, rolling_share
 from camwright.pipeline.base.units import factor
 from camwright.pipeline.case.limits import (
     CONTACT_FORCE_MARGIN,
@@ -29,7 +29,6 @@ from camwright.pipeline.follower.flat_face_motion import MEAN_SHARE
 from camwright.pipeline.follower.roller_motion import (
     BALL_LIFE_EXPONENT,
     path_speed_slope,
-    rolling_share,
     wear,
 )
 from camwright.pipeline.smoothing.cam_state import (
@@ -44,7 +43,6 @@ from camwright.pipeline.smoothing.cam_state import (
     positive,
     roller_of,
 )
-from camwright.pipeline.smoothing.scenario import Value
 
 _LEAST_FORCE = 1.0  # N, of a force that damages a bearing
 _MARGIN = 0.2  # of the least spring force, where the case keeps no contact force margin
@@ -146,7 +144,7 @@ def _traction_demand(at: Loads, friction: float) -> Array | None:
         return None
     jet, path = at.jet, roller_of(at.path)
     radius = path.size
-    rate = path_speed_slope(path.along, path.across, jet.slope, jet.bend, path.speed)
+    rate = path_speed_slope(path.along, path.height, jet.slope, jet.bend, path.path_speed)
     acceleration = at.scenario.cam_speed**2 * rate / radius
     force = positive(at.force.normal)
     demand = rolling_demand(at.ratings.drag, force, at.spin, acceleration, radius)
@@ -203,7 +201,7 @@ def _mean_spin(at: Loads) -> tuple[Array, NDArray[np.bool_]]:
     That of the solved cam; before, of a roller on the prime circle.
     """
     rolling, path = at.scenario.correction.rolling[..., :1], roller_of(at.path)  # one value
-    prime = np.sqrt((path.across - at.jet.lift)[..., :1] ** 2 + path.offset**2)
+    prime = path.prime_radius[..., :1]
     share = np.where(rolling > 0.0, rolling, rolling_share(prime, path.size))
     mean, least = at.scenario.cam_speed * share, STANDSTILL * factor("rpm")
     turns = np.real(mean) >= least
@@ -290,15 +288,15 @@ def _face_pv(at: Loads, limit: float) -> Array:
 
 
 def line_pressure(at: Loads, allowed: Value) -> Array:
-    """bend + R_p / size <= 1, equivalent to p0 <= allowed.
+    """sharpness + R_p / size <= 1, equivalent to p0 <= allowed.
 
     R_p is the relative radius at which the line contact has the allowed pressure. Pressure and
-    undercut depend on the same undercut factor, 1 - bend.
+    undercut depend on the same undercut factor, 1 - sharpness.
     """
     ratings = at.ratings
     line_load = at.force.normal / ratings.contact_width
     flat = peak_pressure_square(line_load, 1.0 / at.path.size, ratings.contact_modulus)
-    return at.path.bend + at.scenario.correction.contact**2 * flat / allowed**2
+    return at.path.sharpness + at.scenario.correction.contact**2 * flat / allowed**2
 
 
 PART_SHAPE: tuple[Constraint[Shape], ...] = (

@@ -11,9 +11,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from camwright.geometry.arrays import Array, uniform_turn
+from camwright.geometry.lift import Jet
 from camwright.pipeline.case.limits import PRESSURE_ANGLE, TORQUE_REDUCTION
 from camwright.pipeline.follower.spring import spring_energy
-from camwright.pipeline.smoothing.cam_state import Jet, Loads, Mean, lift_jet, loaded
+from camwright.pipeline.smoothing.cam_state import Loads, Mean, lift_jet, loaded
 from camwright.pipeline.smoothing.cone_program import Linear, Norm
 from camwright.pipeline.smoothing.constraints import (
     SHAPE,

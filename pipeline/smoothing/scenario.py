@@ -8,15 +8,13 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
-from camwright.geometry.arrays import FULL_TURN, Array, readonly, uniform_turn
+from camwright.geometry.arrays import FULL_TURN, Array, Value, readonly, uniform_turn
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.limits import AnyLimit
 from camwright.pipeline.checks.key_strength import KeywayRoot
 from camwright.pipeline.checks.roller_bearing import Grease
 from camwright.pipeline.contact.traction import Drag
 from camwright.pipeline.follower.spring_kinds import SpringShape
-
-Value = float | Array
 
 
 @dataclass(frozen=True)

@@ -322,7 +322,7 @@ def _load_share(design: Design, problem: Problem, name: str) -> float:
     if not binds.any():
         return 1.0
     jet = lift_jet(problem.grid(theta[binds]).energy(design.coefficients), design.variables)
-    bend = motion(jet, design.variables, problem.ratings).bend
+    bend = motion(jet, design.variables, problem.ratings).sharpness
     return float(np.mean(np.asarray(use)[binds] - bend))
 
 

@@ -10,7 +10,7 @@ from synthesis_ratings import rated
 
 from camwright.geometry.arrays import uniform_turn
 from camwright.geometry.contour import RollerContour
-from camwright.geometry.lift import Lift
+from camwright.geometry.lift import Jet, Lift
 from camwright.geometry.pitch_curve import PitchCurve
 from camwright.pipeline.case.case_file import read_case
 from camwright.pipeline.case.load_case_torque import engine_torques
@@ -33,7 +33,7 @@ from camwright.pipeline.smoothing.allowables import (
     scaled_limits,
     travel_limits,
 )
-from camwright.pipeline.smoothing.cam_state import Jet, Mean
+from camwright.pipeline.smoothing.cam_state import Mean
 from camwright.pipeline.smoothing.cone_program import ConeSolution
 from camwright.pipeline.smoothing.constraints import (
     load_utilisations,

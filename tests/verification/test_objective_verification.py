@@ -10,7 +10,7 @@ from synthesis_ratings import rated
 
 from camwright.geometry.arrays import FULL_TURN, uniform_turn
 from camwright.geometry.contour import RollerContour
-from camwright.geometry.lift import Lift
+from camwright.geometry.lift import Jet, Lift
 from camwright.geometry.pitch_curve import PitchCurve
 from camwright.pipeline.case.case_file import read_case, with_values
 from camwright.pipeline.case.load_case_torque import engine_torques
@@ -20,7 +20,7 @@ from camwright.pipeline.contact.traction import Drag
 from camwright.pipeline.cycle.solution import solution
 from camwright.pipeline.preview import preview_case
 from camwright.pipeline.results.run_records import headline
-from camwright.pipeline.smoothing.cam_state import Jet, Mean, lift_jet, loaded
+from camwright.pipeline.smoothing.cam_state import Mean, lift_jet, loaded
 from camwright.pipeline.smoothing.constrained_synthesis import synthesise
 from camwright.pipeline.smoothing.gradients import (
     FREED,

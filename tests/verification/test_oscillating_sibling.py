@@ -103,6 +103,9 @@ class OscillatingContour(Contour):
         normal = self.pitch.normal(theta)
         return Frame(self.pitch.points(theta) - ROLLER * normal, normal, self.pitch.tangent(theta))
 
+    def motion(self, jet, friction=0.0):
+        raise NotImplementedError  # needed for loads and synthesis alone
+
     def speed(self, theta):
         return self.pitch.speed_and_curvature(theta)[0] * self.factor(theta)
 

@@ -11,7 +11,7 @@ from synthesis_ratings import rated
 
 from camwright.geometry.arrays import uniform_turn
 from camwright.geometry.contour import RollerContour
-from camwright.geometry.lift import Lift
+from camwright.geometry.lift import Jet, Lift
 from camwright.geometry.pitch_curve import PitchCurve
 from camwright.pipeline.case.case_file import read_case
 from camwright.pipeline.case.load_case_torque import engine_torques
@@ -36,7 +36,7 @@ from camwright.pipeline.smoothing.allowables import (
     travel_limits,
 )
 from camwright.pipeline.smoothing.bounds import bounds_of
-from camwright.pipeline.smoothing.cam_state import Jet, Mean, Shape, loaded, motion
+from camwright.pipeline.smoothing.cam_state import Mean, Shape, loaded, motion
 from camwright.pipeline.smoothing.constraints import (
     CONSTRAINTS,
     SHAPE,

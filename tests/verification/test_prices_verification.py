@@ -9,13 +9,12 @@ from synthesis_ratings import rated
 
 from camwright.geometry.arrays import uniform_turn
 from camwright.geometry.contour import RollerContour
-from camwright.geometry.lift import Lift
+from camwright.geometry.lift import Jet, Lift
 from camwright.geometry.pitch_curve import PitchCurve
 from camwright.pipeline.case.case_file import read_case
 from camwright.pipeline.case.case_values import replaced
 from camwright.pipeline.case.load_case_torque import engine_torques
 from camwright.pipeline.smoothing.bounds import bounds_of
-from camwright.pipeline.smoothing.cam_state import Jet
 from camwright.pipeline.smoothing.constrained_synthesis import synthesise
 from camwright.pipeline.smoothing.constraints import shape_utilisations
 from camwright.pipeline.smoothing.objective import objective_of
