@@ -11,7 +11,7 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import ArrayLike
 
-from camwright.geometry.arrays import Array, Values, finite, positive
+from camwright.geometry.arrays import Array, Value, Values, finite, positive
 from camwright.geometry.errors import InputError
 from camwright.geometry.extrema import refined
 from camwright.pipeline.contact.elasticity.plane_stress_measures import shear_any_plane, von_mises
@@ -102,7 +102,7 @@ def line_contact(
     return half_width, np.sqrt(peak_pressure_square(load, 1 / radius, stiffness))
 
 
-def peak_pressure_square(line_load: Values, curvature: Values | float, modulus: float) -> Values:
+def peak_pressure_square(line_load: Values, curvature: Values | float, modulus: Value) -> Values:
     """p0^2 (...), Pa^2, at the curvature 1/R = 1/R1 + 1/R2, 1/m."""
     return line_load * curvature * (modulus / np.pi)
 

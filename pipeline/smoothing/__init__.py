@@ -9,7 +9,7 @@ In the order of the calculation:
 | `smoothing_forecast`    | checks of a wider smoother, forecast         | utilisation             |
 | `smoothing_feedback`    | smoother of the next trial                   | strength                |
 | `scenario`              | design variables, ratings, load cases        | k, N/m; P, N; r0, m     |
-| `cam_state`             | motion and forces of a cam in a scenario     | s, m; F, N              |
+| `cam_state`             | loaded cam of a scenario, lift of an energy  | s, m; F, N              |
 | `part_constraints`      | limits of the parts by cam angle             | utilisation             |
 | `constraints`           | all limits of a synthesis by cam angle       | utilisation             |
 | `objective`             | terms of the objective over their references | loss, force; ratio      |

@@ -1,4 +1,4 @@
-"""Cam at sampled angles: lift, motion and forces of a scenario, and the form of a constraint.
+"""Lift from its stored energy, loaded cam of a scenario, means over the turn, constraints.
 
 All functions take complex numbers: a complex step gives their derivative to round-off.
 """
@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from functools import cached_property
 from math import inf
 from typing import Generic, Literal, NamedTuple, TypeVar
 
@@ -16,13 +17,14 @@ from numpy.typing import NDArray
 from camwright.geometry.arrays import Array, Value
 from camwright.geometry.errors import GeometryError
 from camwright.geometry.flat_face_contour import FaceMotion
-from camwright.geometry.follower_path import Motion, Reaction
+from camwright.geometry.follower_path import Motion
 from camwright.geometry.lift import Jet
 from camwright.geometry.pitch_curve import RollerMotion
 from camwright.pipeline.case.limits import AnyLimit, Limit, OpenLimit
-from camwright.pipeline.follower.follower_forces import levers
+from camwright.pipeline.cycle.loaded_cam import LoadedCam, OfGuides, positive
+from camwright.pipeline.cycle.numbers import Numbers
 from camwright.pipeline.follower.spring_kinds import SpringShape, rise, shaped_deflection
-from camwright.pipeline.smoothing.scenario import DesignVariables, Ratings, Scenario
+from camwright.pipeline.smoothing.scenario import Correction, DesignVariables, Ratings, Scenario
 
 
 def lift_jet(energy: tuple[Array, ...], variables: DesignVariables) -> Jet:
@@ -58,71 +60,131 @@ def _shaped_jet(energy: tuple[Array, ...], variables: DesignVariables, shape: Sp
     return Jet(lift=lift, slope=slope, bend=bend, jerk=jerk)
 
 
-def motion(jet: Jet, variables: DesignVariables, ratings: Ratings) -> Motion:
-    """Motion of the translating follower of the ratings; see `PitchCurve` and `FacePath`."""
-    prime, face, offset = variables.prime_radius, ratings.face, ratings.offset
-    if face is not None:
-        return FaceMotion(jet, prime, offset, face.friction)
-    return RollerMotion(jet, np.sqrt(prime**2 - offset**2), offset, ratings.roller_radius)
+def _fixed(variables: DesignVariables, ratings: Ratings) -> dict[str, Value | None]:
+    """Numbers of the machine that no scenario changes."""
+    fixed: dict[str, Value | None] = {
+        "cam.prime_radius": variables.prime_radius,
+        "cam.offset": ratings.offset,
+        "roller.radius": ratings.roller_radius,
+        "contact.width": ratings.contact_width,
+        "contact.modulus": ratings.contact_modulus,
+        "cam.held_radius": ratings.held_radius,
+    }
+    if ratings.face is not None:
+        fixed |= {
+            "follower.face.width": ratings.face.width,
+            "follower.face.friction": ratings.face.friction,
+        }
+    return fixed
 
 
-class Forces(NamedTuple):
-    """Forces of one scenario, N; loads of guides A and B over the axial force.
+def unloaded(jet: Jet, variables: DesignVariables, ratings: Ratings) -> LoadedCam:
+    """Cam of a lift without loads."""
+    return LoadedCam(jet, Numbers(_fixed(variables, ratings)))
 
-    closing: spring, weight and external force.
-    rubbing: normal loads of the friction in the guides, corrected; share: axial force without
-    friction over axial force; surged: normal force with the surge of the spring, >= 0.
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class ScenarioCam(LoadedCam):
+    """A cam in one scenario at n cam angles; in stacked scenarios, each array (..., n).
+
+    What finite elements, the surge or the heat of a solved cam add is in the `Correction` of the
+    scenario, held while the search runs.
     """
 
-    spring: Array
-    closing: Array
-    inertia: Array
-    axial: Array
-    normal: Array
-    jam: Array
-    guides: tuple[Reaction, Reaction]
-    rubbing: tuple[Array, Array]
-    share: Array
-    surged: Array
+    scenario: Scenario
+    variables: DesignVariables
+    ratings: Ratings
+
+    @property
+    def fix(self) -> Correction:
+        """Correction of the scenario."""
+        return self.scenario.correction
+
+    @property
+    def spring_shape(self) -> SpringShape | None:
+        return self.variables.shape
+
+    @property
+    def surge(self) -> Array:
+        return self.fix.surge
+
+    @property
+    def pressure_factor(self) -> Array:
+        return self.fix.contact
+
+    def _corrected(self, fix_a: Array, fix_b: Array) -> OfGuides:
+        """Loads of the guides over the axial force with corrections."""
+        on_a, on_b = self.reactions
+        return OfGuides(on_a.corrected(fix_a), on_b.corrected(fix_b))
+
+    @cached_property
+    def rubbing_share(self) -> OfGuides:
+        return self._corrected(self.fix.rubbing_a, self.fix.rubbing_b)
+
+    @cached_property
+    def bearing(self) -> OfGuides:
+        """At most the limit at the temperature of the guide counts, see `Correction`."""
+        on_a, on_b = self._corrected(self.fix.guide_a, self.fix.guide_b)
+        return OfGuides(self.axial * on_a, self.axial * on_b)
+
+    @cached_property
+    def edge(self) -> OfGuides:
+        """Greatest line load of the guides times their length, N."""
+        on_a, on_b = self._corrected(self.fix.edge_a, self.fix.edge_b)
+        return OfGuides(self.axial * on_a, self.axial * on_b)
+
+    @cached_property
+    def _worst_friction(self) -> OfGuides | None:
+        """Greatest friction of the guides on points over the axial force."""
+        worst = self.scenario.friction_worst
+        if worst is None:
+            return None
+        on_a, on_b = self.reactions
+        return OfGuides(worst[0] * on_a.on_points, worst[1] * on_b.on_points)
+
+    @cached_property
+    def jam_worst(self) -> Array | None:
+        """Jam index at the greatest friction; None where that is not known."""
+        worst = self._worst_friction
+        return None if worst is None else (worst.a + worst.b) * self.fix.jam
+
+    @cached_property
+    def hot(self) -> OfGuides | None:
+        """Friction of the guides at the greatest friction, N; None where that is not known."""
+        friction, worst = self.scenario.friction_worst, self._worst_friction
+        if friction is None or worst is None:
+            return None
+        jam = np.sign(np.real(self.slope)) * (worst.a + worst.b) * self.fix.jam
+        axial = self.axial * self.share / (1.0 - jam)
+        loads = self._corrected(self.fix.hot_a, self.fix.hot_b)
+        return OfGuides(friction[0] * loads.a * axial, friction[1] * loads.b * axial)
 
 
-def forces(
-    jet: Jet, path: Motion, highest: float, variables: DesignVariables, scenario: Scenario
-) -> Forces:
-    """Follower forces with implicit guide friction; see `follower_loads`.
-
-    Unlike there, the forces are not clipped at loss of contact and at jamming: the search needs
-    their slope beyond both.
-
-    Parameters
-    ----------
-    highest : float   maximum lift, m
-    """
-    travel = jet.lift if variables.shape is None else rise(variables.shape, jet.lift).travel
-    spring = (
-        variables.preload * scenario.preload_factor + variables.rate * scenario.rate_factor * travel
-    )
-    closing = spring + (scenario.mass * scenario.gravity + scenario.external)
-    inertia = scenario.mass * scenario.cam_speed**2 * jet.bend
-    viscous = scenario.viscous_damping * scenario.cam_speed * jet.slope
-    lever = levers(scenario.overhang + highest - jet.lift, scenario.guide_spacing)
-    fix, guides = scenario.correction, path.reactions(lever, scenario.guide_spacing)
-    rubbing = (guides[0].corrected(fix.rubbing_a), guides[1].corrected(fix.rubbing_b))
-    jam = scenario.friction_a * rubbing[0] + scenario.friction_b * rubbing[1]
-    share = 1.0 - np.sign(np.real(jet.slope)) * jam
-    axial, gain = (closing + inertia + viscous) / share, path.gain
-    surged = (axial + fix.surge / share) * gain
-    return Forces(
-        spring=spring,
-        closing=closing,
-        inertia=inertia,
-        axial=axial,
-        normal=axial * gain,
-        jam=jam,
-        guides=guides,
-        rubbing=rubbing,
-        share=share,
-        surged=positive(surged),
+def loaded(
+    jet: Jet, highest: float, variables: DesignVariables, ratings: Ratings, scenario: Scenario
+) -> ScenarioCam:
+    """Cam of a lift in one scenario, or in stacked ones; highest: maximum lift, m."""
+    numbers = _fixed(variables, ratings) | {
+        "spring.preload": variables.preload * scenario.preload_factor,
+        "spring.rate": variables.rate * scenario.rate_factor,
+        "cam.speed": scenario.cam_speed,
+        "follower.mass": scenario.mass,
+        "follower.viscous_damping": scenario.viscous_damping,
+        "follower.overhang_at_max_lift": scenario.overhang,
+        "guides.spacing": scenario.guide_spacing,
+        "guides.a.friction": scenario.friction_a,
+        "guides.b.friction": scenario.friction_b,
+    }
+    return ScenarioCam(
+        jet,
+        Numbers(numbers),
+        highest,
+        scenario.correction.least_lift,
+        scenario.external,
+        scenario.gravity,
+        scenario=scenario,
+        variables=variables,
+        ratings=ratings,
     )
 
 
@@ -192,11 +254,6 @@ _STEP = 1e-30  # complex step of a mean
 _SHARE = 1e-5  # of a mean: step of the second derivatives
 
 
-def positive(values: Array) -> Array:
-    """Values, and zero where they are negative; complex."""
-    return np.where(np.real(values) > 0.0, values, 0.0 * values)
-
-
 def duty_shares(scenario: Scenario) -> Array | None:
     """Shares (r, s) of stacked scenarios in the operation at each tolerance corner.
 
@@ -253,65 +310,7 @@ def face_of(path: Motion) -> FaceMotion:
     raise GeometryError("the follower of the cam is no flat face")
 
 
-class Shape(NamedTuple):
-    """Unloaded cam at n cam angles."""
-
-    jet: Jet
-    path: Motion
-    ratings: Ratings
-
-
-class Loads(NamedTuple):
-    """Cam in one scenario at n cam angles; in stacked scenarios, each array (..., n).
-
-    highest: maximum lift, m; least_spring: spring force at minimum lift, N.
-    """
-
-    jet: Jet
-    path: Motion
-    ratings: Ratings
-    scenario: Scenario
-    force: Forces
-    highest: float
-    least_spring: Value
-
-    @property
-    def torque(self) -> Array:
-        """Cam torque, N m."""
-        return self.force.axial * (self.jet.slope + self.path.sliding)
-
-    @property
-    def velocity(self) -> Array:
-        """Velocity of the follower, m/s."""
-        return self.scenario.cam_speed * self.jet.slope
-
-    @property
-    def spin(self) -> Array:
-        """Of the roller, rad/s."""
-        return np.asarray(self.scenario.cam_speed * self.path.rolling)
-
-
-def loaded(
-    jet: Jet, highest: float, variables: DesignVariables, ratings: Ratings, scenario: Scenario
-) -> Loads:
-    """Cam of a lift in one scenario; highest: maximum lift, m."""
-    path = motion(jet, variables, ratings)
-    force = forces(jet, path, highest, variables, scenario)
-    rate, least = variables.rate * scenario.rate_factor, scenario.correction.least_lift
-    if variables.shape is not None:
-        least = rise(variables.shape, least).travel
-    return Loads(
-        jet,
-        path,
-        ratings,
-        scenario,
-        force,
-        highest=highest,
-        least_spring=variables.preload * scenario.preload_factor + rate * least,
-    )
-
-
-State = TypeVar("State", Shape, Loads)
+State = TypeVar("State", LoadedCam, ScenarioCam)
 
 
 @dataclass(frozen=True)

@@ -32,23 +32,22 @@ from camwright.pipeline.case.limits import (
     AnyLimit,
 )
 from camwright.pipeline.checks import demands
+from camwright.pipeline.cycle.loaded_cam import LoadedCam, positive
 from camwright.pipeline.follower.roller_motion import BALL_LIFE_EXPONENT, wear
 from camwright.pipeline.smoothing.cam_state import (
     Constraint,
-    Loads,
     Mean,
-    Shape,
+    ScenarioCam,
     State,
     by_duty,
     loaded,
-    motion,
     roller_of,
+    unloaded,
 )
 from camwright.pipeline.smoothing.part_constraints import (
     PART_SHAPE,
     PARTS,
     line_pressure,
-    rubbing_load,
 )
 from camwright.pipeline.smoothing.scenario import DesignVariables, Ratings, Scenario
 
@@ -60,8 +59,7 @@ def shape_utilisations(
     jet: Jet, variables: DesignVariables, ratings: Ratings, names: Container[str] | None = None
 ) -> Mapping[str, Array | Mean]:
     """Utilisations of the limits on the shape of the cam, or of those named, by check; (n,)."""
-    shape = Shape(jet, motion(jet, variables, ratings), ratings)
-    return _utilisations(SHAPE, shape, names)
+    return _utilisations(SHAPE, unloaded(jet, variables, ratings), ratings, names)
 
 
 def load_utilisations(
@@ -80,10 +78,10 @@ def load_utilisations(
 
 
 def utilisations_of(
-    loads: Loads, names: Container[str] | None = None
+    loads: ScenarioCam, names: Container[str] | None = None
 ) -> Mapping[str, Array | Mean]:
     """As `load_utilisations`, of a loaded cam."""
-    return _utilisations(LOADS, loads, names)
+    return _utilisations(LOADS, loads, loads.ratings, names)
 
 
 def delivered_torque(
@@ -94,83 +92,76 @@ def delivered_torque(
 
 
 def _utilisations(
-    constraints: tuple[Constraint[State], ...], state: State, names: Container[str] | None
+    constraints: tuple[Constraint[State], ...],
+    state: State,
+    ratings: Ratings,
+    names: Container[str] | None,
 ) -> Mapping[str, Array | Mean]:
     uses: dict[str, Array | Mean] = {}
     for each in constraints:
         if names is not None and each.check not in names:
             continue
-        limit = each.value(state.ratings)
+        limit = each.value(ratings)
         use = None if limit is None else each.utilisation(state, limit)
         if use is not None:
             uses[each.check] = use
     return uses
 
 
-def _concave_radius(cam: Shape, hollow: float) -> Array | None:
+def _concave_radius(cam: LoadedCam, hollow: float) -> Array | None:
     """No constraint where the roller is larger: it cannot roll in a smaller hollow."""
-    path = roller_of(cam.path)
+    path = roller_of(cam.motion)
     room = hollow - path.size
     return -path.path_curvature * room if room > 0.0 else None
 
 
-def _inertia(at: Loads, cam_speed: float) -> Array:
-    """Inertia force at a cam speed, rad/s, N."""
-    return at.scenario.mass * cam_speed**2 * at.jet.bend
-
-
-def _contact_at_overspeed(at: Loads, limit: float) -> Array | None:
+def _contact_at_overspeed(at: ScenarioCam, limit: float) -> Array | None:
     if at.ratings.overspeed is None:
         return None
-    thrown = _inertia(at, at.ratings.overspeed)
-    return 1.0 + limit - demands.force_left(at.force.closing, thrown, at.least_spring)
+    thrown = at.inertia_at(at.ratings.overspeed)
+    return 1.0 + limit - demands.force_left(at.closing, thrown, at.least_spring)
 
 
-def _jam_index_friction_max(at: Loads, limit: float) -> Array | None:
-    worst = at.scenario.friction_worst
-    if worst is None:
-        return None
-    on_a, on_b = (mu * each.on_points for mu, each in zip(worst, at.force.guides, strict=True))
-    return demands.jam_outward(at.jet.slope, (on_a + on_b) * at.scenario.correction.jam) / limit
+def _jam_index_friction_max(at: ScenarioCam, limit: float) -> Array | None:
+    worst = at.jam_worst
+    return None if worst is None else demands.jam_outward(at.slope, worst) / limit
 
 
-def _roller_life(at: Loads, limit: float) -> Mean:
+def _roller_life(at: ScenarioCam, limit: float) -> Mean:
     """Of L10 = (C / P_m)^3 1e6 turns / mean spin, where P_m^3 mean spin is the mean of N^3 |n|."""
-    terms = wear(at.force.surged, at.spin) / limit
+    terms = wear(positive(at.surged), at.spin) / limit
     return by_duty(terms, at.scenario, 1.0 / BALL_LIFE_EXPONENT)
 
 
-def _guide_pressure(side: Literal["A", "B"]) -> Constraint[Loads]:
+def _guide_pressure(side: Literal["A", "B"]) -> Constraint[ScenarioCam]:
     place = "AB".index(side)
 
-    def utilisation(at: Loads, limit: float) -> Array:
-        fix = at.scenario.correction
-        load = at.force.axial * at.force.guides[place].corrected((fix.guide_a, fix.guide_b)[place])
-        return demands.guide_pressure(load, at.ratings.guide_area[place]) / limit
+    def utilisation(at: ScenarioCam, limit: float) -> Array:
+        return demands.guide_pressure(at.bearing[place], at.ratings.guide_area[place]) / limit
 
     return Constraint(
         f"guide_pressure_{side}", lambda ratings: ratings.guide_pressure[place], utilisation
     )
 
 
-def _guide_pv(side: Literal["A", "B"]) -> Constraint[Loads]:
+def _guide_pv(side: Literal["A", "B"]) -> Constraint[ScenarioCam]:
     place = "AB".index(side)
 
-    def utilisation(at: Loads, limit: float) -> Mean:
-        load, area = rubbing_load(at, place), at.ratings.guide_area[place]
+    def utilisation(at: ScenarioCam, limit: float) -> Mean:
+        load, area = at.rubbing[place], at.ratings.guide_area[place]
         return Mean(demands.guide_pv(load, at.velocity, area) / limit)
 
     return Constraint(f"guide_pv_{side}", lambda ratings: ratings.guide_pv[place], utilisation)
 
 
-SHAPE: tuple[Constraint[Shape], ...] = (
+SHAPE: tuple[Constraint[LoadedCam], ...] = (
     Constraint(
         "spring_travel", lambda ratings: ratings.travel, lambda cam, limit: cam.jet.lift / limit
     ),
     Constraint(
         "pressure_angle",
         PRESSURE_ANGLE,
-        lambda cam, limit: magnitude(np.arctan(roller_of(cam.path).tangent)) / limit,
+        lambda cam, limit: magnitude(np.arctan(roller_of(cam.motion).tangent)) / limit,
         factor_max=inf,
         value_max=np.radians(60.0),
         needs="roller",
@@ -178,63 +169,65 @@ SHAPE: tuple[Constraint[Shape], ...] = (
     Constraint(
         "curvature_ratio",
         CURVATURE_RATIO,
-        lambda cam, limit: cam.path.sharpness * limit,
+        lambda cam, limit: cam.motion.sharpness * limit,
         needs="roller",
     ),
-    Constraint("undercut", UNDERCUT_FACTOR, lambda cam, limit: cam.path.sharpness / (1.0 - limit)),
+    Constraint(
+        "undercut", UNDERCUT_FACTOR, lambda cam, limit: cam.motion.sharpness / (1.0 - limit)
+    ),
     Constraint(
         "concave_radius", lambda ratings: ratings.hollow_radius, _concave_radius, needs="roller"
     ),
     Constraint(
         "curvature_rate",
         CURVATURE_RATE,
-        lambda cam, limit: magnitude(cam.path.curvature_slope) / limit,
+        lambda cam, limit: magnitude(cam.motion.curvature_slope) / limit,
     ),
     Constraint(
         "cam_radius",
         CAM_RADIUS,
-        lambda cam, limit: cam.path.contour_radius / limit,
+        lambda cam, limit: cam.motion.contour_radius / limit,
         factor_max=FACTOR_MAX,
     ),
     *PART_SHAPE,
 )
 """Limits on the shape of the cam."""
 
-LOADS: tuple[Constraint[Loads], ...] = (
+LOADS: tuple[Constraint[ScenarioCam], ...] = (
     Constraint("contact_pressure", lambda ratings: ratings.pressure, line_pressure),
     Constraint(
         "contact_force_margin",
         CONTACT_FORCE_MARGIN,
-        lambda at, limit: 1.0 + limit - at.force.normal / at.least_spring,
+        lambda at, limit: 1.0 + limit - at.normal / at.least_spring,
     ),
     Constraint("contact_at_overspeed", CONTACT_FORCE_MARGIN, _contact_at_overspeed),
     Constraint(
         "jump",
         JUMP,
-        lambda at, limit: demands.unloading(at.force.inertia, at.force.closing) / limit,
+        lambda at, limit: demands.unloading(at.inertia, at.closing) / limit,
     ),
     Constraint(
         "jump_speed",
         lambda ratings: ratings.jump_speed,
-        lambda at, limit: demands.unloading(_inertia(at, limit), at.force.closing),
+        lambda at, limit: demands.unloading(at.inertia_at(limit), at.closing),
     ),
     Constraint(
         "jam_index",
         JAM_INDEX,
-        lambda at, limit: demands.jam_outward(at.jet.slope, at.force.jam) / limit,
+        lambda at, limit: demands.jam_outward(at.jet.slope, at.jam) / limit,
         factor_max=FACTOR_MAX,
     ),
     Constraint("jam_index_friction_max", JAM_INDEX, _jam_index_friction_max),
     Constraint(
         "roller_static",
         lambda ratings: ratings.normal_force,
-        lambda at, limit: at.force.normal / limit,
+        lambda at, limit: at.normal / limit,
         needs="roller",
     ),
     Constraint(
         "bore_pressure",
         lambda ratings: ratings.normal_force,
-        lambda at, limit: at.force.normal / limit,
+        lambda at, limit: at.normal / limit,
         needs="face",
     ),
     Constraint(
@@ -254,7 +247,7 @@ LOADS: tuple[Constraint[Loads], ...] = (
 )
 """Limits on the loads of the cam in one scenario."""
 
-CONSTRAINTS: tuple[Constraint[Shape] | Constraint[Loads], ...] = (*SHAPE, *LOADS)
+CONSTRAINTS: tuple[Constraint[LoadedCam] | Constraint[ScenarioCam], ...] = (*SHAPE, *LOADS)
 
 
 def rows_kept(follower: Literal["roller", "face"]) -> tuple[AnyLimit, ...]:

@@ -18,7 +18,7 @@ from camwright.geometry.arrays import FULL_TURN, Array, Value
 from camwright.geometry.errors import InputError
 from camwright.geometry.pitch_curve import magnitude
 from camwright.pipeline.follower.spring_kinds import rise
-from camwright.pipeline.smoothing.cam_state import Loads, Mean
+from camwright.pipeline.smoothing.cam_state import Mean, ScenarioCam
 from camwright.pipeline.smoothing.scenario import DesignVariables, Scenario
 
 
@@ -64,7 +64,7 @@ class Residual:
 class Turning(NamedTuple):
     """Cam in one scenario at n cam angles; scale: references of the costs."""
 
-    loads: Loads
+    loads: ScenarioCam
     variables: DesignVariables
     scale: Scale
 
@@ -145,10 +145,9 @@ def torque_integral(values: Array) -> Array:
 def _loss(at: Turning) -> Mean:
     """Work of the friction of guides, and of roller bearing or face, over a turn."""
     cam = at.loads
-    ratings, force = cam.ratings, cam.force
-    guides = (force.axial - force.closing - force.inertia) * cam.jet.slope
-    drag = 0.0 if ratings.drag is None else ratings.drag.bearing_torque(force.normal)
-    contact = drag * magnitude(np.asarray(cam.path.rolling)) + force.axial * cam.path.sliding
+    guides = (cam.axial - cam.closing - cam.inertia) * cam.jet.slope
+    drag = 0.0 if cam.ratings.drag is None else cam.ratings.drag.bearing_torque(cam.normal)
+    contact = drag * magnitude(np.asarray(cam.motion.rolling)) + cam.axial * cam.motion.sliding
     return Mean(FULL_TURN / at.scale.energy * (guides + contact))
 
 
@@ -159,12 +158,12 @@ def _spring_energy(at: Turning) -> Array:
         preload = at.variables.preload * at.loads.scenario.preload_factor
         held = preload * at.loads.jet.lift + rate * rise(at.variables.shape, at.loads.jet.lift).work
         return np.asarray((held + preload**2 / (2.0 * rate)) / at.scale.energy)
-    return at.loads.force.spring**2 / (2.0 * rate * at.scale.energy)
+    return at.loads.spring_force**2 / (2.0 * rate * at.scale.energy)
 
 
 def _rest_force(at: Turning) -> Mean:
     """Contact force at standstill without friction; every angle is as likely."""
-    return Mean(at.loads.force.closing * at.loads.path.gain / at.scale.force)
+    return Mean(at.loads.closing * at.loads.motion.gain / at.scale.force)
 
 
 def _size(at: Turning) -> Mean:
@@ -216,7 +215,7 @@ COSTS: tuple[Cost, ...] = (
         "peak_force",
         "greatest contact force",
         _FORCE,
-        lambda at: at.loads.force.normal / at.scale.force,
+        lambda at: at.loads.normal / at.scale.force,
         everywhere=True,
     ),
 )
@@ -277,14 +276,14 @@ def costs(
     objective: Objective,
     scale: Scale,
     weight: Value,
-    loads: Loads,
+    loads: ScenarioCam,
     variables: DesignVariables,
 ) -> Mapping[str, Array | Mean]:
     """Weighted costs by key; each (..., n), or a `Mean` of the turn.
 
     Parameters
     ----------
-    loads : Loads   in one scenario, or in several, of the `weight` (..., 1) of their ripples
+    loads : ScenarioCam   in one scenario, or in several, of the `weight` (..., 1) of their ripples
     """
     terms = [
         (each.term, each.weight * (1.0 if each.term.everywhere else weight))

@@ -22,8 +22,9 @@ from camwright.pipeline.case.limits import (
 )
 from camwright.pipeline.checks import demands
 from camwright.pipeline.checks.roller_bearing import STANDSTILL
-from camwright.pipeline.contact.hertz import half_width_square, peak_pressure_square
+from camwright.pipeline.contact.hertz import half_width_square
 from camwright.pipeline.contact.traction import rolling_demand
+from camwright.pipeline.cycle.loaded_cam import LoadedCam, positive
 from camwright.pipeline.follower import bearing_life
 from camwright.pipeline.follower.flat_face_motion import MEAN_SHARE
 from camwright.pipeline.follower.roller_motion import (
@@ -33,14 +34,12 @@ from camwright.pipeline.follower.roller_motion import (
 )
 from camwright.pipeline.smoothing.cam_state import (
     Constraint,
-    Loads,
     Mean,
-    Shape,
+    ScenarioCam,
     Total,
     by_duty,
     duty_shares,
     face_of,
-    positive,
     roller_of,
 )
 
@@ -53,18 +52,18 @@ _AMPLE = 100.0  # times the least mean speed, of a roller at rest, which needs n
 Side = Literal["A", "B"]
 
 
-def _over_normal_force(at: Loads, needed: Array) -> Array:
+def _over_normal_force(at: ScenarioCam, needed: Array) -> Array:
     """Needed over present normal force (n,); 1 plus the shortfall below the contact force margin.
 
     The quotient alone has a pole where the search passes through a loss of contact.
     """
     margin = at.ratings.limits.get(CONTACT_FORCE_MARGIN, _MARGIN)
-    normal, least = at.force.normal, margin * at.least_spring
+    normal, least = at.normal, margin * at.least_spring
     scale: Array = np.where(np.real(normal) > np.real(np.asarray(least)), normal, least)
     return 1.0 + (needed - normal) / scale
 
 
-def _guide_speed(side: Side) -> Constraint[Shape]:
+def _guide_speed(side: Side) -> Constraint[LoadedCam]:
     place = "AB".index(side)
     return Constraint(
         f"guide_speed_{side}",
@@ -78,59 +77,45 @@ def _where(applies: Value, use: Array) -> Array:
     return np.where(np.asarray(applies) != 0.0, use, _FAR + 0.0 * use)
 
 
-def _guide_gap(at: Loads, limit: float) -> Array:
+def _guide_gap(at: ScenarioCam, limit: float) -> Array:
     """Over the size of the follower; of the cam alone, as the gap of the follower is fixed."""
-    path, ratings = at.path, at.ratings
+    path, ratings = at.motion, at.ratings
     space = path.height - at.jet.lift + at.highest + ratings.guide_mouth - path.contour_radius
     use = 1.0 + (limit - space) / ratings.follower_size
     return _where(np.multiply(at.scenario.swept, at.scenario.nominal), use)
 
 
-def rubbing_load(at: Loads, place: int) -> Array:
-    """Normal load of the friction in guide A (0) or B (1), N."""
-    return at.force.axial * at.force.rubbing[place]
-
-
-def _guide_edge_pressure(side: Side) -> Constraint[Loads]:
+def _guide_edge_pressure(side: Side) -> Constraint[ScenarioCam]:
     """Line load over that at the yield strength of the bush at its temperature."""
     place = "AB".index(side)
 
-    def utilisation(at: Loads, limit: float) -> Array:
-        fix = at.scenario.correction
-        peak = at.force.guides[place].corrected((fix.edge_a, fix.edge_b)[place])
-        return magnitude(at.force.axial * peak) / (at.ratings.guide_length[place] * limit)
+    def utilisation(at: ScenarioCam, limit: float) -> Array:
+        return magnitude(at.edge[place]) / (at.ratings.guide_length[place] * limit)
 
     return Constraint(
         f"guide_edge_pressure_{side}", lambda ratings: ratings.guide_edge_load[place], utilisation
     )
 
 
-def _guide_heat(side: Side) -> Constraint[Loads]:
+def _guide_heat(side: Side) -> Constraint[ScenarioCam]:
     """Mean friction power at the greatest friction over that at the greatest temperature."""
     place = "AB".index(side)
 
-    def utilisation(at: Loads, limit: float) -> Mean | None:
-        friction = at.scenario.friction_worst
-        if friction is None:
-            return None
-        fix, guides = at.scenario.correction, at.force.guides
-        on_a, on_b = (mu * each.on_points for mu, each in zip(friction, guides, strict=True))
-        jam = np.sign(np.real(at.jet.slope)) * (on_a + on_b) * fix.jam
-        axial = at.force.axial * at.force.share / (1.0 - jam)
-        rubbing = friction[place] * guides[place].corrected((fix.hot_a, fix.hot_b)[place]) * axial
-        return Mean(magnitude(rubbing * at.velocity) / limit)
+    def utilisation(at: ScenarioCam, limit: float) -> Mean | None:
+        rubbing = at.hot
+        return None if rubbing is None else Mean(magnitude(rubbing[place] * at.velocity) / limit)
 
     return Constraint(
         f"guide_temperature_{side}", lambda ratings: ratings.guide_power[place], utilisation
     )
 
 
-def _guide_wear(side: Side) -> Constraint[Loads]:
+def _guide_wear(side: Side) -> Constraint[ScenarioCam]:
     """Mean PV value over that of the greatest wear depth."""
     place = "AB".index(side)
 
-    def utilisation(at: Loads, limit: float) -> Mean:
-        load = rubbing_load(at, place)
+    def utilisation(at: ScenarioCam, limit: float) -> Mean:
+        load = at.rubbing[place]
         pv = demands.guide_pv(load, at.velocity, at.ratings.guide_area[place])
         return by_duty(pv / limit, at.scenario)
 
@@ -139,42 +124,42 @@ def _guide_wear(side: Side) -> Constraint[Loads]:
     )
 
 
-def _traction_demand(at: Loads, friction: float) -> Array | None:
+def _traction_demand(at: ScenarioCam, friction: float) -> Array | None:
     if at.ratings.drag is None:
         return None
-    jet, path = at.jet, roller_of(at.path)
+    jet, path = at.jet, roller_of(at.motion)
     radius = path.size
     rate = path_speed_slope(path.along, path.height, jet.slope, jet.bend, path.path_speed)
     acceleration = at.scenario.cam_speed**2 * rate / radius
-    force = positive(at.force.normal)
+    force = positive(at.normal)
     demand = rolling_demand(at.ratings.drag, force, at.spin, acceleration, radius)
     return _over_normal_force(at, magnitude(demand) / friction)
 
 
-def _profile_waviness(at: Loads, limit: float) -> Array | None:
+def _profile_waviness(at: ScenarioCam, limit: float) -> Array | None:
     if at.ratings.waves is None:
         return None
     amplitude, length = at.ratings.waves
-    speed = at.scenario.cam_speed * at.path.contour_speed
+    speed = at.scenario.cam_speed * at.motion.contour_speed
     inertia = demands.waviness_force(at.scenario.mass, amplitude, speed, length)
     return _over_normal_force(at, inertia / limit)
 
 
-def _swept_force(at: Loads, limit: float) -> Array | None:
+def _swept_force(at: ScenarioCam, limit: float) -> Array | None:
     """At the speed with the least force of the solved cam, with its surge; first the fastest."""
     fastest, scenario = at.ratings.fastest, at.scenario
     if fastest is None:
         return None
     fix = scenario.correction
     speed = np.where(fix.swept_speed > 0.0, fix.swept_speed, fastest)
-    push = at.force.closing + fix.swept_surge
+    push = at.closing + fix.swept_surge
     push = push + (scenario.mass - scenario.spring_mass) * speed**2 * at.jet.bend
     push = push + scenario.viscous_damping * speed * at.jet.slope
-    normal = push / at.force.share * at.path.gain
+    normal = push / at.share * at.motion.gain
     return _where(scenario.swept, 1.0 + limit - normal / at.least_spring)
 
 
-def _elastic_contact(at: Loads, limit: float) -> Array | None:
+def _elastic_contact(at: ScenarioCam, limit: float) -> Array | None:
     """As `_swept_force`, without friction, with the change by the elastic stem."""
     fastest, scenario = at.ratings.fastest, at.scenario
     if fastest is None:
@@ -182,25 +167,25 @@ def _elastic_contact(at: Loads, limit: float) -> Array | None:
     fix = scenario.correction
     speed = np.where(fix.elastic_speed > 0.0, fix.elastic_speed, fastest)
     inertia = (scenario.mass - scenario.spring_mass) * speed**2 * at.jet.bend
-    push = demands.force_left(at.force.closing + fix.elastic, inertia, at.least_spring)
+    push = demands.force_left(at.closing + fix.elastic, inertia, at.least_spring)
     return _where(scenario.swept, 1.0 + limit - push)
 
 
-def _keyway_root(at: Loads, limit: float) -> Array | None:
+def _keyway_root(at: ScenarioCam, limit: float) -> Array | None:
     keyway = at.ratings.keyway
     if keyway is None:
         return None
-    wall = at.path.radius_at(at.scenario.correction.least_lift) - keyway.held_radius
+    wall = at.motion.radius_at(at.fix.least_lift) - keyway.held_radius
     wall = np.where(np.real(wall) < keyway.thick, wall, keyway.thick)
-    return keyway.used_by(magnitude(at.torque), magnitude(at.force.normal), wall) * limit
+    return keyway.used_by(magnitude(at.torque), magnitude(at.normal), wall) * limit
 
 
-def _mean_spin(at: Loads) -> tuple[Array, NDArray[np.bool_]]:
+def _mean_spin(at: ScenarioCam) -> tuple[Array, NDArray[np.bool_]]:
     """Mean speed of the roller (..., 1), rad/s, at least that of standstill; whether it turns.
 
     That of the solved cam; before, of a roller on the prime circle.
     """
-    rolling, path = at.scenario.correction.rolling[..., :1], roller_of(at.path)  # one value
+    rolling, path = at.fix.rolling[..., :1], roller_of(at.motion)  # one value
     prime = path.prime_radius[..., :1]
     share = np.where(rolling > 0.0, rolling, rolling_share(prime, path.size))
     mean, least = at.scenario.cam_speed * share, STANDSTILL * factor("rpm")
@@ -208,12 +193,12 @@ def _mean_spin(at: Loads) -> tuple[Array, NDArray[np.bool_]]:
     return np.where(turns, mean, least), turns
 
 
-def _modified_life(at: Loads, limit: float) -> Mean | None:
+def _modified_life(at: ScenarioCam, limit: float) -> Mean | None:
     """Of 1/L = sum q_i/(a1 a_ISO (C/P_i)^3), kappa at the mean speed of the roller."""
     bearing = at.ratings.modified
     if bearing is None:
         return None
-    force = np.where(np.real(at.force.surged) > _LEAST_FORCE, at.force.surged, _LEAST_FORCE)
+    force = np.where(np.real(positive(at.surged)) > _LEAST_FORCE, positive(at.surged), _LEAST_FORCE)
     speed, turns = _mean_spin(at)
     rated = bearing_life.rated_viscosity(speed / factor("rpm"), bearing.circle)
     kappa, least = bearing.viscosity / rated, bearing_life.LEAST_VISCOSITY_RATIO
@@ -223,7 +208,7 @@ def _modified_life(at: Loads, limit: float) -> Mean | None:
     return by_duty(terms, at.scenario, 1.0 / BALL_LIFE_EXPONENT)
 
 
-def _grease_life(at: Loads, limit: float) -> Mean | None:
+def _grease_life(at: ScenarioCam, limit: float) -> Mean | None:
     """Equivalent load over that at the life of the grease, both at the mean speed.
 
     With a duty the factor on the rating at which the grease lasts, and in each load case the load
@@ -233,7 +218,7 @@ def _grease_life(at: Loads, limit: float) -> Mean | None:
     if grease is None:
         return None
     speed, turns = _mean_spin(at)
-    worn = wear(positive(at.force.normal), at.spin) / (limit**BALL_LIFE_EXPONENT * speed)
+    worn = wear(positive(at.normal), at.spin) / (limit**BALL_LIFE_EXPONENT * speed)
     shares, root = duty_shares(at.scenario), 1.0 / BALL_LIFE_EXPONENT
     if shares is None:
         share = grease.load_share(speed)
@@ -257,56 +242,53 @@ def _grease_life(at: Loads, limit: float) -> Mean | None:
     return Mean(terms, total=Total(of, members))
 
 
-def _lubrication(at: Loads, limit: float) -> Mean:
+def _lubrication(at: ScenarioCam, limit: float) -> Mean:
     """Least mean speed of the roller over its mean speed; no film is necessary at rest."""
     spin = magnitude(at.spin)
     _, turns = _mean_spin(at)
     return Mean(np.where(turns, spin / limit, _AMPLE + 0.0 * spin), -1.0)
 
 
-def _minimum_wall(cam: Shape, limit: float) -> Array | None:
-    held = cam.ratings.held_radius
-    return None if held is None else limit * held / cam.path.contour_radius
+def _minimum_wall(cam: LoadedCam, limit: float) -> Array | None:
+    held = cam.numbers.get("cam.held_radius")
+    return None if held is None else limit * held / cam.motion.contour_radius
 
 
-def _face_width(at: Loads, width: float) -> Array:
+def _face_width(at: ScenarioCam, width: float) -> Array:
     """Twice the distance of the contact from the stem axis and its half-width, over the width.
 
     At the same force the half-width falls as the pressure rises.
     """
-    ratings, path = at.ratings, face_of(at.path)
-    force = np.where(np.real(at.force.normal) > _LEAST_FORCE, at.force.normal, _LEAST_FORCE)
+    ratings, path = at.ratings, face_of(at.motion)
+    force = np.where(np.real(at.normal) > _LEAST_FORCE, at.normal, _LEAST_FORCE)
     radius = np.where(np.real(path.radius) > _LEAST_RADIUS, path.radius, _LEAST_RADIUS)
     load = force / ratings.contact_width
     half = np.sqrt(half_width_square(load, radius, ratings.contact_modulus))
-    return 2.0 * (magnitude(path.arm) + half / at.scenario.correction.contact) / width
+    return 2.0 * (magnitude(path.arm) + half / at.fix.contact) / width
 
 
-def _face_pv(at: Loads, limit: float) -> Array:
+def _face_pv(at: ScenarioCam, limit: float) -> Array:
     """As `line_pressure`, of the pressure whose mean is at the PV limit at the sliding speed."""
-    return line_pressure(at, limit / (MEAN_SHARE * at.scenario.cam_speed * at.path.height))
+    return line_pressure(at, limit / (MEAN_SHARE * at.scenario.cam_speed * at.motion.height))
 
 
-def line_pressure(at: Loads, allowed: Value) -> Array:
+def line_pressure(at: ScenarioCam, allowed: Value) -> Array:
     """sharpness + R_p / size <= 1, equivalent to p0 <= allowed.
 
     R_p is the relative radius at which the line contact has the allowed pressure. Pressure and
     undercut depend on the same undercut factor, 1 - sharpness.
     """
-    ratings = at.ratings
-    line_load = at.force.normal / ratings.contact_width
-    flat = peak_pressure_square(line_load, 1.0 / at.path.size, ratings.contact_modulus)
-    return at.path.sharpness + at.scenario.correction.contact**2 * flat / allowed**2
+    return at.motion.sharpness + at.pressure_factor**2 * at.flat_square / allowed**2
 
 
-PART_SHAPE: tuple[Constraint[Shape], ...] = (
+PART_SHAPE: tuple[Constraint[LoadedCam], ...] = (
     Constraint("minimum_wall", MINIMUM_WALL, _minimum_wall),
     _guide_speed("A"),
     _guide_speed("B"),
 )
 """Limits of the parts on the shape of the cam."""
 
-PARTS: tuple[Constraint[Loads], ...] = (
+PARTS: tuple[Constraint[ScenarioCam], ...] = (
     Constraint("guide_gap", lambda ratings: ratings.guide_gap, _guide_gap),
     _guide_edge_pressure("A"),
     _guide_edge_pressure("B"),

@@ -14,7 +14,7 @@ from camwright.geometry.arrays import Array, uniform_turn
 from camwright.geometry.lift import Jet
 from camwright.pipeline.case.limits import PRESSURE_ANGLE, TORQUE_REDUCTION
 from camwright.pipeline.follower.spring import spring_energy
-from camwright.pipeline.smoothing.cam_state import Loads, Mean, lift_jet, loaded
+from camwright.pipeline.smoothing.cam_state import Mean, ScenarioCam, lift_jet, loaded
 from camwright.pipeline.smoothing.cone_program import Linear, Norm
 from camwright.pipeline.smoothing.constraints import (
     SHAPE,
@@ -259,7 +259,7 @@ class Search:
         }
 
     def _charged(
-        self, names: frozenset[str], weights: Array, loads: Loads, variables: DesignVariables
+        self, names: frozenset[str], weights: Array, loads: ScenarioCam, variables: DesignVariables
     ) -> Mapping[str, Array | Mean]:
         """Costs of those names, of a cam in stacked scenarios of these weights (s, 1)."""
         objective = tuple(each for each in self.problem.objective if each.term.key in names)
@@ -310,7 +310,7 @@ class Search:
         limits = values.keys() - self.costs
         return {name: value.max(axis=0) for name, value in values.items() if name in limits}
 
-    def _loaded(self, coefficients: Array, variables: DesignVariables, grid: Grid) -> Loads:
+    def _loaded(self, coefficients: Array, variables: DesignVariables, grid: Grid) -> ScenarioCam:
         """Cam at the angles of a grid in the stacked scenarios."""
         return loaded(
             lift_jet(grid.energy(coefficients), variables),
@@ -321,10 +321,10 @@ class Search:
         )
 
     def _uses(
-        self, loads: Loads, variables: DesignVariables, points: int
+        self, loads: ScenarioCam, variables: DesignVariables, points: int
     ) -> tuple[dict[str, Array], dict[str, Mean]]:
         """Utilisations (s, n) at the angles of a grid; means over its first points."""
-        shape = self.shape()(loads.jet, loads.highest, variables)
+        shape = self.shape()(loads.jet, np.nan, variables)  # the maximum lift does not matter
         charged = self._charged(self.costs, self._weights, loads, variables)
         pointwise: dict[str, Array] = {}
         means: dict[str, Mean] = {}

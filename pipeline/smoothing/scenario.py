@@ -320,6 +320,14 @@ class Scenario:
         return np.fft.irfft(turned, n=count), np.fft.irfft(order * turned, n=count)
 
 
+_NUMBERS = (
+    "cam_speed", "mass", "guide_spacing", "overhang", "friction_a", "friction_b",
+    "viscous_damping", "rate_factor", "preload_factor", "spring_mass", "nominal", "swept",
+    "corner",
+)  # fmt: skip
+"""Numbers of a scenario that differ between stacked ones."""
+
+
 def stacked(scenarios: Sequence[Scenario], theta: Array) -> Scenario:
     """Scenarios at once: numbers (s, 1), corrections (s, n) at cam angles theta (n,), rad.
 
@@ -338,23 +346,12 @@ def stacked(scenarios: Sequence[Scenario], theta: Array) -> Scenario:
     greatest = None
     if len(worst) == len(scenarios):
         greatest = (_column(a for a, _ in worst), _column(b for _, b in worst))
+    numbers = {name: _column(getattr(each, name) for each in scenarios) for name in _NUMBERS}
     return replace(
         scenarios[0],
-        cam_speed=_column(each.cam_speed for each in scenarios),
-        mass=_column(each.mass for each in scenarios),
-        guide_spacing=_column(each.guide_spacing for each in scenarios),
-        overhang=_column(each.overhang for each in scenarios),
-        friction_a=_column(each.friction_a for each in scenarios),
-        friction_b=_column(each.friction_b for each in scenarios),
-        viscous_damping=_column(each.viscous_damping for each in scenarios),
-        rate_factor=_column(each.rate_factor for each in scenarios),
-        preload_factor=_column(each.preload_factor for each in scenarios),
+        **numbers,  # type: ignore[arg-type]
         external=np.broadcast_to(external, (len(scenarios), external.size)),
-        spring_mass=_column(each.spring_mass for each in scenarios),
-        nominal=_column(each.nominal for each in scenarios),
-        swept=_column(each.swept for each in scenarios),
         duty=None if None in duties else _column(each for each in duties if each is not None),
-        corner=_column(each.corner for each in scenarios),
         friction_worst=greatest,
         correction=Correction(
             *(
@@ -371,24 +368,12 @@ def taken(stack: Scenario, take: Callable[[Array], Array]) -> Scenario:
     def of(value: Value) -> Array:
         return take(np.asarray(value))
 
+    numbers = {name: of(getattr(stack, name)) for name in (*_NUMBERS, "external")}
     worst = stack.friction_worst
     return replace(
         stack,
-        cam_speed=of(stack.cam_speed),
-        mass=of(stack.mass),
-        guide_spacing=of(stack.guide_spacing),
-        overhang=of(stack.overhang),
-        friction_a=of(stack.friction_a),
-        friction_b=of(stack.friction_b),
-        viscous_damping=of(stack.viscous_damping),
-        rate_factor=of(stack.rate_factor),
-        preload_factor=of(stack.preload_factor),
-        external=of(stack.external),
-        spring_mass=of(stack.spring_mass),
-        nominal=of(stack.nominal),
-        swept=of(stack.swept),
+        **numbers,  # type: ignore[arg-type]
         duty=None if stack.duty is None else of(stack.duty),
-        corner=of(stack.corner),
         friction_worst=None if worst is None else (of(worst[0]), of(worst[1])),
         correction=Correction(
             *(of(getattr(stack.correction, item.name)) for item in fields(Correction))

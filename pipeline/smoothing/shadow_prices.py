@@ -15,7 +15,7 @@ from camwright.pipeline.base.units import in_unit
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_values import replaced, value_of
 from camwright.pipeline.smoothing.bounds import Bound, bounds_of
-from camwright.pipeline.smoothing.cam_state import lift_jet, motion
+from camwright.pipeline.smoothing.cam_state import lift_jet, unloaded
 from camwright.pipeline.smoothing.problem_setup import problem_of
 from camwright.pipeline.smoothing.sampled_problem import Search
 from camwright.pipeline.smoothing.scenario import Ratings
@@ -322,7 +322,7 @@ def _load_share(design: Design, problem: Problem, name: str) -> float:
     if not binds.any():
         return 1.0
     jet = lift_jet(problem.grid(theta[binds]).energy(design.coefficients), design.variables)
-    bend = motion(jet, design.variables, problem.ratings).sharpness
+    bend = unloaded(jet, design.variables, problem.ratings).motion.sharpness
     return float(np.mean(np.asarray(use)[binds] - bend))
 
 

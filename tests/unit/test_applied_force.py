@@ -28,7 +28,7 @@ from camwright.pipeline.follower.follower_forces import FollowerSystem, follower
 from camwright.pipeline.follower.spring import Spring
 from camwright.pipeline.preview import preview_case
 from camwright.pipeline.screening.design_screening import screen_designs
-from camwright.pipeline.smoothing.cam_state import forces, lift_jet, motion
+from camwright.pipeline.smoothing.cam_state import lift_jet, loaded
 from camwright.pipeline.smoothing.problem_setup import problem_of
 from camwright.pipeline.smoothing.required_lift import required_lift, required_torque
 from camwright.pipeline.smoothing.sampled_problem import Search
@@ -246,8 +246,7 @@ def test_synthesis_has_the_same_forces_and_exact_derivatives(folder):
         PitchCurve(design_lift, case.cam.prime_radius), drive.system, drive.cam_speed, theta
     )
     stack = stacked([idle], theta)
-    path = motion(jet, problem.variables, problem.ratings)
-    force = forces(jet, path, float(jet.lift.max()), problem.variables, stack)
+    force = loaded(jet, float(jet.lift.max()), problem.variables, problem.ratings, stack)
     wide = float(np.abs(loads.axial_force).max())
     assert force.closing[0] == pytest.approx(loads.closing_force, abs=1e-9 * wide)
     touching = loads.required_force > 0.0

@@ -30,7 +30,7 @@ from camwright.pipeline.follower.spring_kinds import ATMOSPHERE, GasSpring, rise
 from camwright.pipeline.preview import preview_case
 from camwright.pipeline.screening.design_screening import screen_designs
 from camwright.pipeline.smoothing.allowables import travel_limits
-from camwright.pipeline.smoothing.cam_state import forces, lift_jet, motion
+from camwright.pipeline.smoothing.cam_state import lift_jet, loaded
 from camwright.pipeline.smoothing.problem_setup import problem_of
 from camwright.pipeline.smoothing.required_lift import required_lift, required_torque
 from camwright.pipeline.smoothing.sampled_problem import Search
@@ -159,10 +159,10 @@ def test_synthesis_has_the_forces_of_the_follower():
     drive = machine(case(), case().load_cases[0])
     pitch = PitchCurve(Lift(theta, jet.lift), case().cam.prime_radius)
     loads = follower_loads(pitch, drive.system, drive.cam_speed, theta)
-    path = motion(jet, problem.variables, problem.ratings)
-    force = forces(jet, path, float(jet.lift.max()), problem.variables, stacked([idle], theta))
+    stack = stacked([idle], theta)
+    cam = loaded(jet, float(jet.lift.max()), problem.variables, problem.ratings, stack)
     wide = float(loads.spring_force.max())
-    assert force.spring[0] == pytest.approx(loads.spring_force, abs=1e-12 * wide)
+    assert cam.spring_force[0] == pytest.approx(loads.spring_force, abs=1e-12 * wide)
 
 
 def test_preview_and_screening_agree():

@@ -32,7 +32,7 @@ from camwright.pipeline.smoothing.allowables import (
     ratings_of,
 )
 from camwright.pipeline.smoothing.bounds import bounds_of
-from camwright.pipeline.smoothing.cam_state import Mean, motion
+from camwright.pipeline.smoothing.cam_state import Mean, unloaded
 from camwright.pipeline.smoothing.constrained_synthesis import synthesise
 from camwright.pipeline.smoothing.constraints import (
     CONSTRAINTS,
@@ -394,7 +394,7 @@ def test_each_constraint_is_its_check_on_a_solved_cam(drawn):
                 for each in made
             ])  # fmt: skip
         if name in PRESSURES:  # bend + (1 - bend) (p0/p)^2
-            bend = motion(jet, variables, ratings).sharpness
+            bend = unloaded(jet, variables, ratings).motion.sharpness
             uses[name] = (uses[name] - bend) / (1.0 - bend)
         # The sweep interpolates friction over axial force; the wall of the keyway is at the
         # minimum lift, and at the least radius.

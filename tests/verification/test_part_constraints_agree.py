@@ -36,7 +36,7 @@ from camwright.pipeline.smoothing.allowables import (
     travel_limits,
 )
 from camwright.pipeline.smoothing.bounds import bounds_of
-from camwright.pipeline.smoothing.cam_state import Mean, Shape, loaded, motion
+from camwright.pipeline.smoothing.cam_state import Mean, ScenarioCam, loaded, unloaded
 from camwright.pipeline.smoothing.constraints import (
     CONSTRAINTS,
     SHAPE,
@@ -417,7 +417,8 @@ def greatest(each, states, ratings):
     """Greatest utilisation of a constraint, with its limit in these ratings."""
     limit, most = each.value(ratings), -np.inf
     for state in states:
-        use = None if limit is None else each.utilisation(state._replace(ratings=ratings), limit)
+        cam = replace(state, ratings=ratings) if isinstance(state, ScenarioCam) else state
+        use = None if limit is None else each.utilisation(cam, limit)
         if use is not None:
             most = max(most, float(np.max(use.value if isinstance(use, Mean) else use)))
     return most
@@ -437,7 +438,7 @@ def test_the_slope_of_a_bound_is_that_of_the_utilisation_where_it_binds(
     jet, top = Jet(*pitch.lift.derivatives(theta, 3)), pitch.lift.highest.value
     variables = DesignVariables(case.spring.rate, case.spring.preload, case.cam.prime_radius)
     ratings = replace(ratings_of(case), held_radius=case.cam.held_radius)
-    states = [Shape(jet, motion(jet, variables, ratings), ratings)]
+    states = [unloaded(jet, variables, ratings)]
     if each not in SHAPE:
         states = [
             loaded(jet, top, variables, ratings, replace(one, correction=corrections[one.name]))

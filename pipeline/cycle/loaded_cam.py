@@ -1,0 +1,216 @@
+"""Loaded cam: lift, motion, forces, guides and contact at cam angles, as arrays.
+
+The formulas of checks, screening and synthesis, once, for arrays of any shape, real or complex. A
+subclass replaces what it knows better than point supports and half-planes: its members are the list
+of what enters as data.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+
+from camwright.geometry.arrays import Array, Value
+from camwright.geometry.flat_face_contour import FaceMotion
+from camwright.geometry.follower_path import Motion, Reaction
+from camwright.geometry.lift import Jet
+from camwright.geometry.pitch_curve import RollerMotion
+from camwright.pipeline.contact.hertz import peak_pressure_square
+from camwright.pipeline.cycle.numbers import Numbers
+from camwright.pipeline.follower.follower_forces import levers
+from camwright.pipeline.follower.spring_kinds import SpringShape, rise
+
+
+def motion_of(jet: Jet, numbers: Numbers) -> Motion:
+    """Motion of the translating follower of the numbers; see `PitchCurve` and `FacePath`."""
+    prime, offset = numbers["cam.prime_radius"], numbers["cam.offset"]
+    if numbers.get("follower.face.width") is not None:
+        friction = numbers.get("follower.face.friction")
+        return FaceMotion(jet, prime, offset, 0.0 if friction is None else friction)
+    return RollerMotion(jet, np.sqrt(prime**2 - offset**2), offset, numbers["roller.radius"])
+
+
+def positive(values: Array) -> Array:
+    """Values, and zero where they are negative; complex."""
+    return np.where(np.real(values) > 0.0, values, 0.0 * values)
+
+
+class OfGuides(NamedTuple):
+    """A quantity of guides A and B."""
+
+    a: Array
+    b: Array
+
+
+@dataclass(frozen=True, eq=False)
+class LoadedCam:
+    """A cam at n cam angles under the loads of its follower; arrays (..., n), SI.
+
+    The forces are not clipped at loss of contact and at jamming: a search needs their slope beyond
+    both. Leading axes are those of load cases, tolerance corners or designs; pairs of one and a cam
+    angle are (m,).
+
+    Parameters
+    ----------
+    jet : Jet
+    numbers : Numbers      of machine and load case
+    highest : float        maximum lift, m
+    least_lift : float     minimum lift, m
+    external : array       external force, N, towards the cam
+    gravity : float        component of g along the axis towards the cam, m/s2
+    """
+
+    jet: Jet
+    numbers: Numbers
+    highest: Value = np.nan
+    least_lift: Value = 0.0
+    external: Value = 0.0
+    gravity: Value = 0.0
+
+    @cached_property
+    def motion(self) -> Motion:
+        """Motion of the follower on the unloaded cam."""
+        return motion_of(self.jet, self.numbers)
+
+    @property
+    def spring_shape(self) -> SpringShape | None:
+        """Rise of the force of a spring that is not linear; None: linear."""
+        case = self.numbers.case
+        return None if case is None else case.spring.shape
+
+    @property
+    def speed(self) -> Value:
+        """Cam speed, rad/s."""
+        return self.numbers["cam.speed"]
+
+    @property
+    def slope(self) -> Array:
+        """Slope of the lift, m/rad; its sign is that of the motion."""
+        return self.jet.slope
+
+    @cached_property
+    def velocity(self) -> Array:
+        """Velocity of the follower, m/s."""
+        return self.speed * self.slope
+
+    @cached_property
+    def spin(self) -> Array:
+        """Speed of the roller on its pin, rad/s."""
+        return np.asarray(self.speed * self.motion.rolling)
+
+    @cached_property
+    def reactions(self) -> tuple[Reaction, Reaction]:
+        """Loads of guides on points over the axial force."""
+        numbers, spacing = self.numbers, self.numbers["guides.spacing"]
+        overhang = numbers["follower.overhang_at_max_lift"] + self.highest - self.jet.lift
+        return self.motion.reactions(levers(overhang, spacing), spacing)
+
+    @cached_property
+    def rubbing_share(self) -> OfGuides:
+        """Normal loads of the friction in the guides over the axial force."""
+        return OfGuides(*(each.on_points for each in self.reactions))
+
+    def _spring_at(self, lift: Value) -> Array:
+        """Spring force at a lift, m, N."""
+        shape = self.spring_shape
+        travel = lift if shape is None else rise(shape, np.asarray(lift)).travel
+        return np.asarray(self.numbers["spring.preload"] + self.numbers["spring.rate"] * travel)
+
+    @cached_property
+    def spring_force(self) -> Array:
+        """N"""
+        return self._spring_at(self.jet.lift)
+
+    @cached_property
+    def least_spring(self) -> Array:
+        """Spring force at minimum lift, N."""
+        return self._spring_at(self.least_lift)
+
+    @cached_property
+    def closing(self) -> Array:
+        """Spring, weight and external force, N."""
+        return self.spring_force + (self.numbers["follower.mass"] * self.gravity + self.external)
+
+    def inertia_at(self, speed: Value) -> Array:
+        """Inertia force at a cam speed, rad/s, N."""
+        force: Array = self.numbers["follower.mass"] * speed**2 * self.jet.bend
+        return force
+
+    @cached_property
+    def inertia(self) -> Array:
+        """Inertia force, N."""
+        return self.inertia_at(self.speed)
+
+    @cached_property
+    def viscous(self) -> Array:
+        """Force of the viscous damping, N."""
+        force: Array = self.numbers["follower.viscous_damping"] * self.speed * self.jet.slope
+        return force
+
+    @cached_property
+    def required(self) -> Array:
+        """Axial force without guide friction, N; negative: of a cam that would have to pull."""
+        return self.closing + self.inertia + self.viscous
+
+    @cached_property
+    def jam(self) -> Array:
+        """Jam index: friction of the guides over the axial force."""
+        numbers, rubbing = self.numbers, self.rubbing_share
+        on_a, on_b = numbers["guides.a.friction"], numbers["guides.b.friction"]
+        index: Array = on_a * rubbing.a + on_b * rubbing.b
+        return index
+
+    @cached_property
+    def share(self) -> Array:
+        """Axial force without friction over axial force."""
+        return 1.0 - np.sign(np.real(self.slope)) * self.jam
+
+    @cached_property
+    def axial(self) -> Array:
+        """Axial force, with implicit guide friction, N; see `follower_loads`."""
+        return self.required / self.share
+
+    @cached_property
+    def normal(self) -> Array:
+        """Contact force, N."""
+        return self.axial * self.motion.gain
+
+    @property
+    def surge(self) -> Value:
+        """Force of the surge of the spring, N."""
+        return 0.0
+
+    @cached_property
+    def surged(self) -> Array:
+        """Contact force with the surge of the spring, N."""
+        return (self.axial + self.surge / self.share) * self.motion.gain
+
+    @cached_property
+    def torque(self) -> Array:
+        """Cam torque, N m."""
+        return self.axial * (self.slope + self.motion.sliding)
+
+    @cached_property
+    def rubbing(self) -> OfGuides:
+        """Sum of the pushes on both sides of a guide, N."""
+        return OfGuides(*(self.axial * each for each in self.rubbing_share))
+
+    @cached_property
+    def bearing(self) -> OfGuides:
+        """Greater push on one side of a guide over the loaded share of its length, N."""
+        return OfGuides(*(self.axial * each.on_points for each in self.reactions))
+
+    @property
+    def pressure_factor(self) -> Value:
+        """Contact pressure over that of half-planes in plane strain."""
+        return 1.0
+
+    @cached_property
+    def flat_square(self) -> Array:
+        """p0^2 by half-planes at an undercut factor of 1, Pa^2."""
+        line_load = self.normal / self.numbers["contact.width"]
+        modulus = self.numbers["contact.modulus"]
+        return peak_pressure_square(line_load, 1.0 / self.motion.size, modulus)

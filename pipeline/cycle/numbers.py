@@ -1,0 +1,62 @@
+"""Numbers of a machine by dotted key: of a case, its corners and load cases, or of many designs."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from camwright.geometry.arrays import Array, Value
+from camwright.geometry.errors import InputError
+from camwright.pipeline.case.case import Case
+from camwright.pipeline.case.case_values import value_of
+
+
+@dataclass(frozen=True, eq=False)
+class Numbers:
+    """Numbers by dotted key, SI: floats, or arrays (..., 1), real or complex.
+
+    Parameters
+    ----------
+    changed : mapping   those that differ from the case, or that no single key of a case states,
+                        such as ``cam.speed``
+    case : Case         None: no others are known
+    """
+
+    changed: Mapping[str, Value | None]
+    case: Case | None = None
+    _read: dict[str, Value | None] = field(default_factory=dict, repr=False)
+
+    def get(self, key: str) -> Value | None:
+        """Value at a key; None where the case leaves it out."""
+        if key in self.changed:
+            return self.changed[key]
+        if key not in self._read:
+            self._read[key] = None if self.case is None else value_of(self.case, key)
+        return self._read[key]
+
+    def __getitem__(self, key: str) -> Value:
+        """Value at a key.
+
+        Raises
+        ------
+        InputError
+            If there is none.
+        """
+        value = self.get(key)
+        if value is None:
+            raise InputError(key, "missing", "given")
+        return value
+
+    def __or__(self, changed: Mapping[str, Value | None]) -> Numbers:
+        """With other numbers; what is read from the case is read once."""
+        return Numbers({**self.changed, **changed}, self.case, self._read)
+
+    def taken(self, take: Callable[[Array], Array]) -> Numbers:
+        """Those of some load cases, or of pairs of load case and cam angle."""
+        changed = {
+            key: None if value is None else take(np.asarray(value))
+            for key, value in self.changed.items()
+        }
+        return Numbers(changed, self.case, self._read)
