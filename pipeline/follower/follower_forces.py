@@ -305,10 +305,7 @@ class Loads(Displayed):
         The angle is the first one of the turn at which one of both begins: the loads of a turn
         before it are those after it in the next one.
         """
-        lost = self.separated | self.jammed
-        first = np.argmax(lost & ~np.roll(lost, 1, axis=-1), axis=-1)
-        leaves = np.take_along_axis(self.separated, first[..., None], axis=-1)[..., 0]
-        return LoadEnds(np.asarray(lost.any(axis=-1)), first, leaves)
+        return ends_of(self.separated, self.jammed)
 
     @property
     def end(self) -> tuple[float, str] | None:
@@ -345,6 +342,14 @@ class Loads(Displayed):
         """Friction loss of both guides and of a face over one cam turn, J."""
         rubbing = self.friction_force * np.abs(self.lift_slope) + self.sliding_torque
         return turn_integral(self.theta, rubbing + self.viscous_force * self.lift_slope)
+
+
+def ends_of(separated: NDArray[np.bool_], jammed: NDArray[np.bool_]) -> LoadEnds:
+    """End of the loads from where a follower has no contact or jams (..., n); see `Loads.ends`."""
+    lost = separated | jammed
+    first = np.argmax(lost & ~np.roll(lost, 1, axis=-1), axis=-1)
+    leaves = np.take_along_axis(separated, first[..., None], axis=-1)[..., 0]
+    return LoadEnds(np.asarray(lost.any(axis=-1)), first, leaves)
 
 
 def turn_integral(theta: Array, values: Array) -> float:

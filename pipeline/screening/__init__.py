@@ -5,9 +5,9 @@ In the order of the calculation:
 | module              | responsibility                                      | symbol, unit         |
 | ------------------- | --------------------------------------------------- | -------------------- |
 | `design_factors`    | factors of the designs, their bounds; groups        |                      |
-| `cam_shapes`        | contour and contact under a roller or a flat face   | rho, m; kappa, 1/m   |
-| `design_arrays`     | lift, contour, loads and contact of many designs    | s, m; F_n, N; p0, Pa |
 | `design_lengths`    | pressure along the line of contact of many designs  | K, -                 |
+| `screened_cam`      | loads and contact of many designs in a load case    | F_n, N; p0, Pa       |
+| `design_arrays`     | lift, contour and load cases of many designs        | s, m                 |
 | `screened_shape`    | checks of the cam shape                             | m, rad               |
 | `screened_loads`    | checks of forces, guides and torque                 | N, N m, Pa           |
 | `screened_contact`  | checks of contact, roller bearing and flat face     | p0, Pa; h            |

@@ -4,123 +4,36 @@ from __future__ import annotations
 
 import copy
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
-from typing import Literal, NamedTuple
+from typing import Literal
 
 import numpy as np
 from numpy.polynomial.chebyshev import chebvander
 
-from camwright.geometry.arrays import Array, uniform_turn
+from camwright.geometry.arrays import Array, Value, uniform_turn
 from camwright.geometry.extrema import sampled_greatest, sampled_least
+from camwright.geometry.follower_path import Motion
+from camwright.geometry.lift import Jet
 from camwright.geometry.periodic_spline import knot_derivatives, knot_integrals
-from camwright.pipeline.base.external_force import ExternalForce
 from camwright.pipeline.case.case import Case
-from camwright.pipeline.case.case_values import WoundSprings, wound_spring
+from camwright.pipeline.case.case_values import WoundSprings, value_of, wound_spring
 from camwright.pipeline.case.limits import OVERSPEED, TORQUE_REDUCTION, AnyLimit
 from camwright.pipeline.case.load_case_torque import engine_torque
 from camwright.pipeline.case.machine import CREEP, Machine, machine
 from camwright.pipeline.case.requirements_section import LoadCase
-from camwright.pipeline.checks import demands
-from camwright.pipeline.contact.hertz import peak_pressure_square
+from camwright.pipeline.cycle.loaded_cam import LoadedCam, motion_of
+from camwright.pipeline.cycle.numbers import Numbers
 from camwright.pipeline.follower.follower_forces import (
-    REST,
-    FollowerMotion,
-    Loads,
     Push,
-    loads_of,
-    share_left,
 )
 from camwright.pipeline.follower.guide_friction import friction_limits
-from camwright.pipeline.follower.guide_table import GuideLoads, SupportOfMany
-from camwright.pipeline.follower.spring import spring_force, stored_lift
-from camwright.pipeline.follower.spring_kinds import SpringShape
-from camwright.pipeline.screening.cam_shapes import (
-    CamShape,
-    Columns,
-    FaceShape,
-    RollerShape,
-    Values,
-)
-from camwright.pipeline.screening.design_lengths import factors_of, has_many_shapes
+from camwright.pipeline.follower.guide_table import SupportOfMany
+from camwright.pipeline.follower.spring import stored_lift
+from camwright.pipeline.screening.screened_cam import ScreenedCam, State
 
 Judged = tuple[Array, Array | float | None]
 """Demand (m,) and limit (m,) of a check, SI; NaN and None are missing."""
-
-
-@dataclass(frozen=True, eq=False)
-class FollowerOfDesigns:
-    """Mass, spring and guides of many designs, each (m, 1).
-
-    rubbing: loads of guides A and B over axial force and side-load factor, (m, n); None: of point
-    supports.
-    """
-
-    mass: Array
-    preload: Array
-    rate: Array
-    guide_spacing: Array
-    overhang_at_max_lift: Array
-    friction_a: Array
-    friction_b: Array
-    viscous_damping: Array
-    gravity_along_axis: float
-    external: ExternalForce
-    shape: SpringShape | None
-    face_friction: Array
-    rubbing: tuple[Array, Array] | None = None
-
-    def spring_force(self, lift: Array) -> Array:
-        """Force (m, n) of the springs at a lift (m, n), N."""
-        return spring_force(self.preload, self.rate, lift, self.shape)
-
-    def applied_force(self, theta: Array) -> Array:
-        """Weight and external force (m, n) at cam angles (n,), N."""
-        return np.asarray(self.mass * self.gravity_along_axis + self.external.at(theta))
-
-    @property
-    def closing_preload(self) -> Array:
-        """Preload, weight and mean external force (m, 1), N."""
-        return self.preload + (self.mass * self.gravity_along_axis + self.external.mean)
-
-    def rubbing_factors(self, push: Push, overhang: Array, theta: Array) -> tuple[Array, Array]:  # noqa: ARG002
-        """Rubbing load of guides A and B over axial force and side-load factor."""
-        return push.rubbing_on_points(overhang) if self.rubbing is None else self.rubbing
-
-
-class State(NamedTuple):
-    """A load case of many designs: crank speed, rad/s, and preload, N, (m, 1).
-
-    torque (m or 1, n): of the engine less its mean, crank N m, at the cam angles of the loads; None
-    without one. required: reduction of its ripple, (m,) or (); None: none is required. duty:
-    share of the operating time; None: not known.
-    """
-
-    speed: Array
-    preload: Array
-    torque: Array | None
-    required: Array | None
-    duty: float | None
-
-
-@dataclass(frozen=True, eq=False)
-class Turns:
-    """Loads of a load case of many designs, arrays (m, 1) and (m, n).
-
-    guides: their loads, N; jam_index_max: at the maximum friction on the rise; p0_line: of plane
-    strain; p0: in the middle of a crowned line; p0_signed: with ends and tilt, NaN where they are
-    not known.
-    """
-
-    state: State
-    crank_speed: Array
-    cam_speed: Array
-    loads: Loads
-    guides: GuideLoads
-    jam_index_max: Array
-    p0_line: Array
-    p0: Array
-    p0_signed: Array
 
 
 @dataclass(frozen=True, eq=False)
@@ -151,7 +64,7 @@ class Designs:
     """
 
     case: Case
-    columns: Columns
+    columns: Mapping[str, Array]
     source: Source
     torques: Mapping[int, Array]
     count: int
@@ -159,11 +72,23 @@ class Designs:
 
     def value(self, key: str) -> Array:
         """Values of a key (m, 1), SI; NaN where the case leaves it out."""
-        return self._values(key)
+        if key in self.columns:
+            return self.columns[key]
+        stated = value_of(self.case, key)
+        return np.full((self.count, 1), np.nan if stated is None else float(stated))
+
+    def of_kind(self, roller: str, face: str) -> Array:
+        """Values (m, 1), SI, of the key of a roller or of that of a flat face."""
+        return self.value(roller if self.case.follower.face is None else face)
 
     @cached_property
-    def _values(self) -> Values:
-        return Values(self.case, self.columns, self.count)
+    def numbers(self) -> Numbers:
+        """Numbers of the designs, those of no load case."""
+        known: dict[str, Value | None] = {
+            "contact.width": self.contact_width,
+            "contact.modulus": self.machine.contact_modulus,
+        }
+        return Numbers({**self.columns, **known}, self.case)
 
     def limit(self, row: AnyLimit) -> Array:
         """Values of a limit (m,), SI; NaN where there is none."""
@@ -180,7 +105,9 @@ class Designs:
         source = self.source
         if source.lift is not None:
             return source.lift[None, :]
-        rate, preload = self.follower.rate, self.follower.closing_preload
+        machine, mass = self.machine, self.value("follower.mass")
+        dead_load = mass * machine.gravity_along_axis + machine.external.mean
+        rate, preload = self.value("spring.rate"), self.value("spring.preload") + dead_load
         if source.energy is not None:
             energy = source.energy[None, :]
         elif source.torque is not None:
@@ -188,7 +115,7 @@ class Designs:
             stored = knot_integrals(source.torque)
             stored = stored - sampled_least(stored)[:, None]
             energy = share * np.maximum(stored, 0.0)
-        return stored_lift(energy, rate, preload, self.follower.shape)
+        return stored_lift(energy, rate, preload, self.case.spring.shape)
 
     @cached_property
     def jets(self) -> Array:
@@ -202,10 +129,19 @@ class Designs:
         return sampled_greatest(self.jets[0])
 
     @cached_property
-    def shape(self) -> CamShape:
-        """Contour and contact under the follower of the designs."""
-        kind = RollerShape if self.case.follower.face is None else FaceShape
-        return kind(self.jets, self._values)
+    def whole(self) -> LoadedCam:
+        """The unloaded cams at the samples of the lift."""
+        return LoadedCam(Jet(*self.jets), self.numbers, self.highest[:, None])
+
+    @cached_property
+    def least_factor(self) -> Array:
+        """Minimum undercut factor (m,)."""
+        return 1.0 - sampled_greatest(self.whole.motion.sharpness)
+
+    @property
+    def least_convex_radius(self) -> Array:
+        """Minimum convex radius of the path of the reference point (m,), m."""
+        return np.asarray(1.0 / sampled_greatest(self.whole.motion.path_curvature))
 
     @cached_property
     def theta(self) -> Array:
@@ -217,39 +153,20 @@ class Designs:
         return values[..., :: self.step]
 
     @cached_property
-    def motion(self) -> FollowerMotion:
-        """Motion at the cam angles of the loads."""
-        lift, slope, bend = (self.at_loads(each) for each in self.jets)
-        stroke = (self.highest - sampled_least(self.jets[0]))[:, None]
-        shape = self.shape
-        side, arm = self.at_loads(shape.side), self.at_loads(shape.arm)
-        return FollowerMotion(
-            lift=lift,
-            slope=np.where(np.abs(slope) > REST * stroke, slope, 0.0),
-            bend=bend,
-            highest=self.highest[:, None],
-            pressure_angle=self.at_loads(shape.pressure_angle),
-            height=self.at_loads(shape.height),
-            push=Push(side, arm, self.value("guides.spacing")),
-        )
+    def motion(self) -> Motion:
+        """Motion of the unloaded cams at the cam angles of the loads."""
+        return motion_of(self.whole.jet.at(self.at_loads), self.numbers)
+
+    @property
+    def contact_travel(self) -> Array:
+        """Minimum width 2 max|s' - e| of a face centred on the stem (m,), m."""
+        arm = self.whole.motion.arm
+        return np.asarray(2.0 * np.maximum(sampled_greatest(arm), -sampled_least(arm)))
 
     @cached_property
-    def follower(self) -> FollowerOfDesigns:
-        """Mass, spring and guides at the preload of the case."""
-        return FollowerOfDesigns(
-            mass=self.value("follower.mass"),
-            preload=self.value("spring.preload"),
-            rate=self.value("spring.rate"),
-            guide_spacing=self.value("guides.spacing"),
-            overhang_at_max_lift=self.value("follower.overhang_at_max_lift"),
-            friction_a=self.value("guides.a.friction"),
-            friction_b=self.value("guides.b.friction"),
-            viscous_damping=self.value("follower.viscous_damping"),
-            gravity_along_axis=self.machine.gravity_along_axis,
-            external=self.machine.external,
-            shape=self.case.spring.shape,
-            face_friction=np.nan_to_num(self.value("follower.face.friction")),
-        )
+    def stroke(self) -> Array:
+        """Maximum less minimum lift (m, 1), m."""
+        return (self.highest - sampled_least(self.jets[0]))[:, None]
 
     @cached_property
     def wound_spring(self) -> WoundSprings | None:
@@ -285,96 +202,51 @@ class Designs:
             return self.limit(TORQUE_REDUCTION)
         return np.asarray(state.torque_reduction) if state.torque_reduction else None
 
-    def worst(self, measure: Callable[[Turns], Array]) -> Array:
+    def worst(self, measure: Callable[[ScreenedCam], Array]) -> Array:
         """Greatest over load cases and cam angles (m,) of a measure (m, n)."""
-        return np.max([sampled_greatest(measure(turns)) for turns in self.turns], axis=0)
+        return np.max([sampled_greatest(measure(cam)) for cam in self.cams], axis=0)
 
-    def least(self, measure: Callable[[Turns], Array]) -> Array:
+    def least(self, measure: Callable[[ScreenedCam], Array]) -> Array:
         """Least over load cases and cam angles (m,) of a measure (m, n)."""
-        return np.min([sampled_least(measure(turns)) for turns in self.turns], axis=0)
+        return np.min([sampled_least(measure(cam)) for cam in self.cams], axis=0)
 
     def in_load_cases(self, kept: Sequence[bool]) -> Designs:
         """The designs in some of their load cases; figures without loads are not computed again."""
         part = copy.copy(self)
-        chosen = tuple(turns for turns, keep in zip(self.turns, kept, strict=True) if keep)
-        part.__dict__["turns"] = chosen  # as the cached property would
+        chosen = tuple(cam for cam, keep in zip(self.cams, kept, strict=True) if keep)
+        part.__dict__["cams"] = chosen  # as the cached property would
         return part
 
     @cached_property
-    def turns(self) -> tuple[Turns, ...]:
-        """Loads in each load case."""
-        return tuple(self._turns(state) for state in self.states)
+    def cams(self) -> tuple[ScreenedCam, ...]:
+        """Loaded cams in each load case."""
+        return tuple(self._loaded(state) for state in self.states)
 
-    def _turns(self, state: State) -> Turns:
+    def _loaded(self, state: State) -> ScreenedCam:
         crank = np.maximum(state.speed, CREEP)
-        speed = crank / self.case.mechanism.gear_ratio
-        system = replace(self.follower, preload=state.preload)
-        motion, theta = self.motion, self.theta
-        free = loads_of(motion, system, speed, theta)
-        # without guide friction: the share that friction leaves is taken out
-        force = free.axial_force * share_left(motion.slope, free.jam_index)
-        system = replace(system, rubbing=self._settled(force, system))
-        loads = loads_of(motion, system, speed, theta)
-        guides = self._supports.loads(loads.axial_force)
-        rubbing = guides.rubbing_a, guides.rubbing_b
-        p0_line, p0, signed = self._pressures(loads.normal_force, rubbing)
-        return Turns(
+        own = {
+            "cam.speed": crank / self.case.mechanism.gear_ratio,
+            "spring.preload": state.preload,
+        }
+        return ScreenedCam(
+            self.motion.jet,
+            self.numbers | own,
+            self.highest[:, None],
+            external=self.machine.external.at(self.theta),
+            gravity=self.machine.gravity_along_axis,
+            block=self,
             state=state,
             crank_speed=crank,
-            cam_speed=speed,
-            loads=loads,
-            guides=guides,
-            jam_index_max=self._jam_index_max(force, system),
-            p0_line=p0_line,
-            p0=p0,
-            p0_signed=signed,
         )
 
     @cached_property
-    def _supports(self) -> SupportOfMany:
+    def supports(self) -> SupportOfMany:
         """Guides of the designs."""
         motion, known = self.motion, self.machine
-        overhang = self.follower.overhang_at_max_lift + (motion.highest - motion.lift)
-        return SupportOfMany.of(known.stem, known.guides, motion.push, np.asarray(overhang))
-
-    def _settled(self, force: Array, system: FollowerOfDesigns) -> tuple[Array, Array]:
-        """Rubbing load of the guides over axial force and side-load factor at equilibrium (m, n).
-
-        Fixed point of the axial force, whose friction depends on the guides' loads; the change of
-        their ratios with the force is small.
-
-        Parameters
-        ----------
-        force : array (m, n)   axial force without guide friction, N
-        """
-        slope, supports = self.motion.slope, self._supports
-        shape, load = force.shape, np.broadcast_to(supports.load, force.shape).ravel()
-        rubs = tuple(
-            np.broadcast_to(friction * share * supports.factor, shape).ravel()
-            for friction, share in zip(
-                (system.friction_a, system.friction_b), supports.shares, strict=True
-            )
-        )
-        free, direction = force.ravel(), np.broadcast_to(np.sign(slope), shape).ravel()
-        axial, left = free.copy(), np.flatnonzero((free * load > 0.0) & (direction != 0.0))
-        for _ in range(_ROUNDS):
-            if not left.size:
-                break
-            now, place = axial[left], supports.place.of(left)
-            ratios = supports.table.rubbing(now * load[left], place)
-            jam = ratios[0] * rubs[0][left] + ratios[1] * rubs[1][left]
-            axial[left] = free[left] / share_left(direction[left], jam)
-            left = left[np.abs(axial[left] - now) > _SETTLED * now]
-        return supports.rubbing(axial.reshape(shape))
-
-    def _jam_index_max(self, force: Array, system: FollowerOfDesigns) -> Array:
-        """Jam index on the rise at the maximum friction (m, n)."""
-        most = replace(
-            system, friction_a=self.greatest_friction("a"), friction_b=self.greatest_friction("b")
-        )
-        rubbing_a, rubbing_b = self._settled(force, most)
-        index = most.friction_a * rubbing_a + most.friction_b * rubbing_b
-        return demands.jam_outward(self.motion.slope, index * self._supports.factor)
+        lift = motion.jet.lift
+        overhang = self.value("follower.overhang_at_max_lift") + (self.highest[:, None] - lift)
+        push = Push(motion.side, motion.arm, self.value("guides.spacing"))
+        return SupportOfMany.of(known.stem, known.guides, push, np.asarray(overhang))
 
     def greatest_friction(self, side: Literal["a", "b"]) -> Array:
         """Maximum friction coefficient of a guide (m, 1)."""
@@ -386,32 +258,17 @@ class Designs:
     def contact_width(self) -> Array:
         """Width of the line contact (m, 1), m: the overlap of the flats of cam and follower."""
         cam = self.value("cam.width") - 2.0 * np.nan_to_num(self.value("cam.end.size"))
-        other, offset = self.shape.line_width, np.nan_to_num(self.value("roller.axial_offset"))
+        part = self.machine.follower.table
+        width = self.of_kind("roller.width", "follower.face.depth")
+        other = width - 2.0 * np.nan_to_num(self.value(f"{part}.end.size"))
+        offset = np.nan_to_num(self.value("roller.axial_offset"))
         return np.asarray(np.minimum(np.minimum(cam, other), 0.5 * (cam + other) - offset))
 
     @cached_property
     def relative_radius(self) -> Array:
         """Relative radius R of cam and follower (m, n), m; NaN if undercut."""
-        radius = self.at_loads(self.shape.relative_radius)
-        return np.where(self.shape.least_factor[:, None] > 0.0, radius, np.nan)
-
-    def _pressures(self, force: Array, rubbing: tuple[Array, Array]) -> tuple[Array, ...]:
-        """Greatest pressure of plane strain, in the middle of the line, and signed (m, n), Pa.
-
-        NaN where the contour bounds no body; signed where the case lacks an end. With too many
-        shapes of contact that of plane strain, see `has_many_shapes`.
-        """
-        load, radius = np.maximum(force, 0.0), self.relative_radius
-        modulus, width = self.machine.contact_modulus, self.contact_width
-        line = np.sqrt(peak_pressure_square(load / width, 1.0 / radius, modulus))
-        factors = factors_of(self, load, radius, rubbing)
-        crowned, unknown = self.machine.is_crowned, np.full(line.shape, np.nan)
-        if factors is None:
-            if has_many_shapes(self):
-                return line, line, line
-            return line, unknown if crowned else line, unknown
-        signed = line * np.maximum(factors.level, factors.tilted)
-        return line, line * factors.centre if crowned else line, signed
+        radius = self.motion.size * (1.0 - self.motion.sharpness)
+        return np.where(self.least_factor[:, None] > 0.0, radius, np.nan)
 
     @cached_property
     def fastest(self) -> Array:
@@ -461,4 +318,3 @@ class TorqueOfSpeed:
 
 
 _NODES = 9
-_ROUNDS, _SETTLED = 30, 1e-6  # of the guide friction

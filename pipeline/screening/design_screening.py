@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from camwright.geometry.arrays import FULL_TURN, Array
+from camwright.geometry.arrays import Array
 from camwright.geometry.display import Displayed
 from camwright.geometry.errors import CamError, InputError
 from camwright.geometry.extrema import sampled_greatest, sampled_least
@@ -26,9 +26,9 @@ from camwright.pipeline.checks.registry import DECLARED, accepted
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.follower.spring import spring_energy
 from camwright.pipeline.preview import preview_case
-from camwright.pipeline.screening.cam_shapes import FaceShape
-from camwright.pipeline.screening.design_arrays import Designs, Source, TorqueOfSpeed, Turns
+from camwright.pipeline.screening.design_arrays import Designs, Source, TorqueOfSpeed
 from camwright.pipeline.screening.design_factors import Factor, Group, count_of, groups, refusals
+from camwright.pipeline.screening.screened_cam import ScreenedCam
 from camwright.pipeline.screening.screened_checks import SCREENED, Screened
 from camwright.pipeline.screening.screened_loads import torque_after
 from camwright.pipeline.smoothing.smoothers import Smoother, smoothed
@@ -187,7 +187,7 @@ class _Blocks:
     def _columns(self, values: Mapping[str, Array]) -> dict[str, Column]:
         designs = self._designs(values)
         columns = judged_columns(designs) | headline_columns(designs)
-        travel = designs.shape.face_width if isinstance(designs.shape, FaceShape) else None
+        travel = None if self.case.follower.face is None else designs.contact_travel
         refused = np.array(refusals(self.case, values, designs.highest, travel), dtype=object)
         away = refused != ""
         if away.any():
@@ -291,7 +291,7 @@ def judged_columns(designs: Designs) -> dict[str, Column]:
                 greater = (used > most) & (figures["status"] != "waived")  # NaN is not
                 governing[greater], most[greater] = each.check, used[greater]
             fails |= figures["status"] == "fail"
-    cut = designs.shape.least_factor
+    cut = designs.least_factor
     return columns | {
         "screen": _SCREEN[fails.astype(int)],
         "governing": governing,
@@ -307,7 +307,7 @@ def judged_columns(designs: Designs) -> dict[str, Column]:
 
 def _lost_loads(designs: Designs) -> dict[str, NDArray[np.bool_]]:
     """Whether a load case has no loads (k, m), by what a check rests on; see `lost_loads`."""
-    ends = [turns.loads.ends for turns in designs.turns]
+    ends = [cam.ends for cam in designs.cams]
     lost = np.array([end.lost for end in ends])
     return {"loads": lost, "contact": lost & np.array([end.leaves for end in ends])}
 
@@ -387,30 +387,29 @@ def utilisations(demand: Array, limit: Array, *, at_most: bool) -> Array:
 
 def headline_columns(designs: Designs) -> dict[str, Column]:
     """Columns ``headline.{key}`` (m,) as in ``run.json``."""
-    first, turns = designs.turns[0], designs.turns
-    before, lost = first.state.torque, first.loads.ends.lost
+    first, cams = designs.cams[0], designs.cams
+    before, lost = first.state.torque, first.ends.lost
 
-    def over(measure: Callable[[Turns], Array]) -> Array:
+    def over(measure: Callable[[ScreenedCam], Array]) -> Array:
         loaded = [
-            np.where(each.loads.ends.lost, -np.inf, sampled_greatest(measure(each)))
-            for each in turns
+            np.where(each.ends.lost, -np.inf, sampled_greatest(measure(each))) for each in cams
         ]
         worst = np.max(loaded, axis=0)
         return np.where(np.isneginf(worst), np.nan, worst)
 
     p0 = over(lambda each: each.p0_line)
-    least = np.min([sampled_least(each.loads.normal_force) for each in turns], axis=0)
-    steepest = sampled_greatest(np.abs(designs.shape.pressure_angle))
+    least = np.min([sampled_least(each.normal) for each in cams], axis=0)
+    steepest = sampled_greatest(np.abs(designs.whole.motion.pressure_angle))
     figures = {
         "lift_max_mm": 1e3 * designs.highest,
         "pressure_angle_max_deg": np.degrees(steepest),
-        "pitch_radius_of_curvature_min_mm": 1e3 * designs.shape.least_convex_radius,
+        "pitch_radius_of_curvature_min_mm": 1e3 * designs.least_convex_radius,
         "normal_force_min_N": np.maximum(least, 0.0),
-        "normal_force_max_N": over(lambda each: each.loads.normal_force),
+        "normal_force_max_N": over(lambda each: each.normal),
         "p0_hertz_max_MPa": 1e-6 * p0,
         "guide_reaction_A_max_N": over(lambda each: each.guides.net_a),
         "guide_reaction_B_max_N": over(lambda each: each.guides.net_b),
-        "friction_loss_J_per_cam_turn": np.where(lost, np.nan, _friction_loss(first)),
+        "friction_loss_J_per_cam_turn": np.where(lost, np.nan, first.friction_loss),
     }
     if before is not None:
         after = torque_after(designs, first)
@@ -422,10 +421,3 @@ def headline_columns(designs: Designs) -> dict[str, Column]:
             "torque_p2p_after_Nm": np.where(lost, np.nan, np.ptp(after, axis=-1)),
         }
     return {f"headline.{name}": np.array(each, dtype=float) for name, each in figures.items()}
-
-
-def _friction_loss(turns: Turns) -> Array:
-    """Friction loss of the guides and of a face over one cam turn (m,), J."""
-    loads = turns.loads
-    rubbing = loads.friction_force * np.abs(loads.lift_slope) + loads.sliding_torque
-    return FULL_TURN * np.mean(rubbing + loads.viscous_force * loads.lift_slope, axis=-1)

@@ -7,7 +7,6 @@ from collections.abc import Callable
 import numpy as np
 
 from camwright.geometry.arrays import Array
-from camwright.geometry.pitch_curve import rolling_share
 from camwright.pipeline.case.limits import (
     ROLLER_LIFE,
     ROLLER_LOAD_SHARE,
@@ -19,17 +18,18 @@ from camwright.pipeline.checks.contact_strength import LeastLimit, LoadCycles, p
 from camwright.pipeline.contact.hertz import half_width_square
 from camwright.pipeline.follower.flat_face_motion import sliding_pv
 from camwright.pipeline.follower.roller_motion import rating_life
-from camwright.pipeline.screening.design_arrays import Designs, Judged, Turns
+from camwright.pipeline.screening.design_arrays import Designs, Judged
 from camwright.pipeline.screening.design_lengths import has_many_shapes
+from camwright.pipeline.screening.screened_cam import ScreenedCam
 
 
-def _pressure(_: Designs, turns: Turns) -> Array:
-    return turns.p0
+def _pressure(_: Designs, cam: ScreenedCam) -> Array:
+    return cam.p0
 
 
-def signed_pressure(_: Designs, turns: Turns) -> Array:
+def signed_pressure(_: Designs, cam: ScreenedCam) -> Array:
     """Contact pressure (m, n), Pa, with ends and tilt."""
-    return turns.p0_signed
+    return cam.p0_signed
 
 
 def crown_is_bound(designs: Designs) -> bool:
@@ -38,13 +38,13 @@ def crown_is_bound(designs: Designs) -> bool:
 
 
 def contact(
-    name: str, safety: Limit, pressure: Callable[[Designs, Turns], Array] = _pressure
+    name: str, safety: Limit, pressure: Callable[[Designs, ScreenedCam], Array] = _pressure
 ) -> Callable[[Designs], Judged]:
     """Contact pressure (m, n) against the least limit of cam and roller."""
 
     def judged(designs: Designs) -> Judged:
         limits = pressure_limits(designs.machine, LoadCycles(0.0, 0.0))
-        demand = designs.worst(lambda turns: pressure(designs, turns))
+        demand = designs.worst(lambda cam: pressure(designs, cam))
         return demand, _least_limit(designs, limits[name], safety, demand)
 
     return judged
@@ -59,7 +59,7 @@ def _least_limit(designs: Designs, least: LeastLimit, safety: Limit, demand: Arr
 
 
 def _greatest_force(designs: Designs) -> Array:
-    return designs.worst(lambda turns: turns.loads.normal_force)
+    return designs.worst(lambda cam: cam.normal)
 
 
 def _bearing(key: str, designs: Designs) -> Array:
@@ -86,14 +86,8 @@ def roller_static_radial(designs: Designs) -> Judged:
     return _greatest_force(designs), _bearing("static_radial_limit", designs)
 
 
-def _spin(designs: Designs, turns: Turns) -> Array:
-    """Speed of the roller on its pin (m, n), rad/s."""
-    speed = designs.at_loads(designs.shape.pitch_speed)
-    return np.asarray(turns.cam_speed * rolling_share(speed, designs.value("roller.radius")))
-
-
 def roller_speed(designs: Designs) -> Judged:
-    worst = designs.worst(lambda turns: np.abs(_spin(designs, turns)))
+    worst = designs.worst(lambda cam: np.abs(cam.spin))
     return worst, designs.limit(ROLLER_SPEED_SHARE) * _bearing("speed_limit", designs)
 
 
@@ -101,9 +95,9 @@ def roller_life(designs: Designs) -> Judged:
     rating = _bearing("C", designs)
     known = np.where(np.isnan(rating), 1.0, rating)
     lives = [
-        (rating_life(turns.loads.normal_force, _spin(designs, turns), known).seconds, each.duty)
-        for turns in designs.turns
-        if (each := turns.state).duty != 0.0
+        (rating_life(cam.normal, cam.spin, known).seconds, each.duty)
+        for cam in designs.cams
+        if (each := cam.state).duty != 0.0
     ]
     if not lives:
         life = np.full(designs.count, np.nan)
@@ -116,10 +110,10 @@ def roller_life(designs: Designs) -> Judged:
 
 def face_width(designs: Designs) -> Judged:
     width = designs.contact_width
-    arm = np.abs(designs.at_loads(designs.shape.arm))
+    arm = np.abs(designs.motion.arm)
 
-    def needed(turns: Turns) -> Array:
-        load = np.maximum(turns.loads.normal_force, 0.0) / width
+    def needed(cam: ScreenedCam) -> Array:
+        load = np.maximum(cam.normal, 0.0) / width
         radius, modulus = designs.relative_radius, designs.machine.contact_modulus
         return 2.0 * (arm + np.sqrt(half_width_square(load, radius, modulus)))
 
@@ -127,6 +121,6 @@ def face_width(designs: Designs) -> Judged:
 
 
 def face_pv(designs: Designs) -> Judged:
-    height = designs.at_loads(designs.shape.height)
-    worst = designs.worst(lambda turns: sliding_pv(turns.p0, turns.cam_speed * height))
+    height = designs.motion.height
+    worst = designs.worst(lambda cam: sliding_pv(cam.p0, cam.speed * height))
     return worst, designs.value("follower.face.pv_limit")[:, 0]

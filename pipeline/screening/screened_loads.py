@@ -19,26 +19,25 @@ from camwright.pipeline.case.limits import (
 )
 from camwright.pipeline.checks import demands
 from camwright.pipeline.checks.guide_strength import pv_limit
-from camwright.pipeline.screening.design_arrays import Designs, Judged, Turns
+from camwright.pipeline.screening.design_arrays import Designs, Judged
+from camwright.pipeline.screening.screened_cam import ScreenedCam
 
 Side = Literal["a", "b"]
 
 
-def _least_spring_force(turns: Turns) -> Array:
+def _least_spring_force(cam: ScreenedCam) -> Array:
     """Spring force at minimum lift (m, 1), N."""
-    return sampled_least(turns.loads.spring_force)[:, None]
+    return sampled_least(cam.spring_force)[:, None]
 
 
 def contact_force_margin(designs: Designs) -> Judged:
-    least = designs.least(lambda turns: turns.loads.normal_force / _least_spring_force(turns))
+    least = designs.least(lambda cam: cam.normal / _least_spring_force(cam))
     return np.maximum(least, 0.0), designs.limit(CONTACT_FORCE_MARGIN)
 
 
 def jump(designs: Designs) -> Judged:
     worst = designs.worst(
-        lambda turns: demands.greatest_unloading(
-            turns.loads.inertia_force, turns.loads.closing_force
-        ),
+        lambda cam: demands.greatest_unloading(cam.inertia, cam.closing),
     )
     return worst, designs.limit(JUMP)
 
@@ -46,11 +45,11 @@ def jump(designs: Designs) -> Judged:
 def jump_speed(designs: Designs) -> Judged:
     """From the greatest quotient of unloading inertia and spring force, at the crank speed."""
     speeds = []
-    for turns in designs.turns:
-        use = demands.greatest_unloading(turns.loads.inertia_force, turns.loads.closing_force)
+    for cam in designs.cams:
+        use = demands.greatest_unloading(cam.inertia, cam.closing)
         greatest = np.maximum(sampled_greatest(use), 0.0)
         with np.errstate(divide="ignore"):
-            speeds.append(turns.crank_speed[:, 0] / np.sqrt(greatest))
+            speeds.append(cam.crank_speed[:, 0] / np.sqrt(greatest))
     over = np.where(np.isnan(designs.limit(OVERSPEED)), np.nan, designs.fastest)
     return np.min(speeds, axis=0), designs.limit(JUMP_SPEED) * over
 
@@ -58,22 +57,20 @@ def jump_speed(designs: Designs) -> Judged:
 def contact_at_overspeed(designs: Designs) -> Judged:
     over = np.where(np.isnan(designs.limit(OVERSPEED)), np.nan, designs.fastest)[:, None]
 
-    def force(turns: Turns) -> Array:
-        inertia = (over / turns.crank_speed) ** 2 * turns.loads.inertia_force
-        return demands.force_left(turns.loads.closing_force, inertia, _least_spring_force(turns))
+    def force(cam: ScreenedCam) -> Array:
+        inertia = (over / cam.crank_speed) ** 2 * cam.inertia
+        return demands.force_left(cam.closing, inertia, _least_spring_force(cam))
 
     return designs.least(force), designs.limit(CONTACT_FORCE_MARGIN)
 
 
 def jam_index(designs: Designs) -> Judged:
-    worst = designs.worst(
-        lambda turns: demands.jam_outward(turns.loads.lift_slope, turns.loads.jam_index)
-    )
+    worst = designs.worst(lambda cam: demands.jam_outward(cam.slope, cam.jam))
     return worst, designs.limit(JAM_INDEX)
 
 
 def jam_index_friction_max(designs: Designs) -> Judged:
-    return designs.worst(lambda turns: turns.jam_index_max), designs.limit(JAM_INDEX)
+    return designs.worst(lambda cam: cam.jam_outward), designs.limit(JAM_INDEX)
 
 
 def _area(designs: Designs, side: Side) -> Array:
@@ -85,8 +82,8 @@ def guide_pressure(side: Side) -> Callable[[Designs], Judged]:
     def judged(designs: Designs) -> Judged:
         area = _area(designs, side)
 
-        def pressure(turns: Turns) -> Array:
-            load = turns.guides.bearing_a if side == "a" else turns.guides.bearing_b
+        def pressure(cam: ScreenedCam) -> Array:
+            load = cam.bearing.a if side == "a" else cam.bearing.b
             return demands.guide_pressure(load, area)
 
         return designs.worst(pressure), designs.value(f"guides.{side}.pressure_limit")[:, 0]
@@ -95,14 +92,14 @@ def guide_pressure(side: Side) -> Callable[[Designs], Judged]:
 
 
 def guide_pv(side: Side) -> Callable[[Designs], Judged]:
-    def pv(designs: Designs, turns: Turns) -> Array:
-        load = turns.guides.rubbing_a if side == "a" else turns.guides.rubbing_b
-        means = demands.guide_pv(load, turns.loads.velocity, _area(designs, side)).mean(axis=-1)
+    def pv(designs: Designs, cam: ScreenedCam) -> Array:
+        load = cam.rubbing.a if side == "a" else cam.rubbing.b
+        means = demands.guide_pv(load, cam.velocity, _area(designs, side)).mean(axis=-1)
         return np.asarray(means)
 
     def judged(designs: Designs) -> Judged:
         guides = designs.machine.guides
-        worst = np.max([pv(designs, turns) for turns in designs.turns], axis=0)
+        worst = np.max([pv(designs, cam) for cam in designs.cams], axis=0)
         return worst, pv_limit(guides.a if side == "a" else guides.b)
 
     return judged
@@ -110,7 +107,7 @@ def guide_pv(side: Side) -> Callable[[Designs], Judged]:
 
 def guide_speed(side: Side) -> Callable[[Designs], Judged]:
     def judged(designs: Designs) -> Judged:
-        worst = designs.worst(lambda turns: np.abs(turns.loads.velocity))
+        worst = designs.worst(lambda cam: np.abs(cam.velocity))
         return worst, designs.value(f"guides.{side}.speed_limit")[:, 0]
 
     return judged
@@ -118,29 +115,28 @@ def guide_speed(side: Side) -> Callable[[Designs], Judged]:
 
 def profile_waviness(designs: Designs) -> Judged:
     band, length = designs.value("cam.profile_tolerance"), designs.value("cam.waviness_length")
-    along = designs.at_loads(designs.shape.contact_path)
+    along = designs.motion.contour_speed
 
-    def share(turns: Turns) -> Array:
-        speed = turns.cam_speed * along
+    def share(cam: ScreenedCam) -> Array:
+        speed = cam.speed * along
         added = demands.waviness_force(designs.value("follower.mass"), 0.5 * band, speed, length)
-        held = _least_spring_force(turns)
-        return demands.over_contact_force(added, turns.loads.normal_force, held)
+        return demands.over_contact_force(added, cam.normal, _least_spring_force(cam))
 
-    worst = np.max([share(turns).max(axis=-1) for turns in designs.turns], axis=0)
+    worst = np.max([share(cam).max(axis=-1) for cam in designs.cams], axis=0)
     return worst, designs.limit(WAVINESS)
 
 
-def torque_after(designs: Designs, turns: Turns) -> Array:
+def torque_after(designs: Designs, cam: ScreenedCam) -> Array:
     """Crank torque of engine and cam (m, n), N m."""
-    before = np.zeros(1) if turns.state.torque is None else turns.state.torque
-    return np.asarray(before - turns.loads.cam_torque / designs.case.mechanism.gear_ratio)
+    before = np.zeros(1) if cam.state.torque is None else cam.state.torque
+    return np.asarray(before - cam.torque / designs.case.mechanism.gear_ratio)
 
 
 def torque_reduction(designs: Designs) -> Judged | None:
     shares = [
-        (demands.ripple_reduction(turns.state.torque, torque_after(designs, turns)), required)
-        for turns in designs.turns
-        if turns.state.torque is not None and (required := turns.state.required) is not None
+        (demands.ripple_reduction(cam.state.torque, torque_after(designs, cam)), required)
+        for cam in designs.cams
+        if cam.state.torque is not None and (required := cam.state.required) is not None
     ]
     if not shares:
         return None

@@ -35,7 +35,7 @@ def of_spring(
         wound = designs.wound_spring
         if wound is None:
             return None
-        preload = np.max([turns.state.preload[:, 0] for turns in designs.turns], axis=0)
+        preload = np.max([cam.state.preload[:, 0] for cam in designs.cams], axis=0)
         work = hardest_work(designs.case.spring, wound, preload, designs.highest)
         return judged(designs, wound, work)
 
@@ -101,7 +101,7 @@ def gas_pressure(designs: Designs, gas: GasSpring) -> Array:
 
 
 def gas_speed(designs: Designs, _: GasSpring) -> Array:
-    return designs.worst(lambda turns: np.abs(turns.loads.velocity))
+    return designs.worst(lambda cam: np.abs(cam.velocity))
 
 
 def gas_temperature(designs: Designs) -> Judged | None:

@@ -1,0 +1,196 @@
+"""Loaded cams of many designs: guides by tables, ends of the contact by factors."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple, Protocol
+
+import numpy as np
+
+from camwright.geometry.arrays import FULL_TURN, Array
+from camwright.geometry.extrema import sampled_least
+from camwright.geometry.follower_path import Motion
+from camwright.pipeline.checks import demands
+from camwright.pipeline.contact.hertz import peak_pressure_square
+from camwright.pipeline.cycle.length_history import FactorRange
+from camwright.pipeline.cycle.loaded_cam import LoadedCam, OfGuides
+from camwright.pipeline.follower.follower_forces import REST, LoadEnds, ends_of, share_left
+from camwright.pipeline.follower.guide_table import GuideLoads, SupportOfMany
+from camwright.pipeline.screening.design_lengths import DesignValues, factors_of, has_many_shapes
+
+
+class State(NamedTuple):
+    """A load case of many designs: crank speed, rad/s, and preload, N, (m, 1).
+
+    torque (m or 1, n): of the engine less its mean, crank N m, at the cam angles of the loads; None
+    without one. required: reduction of its ripple, (m,) or (); None: none is required. duty:
+    share of the operating time; None: not known.
+    """
+
+    speed: Array
+    preload: Array
+    torque: Array | None
+    required: Array | None
+    duty: float | None
+
+
+class Block(DesignValues, Protocol):
+    """What the load cases of many designs share; see `Designs`."""
+
+    @property
+    def motion(self) -> Motion: ...
+    @property
+    def stroke(self) -> Array: ...
+    @property
+    def supports(self) -> SupportOfMany: ...
+    @property
+    def relative_radius(self) -> Array: ...
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class ScreenedCam(LoadedCam):
+    """Cams of many designs in a load case; arrays (m, n).
+
+    The loads are clipped as `Loads`: no axial force where the follower has left the cam, and a
+    finite one where it locks.
+    """
+
+    block: Block
+    state: State
+    crank_speed: Array
+
+    @property
+    def motion(self) -> Motion:
+        return self.block.motion
+
+    @cached_property
+    def slope(self) -> Array:
+        """Slope of the lift, m/rad; zero in a dwell."""
+        slope = self.jet.slope
+        return np.where(np.abs(slope) > REST * self.block.stroke, slope, 0.0)
+
+    @cached_property
+    def least_spring(self) -> Array:
+        """Spring force at minimum lift of the cam angles of the loads (m, 1), N."""
+        return sampled_least(self.spring_force)[:, None]
+
+    @cached_property
+    def _free(self) -> Array:
+        """Axial force without guide friction, >= 0, N."""
+        return np.asarray(np.maximum(self.required, 0.0))
+
+    @cached_property
+    def share(self) -> Array:
+        return share_left(self.slope, self.jam)
+
+    @cached_property
+    def axial(self) -> Array:
+        return self._free / self.share
+
+    @cached_property
+    def rubbing_share(self) -> OfGuides:
+        numbers = self.numbers
+        friction = OfGuides(
+            np.asarray(numbers["guides.a.friction"]), np.asarray(numbers["guides.b.friction"])
+        )
+        return self._settled(friction)
+
+    @cached_property
+    def jam_worst(self) -> Array:
+        """Jam index at the maximum friction."""
+        most = OfGuides(self.block.greatest_friction("a"), self.block.greatest_friction("b"))
+        rubbing = self._settled(most)
+        return most.a * rubbing.a + most.b * rubbing.b
+
+    def _settled(self, friction: OfGuides) -> OfGuides:
+        """Rubbing load of the guides over the axial force at equilibrium.
+
+        Fixed point of the axial force, whose friction depends on the guides' loads; the change of
+        their ratios with the force is small.
+        """
+        supports, shape = self.block.supports, self._free.shape
+        load = np.broadcast_to(supports.load, shape).ravel()
+        rubs = tuple(
+            np.broadcast_to(one * share * supports.factor, shape).ravel()
+            for one, share in zip(friction, supports.shares, strict=True)
+        )
+        free = self._free.ravel()
+        direction = np.broadcast_to(np.sign(self.slope), shape).ravel()
+        axial, left = free.copy(), np.flatnonzero((free * load > 0.0) & (direction != 0.0))
+        for _ in range(_ROUNDS):
+            if not left.size:
+                break
+            now, place = axial[left], supports.place.of(left)
+            ratios = supports.table.rubbing(now * load[left], place)
+            jam = ratios[0] * rubs[0][left] + ratios[1] * rubs[1][left]
+            axial[left] = free[left] / share_left(direction[left], jam)
+            left = left[np.abs(axial[left] - now) > _SETTLED * now]
+        on_a, on_b = supports.rubbing(axial.reshape(shape))
+        return OfGuides(on_a * supports.factor, on_b * supports.factor)
+
+    @cached_property
+    def guides(self) -> GuideLoads:
+        """Loads of the guides by their tables, N."""
+        return self.block.supports.loads(self.axial)
+
+    @cached_property
+    def rubbing(self) -> OfGuides:
+        return OfGuides(self.guides.rubbing_a, self.guides.rubbing_b)
+
+    @cached_property
+    def bearing(self) -> OfGuides:
+        return OfGuides(self.guides.bearing_a, self.guides.bearing_b)
+
+    @cached_property
+    def ends(self) -> LoadEnds:
+        """Where the loads end being those of the cam; see `Loads.ends`."""
+        return ends_of(self.normal <= 0.0, (self.jam >= 1.0) & (self.slope > 0.0))
+
+    @property
+    def jam_outward(self) -> Array:
+        """Jam index at the maximum friction on the rise."""
+        return demands.jam_outward(self.slope, self.jam_worst)
+
+    @cached_property
+    def friction_loss(self) -> Array:
+        """Friction loss of the guides and of a face over one cam turn (m,), J."""
+        work = self.jam * self.axial * np.abs(self.slope) + self.axial * self.motion.sliding
+        return FULL_TURN * np.mean(work + self.viscous * self.slope, axis=-1)
+
+    @cached_property
+    def p0_line(self) -> Array:
+        """Contact pressure of plane strain, Pa; NaN where the contour bounds no body."""
+        load = self.normal / self.numbers["contact.width"]
+        modulus = self.numbers["contact.modulus"]
+        return np.sqrt(peak_pressure_square(load, 1.0 / self.block.relative_radius, modulus))
+
+    @cached_property
+    def _factors(self) -> FactorRange | None:
+        return factors_of(self.block, self.normal, self.block.relative_radius, self.rubbing)
+
+    @cached_property
+    def p0(self) -> Array:
+        """Contact pressure in the middle of the line, Pa.
+
+        With too many shapes of contact that of plane strain, see `has_many_shapes`.
+        """
+        if not self.block.machine.is_crowned:
+            return self.p0_line
+        return self._unsolved if self._factors is None else self.p0_line * self._factors.centre
+
+    @cached_property
+    def p0_signed(self) -> Array:
+        """Contact pressure with ends and tilt, Pa; NaN where the case lacks an end."""
+        factors = self._factors
+        if factors is None:
+            return self._unsolved
+        return self.p0_line * np.maximum(factors.level, factors.tilted)
+
+    @property
+    def _unsolved(self) -> Array:
+        """Pressure along a line that is not solved: its lower bound, or NaN."""
+        return self.p0_line if has_many_shapes(self.block) else np.full_like(self.p0_line, np.nan)
+
+
+_ROUNDS, _SETTLED = 30, 1e-6  # of the guide friction
