@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
-from camwright.geometry.arrays import FULL_TURN
+from camwright.geometry.arrays import FULL_TURN, Array
 from camwright.geometry.cutter_path import tool_interference
 from camwright.geometry.extrema import Extremum
+from camwright.geometry.pitch_curve import magnitude
 from camwright.pipeline.base import levers
 from camwright.pipeline.base.units import shown
 from camwright.pipeline.case.case import Case
@@ -22,12 +25,14 @@ from camwright.pipeline.case.limits import (
     TOOL_RADIUS,
     UNDERCUT_FACTOR,
 )
-from camwright.pipeline.checks.check import NONE, Demand, check
+from camwright.pipeline.checks.check import NONE, Allowed, Demand, Kept, check, of_key
 from camwright.pipeline.checks.extremes import Extreme
-from camwright.pipeline.checks.missing_keys import lacking, unset
 from camwright.pipeline.contact.tiers import Tier
+from camwright.pipeline.cycle.loaded_cam import LoadedCam
+from camwright.pipeline.cycle.numbers import Numbers
 from camwright.pipeline.cycle.solution import Solution
 
+_TINY = float(np.finfo(float).tiny)
 AT_REST = 1e-9  # range of s'' over the lift, 1/rad^2, of a round cam
 TOOL_ALLOWANCE = 1.1  # minimum concave radius over tool radius
 _TOOL = "workshop.tool_radius"
@@ -90,6 +95,45 @@ def acceleration_step(solution: Solution) -> Demand:
     )
 
 
+def sharpness(cam: LoadedCam) -> Array:
+    """1 less the undercut factor: 1 at a cusp."""
+    return cam.motion.sharpness
+
+
+def contour_radius(cam: LoadedCam) -> Array:
+    """Distance of the contour from the cam axis, m."""
+    return cam.motion.contour_radius
+
+
+def _method_of_undercut(demand: Demand, solution: Solution) -> Demand:
+    if solution.machine.face is None:
+        return demand
+    return replace(demand, method="least (r + s + s'')/(r + s), refined between samples")
+
+
+def _tool_allowed(numbers: Numbers) -> Allowed:
+    """Minimum concave radius that the tool of a case can machine, m."""
+    limit, stated = numbers.get(f"limits.{TOOL_RADIUS.id}"), numbers.get(_TOOL)
+    if limit is None and stated is None:
+        return Allowed(None, (_TOOL,))
+    known = stated if limit is None else limit
+    if limit is not None and stated is not None:
+        known = np.where(np.isnan(limit), stated, limit)[()]
+    return Allowed(TOOL_ALLOWANCE * np.asarray(known)[()])
+
+
+def _in_hollow(cam: LoadedCam, hollow: float) -> Array | None:
+    """No constraint where the roller is larger: it cannot roll in a smaller hollow."""
+    room = hollow - np.asarray(cam.motion.size)
+    return -cam.motion.path_curvature * room if room > 0.0 else None
+
+
+def _wall_left(cam: LoadedCam, limit: float) -> Array | None:
+    """No constraint where nothing is held: the prime radius is that of the case."""
+    held = cam.numbers.get("cam.held_radius")
+    return None if held is None else limit * held / cam.motion.contour_radius
+
+
 @check(
     PRESSURE_ANGLE,
     title="Maximum pressure angle",
@@ -120,8 +164,9 @@ def pressure_angle(solution: Solution) -> Demand:
     return Demand(float(abs(extremum.value)), allowed, _at(extremum))
 
 
-@check(
+curvature_ratio = check(
     CURVATURE_RATIO,
+    id="curvature_ratio",
     title="Minimum convex pitch radius / roller radius",
     tier=Tier.SCREENING,
     formula="min rho_p / r >= c; rho_p: convex radius of curvature of the pitch curve, r: roller"
@@ -134,16 +179,15 @@ def pressure_angle(solution: Solution) -> Demand:
     load_cases=NONE,
     levers=(levers.one("roller.radius", -1, 2.0), *levers.SHAPE),
     page="Cam",
-)
-def curvature_ratio(solution: Solution) -> Demand:
-    """Least convex radius of the pitch curve over the roller radius."""
-    contour = solution.contour.require_roller()
-    extremum = contour.pitch.least_convex_radius()
-    ratio = float(extremum.value / contour.roller_radius)
-    return Demand(ratio, solution.machine.limits[CURVATURE_RATIO], _at(extremum))
+).measured(
+    "contour",
+    value=lambda worst, _: 1.0 / worst,
+    deviation=1e-4,
+    kept=Kept(lambda cam, limit: cam.motion.sharpness * limit),
+)(sharpness)
 
 
-@check(
+undercut = check(
     UNDERCUT_FACTOR,
     id="undercut",
     title="Minimum undercut factor",
@@ -157,18 +201,14 @@ def curvature_ratio(solution: Solution) -> Demand:
     load_cases=NONE,
     levers=(levers.one("roller.radius", -1, 2.0), *levers.SHAPE),
     page="Cam",
-)
-def undercut(solution: Solution) -> Demand:
-    """Undercut factor: 1 - r kappa, of a face (r + s + s'')/(r + s)."""
-    least = solution.contour.undercut()
-    return Demand(
-        float(least.factor),
-        solution.machine.limits[UNDERCUT_FACTOR],
-        _place(float(least.theta)),
-        method=""
-        if solution.machine.face is None
-        else "least (r + s + s'')/(r + s), refined between samples",
-    )
+).measured(
+    "contour",
+    value=lambda worst, _: 1.0 - worst,
+    bound=lambda limit: 1.0 - limit,
+    remark=_method_of_undercut,
+    deviation=1e-4,
+    kept=Kept(),
+)(sharpness)
 
 
 @check(
@@ -227,18 +267,18 @@ def second_contact(solution: Solution) -> Demand:
     load_cases=NONE,
     levers=(levers.TOOL, *levers.SHAPE),
     page="Cam",
+).measured(
+    "contour",
+    worst="least",
+    value=lambda worst, numbers: numbers["roller.radius"] - 1.0 / np.minimum(worst, -_TINY),
+    allowed=_tool_allowed,
+    applies=lambda radius: ~(np.asarray(radius) >= 1.0 / _TINY),
+    deviation=1e-4,
+    kept=Kept(_in_hollow),
 )
-def concave_radius(solution: Solution) -> Demand | None:
-    """Least concave radius of the contour, m; None for a convex cam."""
-    least, allowed = solution.contour.concave_radius_min(), least_concave_radius(solution.case)
-    if np.isposinf(least.value):
-        return None
-    return Demand(
-        float(least.value),
-        allowed,
-        _at(least),
-        () if allowed is not None else (_TOOL,),
-    )
+def concave_radius(cam: LoadedCam) -> Array:
+    """Curvature of the pitch curve, 1/m; of the demand, least concave radius of the contour, m."""
+    return cam.motion.path_curvature
 
 
 @check(
@@ -288,22 +328,20 @@ def least_concave_radius(case: Case) -> float | None:
     reason="Decides where the case sets the limit: its value depends on the grinding machine.",
     load_cases=NONE,
     page="Cam",
+).measured(
+    "contour",
+    remark=lambda demand, _: replace(demand, must_have=demand.allowed is not None),
+    order=3,
+    kept=Kept(),
 )
-def curvature_rate(solution: Solution) -> Demand:
-    """Greatest change of the contour's curvature per length, 1/m^2."""
-    allowed = solution.machine.limits[CURVATURE_RATE]
-    worst = solution.contour.curvature_rate_max
-    return Demand(
-        float(worst.value),
-        allowed,
-        _at(worst),
-        unset(solution.machine.limits, CURVATURE_RATE),
-        must_have=allowed is not None,
-    )
+def curvature_rate(cam: LoadedCam) -> Array:
+    """Change of the contour's curvature per length, 1/m^2."""
+    return magnitude(cam.motion.curvature_slope)
 
 
-@check(
+minimum_wall = check(
     MINIMUM_WALL,
+    id="minimum_wall",
     title="Minimum contour radius / bore radius including keyway",
     tier=Tier.SCREENING,
     formula="min |P| / (R_b + t) >= c; P: contour, R_b: bore radius, t: depth of the keyway, c:"
@@ -314,15 +352,13 @@ def curvature_rate(solution: Solution) -> Demand:
     load_cases=NONE,
     levers=(levers.SEAT, *levers.SHAPE),
     page="Cam",
-)
-def minimum_wall(solution: Solution) -> Demand:
-    """Least contour radius over the radius of bore and keyway.
-
-    The keyway is assumed at the cam angle of the least radius.
-    """
-    outside = solution.contour.radius_min()
-    ratio = float(outside.value / solution.machine.cam.held_radius)
-    return Demand(ratio, solution.machine.limits[MINIMUM_WALL], _at(outside))
+).measured(
+    "contour",
+    worst="least",
+    value=lambda worst, numbers: worst / numbers["cam.held_radius"],
+    deviation=1e-4,
+    kept=Kept(_wall_left),
+)(contour_radius)
 
 
 @check(
@@ -340,10 +376,7 @@ def minimum_wall(solution: Solution) -> Demand:
     values=("spring.travel_max",),
     levers=(*levers.SPRING, *levers.GENTLER),
     page="Spring",
-)
-def spring_travel(solution: Solution) -> Demand:
-    """Maximum lift, m, against the spring travel."""
-    travel, highest = solution.machine.spring.travel_max, solution.contour.pitch.lift.highest
-    spring = solution.machine.spring
-    missing = lacking(spring.table, spring, "travel_max")
-    return Demand(float(highest.value), travel, _at(highest), missing)
+).measured("top", allowed=of_key("spring.travel_max"), deviation=1e-4, kept=Kept())
+def spring_travel(cam: LoadedCam) -> Array:
+    """Lift, m, against the spring travel."""
+    return cam.jet.lift

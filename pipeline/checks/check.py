@@ -5,18 +5,27 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
-from typing import Literal
+from functools import partial
+from typing import Literal, NamedTuple, Protocol
 
+import numpy as np
+from numpy.typing import NDArray
+
+from camwright.geometry.arrays import Array, Value
 from camwright.geometry.display import Displayed
+from camwright.geometry.errors import InputError
 from camwright.geometry.extrema import to_rank
 from camwright.pipeline.base.levers import Lever
 from camwright.pipeline.base.units import in_unit, shown
 from camwright.pipeline.case.limits import TORQUE_REDUCTION, AnyLimit, Sense
 from camwright.pipeline.case.machine import Machine
 from camwright.pipeline.case.scope_section import PartName
-from camwright.pipeline.checks.extremes import Extreme
+from camwright.pipeline.checks.extremes import Extreme, Measure, Reduce, worst_measure
 from camwright.pipeline.contact.tiers import Tier
+from camwright.pipeline.cycle.loaded_cam import LoadedCam
+from camwright.pipeline.cycle.numbers import Numbers
 from camwright.pipeline.cycle.solution import Solution
+from camwright.pipeline.cycle.solved_cam import numbers_of
 
 Status = Literal["pass", "fail", "not_evaluated", "waived"]
 Verdict = Literal["pass", "incomplete", "fail"]
@@ -48,6 +57,8 @@ RIPPLE = "those with an engine torque and a required reduction"
 SPEED_RANGE = "every speed from standstill to over-speed"
 BOUNDLESS = 1e12
 """Record, SI, of a demand without bound that keeps its limit: JSON has no infinity."""
+FACTOR_MAX = 4.0
+"""Maximum factor of a relaxation of a limit."""
 ROUNDING = 1e-9
 """Relative error of closed forms and exact integrals: no uncertainty of a demand."""
 
@@ -95,6 +106,89 @@ class Demand:
     corner: str = ""
 
 
+class Allowed(NamedTuple):
+    """Limit of a demand, SI; None: none. missing: dotted keys that the case lacks."""
+
+    value: Value | None
+    missing: tuple[str, ...] = ()
+
+
+def of_key(key: str) -> Callable[[Numbers], Allowed]:
+    """Limit at a key of the case."""
+
+    def allowed(numbers: Numbers) -> Allowed:
+        value = numbers.get(key)
+        return Allowed(value, (key,) if value is None else ())
+
+    return allowed
+
+
+def of_row(row: AnyLimit | None) -> Callable[[Numbers], Allowed]:
+    """Limit of a row of the table of limits.
+
+    Raises
+    ------
+    InputError
+        If there is none.
+    """
+    if row is None:
+        raise InputError("limit of a check", "missing", "a row, or a function of numbers")
+    return of_key(f"limits.{row.id}")
+
+
+class Kept(NamedTuple):
+    """How the synthesis keeps a limit.
+
+    Parameters
+    ----------
+    use : callable       loaded cam, limit -> utilisation (..., n), another form of the inequality
+                         that has no poles; None where it does not apply. None: measure over limit
+    factor_max : float   maximum factor on the limit where limits conflict; 0: fixed
+    value_max : float    maximum limit where limits conflict, SI
+    """
+
+    use: Callable[[LoadedCam, float], Array | None] | None = None
+    factor_max: float = 0.0
+    value_max: float = math.inf
+
+
+class Measured(NamedTuple):
+    """How a demand follows from a measure of the loaded cam.
+
+    Parameters
+    ----------
+    reduce : str         how the measure is reduced over the cam, by `worst_measure`
+    worst : str          whether its greatest or its least value governs
+    value : callable     worst measure, numbers -> demand: monotone
+    bound : callable     limit of the demand -> limit of the measure: its inverse, if `kept`
+    allowed : callable   numbers -> limit
+    applies : callable   demand -> whether the check applies to the cam
+    remark : callable    demand, solution -> demand, with what it has in words
+    order : int          highest derivative of the lift in the measure, 2 or 3
+    deviation : float    of the demand of the screening from that of the preview, over the greater
+                         of demand and limit, as measured; None: not screened
+    kept : Kept          None: the synthesis does not keep it
+    """
+
+    reduce: Reduce
+    worst: Literal["greatest", "least"]
+    value: Callable[[Value, Numbers], Value]
+    bound: Callable[[float], float]
+    allowed: Callable[[Numbers], Allowed]
+    applies: Callable[[Value], NDArray[np.bool_]]
+    remark: Callable[[Demand, Solution], Demand]
+    order: int
+    deviation: float | None
+    kept: Kept | None
+
+    def use(self, measure: Measure, cam: LoadedCam, limit: float) -> Array | None:
+        """Utilisation (..., n) of a limit in a synthesis, see `Kept`."""
+        if self.kept is not None and self.kept.use is not None:
+            return self.kept.use(cam, limit)
+        bound = self.bound(limit)
+        return measure(cam) / bound if self.worst == "greatest" else 1.0 + bound - measure(cam)
+
+
 @dataclass(frozen=True)
 class Declaration:
     """Declaration of a check; calling it checks a solution.
@@ -135,6 +229,9 @@ class Declaration:
     scales_with : tuple        "normal_force" or "contact_pressure", and the power of its greatest
                                value with which the utilisation grows, about; (): neither
     demand : callable          solution -> demand; None where the check does not apply
+    measured : Measured        how the demand follows from a measure of the loaded cam; None: it is
+                               a demand of the whole solution
+    measure : callable         loaded cam -> measure by cam angle (..., n); None: likewise
     """
 
     id: str
@@ -164,6 +261,8 @@ class Declaration:
     certified_by: str
     scales_with: Scaling | tuple[()]
     demand: Callable[[Solution], Demand | None] = field(repr=False)
+    measured: Measured | None = field(default=None, repr=False)
+    measure: Measure | None = field(default=None, repr=False)
 
     def __call__(self, solution: Solution) -> Check | None:
         """Check of a solution.
@@ -252,7 +351,7 @@ def check(
     page: Page = "",
     certified_by: str = "",
     scales_with: Scaling | tuple[()] = (),
-) -> Callable[[Callable[[Solution], Demand | None]], Declaration]:
+) -> Declaring:
     """Declare a check of the demand that the decorated function returns; see `Declaration`.
 
     Id, unit and sense default to those of the function and the limit, fails_from to the tier; a
@@ -262,9 +361,14 @@ def check(
     if rests_on is None:
         rests_on = "loads" if load_cases in (EVERY, RIPPLE) and not evidence else ""
 
-    def declared(demand: Callable[[Solution], Demand | None]) -> Declaration:
+    def declared(
+        name: str,
+        demand: Callable[[Solution], Demand | None],
+        measured: Measured | None = None,
+        measure: Measure | None = None,
+    ) -> Declaration:
         return Declaration(
-            id=id or demand.__name__,
+            id=id or name,
             title=title,
             unit=unit or ("-" if limit is None else limit.quantity.unit or "-"),
             sense=sense or ("at_most" if limit is None else limit.sense),
@@ -291,9 +395,71 @@ def check(
             certified_by=certified_by,
             scales_with=scales_with,
             demand=demand,
+            measured=measured,
+            measure=measure,
         )
 
-    return declared
+    return Declaring(declared, limit)
+
+
+class Made(Protocol):
+    """Declaration by its demand, or by the measure from which the demand follows."""
+
+    def __call__(
+        self,
+        name: str,
+        demand: Callable[[Solution], Demand | None],
+        measured: Measured | None = None,
+        measure: Measure | None = None,
+    ) -> Declaration: ...
+
+
+@dataclass(frozen=True)
+class Declaring:
+    """Decorator of a demand, or of a measure from which it follows; see `check`."""
+
+    made: Made
+    limit: AnyLimit | None
+
+    def __call__(self, demand: Callable[[Solution], Demand | None]) -> Declaration:
+        return self.made(demand.__name__, demand)
+
+    def measured(
+        self,
+        reduce: Reduce,
+        *,
+        worst: Literal["greatest", "least"] = "greatest",
+        value: Callable[[Value, Numbers], Value] = lambda worst, _: worst,
+        bound: Callable[[float], float] = lambda limit: limit,
+        allowed: Callable[[Numbers], Allowed] | None = None,
+        applies: Callable[[Value], NDArray[np.bool_]] = lambda _: np.array(True),
+        remark: Callable[[Demand, Solution], Demand] = lambda demand, _: demand,
+        order: int = 2,
+        deviation: float | None = None,
+        kept: Kept | None = None,
+    ) -> Callable[[Measure], Declaration]:
+        """Declare the check by a measure of the loaded cam; see `Measured`."""
+        limit = of_row(self.limit) if allowed is None else allowed
+        how = Measured(reduce, worst, value, bound, limit, applies, remark, order, deviation, kept)
+
+        def declared(measure: Measure) -> Declaration:
+            return self.made(measure.__name__, partial(_demand, measure, how), how, measure)
+
+        return declared
+
+
+def _demand(measure: Measure, how: Measured, solution: Solution) -> Demand | None:
+    """Demand of a solution by the worst value of a measure."""
+    worst = worst_measure(
+        solution, measure, how.reduce, at_least=how.worst == "least", order=how.order
+    )
+    numbers = numbers_of(solution)
+    value = how.value(worst.value, numbers)
+    if not how.applies(value):
+        return None
+    limit = how.allowed(numbers)
+    allowed = None if limit.value is None else float(limit.value)
+    return how.remark(Demand(float(value), allowed, worst, limit.missing), solution)
 
 
 def _missing_words(keys: tuple[str, ...]) -> str:

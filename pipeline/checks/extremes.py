@@ -3,13 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from typing import NamedTuple
+from typing import Literal, NamedTuple
+from weakref import WeakKeyDictionary
 
 import numpy as np
 
+from camwright.geometry import extrema
 from camwright.geometry.arrays import FULL_TURN, Array
+from camwright.geometry.contour import Contour
 from camwright.geometry.extrema import TIE, first_greatest
 from camwright.pipeline.cycle.cycle import Cycle
+from camwright.pipeline.cycle.loaded_cam import LoadedCam
+from camwright.pipeline.cycle.solution import Solution
+from camwright.pipeline.cycle.solved_cam import at_top, on_contour
 from camwright.pipeline.follower.follower_forces import Loads
 
 
@@ -248,3 +254,38 @@ def _sampling_error(values: Array, sign: float) -> float:
     top = float(peaks[known].max())
     error = float(np.max(np.where(peaked, peaks + above, top))) - top
     return error / abs(top) if top != 0.0 else 0.0
+
+
+Reduce = Literal["contour", "top"]
+"""How a measure is reduced over the cam: greatest or least on the unloaded contour, refined between
+samples; at maximum lift."""
+Measure = Callable[[LoadedCam], Array]
+"""Loaded cam -> measure by cam angle (..., n), real or complex; never reduced over the angles."""
+_OF_CONTOURS: WeakKeyDictionary[Contour, dict[tuple[Measure, bool], Extreme]] = WeakKeyDictionary()
+
+
+def worst_measure(
+    solution: Solution, measure: Measure, reduce: Reduce, *, at_least: bool, order: int
+) -> Extreme:
+    """Worst value of a measure of a solution; NaN if any is.
+
+    That of a contour is kept with it, as checks of the same measure and tolerance corners share it:
+    such a measure reads the motion alone.
+
+    Parameters
+    ----------
+    at_least : bool   the least value is the worst
+    order : int       highest derivative of the lift in the measure, 2 or 3
+    """
+    if reduce == "top":
+        cam, theta = at_top(solution)
+        return Extreme(float(measure(cam)[0]), "", theta)
+    known = _OF_CONTOURS.setdefault(solution.contour, {})
+    if (key := (measure, at_least)) not in known:
+        refined = extrema.least if at_least else extrema.greatest
+        worst = refined(
+            lambda theta: measure(on_contour(solution, theta, order)),
+            solution.contour.lift.search_count,
+        )
+        known[key] = Extreme(worst.value, "", float(np.mod(worst.theta, FULL_TURN)))
+    return known[key]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from camwright.geometry.arrays import FULL_TURN, Array
+from camwright.geometry.arrays import Array
 from camwright.geometry.extrema import first_greatest
 from camwright.pipeline.base import levers
 from camwright.pipeline.base import value_groups as given
@@ -17,9 +17,10 @@ from camwright.pipeline.case.limits import (
     WAVINESS,
 )
 from camwright.pipeline.checks import demands
-from camwright.pipeline.checks.check import NONE, RIPPLE, Demand, check
+from camwright.pipeline.checks.cam_shape import contour_radius
+from camwright.pipeline.checks.check import FACTOR_MAX, NONE, RIPPLE, Demand, Kept, check
 from camwright.pipeline.checks.extremes import NOWHERE, Extreme, greatest
-from camwright.pipeline.checks.missing_keys import lacking, unset
+from camwright.pipeline.checks.missing_keys import lacking
 from camwright.pipeline.checks.torque_balance import least_reduction
 from camwright.pipeline.contact.cam_body import CamBody
 from camwright.pipeline.contact.tiers import Tier
@@ -53,8 +54,9 @@ def guide_gap(solution: Solution) -> Demand:
     return Demand(gap, machine.limits[GUIDE_GAP], note=note)
 
 
-@check(
+cam_radius = check(
     CAM_RADIUS,
+    id="cam_radius",
     title="Maximum cam radius",
     tier=Tier.SCREENING,
     formula="max |P| <= R; P: contour, R: limits.cam_radius",
@@ -64,16 +66,7 @@ def guide_gap(solution: Solution) -> Demand:
     load_cases=NONE,
     levers=(levers.one("cam.prime_radius", -1, 2.0), *levers.SPRING, *levers.GENTLER),
     page="Cam",
-)
-def cam_radius(solution: Solution) -> Demand:
-    """Maximum radius of the cam, m, against the installation space."""
-    largest, allowed = solution.contour.radius_max(), solution.machine.limits[CAM_RADIUS]
-    return Demand(
-        float(largest.value),
-        allowed,
-        Extreme(float(largest.value), "", float(np.mod(largest.theta, FULL_TURN))),
-        missing=unset(solution.machine.limits, CAM_RADIUS),
-    )
+).measured("contour", deviation=1e-4, kept=Kept(factor_max=FACTOR_MAX))(contour_radius)
 
 
 def wave_amplitude(cam: CamBody) -> float:

@@ -24,6 +24,7 @@ In the order of the calculation:
 | `contact_store`      | store of solved pieces of the contact           |                        |
 | `certificate_angles` | angles of the certificate, their solution       | theta, rad             |
 | `solution`           | all load cases of a cam, by one tier            |                        |
+| `solved_cam`         | loaded cam of a solution                        | F_n, N; s, m           |
 
 Imports `case`, `contact`, `engine`, `follower` and what they import; no checks and no files.
 """

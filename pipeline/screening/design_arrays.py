@@ -6,10 +6,11 @@ import copy
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Literal
+from typing import Literal, NamedTuple
 
 import numpy as np
 from numpy.polynomial.chebyshev import chebvander
+from numpy.typing import NDArray
 
 from camwright.geometry.arrays import Array, Value, uniform_turn
 from camwright.geometry.extrema import sampled_greatest, sampled_least
@@ -84,7 +85,9 @@ class Designs:
     @cached_property
     def numbers(self) -> Numbers:
         """Numbers of the designs, those of no load case."""
+        cam = self.case.cam
         known: dict[str, Value | None] = {
+            "cam.held_radius": self.value("cam.bore_radius") + (cam.held_radius - cam.bore_radius),
             "contact.width": self.contact_width,
             "contact.modulus": self.machine.contact_modulus,
         }
@@ -132,6 +135,12 @@ class Designs:
     def whole(self) -> LoadedCam:
         """The unloaded cams at the samples of the lift."""
         return LoadedCam(Jet(*self.jets), self.numbers, self.highest[:, None])
+
+    @cached_property
+    def top(self) -> LoadedCam:
+        """The unloaded cams at their maximum lift, (m, 1)."""
+        lift = self.highest[:, None]
+        return LoadedCam(Jet(lift, np.zeros_like(lift), np.zeros_like(lift)), self.numbers, lift)
 
     @cached_property
     def least_factor(self) -> Array:
@@ -318,3 +327,26 @@ class TorqueOfSpeed:
 
 
 _NODES = 9
+
+
+def _to_all(designs: Designs) -> NDArray[np.bool_]:
+    return np.ones(designs.count, dtype=bool)
+
+
+def _never(_: Designs) -> bool:
+    return False
+
+
+class Screened(NamedTuple):
+    """A check that screening judges.
+
+    deviation: from the demand of the preview, over the greater of demand and limit, as
+    `tests/verification/test_screening.py` measures it; applies: to which designs, (m,); is_bound:
+    whether the demand is a lower bound, by which it can only fail.
+    """
+
+    check: str
+    judged: Callable[[Designs], Judged | None]
+    deviation: float
+    applies: Callable[[Designs], NDArray[np.bool_]] = _to_all
+    is_bound: Callable[[Designs], bool] = _never

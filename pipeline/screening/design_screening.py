@@ -26,10 +26,10 @@ from camwright.pipeline.checks.registry import DECLARED, accepted
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.follower.spring import spring_energy
 from camwright.pipeline.preview import preview_case
-from camwright.pipeline.screening.design_arrays import Designs, Source, TorqueOfSpeed
+from camwright.pipeline.screening.design_arrays import Designs, Screened, Source, TorqueOfSpeed
 from camwright.pipeline.screening.design_factors import Factor, Group, count_of, groups, refusals
 from camwright.pipeline.screening.screened_cam import ScreenedCam
-from camwright.pipeline.screening.screened_checks import SCREENED, Screened
+from camwright.pipeline.screening.screened_checks import SCREENED
 from camwright.pipeline.screening.screened_loads import torque_after
 from camwright.pipeline.smoothing.smoothers import Smoother, smoothed
 

@@ -7,53 +7,23 @@ fails by it fails the check; any other is not evaluated (`Declaration.is_bound`)
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import NamedTuple
-
-import numpy as np
-from numpy.typing import NDArray
-
 from camwright.pipeline.case.limits import CONTACT_SAFETY, SHAKEDOWN_SAFETY
+from camwright.pipeline.checks.registry import CHECKS
 from camwright.pipeline.checks.spring_strength import torsion_strength
 from camwright.pipeline.screening import screened_contact as contact
 from camwright.pipeline.screening import screened_loads as loads
 from camwright.pipeline.screening import screened_shape as shape
 from camwright.pipeline.screening import screened_springs as springs
-from camwright.pipeline.screening.design_arrays import Designs, Judged
+from camwright.pipeline.screening.design_arrays import Screened
 from camwright.pipeline.screening.design_lengths import has_many_shapes
 
-
-def _to_all(designs: Designs) -> NDArray[np.bool_]:
-    return np.ones(designs.count, dtype=bool)
-
-
-def _never(_: Designs) -> bool:
-    return False
-
-
-class Screened(NamedTuple):
-    """A check that screening judges.
-
-    deviation: from the demand of the preview, over the greater of demand and limit, as
-    `tests/verification/test_screening.py` measures it; applies: to which designs, (m,); is_bound:
-    whether the demand is a lower bound, by which it can only fail.
-    """
-
-    check: str
-    judged: Callable[[Designs], Judged | None]
-    deviation: float
-    applies: Callable[[Designs], NDArray[np.bool_]] = _to_all
-    is_bound: Callable[[Designs], bool] = _never
-
-
 SCREENED: tuple[Screened, ...] = (
+    *(
+        shape.by_measure(each)
+        for each in CHECKS
+        if each.measured is not None and each.measured.deviation is not None
+    ),
     Screened("pressure_angle", shape.pressure_angle, 0.0001),
-    Screened("curvature_ratio", shape.curvature_ratio, 0.0001),
-    Screened("undercut", shape.undercut, 0.0001),
-    Screened("concave_radius", shape.concave_radius, 0.0001, shape.is_concave),
-    Screened("minimum_wall", shape.minimum_wall, 0.0001),
-    Screened("cam_radius", shape.cam_radius, 0.0001),
-    Screened("spring_travel", shape.spring_travel, 0.0001),
     Screened("guide_gap", shape.guide_gap, 0.0001),
     Screened("guide_length", shape.guide_length, 0.0001),
     Screened("torque_reduction", loads.torque_reduction, 0.001),

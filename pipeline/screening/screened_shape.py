@@ -5,20 +5,17 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from camwright.geometry.arrays import Array
+from camwright.geometry.errors import InputError
 from camwright.geometry.extrema import sampled_greatest, sampled_least
 from camwright.pipeline.case.limits import (
-    CAM_RADIUS,
-    CURVATURE_RATIO,
     GUIDE_GAP,
     GUIDE_LENGTH,
-    MINIMUM_WALL,
     PRESSURE_ANGLE,
     RETURN_PRESSURE_ANGLE,
-    TOOL_RADIUS,
-    UNDERCUT_FACTOR,
 )
-from camwright.pipeline.checks.cam_shape import TOOL_ALLOWANCE
-from camwright.pipeline.screening.design_arrays import Designs, Judged
+from camwright.pipeline.checks.check import Declaration
+from camwright.pipeline.screening.design_arrays import Designs, Judged, Screened
 
 
 def pressure_angle(designs: Designs) -> Judged:
@@ -36,41 +33,37 @@ def pressure_angle(designs: Designs) -> Judged:
     return demand, np.where(steeper, on_return, allowed)
 
 
-def curvature_ratio(designs: Designs) -> Judged:
-    return designs.least_convex_radius / designs.value("roller.radius")[:, 0], designs.limit(
-        CURVATURE_RATIO
-    )
+def by_measure(declared: Declaration) -> Screened:
+    """Screening of a check that is declared by a measure.
 
+    Raises
+    ------
+    InputError
+        If the check states no deviation of the screening.
+    """
+    how, measure = declared.measured, declared.measure
+    if how is None or measure is None or how.deviation is None:
+        raise InputError(declared.id, "not declared", "screened, see `Measured`")
 
-def undercut(designs: Designs) -> Judged:
-    return designs.least_factor, designs.limit(UNDERCUT_FACTOR)
+    def demand(designs: Designs) -> Array:
+        extreme = sampled_least if how.worst == "least" else sampled_greatest
+        if how.reduce == "top":
+            worst = measure(designs.top)
+        else:
+            worst = extreme(measure(designs.whole))[:, None]
+        value = np.asarray(how.value(worst, designs.numbers))
+        return np.broadcast_to(value, (designs.count, 1))[:, 0]
 
+    def judged(designs: Designs) -> Judged:
+        allowed = how.allowed(designs.numbers).value
+        limit = np.asarray(np.nan if allowed is None else allowed, dtype=float)
+        known = np.where(applies(designs), demand(designs), np.nan)
+        return known, np.broadcast_to(limit, (designs.count, 1))[:, 0]
 
-def is_concave(designs: Designs) -> NDArray[np.bool_]:
-    """Whether a cam has concave places; any tool fits a convex one."""
-    return sampled_least(designs.whole.motion.path_curvature) < -np.finfo(float).tiny
+    def applies(designs: Designs) -> NDArray[np.bool_]:
+        return np.broadcast_to(how.applies(demand(designs)), designs.count)
 
-
-def concave_radius(designs: Designs) -> Judged:
-    hollow = np.minimum(sampled_least(designs.whole.motion.path_curvature), -np.finfo(float).tiny)
-    radius = designs.value("roller.radius")[:, 0] - 1.0 / hollow
-    tool, stated = designs.limit(TOOL_RADIUS), designs.case.workshop.tool_radius
-    largest = np.where(np.isnan(tool), np.nan if stated is None else stated, tool)
-    return np.where(is_concave(designs), radius, np.nan), TOOL_ALLOWANCE * largest
-
-
-def minimum_wall(designs: Designs) -> Judged:
-    keyway = designs.case.cam.held_radius - designs.case.cam.bore_radius
-    held = designs.value("cam.bore_radius")[:, 0] + keyway
-    return sampled_least(designs.whole.motion.contour_radius) / held, designs.limit(MINIMUM_WALL)
-
-
-def cam_radius(designs: Designs) -> Judged:
-    return sampled_greatest(designs.whole.motion.contour_radius), designs.limit(CAM_RADIUS)
-
-
-def spring_travel(designs: Designs) -> Judged:
-    return designs.highest, designs.value("spring.travel_max")[:, 0]
+    return Screened(declared.id, judged, how.deviation, applies)
 
 
 def guide_gap(designs: Designs) -> Judged:

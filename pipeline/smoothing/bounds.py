@@ -8,7 +8,8 @@ from dataclasses import dataclass, field, replace
 from camwright.pipeline.base.units import in_unit
 from camwright.pipeline.case.limits import GUIDE_GAP, TOOL_RADIUS, AnyLimit, utilisation_slope
 from camwright.pipeline.checks.cam_shape import TOOL_ALLOWANCE
-from camwright.pipeline.smoothing.constraints import CONSTRAINTS, FACTOR_MAX
+from camwright.pipeline.checks.check import FACTOR_MAX
+from camwright.pipeline.smoothing.constraints import CONSTRAINTS
 from camwright.pipeline.smoothing.scenario import Ratings
 
 _PRESSURES = {

@@ -11,27 +11,26 @@ value, title, unit and slope from the row.
 
 from __future__ import annotations
 
-from collections.abc import Container, Mapping
+from collections.abc import Callable, Container, Mapping
+from functools import partial
 from math import inf
 from typing import Literal
 
 import numpy as np
 
 from camwright.geometry.arrays import Array
+from camwright.geometry.errors import InputError
 from camwright.geometry.lift import Jet
 from camwright.geometry.pitch_curve import magnitude
 from camwright.pipeline.case.limits import (
-    CAM_RADIUS,
     CONTACT_FORCE_MARGIN,
-    CURVATURE_RATE,
-    CURVATURE_RATIO,
     JAM_INDEX,
     JUMP,
     PRESSURE_ANGLE,
-    UNDERCUT_FACTOR,
     AnyLimit,
 )
-from camwright.pipeline.checks import demands
+from camwright.pipeline.checks import cam_shape, demands, manufacture
+from camwright.pipeline.checks.check import FACTOR_MAX, Declaration
 from camwright.pipeline.cycle.loaded_cam import LoadedCam, positive
 from camwright.pipeline.follower.roller_motion import BALL_LIFE_EXPONENT, wear
 from camwright.pipeline.smoothing.cam_state import (
@@ -41,7 +40,6 @@ from camwright.pipeline.smoothing.cam_state import (
     State,
     by_duty,
     loaded,
-    roller_of,
     unloaded,
 )
 from camwright.pipeline.smoothing.part_constraints import (
@@ -50,9 +48,6 @@ from camwright.pipeline.smoothing.part_constraints import (
     line_pressure,
 )
 from camwright.pipeline.smoothing.scenario import DesignVariables, Ratings, Scenario
-
-FACTOR_MAX = 4.0
-"""Maximum factor of a relaxation."""
 
 
 def shape_utilisations(
@@ -108,13 +103,6 @@ def _utilisations(
     return uses
 
 
-def _concave_radius(cam: LoadedCam, hollow: float) -> Array | None:
-    """No constraint where the roller is larger: it cannot roll in a smaller hollow."""
-    path = roller_of(cam.motion)
-    room = hollow - path.size
-    return -path.path_curvature * room if room > 0.0 else None
-
-
 def _contact_at_overspeed(at: ScenarioCam, limit: float) -> Array | None:
     if at.ratings.overspeed is None:
         return None
@@ -154,41 +142,43 @@ def _guide_pv(side: Literal["A", "B"]) -> Constraint[ScenarioCam]:
     return Constraint(f"guide_pv_{side}", lambda ratings: ratings.guide_pv[place], utilisation)
 
 
+def kept(
+    declared: Declaration, limit: Callable[[Ratings], float | None] | None = None
+) -> Constraint[LoadedCam]:
+    """Constraint of a check that is declared by a measure.
+
+    limit: ratings -> limit of a part; None: the row of the check
+    """
+    how, measure, row = declared.measured, declared.measure, declared.limit
+    of_part = row if limit is None else limit
+    if how is None or measure is None or how.kept is None or of_part is None:
+        raise InputError(declared.id, "not declared", "kept by the synthesis, see `Measured`")
+    return Constraint(
+        declared.id,
+        of_part,
+        partial(how.use, measure),
+        factor_max=how.kept.factor_max,
+        value_max=how.kept.value_max,
+        needs=declared.needs,
+    )
+
+
 SHAPE: tuple[Constraint[LoadedCam], ...] = (
-    Constraint(
-        "spring_travel", lambda ratings: ratings.travel, lambda cam, limit: cam.jet.lift / limit
-    ),
+    kept(cam_shape.spring_travel, lambda ratings: ratings.travel),
     Constraint(
         "pressure_angle",
         PRESSURE_ANGLE,
-        lambda cam, limit: magnitude(np.arctan(roller_of(cam.motion).tangent)) / limit,
+        lambda cam, limit: magnitude(cam.motion.pressure_angle) / limit,
         factor_max=inf,
         value_max=np.radians(60.0),
         needs="roller",
     ),
-    Constraint(
-        "curvature_ratio",
-        CURVATURE_RATIO,
-        lambda cam, limit: cam.motion.sharpness * limit,
-        needs="roller",
-    ),
-    Constraint(
-        "undercut", UNDERCUT_FACTOR, lambda cam, limit: cam.motion.sharpness / (1.0 - limit)
-    ),
-    Constraint(
-        "concave_radius", lambda ratings: ratings.hollow_radius, _concave_radius, needs="roller"
-    ),
-    Constraint(
-        "curvature_rate",
-        CURVATURE_RATE,
-        lambda cam, limit: magnitude(cam.motion.curvature_slope) / limit,
-    ),
-    Constraint(
-        "cam_radius",
-        CAM_RADIUS,
-        lambda cam, limit: cam.motion.contour_radius / limit,
-        factor_max=FACTOR_MAX,
-    ),
+    kept(cam_shape.curvature_ratio),
+    kept(cam_shape.undercut),
+    kept(cam_shape.concave_radius, lambda ratings: ratings.hollow_radius),
+    kept(cam_shape.curvature_rate),
+    kept(manufacture.cam_radius),
+    kept(cam_shape.minimum_wall),
     *PART_SHAPE,
 )
 """Limits on the shape of the cam."""

@@ -10,10 +10,10 @@ import numpy as np
 
 from camwright.pipeline.base.units import in_unit
 from camwright.pipeline.case.limits import TORQUE_REDUCTION
+from camwright.pipeline.checks.check import FACTOR_MAX
 from camwright.pipeline.smoothing import bounds
 from camwright.pipeline.smoothing.bounds import bounds_of
 from camwright.pipeline.smoothing.constrained_synthesis import synthesise
-from camwright.pipeline.smoothing.constraints import FACTOR_MAX
 from camwright.pipeline.smoothing.objective import TORQUE, Weighted
 from camwright.pipeline.smoothing.synthesis_problem import RESERVE, Problem, coarsened
 

@@ -17,7 +17,6 @@ from camwright.pipeline.base.units import factor
 from camwright.pipeline.case.limits import (
     CONTACT_FORCE_MARGIN,
     KEYWAY_SAFETY,
-    MINIMUM_WALL,
     WAVINESS,
 )
 from camwright.pipeline.checks import demands
@@ -249,11 +248,6 @@ def _lubrication(at: ScenarioCam, limit: float) -> Mean:
     return Mean(np.where(turns, spin / limit, _AMPLE + 0.0 * spin), -1.0)
 
 
-def _minimum_wall(cam: LoadedCam, limit: float) -> Array | None:
-    held = cam.numbers.get("cam.held_radius")
-    return None if held is None else limit * held / cam.motion.contour_radius
-
-
 def _face_width(at: ScenarioCam, width: float) -> Array:
     """Twice the distance of the contact from the stem axis and its half-width, over the width.
 
@@ -282,7 +276,6 @@ def line_pressure(at: ScenarioCam, allowed: Value) -> Array:
 
 
 PART_SHAPE: tuple[Constraint[LoadedCam], ...] = (
-    Constraint("minimum_wall", MINIMUM_WALL, _minimum_wall),
     _guide_speed("A"),
     _guide_speed("B"),
 )

@@ -13,7 +13,7 @@ import textwrap
 import tomllib
 from functools import cache
 from pathlib import Path
-from types import ModuleType
+from types import ModuleType, SimpleNamespace
 
 import numpy as np
 import pytest
@@ -151,7 +151,7 @@ def test_the_check_of_contributing_is_declared() -> None:
     inside = {**vars(cam_shape), "LIFT_JERK": names["LIFT_JERK"]}
     exec(declared, inside)
     assert inside["lift_jerk"].id == "lift_jerk"
-    kept = eval(constraint, {**vars(constraints), "LIFT_JERK": names["LIFT_JERK"]})
+    kept = eval(constraint, {**vars(constraints), "cam_shape": SimpleNamespace(**inside)})
     assert kept.limit is names["LIFT_JERK"]
     assert ast.parse(entry)
 
