@@ -148,15 +148,6 @@ class Contour(Displayed, ABC):
     def curvature_slope(self, theta: ArrayLike) -> Array:
         """Derivative of the curvature by the cam angle, 1/(m rad)."""
 
-    def curvature_rate(self, theta: ArrayLike) -> Array:
-        """Derivative of the curvature by the length of the contour, 1/m^2; infinite at a cusp."""
-        return self.curvature_slope(theta) * reciprocal(self.speed(theta))
-
-    @cached_property
-    def curvature_rate_max(self) -> Extremum:
-        """Greatest magnitude of `curvature_rate`, 1/m^2, and its cam angle."""
-        return greatest(lambda theta: np.abs(self.curvature_rate(theta)), self.lift.search_count)
-
     @abstractmethod
     def radius_of_curvature(self, theta: ArrayLike) -> Array:
         """Signed radius of curvature, m, positive where convex."""

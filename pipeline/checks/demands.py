@@ -100,8 +100,3 @@ def waviness_force(
     speed: of the contact along the contour.
     """
     return mass * amplitude * (FULL_TURN * speed / length) ** 2
-
-
-def contour_radius(along: Array, across: Array, offset: float | Array, inset: Array) -> Array:
-    """Distance of the contour from the cam axis, m; inset: r / |dP/dtheta|, see `Contour`."""
-    return np.sqrt((across * (1.0 - inset)) ** 2 + (offset + inset * along) ** 2)

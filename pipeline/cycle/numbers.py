@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-import numpy as np
-
-from camwright.geometry.arrays import Array, Value
+from camwright.geometry.arrays import Value
 from camwright.geometry.errors import InputError
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_values import value_of
@@ -52,11 +50,3 @@ class Numbers:
     def __or__(self, changed: Mapping[str, Value | None]) -> Numbers:
         """With other numbers; what is read from the case is read once."""
         return Numbers({**self.changed, **changed}, self.case, self._read)
-
-    def taken(self, take: Callable[[Array], Array]) -> Numbers:
-        """Those of some load cases, or of pairs of load case and cam angle."""
-        changed = {
-            key: None if value is None else take(np.asarray(value))
-            for key, value in self.changed.items()
-        }
-        return Numbers(changed, self.case, self._read)
