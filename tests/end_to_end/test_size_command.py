@@ -298,19 +298,30 @@ def test_the_rate_is_found_beside_a_stated_preload() -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(
-    ("free", "word"),
-    [(("spring.preload",), "jump"), (("spring.rate", "spring.preload"), "elastic stem")],
-)
-def test_the_preload_is_the_least_that_holds(free: tuple[str, ...], word: str) -> None:
-    """The elastic stem asks for more than the closed forms; 2 % less preload fails."""
-    sizing = cw.size(STRANGERS / "size_spring.toml", free)
-    assert sizing.verdict == "pass"
-    assert word in sizing.sources["spring.preload"]
+def test_the_preload_is_the_least_without_jump_at_the_worst_tolerances() -> None:
+    """All tolerances at their worst ends at once; the corners of a preview are milder."""
+    sizing = cw.size(STRANGERS / "size_spring.toml", ("spring.preload",))
+    case, spring = sizing.case, sizing.case.spring
+    assert sizing.verdict == "pass" and "jump" in sizing.sources["spring.preload"]
+    worst = {
+        "spring.rate": (1.0 - spring.rate_tolerance) * spring.rate,
+        "follower.mass": (1.0 + case.tolerances.mass) * case.follower.mass,
+    }
+    least = (1.0 - spring.preload_tolerance) * spring.preload
+    for share, holds in ((1.0, True), (0.98, False)):
+        other = replaced(case, {"spring.preload": share * least, **worst})
+        trial = cw.solve(other, other.contour(given_lift(other)), tier=cw.Tier.SCREENING)
+        (jump,) = (each for each in trial.checks if each.id == "jump_speed")
+        assert (jump.demand >= jump.limit) is holds
+
+
+@pytest.mark.slow
+def test_the_preload_is_the_least_that_holds_an_elastic_stem() -> None:
+    sizing = cw.size(STRANGERS / "size_spring.toml", ("spring.rate", "spring.preload"))
+    assert sizing.verdict == "pass" and "elastic stem" in sizing.sources["spring.preload"]
     less = replaced(sizing.case, {"spring.preload": 0.98 * sizing.spring.preload})
     checks = cw.solve(less, less.contour(given_lift(less)), tier=cw.Tier.PREVIEW).checks
-    judged = {each.id: each.status for each in checks}
-    assert "fail" in (judged["jump_speed"], judged["elastic_contact"])
+    assert {each.id: each for each in checks}["elastic_contact"].status == "fail"
 
 
 def test_the_preload_holds_against_a_force_of_the_machine() -> None:
