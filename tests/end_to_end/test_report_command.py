@@ -31,6 +31,11 @@ NEEDED = (
     "camwright.pipeline.commands",
     "camwright.pipeline.results",
     "camwright.reports",
+    # the declarations of the checks, which name the part that each judges, and what they import
+    *(
+        f"camwright.pipeline.{name}"
+        for name in ("case", "checks", "contact", "cycle", "engine", "follower", "torque")
+    ),
 )
 SOLVERS = {"skfem", "gmsh", "clarabel", "cvxopt", "pypardiso"}
 ALWAYS = {"outline", "pressure-angle", "lift", "radii", "pressure", "stress", "normal-force",

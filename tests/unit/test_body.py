@@ -1,9 +1,9 @@
 """Meshes of the bodies: boundaries, numbering, limits and repeatability."""
 
-import os
 import signal
 import subprocess
 import sys
+import threading
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
@@ -352,7 +352,7 @@ def test_meshing_keeps_what_each_signal_does():
         roller_mesh(0.008, 0.003, 0.0, Sizing(far_size=2e-3))
         assert dispositions() == there
         with signals_kept():
-            os.kill(os.getpid(), signal.SIGTERM)
+            signal.pthread_kill(threading.get_ident(), signal.SIGTERM)
             assert received == []
         assert received == [signal.SIGTERM]
     finally:

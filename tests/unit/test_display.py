@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import builtins
 import copy
 import pickle
 import subprocess
@@ -12,7 +11,6 @@ from html.parser import HTMLParser
 from itertools import pairwise
 from pathlib import Path
 from types import SimpleNamespace
-from typing import Any
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -27,6 +25,7 @@ from camwright.geometry.display import Displayed, html_table, in_brief
 from camwright.geometry.errors import InputError, ResultError
 from camwright.geometry.flat_face_contour import FacePath, FlatFaceContour
 from camwright.geometry.lift import Lift
+from camwright.pipeline.base import extras
 from camwright.pipeline.base.tables import CAM_ANGLE, LOAD_CASE, Column, table
 from camwright.pipeline.case.case_file import parse_case
 from camwright.pipeline.case.load_case_torque import engine_torques
@@ -299,15 +298,8 @@ def test_a_sizing(tmp_path: Path) -> None:
 
 
 def test_without_pandas_the_message_names_the_package(monkeypatch: pytest.MonkeyPatch) -> None:
-    real = builtins.__import__
-
-    def without(name: str, *rest: Any) -> Any:
-        if name == "pandas":
-            raise ImportError(name)
-        return real(name, *rest)
-
-    monkeypatch.setattr(builtins, "__import__", without)
-    with pytest.raises(ResultError, match=r"pip install 'camwright\[notebook\]'"):
+    monkeypatch.setattr(extras, "find_spec", lambda _: None)
+    with pytest.raises(ResultError, match=r'pip install "camwright\[notebook\]"'):
         of_two_load_cases().to_pandas()
 
 

@@ -28,6 +28,7 @@ from camwright.pipeline.checks.error_bars import with_error_bars
 from camwright.pipeline.checks.extremes import greatest, least, worst_case
 from camwright.pipeline.checks.plane_strain_validity import bore_stress as bore_check
 from camwright.pipeline.checks.plane_strain_validity import held_distance
+from camwright.pipeline.checks.registry import DECLARED
 from camwright.pipeline.checks.roller_bearing import roller_life
 from camwright.pipeline.checks.solution_verification import mesh_edges
 from camwright.pipeline.checks.torque_balance import (
@@ -96,7 +97,9 @@ def test_each_error_bar_has_the_index_of_its_own_quantity():
     }  # fmt: skip
     for name, share in expected.items():
         one = made_check(name, 1.0, 2.0)
-        one = replace(one, declaration=replace(one.declaration, error="contact"))
+        by = DECLARED[name].certified_by
+        declared = replace(one.declaration, error="contact", certified_by=by)
+        one = replace(one, declaration=declared)
         (barred,) = with_error_bars(solution, [one])
         assert barred.error == pytest.approx(share, rel=1e-6), name
 

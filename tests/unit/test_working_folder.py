@@ -124,7 +124,7 @@ def test_the_path_of_processes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) 
     here, script, library = (tmp_path / name for name in ("here", "script", "library"))
     here.mkdir()
     monkeypatch.chdir(here)
-    monkeypatch.setattr(sys.modules["__main__"], "__file__", str(script / "run.py"))
+    monkeypatch.setattr(sys.modules["__main__"], "__file__", str(script / "run.py"), raising=False)
     home = worker_processes._HOME
     path = ["", str(here), str(script), str(library), home]
     monkeypatch.setattr(sys, "path", path)
