@@ -150,20 +150,43 @@ def sampled_greatest(values: Array) -> Array:
     h^3 for a spacing h. At a kink or a step it is at most the intersection of the lines through the
     two samples on either side. NaN if any sample is NaN.
     """
-    at = np.argmax(values, axis=-1)[..., None]
+    return _vertex(values, np.argmax(values, axis=-1))[0]
+
+
+def sampled_peak(values: Array) -> Extremum:
+    """Maximum of a function sampled at n equal angles from 0, and its angle, rad.
+
+    As `sampled_greatest`; of equal samples the first, see `first_greatest`. A sample with an
+    infinite or missing one beside it is not refined.
+
+    Parameters
+    ----------
+    values : array (n,)
+    """
+    at = first_greatest(values)
+    value, shift = float(values[at]), 0.0
+    if np.isfinite(np.take(values, at + np.arange(-2, 3), mode="wrap")).all():
+        value, shift = (float(each) for each in _vertex(values, np.asarray(at)))
+    return Extremum(value, (at + shift) * FULL_TURN / values.size % FULL_TURN)
+
+
+def _vertex(values: Array, at: NDArray[np.intp]) -> tuple[Array, Array]:
+    """Vertices (...) beside samples of number `at` (...), and their distances in samples."""
     first, before, here, after, last = (
-        np.take_along_axis(values, (at + step) % values.shape[-1], axis=-1)[..., 0]
+        np.take_along_axis(values, (at + step)[..., None] % values.shape[-1], axis=-1)[..., 0]
         for step in (-2, -1, 0, 1, 2)
     )
     bend = before - 2.0 * here + after
-    rise = np.divide((after - before) ** 2, -8.0 * bend, out=np.zeros_like(bend), where=bend < 0.0)
+    bent = bend < 0.0
+    rise = np.divide((after - before) ** 2, -8.0 * bend, out=np.zeros_like(bend), where=bent)
+    shift = np.divide(before - after, 2.0 * bend, out=np.zeros_like(bend), where=bent)
     up, down = before - first, last - after
     turn = up - down
     place = np.divide(after - before - up - down, turn, out=np.zeros_like(turn), where=turn > 0.0)
     place = np.clip(place, -1.0, 1.0)
     above = np.minimum(before + up * (place + 1.0), after + down * (place - 1.0)) - here
-    rise = np.minimum(rise, np.maximum(above, 0.0))
-    return np.asarray(here + rise)
+    kink = np.maximum(above, 0.0)
+    return np.asarray(here + np.minimum(rise, kink)), np.where(rise > kink, place, shift)
 
 
 def sampled_least(values: Array) -> Array:

@@ -148,11 +148,6 @@ class Machine(Displayed):
     scope: Scope
 
     @property
-    def at_rest(self) -> bool:
-        """Whether the crank stands still: nothing slides and nothing wears."""
-        return self.speed == 0.0
-
-    @property
     def crank_speed(self) -> float:
         """rad/s, > 0 also at rest."""
         return max(self.speed, CREEP)

@@ -60,7 +60,7 @@ def least(cycles: Iterable[Cycle], measure: Callable[[Cycle], Array]) -> Extreme
 def greatest_force(cycles: Sequence[Cycle], measure: Callable[[Cycle, Loads], Array]) -> Extreme:
     """Greatest value of forces over all load cases and angles, between the solved ones as well.
 
-    The vertex of the parabola through three of the angles of `Cycle.loads_between`; NaN if any is.
+    The vertex at the angles of `Cycle.loads_between`, see `sampled_peak`; NaN if any is.
 
     Parameters
     ----------
@@ -81,20 +81,8 @@ def _vertex(
     worst = _extreme(cycles, lambda cycle: values[cycle.load_case], sign)
     if worst.cam_angle is None:
         return worst
-    of_case = values[worst.load_case]
-    step = FULL_TURN / of_case.size
-    near = (round(worst.cam_angle / step) + np.arange(-1, 2)) % of_case.size
-    before, here, after = of_case[near]
-    if not np.isfinite(of_case[near]).all():  # no jump at any speed, or no load, beside it
-        return worst
-    bend = sign * (before - 2.0 * here + after)
-    if not bend < 0.0:  # a constant
-        return worst
-    place = sign * 0.5 * (before - after) / bend
-    return worst._replace(
-        value=float(here - 0.25 * (before - after) * place),
-        cam_angle=float((worst.cam_angle + place * step) % FULL_TURN),
-    )
+    peak = extrema.sampled_peak(sign * values[worst.load_case])
+    return worst._replace(value=sign * peak.value, cam_angle=peak.theta)
 
 
 def worst_case(
