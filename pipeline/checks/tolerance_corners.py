@@ -370,4 +370,6 @@ def _governed(one: Check, tried: Sequence[Outcome]) -> Check:
     # over the same load cases, and on the same side of zero
     comparable = one.id not in nominal.bounds and np.isfinite(here) and nominal_demand * here > 0.0
     demand = nominal_demand * there / here if comparable else there
+    if sign * demand < sign * nominal_demand:  # of a corner that lacks a load case of the run
+        return replace(one, corner="nominal", corner_demand=one.demand)
     return replace(one, corner=worst.corner.name, corner_demand=float(demand))

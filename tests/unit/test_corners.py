@@ -268,3 +268,16 @@ def test_record_holds_every_corner(tried):
     demands, record = tried[0].demands, nominal["demands"]
     assert record["contact_pressure"] == pytest.approx(1e-6 * demands["contact_pressure"])
     assert record["jump_speed"] == pytest.approx(30.0 / np.pi * demands["jump_speed"])
+
+
+def test_a_corner_without_a_load_case_is_no_milder_than_the_run():
+    """The demand of the run has a load case that the closed forms without error bars lost."""
+    lost = {"bounds": frozenset({"p"}), "lost": "the cam"}
+    check = made_check("p", 100.0, 105.0)
+    for there, corner, demand in ((55.0, "nominal", 100.0), (120.0, "a", 120.0)):
+        seen = (
+            Outcome(Corner("nominal"), {"p": 50.0}, **lost),
+            Outcome(Corner("a"), {"p": there}, **lost),
+        )
+        (named,) = governed([check], seen)
+        assert (named.corner, named.corner_demand) == (corner, demand)
