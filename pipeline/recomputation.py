@@ -16,12 +16,14 @@ from typing import Any, cast
 
 import numpy as np
 
+from camwright.geometry.arrays import FULL_TURN
 from camwright.geometry.contour import Contour
 from camwright.geometry.errors import InputError, ResultError
+from camwright.geometry.lift import Lift
 from camwright.pipeline.base import disk_cache
 from camwright.pipeline.base.files import Json, files_in, read_json
 from camwright.pipeline.base.progress import SILENT, Progress
-from camwright.pipeline.base.units import in_unit
+from camwright.pipeline.base.units import in_unit, shown
 from camwright.pipeline.base.worker_processes import crew
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_file import read_case
@@ -276,6 +278,7 @@ def _lift_differences(
             if not bounds[0] * (1.0 - SAME) <= value <= bounds[1] * (1.0 + SAME):
                 what = f"within smoothing.{name}_range" if free else "that"
                 yield f"{run.final.path.name}/trial.json: {name} is not {what} of the case"
+        yield from _source_differences(run, lift, Lift(lift.theta, lift.values))
         return
     if not case.balances:
         expected = given_lift(case)
@@ -285,6 +288,18 @@ def _lift_differences(
     if not apart <= SAME * expected.highest.value:
         words = f"the lift differs by {in_unit(apart, 'um'):.3g} um from that of the case"
         yield f"{run.final.path.name}/{run_reader.SPLINE_FILE}: {words}"
+    yield from _source_differences(run, lift, expected)
+
+
+def _source_differences(run: Run, lift: Lift, expected: Lift) -> Iterator[str]:
+    """Differences of what is recorded of the source of the lift: its closure, and its spacing."""
+    file = f"{run.final.path.name}/trial.json"
+    if not abs(lift.closure - expected.closure) <= SAME * lift.highest.value:
+        stated, again = (shown(each.closure, "mm") for each in (lift, expected))
+        yield f"{file}: closure_mm = {stated}, recomputed {again}"
+    if not abs(lift.spacing - expected.spacing) <= SAME * FULL_TURN:
+        stated, again = (shown(each.spacing, "deg") for each in (lift, expected))
+        yield f"{file}: table_step_deg = {stated}, recomputed {again}"
 
 
 def _chosen(case: Case) -> dict[str, float]:
@@ -455,9 +470,9 @@ class _Files:
         self._summary(summary, case)
         self.differences += _recorded_limits(run)
 
-    def _add(self, found: Iterator[tuple[str, str]]) -> list[str]:
+    def _add(self, of_files: Iterator[tuple[str, str]]) -> list[str]:
         """Add differences of files; their names."""
-        pairs = list(found)
+        pairs = list(of_files)
         self.differences += (f"{name}: {words}" for name, words in pairs)
         return [name for name, _ in pairs]
 
@@ -505,12 +520,12 @@ class _Files:
             (copy / name).unlink(missing_ok=True)
         present(copy, names)
         made = {name: kind for name, kind in names.items() if (copy / name).is_file()}
-        found = dict(file_differences(self._run.path, copy, made.items()))
-        if PAGE in found:  # it names the pictures that lie in the folder as it is drawn
+        differing = dict(file_differences(self._run.path, copy, made.items()))
+        if PAGE in differing:  # it names the pictures that are in the folder when it is drawn
             present(copy, (PAGE,))
-            found.pop(PAGE)
-            found |= file_differences(self._run.path, copy, [(PAGE, names[PAGE])])
-        self._add(iter(found.items()))
+            differing.pop(PAGE)
+            differing |= file_differences(self._run.path, copy, [(PAGE, names[PAGE])])
+        self._add(iter(differing.items()))
         self.differences += (f"{n}: is none of the run's pages" for n in names if n not in made)
 
 

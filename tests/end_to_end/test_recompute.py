@@ -199,6 +199,8 @@ def test_options_out_of_bounds_are_refused(
     [
         ("number", 7, "trial.json: number = 7, recomputed 1"),
         ("smoothing_strength", 0.5, "smoothing_strength = 0.5, recomputed None"),
+        ("closure_mm", 1.0, "trial.json: closure_mm = 1 mm, recomputed 0 mm"),
+        ("table_step_deg", 2.0, "trial.json: table_step_deg = 2 deg, recomputed "),
         ("synthesis", 3, "trial.json|synthesis"),
     ],
 )
