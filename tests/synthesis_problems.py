@@ -17,6 +17,9 @@ from camwright.pipeline.smoothing.scenario import Correction, DesignVariables, S
 from camwright.pipeline.smoothing.synthesis_problem import Problem
 
 ROOT = Path(__file__).parents[1]
+REFINED = {"contact_force_margin", "contact_at_overspeed", "jump", "jump_speed"}
+"""Checks of the contact force between the solved angles, compared at the place of the check."""
+
 OF_ROLLER = tuple(each for each in CONSTRAINTS if each.needs != "face")
 """Constraints of a cam under a roller."""
 KEPT = frozenset({

@@ -21,7 +21,7 @@ import pytest
 import camwright
 from camwright.geometry.errors import ResultError
 from camwright.pipeline.base import columns, extras
-from camwright.pipeline.base.extras import EXTRAS, require_extra
+from camwright.pipeline.base.extras import EXTRAS
 
 Command = Callable[..., tuple[int, str, str]]
 
@@ -91,11 +91,6 @@ def test_a_study_names_its_extra(
 def test_a_data_frame_names_its_extra(plain: None) -> None:
     with pytest.raises(ResultError, match=r'frame needs pandas; install .*camwright\[notebook\]"'):
         columns.data_frame({"a": np.zeros(2)})
-
-
-def test_what_is_there_is_not_refused() -> None:
-    for extra in EXTRAS:
-        require_extra(extra, "this")
 
 
 def test_every_library_is_a_dependency_or_of_an_extra() -> None:

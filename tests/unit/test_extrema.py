@@ -144,6 +144,31 @@ def test_round_off_does_not_move_the_place_of_an_extreme(seed, count):
             assert np.cos(rough.theta - exact.theta) == pytest.approx(1.0, abs=1e-12)
 
 
+@pytest.mark.parametrize("shift", [0.0, 0.3, 0.5])
+def test_a_sampled_peak_is_at_its_vertex(shift):
+    """A cosine by 72 samples to 2e-6 and 0.001 deg; a tent within half a step."""
+    step = 2.0 * np.pi / 72
+    place = (40.0 + shift) * step
+    theta = np.arange(72) * step
+    round_top = extrema.sampled_peak(np.cos(theta - place))
+    assert round_top.value == pytest.approx(1.0, abs=2e-6)
+    assert round_top.theta == pytest.approx(place, abs=np.radians(1e-3))
+    tent = extrema.sampled_peak(-np.abs(theta - place))
+    if shift:  # between two samples; a corner on one of them is that sample
+        assert tent.value == pytest.approx(0.0, abs=0.5 * step)
+    assert tent.value <= 1e-12
+    assert abs(tent.theta - place) <= 0.5 * step
+
+
+def test_a_sampled_peak_beside_infinity_is_its_sample():
+    values = np.array([0.0, 1.0, 2.0, -np.inf, 0.0, 0.0])
+    assert extrema.sampled_peak(values) == (2.0, 2.0 * np.pi / 3.0)
+    values[0] = np.nan
+    assert np.isnan(extrema.sampled_peak(values).value)
+    equal = np.array([0.0, 1.0, 0.0, 0.0, 1.0 + 1e-15, 0.0])
+    assert extrema.sampled_peak(equal).theta == pytest.approx(np.pi / 3.0)
+
+
 def test_no_record_rests_on_the_order_of_equal_values():
     """What chooses a place of a solution takes the first of equal ones; see `first_greatest`."""
     root = Path(extrema.__file__).parents[1] / "pipeline"

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from synthesis_problems import OF_ROLLER
+from synthesis_problems import OF_ROLLER, REFINED
 from synthesis_ratings import rated
 
 from camwright.geometry.arrays import uniform_turn
@@ -63,8 +63,6 @@ LOAD = ("contact_force_margin", "contact_at_overspeed", "jump", "jump_speed", "j
         "roller_speed", "guide_pressure_A", "guide_pressure_B", "guide_pv_A",
         "guide_pv_B", "roller_static_radial", "roller_load_share", "roller_pin_shear",
         "roller_pin_pressure", "cheek_pressure")  # fmt: skip
-REFINED = ("contact_force_margin", "contact_at_overspeed", "jump", "jump_speed")
-"""Checks of the contact force between the solved angles."""
 FORCE = {"roller_radial", "roller_static_radial", "roller_load_share", "roller_pin",
          "roller_pin_shear", "roller_pin_pressure", "cheek_pressure"}  # fmt: skip
 """Limits on the normal force besides the static rating, of which the synthesis keeps the least."""

@@ -7,7 +7,7 @@ import face_limits
 import numpy as np
 import pytest
 from oracle_model import DEGREE
-from synthesis_problems import with_corrections
+from synthesis_problems import REFINED, with_corrections
 from synthesis_ratings import rated
 
 from camwright.geometry.arrays import uniform_turn
@@ -339,10 +339,6 @@ def strain(check, ambient):
     if name.startswith("guide_temperature"):
         return (demand - ambient) / (limit - ambient)
     return check.utilisation
-
-
-REFINED = {"contact_force_margin", "contact_at_overspeed", "jump", "jump_speed"}
-"""Checks of the contact force between the solved angles."""
 
 
 def own_limits(case):

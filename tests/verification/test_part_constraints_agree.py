@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from scipy.optimize import brentq
-from synthesis_problems import OF_ROLLER
+from synthesis_problems import OF_ROLLER, REFINED
 from synthesis_ratings import rated
 
 from camwright.geometry.arrays import uniform_turn
@@ -54,8 +54,6 @@ KELVIN = 273.15
 MARGINS = (
     "contact_force_margin", "contact_at_overspeed", "contact_over_speed", "elastic_contact",
 )  # fmt: skip
-REFINED = ("contact_force_margin", "contact_at_overspeed", "jump", "jump_speed")
-"""Checks of the contact force between the solved angles."""
 NORMAL_FORCE = (
     "roller_static", "roller_radial", "roller_static_radial", "roller_load_share", "roller_pin",
     "roller_pin_shear", "roller_pin_pressure", "cheek_pressure", "bore_pressure",
