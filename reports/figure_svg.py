@@ -151,8 +151,8 @@ def shipped(settings: Mapping[RcKeyType, str | float] = MappingProxyType({})) ->
 def import_matplotlib() -> None:
     """Import matplotlib for the first time, also where it cannot read a matplotlibrc.
 
-    It reads one as it is imported, that of the working folder first, and fails where that is no
-    text.
+    matplotlib reads that file when it is imported, first in the working folder, and fails if it is
+    not text.
     """
     if "matplotlib" in sys.modules:
         return

@@ -202,9 +202,9 @@ def _holds_ours(folder: Path) -> bool:
 def amended(path: Path) -> Iterator[Path]:
     """Folder in which to write files for a finished run; they and its record change together.
 
-    After an exception the run is as before. A record that differs from files which are not written
-    anew is left as it is. A run without a record is not finished: its files are written at once,
-    into `path`.
+    After an exception the run is as before. The record of a file that is not written stays, also
+    where the file differs from it. A run without a record is not finished: its files are written
+    at once, into `path`.
 
     Raises
     ------

@@ -425,13 +425,13 @@ def _refuse_to_delete(out: Path, *, replace: bool) -> None:
     Those that were changed, or that `inspect` or `deck` wrote, are deleted where it is replaced.
     """
     if not (out / signoff.NAME).is_file():
-        told = f"holds no {signoff.NAME}, by which files of a run are told from others"
-        raise ResultError(f"{out}: {told}; choose another folder or remove it")
+        reason = f"holds no {signoff.NAME}, which lists the files of a run"
+        raise ResultError(f"{out}: {reason}; choose another folder or remove it")
     for name in unrecorded(out)[:1]:
         raise ResultError(f"{out}: holds {shown_name(name)}, which no run wrote; move it elsewhere")
     for name in kept_by_nothing(out)[: 0 if replace else 1]:
-        told = f"holds {shown_name(name)}, which a run does not write again as it is"
-        raise ResultError(f"{out}: {told}; --replace deletes it")
+        reason = f"holds {shown_name(name)}, which was added to the run or changed since"
+        raise ResultError(f"{out}: {reason}; --replace deletes it")
 
 
 def _name_of(out: Path) -> Json:

@@ -169,12 +169,12 @@ def read_trusted(path: Path | None) -> dict[str, TrustedKey]:
         text = bytes_of(path, "--trusted").decode("utf-8")
     except UnicodeDecodeError:
         raise InputError("--trusted", str(path), "text in UTF-8") from None
-    found = [TrustedKey(_public(block, path, "PEM block")) for block in _PEM.findall(text)]
+    listed = [TrustedKey(_public(block, path, "PEM block")) for block in _PEM.findall(text)]
     for number, line in enumerate(_PEM.sub(_lines_alone, text).splitlines(), start=1):
         if line.strip() and not line.lstrip().startswith("#"):
-            found.append(_trusted_line(line.strip(), path, number))
+            listed.append(_trusted_line(line.strip(), path, number))
     keys: dict[str, TrustedKey] = {}
-    for one in found:
+    for one in listed:
         key = fingerprint(one.public)
         if keys.setdefault(key, one).roles != one.roles:
             raise InputError(
