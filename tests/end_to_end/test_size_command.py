@@ -324,6 +324,7 @@ def test_the_preload_is_the_least_that_holds_an_elastic_stem() -> None:
     assert {each.id: each for each in checks}["elastic_contact"].status == "fail"
 
 
+@pytest.mark.slow
 def test_the_preload_holds_against_a_force_of_the_machine() -> None:
     """600 N pull the follower off, of which a fifth of the preload is left: 750 N or more.
 

@@ -19,6 +19,7 @@ CLOSINGS = {
     "output and errors": "{command} >&- 2>&-",
     "all": "{command} >&- 2>&- <&-",
 }
+OTHERS = ("output", "reader of the errors", "errors", "output and errors")
 
 
 def code_of(line: str, folder: Path) -> int:
@@ -27,7 +28,14 @@ def code_of(line: str, folder: Path) -> int:
     ).returncode
 
 
-@pytest.mark.parametrize("closing", CLOSINGS)
+@pytest.mark.parametrize(
+    "closing",
+    [
+        "reader of the output",
+        "all",
+        *(pytest.param(name, marks=pytest.mark.slow) for name in OTHERS),
+    ],
+)
 def test_the_exit_code_is_that_of_the_command(tmp_path: Path, closing: str) -> None:
     write_run(tmp_path / "passed", status="pass")
     for arguments, code in (("check passed --all", 0), ("check none", 2)):

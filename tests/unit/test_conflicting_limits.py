@@ -79,8 +79,11 @@ def programs(monkeypatch):
 
 @pytest.mark.parametrize(
     ("variant", "least"),
-    [(OFFSET_PUMP, 0.3730), (FAST_TWO_STROKE, 0.683), (WIDE_SPEEDS_OF_A_FACE, 1.80)],
-    ids=["offset", "offset and two lobes", "flat face"],
+    [
+        pytest.param(OFFSET_PUMP, 0.3730, id="offset"),
+        pytest.param(FAST_TWO_STROKE, 0.683, id="offset and two lobes", marks=pytest.mark.slow),
+        pytest.param(WIDE_SPEEDS_OF_A_FACE, 1.80, id="flat face", marks=pytest.mark.slow),
+    ],
 )
 def test_a_search_that_is_stuck_outside_the_limits_ends(variant, least, programs):
     """In place of 103, 142 and 131 programs."""

@@ -52,7 +52,7 @@ def test_every_command_that_balances_it_refuses_it_in_one_line(folder, command, 
 
 
 @pytest.mark.filterwarnings("error::RuntimeWarning")
-@pytest.mark.parametrize("kind", ["none", "moving_average"])
+@pytest.mark.parametrize("kind", ["none", pytest.param("moving_average", marks=pytest.mark.slow)])
 def test_without_a_synthesis_the_cam_is_round(folder, kind):
     """No ripple before and none after: its reduction is not evaluated."""
     (folder / "round.toml").write_text(with_smoother(kind))
@@ -62,6 +62,7 @@ def test_without_a_synthesis_the_cam_is_round(folder, kind):
     assert reduction.status == "not_evaluated"
 
 
+@pytest.mark.slow
 @pytest.mark.filterwarnings("error::RuntimeWarning")
 def test_a_run_of_a_round_cam_can_be_read(folder):
     """Its pin bears a constant load: a fatigue safety factor without bound, 1e12 in the record,

@@ -46,6 +46,7 @@ def test_settings_of_the_user_change_no_drawing() -> None:
 
 
 @pytest.mark.parametrize("content", [b"font.size: 20\nno such key: 1\n", b"\xff\xfe no text"])
+@pytest.mark.slow
 def test_a_matplotlibrc_that_cannot_be_read_ends_no_drawing(tmp_path: Path, content: bytes) -> None:
     """In a new process, since matplotlib reads it as it is imported."""
     (tmp_path / "matplotlibrc").write_bytes(content)

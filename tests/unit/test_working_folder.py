@@ -62,6 +62,7 @@ def test_modules_run_as_processes_import_none_of_the_folder(traps: Traps) -> Non
         assert traps.sprung() == [], name
 
 
+@pytest.mark.slow
 def test_the_command_as_a_module_imports_none_of_the_folder(traps: Traps) -> None:
     for name in before_a_module():  # nothing of ours can prevent it
         (traps.folder / f"{name}.py").unlink(missing_ok=True)

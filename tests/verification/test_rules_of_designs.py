@@ -119,7 +119,11 @@ def test_every_rule_has_an_array_or_none_of_its_keys_has(name: str) -> None:
     assert without <= STRUCTURE
 
 
-@pytest.mark.parametrize("name", ["gx120", "flat", "lift"])
+@pytest.mark.parametrize(
+    "name",
+    ["gx120", pytest.param("flat", marks=pytest.mark.slow),
+     pytest.param("lift", marks=pytest.mark.slow)],
+)  # fmt: skip
 def test_every_key_of_an_array_is_refused_as_in_the_file(name: str) -> None:
     of = case(name)
     for key in array_keys(of):
