@@ -250,7 +250,7 @@ class Search:
         beside = (moving.theta / self.turn.theta[1]).astype(np.intp)
         cell = np.zeros(self.grid.theta.size)
         cell[np.append(beside, beside + 1) % self.every.size] = self.turn.theta[1]
-        stack = replace(stack, cell=np.broadcast_to(cell, stack.cell.shape))
+        stack = replace(stack, cell=np.broadcast_to(cell, stack.external.shape))
         return self.grid.joined(moving), joined(stack, self.stack(moving, variables))
 
     def shape(self, names: frozenset[str] | None = None) -> Function:

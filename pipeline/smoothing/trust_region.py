@@ -108,6 +108,7 @@ def descended(
                 if trust < _TRUST_LEAST:
                     return Descent(state, before, priced, step, gain, penalty)
                 continue
+            size = _size(search, program.step)
             now = state.merit(penalty, ripple_weight)
             predicted = now - program.objective - state.jerk
             # Outside a limit the merit is next to the penalty alone.
@@ -161,6 +162,9 @@ def descended(
                 trust = min(trust * (2.0 if share > 0.7 else 1.0 if share > 0.25 else 0.5), 1.0)
                 break
             trust *= 0.35
+            # A trust region that does not limit the step gives the same again.
+            while trust > size:
+                trust *= 0.35
             if trust < _TRUST_LEAST:
                 return Descent(state, model, program, step, gain, penalty)
     return Descent(state, model, program, _STEPS_MAX, gain, penalty)
@@ -194,10 +198,13 @@ def _corrected(search: Search, model: Model, program: ConeSolution, there: State
 
 def _inside(search: Search, step: Array, trust: float) -> bool:
     """Whether a step ends inside a wide trust region, which then does not limit its gain."""
-    size = max(
-        float(np.abs(step).max()), float(np.linalg.norm(search.bend @ step[: len(search.bend)]))
-    )
-    return trust >= _TRUST and size < _INSIDE * trust
+    return trust >= _TRUST and _size(search, step) < _INSIDE * trust
+
+
+def _size(search: Search, step: Array) -> float:
+    """Least trust region that does not limit a step."""
+    bend = search.bend @ step[: len(search.bend)]
+    return max(float(np.abs(step).max()), float(np.linalg.norm(bend)))
 
 
 def _within(state: State) -> bool:
