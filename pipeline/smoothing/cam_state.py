@@ -106,7 +106,7 @@ class ScenarioCam(LoadedCam):
 
     @property
     def direction(self) -> Array:
-        """As of any cam; of a point that stands for a cell around it the mean over the cell."""
+        """As of any cam; the mean over its cell where a cam angle has one, see `Scenario`."""
         sharp, cell = super().direction, self.scenario.cell
         if not np.any(cell):
             return sharp

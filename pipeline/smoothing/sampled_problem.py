@@ -81,11 +81,11 @@ class Means(NamedTuple):
 class Search:
     """Functions of one problem on a uniform grid, with extra angles between its points.
 
-    Friction of the guides changes its sign where the follower reverses, and with an offset loads
-    jump there. The limits then hold at the reversals too, before and after each: these angles move
-    with the cam, so that the greatest utilisation of a limit does not jump as one passes a point.
-    At the points beside one the friction is the mean over their cells, see `Scenario.cell`, so that
-    means over the turn do not jump either.
+    Friction of the guides changes its sign where the follower reverses, and with a roller of an
+    offset loads jump there. The limits then hold at the reversals too, before and after each: these
+    angles move with the cam, so that the greatest utilisation of a limit does not jump as one
+    passes a point. At the points beside one the friction is the mean over their cells, see
+    `Scenario.cell`, so that means over the turn do not jump either.
 
     Parameters
     ----------
@@ -101,7 +101,7 @@ class Search:
             problem.grid(np.concatenate([theta, self.extra])) if self.extra.size else self.turn
         )
         self.every = np.arange(problem.points, dtype=np.intp)
-        self._jumps = problem.ratings.offset != 0.0
+        self._jumps = problem.ratings.offset != 0.0 and problem.ratings.follower == "roller"
         self.weighted = [
             k
             for k, item in enumerate(problem.scenarios)
