@@ -163,10 +163,15 @@ class LoadedCam:
         index: Array = on_a * rubbing.a + on_b * rubbing.b
         return index
 
+    @property
+    def direction(self) -> Array:
+        """Direction of the friction of the guides: 1 on the rise, -1 on the return."""
+        return np.asarray(np.sign(np.real(self.slope)))
+
     @cached_property
     def share(self) -> Array:
         """Axial force without friction over axial force."""
-        return 1.0 - np.sign(np.real(self.slope)) * self.jam
+        return 1.0 - self.direction * self.jam
 
     @cached_property
     def axial(self) -> Array:

@@ -165,26 +165,30 @@ def _rates_of(
         lost = film(node, pressure, temperature) * wall[node]
         lost *= (temperature - wall_temperature) / crank_speed
         work = pressure * volume_rate[node]
-        intake = exhaust = enthalpy = 0.0
-        if intake_area[node] > 0.0 or exhaust_area[node] > 0.0:
-            gamma = 1.0 + 1.0 / (a + b * temperature)
-            leaving = energy / mass + constant * temperature
+        into, out_of = intake_area[node], exhaust_area[node]
+        if not (into > 0.0 or out_of > 0.0):
+            return 0.0, 0.0, 0.0, work, lost
+        gamma = 1.0 + 1.0 / (a + b * temperature)
+        leaving = energy / mass + constant * temperature
+        intake = exhaust = 0.0
+        if into > 0.0:
             if pressure <= intake_pressure:
                 intake = nozzle_flow(
                     intake_pressure, intake_temperature, pressure, constant, gamma_intake
                 )
             else:
                 intake = -nozzle_flow(pressure, temperature, intake_pressure, constant, gamma)
-            intake *= intake_area[node] / crank_speed
+            intake *= into / crank_speed
+        if out_of > 0.0:
             if pressure < exhaust_pressure:
                 exhaust = nozzle_flow(
                     exhaust_pressure, exhaust_temperature, pressure, constant, gamma_exhaust
                 )
             else:
                 exhaust = -nozzle_flow(pressure, temperature, exhaust_pressure, constant, gamma)
-            exhaust *= exhaust_area[node] / crank_speed
-            enthalpy = intake * (offered if intake > 0.0 else leaving)
-            enthalpy += exhaust * (exhaust_enthalpy if exhaust > 0.0 else leaving)
+            exhaust *= out_of / crank_speed
+        enthalpy = intake * (offered if intake > 0.0 else leaving)
+        enthalpy += exhaust * (exhaust_enthalpy if exhaust > 0.0 else leaving)
         return intake, exhaust, enthalpy, work, lost
 
     return rates
@@ -197,21 +201,30 @@ def _step(
     content: _Content,
     heat: float,
     offered: float,
-) -> list[float]:
-    """Flows of one classical Runge-Kutta step with heat released at a constant rate (J/rad)."""
-    mass, energy = content.mass, content.energy
+) -> Flows:
+    """Flows of one classical Runge-Kutta step with heat released at a constant rate (J/rad).
 
-    def after(flows: Flows, part: float) -> tuple[float, float]:
-        intake, exhaust, enthalpy, work, lost = flows
-        return mass + part * (intake + exhaust), energy + part * (heat + enthalpy - work - lost)
-
-    half = 0.5 * length
-    k1 = rates(node, mass, energy, offered)
-    k2 = rates(node + 1, *after(k1, half), offered)
-    k3 = rates(node + 1, *after(k2, half), offered)
-    k4 = rates(node + 2, *after(k3, length), offered)
+    Written out: the loop over the steps takes the time of a cycle.
+    """
+    mass, energy, half = content.mass, content.energy, 0.5 * length
+    i1, x1, h1, w1, q1 = rates(node, mass, energy, offered)
+    i2, x2, h2, w2, q2 = rates(
+        node + 1, mass + half * (i1 + x1), energy + half * (heat + h1 - w1 - q1), offered
+    )
+    i3, x3, h3, w3, q3 = rates(
+        node + 1, mass + half * (i2 + x2), energy + half * (heat + h2 - w2 - q2), offered
+    )
+    i4, x4, h4, w4, q4 = rates(
+        node + 2, mass + length * (i3 + x3), energy + length * (heat + h3 - w3 - q3), offered
+    )
     sixth = length / 6.0
-    return [sixth * (a + 2.0 * (b + c) + d) for a, b, c, d in zip(k1, k2, k3, k4, strict=True)]
+    return (
+        sixth * (i1 + 2.0 * (i2 + i3) + i4),
+        sixth * (x1 + 2.0 * (x2 + x3) + x4),
+        sixth * (h1 + 2.0 * (h2 + h3) + h4),
+        sixth * (w1 + 2.0 * (w2 + w3) + w4),
+        sixth * (q1 + 2.0 * (q2 + q3) + q4),
+    )
 
 
 def _exchange(content: _Content, port: _Port, intake: float, exhaust: float, gas: Gas) -> float:
@@ -264,31 +277,33 @@ def _one_cycle(
     fuel = fuel_mass(engine, content.mass - content.burnt)
     released = fuel * engine.combustion_efficiency * engine.lower_heating_value
     first = content.mass, content.energy
-    states, sums, heat_released, step = [], [0.0] * 5, 0.0, 0
+    states, step = [], 0
+    drawn = pushed = brought = worked = cooled = heat_released = 0.0
     for count in steps.per_degree:
         states.append((content.mass, content.energy))
         for _ in range(count):
             heat, length = released * steps.burnt[step], steps.length[step]
-            flows = _step(rates, 2 * step, length, content, heat, port.offered)
-            intake, exhaust, _, work, lost = flows
+            intake, exhaust, enthalpy, work, lost = _step(
+                rates, 2 * step, length, content, heat, port.offered
+            )
             if steps.burnt[step] > 0.0:
                 content.burnt = content.mass  # the flame consumes all fresh charge
             if intake != 0.0 or exhaust != 0.0:
-                flows[2] += _exchange(content, port, intake, exhaust, gas)
+                enthalpy += _exchange(content, port, intake, exhaust, gas)
             content.mass += intake + exhaust
-            content.energy += heat * length + flows[2] - work - lost
-            sums = [total + part for total, part in zip(sums, flows, strict=True)]
+            content.energy += heat * length + enthalpy - work - lost
+            drawn, pushed, brought = drawn + intake, pushed + exhaust, brought + enthalpy
+            worked, cooled = worked + work, cooled + lost
             heat_released += heat * length
             step += 1
-    intake, exhaust, enthalpy, work, lost = sums
     balance = CycleBalance(
         heat_released=heat_released,
-        heat_lost=lost,
-        work=work,
-        enthalpy_in=enthalpy,
+        heat_lost=cooled,
+        work=worked,
+        enthalpy_in=brought,
         energy_change=content.energy - first[1],
-        intake_mass=intake,
-        exhaust_mass=-exhaust,
+        intake_mass=drawn,
+        exhaust_mass=-pushed,
         mass_change=content.mass - first[0],
     )
     return np.array(states).T, balance

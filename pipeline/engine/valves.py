@@ -15,6 +15,8 @@ from camwright.pipeline.engine.cylinder import CYCLE_ANGLE, CylinderEngine, Lift
 # At equal pressures the slope of the nozzle flow is infinite; below this relative difference the
 # flow is linearised, which changes the cylinder pressure by some 10 Pa.
 NEARLY_EQUAL = 1e-3
+# Pressure ratios above which the throat is not choked: exp(-1/2), that of a gamma of 1.
+_NOT_CHOKED = 0.607
 
 
 @dataclass(frozen=True)
@@ -94,10 +96,11 @@ def nozzle_flow(
     Heywood (1988), appendix C, eqs C.8 and C.9.
     """
     ratio = pressure_down / pressure_up
-    throat = (2.0 / (gamma + 1.0)) ** (gamma / (gamma - 1.0))
-    ratio = max(ratio, throat)
+    if not ratio > _NOT_CHOKED:
+        ratio = max(ratio, (2.0 / (gamma + 1.0)) ** (gamma / (gamma - 1.0)))
     opened: float = ratio ** (1.0 / gamma)
-    speed = 2.0 * gamma / (gamma - 1.0) * max(1.0 - ratio / opened, 0.0)
+    expansion = 1.0 - ratio / opened
+    speed = 0.0 if expansion <= 0.0 else 2.0 * gamma / (gamma - 1.0) * expansion
     difference = 1.0 - ratio
     straight = difference / (difference + NEARLY_EQUAL)
     return pressure_up / sqrt(gas_constant * temperature_up) * opened * sqrt(speed * straight)

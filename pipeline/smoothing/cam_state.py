@@ -19,7 +19,7 @@ from camwright.geometry.errors import GeometryError
 from camwright.geometry.flat_face_contour import FaceMotion
 from camwright.geometry.follower_path import Motion
 from camwright.geometry.lift import Jet
-from camwright.geometry.pitch_curve import RollerMotion
+from camwright.geometry.pitch_curve import RollerMotion, magnitude
 from camwright.pipeline.case.limits import AnyLimit, Limit, OpenLimit
 from camwright.pipeline.cycle.loaded_cam import LoadedCam, OfGuides, positive
 from camwright.pipeline.cycle.numbers import Numbers
@@ -105,6 +105,16 @@ class ScenarioCam(LoadedCam):
         return self.variables.shape
 
     @property
+    def direction(self) -> Array:
+        """As of any cam; the mean over its cell where a cam angle has one, see `Scenario`."""
+        sharp, cell = super().direction, self.scenario.cell
+        if not np.any(cell):
+            return sharp
+        reach = 0.5 * cell * magnitude(self.jet.bend)
+        within = np.abs(np.real(self.slope)) < np.real(reach)
+        return np.where(within, self.slope / np.where(within, reach, 1.0), sharp)
+
+    @property
     def surge(self) -> Array:
         return self.fix.surge
 
@@ -154,7 +164,7 @@ class ScenarioCam(LoadedCam):
         friction, worst = self.scenario.friction_worst, self._worst_friction
         if friction is None or worst is None:
             return None
-        jam = np.sign(np.real(self.slope)) * (worst.a + worst.b) * self.fix.jam
+        jam = self.direction * (worst.a + worst.b) * self.fix.jam
         axial = self.axial * self.share / (1.0 - jam)
         loads = self._corrected(self.fix.hot_a, self.fix.hot_b)
         return OfGuides(friction[0] * loads.a * axial, friction[1] * loads.b * axial)

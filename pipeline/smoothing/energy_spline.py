@@ -25,6 +25,9 @@ LEAST_COEFFICIENTS = 12
 _FIT_ANGLES = 1440
 _REFINEMENTS = 3
 ORDERS = 4  # E, E', E'', E'''
+_BESIDE = 1e-200  # J/rad, E' beside a reversal: its sign alone counts
+_REVERSAL_STEPS = 3
+_LEAST_BEND = 1e-3  # of the greatest E'': of a reversal that is followed
 
 
 @lru_cache(maxsize=1)
@@ -96,11 +99,15 @@ def _rows(
 
 @dataclass(frozen=True, eq=False)
 class Grid:
-    """B-splines at cam angles (m,), rad: columns (m, 6), entries (order, m, 6)."""
+    """B-splines at cam angles (m,), rad: columns (m, 6), entries (order, m, 6).
+
+    side (m,): sign of E' at a reversal, where E' is zero, else 0; see `reversals`. None: at none.
+    """
 
     theta: Array
     columns: NDArray[np.intp]
     entries: Array
+    side: Array | None = None
 
     @classmethod
     def at(cls, theta: Array, count: int, lobes: int = 1) -> Grid:
@@ -111,11 +118,62 @@ class Grid:
     def energy(self, coefficients: Array) -> tuple[Array, ...]:
         """E, E', E'', E''' at the angles, J/rad^k, each (m,)."""
         local = coefficients[self.columns]
-        return tuple(np.sum(entry * local, axis=1) for entry in self.entries)
+        parts = [np.sum(entry * local, axis=1) for entry in self.entries]
+        if self.side is not None:
+            parts[1] = parts[1] + _BESIDE * self.side
+        return tuple(parts)
+
+    def joined(self, other: Grid) -> Grid:
+        """Grid of the angles of both."""
+        sides = (np.zeros(each.theta.size) if each.side is None else each.side
+                 for each in (self, other))  # fmt: skip
+        return Grid(
+            np.concatenate([self.theta, other.theta]),
+            np.concatenate([self.columns, other.columns]),
+            np.concatenate([self.entries, other.entries], axis=1),
+            np.concatenate([*sides]),
+        )
 
     def chained(self, local: Array) -> Array:
         """Derivatives (m, 6) by the coefficients, from those (4, m) by E, E', E'', E'''."""
         return np.asarray(np.einsum("km,kmj->mj", local, self.entries))
+
+
+def reversals(turn: Grid, coefficients: Array, lobes: int) -> Grid:
+    """Cam angles at which the follower reverses, each from before and from after it, (2 r,).
+
+    The angles move with the coefficients: E' stays zero, so that the entries are total derivatives,
+    B^(k) - E^(k+1)/E'' B'. Reversals of next to no curvature, as in a dwell, are left out.
+
+    Parameters
+    ----------
+    turn : Grid   equally spaced cam angles of the turn
+    """
+    slope, bend = turn.energy(coefficients)[1:3]
+    k = np.flatnonzero((slope > 0.0) != (np.roll(slope, -1) > 0.0))
+    step, count = FULL_TURN / turn.theta.size, coefficients.size
+    after = slope[(k + 1) % slope.size]
+    theta = turn.theta[k] + step * slope[k] / (slope[k] - after)
+    for _ in range(_REVERSAL_STEPS):  # Newton on E' = 0
+        _, slopes, bends, _ = Grid.at(theta, count, lobes).energy(coefficients)
+        newton = np.divide(slopes, bends, out=np.zeros(k.size), where=bends != 0.0)
+        theta = np.clip(theta - newton, turn.theta[k], turn.theta[k] + step)
+    entries, columns = _rows(theta, count, range(ORDERS + 1), lobes)
+    local = coefficients[columns]
+    orders = np.sum(entries * local, axis=2)
+    sharp = np.abs(orders[2]) > _LEAST_BEND * np.abs(bend).max(initial=0.0)
+    theta, columns, entries, orders = (
+        theta[sharp], columns[sharp], entries[:, sharp], orders[:, sharp],
+    )  # fmt: skip
+    moving = entries[:ORDERS] - (orders[1:] / orders[2])[:, :, None] * entries[1]
+    moving[1] = 0.0
+    side = np.where(orders[2] > 0.0, -1.0, 1.0)
+    return Grid(
+        np.repeat(theta, 2),
+        np.repeat(columns, 2, axis=0),
+        np.repeat(moving, 2, axis=1),
+        np.ravel(np.column_stack([side, -side])),
+    )
 
 
 def fitted_energy(cam_torque: ArrayLike, count: int, lobes: int = 1) -> Array:

@@ -87,7 +87,7 @@ class Lagrangian:
             else:
                 uses = state.pointwise[limit.name][limit.scenario, limit.point]
             total += float(prices @ uses)
-        left = search.residual_torque(self.coefficients, variables)
+        left = search.residual_torque(state)
         for number, objective, ceiling in self.ripples:
             item, values = problem.scenarios[search.weighted[number]], left[number]
             ripple = float(np.linalg.norm(ripple_of(problem, item, values)))
@@ -131,14 +131,16 @@ def _of_rows(
     total = np.zeros((search.size, search.size))
     for names in search.families(limit.name for limit, _ in priced):
         own = [pair for pair in priced if pair[0].name in names]
-        kept = [price > _PRICE_LEAST for _, price in own]
+        # Reversals may end.
+        last = state.grid.theta.size
+        kept = [(price > _PRICE_LEAST) & (each.point < last) for each, price in own]
         point = np.concatenate([each.point[k] for (each, _), k in zip(own, kept, strict=True)])
         row = np.concatenate([each.scenario[k] for (each, _), k in zip(own, kept, strict=True)])
         starts = np.cumsum([0, *(int(k.sum()) for k in kept)])
         weights = {name: np.zeros(point.size) for name in names}
         for (each, price), k, start in zip(own, kept, starts, strict=False):
             weights[each.name][start : start + int(k.sum())] = price[k]
-        function = search.function(names, state.variables, search.pairs(row, point))
+        function = search.function(names, state, search.pairs(state, row, point))
         at = search.point(state, summit.lift, point)
         second = second_derivatives(function, at, search.freed, weights)
         total += _assembled(search, state, summit, second, point)
@@ -177,7 +179,7 @@ def _of_ripples(
 ) -> Array:
     """Of the delivered torque, weighted by the slope of the ripples by the crank torque."""
     problem, variables = search.problem, state.variables
-    left = search.residual_torque(state.coefficients, variables)
+    left = search.residual_torque(state)
     slope = np.zeros_like(left)
     for norm, (objective, ceiling) in zip(model.norms, program.norms, strict=True):
         item = problem.scenarios[search.weighted[norm.number]]
@@ -193,7 +195,7 @@ def _of_ripples(
     priced = np.flatnonzero(slope.any(axis=1))
     points = search.every
     second = second_derivatives(
-        search.torque(variables, priced),
+        search.torque(state, priced),
         search.point(state, summit.lift, points),
         search.freed,
         {"torque": -slope[priced] / problem.gear_ratio},
@@ -212,9 +214,9 @@ def _assembled(
     search: Search, state: State, summit: Summit, second: Array, points: NDArray[np.intp]
 ) -> Array:
     """Second derivatives by the scaled unknowns from those (q, q, m) at angles (m,) of the grid."""
-    size, orders = search.size, search.grid.entries.shape[0]
-    entries = search.scale * search.grid.entries[:, points]
-    columns = search.grid.columns[points]
+    size, orders = search.size, state.grid.entries.shape[0]
+    entries = search.scale * state.grid.entries[:, points]
+    columns = state.grid.columns[points]
     local = np.einsum("abm,bmj->amj", second[:orders, :orders], entries)
     blocks = np.einsum("ami,amj->mij", entries, local)
     place = columns[:, :, None] * size + columns[:, None, :]

@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 
 from camwright.geometry.arrays import Array
 from camwright.pipeline.smoothing.cone_program import Linear, Norm
-from camwright.pipeline.smoothing.scenario import DesignVariables
+from camwright.pipeline.smoothing.energy_spline import Grid
+from camwright.pipeline.smoothing.scenario import DesignVariables, Scenario
 from camwright.pipeline.smoothing.synthesis_problem import RESERVE
 
 
@@ -32,6 +33,8 @@ class State:
     pointwise : mapping     of limits and costs, by scenario and angle, (s, n); (1, n) of the shape
     means : mapping         of limits and costs from means over the turn, (r,)
     members : mapping       whether a scenario counts in each of those, (r, s)
+    grid : Grid             cam angles (n,) of the limits: points, extra angles, reversals
+    stack : Scenario        stacked scenarios (s, n) there
     """
 
     coefficients: Array
@@ -45,6 +48,8 @@ class State:
     pointwise: Mapping[str, Array]
     means: Mapping[str, Array]
     members: Mapping[str, NDArray[np.bool_]]
+    grid: Grid
+    stack: Scenario
 
     def merit(self, penalty: float, ripple_weight: float) -> float:
         """Merit function: ripple, costs, jerk and penalised violations."""

@@ -22,7 +22,12 @@ from camwright.pipeline.smoothing.constraints import (
     shape_utilisations,
     utilisations_of,
 )
-from camwright.pipeline.smoothing.energy_spline import Grid, basis_matrix, exact_start
+from camwright.pipeline.smoothing.energy_spline import (
+    Grid,
+    basis_matrix,
+    exact_start,
+    reversals,
+)
 from camwright.pipeline.smoothing.gradients import (
     FREED,
     Function,
@@ -32,7 +37,14 @@ from camwright.pipeline.smoothing.gradients import (
 )
 from camwright.pipeline.smoothing.linear_model import Model, State, Summit
 from camwright.pipeline.smoothing.objective import Cost, costs, torque_ripple
-from camwright.pipeline.smoothing.scenario import DesignVariables, Ratings, Scenario, stacked, taken
+from camwright.pipeline.smoothing.scenario import (
+    DesignVariables,
+    Ratings,
+    Scenario,
+    joined,
+    stacked,
+    taken,
+)
 from camwright.pipeline.smoothing.synthesis_problem import (
     RESERVE,
     Problem,
@@ -43,6 +55,7 @@ from camwright.pipeline.smoothing.synthesis_problem import (
 INITIAL_ENERGY = "initial_energy"
 LEAST_ENERGY = "least_energy"
 HIGHEST_PEAK = "highest_peak"
+KEPT_SIDE = "kept_side"
 SHAPE_LIMITS = frozenset(each.check for each in SHAPE)
 # Distance from a limit within which a row is in the model; from another scenario at that angle.
 _NEAR, _BEHIND = 0.05, 0.01
@@ -68,6 +81,12 @@ class Means(NamedTuple):
 class Search:
     """Functions of one problem on a uniform grid, with extra angles between its points.
 
+    Friction of the guides changes its sign where the follower reverses, and with a roller of an
+    offset loads jump there. The limits then hold at the reversals too, before and after each: these
+    angles move with the cam, so that the greatest utilisation of a limit does not jump as one
+    passes a point. At the points beside one the friction is the mean over their cells, see
+    `Scenario.cell`, so that means over the turn do not jump either.
+
     Parameters
     ----------
     extra : array (e,)   cam angles, rad, at which the limits hold too
@@ -82,6 +101,7 @@ class Search:
             problem.grid(np.concatenate([theta, self.extra])) if self.extra.size else self.turn
         )
         self.every = np.arange(problem.points, dtype=np.intp)
+        self._jumps = problem.ratings.offset != 0.0 and problem.ratings.follower == "roller"
         self.weighted = [
             k
             for k, item in enumerate(problem.scenarios)
@@ -219,17 +239,31 @@ class Search:
             self._stacks = {phase: stacked(self.problem.scenarios, grid.theta + phase)}
         return self._stacks[phase]
 
+    def _angles(self, coefficients: Array, variables: DesignVariables) -> tuple[Grid, Scenario]:
+        """Angles of the limits, with the reversals where loads jump, and the scenarios there."""
+        stack = self.stack(self.grid, variables)
+        if not self._jumps:
+            return self.grid, stack
+        moving = reversals(self.turn, coefficients, self.problem.lobes)
+        if not moving.theta.size:
+            return self.grid, stack
+        beside = (moving.theta / self.turn.theta[1]).astype(np.intp)
+        cell = np.zeros(self.grid.theta.size)
+        cell[np.append(beside, beside + 1) % self.every.size] = self.turn.theta[1]
+        stack = replace(stack, cell=np.broadcast_to(cell, stack.external.shape))
+        return self.grid.joined(moving), joined(stack, self.stack(moving, variables))
+
     def shape(self, names: frozenset[str] | None = None) -> Function:
         """Limits on the shape of the cam."""
         return partial(self._shape, names)
 
     def function(
-        self, names: frozenset[str], variables: DesignVariables, take: Callable[[Array], Array]
+        self, names: frozenset[str], state: State, take: Callable[[Array], Array]
     ) -> Function:
         """Limits of the shape, or those of the loads and costs, of part of the scenarios."""
         if names <= SHAPE_LIMITS:
             return self.shape(names)
-        stack = taken(self.stack(self.grid, variables), take)
+        stack = taken(state.stack, take)
         return partial(self._loads, names, stack, take(self._weights))
 
     def _loads(
@@ -265,39 +299,36 @@ class Search:
         objective = tuple(each for each in self.problem.objective if each.term.key in names)
         return costs(objective, self._scale, weights, loads, variables)
 
-    def pairs(self, rows: NDArray[np.intp], points: NDArray[np.intp]) -> Callable[[Array], Array]:
-        """Values at pairs (m,) of scenario and angle of the grid."""
-        shape = (len(self.problem.scenarios), self.grid.theta.size)
+    def pairs(
+        self, state: State, rows: NDArray[np.intp], points: NDArray[np.intp]
+    ) -> Callable[[Array], Array]:
+        """Values at pairs (m,) of scenario and angle of a state."""
+        shape = (len(self.problem.scenarios), state.grid.theta.size)
         return lambda each: np.broadcast_to(each, shape)[rows, points]
 
     def level(self, name: str, value: Array) -> Array:
         """Level of the rows of a limit, <= 0 within its reserve; of a cost its value."""
         return value if name in self.costs else value - 1.0 + RESERVE
 
-    def torque(
-        self, variables: DesignVariables, weighted: NDArray[np.intp] | None = None
-    ) -> Function:
-        """Cam torque of weighted scenarios, all or some, at the points of the turn, (w, n)."""
-        stack = self._weighted_stack(variables, weighted)
-        return partial(_torque, stack, self.problem.ratings)
+    def torque(self, state: State, weighted: NDArray[np.intp]) -> Function:
+        """Cam torque of some of the weighted scenarios at the points of the turn, (w, n)."""
+        return partial(_torque, self._weighted_stack(state, weighted), self.problem.ratings)
 
-    def _weighted_stack(
-        self, variables: DesignVariables, weighted: NDArray[np.intp] | None
-    ) -> Scenario:
+    def _weighted_stack(self, state: State, weighted: NDArray[np.intp] | None = None) -> Scenario:
         rows = np.array(self.weighted, dtype=np.intp)
         rows = rows if weighted is None else rows[weighted]
-        return taken(self.stack(self.grid, variables), self.turns(rows))
+        return taken(state.stack, self.turns(rows))
 
     def point(self, state: State, highest: float, points: NDArray[np.intp]) -> Point:
-        """Arguments of a function at some angles of the grid."""
-        energy = self.grid.energy(state.coefficients)
+        """Arguments of a function at some angles of a state."""
+        energy = state.grid.energy(state.coefficients)
         return Point(tuple(part[points] for part in energy), highest, state.variables)
 
     def utilisations(
         self, coefficients: Array, variables: DesignVariables, grid: Grid
     ) -> dict[str, Array]:
         """Greatest of the scenarios at the angles of a uniform grid, (n,); (1,) for means."""
-        loads = self._loaded(coefficients, variables, grid)
+        loads = self._loaded(coefficients, variables, grid, self.stack(grid, variables))
         pointwise, means = self._uses(loads, variables, grid.theta.size)
         worst = {name: value.max(axis=0) for name, value in pointwise.items()}
         return worst | {name: each.value.max(keepdims=True) for name, each in means.items()}
@@ -306,18 +337,21 @@ class Search:
         self, coefficients: Array, variables: DesignVariables, grid: Grid
     ) -> dict[str, Array]:
         """Greatest of the scenarios at any cam angles, (n,), of the limits that are no means."""
-        values, _ = self._uses(self._loaded(coefficients, variables, grid), variables, 0)
+        loads = self._loaded(coefficients, variables, grid, self.stack(grid, variables))
+        values, _ = self._uses(loads, variables, 0)
         limits = values.keys() - self.costs
         return {name: value.max(axis=0) for name, value in values.items() if name in limits}
 
-    def _loaded(self, coefficients: Array, variables: DesignVariables, grid: Grid) -> ScenarioCam:
+    def _loaded(
+        self, coefficients: Array, variables: DesignVariables, grid: Grid, stack: Scenario
+    ) -> ScenarioCam:
         """Cam at the angles of a grid in the stacked scenarios."""
         return loaded(
             lift_jet(grid.energy(coefficients), variables),
             self.highest(coefficients, variables),
             variables,
             self.problem.ratings,
-            self.stack(grid, variables),
+            stack,
         )
 
     def _uses(
@@ -342,7 +376,8 @@ class Search:
     def state(self, coefficients: Array, variables: DesignVariables) -> State:
         """State at coefficients, J, and variables."""
         problem = self.problem
-        loads = self._loaded(coefficients, variables, self.grid)
+        grid, stack = self._angles(coefficients, variables)
+        loads = self._loaded(coefficients, variables, grid, stack)
         pointwise, totals = self._uses(loads, variables, problem.points)
         means = {name: each.value for name, each in totals.items()}
         greatest = {name: float(value.max()) for name, value in (pointwise | means).items()}
@@ -376,13 +411,15 @@ class Search:
             pointwise=pointwise,
             means=means,
             members={name: each.members for name, each in totals.items()},
+            grid=grid,
+            stack=stack,
         )
 
-    def residual_torque(self, coefficients: Array, variables: DesignVariables) -> Array:
+    def residual_torque(self, state: State) -> Array:
         """Crank torque with the cam (w, n), N m, of each scenario whose ripple counts."""
+        coefficients, variables = state.coefficients, state.variables
         jet = lift_jet(self.turn.energy(coefficients), variables)
-        top = self.highest(coefficients, variables)
-        stack = self._weighted_stack(variables, None)
+        top, stack = self.highest(coefficients, variables), self._weighted_stack(state)
         cam = delivered_torque(jet, top, variables, stack, self.problem.ratings)
         return self._engine(variables) - cam / self.problem.gear_ratio
 
@@ -439,7 +476,7 @@ class Search:
         """Models of the ripples of some of the weighted scenarios."""
         problem, variables = self.problem, state.variables
         at = self.point(state, summit.lift, self.every)
-        gradient = differentiated(self.torque(variables, wanted), at, self.freed)["torque"]
+        gradient = differentiated(self.torque(state, wanted), at, self.freed)["torque"]
         engine = self._engine(variables)
         norms = []
         for place, k in enumerate(wanted):
@@ -476,12 +513,12 @@ class Search:
 
         local (4, m), shared (1 or 4, m): see `Gradient`.
         """
-        own = self.scale * np.einsum("km,kmj->mj", local, self.grid.entries[:, points])
+        own = self.scale * np.einsum("km,kmj->mj", local, state.grid.entries[:, points])
         by_unknowns, places = self._shared(shared, state, summit)
         return (
             np.hstack([own, by_unknowns]),
             np.hstack(
-                [self.grid.columns[points], np.broadcast_to(places, (points.size, places.size))]
+                [state.grid.columns[points], np.broadcast_to(places, (points.size, places.size))]
             ),
         )
 
@@ -514,7 +551,7 @@ class Search:
         for names in self.families(name for name, rows in wanted.items() if rows.any()):
             any_row = np.any(np.broadcast_arrays(*(wanted[name] for name in names)), axis=0)
             scenario, point = np.nonzero(any_row)
-            function = self.function(names, state.variables, self.pairs(scenario, point))
+            function = self.function(names, state, self.pairs(state, scenario, point))
             at = self.point(state, summit.lift, point)
             for name, gradient in differentiated(function, at, self.freed).items():
                 here = np.broadcast_to(wanted[name], any_row.shape)[scenario, point]
@@ -561,7 +598,7 @@ class Search:
         needed = [state.members[name][chosen].any(axis=0) for name, chosen in rows.items()]
         own = np.flatnonzero(np.isin(self._corners, self._corners[np.any(needed, axis=0)]))
         return Means(
-            self.function(frozenset(rows), state.variables, self.turns(own)),
+            self.function(frozenset(rows), state, self.turns(own)),
             self.point(state, summit.lift, self.every),
             own,
             {name: np.flatnonzero(state.members[name][:, own].any(axis=1)) for name in rows},
@@ -595,6 +632,37 @@ class Search:
             mean=True,
             cost=name in self.costs,
         )
+
+    def new_reversals(self, state: State, there: State) -> NDArray[np.intp]:
+        """Points whose motion another state reverses by a rise or return that is new.
+
+        Where a reversal of the state has moved, the points it has passed do not count.
+        """
+        sides = [self.turn.energy(each.coefficients)[1] > 0.0 for each in (state, there)]
+        flipped = np.flatnonzero(sides[0] != sides[1])
+        if not self._jumps or not flipped.size or flipped.size == self.every.size:
+            return np.zeros(0, dtype=np.intp)
+        runs = np.split(flipped, np.flatnonzero(np.diff(flipped) > 1) + 1)
+        if len(runs) > 1 and flipped[0] == 0 and flipped[-1] == self.every.size - 1:
+            runs[0] = np.concatenate([runs.pop() - self.every.size, runs[0]])
+        new = [
+            run for run in runs
+            if np.unique(sides[0].take([*run, run[0] - 1, run[-1] + 1], mode="wrap")).size == 1
+        ]  # fmt: skip
+        return np.concatenate([*new, np.zeros(0, dtype=np.intp)]) % self.every.size
+
+    def kept_sides(self, state: State, points: NDArray[np.intp]) -> list[Linear]:
+        """The sign of the slope of the lift at points, which a step is to keep."""
+        if not points.size:
+            return []
+        slope = self.turn.energy(state.coefficients)[1]
+        size, side = np.abs(slope).max(), -np.sign(slope[points])
+        entries = self.scale * side[:, None] * self.turn.entries[1][points]
+        none = np.full(points.size, -1)
+        return [
+            Linear(KEPT_SIDE, side * slope[points] / size, entries / size,
+                   self.turn.columns[points], none, points, elastic=False)
+        ]  # fmt: skip
 
     def _least_energy(self, state: State) -> list[Linear]:
         low, high = self.problem.energy

@@ -285,6 +285,8 @@ class Scenario:
     swept : bool             limits over the speed range hold in it: those of the first load case
                              of each preload
     correction : Correction
+    cell : float or array    cam angle, rad, for which each cam angle stands: the friction of the
+                             guides is the mean over it; 0: the angle alone
     """
 
     name: str
@@ -309,6 +311,7 @@ class Scenario:
     nominal: Value = True
     swept: Value = True
     correction: Correction = field(default_factory=lambda: Correction.none(8))
+    cell: Value = 0.0
 
     def torque_at(self, phase: float) -> tuple[Array, Array]:
         """Engine torque, N m, and its derivative, N m/rad, advanced by `phase`, rad of cam."""
@@ -328,8 +331,10 @@ _NUMBERS = (
 """Numbers of a scenario that differ between stacked ones."""
 
 
-def stacked(scenarios: Sequence[Scenario], theta: Array) -> Scenario:
+def stacked(scenarios: Sequence[Scenario], theta: Array, cell: Value = 0.0) -> Scenario:
     """Scenarios at once: numbers (s, 1), corrections (s, n) at cam angles theta (n,), rad.
+
+    cell: cam angle, rad, for which each stands, one or (n,).
 
     All have the same external force.
 
@@ -351,11 +356,31 @@ def stacked(scenarios: Sequence[Scenario], theta: Array) -> Scenario:
         scenarios[0],
         **numbers,  # type: ignore[arg-type]
         external=np.broadcast_to(external, (len(scenarios), external.size)),
+        cell=np.broadcast_to(cell, (len(scenarios), external.size)),
         duty=None if None in duties else _column(each for each in duties if each is not None),
         friction_worst=greatest,
         correction=Correction(
             *(
                 np.stack([getattr(each, item.name) for each in corrections])
+                for item in fields(Correction)
+            )
+        ),
+    )
+
+
+def joined(one: Scenario, other: Scenario) -> Scenario:
+    """Stacked scenarios at the cam angles of two stacks of the same scenarios."""
+
+    def of(first: Value, second: Value) -> Array:
+        return np.concatenate([np.asarray(first), np.asarray(second)], axis=1)
+
+    return replace(
+        one,
+        external=of(one.external, other.external),
+        cell=of(one.cell, other.cell),
+        correction=Correction(
+            *(
+                of(getattr(one.correction, item.name), getattr(other.correction, item.name))
                 for item in fields(Correction)
             )
         ),
@@ -368,7 +393,7 @@ def taken(stack: Scenario, take: Callable[[Array], Array]) -> Scenario:
     def of(value: Value) -> Array:
         return take(np.asarray(value))
 
-    numbers = {name: of(getattr(stack, name)) for name in (*_NUMBERS, "external")}
+    numbers = {name: of(getattr(stack, name)) for name in (*_NUMBERS, "external", "cell")}
     worst = stack.friction_worst
     return replace(
         stack,

@@ -108,6 +108,7 @@ def descended(
                 if trust < _TRUST_LEAST:
                     return Descent(state, before, priced, step, gain, penalty)
                 continue
+            size = _size(search, program.step)
             now = state.merit(penalty, ripple_weight)
             predicted = now - program.objective - state.jerk
             # Outside a limit the merit is next to the penalty alone.
@@ -161,6 +162,9 @@ def descended(
                 trust = min(trust * (2.0 if share > 0.7 else 1.0 if share > 0.25 else 0.5), 1.0)
                 break
             trust *= 0.35
+            # A trust region that does not limit the step gives the same again.
+            while trust > size:
+                trust *= 0.35
             if trust < _TRUST_LEAST:
                 return Descent(state, model, program, step, gain, penalty)
     return Descent(state, model, program, _STEPS_MAX, gain, penalty)
@@ -179,9 +183,10 @@ def _corrected(search: Search, model: Model, program: ConeSolution, there: State
     """The model with levels that its rows have after the step: a second-order correction."""
     limits = []
     for each in model.limits:
+        known = (each.point < there.grid.theta.size).all()  # reversals may end
         if each.mean:
             value = there.means[each.name][each.scenario]
-        elif each.name in there.pointwise:
+        elif each.name in there.pointwise and known:
             value = there.pointwise[each.name][each.scenario, each.point]
         else:
             limits.append(each)
@@ -193,10 +198,13 @@ def _corrected(search: Search, model: Model, program: ConeSolution, there: State
 
 def _inside(search: Search, step: Array, trust: float) -> bool:
     """Whether a step ends inside a wide trust region, which then does not limit its gain."""
-    size = max(
-        float(np.abs(step).max()), float(np.linalg.norm(search.bend @ step[: len(search.bend)]))
-    )
-    return trust >= _TRUST and size < _INSIDE * trust
+    return trust >= _TRUST and _size(search, step) < _INSIDE * trust
+
+
+def _size(search: Search, step: Array) -> float:
+    """Least trust region that does not limit a step."""
+    bend = search.bend @ step[: len(search.bend)]
+    return max(float(np.abs(step).max()), float(np.linalg.norm(bend)))
 
 
 def _within(state: State) -> bool:
@@ -226,31 +234,36 @@ def _program(
         if program is None:
             return None, state, model
         there = search.state(*search.after(state, program.step))
-        rows = _missing(search, model, program, there)
+        rows = _missing(search, state, model, program, there)
         ripples = _missing_ripples(model, program, there)
-        if not left or (not rows and not ripples.size):
+        worse = there.merit(penalty, ripple_weight) > state.merit(penalty, ripple_weight)
+        # A new reversal has loads that no model at this state foresees.
+        new = search.new_reversals(state, there) if worse else np.zeros(0, dtype=np.intp)
+        if not left or (not rows and not ripples.size and not new.size):
             break
+        sides = search.kept_sides(state, new)
         model = model._replace(
-            limits=[*model.limits, *search.rows(state, model.summit, rows)],
+            limits=[*model.limits, *search.rows(state, model.summit, rows), *sides],
             norms=[*model.norms, *search.norms(state, model.summit, ripples)],
         )
     return program, there, model
 
 
 def _missing(
-    search: Search, model: Model, program: ConeSolution, there: State
+    search: Search, state: State, model: Model, program: ConeSolution, there: State
 ) -> Mapping[str, NDArray[np.bool_]]:
     """Rows by limit that are violated by more than the rows of the model, and not in it."""
     missing = {}
     for name, value in there.pointwise.items():
-        level = search.level(name, value)
+        level = search.level(name, value)[:, : state.grid.theta.size]  # reversals may begin
         allowed = program.slack.get(name, 0.0) + _VIOLATED
         if level.max() <= allowed:
             continue
         own = np.zeros(level.shape, dtype=bool)
         for each in model.limits:
             if each.name == name and not each.mean:
-                own[each.scenario, each.point] = True
+                here = each.point < level.shape[1]  # reversals may end
+                own[each.scenario[here], each.point[here]] = True
         worst = max(allowed, float(level[own].max(initial=-np.inf)) + _VIOLATED)
         rows = ~own & (level > worst)
         if rows.any():

@@ -406,6 +406,8 @@ def test_second_derivatives_of_the_lagrangian_match_its_differences(free, duty, 
     state = search.state(search.start + 2.0, given.variables)
     summit, random = search.summit(state), np.random.default_rng(3)
     some = {name: random.random(value.shape) < 0.01 for name, value in state.pointwise.items()}
+    for rows in some.values():
+        rows[:, search.grid.theta.size :] = False  # without the curvature of a reversal's path
     means = {name: np.ones(value.shape, dtype=bool) for name, value in state.means.items()}
     averages, slopes = search.means(state, summit, means)
     limits = [*search.rows(state, summit, some), *averages]
