@@ -28,7 +28,7 @@ _TRUST, _TRUST_LEAST = 0.3, 1e-7
 _PROOF = 0.03  # least trust region in which a foreseen gain proves convergence
 _ADDITIONS = 4
 _CORRECTED = 0.9  # of the foreseen gain: below, the step is corrected
-_STUCK = 0.1  # of the violation: greatest decrease in the linear models of a search that is stuck
+_STUCK = 0.005  # of the violation: greatest decrease in the linear models of a search that is stuck
 _VIOLATED = 1e-6
 _PATIENCE = 4  # steps over which the gain of a draft is judged
 

@@ -56,7 +56,8 @@ def test_the_other_commands_import_none_of_the_folder(tmp_path: Path) -> None:
             stderr=subprocess.DEVNULL, env=environment,
         ) as running:  # fmt: skip
             try:
-                code = running.wait(timeout=SECONDS)
+                # the commands after a run read it
+                code = running.wait(timeout=None if words[0] == "run" else SECONDS)
             except subprocess.TimeoutExpired:
                 running.terminate()
                 code = running.wait(timeout=60)
