@@ -381,7 +381,8 @@ def travel_limits(case: Case, surge: Surge | None = None) -> dict[str, float]:
 
     over: dict[str, Callable[[Work[float]], float]] = {
         "spring_stress": lambda work: (
-            design.static_use(work.greatest + added.stress * work.travel / added.travel) - 1.0
+            float(design.static_use(work.greatest + added.stress * work.travel / added.travel))
+            - 1.0
         ),
         "spring_fatigue": fatigue,
         "spring_solid": lambda work: (

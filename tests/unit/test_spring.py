@@ -7,7 +7,14 @@ import pytest
 
 from camwright.geometry.energy import spring_deflection
 from camwright.geometry.errors import InputError
-from camwright.pipeline.case.cards.spring_catalogue import SpringDemand, lightest, read_catalogue
+from camwright.pipeline.case.cards.spring_catalogue import (
+    SpringDemand,
+    SpringRoom,
+    lightest,
+    read_catalogue,
+)
+from camwright.pipeline.case.case_values import WIRE, WoundSprings
+from camwright.pipeline.follower import spring
 from camwright.pipeline.follower.spring import (
     HelicalSpring,
     Spring,
@@ -72,6 +79,58 @@ def test_goes_solid_without_an_exception():
     assert "stress at solid length" in SpringDemand(SPRING.rate, preload, 0.01).shortfalls(weak)
     slender = replace(SPRING, end_factor=2.0)
     assert "buckling" in SpringDemand(SPRING.rate, preload, 0.03).shortfalls(slender)
+
+
+WIRES = [replace(SPRING, **change) for change in (
+    {}, {"wire_diameter": 3e-3}, {"free_length": 0.06}, {"free_length": 0.3}, {"coils": 14.0},
+    {"strength_at_1mm": 700e6}, {"end_factor": 1.5}, {"mean_diameter": 45e-3},
+)]  # fmt: skip
+
+
+def demand_on(rate, preload, travel, **more):
+    return SpringDemand(rate, preload, travel, cam_speed=30.0, rate_tolerance=0.3, **more)
+
+
+@pytest.mark.parametrize("room", [SpringRoom(), SpringRoom(1.1, 0.95, 0.9, 1.3)])
+def test_each_limit_of_many_springs_is_that_of_each(room):
+    """One function a limit, of a spring of a catalogue and of the arrays of a design."""
+    names = (*WIRE[:-1], "relaxation")
+    values = {name: np.array([getattr(each, name) or np.nan for each in WIRES]) for name in names}
+    values |= {"elastic_modulus": None, "relaxation": np.full(len(WIRES), 0.004)}
+    many = WoundSprings(**values, treatment="plain", temperature=350.0)
+    kept = demand_on(SPRING.rate, np.full(len(WIRES), 300.0), 0.02, room=room).kept(many)
+    one = demand_on(SPRING.rate, 300.0, 0.02, room=room)
+    broken = set()
+    for row, wire in enumerate(WIRES):
+        own = replace(wire, relaxation=0.004, temperature=350.0)
+        short = one.shortfalls(own)
+        assert short == tuple(words for words, each in kept.items() if not each[row])
+        broken |= {*short}
+    assert len(broken) >= 6
+
+
+LIMITS = [spring.STRESS, spring.FATIGUE, spring.SOLID, spring.COIL_GAP, spring.BUCKLING,
+          spring.RELAXATION]  # fmt: skip
+
+
+@pytest.mark.parametrize("limit", LIMITS, ids=lambda each: each.words)
+def test_a_limit_has_a_derivative_and_no_pass_without_a_number(limit):
+    wire = replace(SPRING, relaxation=0.004, temperature=350.0, free_length=0.2, end_factor=0.7)
+
+    def at(travel):
+        return limit.demand(wire, wire.at_work(300.0, travel, 0.05, 0.05))
+
+    step = np.imag(at(np.array([0.02 + 1e-30j]))) / 1e-30
+    quotient = (at(np.array([0.02 + 1e-6])) - at(np.array([0.02 - 1e-6]))) / 2e-6
+    np.testing.assert_allclose(step, quotient, rtol=1e-6)
+    work = wire.at_work(300.0, 0.01, 0.05, 0.05)
+    assert limit.holds(wire, work, -1.0 if limit.at_least else 2.0)
+    if limit.allowed is None:
+        assert not limit.holds(wire, work, np.nan)
+        with pytest.raises(InputError, match="no limit"):
+            limit.holds(wire, work)
+    if limit not in (spring.STRESS, spring.FATIGUE):  # a force that is not finite is refused
+        assert not limit.holds(wire, work._replace(travel=np.nan, greatest=np.nan), 2.0)
 
 
 def test_buckling_and_surge():
