@@ -25,7 +25,6 @@ from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.loaded_cam import LoadedCam
 from camwright.pipeline.cycle.numbers import Numbers
 from camwright.pipeline.cycle.solution import Solution
-from camwright.pipeline.cycle.solved_cam import numbers_of
 
 Status = Literal["pass", "fail", "not_evaluated", "waived"]
 Verdict = Literal["pass", "incomplete", "fail"]
@@ -145,11 +144,13 @@ class Kept(NamedTuple):
                          that has no poles; None where it does not apply. None: measure over limit
     factor_max : float   maximum factor on the limit where limits conflict; 0: fixed
     value_max : float    maximum limit where limits conflict, SI
+    power : float        of a mean, wear or life over the turn that is the utilisation
     """
 
     use: Callable[[LoadedCam, float], Array | None] | None = None
     factor_max: float = 0.0
     value_max: float = math.inf
+    power: float = 1.0
 
 
 class Measured(NamedTuple):
@@ -162,6 +163,7 @@ class Measured(NamedTuple):
     value : callable     worst measure, numbers -> demand: monotone
     bound : callable     limit of the demand -> limit of the measure: its inverse, if `kept`
     allowed : callable   numbers -> limit
+    needed : tuple       dotted keys without which there is no demand
     applies : callable   demand -> whether the check applies to the cam
     remark : callable    demand, solution -> demand, with what it has in words
     order : int          highest derivative of the lift in the measure, 2 or 3
@@ -175,6 +177,7 @@ class Measured(NamedTuple):
     value: Callable[[Value, Numbers], Value]
     bound: Callable[[float], float]
     allowed: Callable[[Numbers], Allowed]
+    needed: tuple[str, ...]
     applies: Callable[[Value], NDArray[np.bool_]]
     remark: Callable[[Demand, Solution], Demand]
     order: int
@@ -432,6 +435,7 @@ class Declaring:
         value: Callable[[Value, Numbers], Value] = lambda worst, _: worst,
         bound: Callable[[float], float] = lambda limit: limit,
         allowed: Callable[[Numbers], Allowed] | None = None,
+        needed: tuple[str, ...] = (),
         applies: Callable[[Value], NDArray[np.bool_]] = lambda _: np.array(True),
         remark: Callable[[Demand, Solution], Demand] = lambda demand, _: demand,
         order: int = 2,
@@ -440,7 +444,9 @@ class Declaring:
     ) -> Callable[[Measure], Declaration]:
         """Declare the check by a measure of the loaded cam; see `Measured`."""
         limit = of_row(self.limit) if allowed is None else allowed
-        how = Measured(reduce, worst, value, bound, limit, applies, remark, order, deviation, kept)
+        how = Measured(
+            reduce, worst, value, bound, limit, needed, applies, remark, order, deviation, kept
+        )  # fmt: skip
 
         def declared(measure: Measure) -> Declaration:
             return self.made(measure.__name__, partial(_demand, measure, how), how, measure)
@@ -450,16 +456,23 @@ class Declaring:
 
 def _demand(measure: Measure, how: Measured, solution: Solution) -> Demand | None:
     """Demand of a solution by the worst value of a measure."""
-    worst = worst_measure(
-        solution, measure, how.reduce, at_least=how.worst == "least", order=how.order
-    )
-    numbers = numbers_of(solution)
-    value = how.value(worst.value, numbers)
-    if not how.applies(value):
-        return None
+    numbers = solution.numbers
     limit = how.allowed(numbers)
     allowed = None if limit.value is None else float(limit.value)
-    return how.remark(Demand(float(value), allowed, worst, limit.missing), solution)
+    lacks = tuple(key for key in how.needed if numbers.get(key) is None)
+    if lacks:
+        return how.remark(Demand(None, allowed, missing=(*limit.missing, *lacks)), solution)
+    worst = worst_measure(
+        solution,
+        measure,
+        how.reduce,
+        lambda worst: float(how.value(worst, numbers)),
+        at_least=how.worst == "least",
+        order=how.order,
+    )
+    if not how.applies(worst.value):
+        return None
+    return how.remark(Demand(worst.value, allowed, worst, limit.missing), solution)
 
 
 def _missing_words(keys: tuple[str, ...]) -> str:

@@ -33,7 +33,7 @@ def motion_of(jet: Jet, numbers: Numbers) -> Motion:
     return RollerMotion(jet, np.sqrt(prime**2 - offset**2), offset, numbers["roller.radius"])
 
 
-def positive(values: Array) -> Array:
+def not_negative(values: Array) -> Array:
     """Values, and zero where they are negative; complex."""
     return np.where(np.real(values) > 0.0, values, 0.0 * values)
 
@@ -43,6 +43,12 @@ class OfGuides(NamedTuple):
 
     a: Array
     b: Array
+
+
+def greatest_friction(numbers: Numbers) -> OfGuides | None:
+    """Maximum friction coefficients of the guides; None where they are not known."""
+    on_a, on_b = (numbers.get(f"guides.{side}.friction_greatest") for side in "ab")
+    return None if on_a is None or on_b is None else OfGuides(np.asarray(on_a), np.asarray(on_b))
 
 
 @dataclass(frozen=True, eq=False)
@@ -163,6 +169,16 @@ class LoadedCam:
         index: Array = on_a * rubbing.a + on_b * rubbing.b
         return index
 
+    @property
+    def jam_worst(self) -> Array | None:
+        """Jam index at the maximum friction of the guides; None where that is not known."""
+        most = greatest_friction(self.numbers)
+        if most is None:
+            return None
+        on_a, on_b = self.reactions
+        index: Array = most.a * on_a.on_points + most.b * on_b.on_points
+        return index
+
     @cached_property
     def share(self) -> Array:
         """Axial force without friction over axial force."""
@@ -214,3 +230,8 @@ class LoadedCam:
         line_load = self.normal / self.numbers["contact.width"]
         modulus = self.numbers["contact.modulus"]
         return peak_pressure_square(line_load, 1.0 / self.motion.size, modulus)
+
+    @cached_property
+    def p0(self) -> Array:
+        """Contact pressure in the middle of the line of contact, Pa."""
+        return self.pressure_factor * np.sqrt(self.flat_square / (1.0 - self.motion.sharpness))

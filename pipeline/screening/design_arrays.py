@@ -6,7 +6,7 @@ import copy
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Literal, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.polynomial.chebyshev import chebvander
@@ -28,7 +28,6 @@ from camwright.pipeline.cycle.numbers import Numbers
 from camwright.pipeline.follower.follower_forces import (
     Push,
 )
-from camwright.pipeline.follower.guide_friction import friction_limits
 from camwright.pipeline.follower.guide_table import SupportOfMany
 from camwright.pipeline.follower.spring import stored_lift
 from camwright.pipeline.screening.screened_cam import ScreenedCam, State
@@ -90,6 +89,7 @@ class Designs:
             "cam.held_radius": self.value("cam.bore_radius") + (cam.held_radius - cam.bore_radius),
             "contact.width": self.contact_width,
             "contact.modulus": self.machine.contact_modulus,
+            "cam.fastest": self.fastest[:, None] / self.case.mechanism.gear_ratio,
         }
         return Numbers({**self.columns, **known}, self.case)
 
@@ -256,12 +256,6 @@ class Designs:
         overhang = self.value("follower.overhang_at_max_lift") + (self.highest[:, None] - lift)
         push = Push(motion.side, motion.arm, self.value("guides.spacing"))
         return SupportOfMany.of(known.stem, known.guides, push, np.asarray(overhang))
-
-    def greatest_friction(self, side: Literal["a", "b"]) -> Array:
-        """Maximum friction coefficient of a guide (m, 1)."""
-        nominal = self.value(f"guides.{side}.friction")
-        stated = self.value(f"guides.{side}.friction_max")
-        return friction_limits(nominal, None, stated, self.case.tolerances.friction)[1]
 
     @cached_property
     def contact_width(self) -> Array:

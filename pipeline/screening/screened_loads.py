@@ -70,7 +70,8 @@ def jam_index(designs: Designs) -> Judged:
 
 
 def jam_index_friction_max(designs: Designs) -> Judged:
-    return designs.worst(lambda cam: cam.jam_outward), designs.limit(JAM_INDEX)
+    worst = designs.worst(lambda cam: demands.jam_outward(cam.slope, cam.jam_worst))
+    return worst, designs.limit(JAM_INDEX)
 
 
 def _area(designs: Designs, side: Side) -> Array:

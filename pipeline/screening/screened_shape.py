@@ -14,7 +14,8 @@ from camwright.pipeline.case.limits import (
     PRESSURE_ANGLE,
     RETURN_PRESSURE_ANGLE,
 )
-from camwright.pipeline.checks.check import Declaration
+from camwright.pipeline.checks.check import Declaration, Measured
+from camwright.pipeline.checks.extremes import BY_DUTY, Measure
 from camwright.pipeline.screening.design_arrays import Designs, Judged, Screened
 
 
@@ -46,12 +47,11 @@ def by_measure(declared: Declaration) -> Screened:
         raise InputError(declared.id, "not declared", "screened, see `Measured`")
 
     def demand(designs: Designs) -> Array:
-        extreme = sampled_least if how.worst == "least" else sampled_greatest
-        if how.reduce == "top":
-            worst = measure(designs.top)
-        else:
-            worst = extreme(measure(designs.whole))[:, None]
-        value = np.asarray(how.value(worst, designs.numbers))
+        if any(designs.numbers.get(key) is None for key in how.needed):
+            return np.full(designs.count, np.nan)
+        value = _demand(measure, how, designs)
+        for key in how.needed:
+            value = np.where(np.isnan(np.asarray(designs.numbers[key])), np.nan, value)
         return np.broadcast_to(value, (designs.count, 1))[:, 0]
 
     def judged(designs: Designs) -> Judged:
@@ -64,6 +64,42 @@ def by_measure(declared: Declaration) -> Screened:
         return np.broadcast_to(how.applies(demand(designs)), designs.count)
 
     return Screened(declared.id, judged, how.deviation, applies)
+
+
+def _demand(measure: Measure, how: Measured, designs: Designs) -> Array:
+    """Demand (m, 1) by the worst value of a measure, as `worst_measure`; NaN without a turn."""
+    numbers = designs.numbers
+    extreme = sampled_least if how.worst == "least" else sampled_greatest
+    if how.reduce == "top":
+        return np.asarray(how.value(measure(designs.top), numbers))
+    if how.reduce == "contour":
+        return np.asarray(how.value(extreme(measure(designs.whole))[:, None], numbers))
+    if how.reduce in BY_DUTY:
+        return _by_duty(measure, how, designs)
+    averaged = how.reduce == "mean"
+    each = [np.mean(m, axis=-1) if averaged else extreme(m) for m in map(measure, designs.cams)]
+    worst = np.min(each, axis=0) if how.worst == "least" else np.max(each, axis=0)
+    return np.asarray(how.value(worst[:, None], numbers))
+
+
+def _by_duty(measure: Measure, how: Measured, designs: Designs) -> Array:
+    """As `over_duty`: sum of mean wear or damage of the load cases by their duty."""
+    life, numbers = how.reduce == "life", designs.numbers
+    running = [cam for cam in designs.cams if cam.state.duty != 0.0]
+    if not running:
+        return np.full((designs.count, 1), np.nan)
+    values = [
+        np.asarray(how.value(np.mean(measure(cam), axis=-1)[:, None], numbers)) for cam in running
+    ]
+    duties = [cam.state.duty for cam in running]
+    if any(duty is None for duty in duties):
+        return np.asarray(np.min(values, axis=0) if life else np.max(values, axis=0))
+    shares = [
+        (duty or 0.0) * (1.0 / each if life else each)
+        for duty, each in zip(duties, values, strict=True)
+    ]
+    whole = np.sum(shares, axis=0)
+    return np.asarray(1.0 / whole if life else whole)
 
 
 def guide_gap(designs: Designs) -> Judged:

@@ -21,7 +21,12 @@ from camwright.geometry.follower_path import Motion
 from camwright.geometry.lift import Jet
 from camwright.geometry.pitch_curve import RollerMotion
 from camwright.pipeline.case.limits import AnyLimit, Limit, OpenLimit
-from camwright.pipeline.cycle.loaded_cam import LoadedCam, OfGuides, positive
+from camwright.pipeline.cycle.loaded_cam import (
+    LoadedCam,
+    OfGuides,
+    greatest_friction,
+    not_negative,
+)
 from camwright.pipeline.cycle.numbers import Numbers
 from camwright.pipeline.follower.spring_kinds import SpringShape, rise, shaped_deflection
 from camwright.pipeline.smoothing.scenario import Correction, DesignVariables, Ratings, Scenario
@@ -134,36 +139,26 @@ class ScenarioCam(LoadedCam):
         return OfGuides(self.axial * on_a, self.axial * on_b)
 
     @cached_property
-    def _worst_friction(self) -> OfGuides | None:
-        """Greatest friction of the guides on points over the axial force."""
-        worst = self.scenario.friction_worst
-        if worst is None:
-            return None
-        on_a, on_b = self.reactions
-        return OfGuides(worst[0] * on_a.on_points, worst[1] * on_b.on_points)
-
-    @cached_property
     def jam_worst(self) -> Array | None:
-        """Jam index at the greatest friction; None where that is not known."""
-        worst = self._worst_friction
-        return None if worst is None else (worst.a + worst.b) * self.fix.jam
+        on_points = super().jam_worst
+        return None if on_points is None else on_points * self.fix.jam
 
     @cached_property
     def hot(self) -> OfGuides | None:
         """Friction of the guides at the greatest friction, N; None where that is not known."""
-        friction, worst = self.scenario.friction_worst, self._worst_friction
-        if friction is None or worst is None:
+        friction, jam = greatest_friction(self.numbers), self.jam_worst
+        if friction is None or jam is None:
             return None
-        jam = np.sign(np.real(self.slope)) * (worst.a + worst.b) * self.fix.jam
-        axial = self.axial * self.share / (1.0 - jam)
+        axial = self.axial * self.share / (1.0 - np.sign(np.real(self.slope)) * jam)
         loads = self._corrected(self.fix.hot_a, self.fix.hot_b)
-        return OfGuides(friction[0] * loads.a * axial, friction[1] * loads.b * axial)
+        return OfGuides(friction.a * loads.a * axial, friction.b * loads.b * axial)
 
 
 def loaded(
     jet: Jet, highest: float, variables: DesignVariables, ratings: Ratings, scenario: Scenario
 ) -> ScenarioCam:
     """Cam of a lift in one scenario, or in stacked ones; highest: maximum lift, m."""
+    worst = scenario.friction_worst
     numbers = _fixed(variables, ratings) | {
         "spring.preload": variables.preload * scenario.preload_factor,
         "spring.rate": variables.rate * scenario.rate_factor,
@@ -174,6 +169,8 @@ def loaded(
         "guides.spacing": scenario.guide_spacing,
         "guides.a.friction": scenario.friction_a,
         "guides.b.friction": scenario.friction_b,
+        "guides.a.friction_greatest": None if worst is None else worst[0],
+        "guides.b.friction_greatest": None if worst is None else worst[1],
     }
     return ScenarioCam(
         jet,
@@ -246,7 +243,7 @@ class Mean(NamedTuple):
         return np.imag(self._of(means[..., None, :] + steps)) / _STEP
 
     def _of(self, means: Array) -> Array:
-        of_one = positive(means) ** self.power if self.total is None else self.total.of(means)
+        of_one = not_negative(means) ** self.power if self.total is None else self.total.of(means)
         return np.asarray(self.factor * of_one)
 
 
@@ -281,7 +278,9 @@ def by_duty(terms: Array, scenario: Scenario, power: float = 1.0) -> Mean:
     shares = duty_shares(scenario)
     if shares is None:
         return Mean(terms, power)
-    return Mean(terms, power, Total(lambda means: positive(means @ shares.T) ** power, shares > 0))
+    return Mean(
+        terms, power, Total(lambda means: not_negative(means @ shares.T) ** power, shares > 0)
+    )
 
 
 def roller_of(path: Motion) -> RollerMotion:

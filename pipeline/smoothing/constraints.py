@@ -31,7 +31,8 @@ from camwright.pipeline.case.limits import (
 )
 from camwright.pipeline.checks import cam_shape, demands, manufacture
 from camwright.pipeline.checks.check import FACTOR_MAX, Declaration
-from camwright.pipeline.cycle.loaded_cam import LoadedCam, positive
+from camwright.pipeline.checks.extremes import BY_DUTY
+from camwright.pipeline.cycle.loaded_cam import LoadedCam, not_negative
 from camwright.pipeline.follower.roller_motion import BALL_LIFE_EXPONENT, wear
 from camwright.pipeline.smoothing.cam_state import (
     Constraint,
@@ -117,7 +118,7 @@ def _jam_index_friction_max(at: ScenarioCam, limit: float) -> Array | None:
 
 def _roller_life(at: ScenarioCam, limit: float) -> Mean:
     """Of L10 = (C / P_m)^3 1e6 turns / mean spin, where P_m^3 mean spin is the mean of N^3 |n|."""
-    terms = wear(positive(at.surged), at.spin) / limit
+    terms = wear(not_negative(at.surged), at.spin) / limit
     return by_duty(terms, at.scenario, 1.0 / BALL_LIFE_EXPONENT)
 
 
@@ -160,6 +161,25 @@ def kept(
         factor_max=how.kept.factor_max,
         value_max=how.kept.value_max,
         needs=declared.needs,
+    )
+
+
+def kept_loads(
+    declared: Declaration, limit: Callable[[Ratings], float | None] | None = None
+) -> Constraint[ScenarioCam]:
+    """As `kept`, of a check on the loads: over the turn and the load cases where it is reduced."""
+    of_cam, how = kept(declared, limit), declared.measured
+
+    def utilisation(cam: ScenarioCam, limit: float) -> Array | Mean | None:
+        use = of_cam.utilisation(cam, limit)
+        if how is None or how.kept is None or use is None or isinstance(use, Mean):
+            return use
+        if how.reduce == "mean":
+            return Mean(use, how.kept.power)
+        return by_duty(use, cam.scenario, how.kept.power) if how.reduce in BY_DUTY else use
+
+    return Constraint(
+        of_cam.check, of_cam.limit, utilisation, of_cam.factor_max, of_cam.value_max, of_cam.needs
     )
 
 

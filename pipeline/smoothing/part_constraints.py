@@ -23,7 +23,7 @@ from camwright.pipeline.checks import demands
 from camwright.pipeline.checks.roller_bearing import STANDSTILL
 from camwright.pipeline.contact.hertz import half_width_square
 from camwright.pipeline.contact.traction import rolling_demand
-from camwright.pipeline.cycle.loaded_cam import LoadedCam, positive
+from camwright.pipeline.cycle.loaded_cam import LoadedCam, not_negative
 from camwright.pipeline.follower import bearing_life
 from camwright.pipeline.follower.flat_face_motion import MEAN_SHARE
 from camwright.pipeline.follower.roller_motion import (
@@ -130,7 +130,7 @@ def _traction_demand(at: ScenarioCam, friction: float) -> Array | None:
     radius = path.size
     rate = path_speed_slope(path.along, path.height, jet.slope, jet.bend, path.path_speed)
     acceleration = at.scenario.cam_speed**2 * rate / radius
-    force = positive(at.normal)
+    force = not_negative(at.normal)
     demand = rolling_demand(at.ratings.drag, force, at.spin, acceleration, radius)
     return _over_normal_force(at, magnitude(demand) / friction)
 
@@ -197,7 +197,9 @@ def _modified_life(at: ScenarioCam, limit: float) -> Mean | None:
     bearing = at.ratings.modified
     if bearing is None:
         return None
-    force = np.where(np.real(positive(at.surged)) > _LEAST_FORCE, positive(at.surged), _LEAST_FORCE)
+    force = np.where(
+        np.real(not_negative(at.surged)) > _LEAST_FORCE, not_negative(at.surged), _LEAST_FORCE
+    )
     speed, turns = _mean_spin(at)
     rated = bearing_life.rated_viscosity(speed / factor("rpm"), bearing.circle)
     kappa, least = bearing.viscosity / rated, bearing_life.LEAST_VISCOSITY_RATIO
@@ -217,7 +219,7 @@ def _grease_life(at: ScenarioCam, limit: float) -> Mean | None:
     if grease is None:
         return None
     speed, turns = _mean_spin(at)
-    worn = wear(positive(at.normal), at.spin) / (limit**BALL_LIFE_EXPONENT * speed)
+    worn = wear(not_negative(at.normal), at.spin) / (limit**BALL_LIFE_EXPONENT * speed)
     shares, root = duty_shares(at.scenario), 1.0 / BALL_LIFE_EXPONENT
     if shares is None:
         share = grease.load_share(speed)
@@ -230,7 +232,7 @@ def _grease_life(at: ScenarioCam, limit: float) -> Mean | None:
     counted = shares * np.ravel(known)
 
     def of(means: Array) -> Array:
-        load, allowed = positive(means[..., :count]) ** root, means[..., count:]
+        load, allowed = not_negative(means[..., :count]) ** root, means[..., count:]
         factors = [bearing_life.grease_load_factor(load, allowed, each) for each in counted]
         return np.concatenate(
             [np.stack(factors, axis=-1), load[..., running] / bearing_life.HEAVY_GREASE], axis=-1

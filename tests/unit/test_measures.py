@@ -15,17 +15,24 @@ import pytest
 from camwright.geometry.arrays import FULL_TURN, Array
 from camwright.geometry.lift import Jet
 from camwright.pipeline.case.case_file import read_case
+from camwright.pipeline.case.machine import machines
 from camwright.pipeline.checks.check import Declaration
 from camwright.pipeline.checks.registry import CHECKS
 from camwright.pipeline.cycle.loaded_cam import LoadedCam
 from camwright.pipeline.cycle.numbers import Numbers
+from camwright.pipeline.cycle.solved_cam import numbers_of
 
 CASES = Path(__file__).parents[2] / "cases"
 POINTS = 180
-NUMBERS = {
-    follower: Numbers({}, read_case(CASES / f"{name}.toml"))
-    for follower, name in (("roller", "gx120-redesign"), ("face", "gx120-flat-face"))
-}
+
+
+def numbers(name: str) -> Numbers:
+    """Numbers of a case in its design load case."""
+    case = read_case(CASES / f"{name}.toml")
+    return numbers_of(case, machines(case))
+
+
+NUMBERS = {"roller": numbers("gx120-redesign"), "face": numbers("gx120-flat-face")}
 MEASURED = [
     pytest.param(one, follower, id=f"{one.id}, {follower}")
     for one in CHECKS
