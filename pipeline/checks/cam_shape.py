@@ -100,6 +100,11 @@ def sharpness(cam: LoadedCam) -> Array:
     return cam.motion.sharpness
 
 
+def lift(cam: LoadedCam) -> Array:
+    """Lift, m."""
+    return cam.jet.lift
+
+
 def contour_radius(cam: LoadedCam) -> Array:
     """Distance of the contour from the cam axis, m."""
     return cam.motion.contour_radius
@@ -361,7 +366,8 @@ minimum_wall = check(
 )(contour_radius)
 
 
-@check(
+spring_travel = check(
+    id="spring_travel",
     title="Maximum lift vs. spring travel",
     tier=Tier.SCREENING,
     formula="max s <= x; s: lift, x: spring.travel_max",
@@ -376,7 +382,4 @@ minimum_wall = check(
     values=("spring.travel_max",),
     levers=(*levers.SPRING, *levers.GENTLER),
     page="Spring",
-).measured("top", allowed=of_key("spring.travel_max"), deviation=1e-4, kept=Kept())
-def spring_travel(cam: LoadedCam) -> Array:
-    """Lift, m, against the spring travel."""
-    return cam.jet.lift
+).measured("top", allowed=of_key("spring.travel_max"), deviation=1e-4, kept=Kept())(lift)

@@ -166,6 +166,8 @@ class Measured(NamedTuple):
     needed : tuple       dotted keys without which there is no demand
     applies : callable   demand -> whether the check applies to the cam
     remark : callable    demand, solution -> demand, with what it has in words
+    solved : callable    solution above the screening -> demand, of which that by the measure is a
+                         bound; None: the measure is the demand at every depth
     order : int          highest derivative of the lift in the measure, 2 or 3
     deviation : float    of the demand of the screening from that of the preview, over the greater
                          of demand and limit, as measured; None: not screened
@@ -180,6 +182,7 @@ class Measured(NamedTuple):
     needed: tuple[str, ...]
     applies: Callable[[Value], NDArray[np.bool_]]
     remark: Callable[[Demand, Solution], Demand]
+    solved: Callable[[Solution], Demand] | None
     order: int
     deviation: float | None
     kept: Kept | None
@@ -438,6 +441,7 @@ class Declaring:
         needed: tuple[str, ...] = (),
         applies: Callable[[Value], NDArray[np.bool_]] = lambda _: np.array(True),
         remark: Callable[[Demand, Solution], Demand] = lambda demand, _: demand,
+        solved: Callable[[Solution], Demand] | None = None,
         order: int = 2,
         deviation: float | None = None,
         kept: Kept | None = None,
@@ -445,7 +449,8 @@ class Declaring:
         """Declare the check by a measure of the loaded cam; see `Measured`."""
         limit = of_row(self.limit) if allowed is None else allowed
         how = Measured(
-            reduce, worst, value, bound, limit, needed, applies, remark, order, deviation, kept
+            reduce, worst, value, bound, limit, needed, applies, remark, solved, order, deviation,
+            kept,
         )  # fmt: skip
 
         def declared(measure: Measure) -> Declaration:
@@ -455,7 +460,9 @@ class Declaring:
 
 
 def _demand(measure: Measure, how: Measured, solution: Solution) -> Demand | None:
-    """Demand of a solution by the worst value of a measure."""
+    """Demand of a solution by the worst value of a measure, or as solved."""
+    if how.solved is not None and solution.tier > Tier.SCREENING:
+        return how.solved(solution)
     numbers = solution.numbers
     limit = how.allowed(numbers)
     allowed = None if limit.value is None else float(limit.value)

@@ -243,13 +243,14 @@ def _sampling_error(values: Array, sign: float) -> float:
     return error / abs(top) if top != 0.0 else 0.0
 
 
-Reduce = Literal["contour", "top", "angles", "forces", "mean", "wear", "life"]
+Reduce = Literal["case", "contour", "top", "angles", "forces", "mean", "wear", "life"]
 """How a measure is reduced over the cam.
 
-contour: extreme on the unloaded contour, refined between samples; top: at maximum lift; angles:
-extreme of all load cases at the solved angles; forces: the same between them, of the forces alone;
-mean: over the turn, of the worst load case; wear: the same, over the load cases by their duty;
-life: mean damage over the turn, whose lives are summed by the duty.
+case: a figure of the numbers alone; contour: extreme on the unloaded contour, refined between
+samples; top: at maximum lift; angles: extreme of all load cases at the solved angles; forces: the
+same between them, of the forces alone; mean: over the turn, of the worst load case; wear: the same,
+over the load cases by their duty; life: mean damage over the turn, whose lives are summed by the
+duty.
 """
 BY_DUTY: tuple[Reduce, ...] = ("wear", "life")
 """Reductions over the load cases by their duty."""
@@ -293,9 +294,10 @@ def _worst(
     solution: Solution, measure: Measure, reduce: Reduce, *, at_least: bool, order: int
 ) -> Extreme:
     contour, numbers = solution.contour, solution.numbers
-    if reduce == "top":
+    if reduce in ("case", "top"):
+        value = float(np.ravel(measure(ContourCam.at_top(contour, numbers)))[0])
         top = np.mod(contour.lift.highest.theta, FULL_TURN)
-        return Extreme(float(measure(ContourCam.at_top(contour, numbers))[0]), "", float(top))
+        return Extreme(value, "", None if reduce == "case" else float(top))
     if reduce == "contour":
         shapes = _OF_CONTOURS.setdefault(contour, {})
         if (shape := (measure, at_least)) not in shapes:

@@ -24,11 +24,14 @@ from camwright.pipeline.follower.follower_forces import Loads, share_left
 def numbers_of(case: Case, machines: Sequence[Machine]) -> Numbers:
     """Numbers of machines, one a load case, which at a tolerance corner are not those of the case.
 
-    Those of the first, and the greatest cam speed; see `in_load_case`.
+    Those of the first, the greatest cam speed and the greatest preload; see `in_load_case`.
     """
-    fastest = highest_speed(machines) / machines[0].gear_ratio
-    shared = Numbers({"cam.held_radius": machines[0].cam.held_radius, "cam.fastest": fastest}, case)
-    return in_load_case(shared, machines[0])
+    shared = {
+        "cam.held_radius": machines[0].cam.held_radius,
+        "cam.fastest": highest_speed(machines) / machines[0].gear_ratio,
+        "spring.preload_greatest": max(each.spring.preload for each in machines),
+    }
+    return in_load_case(Numbers(shared, case), machines[0])
 
 
 def in_load_case(numbers: Numbers, machine: Machine) -> Numbers:

@@ -280,13 +280,13 @@ class WoundWire(Generic[Number]):
         error: Number = np.abs(self.rate / rate - 1.0)
         return error
 
-    def relaxed_preload(self, preload: Number, greatest: Number) -> Number | None:
-        """Loss of preload by relaxation over the preload; None without data.
+    def relaxed_preload(self, preload: Number, greatest: Number) -> Number | float:
+        """Loss of preload by relaxation over the preload; NaN without data.
 
         The share of the greatest force that is lost acts at every deflection.
         """
         if self.temperature is None or self.relaxation is None:
-            return None
+            return np.nan
         return self.relaxation * greatest / preload
 
     def at_work(
@@ -318,10 +318,16 @@ class SpringWork(NamedTuple, Generic[Number]):
     rate: Number
 
 
-class OfWire(Protocol):
+class OfWork(Protocol):
     """A figure of a wound spring at work."""
 
     def __call__(self, wire: WoundWire[Number], work: SpringWork[Number], /) -> Value: ...
+
+
+class OfWire(Protocol):
+    """A figure of a wound spring."""
+
+    def __call__(self, wire: WoundWire[Number], /) -> Value: ...
 
 
 @dataclass(frozen=True)
@@ -332,12 +338,12 @@ class WireLimit:
     ----------
     words : str         of a spring beyond it
     demand : callable   wire, work -> demand, SI; NaN where the wire lacks a value
-    allowed : callable  wire, work -> limit that the wire sets; None: set by its user
+    allowed : callable  wire -> limit that the wire sets; None: set by its user
     at_least : bool     the demand must be at least the limit
     """
 
     words: str
-    demand: OfWire
+    demand: OfWork
     allowed: OfWire | None = None
     at_least: bool = False
 
@@ -353,62 +359,40 @@ class WireLimit:
         limit: where the wire sets none
         """
         demand = self.demand(wire, work)
-        allowed = limit if self.allowed is None else self.allowed(wire, work)
+        allowed = limit if self.allowed is None else self.allowed(wire)
         if allowed is None:
             raise InputError(self.words, "no limit", "given")
         bound = room * allowed
         return np.asarray(demand >= bound if self.at_least else demand <= bound)
 
 
-def _stress(wire: WoundWire[Number], work: SpringWork[Number]) -> Value:
-    return wire.static_use(work.greatest)
-
-
-def _fatigue(wire: WoundWire[Number], work: SpringWork[Number]) -> Value:
-    return wire.fatigue_use(work.preload, work.greatest)
-
-
-def _solid(wire: WoundWire[Number], work: SpringWork[Number]) -> Value:
-    return wire.solid_clearance(work.preload, work.travel)
-
-
-def _gap(wire: WoundWire[Number], work: SpringWork[Number]) -> Value:
-    return wire.gap_left(work.preload, work.travel)
-
-
-def _least_gap(wire: WoundWire[Number], _: SpringWork[Number]) -> Value:
-    return wire.minimum_gaps
-
-
-def _solid_stress(wire: WoundWire[Number], work: SpringWork[Number]) -> Value:
-    return wire.solid_stress(work.rate)
-
-
-def _static_strength(wire: WoundWire[Number], _: SpringWork[Number]) -> Value:
-    return wire.static_strength
-
-
-def _buckling(wire: WoundWire[Number], work: SpringWork[Number]) -> Value:
-    return (wire.deflection(work.preload) + work.travel) / wire.buckling_deflection
-
-
-def _relaxation(wire: WoundWire[Number], work: SpringWork[Number]) -> Value:
-    lost = wire.relaxed_preload(work.preload, work.greatest)
-    return np.nan if lost is None else lost
-
-
-def _whole(_: WoundWire[Number], __: SpringWork[Number]) -> Value:
-    return 1.0
-
-
-STRESS = WireLimit("shear stress", _stress, _whole)
-FATIGUE = WireLimit("fatigue", _fatigue)
+STRESS = WireLimit("shear stress", lambda wire, work: wire.static_use(work.greatest), lambda _: 1.0)
+FATIGUE = WireLimit("fatigue", lambda wire, work: wire.fatigue_use(work.preload, work.greatest))
 """Utilisation of the Goodman line, against one over the safety factor."""
-SOLID = WireLimit("goes solid", _solid, at_least=True)
-COIL_GAP = WireLimit("gap between coils", _gap, _least_gap, at_least=True)
-SOLID_STRESS = WireLimit("stress at solid length", _solid_stress, _static_strength)
-BUCKLING = WireLimit("buckling", _buckling, _whole)
-RELAXATION = WireLimit("relaxation", _relaxation)
+SOLID = WireLimit(
+    "goes solid",
+    lambda wire, work: wire.solid_clearance(work.preload, work.travel),
+    at_least=True,
+)
+COIL_GAP = WireLimit(
+    "gap between coils",
+    lambda wire, work: wire.gap_left(work.preload, work.travel),
+    lambda wire: wire.minimum_gaps,
+    at_least=True,
+)
+SOLID_STRESS = WireLimit(
+    "stress at solid length",
+    lambda wire, work: wire.solid_stress(work.rate),
+    lambda wire: wire.static_strength,
+)
+BUCKLING = WireLimit(
+    "buckling",
+    lambda wire, work: (wire.deflection(work.preload) + work.travel) / wire.buckling_deflection,
+    lambda _: 1.0,
+)
+RELAXATION = WireLimit(
+    "relaxation", lambda wire, work: wire.relaxed_preload(work.preload, work.greatest)
+)
 """Against the tolerance of the preload."""
 
 
@@ -472,14 +456,6 @@ class HelicalSpring(WoundWire[float], Part):
     def damping(self) -> float:
         """Damping ratio of each mode of the surge."""
         return DAMPING if self.damping_ratio is None else self.damping_ratio
-
-    def fatigue_safety(self, force_min: ArrayLike, force_max: ArrayLike) -> float:
-        """Least fatigue safety factor of ranges of force (...), see `fatigue_use`.
-
-        Infinite without load.
-        """
-        use = float(np.max(self.fatigue_use(force_min, force_max)))
-        return np.inf if use == 0.0 else 1.0 / use
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -578,22 +554,18 @@ def stored_lift(
     return shaped_deflection(energy, rate, preload, shape)
 
 
-def surge_harmonics(
-    lift_values: Array, cam_speed: float, frequency: float, share: float = 0.01
-) -> tuple[int, float, float]:
+def surge_harmonics(lift_values: Array, ratio: float, share: float = 0.01) -> tuple[int, float]:
     """Highest significant harmonic of the lift acceleration, and its margin against surge.
 
     Parameters
     ----------
     lift_values : array (n,)   at equal angles, m
-    cam_speed : float          rad/s, > 0
-    frequency : float          first natural frequency of the spring, Hz
+    ratio : float              natural frequency over rotational frequency of the cam
     share : float              share of the largest harmonic above which one is significant
 
     Returns
     -------
     highest : int         order of the highest significant harmonic
-    ratio : float         natural frequency over rotational frequency of the cam
     margin : float        natural frequency over that of the highest significant harmonic
     """
     harmonics = np.abs(np.fft.rfft(finite("lift", lift_values)))
@@ -601,8 +573,7 @@ def surge_harmonics(
     acceleration = harmonics * order**2
     strong = np.flatnonzero(acceleration >= share * max(acceleration.max(), 1e-300))
     highest = int(strong[-1]) if acceleration.max() > 0.0 else 0
-    ratio = frequency * 2.0 * np.pi / cam_speed
-    return highest, ratio, ratio / highest if highest else np.inf
+    return highest, ratio / highest if highest else np.inf
 
 
 def natural_frequency(rate: Number, active_mass: Number) -> Number:

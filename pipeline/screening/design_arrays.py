@@ -18,7 +18,7 @@ from camwright.geometry.follower_path import Motion
 from camwright.geometry.lift import Jet
 from camwright.geometry.periodic_spline import knot_derivatives, knot_integrals
 from camwright.pipeline.case.case import Case
-from camwright.pipeline.case.case_values import WoundSprings, value_of, wound_spring
+from camwright.pipeline.case.case_values import value_of
 from camwright.pipeline.case.limits import OVERSPEED, TORQUE_REDUCTION, AnyLimit
 from camwright.pipeline.case.load_case_torque import engine_torque
 from camwright.pipeline.case.machine import CREEP, Machine, machine
@@ -136,11 +136,13 @@ class Designs:
         """The unloaded cams at the samples of the lift."""
         return LoadedCam(Jet(*self.jets), self.numbers, self.highest[:, None])
 
-    @cached_property
+    @property
     def top(self) -> LoadedCam:
-        """The unloaded cams at their maximum lift, (m, 1)."""
+        """The unloaded cams at their maximum lift, (m, 1); with the preloads of the load cases."""
         lift = self.highest[:, None]
-        return LoadedCam(Jet(lift, np.zeros_like(lift), np.zeros_like(lift)), self.numbers, lift)
+        preload = np.max([cam.state.preload for cam in self.cams], axis=0)
+        numbers = self.numbers | {"spring.preload_greatest": preload}
+        return LoadedCam(Jet(lift, np.zeros_like(lift), np.zeros_like(lift)), numbers, lift)
 
     @cached_property
     def least_factor(self) -> Array:
@@ -176,11 +178,6 @@ class Designs:
     def stroke(self) -> Array:
         """Maximum less minimum lift (m, 1), m."""
         return (self.highest - sampled_least(self.jets[0]))[:, None]
-
-    @cached_property
-    def wound_spring(self) -> WoundSprings | None:
-        """Springs as wound; None where the case has no spring design."""
-        return wound_spring(self.case, lambda key: self.value(key)[:, 0])
 
     @cached_property
     def states(self) -> tuple[State, ...]:

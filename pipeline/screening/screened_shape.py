@@ -70,7 +70,7 @@ def _demand(measure: Measure, how: Measured, designs: Designs) -> Array:
     """Demand (m, 1) by the worst value of a measure, as `worst_measure`; NaN without a turn."""
     numbers = designs.numbers
     extreme = sampled_least if how.worst == "least" else sampled_greatest
-    if how.reduce == "top":
+    if how.reduce in ("case", "top"):
         return np.asarray(how.value(measure(designs.top), numbers))
     if how.reduce == "contour":
         return np.asarray(how.value(extreme(measure(designs.whole))[:, None], numbers))

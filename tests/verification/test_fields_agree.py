@@ -73,7 +73,7 @@ FIELDS: dict[str, Callable[[LoadedCam], Array]] = {
 MEASURES = {
     f"{one.id}, {follower}": (follower, one.measure)
     for one in CHECKS
-    if one.measured is not None and one.measured.reduce not in ("contour", "top")
+    if one.measured is not None and one.measured.reduce not in ("case", "contour", "top")
     for follower in ("roller", "face")
     if one.needs in ("", follower) and not one.id.startswith("guide_pressure")
 }

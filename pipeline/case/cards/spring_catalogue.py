@@ -117,7 +117,7 @@ class SpringDemand(Generic[Number]):
             SOLID_STRESS.words: SOLID_STRESS.holds(wire, work),
             BUCKLING.words: BUCKLING.holds(wire, work),
         }
-        if wire.relaxed_preload(work.preload, work.greatest) is not None:
+        if wire.relaxation is not None and wire.temperature is not None:
             kept[RELAXATION.words] = RELAXATION.holds(wire, work, self.preload_spread)
         if self.cam_speed is not None:
             kept["surge"] = np.asarray(wire.surge_ratio(self.cam_speed) >= room.surge * self.surge)
