@@ -145,12 +145,22 @@ class Kept(NamedTuple):
     factor_max : float   maximum factor on the limit where limits conflict; 0: fixed
     value_max : float    maximum limit where limits conflict, SI
     power : float        of a mean, wear or life over the turn that is the utilisation
+    once : bool          the same in the load cases of a preload and at tolerance corners
     """
 
     use: Callable[[LoadedCam, float], Array | None] | None = None
     factor_max: float = 0.0
     value_max: float = math.inf
     power: float = 1.0
+    once: bool = False
+
+
+class Stroke(NamedTuple):
+    """A measure of one stroke of the follower, its own limit, and the stroke in words."""
+
+    measure: Measure
+    limit: AnyLimit
+    words: str
 
 
 class Measured(NamedTuple):
@@ -169,6 +179,9 @@ class Measured(NamedTuple):
     order : int          highest derivative of the lift in the measure, 2 or 3
     deviation : float    of the demand of the screening from that of the preview, over the greater
                          of demand and limit, as measured; None: not screened
+    smooth : bool        the screening refines the measure between samples; False: it has poles
+    strokes : tuple      measures with limits of their own, where the case sets each of them: that
+                         of the greatest utilisation governs
     kept : Kept          None: the synthesis does not keep it
     """
 
@@ -182,7 +195,15 @@ class Measured(NamedTuple):
     remark: Callable[[Demand, Solution], Demand]
     order: int
     deviation: float | None
+    smooth: bool
+    strokes: tuple[Stroke, ...]
     kept: Kept | None
+
+    def limits_of_strokes(self, numbers: Numbers) -> tuple[Value, ...]:
+        """Limits of the strokes; (): not all of them are set."""
+        limits = [numbers.get(f"limits.{each.limit.id}") for each in self.strokes]
+        known = tuple(each for each in limits if each is not None)
+        return known if len(known) == len(limits) else ()
 
     def use(self, measure: Measure, cam: LoadedCam, limit: float) -> Array | None:
         """Utilisation (..., n) of a limit in a synthesis, see `Kept`."""
@@ -440,13 +461,27 @@ class Declaring:
         remark: Callable[[Demand, Solution], Demand] = lambda demand, _: demand,
         order: int = 2,
         deviation: float | None = None,
+        smooth: bool = True,
+        strokes: tuple[Stroke, ...] = (),
         kept: Kept | None = None,
     ) -> Callable[[Measure], Declaration]:
         """Declare the check by a measure of the loaded cam; see `Measured`."""
         limit = of_row(self.limit) if allowed is None else allowed
         how = Measured(
-            reduce, worst, value, bound, limit, needed, applies, remark, order, deviation, kept
-        )  # fmt: skip
+            reduce=reduce,
+            worst=worst,
+            value=value,
+            bound=bound,
+            allowed=limit,
+            needed=needed,
+            applies=applies,
+            remark=remark,
+            order=order,
+            deviation=deviation,
+            smooth=smooth,
+            strokes=strokes,
+            kept=kept,
+        )
 
         def declared(measure: Measure) -> Declaration:
             return self.made(measure.__name__, partial(_demand, measure, how), how, measure)
@@ -462,14 +497,25 @@ def _demand(measure: Measure, how: Measured, solution: Solution) -> Demand | Non
     lacks = tuple(key for key in how.needed if numbers.get(key) is None)
     if lacks:
         return how.remark(Demand(None, allowed, missing=(*limit.missing, *lacks)), solution)
-    worst = worst_measure(
-        solution,
-        measure,
-        how.reduce,
-        lambda worst: float(how.value(worst, numbers)),
-        at_least=how.worst == "least",
-        order=how.order,
-    )
+
+    def worst_of(measured: Measure) -> Extreme:
+        return worst_measure(
+            solution,
+            measured,
+            how.reduce,
+            lambda worst: float(how.value(worst, numbers)),
+            at_least=how.worst == "least",
+            order=how.order,
+        )
+
+    if of_strokes := how.limits_of_strokes(numbers):
+        worsts = [worst_of(each.measure) for each in how.strokes]
+        uses = [each.value / float(own) for each, own in zip(worsts, of_strokes, strict=True)]
+        most = uses.index(max(uses))  # of the first, where it is not known
+        stroke, worst = how.strokes[most], worsts[most]
+        source = solution.machine.limits.source(stroke.limit)
+        return Demand(worst.value, float(of_strokes[most]), worst, note=stroke.words, source=source)
+    worst = worst_of(measure)
     if not how.applies(worst.value):
         return None
     return how.remark(Demand(worst.value, allowed, worst, limit.missing), solution)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Literal, NamedTuple
 
 import numpy as np
@@ -21,6 +22,7 @@ from camwright.pipeline.checks.extremes import Extreme, greatest, worst_case
 from camwright.pipeline.checks.missing_keys import lacking, lacking_of_card
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.cycle import Cycle
+from camwright.pipeline.cycle.loaded_cam import LoadedCam
 from camwright.pipeline.cycle.part_loads import PartLoads
 from camwright.pipeline.cycle.solution import Solution
 from camwright.pipeline.follower.guide_friction import NYLON_PV, GuideHeat
@@ -399,13 +401,18 @@ guide_speed_a, guide_speed_b = _guide_speed("A"), _guide_speed("B")
     " guards on the drawing board are computed, and are must-have.",
     load_cases=NONE,
     page="Guides",
+).measured(
+    "top",
+    worst="least",
+    remark=lambda demand, _: replace(demand, at=None),
+    deviation=1e-4,
 )
-def guide_length(solution: Solution) -> Demand:
-    """Distance of the outer ends of the guides over the maximum overhang."""
-    machine, guides = solution.machine, solution.machine.guides
-    overhang = machine.overhang_at_max_lift + solution.contour.pitch.lift.highest.value
-    spread = guides.spacing + 0.5 * (guides.a.length + guides.b.length)
-    return Demand(spread / overhang, machine.limits[GUIDE_LENGTH])
+def guide_length(cam: LoadedCam) -> Array:
+    """Distance of the outer ends of the guides over the overhang."""
+    numbers = cam.numbers
+    ends = 0.5 * (numbers["guides.a.length"] + numbers["guides.b.length"])
+    overhang: Array = numbers["follower.overhang_at_max_lift"] + cam.jet.lift
+    return (numbers["guides.spacing"] + ends) / overhang
 
 
 @check(

@@ -17,15 +17,12 @@ from camwright.pipeline.screening import screened_springs as springs
 from camwright.pipeline.screening.design_arrays import Screened
 from camwright.pipeline.screening.design_lengths import has_many_shapes
 
-SCREENED: tuple[Screened, ...] = (
+_SCREENED: tuple[Screened, ...] = (
     *(
         shape.by_measure(each)
         for each in CHECKS
         if each.measured is not None and each.measured.deviation is not None
     ),
-    Screened("pressure_angle", shape.pressure_angle, 0.0001),
-    Screened("guide_gap", shape.guide_gap, 0.0001),
-    Screened("guide_length", shape.guide_length, 0.0001),
     Screened("torque_reduction", loads.torque_reduction, 0.001),
     Screened("contact_force_margin", loads.contact_force_margin, 0.02),
     Screened("jump", loads.jump, 0.003),
@@ -66,7 +63,6 @@ SCREENED: tuple[Screened, ...] = (
     Screened("guide_pressure_B", loads.guide_pressure("b"), 0.1),
     Screened("guide_pv_A", loads.guide_pv("a"), 0.03),
     Screened("guide_pv_B", loads.guide_pv("b"), 0.03),
-    Screened("profile_waviness", loads.profile_waviness, 0.05),
     Screened("spring_stress", springs.of_spring(springs.spring_stress), 0.1),
     Screened("spring_fatigue", springs.of_spring(springs.spring_fatigue), 0.1),
     Screened("spring_solid", springs.of_spring(springs.spring_solid), 0.0001),
@@ -87,4 +83,6 @@ SCREENED: tuple[Screened, ...] = (
         0.0001,
     ),
 )
+_PLACES = {declared.id: place for place, declared in enumerate(CHECKS)}
+SCREENED = tuple(sorted(_SCREENED, key=lambda each: _PLACES[each.check]))
 """Checks that screening judges, in the order of the calculation."""

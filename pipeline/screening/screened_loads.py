@@ -15,7 +15,6 @@ from camwright.pipeline.case.limits import (
     JUMP,
     JUMP_SPEED,
     OVERSPEED,
-    WAVINESS,
 )
 from camwright.pipeline.checks import demands
 from camwright.pipeline.checks.guide_strength import pv_limit
@@ -112,19 +111,6 @@ def guide_speed(side: Side) -> Callable[[Designs], Judged]:
         return worst, designs.value(f"guides.{side}.speed_limit")[:, 0]
 
     return judged
-
-
-def profile_waviness(designs: Designs) -> Judged:
-    band, length = designs.value("cam.profile_tolerance"), designs.value("cam.waviness_length")
-    along = designs.motion.contour_speed
-
-    def share(cam: ScreenedCam) -> Array:
-        speed = cam.speed * along
-        added = demands.waviness_force(designs.value("follower.mass"), 0.5 * band, speed, length)
-        return demands.over_contact_force(added, cam.normal, _least_spring_force(cam))
-
-    worst = np.max([share(cam).max(axis=-1) for cam in designs.cams], axis=0)
-    return worst, designs.limit(WAVINESS)
 
 
 def torque_after(designs: Designs, cam: ScreenedCam) -> Array:

@@ -11,27 +11,20 @@ value, title, unit and slope from the row.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Container, Mapping
-from functools import partial
-from math import inf
+from collections.abc import Container, Mapping
 from typing import Literal
 
-import numpy as np
-
 from camwright.geometry.arrays import Array
-from camwright.geometry.errors import InputError
 from camwright.geometry.lift import Jet
 from camwright.geometry.pitch_curve import magnitude
 from camwright.pipeline.case.limits import (
     CONTACT_FORCE_MARGIN,
     JAM_INDEX,
     JUMP,
-    PRESSURE_ANGLE,
     AnyLimit,
 )
 from camwright.pipeline.checks import cam_shape, demands, manufacture
-from camwright.pipeline.checks.check import FACTOR_MAX, Declaration
-from camwright.pipeline.checks.extremes import BY_DUTY
+from camwright.pipeline.checks.check import FACTOR_MAX
 from camwright.pipeline.cycle.loaded_cam import LoadedCam, not_negative
 from camwright.pipeline.follower.roller_motion import BALL_LIFE_EXPONENT, wear
 from camwright.pipeline.smoothing.cam_state import (
@@ -40,6 +33,7 @@ from camwright.pipeline.smoothing.cam_state import (
     ScenarioCam,
     State,
     by_duty,
+    kept,
     loaded,
     unloaded,
 )
@@ -143,56 +137,9 @@ def _guide_pv(side: Literal["A", "B"]) -> Constraint[ScenarioCam]:
     return Constraint(f"guide_pv_{side}", lambda ratings: ratings.guide_pv[place], utilisation)
 
 
-def kept(
-    declared: Declaration, limit: Callable[[Ratings], float | None] | None = None
-) -> Constraint[LoadedCam]:
-    """Constraint of a check that is declared by a measure.
-
-    limit: ratings -> limit of a part; None: the row of the check
-    """
-    how, measure, row = declared.measured, declared.measure, declared.limit
-    of_part = row if limit is None else limit
-    if how is None or measure is None or how.kept is None or of_part is None:
-        raise InputError(declared.id, "not declared", "kept by the synthesis, see `Measured`")
-    return Constraint(
-        declared.id,
-        of_part,
-        partial(how.use, measure),
-        factor_max=how.kept.factor_max,
-        value_max=how.kept.value_max,
-        needs=declared.needs,
-    )
-
-
-def kept_loads(
-    declared: Declaration, limit: Callable[[Ratings], float | None] | None = None
-) -> Constraint[ScenarioCam]:
-    """As `kept`, of a check on the loads: over the turn and the load cases where it is reduced."""
-    of_cam, how = kept(declared, limit), declared.measured
-
-    def utilisation(cam: ScenarioCam, limit: float) -> Array | Mean | None:
-        use = of_cam.utilisation(cam, limit)
-        if how is None or how.kept is None or use is None or isinstance(use, Mean):
-            return use
-        if how.reduce == "mean":
-            return Mean(use, how.kept.power)
-        return by_duty(use, cam.scenario, how.kept.power) if how.reduce in BY_DUTY else use
-
-    return Constraint(
-        of_cam.check, of_cam.limit, utilisation, of_cam.factor_max, of_cam.value_max, of_cam.needs
-    )
-
-
 SHAPE: tuple[Constraint[LoadedCam], ...] = (
     kept(cam_shape.spring_travel, lambda ratings: ratings.travel),
-    Constraint(
-        "pressure_angle",
-        PRESSURE_ANGLE,
-        lambda cam, limit: magnitude(cam.motion.pressure_angle) / limit,
-        factor_max=inf,
-        value_max=np.radians(60.0),
-        needs="roller",
-    ),
+    kept(cam_shape.pressure_angle),
     kept(cam_shape.curvature_ratio),
     kept(cam_shape.undercut),
     kept(cam_shape.concave_radius, lambda ratings: ratings.hollow_radius),
