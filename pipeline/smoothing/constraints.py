@@ -18,13 +18,9 @@ from camwright.geometry.arrays import Array
 from camwright.geometry.lift import Jet
 from camwright.geometry.pitch_curve import magnitude
 from camwright.pipeline.case.limits import (
-    CONTACT_FORCE_MARGIN,
-    JAM_INDEX,
-    JUMP,
     AnyLimit,
 )
-from camwright.pipeline.checks import cam_shape, demands, manufacture
-from camwright.pipeline.checks.check import FACTOR_MAX
+from camwright.pipeline.checks import cam_shape, demands, jump_and_jamming, manufacture
 from camwright.pipeline.cycle.loaded_cam import LoadedCam, not_negative
 from camwright.pipeline.follower.roller_motion import BALL_LIFE_EXPONENT, wear
 from camwright.pipeline.smoothing.cam_state import (
@@ -34,6 +30,7 @@ from camwright.pipeline.smoothing.cam_state import (
     State,
     by_duty,
     kept,
+    kept_loads,
     loaded,
     unloaded,
 )
@@ -98,18 +95,6 @@ def _utilisations(
     return uses
 
 
-def _contact_at_overspeed(at: ScenarioCam, limit: float) -> Array | None:
-    if at.ratings.overspeed is None:
-        return None
-    thrown = at.inertia_at(at.ratings.overspeed)
-    return 1.0 + limit - demands.force_left(at.closing, thrown, at.least_spring)
-
-
-def _jam_index_friction_max(at: ScenarioCam, limit: float) -> Array | None:
-    worst = at.jam_worst
-    return None if worst is None else demands.jam_outward(at.slope, worst) / limit
-
-
 def _roller_life(at: ScenarioCam, limit: float) -> Mean:
     """Of L10 = (C / P_m)^3 1e6 turns / mean spin, where P_m^3 mean spin is the mean of N^3 |n|."""
     terms = wear(not_negative(at.surged), at.spin) / limit
@@ -152,29 +137,16 @@ SHAPE: tuple[Constraint[LoadedCam], ...] = (
 
 LOADS: tuple[Constraint[ScenarioCam], ...] = (
     Constraint("contact_pressure", lambda ratings: ratings.pressure, line_pressure),
-    Constraint(
-        "contact_force_margin",
-        CONTACT_FORCE_MARGIN,
-        lambda at, limit: 1.0 + limit - at.normal / at.least_spring,
-    ),
-    Constraint("contact_at_overspeed", CONTACT_FORCE_MARGIN, _contact_at_overspeed),
-    Constraint(
-        "jump",
-        JUMP,
-        lambda at, limit: demands.unloading(at.inertia, at.closing) / limit,
-    ),
+    kept_loads(jump_and_jamming.contact_force_margin),
+    kept_loads(jump_and_jamming.contact_at_overspeed),
+    kept_loads(jump_and_jamming.jump),
     Constraint(
         "jump_speed",
         lambda ratings: ratings.jump_speed,
         lambda at, limit: demands.unloading(at.inertia_at(limit), at.closing),
     ),
-    Constraint(
-        "jam_index",
-        JAM_INDEX,
-        lambda at, limit: demands.jam_outward(at.jet.slope, at.jam) / limit,
-        factor_max=FACTOR_MAX,
-    ),
-    Constraint("jam_index_friction_max", JAM_INDEX, _jam_index_friction_max),
+    kept_loads(jump_and_jamming.jam_index),
+    kept_loads(jump_and_jamming.jam_index_friction_max),
     Constraint(
         "roller_static",
         lambda ratings: ratings.normal_force,
