@@ -171,6 +171,7 @@ class Measured(NamedTuple):
     reduce : str         how the measure is reduced over the cam, by `worst_measure`
     worst : str          whether its greatest or its least value governs
     value : callable     worst measure, numbers -> demand: monotone
+    error : float        error share of the demand over that of the measure: power of `value`
     bound : callable     limit of the demand -> limit of the measure: its inverse, if `kept`
     allowed : callable   numbers -> limit
     needed : tuple       dotted keys without which there is no demand
@@ -188,6 +189,7 @@ class Measured(NamedTuple):
     reduce: Reduce
     worst: Literal["greatest", "least"]
     value: Callable[[Value, Numbers], Value]
+    error: float
     bound: Callable[[float], float]
     allowed: Callable[[Numbers], Allowed]
     needed: tuple[str, ...]
@@ -454,6 +456,7 @@ class Declaring:
         *,
         worst: Literal["greatest", "least"] = "greatest",
         value: Callable[[Value, Numbers], Value] = lambda worst, _: worst,
+        error: float = 1.0,
         bound: Callable[[float], float] = lambda limit: limit,
         allowed: Callable[[Numbers], Allowed] | None = None,
         needed: tuple[str, ...] = (),
@@ -471,6 +474,7 @@ class Declaring:
             reduce=reduce,
             worst=worst,
             value=value,
+            error=error,
             bound=bound,
             allowed=limit,
             needed=needed,
@@ -499,7 +503,7 @@ def _demand(measure: Measure, how: Measured, solution: Solution) -> Demand | Non
         return how.remark(Demand(None, allowed, missing=(*limit.missing, *lacks)), solution)
 
     def worst_of(measured: Measure) -> Extreme:
-        return worst_measure(
+        worst = worst_measure(
             solution,
             measured,
             how.reduce,
@@ -507,6 +511,7 @@ def _demand(measure: Measure, how: Measured, solution: Solution) -> Demand | Non
             at_least=how.worst == "least",
             order=how.order,
         )
+        return worst._replace(error_share=how.error * worst.error_share)
 
     if of_strokes := how.limits_of_strokes(numbers):
         worsts = [worst_of(each.measure) for each in how.strokes]

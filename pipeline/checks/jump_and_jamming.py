@@ -22,23 +22,28 @@ from camwright.pipeline.case.limits import (
 )
 from camwright.pipeline.case.machine import Machine
 from camwright.pipeline.checks import demands
-from camwright.pipeline.checks.check import FACTOR_MAX, SPEED_RANGE, Demand, Kept, check
+from camwright.pipeline.checks.check import (
+    FACTOR_MAX,
+    SPEED_RANGE,
+    Allowed,
+    Demand,
+    Kept,
+    check,
+)
 from camwright.pipeline.checks.extremes import (
     Extreme,
     greatest,
     least,
-    least_force,
     worst_measure,
 )
-from camwright.pipeline.checks.missing_keys import unset
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.cycle import Cycle, least_spring_force
 from camwright.pipeline.cycle.elastic_response import ElasticHistory
 from camwright.pipeline.cycle.loaded_cam import LoadedCam
+from camwright.pipeline.cycle.numbers import Numbers
 from camwright.pipeline.cycle.solution import Solution
 from camwright.pipeline.cycle.speed_sweep import SpeedSweep, highest_speed
 from camwright.pipeline.follower.follower_flight import LONGEST, Flight
-from camwright.pipeline.follower.follower_forces import Loads
 
 _DIGITS = 5  # of the force and of the preload of a follower that leaves the cam
 _TIE = 1e-9  # relative difference up to which two forces are equal, and one is none
@@ -179,12 +184,35 @@ def jam_index_friction_max(cam: LoadedCam) -> Array:
     return np.full_like(cam.jam, np.nan) if worst is None else _outward(cam, worst)
 
 
+def _speed_of_jump(worst: Value, numbers: Numbers) -> Value:
+    """Crank speed, rad/s, from the unloading at a cam speed of 1 rad/s; infinite without one."""
+    root = np.sqrt(np.asarray(worst))
+    some = ~(root <= 0.0)  # NaN stays
+    speed = numbers["mechanism.gear_ratio"] / np.where(some, root, 1.0)
+    return np.where(some, speed, np.inf)
+
+
+def _jump_speed_allowed(numbers: Numbers) -> Allowed:
+    """Least crank speed of the jump, rad/s: a share of the overspeed."""
+    key = f"limits.{OVERSPEED.id}"
+    if (over := numbers.get(key)) is None:
+        return Allowed(None, (key,))
+    fastest = numbers["cam.fastest"] * numbers["mechanism.gear_ratio"]
+    fastest = np.where(np.isnan(over), np.nan, fastest)[()]
+    return Allowed(numbers[f"limits.{JUMP_SPEED.id}"] * fastest)
+
+
+def _at_no_load_case(demand: Demand, _: Solution) -> Demand:
+    """At its cam angle alone: the speed is that of no load case."""
+    return replace(demand, at=demand.at and demand.at._replace(load_case=""))
+
+
 @check(
     JUMP_SPEED,
     title="Machine speed at follower jump",
     unit="rpm",
-    method="least w sqrt(F_c / (-m w^2 s'')) where the follower decelerates, without friction,"
-    " refined between samples",
+    method="w over the root of the greatest -m w^2 s'' / F_c, without friction, refined between"
+    " samples",
     lift_can_help=True,
     tier=Tier.SCREENING,
     formula="min(w sqrt(F_c / (-m w^2 s''))) >= limits.jump_speed times limits.overspeed; w: crank"
@@ -196,16 +224,22 @@ def jam_index_friction_max(cam: LoadedCam) -> Array:
     values=given.MOTION,
     levers=levers.CONTACT,
     page="Follower",
+).measured(
+    "forces",
+    value=_speed_of_jump,
+    error=0.5,
+    allowed=_jump_speed_allowed,
+    applies=lambda speed: ~np.isposinf(speed),
+    remark=_at_no_load_case,
+    deviation=0.003,
+    kept=Kept(lambda cam, limit: demands.unloading(cam.inertia_at(limit), cam.closing)),
 )
-def jump_speed(solution: Solution) -> Demand | None:
-    """Minimum crank speed of follower jump, rad/s; None for a round cam, which has no jump."""
-    worst = least_force(solution.cycles, _jump_speed)._replace(load_case="")
-    if np.isposinf(worst.value):
-        return None
-    over = overspeed(solution.machines)
-    if over is None:
-        return Demand(worst.value, None, worst, unset(solution.machine.limits, OVERSPEED))
-    return Demand(worst.value, solution.machine.limits[JUMP_SPEED] * over, worst)
+def jump_speed(cam: LoadedCam) -> Array:
+    """Unloading at a cam speed of 1 rad/s; of the demand, the crank speed of an unloading of 1.
+
+    None for a round cam, which has no jump.
+    """
+    return demands.greatest_unloading(cam.inertia / cam.speed**2, cam.closing)
 
 
 def _force_at(cam: LoadedCam, speed: Value) -> Array:
@@ -217,11 +251,6 @@ def _kept_at_overspeed(cam: LoadedCam, limit: float) -> Array | None:
     """No constraint where no greatest speed is known."""
     fastest = cam.numbers.get("cam.fastest")
     return None if fastest is None else 1.0 + limit - _force_at(cam, fastest)
-
-
-def _at_no_load_case(demand: Demand, _: Solution) -> Demand:
-    """At its cam angle alone: the speed is that of no load case."""
-    return replace(demand, at=demand.at and demand.at._replace(load_case=""))
 
 
 @check(
@@ -426,16 +455,6 @@ def _landing(flight: Flight) -> str:
 
 def _place(angle: float) -> str:
     return f"{np.degrees(angle) % 360.0:.1f} deg"
-
-
-def _jump_speed(cycle: Cycle, loads: Loads) -> Array:
-    """Crank speed of follower jump by cam angle (n,), rad/s; NaN where not known."""
-    pull = -loads.inertia_force
-    slows = pull > _TIE * np.abs(pull).max()  # in a dwell the acceleration is round-off
-    closing = loads.closing_force
-    ratio = np.sqrt(np.where(closing < 0.0, 0.0, closing) / np.where(slows, pull, 1.0))
-    free = np.where(np.isnan(pull), np.nan, np.where(closing <= 0.0, 0.0, np.inf))
-    return np.where(slows, cycle.machine.crank_speed * ratio, free)
 
 
 def overspeed(machines: Sequence[Machine]) -> float | None:

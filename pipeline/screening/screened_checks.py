@@ -24,7 +24,6 @@ _SCREENED: tuple[Screened, ...] = (
         if each.measured is not None and each.measured.deviation is not None
     ),
     Screened("torque_reduction", loads.torque_reduction, 0.001),
-    Screened("jump_speed", loads.jump_speed, 0.003),
     Screened(
         "contact_pressure",
         contact.contact("contact_pressure", CONTACT_SAFETY),

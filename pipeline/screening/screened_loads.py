@@ -8,11 +8,7 @@ from typing import Literal
 import numpy as np
 
 from camwright.geometry.arrays import Array
-from camwright.geometry.extrema import sampled_greatest, sampled_least
-from camwright.pipeline.case.limits import (
-    JUMP_SPEED,
-    OVERSPEED,
-)
+from camwright.geometry.extrema import sampled_least
 from camwright.pipeline.checks import demands
 from camwright.pipeline.checks.guide_strength import pv_limit
 from camwright.pipeline.screening.design_arrays import Designs, Judged
@@ -24,18 +20,6 @@ Side = Literal["a", "b"]
 def _least_spring_force(cam: ScreenedCam) -> Array:
     """Spring force at minimum lift (m, 1), N."""
     return sampled_least(cam.spring_force)[:, None]
-
-
-def jump_speed(designs: Designs) -> Judged:
-    """From the greatest quotient of unloading inertia and spring force, at the crank speed."""
-    speeds = []
-    for cam in designs.cams:
-        use = demands.greatest_unloading(cam.inertia, cam.closing)
-        greatest = np.maximum(sampled_greatest(use), 0.0)
-        with np.errstate(divide="ignore"):
-            speeds.append(cam.crank_speed[:, 0] / np.sqrt(greatest))
-    over = np.where(np.isnan(designs.limit(OVERSPEED)), np.nan, designs.fastest)
-    return np.min(speeds, axis=0), designs.limit(JUMP_SPEED) * over
 
 
 def _area(designs: Designs, side: Side) -> Array:

@@ -140,11 +140,7 @@ LOADS: tuple[Constraint[ScenarioCam], ...] = (
     kept_loads(jump_and_jamming.contact_force_margin),
     kept_loads(jump_and_jamming.contact_at_overspeed),
     kept_loads(jump_and_jamming.jump),
-    Constraint(
-        "jump_speed",
-        lambda ratings: ratings.jump_speed,
-        lambda at, limit: demands.unloading(at.inertia_at(limit), at.closing),
-    ),
+    kept_loads(jump_and_jamming.jump_speed, lambda ratings: ratings.jump_speed),
     kept_loads(jump_and_jamming.jam_index),
     kept_loads(jump_and_jamming.jam_index_friction_max),
     Constraint(
