@@ -20,7 +20,7 @@ from camwright.geometry.pitch_curve import magnitude
 from camwright.pipeline.case.limits import (
     AnyLimit,
 )
-from camwright.pipeline.checks import cam_shape, demands, jump_and_jamming, manufacture
+from camwright.pipeline.checks import cam_shape, guide_strength, jump_and_jamming, manufacture
 from camwright.pipeline.cycle.loaded_cam import LoadedCam, not_negative
 from camwright.pipeline.follower.roller_motion import BALL_LIFE_EXPONENT, wear
 from camwright.pipeline.smoothing.cam_state import (
@@ -101,27 +101,6 @@ def _roller_life(at: ScenarioCam, limit: float) -> Mean:
     return by_duty(terms, at.scenario, 1.0 / BALL_LIFE_EXPONENT)
 
 
-def _guide_pressure(side: Literal["A", "B"]) -> Constraint[ScenarioCam]:
-    place = "AB".index(side)
-
-    def utilisation(at: ScenarioCam, limit: float) -> Array:
-        return demands.guide_pressure(at.bearing[place], at.ratings.guide_area[place]) / limit
-
-    return Constraint(
-        f"guide_pressure_{side}", lambda ratings: ratings.guide_pressure[place], utilisation
-    )
-
-
-def _guide_pv(side: Literal["A", "B"]) -> Constraint[ScenarioCam]:
-    place = "AB".index(side)
-
-    def utilisation(at: ScenarioCam, limit: float) -> Mean:
-        load, area = at.rubbing[place], at.ratings.guide_area[place]
-        return Mean(demands.guide_pv(load, at.velocity, area) / limit)
-
-    return Constraint(f"guide_pv_{side}", lambda ratings: ratings.guide_pv[place], utilisation)
-
-
 SHAPE: tuple[Constraint[LoadedCam], ...] = (
     kept(cam_shape.spring_travel, lambda ratings: ratings.travel),
     kept(cam_shape.pressure_angle),
@@ -164,10 +143,10 @@ LOADS: tuple[Constraint[ScenarioCam], ...] = (
     Constraint(
         "roller_life", lambda ratings: ratings.life_force_cubed, _roller_life, needs="roller"
     ),
-    _guide_pressure("A"),
-    _guide_pv("A"),
-    _guide_pressure("B"),
-    _guide_pv("B"),
+    kept_loads(guide_strength.guide_pressure_a, lambda ratings: ratings.guide_pressure[0]),
+    kept_loads(guide_strength.guide_pv_a, lambda ratings: ratings.guide_pv[0]),
+    kept_loads(guide_strength.guide_pressure_b, lambda ratings: ratings.guide_pressure[1]),
+    kept_loads(guide_strength.guide_pv_b, lambda ratings: ratings.guide_pv[1]),
     *PARTS,
 )
 """Limits on the loads of the cam in one scenario."""
