@@ -62,8 +62,35 @@ def _greatest_friction(guide: str, numbers: Numbers) -> Value:
     return friction_limits(nominal, None, stated, numbers["tolerances.friction"])[1]
 
 
+def _area(guide: str, numbers: Numbers) -> Value:
+    """Projected area of a guide, m^2."""
+    return numbers[f"{guide}.length"] * numbers[f"{guide}.diameter"]
+
+
+def _mouth(numbers: Numbers) -> Value:
+    """End of guide A over the reference point of the follower at maximum lift, m."""
+    return numbers["follower.overhang_at_max_lift"] - 0.5 * numbers["guides.a.length"]
+
+
+def _extent(numbers: Numbers) -> Value:
+    """Extent of the follower from its reference point towards guide A, m."""
+    thickness = numbers.get("follower.face.thickness")
+    return numbers["roller.radius"] if thickness is None else thickness
+
+
+def _size(numbers: Numbers) -> Value:
+    """Roller radius, or half of the width of a face, m: scale of a gap."""
+    width = numbers.get("follower.face.width")
+    return numbers["roller.radius"] if width is None else 0.5 * width
+
+
 DERIVED: Mapping[str, Callable[[Numbers], Value | None]] = {
-    f"{guide}.friction_greatest": partial(_greatest_friction, guide)
-    for guide in ("guides.a", "guides.b")
+    "guides.a.friction_greatest": partial(_greatest_friction, "guides.a"),
+    "guides.b.friction_greatest": partial(_greatest_friction, "guides.b"),
+    "guides.a.area": partial(_area, "guides.a"),
+    "guides.b.area": partial(_area, "guides.b"),
+    "guides.a.mouth": _mouth,
+    "follower.extent": _extent,
+    "follower.size": _size,
 }
 """Numbers that follow from others, unless they are stated themselves."""

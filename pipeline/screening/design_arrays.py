@@ -320,8 +320,8 @@ class TorqueOfSpeed:
 _NODES = 9
 
 
-def _to_all(designs: Designs) -> NDArray[np.bool_]:
-    return np.ones(designs.count, dtype=bool)
+def _to_all(_: Value) -> NDArray[np.bool_]:
+    return np.array(True)
 
 
 def _never(_: Designs) -> bool:
@@ -332,12 +332,12 @@ class Screened(NamedTuple):
     """A check that screening judges.
 
     deviation: from the demand of the preview, over the greater of demand and limit, as
-    `tests/verification/test_screening.py` measures it; applies: to which designs, (m,); is_bound:
-    whether the demand is a lower bound, by which it can only fail.
+    `tests/verification/test_screening.py` measures it; applies: demand (m,) -> to which designs;
+    is_bound: whether the demand is a lower bound, by which it can only fail.
     """
 
     check: str
     judged: Callable[[Designs], Judged | None]
     deviation: float
-    applies: Callable[[Designs], NDArray[np.bool_]] = _to_all
+    applies: Callable[[Value], NDArray[np.bool_]] = _to_all
     is_bound: Callable[[Designs], bool] = _never

@@ -36,7 +36,6 @@ from camwright.pipeline.checks.contact_strength import (
 from camwright.pipeline.checks.guide_strength import pv_limit
 from camwright.pipeline.checks.guide_wear import greatest_temperatures, pv_of_wear
 from camwright.pipeline.checks.key_strength import keyway_root_of, torque_limits
-from camwright.pipeline.checks.manufacture import wave_amplitude
 from camwright.pipeline.checks.part_strength import (
     allowed_pin_stress,
     bore_pressure_limit,
@@ -88,6 +87,7 @@ def ratings_of(case: Case) -> Ratings:
     torque, torque_by = _least(torque_limits(machine))
     tooth, tooth_by = _least(tooth_torque_limits(machine))
     shaft, cam = machine.camshaft, machine.cam
+    band = cam.profile_tolerance
     by_roller: _RollerRatings = {}
     if roller is not None:
         by_roller = _of_roller(machine, roller)
@@ -113,7 +113,7 @@ def ratings_of(case: Case) -> Ratings:
         guide_gap=limits[GUIDE_GAP],
         guide_mouth=machine.overhang_at_max_lift - 0.5 * guides.a.length,
         held_radius=cam.held_radius if "prime_radius" in case.smoothing.free else None,
-        waves=None if cam.profile_tolerance is None else (wave_amplitude(cam), cam.waviness_length),
+        waves=None if band is None else (0.5 * band, cam.waviness_length),
         cam_torque=torque,
         cam_torque_by=torque_by or "key_pressure",
         tooth_torque=tooth,

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from functools import cached_property
+from functools import cached_property, partial
 from math import inf
 from typing import Generic, Literal, NamedTuple, TypeVar
 
@@ -15,12 +15,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from camwright.geometry.arrays import Array, Value
-from camwright.geometry.errors import GeometryError
+from camwright.geometry.errors import GeometryError, InputError
 from camwright.geometry.flat_face_contour import FaceMotion
 from camwright.geometry.follower_path import Motion
 from camwright.geometry.lift import Jet
 from camwright.geometry.pitch_curve import RollerMotion
-from camwright.pipeline.case.limits import AnyLimit, Limit, OpenLimit
+from camwright.pipeline.case.limits import CONTACT_FORCE_MARGIN, AnyLimit, Limit, OpenLimit
+from camwright.pipeline.checks.check import Declaration
+from camwright.pipeline.checks.extremes import BY_DUTY
 from camwright.pipeline.cycle.loaded_cam import (
     LoadedCam,
     OfGuides,
@@ -67,6 +69,7 @@ def _shaped_jet(energy: tuple[Array, ...], variables: DesignVariables, shape: Sp
 
 def _fixed(variables: DesignVariables, ratings: Ratings) -> dict[str, Value | None]:
     """Numbers of the machine that no scenario changes."""
+    waves = ratings.waves
     fixed: dict[str, Value | None] = {
         "cam.prime_radius": variables.prime_radius,
         "cam.offset": ratings.offset,
@@ -74,6 +77,14 @@ def _fixed(variables: DesignVariables, ratings: Ratings) -> dict[str, Value | No
         "contact.width": ratings.contact_width,
         "contact.modulus": ratings.contact_modulus,
         "cam.held_radius": ratings.held_radius,
+        "cam.fastest": ratings.overspeed,
+        "cam.profile_tolerance": None if waves is None else 2.0 * waves[0],
+        "cam.waviness_length": None if waves is None else waves[1],
+        "guides.a.area": ratings.guide_area[0],
+        "guides.b.area": ratings.guide_area[1],
+        "guides.a.mouth": ratings.guide_mouth,
+        "follower.size": ratings.follower_size,
+        f"limits.{CONTACT_FORCE_MARGIN.id}": ratings.limits.get(CONTACT_FORCE_MARGIN),
     }
     if ratings.face is not None:
         fixed |= {
@@ -248,6 +259,7 @@ class Mean(NamedTuple):
 
 
 _STEP = 1e-30  # complex step of a mean
+_FAR = -10.0  # utilisation in a scenario to which a limit does not apply
 _SHARE = 1e-5  # of a mean: step of the second derivatives
 
 
@@ -346,3 +358,50 @@ class Constraint(Generic[State]):
         if isinstance(self.limit, Limit | OpenLimit):
             return ratings.limits.get(self.limit)
         return self.limit(ratings)
+
+
+def where_applies(applies: Value, use: Array) -> Array:
+    """Utilisation in the scenarios to which a limit applies, far from it in the others."""
+    return np.where(np.asarray(applies) != 0.0, use, _FAR + 0.0 * use)
+
+
+def kept(
+    declared: Declaration, limit: Callable[[Ratings], float | None] | None = None
+) -> Constraint[LoadedCam]:
+    """Constraint of a check that is declared by a measure.
+
+    limit: ratings -> limit of a part; None: the row of the check
+    """
+    how, measure, row = declared.measured, declared.measure, declared.limit
+    of_part = row if limit is None else limit
+    if how is None or measure is None or how.kept is None or of_part is None:
+        raise InputError(declared.id, "not declared", "kept by the synthesis, see `Measured`")
+    return Constraint(
+        declared.id,
+        of_part,
+        partial(how.use, measure),
+        factor_max=how.kept.factor_max,
+        value_max=how.kept.value_max,
+        needs=declared.needs,
+    )
+
+
+def kept_loads(
+    declared: Declaration, limit: Callable[[Ratings], float | None] | None = None
+) -> Constraint[ScenarioCam]:
+    """As `kept`, of a check on the loads: over the turn and the load cases where it is reduced."""
+    of_cam, how = kept(declared, limit), declared.measured
+
+    def utilisation(cam: ScenarioCam, limit: float) -> Array | Mean | None:
+        use = of_cam.utilisation(cam, limit)
+        if how is None or how.kept is None or use is None or isinstance(use, Mean):
+            return use
+        if how.kept.once:
+            return where_applies(np.multiply(cam.scenario.swept, cam.scenario.nominal), use)
+        if how.reduce == "mean":
+            return Mean(use, how.kept.power)
+        return by_duty(use, cam.scenario, how.kept.power) if how.reduce in BY_DUTY else use
+
+    return Constraint(
+        of_cam.check, of_cam.limit, utilisation, of_cam.factor_max, of_cam.value_max, of_cam.needs
+    )
