@@ -519,9 +519,13 @@ gas_speed = _gas_check(
         *levers.SPRING,
         *levers.GENTLER,
     ),
-).measured("angles", allowed=of_key("spring.gas.speed_limit"), remark=_of_gas, deviation=2e-3)(
-    speed
-)
+).measured(
+    "angles",
+    allowed=of_key("spring.gas.speed_limit"),
+    remark=_of_gas,
+    deviation=2e-3,
+    kept=Kept(lambda cam, limit: magnitude(cam.jet.slope) / limit),
+)(speed)
 gas_temperature = _gas_check(
     "gas_temperature",
     title="Temperature of the gas spring",

@@ -81,6 +81,7 @@ def ratings_of(case: Case) -> Ratings:
     over = highest_speed(states) / machine.gear_ratio
     follower: Literal["roller", "face"] = "face" if roller is None else "roller"
     kept = [row for row in rows_kept(follower) if row is not JAM_INDEX or covers("guides")]
+    gas = machine.spring.gas if covers("gas_spring") else None
     by_guide: _GuideRatings = {}
     if covers("guides"):
         by_guide = _of_guides(case, machine, fastest=over)
@@ -120,6 +121,7 @@ def ratings_of(case: Case) -> Ratings:
         tooth_torque_by=tooth_by or "gear_bending",
         shaft_drag=0.0 if shaft is None else shaft.drag,
         keyway=keyway_root_of(machine),
+        gas_slope=None if gas is None else _slope_limit(gas, over),
         **by_roller,
         **by_guide,
     )
@@ -186,8 +188,6 @@ def _of_guides(case: Case, machine: Machine, fastest: float) -> _GuideRatings:
     both = machine.guides.both
     powers = [_least(power_limits(side, guide, case, machine)) for side, guide in both]
     edges = [edge_load(machine, guide, ROOM) for _, guide in both]
-    gas = case.spring.gas if case.scope.covers("gas_spring") else None
-    slopes = [_slope_limit((g, gas), fastest) for _, g in both]
     (a, b) = (guide for _, guide in both)
     return {
         "guide_pressure": (a.pressure_limit, b.pressure_limit),
@@ -197,16 +197,14 @@ def _of_guides(case: Case, machine: Machine, fastest: float) -> _GuideRatings:
         "guide_edge_load": (edges[0], edges[1]),
         "guide_power": (powers[0][0], powers[1][0]),
         "guide_power_by": (powers[0][1], powers[1][1]),
-        "guide_slope": (slopes[0], slopes[1]),
+        "guide_slope": (_slope_limit(a, fastest), _slope_limit(b, fastest)),
         "guide_length": (a.length, b.length),
     }
 
 
-def _slope_limit(parts: tuple[Guide, GasSpring | None], fastest: float) -> float | None:
-    """Greatest lift per cam angle by the speeds of a guide and a gas spring, m/rad."""
-    speeds = [part.speed_limit for part in parts if part is not None]
-    stated = [speed for speed in speeds if speed is not None]
-    return min(stated) / fastest if stated else None
+def _slope_limit(part: Guide | GasSpring, fastest: float) -> float | None:
+    """Greatest lift per cam angle by the speed limit of a part, m/rad."""
+    return None if part.speed_limit is None else part.speed_limit / fastest
 
 
 def power_limits(side: str, guide: Guide, case: Case, machine: Machine) -> dict[str, float]:

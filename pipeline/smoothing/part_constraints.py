@@ -18,7 +18,13 @@ from camwright.pipeline.case.limits import (
     CONTACT_FORCE_MARGIN,
     KEYWAY_SAFETY,
 )
-from camwright.pipeline.checks import demands, guide_strength, guide_wear, manufacture
+from camwright.pipeline.checks import (
+    demands,
+    guide_strength,
+    guide_wear,
+    manufacture,
+    spring_strength,
+)
 from camwright.pipeline.checks.roller_bearing import STANDSTILL
 from camwright.pipeline.contact.hertz import half_width_square
 from camwright.pipeline.contact.traction import rolling_demand
@@ -224,6 +230,7 @@ def line_pressure(at: ScenarioCam, allowed: Value) -> Array:
 PART_SHAPE: tuple[Constraint[LoadedCam], ...] = (
     kept(guide_strength.guide_speed_a, lambda ratings: ratings.guide_slope[0]),
     kept(guide_strength.guide_speed_b, lambda ratings: ratings.guide_slope[1]),
+    kept(spring_strength.gas_speed, lambda ratings: ratings.gas_slope),
 )
 """Limits of the parts on the shape of the cam."""
 
