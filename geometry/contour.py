@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from camwright.geometry.arrays import FULL_TURN, Array, positive, readonly, uniform_turn
+from camwright.geometry.arrays import FULL_TURN, Array, Value, positive, readonly, uniform_turn
 from camwright.geometry.display import Displayed, panels_of
 from camwright.geometry.errors import GeometryError, InputError, in_millimetres
 from camwright.geometry.extrema import Extremum, greatest, least
@@ -107,7 +107,7 @@ class Contour(Displayed, ABC):
         """Contact point with its outward normal and its tangent."""
 
     @abstractmethod
-    def motion(self, jet: Jet, friction: float = 0.0) -> Motion:
+    def motion(self, jet: Jet, friction: Value = 0.0) -> Motion:
         """Motion of the follower under the lift of this cam, at the angles of its jet.
 
         friction: of the follower on the cam
@@ -411,7 +411,7 @@ class RollerContour(Contour):
         inset = self.roller_radius
         return cam_axes(theta, height - inset * across, self.pitch.offset + inset * along)
 
-    def motion(self, jet: Jet, friction: float = 0.0) -> RollerMotion:  # noqa: ARG002
+    def motion(self, jet: Jet, friction: Value = 0.0) -> RollerMotion:  # noqa: ARG002
         return RollerMotion(jet, self.pitch.height_base, self.pitch.offset, self.roller_radius)
 
     def factor(self, theta: ArrayLike) -> Array:

@@ -236,7 +236,7 @@ class FlatFaceContour(Contour):
     def local_frame(self, theta: ArrayLike) -> Frame:
         return Frame(self.pitch.points(theta), self.normal(theta), self.tangent(theta))
 
-    def motion(self, jet: Jet, friction: float = 0.0) -> FaceMotion:
+    def motion(self, jet: Jet, friction: Value = 0.0) -> FaceMotion:
         return FaceMotion(jet, self.pitch.base_radius, self.pitch.offset, friction)
 
     def factor(self, theta: ArrayLike) -> Array:

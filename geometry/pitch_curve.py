@@ -14,7 +14,6 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from camwright.geometry.arrays import Array, Value, Values
-from camwright.geometry.extrema import Extremum, greatest
 from camwright.geometry.follower_path import (
     FollowerPath,
     Reaction,
@@ -87,27 +86,6 @@ class PitchCurve(FollowerPath):
     def pressure_angle(self, theta: ArrayLike) -> Array:
         along, across = self._velocity(theta)
         return np.arctan2(along, across)
-
-    @cached_property
-    def pressure_angles(self) -> tuple[Extremum, Extremum]:
-        """Maximum magnitudes of the pressure angle on rise and return, rad, with cam angles.
-
-        On the other stroke s' counts as zero, which the bottom of the lift has in any case.
-        """
-        count = self.lift.search_count
-
-        def angle(slope: Array, s: Array) -> Array:
-            return np.arctan2(np.abs(slope - self.offset), self.height_base + s)
-
-        def rise(theta: Array) -> Array:
-            s, s1 = self.lift.derivatives(theta, 1)
-            return angle(np.maximum(s1, 0.0), s)
-
-        def back(theta: Array) -> Array:
-            s, s1 = self.lift.derivatives(theta, 1)
-            return angle(np.minimum(s1, 0.0), s)
-
-        return greatest(rise, count), greatest(back, count)
 
     def push_arm(self, theta: ArrayLike) -> Array:
         """Zero: the contact force passes through the roller centre, on the stem's axis."""

@@ -172,6 +172,7 @@ def utilisations(problem, cam, item):
         "key_pressure": size(at.torque) / p.cam_torque,
         "gear_bending": size(at.torque + p.shaft_drag) / p.tooth_torque,
         "keyway_root": stress * p.keyway.per_stress * limit["keyway_safety"],
+        "gas_speed": size(cam.s1) / p.gas_slope,
         "guide_gap": 1 + (p.guide_gap - (mouth - cam.outside)) / (0.5 * p.face.width),
     }  # fmt: skip
     for k, side in enumerate("AB"):

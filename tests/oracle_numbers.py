@@ -12,7 +12,7 @@ LIMIT_NUMBERS = (
     "curvature_rate", "cam_radius", "pressure", "contact_force_margin", "overspeed", "jump",
     "jump_speed", "jam_index", "normal_force", "roller_spin", "life_force_cubed",
     "guide_pressure_a", "guide_pressure_b", "guide_pv_a", "guide_pv_b", "torque_reduction",
-    "minimum_wall", "guide_slope_a", "guide_slope_b", "guide_gap", "guide_edge_load_a",
+    "minimum_wall", "guide_slope_a", "guide_slope_b", "gas_slope", "guide_gap", "guide_edge_load_a",
     "guide_edge_load_b", "guide_power_a", "guide_power_b", "guide_wear_pv_a", "guide_wear_pv_b",
     "friction", "waviness", "fastest", "cam_torque", "tooth_torque", "keyway_safety",
     "grease_rating", "modified_rate", "roller_spin_least",

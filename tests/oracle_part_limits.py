@@ -37,6 +37,10 @@ def guide_speed_b(at):
     return _sides(at.slope / at.p.guide_slope_b)
 
 
+def gas_speed(at):
+    return _sides(at.slope / at.p.gas_slope)
+
+
 def guide_gap(at):
     """Gap between mouth of guide A, which stands still, and the contour turning below it."""
     mouth = at.prime_radius + at.highest + at.p.guide_mouth
@@ -212,6 +216,7 @@ PART_LIMITS: tuple[OracleLimit, ...] = (
                 "wall over bore and keyway"),
     OracleLimit("guide_speed_A", "shape", "guide_slope_a", guide_speed_a, "w |s'| <= v"),
     OracleLimit("guide_speed_B", "shape", "guide_slope_b", guide_speed_b, "w |s'| <= v"),
+    OracleLimit("gas_speed", "shape", "gas_slope", gas_speed, "w |s'| <= v"),
     OracleLimit("guide_gap", "loads", "guide_gap", guide_gap, "clearance of follower and guide"),
     OracleLimit("guide_edge_pressure_A", "loads", "guide_edge_load_a", guide_edge_pressure_a,
                 CARDOSO),

@@ -13,14 +13,14 @@ from typing import Any, TypeVar, get_args
 
 import numpy as np
 
-from camwright.geometry.arrays import Array
+from camwright.geometry.arrays import Value
 from camwright.geometry.errors import InputError, Refused
 from camwright.pipeline.base import units
 from camwright.pipeline.base.quantities import Count, In, Part
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.error_text import as_written
 from camwright.pipeline.case.section import Section, section_of, suggestion
-from camwright.pipeline.follower.spring import Treatment, WoundWire
+from camwright.pipeline.follower.spring import Number, Treatment, WoundWire
 
 _STEP = re.compile(r"([A-Za-z_0-9]+)(?:\[(0|[1-9][0-9]{0,3})\])?")
 Node = TypeVar("Node", Section, Part)
@@ -228,34 +228,38 @@ _LEFT_OUT = ("elastic_modulus", "relaxation")
 
 
 @dataclass(frozen=True, eq=False)
-class WoundSprings(WoundWire[Array]):
-    """Springs of many designs, each value (m,)."""
+class WoundSprings(WoundWire[Number]):
+    """Springs of many designs, or of the numbers of a case."""
 
-    wire_diameter: Array
-    mean_diameter: Array
-    coils: Array
-    free_length: Array
-    end_factor: Array
-    shear_modulus: Array
-    elastic_modulus: Array | None
-    density: Array
-    strength_at_1mm: Array
-    strength_exponent: Array
+    wire_diameter: Number
+    mean_diameter: Number
+    coils: Number
+    free_length: Number
+    end_factor: Number
+    shear_modulus: Number
+    elastic_modulus: Number | None
+    density: Number
+    strength_at_1mm: Number
+    strength_exponent: Number
     treatment: Treatment
     temperature: float | None
-    relaxation: Array | None
+    relaxation: Number | None
 
 
-def wound_spring(case: Case, at: Callable[[str], Array]) -> WoundSprings | None:
+def wound_spring(case: Case, at: Callable[[str], Value | None]) -> WoundSprings[Value] | None:
     """Springs of designs; None where the case has no spring design.
 
     Parameters
     ----------
-    at : callable   dotted key -> values (m,), SI; NaN where the case leaves it out
+    at : callable   dotted key -> value or values (...), SI; None or NaN where it is left out
     """
     design = case.spring.design
     if design is None:
         return None
     values: dict[str, Any] = {name: at(f"spring.design.{name}") for name in WIRE}
-    values |= {name: None for name in _LEFT_OUT if np.isnan(values[name]).all()}
+    values |= {
+        name: None
+        for name in _LEFT_OUT
+        if values[name] is None or np.isnan(np.asarray(values[name])).all()
+    }
     return WoundSprings(**values, treatment=design.treatment, temperature=design.temperature)

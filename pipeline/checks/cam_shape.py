@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from math import inf
 
 import numpy as np
 
@@ -25,10 +26,10 @@ from camwright.pipeline.case.limits import (
     TOOL_RADIUS,
     UNDERCUT_FACTOR,
 )
-from camwright.pipeline.checks.check import NONE, Allowed, Demand, Kept, check, of_key
+from camwright.pipeline.checks.check import NONE, Allowed, Demand, Kept, Stroke, check, of_key
 from camwright.pipeline.checks.extremes import Extreme
 from camwright.pipeline.contact.tiers import Tier
-from camwright.pipeline.cycle.loaded_cam import LoadedCam
+from camwright.pipeline.cycle.loaded_cam import LoadedCam, not_negative
 from camwright.pipeline.cycle.numbers import Numbers
 from camwright.pipeline.cycle.solution import Solution
 
@@ -100,9 +101,28 @@ def sharpness(cam: LoadedCam) -> Array:
     return cam.motion.sharpness
 
 
+def lift(cam: LoadedCam) -> Array:
+    """Lift, m."""
+    return cam.jet.lift
+
+
 def contour_radius(cam: LoadedCam) -> Array:
     """Distance of the contour from the cam axis, m."""
     return cam.motion.contour_radius
+
+
+def angle_on_rise(cam: LoadedCam) -> Array:
+    """Magnitude of the pressure angle on the rise, rad; on the return that of a slope of zero."""
+    return _angle(cam, not_negative(cam.jet.slope))
+
+
+def angle_on_return(cam: LoadedCam) -> Array:
+    """Magnitude of the pressure angle on the return, rad; on the rise that of a slope of zero."""
+    return _angle(cam, -not_negative(-cam.jet.slope))
+
+
+def _angle(cam: LoadedCam, slope: Array) -> Array:
+    return magnitude(np.arctan((slope - cam.numbers["cam.offset"]) / cam.motion.height))
 
 
 def _method_of_undercut(demand: Demand, solution: Solution) -> Demand:
@@ -149,19 +169,18 @@ def _wall_left(cam: LoadedCam, limit: float) -> Array | None:
     load_cases=NONE,
     levers=(*levers.SHAPE, *levers.SPRING),
     page="Cam",
+).measured(
+    "contour",
+    strokes=(
+        Stroke(angle_on_rise, PRESSURE_ANGLE, "on the rise"),
+        Stroke(angle_on_return, RETURN_PRESSURE_ANGLE, "on the return"),
+    ),
+    deviation=1e-4,
+    kept=Kept(factor_max=inf, value_max=np.radians(60.0)),
 )
-def pressure_angle(solution: Solution) -> Demand:
-    """Greatest angle between contact normal and follower axis, rad; of the stroke that governs."""
-    limits = solution.machine.limits
-    allowed, on_return = limits[PRESSURE_ANGLE], limits[RETURN_PRESSURE_ANGLE]
-    if on_return is not None:
-        rise, back = solution.contour.require_roller().pitch.pressure_angles
-        if back.value / on_return > rise.value / allowed:
-            source = limits.source(RETURN_PRESSURE_ANGLE)
-            return Demand(back.value, on_return, _at(back), note="on the return", source=source)
-        return Demand(rise.value, allowed, _at(rise), note="on the rise")
-    extremum = solution.contour.pitch.pressure_angle_max()
-    return Demand(float(abs(extremum.value)), allowed, _at(extremum))
+def pressure_angle(cam: LoadedCam) -> Array:
+    """Magnitude of the angle between contact normal and follower axis, rad."""
+    return magnitude(cam.motion.pressure_angle)
 
 
 curvature_ratio = check(
@@ -361,7 +380,8 @@ minimum_wall = check(
 )(contour_radius)
 
 
-@check(
+spring_travel = check(
+    id="spring_travel",
     title="Maximum lift vs. spring travel",
     tier=Tier.SCREENING,
     formula="max s <= x; s: lift, x: spring.travel_max",
@@ -376,7 +396,4 @@ minimum_wall = check(
     values=("spring.travel_max",),
     levers=(*levers.SPRING, *levers.GENTLER),
     page="Spring",
-).measured("top", allowed=of_key("spring.travel_max"), deviation=1e-4, kept=Kept())
-def spring_travel(cam: LoadedCam) -> Array:
-    """Lift, m, against the spring travel."""
-    return cam.jet.lift
+).measured("top", allowed=of_key("spring.travel_max"), deviation=1e-4, kept=Kept())(lift)

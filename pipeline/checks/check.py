@@ -25,7 +25,6 @@ from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.loaded_cam import LoadedCam
 from camwright.pipeline.cycle.numbers import Numbers
 from camwright.pipeline.cycle.solution import Solution
-from camwright.pipeline.cycle.solved_cam import numbers_of
 
 Status = Literal["pass", "fail", "not_evaluated", "waived"]
 Verdict = Literal["pass", "incomplete", "fail"]
@@ -145,11 +144,23 @@ class Kept(NamedTuple):
                          that has no poles; None where it does not apply. None: measure over limit
     factor_max : float   maximum factor on the limit where limits conflict; 0: fixed
     value_max : float    maximum limit where limits conflict, SI
+    power : float        of a mean, wear or life over the turn that is the utilisation
+    once : bool          the same in the load cases of a preload and at tolerance corners
     """
 
     use: Callable[[LoadedCam, float], Array | None] | None = None
     factor_max: float = 0.0
     value_max: float = math.inf
+    power: float = 1.0
+    once: bool = False
+
+
+class Stroke(NamedTuple):
+    """A measure of one stroke of the follower, its own limit, and the stroke in words."""
+
+    measure: Measure
+    limit: AnyLimit
+    words: str
 
 
 class Measured(NamedTuple):
@@ -160,26 +171,44 @@ class Measured(NamedTuple):
     reduce : str         how the measure is reduced over the cam, by `worst_measure`
     worst : str          whether its greatest or its least value governs
     value : callable     worst measure, numbers -> demand: monotone
+    error : float        error share of the demand over that of the measure: power of `value`
     bound : callable     limit of the demand -> limit of the measure: its inverse, if `kept`
     allowed : callable   numbers -> limit
+    needed : tuple       dotted keys without which there is no demand
     applies : callable   demand -> whether the check applies to the cam
     remark : callable    demand, solution -> demand, with what it has in words
+    solved : callable    solution above the screening -> demand, of which that by the measure is a
+                         bound; None: the measure is the demand at every depth
     order : int          highest derivative of the lift in the measure, 2 or 3
     deviation : float    of the demand of the screening from that of the preview, over the greater
                          of demand and limit, as measured; None: not screened
+    smooth : bool        the screening refines the measure between samples; False: it has poles
+    strokes : tuple      measures with limits of their own, where the case sets each of them: that
+                         of the greatest utilisation governs
     kept : Kept          None: the synthesis does not keep it
     """
 
     reduce: Reduce
     worst: Literal["greatest", "least"]
     value: Callable[[Value, Numbers], Value]
+    error: float
     bound: Callable[[float], float]
     allowed: Callable[[Numbers], Allowed]
+    needed: tuple[str, ...]
     applies: Callable[[Value], NDArray[np.bool_]]
     remark: Callable[[Demand, Solution], Demand]
+    solved: Callable[[Solution], Demand] | None
     order: int
     deviation: float | None
+    smooth: bool
+    strokes: tuple[Stroke, ...]
     kept: Kept | None
+
+    def limits_of_strokes(self, numbers: Numbers) -> tuple[Value, ...]:
+        """Limits of the strokes; (): not all of them are set."""
+        limits = [numbers.get(f"limits.{each.limit.id}") for each in self.strokes]
+        known = tuple(each for each in limits if each is not None)
+        return known if len(known) == len(limits) else ()
 
     def use(self, measure: Measure, cam: LoadedCam, limit: float) -> Array | None:
         """Utilisation (..., n) of a limit in a synthesis, see `Kept`."""
@@ -430,17 +459,38 @@ class Declaring:
         *,
         worst: Literal["greatest", "least"] = "greatest",
         value: Callable[[Value, Numbers], Value] = lambda worst, _: worst,
+        error: float = 1.0,
         bound: Callable[[float], float] = lambda limit: limit,
         allowed: Callable[[Numbers], Allowed] | None = None,
+        needed: tuple[str, ...] = (),
         applies: Callable[[Value], NDArray[np.bool_]] = lambda _: np.array(True),
         remark: Callable[[Demand, Solution], Demand] = lambda demand, _: demand,
+        solved: Callable[[Solution], Demand] | None = None,
         order: int = 2,
         deviation: float | None = None,
+        smooth: bool = True,
+        strokes: tuple[Stroke, ...] = (),
         kept: Kept | None = None,
     ) -> Callable[[Measure], Declaration]:
         """Declare the check by a measure of the loaded cam; see `Measured`."""
         limit = of_row(self.limit) if allowed is None else allowed
-        how = Measured(reduce, worst, value, bound, limit, applies, remark, order, deviation, kept)
+        how = Measured(
+            reduce=reduce,
+            worst=worst,
+            value=value,
+            error=error,
+            bound=bound,
+            allowed=limit,
+            needed=needed,
+            applies=applies,
+            remark=remark,
+            solved=solved,
+            order=order,
+            deviation=deviation,
+            smooth=smooth,
+            strokes=strokes,
+            kept=kept,
+        )
 
         def declared(measure: Measure) -> Declaration:
             return self.made(measure.__name__, partial(_demand, measure, how), how, measure)
@@ -449,17 +499,38 @@ class Declaring:
 
 
 def _demand(measure: Measure, how: Measured, solution: Solution) -> Demand | None:
-    """Demand of a solution by the worst value of a measure."""
-    worst = worst_measure(
-        solution, measure, how.reduce, at_least=how.worst == "least", order=how.order
-    )
-    numbers = numbers_of(solution)
-    value = how.value(worst.value, numbers)
-    if not how.applies(value):
-        return None
+    """Demand of a solution by the worst value of a measure, or as solved."""
+    if how.solved is not None and solution.tier > Tier.SCREENING:
+        return how.solved(solution)
+    numbers = solution.numbers
     limit = how.allowed(numbers)
     allowed = None if limit.value is None else float(limit.value)
-    return how.remark(Demand(float(value), allowed, worst, limit.missing), solution)
+    lacks = tuple(key for key in how.needed if numbers.get(key) is None)
+    if lacks:
+        return how.remark(Demand(None, allowed, missing=(*limit.missing, *lacks)), solution)
+
+    def worst_of(measured: Measure) -> Extreme:
+        worst = worst_measure(
+            solution,
+            measured,
+            how.reduce,
+            lambda worst: float(how.value(worst, numbers)),
+            at_least=how.worst == "least",
+            order=how.order,
+        )
+        return worst._replace(error_share=how.error * worst.error_share)
+
+    if of_strokes := how.limits_of_strokes(numbers):
+        worsts = [worst_of(each.measure) for each in how.strokes]
+        uses = [each.value / float(own) for each, own in zip(worsts, of_strokes, strict=True)]
+        most = uses.index(max(uses))  # of the first, where it is not known
+        stroke, worst = how.strokes[most], worsts[most]
+        source = solution.machine.limits.source(stroke.limit)
+        return Demand(worst.value, float(of_strokes[most]), worst, note=stroke.words, source=source)
+    worst = worst_of(measure)
+    if not how.applies(worst.value):
+        return None
+    return how.remark(Demand(worst.value, allowed, worst, limit.missing), solution)
 
 
 def _missing_words(keys: tuple[str, ...]) -> str:

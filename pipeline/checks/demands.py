@@ -9,11 +9,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from camwright.geometry.arrays import FULL_TURN, Array
-from camwright.geometry.pitch_curve import magnitude
+from camwright.geometry.arrays import Array, Value
+from camwright.pipeline.case.limits import CONTACT_FORCE_MARGIN
+from camwright.pipeline.cycle.loaded_cam import LoadedCam, not_negative
 
 CONTACT_FLOOR = 0.01
 """Least normal force over the least spring force in the quotients by the normal force."""
+_MARGIN = 0.2  # of the least spring force, where the case keeps no contact force margin
 
 
 class FatiguePoint(NamedTuple):
@@ -52,10 +54,9 @@ def unloading(inertia: Array, closing: Array) -> Array:
 
 
 def greatest_unloading(inertia: Array, closing: Array) -> Array:
-    """As `unloading`, >= 0 and real; infinite where no force closes the contact at rest."""
+    """As `unloading`, >= 0; infinite where no force closes the contact at rest."""
     closed = np.where(closing == 0.0, np.nan, closing)
-    use = np.maximum(unloading(inertia, closed), 0.0)
-    return np.where(closing <= 0.0, np.inf, use)
+    return np.where(np.real(closing) <= 0.0, np.inf, not_negative(unloading(inertia, closed)))
 
 
 def force_left(closing: Array, inertia: Array, least_spring: float | Array) -> Array:
@@ -63,40 +64,26 @@ def force_left(closing: Array, inertia: Array, least_spring: float | Array) -> A
     return (closing + inertia) / least_spring
 
 
-def over_contact_force(needed: Array, normal: Array, least_spring: float | Array) -> Array:
+def over_contact_force(needed: Array, normal: Array, least_spring: Value) -> Array:
     """A force over the normal force (...), which counts as `CONTACT_FLOOR` at least.
 
     About to lose the contact, no quotient by its force says more than that; infinite without
     contact, NaN where the normal force is.
     """
-    held = np.maximum(normal, CONTACT_FLOOR * least_spring)
-    share = np.divide(needed, held, out=np.full_like(held, np.inf), where=held > 0.0)
-    return np.where(normal <= 0.0, np.inf, np.where(np.isnan(normal), np.nan, share))
+    floor = CONTACT_FLOOR * least_spring
+    held = np.where(np.real(normal) > np.real(np.asarray(floor)), normal, floor)
+    loaded = np.real(held) > 0.0
+    share = np.where(loaded, needed / np.where(loaded, held, 1.0), np.inf)
+    return np.where(np.real(normal) <= 0.0, np.inf, np.where(np.isnan(normal), np.nan, share))
 
 
-def jam_outward(lift_slope: Array, jam_index: Array) -> Array:
-    """Jam index on the rise, 0 on the return: there friction cannot lock the follower."""
-    return np.where(np.real(lift_slope) > 0, jam_index, 0.0 * jam_index)
+def over_normal_force(cam: LoadedCam, needed: Array) -> Array:
+    """Needed over present normal force (n,); 1 plus the shortfall below the contact force margin.
 
-
-def guide_pressure(bearing_load: Array, area: float | Array) -> Array:
-    """Mean guide pressure, Pa, from the bearing load, N, and the projected area, m^2.
-
-    Bearing load: greater push on one side over the loaded share of the length.
+    For the synthesis: the quotient has a pole where the search passes through a loss of contact.
     """
-    return magnitude(bearing_load) / area
-
-
-def guide_pv(normal_load: Array, velocity: Array, area: float | Array) -> Array:
-    """PV value, Pa m/s, from the normal load, N, sliding speed, m/s, and projected area, m^2."""
-    return magnitude(normal_load * velocity) / area
-
-
-def waviness_force(
-    mass: float | Array, amplitude: float | Array, speed: Array, length: float | Array
-) -> Array:
-    """Inertia force of the follower, N, on waves of an amplitude and a length, m, at a speed, m/s.
-
-    speed: of the contact along the contour.
-    """
-    return mass * amplitude * (FULL_TURN * speed / length) ** 2
+    stated = cam.numbers.get(f"limits.{CONTACT_FORCE_MARGIN.id}")
+    margin = _MARGIN if stated is None else stated
+    normal, least = cam.normal, margin * cam.least_spring
+    scale = np.where(np.real(normal) > np.real(least), normal, least)
+    return 1.0 + (needed - normal) / scale

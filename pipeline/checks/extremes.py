@@ -15,8 +15,7 @@ from camwright.geometry.extrema import TIE, first_greatest
 from camwright.pipeline.cycle.cycle import Cycle
 from camwright.pipeline.cycle.loaded_cam import LoadedCam
 from camwright.pipeline.cycle.solution import Solution
-from camwright.pipeline.cycle.solved_cam import at_top, on_contour
-from camwright.pipeline.follower.follower_forces import Loads
+from camwright.pipeline.cycle.solved_cam import ContourCam, SolvedCam
 
 
 class Extreme(NamedTuple):
@@ -57,27 +56,9 @@ def least(cycles: Iterable[Cycle], measure: Callable[[Cycle], Array]) -> Extreme
     return _extreme(cycles, measure, -1.0)
 
 
-def greatest_force(cycles: Sequence[Cycle], measure: Callable[[Cycle, Loads], Array]) -> Extreme:
-    """Greatest value of forces over all load cases and angles, between the solved ones as well.
-
-    The vertex at the angles of `Cycle.loads_between`, see `sampled_peak`; NaN if any is.
-
-    Parameters
-    ----------
-    measure : callable   cycle, its forces at angles (m,) -> array (m,)
-    """
-    return _vertex(cycles, measure, 1.0)
-
-
-def least_force(cycles: Sequence[Cycle], measure: Callable[[Cycle, Loads], Array]) -> Extreme:
-    """Least value of forces over all load cases and angles; see `greatest_force`."""
-    return _vertex(cycles, measure, -1.0)
-
-
-def _vertex(
-    cycles: Sequence[Cycle], measure: Callable[[Cycle, Loads], Array], sign: float
-) -> Extreme:
-    values = {cycle.load_case: measure(cycle, cycle.loads_between) for cycle in cycles}
+def _vertex(cycles: Sequence[Cycle], measure: Callable[[Cycle], Array], sign: float) -> Extreme:
+    """Vertex of a measure of forces between the solved angles, see `sampled_peak`."""
+    values = {cycle.load_case: measure(cycle) for cycle in cycles}
     worst = _extreme(cycles, lambda cycle: values[cycle.load_case], sign)
     if worst.cam_angle is None:
         return worst
@@ -244,36 +225,93 @@ def _sampling_error(values: Array, sign: float) -> float:
     return error / abs(top) if top != 0.0 else 0.0
 
 
-Reduce = Literal["contour", "top"]
-"""How a measure is reduced over the cam: greatest or least on the unloaded contour, refined between
-samples; at maximum lift."""
+Reduce = Literal["case", "contour", "top", "angles", "forces", "mean", "wear", "life"]
+"""How a measure is reduced over the cam.
+
+case: a figure of the numbers alone; contour: extreme on the unloaded contour, refined between
+samples; top: at maximum lift; angles: extreme of all load cases at the solved angles; forces: the
+same between them, of the forces alone; mean: over the turn, of the worst load case; wear: the same,
+over the load cases by their duty; life: mean damage over the turn, whose lives are summed by the
+duty.
+"""
+BY_DUTY: tuple[Reduce, ...] = ("wear", "life")
+"""Reductions over the load cases by their duty."""
 Measure = Callable[[LoadedCam], Array]
 """Loaded cam -> measure by cam angle (..., n), real or complex; never reduced over the angles."""
 _OF_CONTOURS: WeakKeyDictionary[Contour, dict[tuple[Measure, bool], Extreme]] = WeakKeyDictionary()
+_OF_CYCLES: WeakKeyDictionary[Solution, dict[tuple[Measure, Reduce, bool], Extreme]] = (
+    WeakKeyDictionary()
+)
 
 
 def worst_measure(
-    solution: Solution, measure: Measure, reduce: Reduce, *, at_least: bool, order: int
+    solution: Solution,
+    measure: Measure,
+    reduce: Reduce,
+    value: Callable[[float], float],
+    *,
+    at_least: bool,
+    order: int,
 ) -> Extreme:
-    """Worst value of a measure of a solution; NaN if any is.
+    """Demand by the worst value of a measure of a solution; NaN if any is.
 
-    That of a contour is kept with it, as checks of the same measure and tolerance corners share it:
-    such a measure reads the motion alone.
+    The extreme of a contour is kept with it, as checks of the same measure and tolerance corners
+    share it: such a measure reads the motion alone.
 
     Parameters
     ----------
-    at_least : bool   the least value is the worst
-    order : int       highest derivative of the lift in the measure, 2 or 3
+    value : callable  worst measure -> demand
+    at_least : bool   the least measure is the worst
+    order : int       highest derivative of the lift in the measure of a contour, 2 or 3
     """
-    if reduce == "top":
-        cam, theta = at_top(solution)
-        return Extreme(float(measure(cam)[0]), "", theta)
-    known = _OF_CONTOURS.setdefault(solution.contour, {})
-    if (key := (measure, at_least)) not in known:
-        refined = extrema.least if at_least else extrema.greatest
-        worst = refined(
-            lambda theta: measure(on_contour(solution, theta, order)),
-            solution.contour.lift.search_count,
+    if reduce == "life":
+        return over_duty(
+            solution.cycles, lambda cycle: value(_mean_of(solution, measure, cycle)), life=True
         )
-        known[key] = Extreme(worst.value, "", float(np.mod(worst.theta, FULL_TURN)))
+    worst = _worst(solution, measure, reduce, at_least=at_least, order=order)
+    return worst._replace(value=value(worst.value))
+
+
+def _worst(
+    solution: Solution, measure: Measure, reduce: Reduce, *, at_least: bool, order: int
+) -> Extreme:
+    contour, numbers = solution.contour, solution.numbers
+    if reduce in ("case", "top"):
+        value = float(np.ravel(measure(ContourCam.at_top(contour, numbers)))[0])
+        top = np.mod(contour.lift.highest.theta, FULL_TURN)
+        return Extreme(value, "", None if reduce == "case" else float(top))
+    if reduce == "contour":
+        shapes = _OF_CONTOURS.setdefault(contour, {})
+        if (shape := (measure, at_least)) not in shapes:
+            refined = extrema.least if at_least else extrema.greatest
+            found = refined(
+                lambda theta: measure(ContourCam.at(contour, numbers, theta, order)),
+                contour.lift.search_count,
+            )
+            shapes[shape] = Extreme(found.value, "", float(np.mod(found.theta, FULL_TURN)))
+        return shapes[shape]
+    known = _OF_CYCLES.setdefault(solution, {})
+    if (key := (measure, reduce, at_least)) not in known:
+        known[key] = _worst_of_cycles(solution, measure, reduce, at_least=at_least)
     return known[key]
+
+
+def _worst_of_cycles(
+    solution: Solution, measure: Measure, reduce: Reduce, *, at_least: bool
+) -> Extreme:
+    cycles, sign = solution.cycles, -1.0 if at_least else 1.0
+    if reduce == "mean":
+        return worst_case(
+            cycles, lambda cycle: _mean_of(solution, measure, cycle), at_least=at_least
+        )
+    if reduce == "wear":
+        return over_duty(cycles, lambda cycle: _mean_of(solution, measure, cycle))
+    if reduce == "forces":
+        return _vertex(cycles, lambda cycle: measure(solution.cams_between[cycle]), sign)
+    return _extreme(cycles, lambda cycle: measure(solution.cams[cycle]), sign)
+
+
+def _mean_of(solution: Solution, measure: Measure, cycle: Cycle) -> float:
+    """Mean of a measure over the turn of a cycle of a solution, or of fewer of its angles."""
+    cam = solution.cams.get(cycle)
+    return float(np.mean(measure(SolvedCam.of(cycle, solution.numbers) if cam is None else cam)))

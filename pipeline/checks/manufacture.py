@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
-from camwright.geometry.arrays import Array
+from camwright.geometry.arrays import FULL_TURN, Array
 from camwright.geometry.extrema import first_greatest
 from camwright.pipeline.base import levers
 from camwright.pipeline.base import value_groups as given
@@ -19,13 +21,20 @@ from camwright.pipeline.case.limits import (
 from camwright.pipeline.checks import demands
 from camwright.pipeline.checks.cam_shape import contour_radius
 from camwright.pipeline.checks.check import FACTOR_MAX, NONE, RIPPLE, Demand, Kept, check
-from camwright.pipeline.checks.extremes import NOWHERE, Extreme, greatest
+from camwright.pipeline.checks.extremes import Extreme
 from camwright.pipeline.checks.missing_keys import lacking
 from camwright.pipeline.checks.torque_balance import least_reduction
-from camwright.pipeline.contact.cam_body import CamBody
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.cycle import Cycle
+from camwright.pipeline.cycle.loaded_cam import LoadedCam
 from camwright.pipeline.cycle.solution import Solution
+
+
+def _gap_left(cam: LoadedCam, limit: float) -> Array:
+    """Over the size of the follower; of the cam alone, as the gap of the follower is fixed."""
+    mouth, motion = cam.numbers["guides.a.mouth"], cam.motion
+    space = motion.height - cam.jet.lift + cam.highest + mouth - motion.contour_radius
+    return 1.0 + (limit - space) / cam.numbers["follower.size"]
 
 
 @check(
@@ -41,17 +50,23 @@ from camwright.pipeline.cycle.solution import Solution
     load_cases=NONE,
     levers=(levers.one("follower.overhang_at_max_lift", most=2.0),),
     page="Guides",
+).measured(
+    "contour",
+    value=lambda worst, numbers: (
+        numbers["guides.a.mouth"] - np.maximum(worst, numbers["follower.extent"])
+    ),
+    remark=lambda demand, _: replace(
+        demand, at=None, note="the positions of spring and frame are not in the case"
+    ),
+    deviation=1e-4,
+    kept=Kept(_gap_left, once=True),
 )
-def guide_gap(solution: Solution) -> Demand:
-    """Gap between guide A and the nearest part of cam and follower, m."""
-    machine, contour = solution.machine, solution.contour
-    pitch = contour.pitch
-    mouth = machine.overhang_at_max_lift - 0.5 * machine.guides.a.length
-    highest = pitch.height_base + pitch.lift.highest.value + mouth
-    over_cam = highest - contour.radius_max().value
-    gap = float(np.minimum(over_cam, mouth - machine.follower.extent))
-    note = "the positions of spring and frame are not in the case"
-    return Demand(gap, machine.limits[GUIDE_GAP], note=note)
+def guide_gap(cam: LoadedCam) -> Array:
+    """Height of the contour over the reference point of the follower at maximum lift, m.
+
+    Of the demand, the gap between guide A and the nearest part of cam and follower.
+    """
+    return cam.motion.contour_radius - (cam.motion.height - cam.jet.lift + cam.highest)
 
 
 cam_radius = check(
@@ -69,9 +84,26 @@ cam_radius = check(
 ).measured("contour", deviation=1e-4, kept=Kept(factor_max=FACTOR_MAX))(contour_radius)
 
 
-def wave_amplitude(cam: CamBody) -> float:
-    """Amplitude of the waves of the contour, m: half of the profile tolerance."""
-    return 0.5 * (cam.profile_tolerance or 0.0)
+_BAND, _WAVES = "cam.profile_tolerance", "cam.waviness_length"
+
+
+def _wave_force(cam: LoadedCam) -> Array:
+    """Inertia force of the follower on waves over the full profile tolerance, N."""
+    numbers, speed = cam.numbers, cam.speed * cam.motion.contour_speed
+    amplitude = 0.5 * numbers[_BAND]
+    square: Array = (FULL_TURN * speed / numbers[_WAVES]) ** 2
+    return numbers["follower.mass"] * amplitude * square
+
+
+def _force_of_waves(cam: LoadedCam, limit: float) -> Array | None:
+    """No constraint without a profile tolerance."""
+    if cam.numbers.get(_BAND) is None:
+        return None
+    return demands.over_normal_force(cam, _wave_force(cam) / limit)
+
+
+def _waves_in_words(demand: Demand, solution: Solution) -> Demand:
+    return replace(demand, note=f"waves of {shown(solution.machine.cam.waviness_length, 'mm')}")
 
 
 @check(
@@ -88,25 +120,17 @@ def wave_amplitude(cam: CamBody) -> float:
     values=(*given.LOADS, "cam.waviness_length", "cam.profile_tolerance"),
     levers=(levers.one("cam.profile_tolerance", -1, 10.0), levers.MASS, *levers.SPRING),
     page="Cam",
+).measured(
+    "angles",
+    needed=(_BAND,),
+    remark=_waves_in_words,
+    deviation=0.05,
+    smooth=False,
+    kept=Kept(_force_of_waves),
 )
-def profile_waviness(solution: Solution) -> Demand:
+def profile_waviness(cam: LoadedCam) -> Array:
     """Inertia force of the follower on a wavy contour over the contact force."""
-    cam = solution.machine.cam
-    band, length = cam.profile_tolerance, cam.waviness_length
-
-    def force(cycle: Cycle) -> Array:
-        along = cycle.cam_speed * np.abs(cycle.contour.speed(cycle.theta))
-        added = demands.waviness_force(cycle.machine.mass, wave_amplitude(cam), along, length)
-        return demands.over_contact_force(added, cycle.loads.normal_force, cycle.least_spring_force)
-
-    worst = greatest(solution.cycles, force) if band is not None else NOWHERE
-    return Demand(
-        worst.value,
-        solution.machine.limits[WAVINESS],
-        worst,
-        lacking(cam.table, cam, "profile_tolerance"),
-        note=f"waves of {shown(length, 'mm')}",
-    )
+    return demands.over_contact_force(_wave_force(cam), cam.normal, cam.least_spring)
 
 
 @check(

@@ -6,72 +6,57 @@ Of a gas spring: pressure, stroke, speed and temperature; of a torsion spring: b
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Generic, NamedTuple
+from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike
 
-from camwright.geometry.arrays import Array
+from camwright.geometry.arrays import Array, Value
 from camwright.geometry.errors import InputError
 from camwright.geometry.extrema import first_greatest
+from camwright.geometry.pitch_curve import magnitude
 from camwright.pipeline.base import levers
 from camwright.pipeline.base import value_groups as given
 from camwright.pipeline.base.levers import Lever
 from camwright.pipeline.base.units import celsius, shown
-from camwright.pipeline.case.limits import SPRING_FATIGUE, SPRING_SOLID, SPRING_SURGE, Limit, Sense
-from camwright.pipeline.checks.check import NONE, SPEED_RANGE, Declaration, Demand, check
+from camwright.pipeline.case.limits import SPRING_FATIGUE, SPRING_SOLID, SPRING_SURGE
+from camwright.pipeline.checks.cam_shape import lift
+from camwright.pipeline.checks.check import (
+    NONE,
+    SPEED_RANGE,
+    Allowed,
+    Declaration,
+    Declaring,
+    Demand,
+    Kept,
+    check,
+    of_key,
+)
 from camwright.pipeline.checks.demands import FatiguePoint
-from camwright.pipeline.checks.extremes import Extreme, greatest
-from camwright.pipeline.checks.missing_keys import lacking
+from camwright.pipeline.checks.extremes import Extreme, Measure
 from camwright.pipeline.contact.tiers import Tier
+from camwright.pipeline.cycle.loaded_cam import LoadedCam, wire_of
+from camwright.pipeline.cycle.numbers import Numbers
 from camwright.pipeline.cycle.solution import Solution
-from camwright.pipeline.cycle.speed_sweep import SpringSweep, highest_speed
+from camwright.pipeline.cycle.speed_sweep import SpringSweep
 from camwright.pipeline.follower.spring import (
+    BUCKLING,
+    COIL_GAP,
+    FATIGUE,
+    RELAXATION,
+    SOLID,
+    SOLID_STRESS,
+    STRESS,
     HelicalSpring,
-    Number,
-    Spring,
-    WoundWire,
+    SpringWork,
+    WireLimit,
     surge_harmonics,
 )
-from camwright.pipeline.follower.spring_kinds import GasSpring, TorsionSpring
+from camwright.pipeline.follower.spring_kinds import TorsionSpring
 
-RATE_TOLERANCE = 0.05  # of the rate, where the case has none
-PRELOAD_TOLERANCE = 0.05  # of the preload, where the case has none
 BENDING_STRENGTH = 0.7  # permissible bending stress over R_m, DIN EN 13906-3: verify
 HARDEST = "preload and rate high"
 STABLE = "stable at any deflection"
-
-
-class Work(NamedTuple, Generic[Number]):
-    """Hardest spring in tolerance: preload, maximum force, N; travel, m; rate, N/m."""
-
-    preload: Number
-    greatest: Number
-    travel: Number
-    rate: Number
-
-
-Measure = Callable[[HelicalSpring, Work[float]], float]
-
-
-def hardest_work(
-    spring: Spring, design: WoundWire[Number], preload: Number, travel: Number
-) -> Work[Number]:
-    """Working range of the hardest spring in tolerance.
-
-    Parameters
-    ----------
-    preload : float or array (m,)   greatest of the load cases, N
-    travel : float or array (m,)    maximum lift, m
-    """
-    hard = preload * (1.0 + spring.preload_tolerance)
-    rate = design.rate * (1.0 + spring.rate_tolerance)
-    return Work(hard, hard + rate * travel, travel, rate)
-
-
-def relaxation_allowed(spring: Spring) -> float:
-    """Permissible loss of preload by relaxation, relative: the tolerance of the preload."""
-    return spring.preload_tolerance or PRELOAD_TOLERANCE
 
 
 def _design(solution: Solution) -> HelicalSpring:
@@ -81,67 +66,54 @@ def _design(solution: Solution) -> HelicalSpring:
     return design
 
 
-def _work(solution: Solution) -> Work[float]:
-    preload = max(machine.spring.preload for machine in solution.machines)
-    travel = solution.contour.pitch.lift.highest.value
-    return hardest_work(solution.machine.spring, _design(solution), preload, travel)
+def _measure(
+    limit: WireLimit, work: Callable[[LoadedCam], SpringWork[Value]] = lambda cam: cam.hardest
+) -> Measure:
+    """Demand of a limit of the wire up to the lift; work: of the loaded cam."""
 
-
-def _slow(
-    name: str,
-    measure: Measure,
-    *,
-    title: str,
-    method: str,
-    formula: str,
-    reason: str,
-    limit: Limit | None = None,
-    allowed: Callable[[HelicalSpring], float] = lambda _: 1.0,
-    sense: Sense = "at_most",
-    unit: str = "-",
-    source: str = "",
-    note: Callable[[HelicalSpring], str] = lambda _: "",
-    lift_can_help: bool = True,
-    values: tuple[str, ...] = (),
-    cured_by: tuple[Lever, ...] = (),
-) -> Declaration:
-    """Check of the spring design at the upper ends of its tolerances, without surge."""
-
-    @check(
-        limit,
-        id=name,
-        title=title,
-        unit=unit,
-        sense=sense,
-        method=method,
-        source=source,
-        lift_can_help=lift_can_help,
-        tier=Tier.SCREENING,
-        moved_by_tolerance=False,
-        part="spring",
-        formula=formula,
-        reason=reason,
-        load_cases=NONE,
-        values=values,
-        levers=cured_by,
-        page="Spring",
-    )
-    def demand(solution: Solution) -> Demand:
-        design = _design(solution)
-        bound = allowed(design) if limit is None else solution.machine.limits[limit]
-        return Demand(
-            measure(design, _work(solution)),
-            bound,
-            note=note(design),
-            figures=(design.source,),
-            corner=_corner(solution.machine.spring, HARDEST),
-        )
+    def demand(cam: LoadedCam) -> Array:
+        return np.asarray(limit.demand(cam.wire, work(cam)))
 
     return demand
 
 
-def _corner(spring: Spring, words: str) -> str:
-    return words if spring.preload_tolerance > 0 or spring.rate_tolerance > 0 else ""
+def _allowed(limit: WireLimit) -> Callable[[Numbers], Allowed]:
+    """What the wire allows."""
+    by_wire = limit.allowed
+    if by_wire is None:
+        raise InputError(limit.words, "no limit", "set by the wire")
+    return lambda numbers: Allowed(by_wire(wire_of(numbers)))
+
+
+def _of_wire(demand: Demand, solution: Solution) -> Demand:
+    """With the source of the wire; of the hardest spring in tolerance."""
+    return replace(demand, figures=(_design(solution).source,), corner=HARDEST)
+
+
+def _at_rest(demand: Demand, solution: Solution) -> Demand:
+    return replace(_of_wire(demand, solution), note="without surge")
+
+
+def _stable(demand: Demand, solution: Solution) -> Demand:
+    note = STABLE if np.isinf(_design(solution).buckling_deflection) else ""
+    return replace(_of_wire(demand, solution), note=note)
+
+
+def _surge_over_speed(demand: Demand, solution: Solution) -> Demand:
+    """With the harmonics that the surge meets, and its greatest force."""
+    design, lift = _design(solution), solution.contour.pitch.lift.values
+    highest, margin = surge_harmonics(lift, demand.value or 0.0)
+    sweeps = solution.speed_sweeps
+    sweep = sweeps[first_greatest([each.surge_force.max() for each in sweeps])]
+    added = float(sweep.surge_force.max())
+    speed = float(sweep.crank_speed[first_greatest(sweep.surge_force)])
+    note = (
+        f"highest harmonic of at least 1 % of the acceleration: {highest}; surge lies"
+        f" {margin:.2f} times above it and adds up to {shown(added, 'N', 3)} at"
+        f" {shown(speed, 'rpm', 4)} of the machine with a damping ratio of"
+        f" {design.damping:g}"
+    )
+    return replace(demand, note=note)
 
 
 class OverSpeed(NamedTuple):
@@ -152,17 +124,8 @@ class OverSpeed(NamedTuple):
     words: str
 
 
-def _at_rest(work: Work[float]) -> SpringSweep:
-    """Working range of the spring without surge: a lower bound of its forces."""
-    forces = (np.full((2, 1), force) for force in (work.preload, work.greatest))
-    return SpringSweep(np.zeros(1), *forces)
-
-
 def _over_speed(solution: Solution, use: Callable[[SpringSweep], Array]) -> OverSpeed:
     """Greatest value (2, m) over both ends of the spring and all speeds."""
-    if solution.tier is Tier.SCREENING:
-        most = float(np.max(use(_at_rest(_work(solution)))))
-        return OverSpeed(most, most, "without surge")
     sweep, damped = solution.hardest_spring, solution.least_damped
     if sweep is None:
         return OverSpeed(np.nan, np.nan, "")
@@ -175,7 +138,27 @@ def _over_speed(solution: Solution, use: Callable[[SpringSweep], Array]) -> Over
     )
 
 
-@check(
+def _stress_over_speed(solution: Solution) -> Demand:
+    """Greatest shear stress of the wire with surge over the static strength."""
+    design = _design(solution)
+    worst = _over_speed(solution, lambda sweep: design.static_use(sweep.greatest))
+    share = worst.least_damped / worst.value - 1.0
+    at = Extreme(worst.value, error_share=share)
+    return _of_wire(Demand(worst.value, 1.0, at, note=worst.words), solution)
+
+
+def _fatigue_over_speed(solution: Solution) -> Demand:
+    """Least fatigue safety of the wire with surge over the speed range."""
+    design = _design(solution)
+    worst = _over_speed(solution, lambda sweep: design.fatigue_use(sweep.least, sweep.greatest))
+    safety = 1.0 / worst.value  # of a preload above zero
+    share = 0.0 if safety == 0.0 else 1.0 - worst.value / worst.least_damped
+    allowed = solution.machine.limits[SPRING_FATIGUE]
+    at = Extreme(safety, error_share=share)
+    return _of_wire(Demand(safety, allowed, at, note=worst.words), solution)
+
+
+spring_stress = check(
     id="spring_stress",
     title="Spring shear stress / static strength",
     unit="-",
@@ -196,26 +179,19 @@ def _over_speed(solution: Solution, use: Callable[[SpringSweep], Array]) -> Over
     values=(*given.SPRING, *given.SURGE, *given.WIRE, "limits.overspeed"),
     levers=(levers.one("spring.design.wire_diameter", most=2.0), *levers.GENTLER),
     page="Spring",
-)
-def spring_stress(solution: Solution) -> Demand:
-    """Greatest shear stress of the wire with surge over the static strength."""
-    design = _design(solution)
-    worst = _over_speed(
-        solution, lambda sweep: design.stress(sweep.greatest) / design.static_strength
-    )
-    share = worst.least_damped / worst.value - 1.0
-    return Demand(
-        worst.value,
-        1.0,
-        Extreme(worst.value, error_share=share),
-        note=worst.words,
-        figures=(design.source,),
-        corner=_corner(solution.machine.spring, HARDEST),
-    )
+).measured(
+    "top",
+    allowed=_allowed(STRESS),
+    remark=_at_rest,
+    solved=_stress_over_speed,
+    deviation=0.1,
+    kept=Kept(),
+)(_measure(STRESS, lambda cam: cam.stressed))
 
 
-@check(
+spring_fatigue = check(
     SPRING_FATIGUE,
+    id="spring_fatigue",
     title="Fatigue safety factor of the spring",
     method="Wahl factor, range of force at either end of the spring over the speed range, surge"
     " included",
@@ -232,21 +208,15 @@ def spring_stress(solution: Solution) -> Demand:
     values=(*given.SPRING, *given.SURGE, *given.WIRE, "limits.overspeed"),
     levers=(levers.one("spring.design.wire_diameter", most=2.0), *levers.GENTLER),
     page="Spring",
-)
-def spring_fatigue(solution: Solution) -> Demand:
-    """Least fatigue safety of the wire with surge over the speed range."""
-    design = _design(solution)
-    worst = _over_speed(solution, lambda sweep: design.fatigue_use(sweep.least, sweep.greatest))
-    safety = 1.0 / worst.value  # of a preload above zero
-    share = 0.0 if safety == 0.0 else 1.0 - worst.value / worst.least_damped
-    return Demand(
-        safety,
-        solution.machine.limits[SPRING_FATIGUE],
-        Extreme(safety, error_share=share),
-        note=worst.words,
-        figures=(design.source,),
-        corner=_corner(solution.machine.spring, HARDEST),
-    )
+).measured(
+    "top",
+    value=lambda worst, _: 1.0 / worst,
+    bound=lambda limit: 1.0 / limit,
+    remark=_at_rest,
+    solved=_fatigue_over_speed,
+    deviation=0.1,
+    kept=Kept(),
+)(_measure(FATIGUE, lambda cam: cam.fatigued))
 
 
 def spring_fatigue_points(solution: Solution) -> list[FatiguePoint]:
@@ -263,75 +233,110 @@ def spring_fatigue_points(solution: Solution) -> list[FatiguePoint]:
     return [FatiguePoint("wire", float(amplitude[worst]), float(mean[worst]), endurance, strength)]
 
 
-spring_solid = _slow(
-    "spring_solid",
-    lambda design, work: design.solid_clearance(work.preload, work.travel),
+spring_solid = check(
+    SPRING_SOLID,
+    id="spring_solid",
     title="Spring solid-height clearance",
-    limit=SPRING_SOLID,
-    sense="at_least",
     method="free length less solid length less deflection at maximum lift, over that deflection",
+    lift_can_help=True,
+    tier=Tier.SCREENING,
+    moved_by_tolerance=False,
+    part="spring",
     formula="(L0 - Lc - s_max) / s_max >= limits.spring_solid; L0, Lc: free and solid length,"
     " s_max = P/k + h: deflection at maximum lift h, preload P high",
     reason="A spring that goes solid stops the follower.",
+    load_cases=NONE,
     values=(*given.SPRING, *given.RATE),
-    cured_by=(
+    levers=(
         levers.one("spring.design.free_length", most=2.0),
         *levers.GENTLER,
     ),
-)
-spring_coil_gap = _slow(
-    "spring_coil_gap",
-    lambda design, work: design.gap_left(work.preload, work.travel),
+    page="Spring",
+).measured(
+    "top",
+    remark=_of_wire,
+    deviation=1e-4,
+    kept=Kept(),
+)(_measure(SOLID))
+spring_coil_gap = check(
+    id="spring_coil_gap",
     title="Sum of the gaps between the coils at maximum lift",
-    allowed=lambda design: design.minimum_gaps,
     sense="at_least",
     unit="mm",
     source="1.5 S_a, dynamic load, cold coiled, EN 13906-1:2013, 9.9: verify",
     method="free length less solid length less deflection at maximum lift",
+    lift_can_help=True,
+    tier=Tier.SCREENING,
+    moved_by_tolerance=False,
+    part="spring",
     formula="L0 - Lc - s_max >= 1.5 n (0.0015 D^2/d + 0.1 d); L0, Lc: free and solid length, s_max:"
     " deflection at maximum lift with the preload high, n: active coils, D: mean diameter, d: wire",
     reason="Below it coils touch before the solid length, the rate rises and the wire wears.",
+    load_cases=NONE,
     values=(*given.SPRING, *given.RATE),
-    cured_by=(
+    levers=(
         levers.one("spring.design.free_length", most=2.0),
         *levers.GENTLER,
     ),
-)
-spring_solid_stress = _slow(
-    "spring_solid_stress",
-    lambda design, work: design.solid_stress(work.rate),
+    page="Spring",
+).measured(
+    "top",
+    allowed=_allowed(COIL_GAP),
+    remark=_of_wire,
+    deviation=1e-4,
+    kept=Kept(),
+)(_measure(COIL_GAP))
+spring_solid_stress = check(
+    id="spring_solid_stress",
     title="Shear stress of the spring at its solid length",
-    allowed=lambda design: design.static_strength,
     unit="MPa",
     source="0.56 R_m, cold coiled, EN 13906-1:2013, 10.1.1: verify",
     method="rate times free less solid length, without correction factor, rate high",
+    tier=Tier.SCREENING,
+    moved_by_tolerance=False,
+    part="spring",
     formula="tau_c = 8 D F_c / (pi d^3) <= 0.56 R_m; F_c = k (L0 - Lc): force at solid length with"
     " the rate high, R_m: tensile strength of the wire",
     reason="A spring is pressed solid when it is coiled, mounted and over-run, and sets"
     " beyond this stress.",
-    lift_can_help=False,
+    load_cases=NONE,
     values=(*given.SPRING, *given.RATE, *given.WIRE),
-    cured_by=(levers.one("spring.design.free_length", -1, 2.0),),
-)
-spring_buckling = _slow(
-    "spring_buckling",
-    lambda design, work: (
-        (design.deflection(work.preload) + work.travel) / design.buckling_deflection
-    ),
+    levers=(levers.one("spring.design.free_length", -1, 2.0),),
+    page="Spring",
+).measured(
+    "case",
+    allowed=_allowed(SOLID_STRESS),
+    remark=_of_wire,
+    deviation=1e-4,
+)(_measure(SOLID_STRESS))
+spring_buckling = check(
+    id="spring_buckling",
+    unit="-",
     title="Spring deflection / buckling deflection",
     source="EN 13906-1:2013, 9.14, after Haringx: verify",
     method="deflection at maximum lift over s_K with the seating coefficient"
     " spring.design.end_factor; 0: stable at any deflection",
+    lift_can_help=True,
+    tier=Tier.SCREENING,
+    moved_by_tolerance=False,
+    part="spring",
     formula="s_max / s_K <= 1, s_K = L0 / (2 (1 - G/E)) (1 - sqrt(1 - (1 - G/E) / (0.5 + G/E)"
     " (pi D / (nu L0))^2)); s_max: deflection at maximum lift with the preload high, nu: seating"
     " coefficient",
     reason="A spring that buckles rubs on the stem and loses its force.",
-    note=lambda design: STABLE if np.isinf(design.buckling_deflection) else "",
-    cured_by=(
+    load_cases=NONE,
+    levers=(
         levers.one("spring.design.mean_diameter", most=2.0),
         *levers.GENTLER,
     ),
-)
+    page="Spring",
+).measured(
+    "top",
+    allowed=_allowed(BUCKLING),
+    remark=_stable,
+    deviation=1e-4,
+    kept=Kept(),
+)(_measure(BUCKLING))
 
 
 @check(
@@ -348,13 +353,10 @@ spring_buckling = _slow(
     values=("spring.rate", *given.RATE),
     levers=(levers.one("spring.design.coils"), levers.one("spring.design.coils", -1)),
     page="Spring",
-)
-def spring_rate(solution: Solution) -> Demand:
+).measured("case", allowed=of_key("spring.rate_tolerance"), remark=_of_wire, deviation=1e-4)
+def spring_rate(cam: LoadedCam) -> Array:
     """Deviation of the rate of the spring design from that of the case, relative."""
-    spring, design = solution.machine.spring, _design(solution)
-    allowed = spring.rate_tolerance or RATE_TOLERANCE
-    error = abs(design.rate / spring.rate - 1.0)
-    return Demand(error, allowed, figures=(design.source,), corner=_corner(spring, HARDEST))
+    return np.asarray(cam.wire.rate_error(cam.numbers["spring.rate"]))
 
 
 @check(
@@ -371,29 +373,14 @@ def spring_rate(solution: Solution) -> Demand:
     load_cases=SPEED_RANGE,
     values=(*given.SURGE, "limits.overspeed"),
     page="Spring",
-)
-def spring_surge(solution: Solution) -> Demand:
+).measured("case", worst="least", remark=_surge_over_speed, deviation=1e-4)
+def spring_surge(cam: LoadedCam) -> Array:
     """First natural frequency of the spring over the highest cam frequency."""
-    machine, design = solution.machine, _design(solution)
-    top = highest_speed(solution.machines) / machine.gear_ratio
-    lift = solution.contour.pitch.lift.values
-    highest, ratio, margin = surge_harmonics(lift, top, design.surge_frequency)
-    sweeps = solution.speed_sweeps
-    sweep = sweeps[first_greatest([each.surge_force.max() for each in sweeps])]
-    added = float(sweep.surge_force.max())
-    speed = float(sweep.crank_speed[first_greatest(sweep.surge_force)])
-    return Demand(
-        ratio,
-        machine.limits[SPRING_SURGE],
-        Extreme(ratio),
-        note=f"highest harmonic of at least 1 % of the acceleration: {highest}; surge lies"
-        f" {margin:.2f} times above it and adds up to {shown(added, 'N', 3)} at"
-        f" {shown(speed, 'rpm', 4)} of the machine with a damping ratio of"
-        f" {design.damping:g}",
-    )
+    return np.asarray(cam.wire.surge_ratio(cam.numbers["cam.fastest"]))
 
 
-@check(
+spring_relaxation = check(
+    id="spring_relaxation",
     title="Loss of preload by relaxation / preload",
     unit="-",
     source="tolerance of the preload in the case, else 5 %",
@@ -413,59 +400,39 @@ def spring_surge(solution: Solution) -> Demand:
         "spring.design.temperature",
     ),
     page="Spring",
-)
-def spring_relaxation(solution: Solution) -> Demand:
-    """Loss of preload by relaxation at temperature, relative."""
-    spring, design = solution.machine.spring, _design(solution)
-    work = _work(solution)
-    return Demand(
-        design.relaxed_preload(work.preload, work.greatest),
-        relaxation_allowed(spring),
-        missing=lacking("spring.design", design, "temperature", "relaxation"),
-        figures=(design.source,),
-        corner=_corner(spring, HARDEST),
-    )
+).measured(
+    "top",
+    allowed=of_key("spring.preload_tolerance"),
+    needed=("spring.design.temperature", "spring.design.relaxation"),
+    remark=_of_wire,
+    deviation=1e-4,
+    kept=Kept(),
+)(_measure(RELAXATION))
 
 
-def _gas(solution: Solution) -> GasSpring:
+def _of_gas(demand: Demand, solution: Solution) -> Demand:
     gas = solution.machine.spring.gas
-    if gas is None:
-        raise InputError("spring.gas", "missing", "given for the checks of the gas spring")
-    return gas
+    return replace(demand, figures=() if gas is None else (gas.source,))
 
 
-def hardest_force(spring: Spring, travel: ArrayLike) -> Array:
-    """Force at lifts (...), m, of the hardest spring in tolerance, N."""
-    preload = spring.preload * (1.0 + spring.preload_tolerance)
-    risen = spring.force(np.asarray(travel)) - spring.preload
-    return np.asarray(preload + risen * (1.0 + spring.rate_tolerance))
-
-
-def gas_pressure_at(spring: Spring, gas: GasSpring, travel: ArrayLike) -> Array:
-    """Pressure above the surroundings at lifts (...), m, of the hardest spring in tolerance, Pa."""
-    return np.asarray(hardest_force(spring, travel) / gas.area)
+def _of_hard_gas(demand: Demand, solution: Solution) -> Demand:
+    return replace(_of_gas(demand, solution), corner=HARDEST)
 
 
 def _gas_check(
     name: str,
-    measure: Callable[[Solution, GasSpring], float | Extreme | None],
-    allowed: str,
     *,
     title: str,
     unit: str,
     method: str,
     formula: str,
     reason: str,
-    needs: tuple[str, ...] = (),
     lift_can_help: bool = True,
-    corner: str = "",
     values: tuple[str, ...],
     cured_by: tuple[Lever, ...] = (),
-) -> Declaration:
-    """Check of a gas spring against the limit of its maker, `spring.gas.<allowed>`."""
-    in_display_unit = celsius if unit == "degC" else float
-
-    @check(
+) -> Declaring:
+    """Check of a gas spring against a limit of its maker."""
+    return check(
         id=name,
         title=title,
         unit=unit,
@@ -482,53 +449,50 @@ def _gas_check(
         levers=cured_by,
         page="Spring",
     )
-    def demand(solution: Solution) -> Demand:
-        gas = _gas(solution)
-        measured, limit = measure(solution, gas), getattr(gas, allowed)
-        at = measured if isinstance(measured, Extreme) else None
-        value = measured.value if isinstance(measured, Extreme) else measured
-        return Demand(
-            None if value is None else in_display_unit(value),
-            None if limit is None else in_display_unit(limit),
-            at,
-            missing=lacking("spring.gas", gas, allowed, *needs),
-            figures=(gas.source,),
-            corner=_corner(solution.machine.spring, corner) if corner else "",
-        )
-
-    return demand
 
 
-def _travel(solution: Solution) -> float:
-    return float(solution.contour.pitch.lift.highest.value)
+def _gas_pressure(cam: LoadedCam) -> Array:
+    """Pressure above the surroundings of the hardest spring in tolerance, Pa."""
+    return np.asarray(cam.hardest.greatest / cam.numbers["spring.gas.area"])
 
 
-def _greatest_speed(solution: Solution) -> Extreme:
-    """Greatest speed of the follower over the load cases, m/s."""
-    return greatest(solution.cycles, lambda cycle: np.abs(cycle.loads.velocity))
+def _gas_temperature(cam: LoadedCam) -> Array:
+    """Temperature of the gas, degC."""
+    return np.asarray(celsius(cam.numbers["spring.gas.temperature"]))
+
+
+def _warmest(numbers: Numbers) -> Allowed:
+    limit = of_key("spring.gas.temperature_limit")(numbers)
+    return limit if limit.value is None else limit._replace(value=celsius(limit.value))
+
+
+def speed(cam: LoadedCam) -> Array:
+    """Speed of the follower, m/s."""
+    return magnitude(cam.velocity)
 
 
 gas_pressure = _gas_check(
     "gas_pressure",
-    lambda solution, gas: float(gas_pressure_at(solution.machine.spring, gas, _travel(solution))),
-    "pressure_limit",
     title="Maximum pressure of the gas spring",
     unit="MPa",
     method="force at maximum lift over the area, preload and rise of the force high",
     formula="F / A <= spring.gas.pressure_limit; F: force at maximum lift, preload and rise high in"
     " tolerance, A: area; above the pressure of the surroundings",
     reason="beyond it seals and cylinder of the spring fail.",
-    corner=HARDEST,
     values=given.SPRING,
     cured_by=(
         levers.one("spring.gas.volume", most=2.0),
         *levers.GENTLER,
     ),
-)
+).measured(
+    "top",
+    allowed=of_key("spring.gas.pressure_limit"),
+    remark=_of_hard_gas,
+    deviation=1e-4,
+    kept=Kept(),
+)(_gas_pressure)
 gas_stroke = _gas_check(
     "gas_stroke",
-    lambda solution, _: _travel(solution),
-    "stroke",
     title="Stroke of the gas spring",
     unit="mm",
     method="greatest lift, between samples too",
@@ -539,11 +503,11 @@ gas_stroke = _gas_check(
         *levers.SPRING,
         *levers.GENTLER,
     ),
+).measured("top", allowed=of_key("spring.gas.stroke"), remark=_of_gas, deviation=1e-4, kept=Kept())(
+    lift
 )
 gas_speed = _gas_check(
     "gas_speed",
-    lambda solution, _: _greatest_speed(solution),
-    "speed_limit",
     title="Maximum piston speed of the gas spring",
     unit="m/s",
     method="greatest speed of the follower over the load cases",
@@ -555,49 +519,69 @@ gas_speed = _gas_check(
         *levers.SPRING,
         *levers.GENTLER,
     ),
-)
+).measured(
+    "angles",
+    allowed=of_key("spring.gas.speed_limit"),
+    remark=_of_gas,
+    deviation=2e-3,
+    kept=Kept(lambda cam, limit: magnitude(cam.jet.slope) / limit),
+)(speed)
 gas_temperature = _gas_check(
     "gas_temperature",
-    lambda _, gas: gas.temperature,
-    "temperature_limit",
     title="Temperature of the gas spring",
     unit="degC",
     method="spring.gas.temperature, at which the pressure is computed",
     formula="T <= spring.gas.temperature_limit; T: spring.gas.temperature",
     reason="seals and oil of the spring age above it.",
-    needs=("temperature",),
     lift_can_help=False,
     values=("spring.gas.*temperature*",),
-)
+).measured(
+    "case",
+    allowed=_warmest,
+    needed=("spring.gas.temperature",),
+    remark=_of_gas,
+    deviation=0.0,
+)(_gas_temperature)
 
 
-def torsion_stress_at(
-    spring: Spring, torsion: TorsionSpring, travel: ArrayLike
-) -> tuple[Array, Array] | None:
-    """Bending stress at zero lift and at lifts (...), m, of the hardest spring in tolerance, Pa.
+def _torsion(cam: LoadedCam) -> TorsionSpring:
+    torsion = cam.spring_shape
+    if not isinstance(torsion, TorsionSpring):
+        raise InputError("spring.torsion", "missing", "given for the checks of the spring")
+    return torsion
 
-    None without the wire.
-    """
-    lift = np.stack([np.zeros_like(travel, dtype=float), np.asarray(travel, dtype=float)])
-    stress = torsion.bending_stress(torsion.moment_at(hardest_force(spring, lift), lift))
-    return None if stress is None else (stress[0], stress[1])
+
+def _bending_stress(cam: LoadedCam) -> Array:
+    """Bending stress of the hardest spring in tolerance, Pa; NaN without the wire."""
+    torsion, work = _torsion(cam), cam.hardest
+    return torsion.bending_stress(torsion.moment_at(work.greatest, work.travel))
+
+
+def _stress_range(cam: LoadedCam) -> Array:
+    """Bending stress less that at zero lift, Pa."""
+    torsion, work = _torsion(cam), cam.hardest
+    least = torsion.bending_stress(torsion.moment_at(work.preload, 0.0 * work.travel))
+    return _bending_stress(cam) - least
+
+
+def _of_torsion(demand: Demand, solution: Solution) -> Demand:
+    torsion = solution.machine.spring.torsion
+    return replace(demand, figures=() if torsion is None else (torsion.source,), corner=HARDEST)
 
 
 def _torsion_check(
-    name: str,
-    measure: Callable[[Array, Array], Array],
-    allowed: Callable[[TorsionSpring], float | None],
-    *,
-    title: str,
-    source: str,
-    method: str,
-    formula: str,
-    reason: str,
-    needs: str,
-) -> Declaration:
-    """Check of the bending stress of a torsion spring at zero and maximum lift."""
+    name: str, measure: Measure, key: str, share: float, *, title: str, source: str, method: str,
+    formula: str, reason: str,
+) -> Declaration:  # fmt: skip
+    """Check of the bending stress of a torsion spring against a share of the value at a key."""
+    needed = (*(f"spring.torsion.{each}" for each in ("wire_diameter", "mean_diameter")), key)
 
-    @check(
+    def allowed(numbers: Numbers) -> Allowed:
+        value = numbers.get(key)
+        missing = tuple(each for each in needed if numbers.get(each) is None)
+        return Allowed(None if value is None else share * value, missing)
+
+    return check(
         id=name,
         title=title,
         unit="MPa",
@@ -613,34 +597,14 @@ def _torsion_check(
         values=given.SPRING,
         levers=(levers.one("spring.torsion.wire_diameter", most=2.0), *levers.GENTLER),
         page="Spring",
-    )
-    def demand(solution: Solution) -> Demand:
-        spring = solution.machine.spring
-        torsion = spring.torsion
-        if torsion is None:
-            raise InputError("spring.torsion", "missing", "given for the checks of the spring")
-        stress = torsion_stress_at(spring, torsion, _travel(solution))
-        return Demand(
-            None if stress is None else float(measure(*stress)),
-            allowed(torsion),
-            missing=lacking("spring.torsion", torsion, "wire_diameter", "mean_diameter", needs),
-            figures=(torsion.source,),
-            corner=_corner(spring, HARDEST),
-        )
-
-    return demand
-
-
-def torsion_strength(torsion: TorsionSpring) -> float | None:
-    """Permissible bending stress of a torsion spring, 0.7 R_m, Pa; None without R_m."""
-    strength = torsion.tensile_strength
-    return None if strength is None else BENDING_STRENGTH * strength
+    ).measured("top", allowed=allowed, remark=_of_torsion, deviation=1e-4, kept=Kept())(measure)
 
 
 torsion_stress = _torsion_check(
     "torsion_stress",
-    lambda _, most: most,
-    torsion_strength,
+    _bending_stress,
+    "spring.torsion.tensile_strength",
+    BENDING_STRENGTH,
     title="Maximum bending stress of the torsion spring",
     source="0.7 R_m, DIN EN 13906-3: verify",
     method="q 32 M/(pi d^3) at maximum lift, preload and rise of the force high",
@@ -648,17 +612,16 @@ torsion_stress = _torsion_check(
     " q = (w + 0.07)/(w - 0.75), w = D/d, R_m: tensile strength of the wire",
     reason="A spring beyond its yield strength sets and loses the force that keeps the follower on"
     " the cam.",
-    needs="tensile_strength",
 )
 torsion_fatigue = _torsion_check(
     "torsion_fatigue",
-    lambda least, most: most - least,
-    lambda torsion: torsion.stress_range,
+    _stress_range,
+    "spring.torsion.stress_range",
+    1.0,
     title="Range of the bending stress of the torsion spring",
     source="spring.torsion.stress_range: fatigue diagram of DIN EN 13906-3, or of the maker",
     method="difference of q 32 M/(pi d^3) at maximum and zero lift, preload and rise high",
     formula="q 32 (M_h - M_0) / (pi d^3) <= spring.torsion.stress_range; M_h, M_0: moments at"
     " maximum and zero lift with the tolerances high, q: as of `torsion_stress`",
     reason="A broken spring releases the follower.",
-    needs="stress_range",
 )

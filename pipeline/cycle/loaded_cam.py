@@ -14,13 +14,16 @@ from typing import NamedTuple
 import numpy as np
 
 from camwright.geometry.arrays import Array, Value
+from camwright.geometry.errors import InputError
 from camwright.geometry.flat_face_contour import FaceMotion
 from camwright.geometry.follower_path import Motion, Reaction
 from camwright.geometry.lift import Jet
 from camwright.geometry.pitch_curve import RollerMotion
+from camwright.pipeline.case.case_values import wound_spring
 from camwright.pipeline.contact.hertz import peak_pressure_square
 from camwright.pipeline.cycle.numbers import Numbers
 from camwright.pipeline.follower.follower_forces import levers
+from camwright.pipeline.follower.spring import SpringWork, WoundWire
 from camwright.pipeline.follower.spring_kinds import SpringShape, rise
 
 
@@ -33,7 +36,7 @@ def motion_of(jet: Jet, numbers: Numbers) -> Motion:
     return RollerMotion(jet, np.sqrt(prime**2 - offset**2), offset, numbers["roller.radius"])
 
 
-def positive(values: Array) -> Array:
+def not_negative(values: Array) -> Array:
     """Values, and zero where they are negative; complex."""
     return np.where(np.real(values) > 0.0, values, 0.0 * values)
 
@@ -43,6 +46,26 @@ class OfGuides(NamedTuple):
 
     a: Array
     b: Array
+
+
+def greatest_friction(numbers: Numbers) -> OfGuides | None:
+    """Maximum friction coefficients of the guides; None where they are not known."""
+    on_a, on_b = (numbers.get(f"guides.{side}.friction_greatest") for side in "ab")
+    return None if on_a is None or on_b is None else OfGuides(np.asarray(on_a), np.asarray(on_b))
+
+
+def wire_of(numbers: Numbers) -> WoundWire[Value]:
+    """Wire of the spring as wound.
+
+    Raises
+    ------
+    InputError
+        If the case has no spring design.
+    """
+    wire = None if numbers.case is None else wound_spring(numbers.case, numbers.get)
+    if wire is None:
+        raise InputError("spring.design", "missing", "given for the limits of the spring")
+    return wire
 
 
 @dataclass(frozen=True, eq=False)
@@ -130,6 +153,37 @@ class LoadedCam:
         return self._spring_at(self.least_lift)
 
     @cached_property
+    def wire(self) -> WoundWire[Value]:
+        """Wire of the spring as wound."""
+        return wire_of(self.numbers)
+
+    @cached_property
+    def hardest(self) -> SpringWork[Value]:
+        """Work of the hardest spring in tolerance up to the lift, without surge.
+
+        With the greatest preload of the load cases; a wound spring has the rate of its wire.
+        """
+        numbers, lift = self.numbers, self.jet.lift
+        preload = numbers["spring.preload_greatest"]
+        spreads = numbers["spring.preload_tolerance"], numbers["spring.rate_tolerance"]
+        if numbers.case is not None and numbers.case.spring.design is not None:
+            return self.wire.at_work(preload, lift, *spreads)
+        hard, rate = preload * (1.0 + spreads[0]), numbers["spring.rate"] * (1.0 + spreads[1])
+        shape = self.spring_shape
+        risen = lift if shape is None else rise(shape, lift).travel
+        return SpringWork(hard, hard + rate * risen, lift, rate)
+
+    @property
+    def stressed(self) -> SpringWork[Value]:
+        """Work of the hardest spring with the greatest force, surge included where it is known."""
+        return self.hardest
+
+    @property
+    def fatigued(self) -> SpringWork[Value]:
+        """Work of the hardest spring where it is fatigued most; as `stressed`."""
+        return self.hardest
+
+    @cached_property
     def closing(self) -> Array:
         """Spring, weight and external force, N."""
         return self.spring_force + (self.numbers["follower.mass"] * self.gravity + self.external)
@@ -167,6 +221,16 @@ class LoadedCam:
     def direction(self) -> Array:
         """Direction of the friction of the guides: 1 on the rise, -1 on the return."""
         return np.asarray(np.sign(np.real(self.slope)))
+
+    @property
+    def jam_worst(self) -> Array | None:
+        """Jam index at the maximum friction of the guides; None where that is not known."""
+        most = greatest_friction(self.numbers)
+        if most is None:
+            return None
+        on_a, on_b = self.reactions
+        index: Array = most.a * on_a.on_points + most.b * on_b.on_points
+        return index
 
     @cached_property
     def share(self) -> Array:
@@ -219,3 +283,8 @@ class LoadedCam:
         line_load = self.normal / self.numbers["contact.width"]
         modulus = self.numbers["contact.modulus"]
         return peak_pressure_square(line_load, 1.0 / self.motion.size, modulus)
+
+    @cached_property
+    def p0(self) -> Array:
+        """Contact pressure in the middle of the line of contact, Pa."""
+        return self.pressure_factor * np.sqrt(self.flat_square / (1.0 - self.motion.sharpness))

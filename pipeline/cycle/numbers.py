@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from functools import partial
 
 from camwright.geometry.arrays import Value
 from camwright.geometry.errors import InputError
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_values import value_of
+from camwright.pipeline.follower.guide_friction import friction_limits
 
 
 @dataclass(frozen=True, eq=False)
@@ -17,8 +19,8 @@ class Numbers:
 
     Parameters
     ----------
-    changed : mapping   those that differ from the case, or that no single key of a case states,
-                        such as ``cam.speed``
+    changed : mapping   those that differ from the case or do not follow as in `DERIVED`, or that no
+                        single key of a case states, such as ``cam.speed``
     case : Case         None: no others are known
     """
 
@@ -30,6 +32,8 @@ class Numbers:
         """Value at a key; None where the case leaves it out."""
         if key in self.changed:
             return self.changed[key]
+        if key in DERIVED:
+            return DERIVED[key](self)
         if key not in self._read:
             self._read[key] = None if self.case is None else value_of(self.case, key)
         return self._read[key]
@@ -50,3 +54,43 @@ class Numbers:
     def __or__(self, changed: Mapping[str, Value | None]) -> Numbers:
         """With other numbers; what is read from the case is read once."""
         return Numbers({**self.changed, **changed}, self.case, self._read)
+
+
+def _greatest_friction(guide: str, numbers: Numbers) -> Value:
+    """Maximum friction coefficient of a guide."""
+    nominal, stated = numbers[f"{guide}.friction"], numbers.get(f"{guide}.friction_max")
+    return friction_limits(nominal, None, stated, numbers["tolerances.friction"])[1]
+
+
+def _area(guide: str, numbers: Numbers) -> Value:
+    """Projected area of a guide, m^2."""
+    return numbers[f"{guide}.length"] * numbers[f"{guide}.diameter"]
+
+
+def _mouth(numbers: Numbers) -> Value:
+    """End of guide A over the reference point of the follower at maximum lift, m."""
+    return numbers["follower.overhang_at_max_lift"] - 0.5 * numbers["guides.a.length"]
+
+
+def _extent(numbers: Numbers) -> Value:
+    """Extent of the follower from its reference point towards guide A, m."""
+    thickness = numbers.get("follower.face.thickness")
+    return numbers["roller.radius"] if thickness is None else thickness
+
+
+def _size(numbers: Numbers) -> Value:
+    """Roller radius, or half of the width of a face, m: scale of a gap."""
+    width = numbers.get("follower.face.width")
+    return numbers["roller.radius"] if width is None else 0.5 * width
+
+
+DERIVED: Mapping[str, Callable[[Numbers], Value | None]] = {
+    "guides.a.friction_greatest": partial(_greatest_friction, "guides.a"),
+    "guides.b.friction_greatest": partial(_greatest_friction, "guides.b"),
+    "guides.a.area": partial(_area, "guides.a"),
+    "guides.b.area": partial(_area, "guides.b"),
+    "guides.a.mouth": _mouth,
+    "follower.extent": _extent,
+    "follower.size": _size,
+}
+"""Numbers that follow from others, unless they are stated themselves."""

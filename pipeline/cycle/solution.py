@@ -39,6 +39,8 @@ from camwright.pipeline.cycle.contact_setup import contact_pair
 from camwright.pipeline.cycle.contact_store import NOT_STORED, ContactStore, piece_key
 from camwright.pipeline.cycle.crank_speed import SpeedRipple
 from camwright.pipeline.cycle.cycle import Cycle
+from camwright.pipeline.cycle.numbers import Numbers
+from camwright.pipeline.cycle.solved_cam import ForcesCam, SolvedCam, numbers_of
 from camwright.pipeline.cycle.speed_sweep import (
     SpeedSweep,
     SpringSweep,
@@ -113,6 +115,21 @@ class Solution(Displayed):
     def machine(self) -> Machine:
         """The machine in the design load case."""
         return self.machines[0]
+
+    @cached_property
+    def numbers(self) -> Numbers:
+        """Numbers of the machine in the design load case, and the greatest cam speed."""
+        return numbers_of(self.case, self.machines)
+
+    @cached_property
+    def cams(self) -> Mapping[Cycle, SolvedCam]:
+        """Loaded cam of each cycle."""
+        return {each: SolvedCam.of(each, self.numbers) for each in self.cycles}
+
+    @cached_property
+    def cams_between(self) -> Mapping[Cycle, ForcesCam]:
+        """Loaded cam of each cycle at the angles of `Cycle.loads_between`."""
+        return {each: ForcesCam.between(each, self.numbers) for each in self.cycles}
 
     def adopt(self, other: Solution) -> None:
         """Take over what another solution of the same loads has computed; not the crank speed."""

@@ -1,20 +1,57 @@
-"""Loaded cam of a solution: the unloaded cam of a contour at any cam angles, and a solved cycle."""
+"""Loaded cams of a solution: the unloaded contour at any cam angles, forces and solved cycles."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
-from camwright.geometry.arrays import FULL_TURN, Array
+from camwright.geometry.arrays import Array
 from camwright.geometry.contour import Contour
-from camwright.geometry.extrema import Extremum
 from camwright.geometry.follower_path import Motion
 from camwright.geometry.lift import Jet
-from camwright.pipeline.cycle.loaded_cam import LoadedCam
+from camwright.pipeline.case.case import Case
+from camwright.pipeline.case.machine import Machine
+from camwright.pipeline.cycle.cycle import Cycle
+from camwright.pipeline.cycle.loaded_cam import LoadedCam, OfGuides
 from camwright.pipeline.cycle.numbers import Numbers
-from camwright.pipeline.cycle.solution import Solution
+from camwright.pipeline.cycle.speed_sweep import highest_speed
+from camwright.pipeline.follower.follower_forces import Loads, share_left
+
+
+def numbers_of(case: Case, machines: Sequence[Machine]) -> Numbers:
+    """Numbers of machines, one a load case, which at a tolerance corner are not those of the case.
+
+    Those of the first, the greatest cam speed and the greatest preload; see `in_load_case`.
+    """
+    shared = {
+        "cam.held_radius": machines[0].cam.held_radius,
+        "cam.fastest": highest_speed(machines) / machines[0].gear_ratio,
+        "spring.preload_greatest": max(each.spring.preload for each in machines),
+    }
+    return in_load_case(Numbers(shared, case), machines[0])
+
+
+def in_load_case(numbers: Numbers, machine: Machine) -> Numbers:
+    """With those of the machine in its load case."""
+    nominal, greatest = machine.friction.nominal, machine.friction.greatest
+    return numbers | {
+        "cam.speed": machine.cam_speed,
+        "spring.preload": machine.spring.preload,
+        "spring.rate": machine.spring.rate,
+        "follower.mass": machine.mass,
+        "follower.viscous_damping": machine.viscous_damping,
+        "follower.overhang_at_max_lift": machine.overhang_at_max_lift,
+        "guides.spacing": machine.guides.spacing,
+        "guides.a.friction": nominal[0],
+        "guides.b.friction": nominal[1],
+        "guides.a.friction_greatest": greatest[0],
+        "guides.b.friction_greatest": greatest[1],
+        "contact.width": machine.contact_width,
+        "contact.modulus": machine.contact_modulus,
+    }
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -25,27 +62,141 @@ class ContourCam(LoadedCam):
 
     @cached_property
     def motion(self) -> Motion:
-        return self.contour.motion(self.jet)
+        friction = self.numbers.get("follower.face.friction")
+        return self.contour.motion(self.jet, 0.0 if friction is None else friction)
+
+    @classmethod
+    def at(cls, contour: Contour, numbers: Numbers, theta: Array, order: int) -> ContourCam:
+        """At cam angles (...), rad; order: of its jet."""
+        lift = contour.lift
+        return cls(lift.jet(theta, order), numbers, lift.highest.value, contour=contour)
+
+    @classmethod
+    def at_top(cls, contour: Contour, numbers: Numbers) -> ContourCam:
+        """At maximum lift (1,)."""
+        top = contour.lift.highest.value
+        jet = Jet(np.array([top]), np.zeros(1), np.zeros(1))
+        return cls(jet, numbers, top, contour=contour)
 
 
-def numbers_of(solution: Solution) -> Numbers:
-    """Numbers of a solution, those of no load case."""
-    machine = solution.machine
-    known = {"cam.held_radius": machine.cam.held_radius}
-    return Numbers(known, solution.case)
+@dataclass(frozen=True, eq=False, kw_only=True)
+class ForcesCam(ContourCam):
+    """A cam under the solved forces of a load case; arrays (n,).
+
+    The loads are clipped by `Loads`: no axial force where the follower has left the cam, and a
+    finite one where it locks. Guides and contact, which are solved at fewer angles, are those of
+    point supports and half-planes.
+
+    Parameters
+    ----------
+    loads : Loads
+    least_spring : float   spring force at minimum lift, N
+    """
+
+    loads: Loads
+    least_spring_force: float
+
+    @classmethod
+    def between(cls, cycle: Cycle, numbers: Numbers) -> ForcesCam:
+        """At the angles of `Cycle.loads_between`."""
+        return cls(
+            *_jet(cycle, numbers, loads := cycle.loads_between),
+            contour=cycle.contour,
+            loads=loads,
+            least_spring_force=cycle.least_spring_force,
+        )
+
+    @property
+    def slope(self) -> Array:
+        """Slope of the lift, m/rad; zero in a dwell."""
+        return self.loads.lift_slope
+
+    @property
+    def velocity(self) -> Array:
+        return self.loads.velocity
+
+    @property
+    def spring_force(self) -> Array:
+        return self.loads.spring_force
+
+    @property
+    def least_spring(self) -> Array:
+        return np.asarray(self.least_spring_force)
+
+    @property
+    def closing(self) -> Array:
+        return self.loads.closing_force
+
+    @property
+    def inertia(self) -> Array:
+        return self.loads.inertia_force
+
+    @property
+    def viscous(self) -> Array:
+        return self.loads.viscous_force
+
+    @property
+    def jam(self) -> Array:
+        return self.loads.jam_index
+
+    @cached_property
+    def share(self) -> Array:
+        return share_left(self.slope, self.jam)
+
+    @property
+    def axial(self) -> Array:
+        return self.loads.axial_force
+
+    @property
+    def normal(self) -> Array:
+        return self.loads.normal_force
+
+    @property
+    def torque(self) -> Array:
+        return self.loads.cam_torque
 
 
-def on_contour(solution: Solution, theta: Array, order: int) -> ContourCam:
-    """The unloaded cam of a solution at cam angles (...), rad; order: of its jet."""
-    lift = solution.contour.lift
-    jet, numbers = lift.jet(theta, order), numbers_of(solution)
-    return ContourCam(jet, numbers, lift.highest.value, contour=solution.contour)
+@dataclass(frozen=True, eq=False, kw_only=True)
+class SolvedCam(ForcesCam):
+    """A solved cycle: guides of finite length, contact by its tier, surge of the spring."""
+
+    cycle: Cycle
+
+    @classmethod
+    def of(cls, cycle: Cycle, numbers: Numbers) -> SolvedCam:
+        """At the solved angles; numbers: of the solution."""
+        return cls(
+            *_jet(cycle, numbers, cycle.loads),
+            contour=cycle.contour,
+            loads=cycle.loads,
+            least_spring_force=cycle.least_spring_force,
+            cycle=cycle,
+        )
+
+    @property
+    def jam_worst(self) -> Array:
+        return self.cycle.parts.friction.greatest.jam_index
+
+    @property
+    def surged(self) -> Array:
+        return self.cycle.surged_force
+
+    @property
+    def rubbing(self) -> OfGuides:
+        guides = self.cycle.guides
+        return OfGuides(guides.rubbing_load_a, guides.rubbing_load_b)
+
+    @property
+    def bearing(self) -> OfGuides:
+        guides = self.cycle.guides
+        return OfGuides(guides.bearing_load_a, guides.bearing_load_b)
+
+    @property
+    def p0(self) -> Array:
+        return self.cycle.surface.p0
 
 
-def at_top(solution: Solution) -> tuple[ContourCam, float]:
-    """The unloaded cam of a solution at its maximum lift (1,), and the cam angle, rad."""
-    top: Extremum = solution.contour.lift.highest
-    lift = np.array([top.value])
-    jet, numbers = Jet(lift, np.zeros(1), np.zeros(1)), numbers_of(solution)
-    cam = ContourCam(jet, numbers, top.value, contour=solution.contour)
-    return cam, float(np.mod(top.theta, FULL_TURN))
+def _jet(cycle: Cycle, numbers: Numbers, loads: Loads) -> tuple[Jet, Numbers, float]:
+    """Lift at the angles of the loads, numbers of the load case, maximum lift, m."""
+    lift = cycle.contour.lift
+    return lift.jet(loads.theta, 2), in_load_case(numbers, cycle.machine), lift.highest.value

@@ -181,11 +181,8 @@ def spring_sweep(
     speeds : of float    crank speeds that the sweep contains, rad/s
     """
     spring, spread = machine.spring, machine.spring.rate_tolerance
-    hard = replace(
-        spring,
-        rate=design.rate * (1.0 + spread),
-        preload=preload * (1.0 + spring.preload_tolerance),
-    )
+    work = design.at_work(preload, 0.0, spring.preload_tolerance, spread)
+    hard = replace(spring, rate=work.rate, preload=work.preload)
     # The resonances of the hardest spring lie this much above those of the nominal and softest one.
     nominal, softest = np.sqrt(1.0 + spread), np.sqrt((1.0 + spread) / (1.0 - spread))
     resonant = _Resonant.of(hard, design, pitch)

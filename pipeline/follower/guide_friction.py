@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import ArrayLike
 
-from camwright.geometry.arrays import Array, finite, freeze
+from camwright.geometry.arrays import Array, Value, finite, freeze
 from camwright.geometry.errors import InputError
 from camwright.pipeline.follower.follower_forces import FollowerSystem, Loads
 from camwright.pipeline.follower.guide_reactions import Guide, GuidePair
@@ -24,7 +24,7 @@ NYLON_PV = {
 
 
 def friction_limits(
-    friction: ArrayLike, low: ArrayLike | None, high: ArrayLike | None, tolerance: float
+    friction: ArrayLike, low: ArrayLike | None, high: ArrayLike | None, tolerance: Value
 ) -> tuple[Array, Array]:
     """Minimum and maximum coefficient of a guide, or of many (...).
 
@@ -32,7 +32,7 @@ def friction_limits(
     ----------
     friction : float or array (...)    nominal
     low, high : float or array (...)   as stated; None or NaN: by the tolerance
-    tolerance : float                  share of the nominal coefficient
+    tolerance : float or array (...)   share of the nominal coefficient
     """
     nominal = np.asarray(friction, dtype=float)
     stated = (np.asarray(np.nan if one is None else one, dtype=float) for one in (low, high))

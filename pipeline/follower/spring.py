@@ -1,4 +1,4 @@
-"""Helical compression spring: force, stress, fatigue, solid length, buckling, surge."""
+"""Helical compression spring: force, stress, fatigue, solid length, buckling, surge, limits."""
 
 from __future__ import annotations
 
@@ -6,12 +6,12 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from types import MappingProxyType
-from typing import Annotated, ClassVar, Generic, Literal, TypeVar, cast
+from typing import Annotated, ClassVar, Generic, Literal, NamedTuple, Protocol, TypeVar, cast
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from camwright.geometry.arrays import Array, finite
+from camwright.geometry.arrays import FULL_TURN, Array, Value, finite
 from camwright.geometry.energy import spring_deflection
 from camwright.geometry.errors import InputError
 from camwright.pipeline.base.quantities import (
@@ -43,8 +43,8 @@ DYNAMIC_GAP = 1.5  # minimum gaps of a dynamic load over those of a static one, 
 ISOTROPIC = 2.6  # E / G at a Poisson ratio of 0.3
 DAMPING, LEAST_DAMPING = 0.01, 0.002  # ratio of the surge that a case does not state
 
-Number = TypeVar("Number", float, Array)
-"""A value, or values of many designs."""
+Number = TypeVar("Number", float, Array, Value)
+"""A value, values of many designs, or either."""
 
 WireModulus = Annotated[float, In("GPa", above=0, at_most=1e5)]
 WireDensity = Annotated[float, In("kg/m^3", above=0, at_most=1e5)]
@@ -85,6 +85,16 @@ class WoundWire(Generic[Number]):
         return self.mean_diameter / self.wire_diameter
 
     @property
+    def can_be_coiled(self) -> NDArray[np.bool_]:
+        """Whether the index is within the range of coiling."""
+        return np.asarray((self.index >= INDEX_MIN) & (self.index <= INDEX_MAX))
+
+    @property
+    def is_open(self) -> NDArray[np.bool_]:
+        """Whether the free length is above the solid length."""
+        return np.asarray(self.solid_length < self.free_length)
+
+    @property
     def rate(self) -> Number:
         """Rate k = G d^4 / (8 D^3 n), N/m."""
         bend = self.shear_modulus * self.wire_diameter**4
@@ -120,14 +130,26 @@ class WoundWire(Generic[Number]):
         """First natural frequency between fixed ends, sqrt(k/m)/2, Hz."""
         return natural_frequency(self.rate, self.active_mass)
 
+    def surge_ratio(self, cam_speed: Value) -> Value:
+        """First natural frequency over the turns of the cam at a speed, rad/s."""
+        return self.surge_frequency * FULL_TURN / cam_speed
+
     @property
     def _stress_per_newton(self) -> Number:
         """Shear stress of the wire without correction factor, 8 D / (pi d^3), Pa/N."""
         return 8.0 * self.mean_diameter / (np.pi * self.wire_diameter**3)
 
     def stress(self, force: ArrayLike) -> Array:
-        """Maximum shear stress (...) of the wire with Wahl factor, Pa."""
-        return self.wahl_factor * self._stress_per_newton * finite("spring.force", force)
+        """Maximum shear stress (...) of the wire with Wahl factor, Pa.
+
+        Raises
+        ------
+        InputError
+            If a force is not finite.
+        """
+        known = np.asarray(force)
+        finite("spring.force", np.abs(known))
+        return np.asarray(self.wahl_factor * self._stress_per_newton * known)
 
     def deflection(self, force: Number) -> Number:
         """Deflection from the free length, m."""
@@ -172,6 +194,15 @@ class WoundWire(Generic[Number]):
         """Permissible shear stress under a static load and at solid length, 0.56 R_m, Pa."""
         return STATIC_STRENGTH * self.tensile_strength
 
+    def static_use(self, force: ArrayLike) -> Array:
+        """Static utilisation (...): shear stress over 0.56 R_m.
+
+        References
+        ----------
+        EN 13906-1 (recalled, verify); Shigley's Mechanical Engineering Design, ch. 10.
+        """
+        return self.stress(force) / self.static_strength
+
     @property
     def fatigue_strengths(self) -> tuple[Number, Number]:
         """Ends of the Goodman line: amplitude without mean, mean without amplitude, Pa.
@@ -196,9 +227,11 @@ class WoundWire(Generic[Number]):
             If a minimum is above its maximum, or a force is not finite.
         """
         low, high = self.stress(force_min), self.stress(force_max)
-        if not (low <= high).all():
-            raise InputError("spring.force", float(np.max(force_min)), "minimum <= maximum, N")
-        return 0.5 * (high - low), np.maximum(0.5 * (high + low), 0.0)
+        if not (np.real(low) <= np.real(high)).all():
+            greatest = float(np.max(np.real(force_min)))
+            raise InputError("spring.force", greatest, "minimum <= maximum, N")
+        mean = 0.5 * (high + low)
+        return 0.5 * (high - low), np.where(np.real(mean) > 0.0, mean, 0.0 * mean)
 
     def fatigue_use(self, force_min: ArrayLike, force_max: ArrayLike) -> Array:
         """Utilisation (...) by the Goodman line of `fatigue_strengths`.
@@ -242,14 +275,125 @@ class WoundWire(Generic[Number]):
         least = np.where(root < 0.0, np.inf, deflection)
         return cast("Number", least[()])  # a number of numbers
 
-    def relaxed_preload(self, preload: Number, greatest: Number) -> Number | None:
-        """Loss of preload by relaxation over the preload; None without data.
+    def rate_error(self, rate: Number) -> Number:
+        """Deviation of the rate from another, N/m, relative."""
+        error: Number = np.abs(self.rate / rate - 1.0)
+        return error
+
+    def relaxed_preload(self, preload: Number, greatest: Number) -> Number | float:
+        """Loss of preload by relaxation over the preload; NaN without data.
 
         The share of the greatest force that is lost acts at every deflection.
         """
         if self.temperature is None or self.relaxation is None:
-            return None
+            return np.nan
         return self.relaxation * greatest / preload
+
+    def at_work(
+        self,
+        preload: Number,
+        travel: Number,
+        preload_tolerance: Number | float,
+        rate_tolerance: Number | float,
+    ) -> SpringWork[Number]:
+        """Work of the hardest spring in tolerance.
+
+        Parameters
+        ----------
+        preload : Number   greatest of the load cases, N
+        travel : Number    maximum lift, m
+        preload_tolerance, rate_tolerance : relative
+        """
+        hard = preload * (1.0 + preload_tolerance)
+        rate = self.rate * (1.0 + rate_tolerance)
+        return SpringWork(hard, hard + rate * travel, travel, rate)
+
+
+class SpringWork(NamedTuple, Generic[Number]):
+    """Spring at work: preload, the least force, and greatest force, N; travel, m; rate, N/m."""
+
+    preload: Number
+    greatest: Number
+    travel: Number
+    rate: Number
+
+
+class OfWork(Protocol):
+    """A figure of a wound spring at work."""
+
+    def __call__(self, wire: WoundWire[Number], work: SpringWork[Number], /) -> Value: ...
+
+
+class OfWire(Protocol):
+    """A figure of a wound spring."""
+
+    def __call__(self, wire: WoundWire[Number], /) -> Value: ...
+
+
+@dataclass(frozen=True)
+class WireLimit:
+    """A limit of a wound spring at work: of its checks, of a catalogue and of a design alike.
+
+    Parameters
+    ----------
+    words : str         of a spring beyond it
+    demand : callable   wire, work -> demand, SI; NaN where the wire lacks a value
+    allowed : callable  wire -> limit that the wire sets; None: set by its user
+    at_least : bool     the demand must be at least the limit
+    """
+
+    words: str
+    demand: OfWork
+    allowed: OfWire | None = None
+    at_least: bool = False
+
+    def holds(
+        self,
+        wire: WoundWire[Number],
+        work: SpringWork[Number],
+        limit: Value | None = None,
+        room: float = 1.0,
+    ) -> NDArray[np.bool_]:
+        """Whether springs keep the limit (...) times a room; NaN does not.
+
+        limit: where the wire sets none
+        """
+        demand = self.demand(wire, work)
+        allowed = limit if self.allowed is None else self.allowed(wire)
+        if allowed is None:
+            raise InputError(self.words, "no limit", "given")
+        bound = room * allowed
+        return np.asarray(demand >= bound if self.at_least else demand <= bound)
+
+
+STRESS = WireLimit("shear stress", lambda wire, work: wire.static_use(work.greatest), lambda _: 1.0)
+FATIGUE = WireLimit("fatigue", lambda wire, work: wire.fatigue_use(work.preload, work.greatest))
+"""Utilisation of the Goodman line, against one over the safety factor."""
+SOLID = WireLimit(
+    "goes solid",
+    lambda wire, work: wire.solid_clearance(work.preload, work.travel),
+    at_least=True,
+)
+COIL_GAP = WireLimit(
+    "gap between coils",
+    lambda wire, work: wire.gap_left(work.preload, work.travel),
+    lambda wire: wire.minimum_gaps,
+    at_least=True,
+)
+SOLID_STRESS = WireLimit(
+    "stress at solid length",
+    lambda wire, work: wire.solid_stress(work.rate),
+    lambda wire: wire.static_strength,
+)
+BUCKLING = WireLimit(
+    "buckling",
+    lambda wire, work: (wire.deflection(work.preload) + work.travel) / wire.buckling_deflection,
+    lambda _: 1.0,
+)
+RELAXATION = WireLimit(
+    "relaxation", lambda wire, work: wire.relaxed_preload(work.preload, work.greatest)
+)
+"""Against the tolerance of the preload."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -298,13 +442,13 @@ class HelicalSpring(WoundWire[float], Part):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        if not INDEX_MIN <= self.index <= INDEX_MAX:
+        if not self.can_be_coiled:
             limit = (
                 f"{INDEX_MIN:g} to {INDEX_MAX:g} times wire_diameter = "
                 f"{shown(self.wire_diameter, 'mm')}: the range of coiling"
             )
             raise InputError("spring.design.mean_diameter", shown(self.mean_diameter, "mm"), limit)
-        if not self.solid_length < self.free_length:
+        if not self.is_open:
             limit = f"> {shown(self.solid_length, 'mm')}, the solid length"
             raise InputError("spring.design.free_length", shown(self.free_length, "mm"), limit)
 
@@ -312,23 +456,6 @@ class HelicalSpring(WoundWire[float], Part):
     def damping(self) -> float:
         """Damping ratio of each mode of the surge."""
         return DAMPING if self.damping_ratio is None else self.damping_ratio
-
-    def static_use(self, force: float) -> float:
-        """Static utilisation: shear stress over 0.56 R_m.
-
-        References
-        ----------
-        EN 13906-1 (recalled, verify); Shigley's Mechanical Engineering Design, ch. 10.
-        """
-        return float(self.stress(force)) / self.static_strength
-
-    def fatigue_safety(self, force_min: ArrayLike, force_max: ArrayLike) -> float:
-        """Least fatigue safety factor of ranges of force (...), see `fatigue_use`.
-
-        Infinite without load.
-        """
-        use = float(np.max(self.fatigue_use(force_min, force_max)))
-        return np.inf if use == 0.0 else 1.0 / use
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -427,22 +554,18 @@ def stored_lift(
     return shaped_deflection(energy, rate, preload, shape)
 
 
-def surge_harmonics(
-    lift_values: Array, cam_speed: float, frequency: float, share: float = 0.01
-) -> tuple[int, float, float]:
+def surge_harmonics(lift_values: Array, ratio: float, share: float = 0.01) -> tuple[int, float]:
     """Highest significant harmonic of the lift acceleration, and its margin against surge.
 
     Parameters
     ----------
     lift_values : array (n,)   at equal angles, m
-    cam_speed : float          rad/s, > 0
-    frequency : float          first natural frequency of the spring, Hz
+    ratio : float              natural frequency over rotational frequency of the cam
     share : float              share of the largest harmonic above which one is significant
 
     Returns
     -------
     highest : int         order of the highest significant harmonic
-    ratio : float         natural frequency over rotational frequency of the cam
     margin : float        natural frequency over that of the highest significant harmonic
     """
     harmonics = np.abs(np.fft.rfft(finite("lift", lift_values)))
@@ -450,14 +573,18 @@ def surge_harmonics(
     acceleration = harmonics * order**2
     strong = np.flatnonzero(acceleration >= share * max(acceleration.max(), 1e-300))
     highest = int(strong[-1]) if acceleration.max() > 0.0 else 0
-    ratio = frequency * 2.0 * np.pi / cam_speed
-    return highest, ratio, ratio / highest if highest else np.inf
+    return highest, ratio / highest if highest else np.inf
 
 
 def natural_frequency(rate: Number, active_mass: Number) -> Number:
     """First natural frequency between fixed ends, sqrt(k/m)/2, Hz."""
     frequency: Number = 0.5 * np.sqrt(rate / active_mass)
     return frequency
+
+
+def greatest_active_mass(rate: float, frequency: float) -> float:
+    """Mass of the active coils, kg, at a rate, N/m, and a natural frequency, Hz."""
+    return rate / (2.0 * frequency) ** 2
 
 
 @dataclass(frozen=True, eq=False)

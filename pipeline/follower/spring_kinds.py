@@ -285,11 +285,12 @@ class TorsionSpring(Part):
 
     def moment_at(self, force: ArrayLike, lift: ArrayLike) -> Array:
         """Moment (...), N m, of a force on the follower, N, at a lift, m."""
-        turned = self.angle(np.minimum(np.asarray(lift, dtype=float), self.reach))
+        at = np.asarray(lift)
+        turned = self.angle(np.where(np.real(at) < self.reach, at, self.reach))
         return np.asarray(np.asarray(force) * self.arm * np.cos(self.arm_angle + turned))
 
-    def bending_stress(self, moment: ArrayLike) -> Array | None:
-        """Greatest bending stress (...) at the inside of the coils, Pa; None without the wire.
+    def bending_stress(self, moment: ArrayLike) -> Array:
+        """Greatest bending stress (...) at the inside of the coils, Pa; NaN without the wire.
 
         sigma = q 32 M / (pi d^3), q = (w + 0.07)/(w - 0.75), w = D/d.
 
@@ -298,7 +299,7 @@ class TorsionSpring(Part):
         DIN EN 13906-3 (recalled, verify).
         """
         if self.wire_diameter is None or self.mean_diameter is None:
-            return None
+            return np.full_like(moment, np.nan)
         index = self.mean_diameter / self.wire_diameter
         curved = (index + 0.07) / (index - 0.75)
         return np.asarray(curved * 32.0 * np.asarray(moment) / (np.pi * self.wire_diameter**3))

@@ -6,7 +6,7 @@ import copy
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Literal, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.polynomial.chebyshev import chebvander
@@ -18,7 +18,7 @@ from camwright.geometry.follower_path import Motion
 from camwright.geometry.lift import Jet
 from camwright.geometry.periodic_spline import knot_derivatives, knot_integrals
 from camwright.pipeline.case.case import Case
-from camwright.pipeline.case.case_values import WoundSprings, value_of, wound_spring
+from camwright.pipeline.case.case_values import value_of
 from camwright.pipeline.case.limits import OVERSPEED, TORQUE_REDUCTION, AnyLimit
 from camwright.pipeline.case.load_case_torque import engine_torque
 from camwright.pipeline.case.machine import CREEP, Machine, machine
@@ -28,7 +28,6 @@ from camwright.pipeline.cycle.numbers import Numbers
 from camwright.pipeline.follower.follower_forces import (
     Push,
 )
-from camwright.pipeline.follower.guide_friction import friction_limits
 from camwright.pipeline.follower.guide_table import SupportOfMany
 from camwright.pipeline.follower.spring import stored_lift
 from camwright.pipeline.screening.screened_cam import ScreenedCam, State
@@ -90,6 +89,7 @@ class Designs:
             "cam.held_radius": self.value("cam.bore_radius") + (cam.held_radius - cam.bore_radius),
             "contact.width": self.contact_width,
             "contact.modulus": self.machine.contact_modulus,
+            "cam.fastest": self.fastest[:, None] / self.case.mechanism.gear_ratio,
         }
         return Numbers({**self.columns, **known}, self.case)
 
@@ -136,11 +136,13 @@ class Designs:
         """The unloaded cams at the samples of the lift."""
         return LoadedCam(Jet(*self.jets), self.numbers, self.highest[:, None])
 
-    @cached_property
+    @property
     def top(self) -> LoadedCam:
-        """The unloaded cams at their maximum lift, (m, 1)."""
+        """The unloaded cams at their maximum lift, (m, 1); with the preloads of the load cases."""
         lift = self.highest[:, None]
-        return LoadedCam(Jet(lift, np.zeros_like(lift), np.zeros_like(lift)), self.numbers, lift)
+        preload = np.max([cam.state.preload for cam in self.cams], axis=0)
+        numbers = self.numbers | {"spring.preload_greatest": preload}
+        return LoadedCam(Jet(lift, np.zeros_like(lift), np.zeros_like(lift)), numbers, lift)
 
     @cached_property
     def least_factor(self) -> Array:
@@ -176,11 +178,6 @@ class Designs:
     def stroke(self) -> Array:
         """Maximum less minimum lift (m, 1), m."""
         return (self.highest - sampled_least(self.jets[0]))[:, None]
-
-    @cached_property
-    def wound_spring(self) -> WoundSprings | None:
-        """Springs as wound; None where the case has no spring design."""
-        return wound_spring(self.case, lambda key: self.value(key)[:, 0])
 
     @cached_property
     def states(self) -> tuple[State, ...]:
@@ -257,12 +254,6 @@ class Designs:
         push = Push(motion.side, motion.arm, self.value("guides.spacing"))
         return SupportOfMany.of(known.stem, known.guides, push, np.asarray(overhang))
 
-    def greatest_friction(self, side: Literal["a", "b"]) -> Array:
-        """Maximum friction coefficient of a guide (m, 1)."""
-        nominal = self.value(f"guides.{side}.friction")
-        stated = self.value(f"guides.{side}.friction_max")
-        return friction_limits(nominal, None, stated, self.case.tolerances.friction)[1]
-
     @cached_property
     def contact_width(self) -> Array:
         """Width of the line contact (m, 1), m: the overlap of the flats of cam and follower."""
@@ -329,8 +320,8 @@ class TorqueOfSpeed:
 _NODES = 9
 
 
-def _to_all(designs: Designs) -> NDArray[np.bool_]:
-    return np.ones(designs.count, dtype=bool)
+def _to_all(_: Value) -> NDArray[np.bool_]:
+    return np.array(True)
 
 
 def _never(_: Designs) -> bool:
@@ -341,12 +332,12 @@ class Screened(NamedTuple):
     """A check that screening judges.
 
     deviation: from the demand of the preview, over the greater of demand and limit, as
-    `tests/verification/test_screening.py` measures it; applies: to which designs, (m,); is_bound:
-    whether the demand is a lower bound, by which it can only fail.
+    `tests/verification/test_screening.py` measures it; applies: demand (m,) -> to which designs;
+    is_bound: whether the demand is a lower bound, by which it can only fail.
     """
 
     check: str
     judged: Callable[[Designs], Judged | None]
     deviation: float
-    applies: Callable[[Designs], NDArray[np.bool_]] = _to_all
+    applies: Callable[[Value], NDArray[np.bool_]] = _to_all
     is_bound: Callable[[Designs], bool] = _never

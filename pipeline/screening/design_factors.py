@@ -22,7 +22,6 @@ from camwright.pipeline.case.limits import LIMITS
 from camwright.pipeline.case.machine import machine
 from camwright.pipeline.case.toml_text import TomlValue
 from camwright.pipeline.follower.guide_reactions import require_fit
-from camwright.pipeline.follower.spring import INDEX_MAX, INDEX_MIN
 
 ARRAYS: tuple[str, ...] = (
     "spring.rate", "spring.preload", "spring.travel_max",
@@ -233,12 +232,7 @@ def _suspects(
         for rule in rules(case):
             wrong |= rule.breaks(at)
         if (wound := wound_spring(case, at)) is not None:
-            index = wound.index
-            wrong |= (
-                (index < INDEX_MIN)
-                | (index > INDEX_MAX)
-                | (wound.solid_length >= wound.free_length)
-            )
+            wrong |= ~(wound.can_be_coiled & wound.is_open)
         half = 0.5 * (at("guides.a.length") + at("guides.b.length"))
         wrong |= at("guides.spacing") <= half
         for side in "ab":

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
-from typing import Literal, Protocol
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,6 +20,7 @@ from camwright.pipeline.cycle.length_history import (
     raised_load,
     worst_of,
 )
+from camwright.pipeline.cycle.numbers import Numbers
 
 # Keys that the contact of finite length depends on, and the number of its different shapes up to
 # which each is solved.
@@ -41,7 +42,8 @@ class DesignValues(Protocol):
     @property
     def machine(self) -> Machine: ...
     def value(self, key: str) -> Array: ...
-    def greatest_friction(self, side: Literal["a", "b"]) -> Array: ...
+    @property
+    def numbers(self) -> Numbers: ...
 
 
 def factors_of(
@@ -134,9 +136,8 @@ def _tilt(designs: DesignValues) -> Array:
 def _held_couple(designs: DesignValues, rubbing: tuple[Array, Array]) -> Array:
     """Couple (m, n), N m, that friction of the guides can hold."""
     load_a, load_b = rubbing
-    held = np.minimum(
-        designs.greatest_friction("a") * load_a, designs.greatest_friction("b") * load_b
-    )
+    on_a, on_b = (designs.numbers[f"guides.{side}.friction_greatest"] for side in "ab")
+    held = np.minimum(on_a * load_a, on_b * load_b)
     return np.asarray(held * _spacing(designs))
 
 

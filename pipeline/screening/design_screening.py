@@ -353,6 +353,8 @@ def _figures(
         np.asarray(np.nan if limit is None else limit, dtype=float), demand.shape
     )
     at_most = declared.sense == "at_most"
+    applies = np.broadcast_to(screened.applies(demand), demand.shape)
+    demand = np.where(applies, demand, np.nan)
     known = ~np.isnan(demand) & np.isfinite(allowed)
     with np.errstate(invalid="ignore", divide="ignore"):
         holds = demand <= allowed if at_most else demand >= allowed
@@ -362,7 +364,7 @@ def _figures(
     known &= ~(bound & holds)
     demand = np.where(bound & ~known, np.nan, demand)
     status = _STATUS[np.where(known, np.where(holds, 1, 2), 0)]
-    status[~screened.applies(designs)] = ""
+    status[~applies] = ""
     for waiver in designs.case.waivers:
         if waiver.check == declared.id and not declared.evidence:
             up_to = accepted(waiver, declared.unit).up_to

@@ -11,7 +11,6 @@ import numpy as np
 from camwright.geometry.arrays import FULL_TURN, Array
 from camwright.geometry.extrema import sampled_least
 from camwright.geometry.follower_path import Motion
-from camwright.pipeline.checks import demands
 from camwright.pipeline.contact.hertz import peak_pressure_square
 from camwright.pipeline.cycle.length_history import FactorRange
 from camwright.pipeline.cycle.loaded_cam import LoadedCam, OfGuides
@@ -98,8 +97,8 @@ class ScreenedCam(LoadedCam):
 
     @cached_property
     def jam_worst(self) -> Array:
-        """Jam index at the maximum friction."""
-        most = OfGuides(self.block.greatest_friction("a"), self.block.greatest_friction("b"))
+        keys = (f"guides.{side}.friction_greatest" for side in "ab")
+        most = OfGuides(*(np.asarray(self.numbers[key]) for key in keys))
         rubbing = self._settled(most)
         return most.a * rubbing.a + most.b * rubbing.b
 
@@ -146,11 +145,6 @@ class ScreenedCam(LoadedCam):
     def ends(self) -> LoadEnds:
         """Where the loads end being those of the cam; see `Loads.ends`."""
         return ends_of(self.normal <= 0.0, (self.jam >= 1.0) & (self.slope > 0.0))
-
-    @property
-    def jam_outward(self) -> Array:
-        """Jam index at the maximum friction on the rise."""
-        return demands.jam_outward(self.slope, self.jam_worst)
 
     @cached_property
     def friction_loss(self) -> Array:

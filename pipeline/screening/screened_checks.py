@@ -9,30 +9,19 @@ from __future__ import annotations
 
 from camwright.pipeline.case.limits import CONTACT_SAFETY, SHAKEDOWN_SAFETY
 from camwright.pipeline.checks.registry import CHECKS
-from camwright.pipeline.checks.spring_strength import torsion_strength
 from camwright.pipeline.screening import screened_contact as contact
 from camwright.pipeline.screening import screened_loads as loads
 from camwright.pipeline.screening import screened_shape as shape
-from camwright.pipeline.screening import screened_springs as springs
 from camwright.pipeline.screening.design_arrays import Screened
 from camwright.pipeline.screening.design_lengths import has_many_shapes
 
-SCREENED: tuple[Screened, ...] = (
+_SCREENED: tuple[Screened, ...] = (
     *(
         shape.by_measure(each)
         for each in CHECKS
         if each.measured is not None and each.measured.deviation is not None
     ),
-    Screened("pressure_angle", shape.pressure_angle, 0.0001),
-    Screened("guide_gap", shape.guide_gap, 0.0001),
-    Screened("guide_length", shape.guide_length, 0.0001),
     Screened("torque_reduction", loads.torque_reduction, 0.001),
-    Screened("contact_force_margin", loads.contact_force_margin, 0.02),
-    Screened("jump", loads.jump, 0.003),
-    Screened("jump_speed", loads.jump_speed, 0.003),
-    Screened("contact_at_overspeed", loads.contact_at_overspeed, 0.02),
-    Screened("jam_index", loads.jam_index, 0.01),
-    Screened("jam_index_friction_max", loads.jam_index_friction_max, 0.01),
     Screened(
         "contact_pressure",
         contact.contact("contact_pressure", CONTACT_SAFETY),
@@ -60,31 +49,7 @@ SCREENED: tuple[Screened, ...] = (
     Screened("roller_life", contact.roller_life, 0.03),
     Screened("face_width", contact.face_width, 0.001),
     Screened("face_pv", contact.face_pv, 0.001),
-    Screened("guide_speed_A", loads.guide_speed("a"), 0.002),
-    Screened("guide_speed_B", loads.guide_speed("b"), 0.002),
-    Screened("guide_pressure_A", loads.guide_pressure("a"), 0.1),
-    Screened("guide_pressure_B", loads.guide_pressure("b"), 0.1),
-    Screened("guide_pv_A", loads.guide_pv("a"), 0.03),
-    Screened("guide_pv_B", loads.guide_pv("b"), 0.03),
-    Screened("profile_waviness", loads.profile_waviness, 0.05),
-    Screened("spring_stress", springs.of_spring(springs.spring_stress), 0.1),
-    Screened("spring_fatigue", springs.of_spring(springs.spring_fatigue), 0.1),
-    Screened("spring_solid", springs.of_spring(springs.spring_solid), 0.0001),
-    Screened("spring_coil_gap", springs.of_spring(springs.spring_coil_gap), 0.0001),
-    Screened("spring_solid_stress", springs.of_spring(springs.spring_solid_stress), 0.0001),
-    Screened("spring_buckling", springs.of_spring(springs.spring_buckling), 0.0001),
-    Screened("spring_rate", springs.of_spring(springs.spring_rate), 0.0001),
-    Screened("spring_relaxation", springs.of_spring(springs.spring_relaxation), 0.0001),
-    Screened("spring_surge", springs.of_spring(springs.spring_surge), 0.0001),
-    Screened("gas_pressure", springs.of_gas(springs.gas_pressure, "pressure_limit"), 0.0001),
-    Screened("gas_stroke", springs.of_gas(lambda designs, _: designs.highest, "stroke"), 0.0001),
-    Screened("gas_speed", springs.of_gas(springs.gas_speed, "speed_limit"), 0.002),
-    Screened("gas_temperature", springs.gas_temperature, 0.0),
-    Screened("torsion_stress", springs.of_torsion(lambda _, most: most, torsion_strength), 0.0001),
-    Screened(
-        "torsion_fatigue",
-        springs.of_torsion(lambda least, most: most - least, lambda torsion: torsion.stress_range),
-        0.0001,
-    ),
 )
+_PLACES = {declared.id: place for place, declared in enumerate(CHECKS)}
+SCREENED = tuple(sorted(_SCREENED, key=lambda each: _PLACES[each.check]))
 """Checks that screening judges, in the order of the calculation."""

@@ -2,23 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Literal
 
 import numpy as np
 
 from camwright.geometry.arrays import Array
-from camwright.geometry.extrema import sampled_greatest, sampled_least
-from camwright.pipeline.case.limits import (
-    CONTACT_FORCE_MARGIN,
-    JAM_INDEX,
-    JUMP,
-    JUMP_SPEED,
-    OVERSPEED,
-    WAVINESS,
-)
+from camwright.geometry.extrema import sampled_least
 from camwright.pipeline.checks import demands
-from camwright.pipeline.checks.guide_strength import pv_limit
 from camwright.pipeline.screening.design_arrays import Designs, Judged
 from camwright.pipeline.screening.screened_cam import ScreenedCam
 
@@ -28,102 +18,6 @@ Side = Literal["a", "b"]
 def _least_spring_force(cam: ScreenedCam) -> Array:
     """Spring force at minimum lift (m, 1), N."""
     return sampled_least(cam.spring_force)[:, None]
-
-
-def contact_force_margin(designs: Designs) -> Judged:
-    least = designs.least(lambda cam: cam.normal / _least_spring_force(cam))
-    return np.maximum(least, 0.0), designs.limit(CONTACT_FORCE_MARGIN)
-
-
-def jump(designs: Designs) -> Judged:
-    worst = designs.worst(
-        lambda cam: demands.greatest_unloading(cam.inertia, cam.closing),
-    )
-    return worst, designs.limit(JUMP)
-
-
-def jump_speed(designs: Designs) -> Judged:
-    """From the greatest quotient of unloading inertia and spring force, at the crank speed."""
-    speeds = []
-    for cam in designs.cams:
-        use = demands.greatest_unloading(cam.inertia, cam.closing)
-        greatest = np.maximum(sampled_greatest(use), 0.0)
-        with np.errstate(divide="ignore"):
-            speeds.append(cam.crank_speed[:, 0] / np.sqrt(greatest))
-    over = np.where(np.isnan(designs.limit(OVERSPEED)), np.nan, designs.fastest)
-    return np.min(speeds, axis=0), designs.limit(JUMP_SPEED) * over
-
-
-def contact_at_overspeed(designs: Designs) -> Judged:
-    over = np.where(np.isnan(designs.limit(OVERSPEED)), np.nan, designs.fastest)[:, None]
-
-    def force(cam: ScreenedCam) -> Array:
-        inertia = (over / cam.crank_speed) ** 2 * cam.inertia
-        return demands.force_left(cam.closing, inertia, _least_spring_force(cam))
-
-    return designs.least(force), designs.limit(CONTACT_FORCE_MARGIN)
-
-
-def jam_index(designs: Designs) -> Judged:
-    worst = designs.worst(lambda cam: demands.jam_outward(cam.slope, cam.jam))
-    return worst, designs.limit(JAM_INDEX)
-
-
-def jam_index_friction_max(designs: Designs) -> Judged:
-    return designs.worst(lambda cam: cam.jam_outward), designs.limit(JAM_INDEX)
-
-
-def _area(designs: Designs, side: Side) -> Array:
-    """Projected area of a guide (m, 1), m^2."""
-    return designs.value(f"guides.{side}.length") * designs.value(f"guides.{side}.diameter")
-
-
-def guide_pressure(side: Side) -> Callable[[Designs], Judged]:
-    def judged(designs: Designs) -> Judged:
-        area = _area(designs, side)
-
-        def pressure(cam: ScreenedCam) -> Array:
-            load = cam.bearing.a if side == "a" else cam.bearing.b
-            return demands.guide_pressure(load, area)
-
-        return designs.worst(pressure), designs.value(f"guides.{side}.pressure_limit")[:, 0]
-
-    return judged
-
-
-def guide_pv(side: Side) -> Callable[[Designs], Judged]:
-    def pv(designs: Designs, cam: ScreenedCam) -> Array:
-        load = cam.rubbing.a if side == "a" else cam.rubbing.b
-        means = demands.guide_pv(load, cam.velocity, _area(designs, side)).mean(axis=-1)
-        return np.asarray(means)
-
-    def judged(designs: Designs) -> Judged:
-        guides = designs.machine.guides
-        worst = np.max([pv(designs, cam) for cam in designs.cams], axis=0)
-        return worst, pv_limit(guides.a if side == "a" else guides.b)
-
-    return judged
-
-
-def guide_speed(side: Side) -> Callable[[Designs], Judged]:
-    def judged(designs: Designs) -> Judged:
-        worst = designs.worst(lambda cam: np.abs(cam.velocity))
-        return worst, designs.value(f"guides.{side}.speed_limit")[:, 0]
-
-    return judged
-
-
-def profile_waviness(designs: Designs) -> Judged:
-    band, length = designs.value("cam.profile_tolerance"), designs.value("cam.waviness_length")
-    along = designs.motion.contour_speed
-
-    def share(cam: ScreenedCam) -> Array:
-        speed = cam.speed * along
-        added = demands.waviness_force(designs.value("follower.mass"), 0.5 * band, speed, length)
-        return demands.over_contact_force(added, cam.normal, _least_spring_force(cam))
-
-    worst = np.max([share(cam).max(axis=-1) for cam in designs.cams], axis=0)
-    return worst, designs.limit(WAVINESS)
 
 
 def torque_after(designs: Designs, cam: ScreenedCam) -> Array:

@@ -7,12 +7,14 @@ from typing import NamedTuple
 
 import numpy as np
 
+from camwright.geometry.arrays import FULL_TURN
 from camwright.geometry.lift_parts import LiftParts
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.external_load import external_force
 from camwright.pipeline.case.limits import CONTACT_FORCE_MARGIN, JUMP_SPEED, SPRING_SURGE
 from camwright.pipeline.case.machine import machines
 from camwright.pipeline.cycle.speed_sweep import highest_speed
+from camwright.pipeline.follower.spring import greatest_active_mass
 from camwright.pipeline.sizing.open_case import PRELOAD, RATE
 from camwright.pipeline.sizing.spring_size import (
     PRELOAD_SHARE,
@@ -142,5 +144,5 @@ def greatest_coil_mass(case: Case, rate: float) -> float:
 
     f1 = sqrt(k/m)/2 at `limits.spring_surge` times the greatest frequency of the cam.
     """
-    cam = highest_speed(machines(case)) / case.mechanism.gear_ratio / (2.0 * np.pi)
-    return float(rate / (2.0 * case.limits[SPRING_SURGE] * cam) ** 2)
+    cam = highest_speed(machines(case)) / case.mechanism.gear_ratio / FULL_TURN
+    return greatest_active_mass(rate, case.limits[SPRING_SURGE] * cam)

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import replace
-from functools import partial
+from dataclasses import dataclass, replace
 from typing import Literal, NamedTuple, TypedDict
 
 import numpy as np
 import scipy
 
-from camwright.geometry.arrays import FULL_TURN
+from camwright.geometry.arrays import FULL_TURN, Array, Value
+from camwright.geometry.lift import Jet
 from camwright.pipeline.base.material import ROOM
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.limits import (
@@ -22,13 +21,12 @@ from camwright.pipeline.case.limits import (
     ROLLER_LOAD_SHARE,
     ROLLER_RELIABILITY,
     ROLLER_STATIC_SAFETY,
-    SPRING_FATIGUE,
-    SPRING_SOLID,
     VISCOSITY_RATIO,
 )
 from camwright.pipeline.case.machine import Machine, machines
-from camwright.pipeline.checks.cam_shape import least_concave_radius
+from camwright.pipeline.checks.cam_shape import least_concave_radius, lift
 from camwright.pipeline.checks.camshaft_strength import tooth_torque_limits
+from camwright.pipeline.checks.check import Declaration, Measured
 from camwright.pipeline.checks.contact_strength import (
     FACE_PASSES,
     LoadCycles,
@@ -38,7 +36,6 @@ from camwright.pipeline.checks.contact_strength import (
 from camwright.pipeline.checks.guide_strength import pv_limit
 from camwright.pipeline.checks.guide_wear import greatest_temperatures, pv_of_wear
 from camwright.pipeline.checks.key_strength import keyway_root_of, torque_limits
-from camwright.pipeline.checks.manufacture import wave_amplitude
 from camwright.pipeline.checks.part_strength import (
     allowed_pin_stress,
     bore_pressure_limit,
@@ -49,25 +46,20 @@ from camwright.pipeline.checks.part_strength import (
 )
 from camwright.pipeline.checks.registry import CHECKS
 from camwright.pipeline.checks.roller_bearing import Grease, allowed_spin, grease_of, least_speed
-from camwright.pipeline.checks.spring_strength import (
-    Work,
-    gas_pressure_at,
-    hardest_work,
-    relaxation_allowed,
-    torsion_strength,
-    torsion_stress_at,
-)
 from camwright.pipeline.contact.traction import Drag
+from camwright.pipeline.cycle.loaded_cam import LoadedCam
+from camwright.pipeline.cycle.numbers import Numbers
 from camwright.pipeline.cycle.part_loads import edge_pressure_of
 from camwright.pipeline.cycle.solution import Solution
+from camwright.pipeline.cycle.solved_cam import ContourCam, numbers_of
 from camwright.pipeline.cycle.speed_sweep import highest_speed
 from camwright.pipeline.follower.bearing_life import contamination_factor, reliability_factor
 from camwright.pipeline.follower.guide_friction import thermal_resistance
 from camwright.pipeline.follower.guide_reactions import Guide
 from camwright.pipeline.follower.roller import Roller
 from camwright.pipeline.follower.roller_parts import Bearing
-from camwright.pipeline.follower.spring import Spring
-from camwright.pipeline.follower.spring_kinds import GasSpring, TorsionSpring
+from camwright.pipeline.follower.spring import SpringWork
+from camwright.pipeline.follower.spring_kinds import GasSpring
 from camwright.pipeline.smoothing.constraints import rows_kept
 from camwright.pipeline.smoothing.scenario import Face, ModifiedLife, Ratings
 
@@ -89,12 +81,14 @@ def ratings_of(case: Case) -> Ratings:
     over = highest_speed(states) / machine.gear_ratio
     follower: Literal["roller", "face"] = "face" if roller is None else "roller"
     kept = [row for row in rows_kept(follower) if row is not JAM_INDEX or covers("guides")]
+    gas = machine.spring.gas if covers("gas_spring") else None
     by_guide: _GuideRatings = {}
     if covers("guides"):
         by_guide = _of_guides(case, machine, fastest=over)
     torque, torque_by = _least(torque_limits(machine))
     tooth, tooth_by = _least(tooth_torque_limits(machine))
     shaft, cam = machine.camshaft, machine.cam
+    band = cam.profile_tolerance
     by_roller: _RollerRatings = {}
     if roller is not None:
         by_roller = _of_roller(machine, roller)
@@ -120,13 +114,14 @@ def ratings_of(case: Case) -> Ratings:
         guide_gap=limits[GUIDE_GAP],
         guide_mouth=machine.overhang_at_max_lift - 0.5 * guides.a.length,
         held_radius=cam.held_radius if "prime_radius" in case.smoothing.free else None,
-        waves=None if cam.profile_tolerance is None else (wave_amplitude(cam), cam.waviness_length),
+        waves=None if band is None else (0.5 * band, cam.waviness_length),
         cam_torque=torque,
         cam_torque_by=torque_by or "key_pressure",
         tooth_torque=tooth,
         tooth_torque_by=tooth_by or "gear_bending",
         shaft_drag=0.0 if shaft is None else shaft.drag,
         keyway=keyway_root_of(machine),
+        gas_slope=None if gas is None else _slope_limit(gas, over),
         **by_roller,
         **by_guide,
     )
@@ -193,8 +188,6 @@ def _of_guides(case: Case, machine: Machine, fastest: float) -> _GuideRatings:
     both = machine.guides.both
     powers = [_least(power_limits(side, guide, case, machine)) for side, guide in both]
     edges = [edge_load(machine, guide, ROOM) for _, guide in both]
-    gas = case.spring.gas if case.scope.covers("gas_spring") else None
-    slopes = [_slope_limit((g, gas), fastest) for _, g in both]
     (a, b) = (guide for _, guide in both)
     return {
         "guide_pressure": (a.pressure_limit, b.pressure_limit),
@@ -204,16 +197,14 @@ def _of_guides(case: Case, machine: Machine, fastest: float) -> _GuideRatings:
         "guide_edge_load": (edges[0], edges[1]),
         "guide_power": (powers[0][0], powers[1][0]),
         "guide_power_by": (powers[0][1], powers[1][1]),
-        "guide_slope": (slopes[0], slopes[1]),
+        "guide_slope": (_slope_limit(a, fastest), _slope_limit(b, fastest)),
         "guide_length": (a.length, b.length),
     }
 
 
-def _slope_limit(parts: tuple[Guide, GasSpring | None], fastest: float) -> float | None:
-    """Greatest lift per cam angle by the speeds of a guide and a gas spring, m/rad."""
-    speeds = [part.speed_limit for part in parts if part is not None]
-    stated = [speed for speed in speeds if speed is not None]
-    return min(stated) / fastest if stated else None
+def _slope_limit(part: Guide | GasSpring, fastest: float) -> float | None:
+    """Greatest lift per cam angle by the speed limit of a part, m/rad."""
+    return None if part.speed_limit is None else part.speed_limit / fastest
 
 
 def power_limits(side: str, guide: Guide, case: Case, machine: Machine) -> dict[str, float]:
@@ -293,18 +284,40 @@ def surge_of(solved: Solution) -> Surge | None:
     design, sweep = solved.machine.spring.design, solved.hardest_spring
     if design is None or sweep is None:
         return None
-    travel = solved.contour.pitch.lift.highest.value
-    preload = max(machine.spring.preload for machine in solved.machines)
-    work = hardest_work(solved.machine.spring, design, preload, travel)
+    top = ContourCam.at_top(solved.contour, solved.numbers)
+    rest, hard = (float(np.ravel(each)[0]) for each in (top.hardest.greatest, top.hardest.preload))
     end, speed = np.unravel_index(
         np.argmax(design.fatigue_use(sweep.least, sweep.greatest)), sweep.least.shape
     )
     return Surge(
-        travel=travel,
-        stress=float(sweep.greatest.max()) - work.greatest,
-        most=float(sweep.greatest[end, speed]) - work.greatest,
-        least=float(sweep.least[end, speed]) - work.preload,
+        travel=float(top.jet.lift[0]),
+        stress=float(sweep.greatest.max()) - rest,
+        most=float(sweep.greatest[end, speed]) - rest,
+        least=float(sweep.least[end, speed]) - hard,
     )
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class TopCam(LoadedCam):
+    """A cam at a maximum lift, with the surge of the last solved one, which grows with the lift."""
+
+    last: Surge
+
+    @property
+    def _share(self) -> Array:
+        return self.jet.lift / self.last.travel
+
+    @property
+    def stressed(self) -> SpringWork[Value]:
+        rest = self.hardest
+        return rest._replace(greatest=rest.greatest + self.last.stress * self._share)
+
+    @property
+    def fatigued(self) -> SpringWork[Value]:
+        rest, last, share = self.hardest, self.last, self._share
+        return rest._replace(
+            preload=rest.preload + last.least * share, greatest=rest.greatest + last.most * share
+        )
 
 
 def scaled_limits(solved: Solution) -> tuple[dict[str, float], dict[str, float]]:
@@ -347,90 +360,46 @@ def corrected_ratings(ratings: Ratings, solved: Solution) -> Ratings:
 
 
 def travel_limits(case: Case, surge: Surge | None = None) -> dict[str, float]:
-    """Greatest lift allowed by each check of the spring, m, by its id.
+    """Greatest lift allowed by each check at maximum lift that is kept, m, by its id.
 
-    Where rate or preload is free, the spring design is open and the spring travel alone limits
-    the lift. Without a surge, which depends on the lift, stress and fatigue are a lower bound; a
-    surge grows with the lift.
+    Without those that no lift, or every lift of the law of the spring, passes. Where rate or
+    preload is free, the spring design is open. Without a surge, which depends on the lift, stress
+    and fatigue are a lower bound.
     """
-    spring, limits = case.spring, case.limits
+    states = machines(case)
+    numbers, last = numbers_of(case, states), surge or Surge(1.0, 0.0, 0.0, 0.0)
+    is_open = bool({"spring_rate", "preload"} & set(case.smoothing.free))
     allowed = {}
-    if spring.travel_max is not None:
-        allowed["spring_travel"] = spring.travel_max
-    gas = spring.gas if case.scope.covers("gas_spring") else None
-    if gas is not None and gas.stroke is not None:
-        allowed["gas_stroke"] = gas.stroke
-    if gas is not None and gas.pressure_limit is not None:
-        beyond = partial(_over_pressure, spring, gas, gas.pressure_limit)
-        if beyond(0.0) < 0.0 < beyond(gas.reach):
-            root = scipy.optimize.brentq(beyond, 0.0, gas.reach, xtol=1e-12)
-            allowed["gas_pressure"] = float(root)
-    torsion = spring.torsion if case.scope.covers("torsion_spring") else None
-    if torsion is not None:
-        allowed |= _travels_of_torsion(spring, torsion)
-    design = spring.design if case.scope.covers("spring") else None
-    if design is None or {"spring_rate", "preload"} & set(case.smoothing.free):
-        return allowed
-    preload = max(machine.spring.preload for machine in machines(case))
-    added = Surge(1.0, 0.0, 0.0, 0.0) if surge is None else surge
-
-    def fatigue(work: Work[float]) -> float:
-        share = work.travel / added.travel
-        least, most = work.preload + added.least * share, work.greatest + added.most * share
-        return limits[SPRING_FATIGUE] - design.fatigue_safety(least, most)
-
-    over: dict[str, Callable[[Work[float]], float]] = {
-        "spring_stress": lambda work: (
-            design.static_use(work.greatest + added.stress * work.travel / added.travel) - 1.0
-        ),
-        "spring_fatigue": fatigue,
-        "spring_solid": lambda work: (
-            limits[SPRING_SOLID] - design.solid_clearance(work.preload, work.travel)
-        ),
-        "spring_coil_gap": lambda work: (
-            design.minimum_gaps - design.gap_left(work.preload, work.travel)
-        ),
-        "spring_buckling": lambda work: (
-            design.deflection(work.preload) + work.travel - design.buckling_deflection
-        ),
-        "spring_relaxation": lambda work: (
-            (design.relaxed_preload(work.preload, work.greatest) or 0.0)
-            - relaxation_allowed(spring)
-        ),
-    }
-    for name, excess in over.items():
-
-        def at(travel: float, excess: Callable[[Work[float]], float] = excess) -> float:
-            return excess(hardest_work(spring, design, preload, travel))
-
-        if at(_TRAVEL_LEAST) < 0.0 < at(_TRAVEL_MOST):
-            allowed[name] = float(
-                scipy.optimize.brentq(at, _TRAVEL_LEAST, _TRAVEL_MOST, xtol=1e-12)
-            )
+    for one in CHECKS:
+        how = one.measured
+        if how is None or how.reduce != "top" or how.kept is None or not one.concerns(states[0]):
+            continue
+        travel = None if is_open and one.part == "spring" else _travel(one, how, numbers, last)
+        if travel is not None:
+            allowed[one.id] = travel
     return allowed
 
 
-def _over_pressure(spring: Spring, gas: GasSpring, limit: float, travel: float) -> float:
-    return float(gas_pressure_at(spring, gas, travel)) - limit
+def _travel(one: Declaration, how: Measured, numbers: Numbers, last: Surge) -> float | None:
+    """Maximum lift, m, at which a check is at its limit; None where there is none."""
+    measure, limit = one.measure, how.allowed(numbers).value
+    lacks = any(numbers.get(key) is None for key in how.needed)
+    if measure is None or limit is None or lacks:
+        return None
+    if measure is lift:
+        return float(limit)
+    sign = -1.0 if one.sense == "at_least" else 1.0
 
+    def excess(travel: float) -> float:
+        jet = Jet(np.array([travel]), np.zeros(1), np.zeros(1))
+        worst = measure(TopCam(jet, numbers, travel, last=last))
+        return sign * float((np.asarray(how.value(worst, numbers)) - limit)[0])
 
-def _travels_of_torsion(spring: Spring, torsion: TorsionSpring) -> dict[str, float]:
-    """Greatest lift, m, by the limits of the bending stress of a torsion spring."""
-    ranges = {"torsion_stress": 0.0, "torsion_fatigue": 1.0}
-    limits = {"torsion_stress": torsion_strength(torsion), "torsion_fatigue": torsion.stress_range}
-    allowed = {}
-    for name, less in ranges.items():
-
-        def over(travel: float, less: float = less, limit: float | None = limits[name]) -> float:
-            stress = torsion_stress_at(spring, torsion, travel)
-            if stress is None or limit is None:
-                return -1.0
-            return float(stress[1] - less * stress[0]) - limit
-
-        if over(0.0) < 0.0 < over(torsion.reach):
-            root = scipy.optimize.brentq(over, 0.0, torsion.reach, xtol=1e-12)
-            allowed[name] = float(root)
-    return allowed
+    shape = None if numbers.case is None else numbers.case.spring.shape
+    least, most = (_TRAVEL_LEAST, _TRAVEL_MOST) if shape is None else (0.0, shape.reach)
+    if not excess(least) < 0.0 < excess(most):
+        return None
+    return float(scipy.optimize.brentq(excess, least, most, xtol=1e-12))
 
 
 def force_limits(case: Case) -> dict[str, float]:

@@ -119,6 +119,10 @@ def _of_parts(ratings: Ratings) -> dict[str, Bound | None]:
         "gear_bending": _of_part(
             _TORQUES[ratings.tooth_torque_by], "N m", ratings.tooth_torque, _rating("tooth_torque")
         ),
+        "gas_speed": _of_part(
+            "lift per radian at the maximum speed of the gas spring", "mm", ratings.gas_slope,
+            _rating("gas_slope"),
+        ),
         "guide_gap": _guide_gap(ratings),
         "bearing_lubrication": _roller_spin_least(ratings),
         "roller_modified_life": _modified_life(ratings),

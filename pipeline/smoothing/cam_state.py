@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from functools import cached_property
+from functools import cached_property, partial
 from math import inf
 from typing import Generic, Literal, NamedTuple, TypeVar
 
@@ -15,13 +15,20 @@ import numpy as np
 from numpy.typing import NDArray
 
 from camwright.geometry.arrays import Array, Value
-from camwright.geometry.errors import GeometryError
+from camwright.geometry.errors import GeometryError, InputError
 from camwright.geometry.flat_face_contour import FaceMotion
 from camwright.geometry.follower_path import Motion
 from camwright.geometry.lift import Jet
 from camwright.geometry.pitch_curve import RollerMotion, magnitude
-from camwright.pipeline.case.limits import AnyLimit, Limit, OpenLimit
-from camwright.pipeline.cycle.loaded_cam import LoadedCam, OfGuides, positive
+from camwright.pipeline.case.limits import CONTACT_FORCE_MARGIN, AnyLimit, Limit, OpenLimit
+from camwright.pipeline.checks.check import Declaration
+from camwright.pipeline.checks.extremes import BY_DUTY
+from camwright.pipeline.cycle.loaded_cam import (
+    LoadedCam,
+    OfGuides,
+    greatest_friction,
+    not_negative,
+)
 from camwright.pipeline.cycle.numbers import Numbers
 from camwright.pipeline.follower.spring_kinds import SpringShape, rise, shaped_deflection
 from camwright.pipeline.smoothing.scenario import Correction, DesignVariables, Ratings, Scenario
@@ -62,6 +69,7 @@ def _shaped_jet(energy: tuple[Array, ...], variables: DesignVariables, shape: Sp
 
 def _fixed(variables: DesignVariables, ratings: Ratings) -> dict[str, Value | None]:
     """Numbers of the machine that no scenario changes."""
+    waves = ratings.waves
     fixed: dict[str, Value | None] = {
         "cam.prime_radius": variables.prime_radius,
         "cam.offset": ratings.offset,
@@ -69,6 +77,14 @@ def _fixed(variables: DesignVariables, ratings: Ratings) -> dict[str, Value | No
         "contact.width": ratings.contact_width,
         "contact.modulus": ratings.contact_modulus,
         "cam.held_radius": ratings.held_radius,
+        "cam.fastest": ratings.overspeed,
+        "cam.profile_tolerance": None if waves is None else 2.0 * waves[0],
+        "cam.waviness_length": None if waves is None else waves[1],
+        "guides.a.area": ratings.guide_area[0],
+        "guides.b.area": ratings.guide_area[1],
+        "guides.a.mouth": ratings.guide_mouth,
+        "follower.size": ratings.follower_size,
+        f"limits.{CONTACT_FORCE_MARGIN.id}": ratings.limits.get(CONTACT_FORCE_MARGIN),
     }
     if ratings.face is not None:
         fixed |= {
@@ -144,36 +160,26 @@ class ScenarioCam(LoadedCam):
         return OfGuides(self.axial * on_a, self.axial * on_b)
 
     @cached_property
-    def _worst_friction(self) -> OfGuides | None:
-        """Greatest friction of the guides on points over the axial force."""
-        worst = self.scenario.friction_worst
-        if worst is None:
-            return None
-        on_a, on_b = self.reactions
-        return OfGuides(worst[0] * on_a.on_points, worst[1] * on_b.on_points)
-
-    @cached_property
     def jam_worst(self) -> Array | None:
-        """Jam index at the greatest friction; None where that is not known."""
-        worst = self._worst_friction
-        return None if worst is None else (worst.a + worst.b) * self.fix.jam
+        on_points = super().jam_worst
+        return None if on_points is None else on_points * self.fix.jam
 
     @cached_property
     def hot(self) -> OfGuides | None:
         """Friction of the guides at the greatest friction, N; None where that is not known."""
-        friction, worst = self.scenario.friction_worst, self._worst_friction
-        if friction is None or worst is None:
+        friction, jam = greatest_friction(self.numbers), self.jam_worst
+        if friction is None or jam is None:
             return None
-        jam = self.direction * (worst.a + worst.b) * self.fix.jam
-        axial = self.axial * self.share / (1.0 - jam)
+        axial = self.axial * self.share / (1.0 - self.direction * jam)
         loads = self._corrected(self.fix.hot_a, self.fix.hot_b)
-        return OfGuides(friction[0] * loads.a * axial, friction[1] * loads.b * axial)
+        return OfGuides(friction.a * loads.a * axial, friction.b * loads.b * axial)
 
 
 def loaded(
     jet: Jet, highest: float, variables: DesignVariables, ratings: Ratings, scenario: Scenario
 ) -> ScenarioCam:
     """Cam of a lift in one scenario, or in stacked ones; highest: maximum lift, m."""
+    worst = scenario.friction_worst
     numbers = _fixed(variables, ratings) | {
         "spring.preload": variables.preload * scenario.preload_factor,
         "spring.rate": variables.rate * scenario.rate_factor,
@@ -184,6 +190,8 @@ def loaded(
         "guides.spacing": scenario.guide_spacing,
         "guides.a.friction": scenario.friction_a,
         "guides.b.friction": scenario.friction_b,
+        "guides.a.friction_greatest": None if worst is None else worst[0],
+        "guides.b.friction_greatest": None if worst is None else worst[1],
     }
     return ScenarioCam(
         jet,
@@ -256,11 +264,12 @@ class Mean(NamedTuple):
         return np.imag(self._of(means[..., None, :] + steps)) / _STEP
 
     def _of(self, means: Array) -> Array:
-        of_one = positive(means) ** self.power if self.total is None else self.total.of(means)
+        of_one = not_negative(means) ** self.power if self.total is None else self.total.of(means)
         return np.asarray(self.factor * of_one)
 
 
 _STEP = 1e-30  # complex step of a mean
+_FAR = -10.0  # utilisation in a scenario to which a limit does not apply
 _SHARE = 1e-5  # of a mean: step of the second derivatives
 
 
@@ -291,7 +300,9 @@ def by_duty(terms: Array, scenario: Scenario, power: float = 1.0) -> Mean:
     shares = duty_shares(scenario)
     if shares is None:
         return Mean(terms, power)
-    return Mean(terms, power, Total(lambda means: positive(means @ shares.T) ** power, shares > 0))
+    return Mean(
+        terms, power, Total(lambda means: not_negative(means @ shares.T) ** power, shares > 0)
+    )
 
 
 def roller_of(path: Motion) -> RollerMotion:
@@ -357,3 +368,50 @@ class Constraint(Generic[State]):
         if isinstance(self.limit, Limit | OpenLimit):
             return ratings.limits.get(self.limit)
         return self.limit(ratings)
+
+
+def where_applies(applies: Value, use: Array) -> Array:
+    """Utilisation in the scenarios to which a limit applies, far from it in the others."""
+    return np.where(np.asarray(applies) != 0.0, use, _FAR + 0.0 * use)
+
+
+def kept(
+    declared: Declaration, limit: Callable[[Ratings], float | None] | None = None
+) -> Constraint[LoadedCam]:
+    """Constraint of a check that is declared by a measure.
+
+    limit: ratings -> limit of a part; None: the row of the check
+    """
+    how, measure, row = declared.measured, declared.measure, declared.limit
+    of_part = row if limit is None else limit
+    if how is None or measure is None or how.kept is None or of_part is None:
+        raise InputError(declared.id, "not declared", "kept by the synthesis, see `Measured`")
+    return Constraint(
+        declared.id,
+        of_part,
+        partial(how.use, measure),
+        factor_max=how.kept.factor_max,
+        value_max=how.kept.value_max,
+        needs=declared.needs,
+    )
+
+
+def kept_loads(
+    declared: Declaration, limit: Callable[[Ratings], float | None] | None = None
+) -> Constraint[ScenarioCam]:
+    """As `kept`, of a check on the loads: over the turn and the load cases where it is reduced."""
+    of_cam, how = kept(declared, limit), declared.measured
+
+    def utilisation(cam: ScenarioCam, limit: float) -> Array | Mean | None:
+        use = of_cam.utilisation(cam, limit)
+        if how is None or how.kept is None or use is None or isinstance(use, Mean):
+            return use
+        if how.kept.once:
+            return where_applies(np.multiply(cam.scenario.swept, cam.scenario.nominal), use)
+        if how.reduce == "mean":
+            return Mean(use, how.kept.power)
+        return by_duty(use, cam.scenario, how.kept.power) if how.reduce in BY_DUTY else use
+
+    return Constraint(
+        of_cam.check, of_cam.limit, utilisation, of_cam.factor_max, of_cam.value_max, of_cam.needs
+    )

@@ -11,27 +11,17 @@ value, title, unit and slope from the row.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Container, Mapping
-from functools import partial
-from math import inf
+from collections.abc import Container, Mapping
 from typing import Literal
 
-import numpy as np
-
 from camwright.geometry.arrays import Array
-from camwright.geometry.errors import InputError
 from camwright.geometry.lift import Jet
 from camwright.geometry.pitch_curve import magnitude
 from camwright.pipeline.case.limits import (
-    CONTACT_FORCE_MARGIN,
-    JAM_INDEX,
-    JUMP,
-    PRESSURE_ANGLE,
     AnyLimit,
 )
-from camwright.pipeline.checks import cam_shape, demands, manufacture
-from camwright.pipeline.checks.check import FACTOR_MAX, Declaration
-from camwright.pipeline.cycle.loaded_cam import LoadedCam, positive
+from camwright.pipeline.checks import cam_shape, guide_strength, jump_and_jamming, manufacture
+from camwright.pipeline.cycle.loaded_cam import LoadedCam, not_negative
 from camwright.pipeline.follower.roller_motion import BALL_LIFE_EXPONENT, wear
 from camwright.pipeline.smoothing.cam_state import (
     Constraint,
@@ -39,6 +29,8 @@ from camwright.pipeline.smoothing.cam_state import (
     ScenarioCam,
     State,
     by_duty,
+    kept,
+    kept_loads,
     loaded,
     unloaded,
 )
@@ -103,76 +95,15 @@ def _utilisations(
     return uses
 
 
-def _contact_at_overspeed(at: ScenarioCam, limit: float) -> Array | None:
-    if at.ratings.overspeed is None:
-        return None
-    thrown = at.inertia_at(at.ratings.overspeed)
-    return 1.0 + limit - demands.force_left(at.closing, thrown, at.least_spring)
-
-
-def _jam_index_friction_max(at: ScenarioCam, limit: float) -> Array | None:
-    worst = at.jam_worst
-    return None if worst is None else demands.jam_outward(at.slope, worst) / limit
-
-
 def _roller_life(at: ScenarioCam, limit: float) -> Mean:
     """Of L10 = (C / P_m)^3 1e6 turns / mean spin, where P_m^3 mean spin is the mean of N^3 |n|."""
-    terms = wear(positive(at.surged), at.spin) / limit
+    terms = wear(not_negative(at.surged), at.spin) / limit
     return by_duty(terms, at.scenario, 1.0 / BALL_LIFE_EXPONENT)
-
-
-def _guide_pressure(side: Literal["A", "B"]) -> Constraint[ScenarioCam]:
-    place = "AB".index(side)
-
-    def utilisation(at: ScenarioCam, limit: float) -> Array:
-        return demands.guide_pressure(at.bearing[place], at.ratings.guide_area[place]) / limit
-
-    return Constraint(
-        f"guide_pressure_{side}", lambda ratings: ratings.guide_pressure[place], utilisation
-    )
-
-
-def _guide_pv(side: Literal["A", "B"]) -> Constraint[ScenarioCam]:
-    place = "AB".index(side)
-
-    def utilisation(at: ScenarioCam, limit: float) -> Mean:
-        load, area = at.rubbing[place], at.ratings.guide_area[place]
-        return Mean(demands.guide_pv(load, at.velocity, area) / limit)
-
-    return Constraint(f"guide_pv_{side}", lambda ratings: ratings.guide_pv[place], utilisation)
-
-
-def kept(
-    declared: Declaration, limit: Callable[[Ratings], float | None] | None = None
-) -> Constraint[LoadedCam]:
-    """Constraint of a check that is declared by a measure.
-
-    limit: ratings -> limit of a part; None: the row of the check
-    """
-    how, measure, row = declared.measured, declared.measure, declared.limit
-    of_part = row if limit is None else limit
-    if how is None or measure is None or how.kept is None or of_part is None:
-        raise InputError(declared.id, "not declared", "kept by the synthesis, see `Measured`")
-    return Constraint(
-        declared.id,
-        of_part,
-        partial(how.use, measure),
-        factor_max=how.kept.factor_max,
-        value_max=how.kept.value_max,
-        needs=declared.needs,
-    )
 
 
 SHAPE: tuple[Constraint[LoadedCam], ...] = (
     kept(cam_shape.spring_travel, lambda ratings: ratings.travel),
-    Constraint(
-        "pressure_angle",
-        PRESSURE_ANGLE,
-        lambda cam, limit: magnitude(cam.motion.pressure_angle) / limit,
-        factor_max=inf,
-        value_max=np.radians(60.0),
-        needs="roller",
-    ),
+    kept(cam_shape.pressure_angle),
     kept(cam_shape.curvature_ratio),
     kept(cam_shape.undercut),
     kept(cam_shape.concave_radius, lambda ratings: ratings.hollow_radius),
@@ -185,29 +116,12 @@ SHAPE: tuple[Constraint[LoadedCam], ...] = (
 
 LOADS: tuple[Constraint[ScenarioCam], ...] = (
     Constraint("contact_pressure", lambda ratings: ratings.pressure, line_pressure),
-    Constraint(
-        "contact_force_margin",
-        CONTACT_FORCE_MARGIN,
-        lambda at, limit: 1.0 + limit - at.normal / at.least_spring,
-    ),
-    Constraint("contact_at_overspeed", CONTACT_FORCE_MARGIN, _contact_at_overspeed),
-    Constraint(
-        "jump",
-        JUMP,
-        lambda at, limit: demands.unloading(at.inertia, at.closing) / limit,
-    ),
-    Constraint(
-        "jump_speed",
-        lambda ratings: ratings.jump_speed,
-        lambda at, limit: demands.unloading(at.inertia_at(limit), at.closing),
-    ),
-    Constraint(
-        "jam_index",
-        JAM_INDEX,
-        lambda at, limit: demands.jam_outward(at.jet.slope, at.jam) / limit,
-        factor_max=FACTOR_MAX,
-    ),
-    Constraint("jam_index_friction_max", JAM_INDEX, _jam_index_friction_max),
+    kept_loads(jump_and_jamming.contact_force_margin),
+    kept_loads(jump_and_jamming.contact_at_overspeed),
+    kept_loads(jump_and_jamming.jump),
+    kept_loads(jump_and_jamming.jump_speed, lambda ratings: ratings.jump_speed),
+    kept_loads(jump_and_jamming.jam_index),
+    kept_loads(jump_and_jamming.jam_index_friction_max),
     Constraint(
         "roller_static",
         lambda ratings: ratings.normal_force,
@@ -229,10 +143,10 @@ LOADS: tuple[Constraint[ScenarioCam], ...] = (
     Constraint(
         "roller_life", lambda ratings: ratings.life_force_cubed, _roller_life, needs="roller"
     ),
-    _guide_pressure("A"),
-    _guide_pv("A"),
-    _guide_pressure("B"),
-    _guide_pv("B"),
+    kept_loads(guide_strength.guide_pressure_a, lambda ratings: ratings.guide_pressure[0]),
+    kept_loads(guide_strength.guide_pv_a, lambda ratings: ratings.guide_pv[0]),
+    kept_loads(guide_strength.guide_pressure_b, lambda ratings: ratings.guide_pressure[1]),
+    kept_loads(guide_strength.guide_pv_b, lambda ratings: ratings.guide_pv[1]),
     *PARTS,
 )
 """Limits on the loads of the cam in one scenario."""

@@ -17,13 +17,18 @@ from camwright.pipeline.base.units import factor
 from camwright.pipeline.case.limits import (
     CONTACT_FORCE_MARGIN,
     KEYWAY_SAFETY,
-    WAVINESS,
 )
-from camwright.pipeline.checks import demands
+from camwright.pipeline.checks import (
+    demands,
+    guide_strength,
+    guide_wear,
+    manufacture,
+    spring_strength,
+)
 from camwright.pipeline.checks.roller_bearing import STANDSTILL
 from camwright.pipeline.contact.hertz import half_width_square
 from camwright.pipeline.contact.traction import rolling_demand
-from camwright.pipeline.cycle.loaded_cam import LoadedCam, positive
+from camwright.pipeline.cycle.loaded_cam import LoadedCam, not_negative
 from camwright.pipeline.follower import bearing_life
 from camwright.pipeline.follower.flat_face_motion import MEAN_SHARE
 from camwright.pipeline.follower.roller_motion import (
@@ -39,49 +44,17 @@ from camwright.pipeline.smoothing.cam_state import (
     by_duty,
     duty_shares,
     face_of,
+    kept,
+    kept_loads,
     roller_of,
+    where_applies,
 )
 
 _LEAST_FORCE = 1.0  # N, of a force that damages a bearing
-_MARGIN = 0.2  # of the least spring force, where the case keeps no contact force margin
 _LEAST_RADIUS = 1e-6  # m, of curvature, of a half-width
-_FAR = -10.0  # utilisation in a scenario to which a limit does not apply
 _AMPLE = 100.0  # times the least mean speed, of a roller at rest, which needs no film
 
 Side = Literal["A", "B"]
-
-
-def _over_normal_force(at: ScenarioCam, needed: Array) -> Array:
-    """Needed over present normal force (n,); 1 plus the shortfall below the contact force margin.
-
-    The quotient alone has a pole where the search passes through a loss of contact.
-    """
-    margin = at.ratings.limits.get(CONTACT_FORCE_MARGIN, _MARGIN)
-    normal, least = at.normal, margin * at.least_spring
-    scale: Array = np.where(np.real(normal) > np.real(np.asarray(least)), normal, least)
-    return 1.0 + (needed - normal) / scale
-
-
-def _guide_speed(side: Side) -> Constraint[LoadedCam]:
-    place = "AB".index(side)
-    return Constraint(
-        f"guide_speed_{side}",
-        lambda ratings: ratings.guide_slope[place],
-        lambda cam, limit: magnitude(cam.jet.slope) / limit,
-    )
-
-
-def _where(applies: Value, use: Array) -> Array:
-    """Utilisation in the scenarios to which a limit applies, far from it in the others."""
-    return np.where(np.asarray(applies) != 0.0, use, _FAR + 0.0 * use)
-
-
-def _guide_gap(at: ScenarioCam, limit: float) -> Array:
-    """Over the size of the follower; of the cam alone, as the gap of the follower is fixed."""
-    path, ratings = at.motion, at.ratings
-    space = path.height - at.jet.lift + at.highest + ratings.guide_mouth - path.contour_radius
-    use = 1.0 + (limit - space) / ratings.follower_size
-    return _where(np.multiply(at.scenario.swept, at.scenario.nominal), use)
 
 
 def _guide_edge_pressure(side: Side) -> Constraint[ScenarioCam]:
@@ -109,20 +82,6 @@ def _guide_heat(side: Side) -> Constraint[ScenarioCam]:
     )
 
 
-def _guide_wear(side: Side) -> Constraint[ScenarioCam]:
-    """Mean PV value over that of the greatest wear depth."""
-    place = "AB".index(side)
-
-    def utilisation(at: ScenarioCam, limit: float) -> Mean:
-        load = at.rubbing[place]
-        pv = demands.guide_pv(load, at.velocity, at.ratings.guide_area[place])
-        return by_duty(pv / limit, at.scenario)
-
-    return Constraint(
-        f"guide_wear_{side}", lambda ratings: ratings.guide_wear_pv[place], utilisation
-    )
-
-
 def _traction_demand(at: ScenarioCam, friction: float) -> Array | None:
     if at.ratings.drag is None:
         return None
@@ -130,18 +89,9 @@ def _traction_demand(at: ScenarioCam, friction: float) -> Array | None:
     radius = path.size
     rate = path_speed_slope(path.along, path.height, jet.slope, jet.bend, path.path_speed)
     acceleration = at.scenario.cam_speed**2 * rate / radius
-    force = positive(at.normal)
+    force = not_negative(at.normal)
     demand = rolling_demand(at.ratings.drag, force, at.spin, acceleration, radius)
-    return _over_normal_force(at, magnitude(demand) / friction)
-
-
-def _profile_waviness(at: ScenarioCam, limit: float) -> Array | None:
-    if at.ratings.waves is None:
-        return None
-    amplitude, length = at.ratings.waves
-    speed = at.scenario.cam_speed * at.motion.contour_speed
-    inertia = demands.waviness_force(at.scenario.mass, amplitude, speed, length)
-    return _over_normal_force(at, inertia / limit)
+    return demands.over_normal_force(at, magnitude(demand) / friction)
 
 
 def _swept_force(at: ScenarioCam, limit: float) -> Array | None:
@@ -155,7 +105,7 @@ def _swept_force(at: ScenarioCam, limit: float) -> Array | None:
     push = push + (scenario.mass - scenario.spring_mass) * speed**2 * at.jet.bend
     push = push + scenario.viscous_damping * speed * at.jet.slope
     normal = push / at.share * at.motion.gain
-    return _where(scenario.swept, 1.0 + limit - normal / at.least_spring)
+    return where_applies(scenario.swept, 1.0 + limit - normal / at.least_spring)
 
 
 def _elastic_contact(at: ScenarioCam, limit: float) -> Array | None:
@@ -167,7 +117,7 @@ def _elastic_contact(at: ScenarioCam, limit: float) -> Array | None:
     speed = np.where(fix.elastic_speed > 0.0, fix.elastic_speed, fastest)
     inertia = (scenario.mass - scenario.spring_mass) * speed**2 * at.jet.bend
     push = demands.force_left(at.closing + fix.elastic, inertia, at.least_spring)
-    return _where(scenario.swept, 1.0 + limit - push)
+    return where_applies(scenario.swept, 1.0 + limit - push)
 
 
 def _keyway_root(at: ScenarioCam, limit: float) -> Array | None:
@@ -197,7 +147,9 @@ def _modified_life(at: ScenarioCam, limit: float) -> Mean | None:
     bearing = at.ratings.modified
     if bearing is None:
         return None
-    force = np.where(np.real(positive(at.surged)) > _LEAST_FORCE, positive(at.surged), _LEAST_FORCE)
+    force = np.where(
+        np.real(not_negative(at.surged)) > _LEAST_FORCE, not_negative(at.surged), _LEAST_FORCE
+    )
     speed, turns = _mean_spin(at)
     rated = bearing_life.rated_viscosity(speed / factor("rpm"), bearing.circle)
     kappa, least = bearing.viscosity / rated, bearing_life.LEAST_VISCOSITY_RATIO
@@ -217,7 +169,7 @@ def _grease_life(at: ScenarioCam, limit: float) -> Mean | None:
     if grease is None:
         return None
     speed, turns = _mean_spin(at)
-    worn = wear(positive(at.normal), at.spin) / (limit**BALL_LIFE_EXPONENT * speed)
+    worn = wear(not_negative(at.normal), at.spin) / (limit**BALL_LIFE_EXPONENT * speed)
     shares, root = duty_shares(at.scenario), 1.0 / BALL_LIFE_EXPONENT
     if shares is None:
         share = grease.load_share(speed)
@@ -230,7 +182,7 @@ def _grease_life(at: ScenarioCam, limit: float) -> Mean | None:
     counted = shares * np.ravel(known)
 
     def of(means: Array) -> Array:
-        load, allowed = positive(means[..., :count]) ** root, means[..., count:]
+        load, allowed = not_negative(means[..., :count]) ** root, means[..., count:]
         factors = [bearing_life.grease_load_factor(load, allowed, each) for each in counted]
         return np.concatenate(
             [np.stack(factors, axis=-1), load[..., running] / bearing_life.HEAVY_GREASE], axis=-1
@@ -276,23 +228,24 @@ def line_pressure(at: ScenarioCam, allowed: Value) -> Array:
 
 
 PART_SHAPE: tuple[Constraint[LoadedCam], ...] = (
-    _guide_speed("A"),
-    _guide_speed("B"),
+    kept(guide_strength.guide_speed_a, lambda ratings: ratings.guide_slope[0]),
+    kept(guide_strength.guide_speed_b, lambda ratings: ratings.guide_slope[1]),
+    kept(spring_strength.gas_speed, lambda ratings: ratings.gas_slope),
 )
 """Limits of the parts on the shape of the cam."""
 
 PARTS: tuple[Constraint[ScenarioCam], ...] = (
-    Constraint("guide_gap", lambda ratings: ratings.guide_gap, _guide_gap),
+    kept_loads(manufacture.guide_gap, lambda ratings: ratings.guide_gap),
     _guide_edge_pressure("A"),
     _guide_edge_pressure("B"),
     _guide_heat("A"),
     _guide_heat("B"),
-    _guide_wear("A"),
-    _guide_wear("B"),
+    kept_loads(guide_wear.guide_wear_a, lambda ratings: ratings.guide_wear_pv[0]),
+    kept_loads(guide_wear.guide_wear_b, lambda ratings: ratings.guide_wear_pv[1]),
     Constraint(
         "traction_demand", lambda ratings: ratings.friction, _traction_demand, needs="roller"
     ),
-    Constraint("profile_waviness", WAVINESS, _profile_waviness),
+    kept_loads(manufacture.profile_waviness),
     Constraint("contact_over_speed", CONTACT_FORCE_MARGIN, _swept_force),
     Constraint("elastic_contact", CONTACT_FORCE_MARGIN, _elastic_contact),
     Constraint(

@@ -100,7 +100,8 @@ class Ratings:
     guide_edge_load : pair     line load at the yield strength of the bush at 20 degC, N/m
     guide_power : pair         mean friction power at the greatest temperature, W; guide_power_by is
                                the check it comes from
-    guide_slope : pair         lift per cam angle at the greatest sliding speed, m/rad
+    guide_slope : pair         lift per cam angle at the greatest sliding speed, m/rad; gas_slope:
+                               at that of the gas spring
     guide_length : pair        m
     guide_gap : float          m; guide_mouth: end of guide A over the roller centre at maximum
                                lift, m
@@ -142,6 +143,7 @@ class Ratings:
     guide_power: tuple[float | None, float | None] = (None, None)
     guide_power_by: tuple[str, str] = ("guide_temperature_A", "guide_temperature_B")
     guide_slope: tuple[float | None, float | None] = (None, None)
+    gas_slope: float | None = None
     guide_length: tuple[float, float] = (1.0, 1.0)
     guide_gap: float | None = None
     guide_mouth: float = 0.0

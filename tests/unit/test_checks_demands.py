@@ -28,6 +28,7 @@ from camwright.geometry.arrays import uniform_turn
 from camwright.geometry.contour import RollerContour
 from camwright.geometry.errors import InputError
 from camwright.geometry.lift import Lift
+from camwright.geometry.motion_laws import Motion, Segment
 from camwright.geometry.pitch_curve import PitchCurve
 from camwright.pipeline.case.machine import CREEP
 from camwright.pipeline.case.requirements_section import Waiver
@@ -57,6 +58,8 @@ from camwright.pipeline.checks.registry import (
     checks_of,
 )
 from camwright.pipeline.contact.tiers import Tier
+from camwright.pipeline.cycle.numbers import Numbers
+from camwright.pipeline.cycle.solved_cam import ContourCam
 
 ROUND_OFF = 1e-9
 
@@ -247,15 +250,32 @@ def test_pressure_angle_of_an_eccentric_disc():
     assert cam_shape.concave_radius(solution) is None
 
 
+@pytest.mark.parametrize("offset", [0.0, 0.004, -0.004])
+def test_pressure_angles_of_both_strokes(offset):
+    """On the other stroke s' counts as zero, which the bottom of the lift has in any case."""
+    lift = Motion(
+        (Segment("cycloidal", 1.2, 0.01), Segment("cycloidal", 2.0 * np.pi - 1.2, -0.01))
+    ).lift()
+    pitch, theta = PitchCurve(lift, 0.03, offset), np.linspace(0.0, 2.0 * np.pi, 20001)
+    cam = ContourCam.at(RollerContour(pitch, 0.01), Numbers({"cam.offset": offset}), theta, 2)
+    slope, angle = lift(theta, 1), np.abs(pitch.pressure_angle(theta))
+    rise, back = cam_shape.angle_on_rise(cam).max(), cam_shape.angle_on_return(cam).max()
+    assert rise == pytest.approx(angle[slope > 0.0].max(), abs=1e-7)
+    assert back == pytest.approx(angle[slope < 0.0].max(), abs=1e-7)
+    assert max(rise, back) == pytest.approx(pitch.pressure_angle_max().value, abs=1e-7)
+
+
 def test_pressure_angle_of_the_stroke_that_governs():
-    pitch = made.solution().contour.pitch
-    rise, back = pitch.pressure_angles
-    even = with_limits(pressure_angle=0.5, return_pressure_angle=0.5)
-    steep = with_limits(pressure_angle=0.3, return_pressure_angle=1.5)
-    checked = cam_shape.pressure_angle(steep)
-    assert (checked.demand, checked.limit, checked.note) == (rise.value, 0.3, "on the rise")
-    worst = cam_shape.pressure_angle(even)
-    assert worst.demand == max(rise.value, back.value)
+    pitch, theta = made.solution().contour.pitch, np.linspace(0.0, 2.0 * np.pi, 20001)
+    slope, angle = pitch.lift(theta, 1), np.abs(pitch.pressure_angle(theta))
+    rise, back = angle[slope > 0.0].max(), angle[slope < 0.0].max()
+    checked = cam_shape.pressure_angle(with_limits(pressure_angle=0.3, return_pressure_angle=1.5))
+    assert (checked.limit, checked.note) == (0.3, "on the rise")
+    assert checked.demand == pytest.approx(rise, abs=1e-7)
+    checked = cam_shape.pressure_angle(with_limits(pressure_angle=1.5, return_pressure_angle=0.3))
+    assert (checked.limit, checked.note) == (0.3, "on the return")
+    assert checked.demand == pytest.approx(back, abs=1e-7)
+    worst = cam_shape.pressure_angle(with_limits(pressure_angle=0.5, return_pressure_angle=0.5))
     assert worst.demand == pytest.approx(pitch.pressure_angle_max().value, abs=1e-12)
 
 

@@ -131,7 +131,7 @@ def test_a_table_without_units_is_refused(tmp_path: Path) -> None:
 
 
 def test_wound_springs_meet_their_demand(tmp_path: Path) -> None:
-    """Each spring against `SpringDemand`, which the winding does not use."""
+    """Each spring keeps its limits in the usual tolerances, rounded as it is wound."""
     task = task_in(tmp_path)
     wire = spring_wire(task, None)
     travel = np.geomspace(4e-3, 20e-3, 5)
@@ -140,9 +140,7 @@ def test_wound_springs_meet_their_demand(tmp_path: Path) -> None:
     assert len(points) == travel.size
     for point in points:
         spring = point.spring
-        demand = SpringDemand(
-            spring.rate, point.preload, point.travel, rate_spread=0.05, preload_spread=0.05
-        )
+        demand = SpringDemand(spring.rate, point.preload, point.travel)
         assert demand.shortfalls(spring) == ()
         assert spring.surge_frequency >= 13.0 * task.cam_speed / (2.0 * np.pi)
         stored = (point.preload + 0.5 * spring.rate * point.travel) * point.travel

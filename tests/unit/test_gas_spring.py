@@ -20,16 +20,17 @@ from camwright.pipeline.case.cards.card_filling import known_cards
 from camwright.pipeline.case.case_file import case_of, parse_case
 from camwright.pipeline.case.case_values import replaced
 from camwright.pipeline.case.load_case_torque import engine_torques
-from camwright.pipeline.case.machine import Corner, machine
+from camwright.pipeline.case.machine import Corner, machine, machines
 from camwright.pipeline.case.template import first_case
-from camwright.pipeline.checks.spring_strength import gas_pressure_at
 from camwright.pipeline.cycle.elastic_response import elastic_history
+from camwright.pipeline.cycle.speed_sweep import highest_speed
 from camwright.pipeline.follower.follower_forces import follower_loads
 from camwright.pipeline.follower.spring import Spring, spring_energy, spring_force, stored_lift
 from camwright.pipeline.follower.spring_kinds import ATMOSPHERE, GasSpring, rise
 from camwright.pipeline.preview import preview_case
 from camwright.pipeline.screening.design_screening import screen_designs
-from camwright.pipeline.smoothing.allowables import travel_limits
+from camwright.pipeline.smoothing.allowables import ratings_of, travel_limits
+from camwright.pipeline.smoothing.bounds import bounds_of
 from camwright.pipeline.smoothing.cam_state import lift_jet, loaded
 from camwright.pipeline.smoothing.problem_setup import problem_of
 from camwright.pipeline.smoothing.required_lift import required_lift, required_torque
@@ -303,8 +304,21 @@ def test_limits_of_the_maker():
     assert not any(name.startswith("spring_") and name != "spring_travel" for name in checks)
     allowed = travel_limits(limited)
     assert allowed["gas_stroke"] == 0.02
-    at_limit = gas_pressure_at(limited.spring, limited.spring.gas, allowed["gas_pressure"])
-    assert at_limit == pytest.approx(60e5, rel=1e-9)
+    at_limit = limited.spring.force(np.array(allowed["gas_pressure"])) / 113e-6
+    assert 1.05 * at_limit == pytest.approx(60e5, rel=1e-9)
+
+
+def test_the_synthesis_keeps_the_speed_of_the_seal_whatever_the_guides():
+    """The lift per cam angle at the speed limit, at the fastest cam; guides in or out of scope."""
+    limited = gas_case(table=TABLE + LIMITS)
+    fastest = highest_speed(machines(limited)) / limited.mechanism.gear_ratio
+    scope = limited.scope.model_copy(update={"not_covered": ("guides",)})
+    for case in (limited, limited.model_copy(update={"scope": scope})):
+        ratings = ratings_of(case)
+        assert ratings.gas_slope == pytest.approx(1.0 / fastest, rel=1e-12)
+        bound = bounds_of(ratings)["gas_speed"]
+        assert (bound.value, bound.unit) == (pytest.approx(1e3 / fastest), "mm")
+    assert ratings_of(gas_case()).gas_slope is None
 
 
 def test_screening_judges_the_limits_of_the_maker():

@@ -7,32 +7,49 @@ part and never turns a NaN into a pass.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
+from test_gas_spring import LIMITS as GAS_LIMITS
+from test_gas_spring import TABLE as GAS_TABLE
+from test_gas_spring import gas_case
+from test_torsion_spring import case as torsion_case
 
 from camwright.geometry.arrays import FULL_TURN, Array
 from camwright.geometry.lift import Jet
+from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_file import read_case
+from camwright.pipeline.case.machine import machines
 from camwright.pipeline.checks.check import Declaration
 from camwright.pipeline.checks.registry import CHECKS
 from camwright.pipeline.cycle.loaded_cam import LoadedCam
-from camwright.pipeline.cycle.numbers import Numbers
+from camwright.pipeline.cycle.solved_cam import numbers_of
+from camwright.pipeline.smoothing.allowables import travel_limits
 
 CASES = Path(__file__).parents[2] / "cases"
 POINTS = 180
-NUMBERS = {
-    follower: Numbers({}, read_case(CASES / f"{name}.toml"))
-    for follower, name in (("roller", "gx120-redesign"), ("face", "gx120-flat-face"))
-}
+
+
+CASE = {
+    **{kind: read_case(CASES / f"{name}.toml")
+       for kind, name in (("roller", "gx120-redesign"), ("face", "gx120-flat-face"))},
+    "gas spring": gas_case(table=f"{GAS_TABLE}{GAS_LIMITS}"),
+    "torsion spring": torsion_case(),
+}  # fmt: skip
+"""Machines; of each part with a spring of its own the checks of that spring alone."""
+SLENDER = {"spring.design.end_factor": 2.0}  # a stable spring does not buckle at any lift
+NUMBERS = {name: numbers_of(case, machines(case)) | SLENDER for name, case in CASE.items()}
+OF_SPRINGS = {"gas spring": "gas_spring", "torsion spring": "torsion_spring"}
 MEASURED = [
-    pytest.param(one, follower, id=f"{one.id}, {follower}")
+    pytest.param(one, name, id=f"{one.id}, {name}")
     for one in CHECKS
     if one.measured is not None
-    for follower in NUMBERS
-    if one.needs in ("", follower)
+    for name, case in CASE.items()
+    if OF_SPRINGS.get(name, one.part) == one.part and one.concerns(machines(case)[0])
 ]
+BY_ANGLE = [each for each in MEASURED if each.values[0].measured.reduce != "case"]
 
 
 def jet() -> Jet:
@@ -52,7 +69,7 @@ def measured(one: Declaration, cam: LoadedCam) -> Array:
     return one.measure(cam)
 
 
-@pytest.mark.parametrize(("one", "follower"), MEASURED)
+@pytest.mark.parametrize(("one", "follower"), BY_ANGLE)
 def test_a_measure_is_that_of_each_angle(one: Declaration, follower: str) -> None:
     whole = measured(one, LoadedCam(jet(), NUMBERS[follower], 0.012))
     points = np.array([5, 5, 100, 171, 2])
@@ -64,7 +81,7 @@ def test_a_measure_is_that_of_each_angle(one: Declaration, follower: str) -> Non
     )
 
 
-@pytest.mark.parametrize(("one", "follower"), MEASURED)
+@pytest.mark.parametrize(("one", "follower"), BY_ANGLE)
 def test_the_complex_step_is_the_difference_quotient(one: Declaration, follower: str) -> None:
     draw = np.random.default_rng(1)
     way = [draw.normal(size=POINTS) * np.abs(each).max() for each in jet()]
@@ -103,3 +120,30 @@ def test_the_bound_of_a_measure_is_at_the_limit_of_the_demand(
     for limit in (0.3, 0.6):
         demand = how.value(np.float64(how.bound(limit)), NUMBERS[follower])
         assert demand == pytest.approx(limit, rel=1e-14)
+
+
+def slender(case: Case) -> Case:
+    """The case with a spring that buckles, where it is wound."""
+    design = case.spring.design
+    if design is None:
+        return case
+    spring = replace(case.spring, design=replace(design, end_factor=2.0))
+    return case.model_copy(update={"spring": spring})
+
+
+@pytest.mark.parametrize("name", CASE)
+def test_a_check_at_maximum_lift_is_at_its_limit_at_the_greatest_lift_allowed(name: str) -> None:
+    """What the synthesis keeps of a spring, by bisection on the measure of its check."""
+    case = slender(CASE[name])
+    numbers, allowed = numbers_of(case, machines(case)), travel_limits(case)
+    kept = [each.values[0] for each in MEASURED
+            if each.values[1] == name and each.values[0].measured.reduce == "top"
+            and each.values[0].measured.kept is not None]  # fmt: skip
+    assert {each.id for each in kept} - {"spring_travel"} <= set(allowed)
+    for one in kept:
+        if one.id in allowed:  # the machines of the gas and torsion springs state no travel
+            top = np.array([allowed[one.id]])
+            worst = measured(one, LoadedCam(Jet(top, 0.0 * top, 0.0 * top), numbers))
+            demand, limit = one.measured.value(worst, numbers), one.measured.allowed(numbers)
+            assert float(demand[0]) == pytest.approx(float(limit.value), rel=1e-9), one.id
+    assert len(allowed) == {"roller": 7, "face": 7, "gas spring": 2, "torsion spring": 2}[name]

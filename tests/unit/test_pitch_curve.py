@@ -6,7 +6,6 @@ import pytest
 from camwright.geometry.arrays import uniform_turn
 from camwright.geometry.errors import InputError
 from camwright.geometry.lift import Lift
-from camwright.geometry.motion_laws import Motion, Segment
 from camwright.geometry.pitch_curve import PitchCurve
 
 THETA = uniform_turn(360)
@@ -148,17 +147,3 @@ def test_refuses(prime_radius, offset, field):
     with pytest.raises(InputError) as caught:
         PitchCurve(LIFT, prime_radius, offset)
     assert caught.value.field == field
-
-
-@pytest.mark.parametrize("offset", [0.0, 0.004, -0.004])
-def test_pressure_angles_of_both_strokes(offset):
-    lift = Motion(
-        (Segment("cycloidal", 1.2, 0.01), Segment("cycloidal", 2.0 * np.pi - 1.2, -0.01))
-    ).lift()
-    pitch = PitchCurve(lift, 0.03, offset)
-    theta = np.linspace(0.0, 2.0 * np.pi, 20001)
-    slope, angle = lift(theta, 1), np.abs(pitch.pressure_angle(theta))
-    rise, back = pitch.pressure_angles
-    assert rise.value == pytest.approx(angle[slope > 0.0].max(), abs=1e-7)
-    assert back.value == pytest.approx(angle[slope < 0.0].max(), abs=1e-7)
-    assert max(rise.value, back.value) == pytest.approx(pitch.pressure_angle_max().value, abs=1e-12)

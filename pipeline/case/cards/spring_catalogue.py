@@ -1,11 +1,14 @@
-"""Catalogue of springs in TOML, and the lightest that meets a demand."""
+"""Catalogue of springs in TOML, the demand on a spring, and the lightest that meets it."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, fields, replace
 from pathlib import Path
-from typing import ClassVar
+from typing import ClassVar, Generic, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
 
 from camwright.geometry.errors import InputError
 from camwright.pipeline.base.files import read_toml
@@ -16,65 +19,113 @@ from camwright.pipeline.case.cards.provenance import (
     source_words,
     without_provenance,
 )
+from camwright.pipeline.case.limits import SPRING_FATIGUE, SPRING_SOLID, SPRING_SURGE
 from camwright.pipeline.case.renamed_keys import with_new_wire_keys
 from camwright.pipeline.case.toml_text import Tables, TomlValue, tables_of
 from camwright.pipeline.follower.spring import (
+    BUCKLING,
+    COIL_GAP,
+    FATIGUE,
+    RELAXATION,
+    SOLID,
+    SOLID_STRESS,
+    STRESS,
     HelicalSpring,
+    Number,
+    Spring,
+    SpringWork,
     Treatment,
     WireDensity,
     WireExponent,
     WireModulus,
+    WoundWire,
 )
 
 CATALOGUE = Path(__file__).parent / "springs.toml"
 _BYTES = 256 * 1024
 
 
-@dataclass(frozen=True)
-class SpringDemand:
-    """Demand on a spring.
+class SpringRoom(NamedTuple):
+    """Room that a search keeps within the limits of a wound spring, whose surge it does not solve.
 
     Parameters
     ----------
-    rate : float               N/m
+    greatest, least : float   greatest and least force with the surge over those without
+    strength : float          share of the static and of the fatigue strength in use
+    surge : float             surge frequency over its limit
+    """
+
+    greatest: float = 1.0
+    least: float = 1.0
+    strength: float = 1.0
+    surge: float = 1.0
+
+
+NO_ROOM = SpringRoom()
+
+
+@dataclass(frozen=True)
+class SpringDemand(Generic[Number]):
+    """Demand on springs: one, or many designs at once.
+
+    Parameters
+    ----------
+    rate : Number              N/m
+    preload : Number           N, at zero lift
+    travel : Number            m, to the largest lift
     rate_tolerance : float     permitted relative deviation of the rate
-    preload : float            N, at zero lift
-    travel : float             m, to the largest lift
     fatigue_safety : float     least safety by Goodman and Zimmerli
     solid_clearance : float    least clearance to solid over the maximum deflection
     rate_spread, preload_spread : float   tolerances of rate and preload, shares; the demand must
                                           be met at their upper bounds
+    cam_speed : float          greatest of the cam, rad/s; None: no surge is judged
+    surge : float              least surge frequency over that of the cam
+    room : SpringRoom
     """
 
-    rate: float
-    preload: float
-    travel: float
-    rate_tolerance: float = 0.05
-    fatigue_safety: float = 1.2
-    solid_clearance: float = 0.1
-    rate_spread: float = 0.0
-    preload_spread: float = 0.0
+    rate: Number
+    preload: Number
+    travel: Number
+    rate_tolerance: float = Spring.rate_tolerance
+    fatigue_safety: float = SPRING_FATIGUE.default
+    solid_clearance: float = SPRING_SOLID.default
+    rate_spread: float = Spring.rate_tolerance
+    preload_spread: float = Spring.preload_tolerance
+    cam_speed: float | None = None
+    surge: float = SPRING_SURGE.default
+    room: SpringRoom = NO_ROOM
 
-    def shortfalls(self, spring: HelicalSpring) -> tuple[str, ...]:
+    def work(self, wire: WoundWire[Number]) -> SpringWork[Number]:
+        """Work of the hardest spring in tolerance, with the room for its surge."""
+        room = self.room
+        rest = wire.at_work(self.preload, self.travel, self.preload_spread, self.rate_spread)
+        return rest._replace(greatest=room.greatest * rest.greatest)
+
+    def kept(self, wire: WoundWire[Number]) -> Mapping[str, NDArray[np.bool_]]:
+        """Whether springs (...) keep each limit, by the words of a spring that does not.
+
+        Relaxation is judged where the wire states it.
+        """
+        work, room = self.work(wire), self.room
+        fatigued = work._replace(preload=room.least * work.preload)
+        kept = {
+            "rate": np.asarray(wire.rate_error(self.rate) <= self.rate_tolerance),
+            SOLID.words: SOLID.holds(wire, work, self.solid_clearance),
+            STRESS.words: STRESS.holds(wire, work, room=room.strength),
+            FATIGUE.words: FATIGUE.holds(wire, fatigued, 1.0 / self.fatigue_safety, room.strength),
+            COIL_GAP.words: COIL_GAP.holds(wire, work),
+            SOLID_STRESS.words: SOLID_STRESS.holds(wire, work),
+            BUCKLING.words: BUCKLING.holds(wire, work),
+        }
+        if wire.relaxation is not None and wire.temperature is not None:
+            kept[RELAXATION.words] = RELAXATION.holds(wire, work, self.preload_spread)
+        if self.cam_speed is not None:
+            kept["surge"] = np.asarray(wire.surge_ratio(self.cam_speed) >= room.surge * self.surge)
+        return kept
+
+    def shortfalls(self, spring: WoundWire[Number]) -> tuple[str, ...]:
         """Reasons why a spring does not meet the demand; empty if it does."""
-        preload = self.preload * (1.0 + self.preload_spread)
-        greatest = preload + spring.rate * (1.0 + self.rate_spread) * self.travel
-        reasons = []
-        if abs(spring.rate / self.rate - 1.0) > self.rate_tolerance:
-            reasons.append("rate")
-        if spring.solid_clearance(preload, self.travel) < self.solid_clearance:
-            reasons.append("goes solid")
-        if spring.static_use(greatest) > 1.0:
-            reasons.append("shear stress")
-        if spring.fatigue_safety(preload, greatest) < self.fatigue_safety:
-            reasons.append("fatigue")
-        if spring.gap_left(preload, self.travel) < spring.minimum_gaps:
-            reasons.append("gap between coils")
-        if spring.solid_stress((1.0 + self.rate_spread) * spring.rate) > spring.static_strength:
-            reasons.append("stress at solid length")
-        if spring.deflection(preload) + self.travel > spring.buckling_deflection:
-            reasons.append("buckling")
-        return tuple(reasons)
+        return tuple(words for words, kept in self.kept(spring).items() if not kept)
 
 
 def read_catalogue(path: str | Path = CATALOGUE) -> tuple[HelicalSpring, ...]:
@@ -121,7 +172,7 @@ def sources_in(path: Path, name: str) -> dict[str, str]:
 
 
 def lightest(
-    catalogue: tuple[HelicalSpring, ...], demand: SpringDemand
+    catalogue: tuple[HelicalSpring, ...], demand: SpringDemand[float]
 ) -> tuple[HelicalSpring | None, dict[str, tuple[str, ...]]]:
     """The lightest spring that meets the demand, or None, and the reasons of those that do not."""
     reasons = {spring.name: demand.shortfalls(spring) for spring in catalogue}

@@ -23,11 +23,11 @@ from camwright.pipeline.case.cards.spring_catalogue import (
 from camwright.pipeline.case.limits import SPRING_FATIGUE, SPRING_SOLID
 from camwright.pipeline.case.toml_text import Tables, TomlValue, tables_of
 from camwright.pipeline.case.value_sources import put_sources
+from camwright.pipeline.follower.spring import Spring
 from camwright.pipeline.follower.spring_kinds import SHAPES
 
 SHIPPED = "shipped"
 _NEAREST = 3
-_RATE_TOLERANCE = 0.05  # if the case states none
 
 
 def put_spring(case: Tables, folder: Path | None) -> None:
@@ -94,7 +94,7 @@ def put_force(case: Tables) -> None:
         spring[key] = units.format(value, unit)
 
 
-def _demand(case: Tables, spring: Tables) -> SpringDemand | None:
+def _demand(case: Tables, spring: Tables) -> SpringDemand[float] | None:
     """Demand of a case on its spring; None if its rate or preload is missing or not positive."""
 
     def number(table: Tables, key: str, default: float) -> float:
@@ -118,16 +118,16 @@ def _demand(case: Tables, spring: Tables) -> SpringDemand | None:
         return None
     if not travel > 0.0:
         raise InputError("spring.travel_max", str(spring["travel_max"]), "> 0 mm")
-    spread = number(spring, "rate_tolerance", 0.0)
+    spread = number(spring, "rate_tolerance", Spring.rate_tolerance)
     return SpringDemand(
         rate=rate,
         preload=preload,
         travel=travel,
-        rate_tolerance=spread or _RATE_TOLERANCE,
+        rate_tolerance=spread,
         fatigue_safety=number(limits, SPRING_FATIGUE.id, SPRING_FATIGUE.default),
         solid_clearance=number(limits, SPRING_SOLID.id, SPRING_SOLID.default),
         rate_spread=spread,
-        preload_spread=number(spring, "preload_tolerance", 0.0),
+        preload_spread=number(spring, "preload_tolerance", Spring.preload_tolerance),
     )
 
 

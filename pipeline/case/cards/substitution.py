@@ -47,8 +47,7 @@ class Choice:
 def travel_of(spring: HelicalSpring, case: Case) -> float:
     """Maximum lift (m) at which a spring meets its limits in a case; 0 if it meets them at none.
 
-    Static strength, fatigue, buckling, gaps between the coils, clearance to solid and stress at
-    solid length are evaluated as in the checks without surge, at the upper bounds of rate and
+    All limits of `SpringDemand` without surge, as in the checks: at the upper bounds of rate and
     preload.
     """
     spring_now, limits = case.spring, case.limits

@@ -11,7 +11,6 @@ from pathlib import Path
 import numpy as np
 import tomli_w
 
-from camwright.geometry.arrays import FULL_TURN
 from camwright.pipeline.base import units
 from camwright.pipeline.case.cards.card_filling import known_cards, viscosity
 from camwright.pipeline.case.cards.shaft_seats import seat_source
@@ -183,7 +182,7 @@ def _spring(design: Machinery) -> str:
     point, task = design.spring, design.task
     spring = point.spring
     origin = f"catalogue: spring {spring.name}" if spring.name else "wound for this design"
-    surge = spring.surge_frequency / (task.cam_speed / FULL_TURN)
+    surge = spring.surge_ratio(task.cam_speed)
     words = tables_of(spring)
     for key in ("source", "name"):
         words.pop(key, None)

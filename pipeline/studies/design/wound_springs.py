@@ -8,21 +8,25 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from camwright.geometry.arrays import Array
+from camwright.pipeline.case.cards.spring_catalogue import SpringDemand, SpringRoom
 from camwright.pipeline.case.case_values import WoundSprings
-from camwright.pipeline.case.limits import SPRING_FATIGUE, SPRING_SURGE
-from camwright.pipeline.follower.spring import HelicalSpring
+from camwright.pipeline.follower.spring import HelicalSpring, Number, Spring
 
 WIRES = (1.0, 1.25, 1.6, 2.0, 2.5, 3.0, 3.6, 4.0, 4.5, 5.0, 5.5, 6.0, 6.5, 7.0, 8.0, 8.5, 9.0,
          10.0, 11.0, 12.0, 13.0, 14.0, 15.0, 16.0)  # fmt: skip
 """Wire diameters of EN 10270-2, mm."""
 INDEXES = (3.5, 4.0, 4.5, 5.0, 5.5, 6.0, 7.0, 8.0)
 COILS = (2.0, 14.0)
-_TOLERANCE = 1.05  # of rate and preload
-_SURGE_FORCE = 1.08  # of the greatest force, by the surge
-_USED = 0.88  # of strength, fatigue and solid stress
-_SURGE = 1.05  # over the limit of the surge frequency
-_GAPS = 1.15  # over the least gaps between the coils
-_SOLID = 0.13  # clearance to solid over the greatest deflection
+ROOM = SpringRoom(
+    greatest=1.08,
+    least=1.0 / (1.0 + Spring.preload_tolerance),
+    strength=0.88,
+    surge=1.05,
+)
+"""Room of a design within the limits of its spring: the search that follows changes preload and
+travel, and solves the surge. The least force is that of the nominal preload."""
+LOOSE_GAPS, LOOSE_SOLID = 1.15, 1.3
+"""Free length of a wound spring: gaps and clearance to solid over their limits."""
 
 
 @dataclass(frozen=True)
@@ -85,11 +89,16 @@ def wound(
         temperature=wire.temperature,
         relaxation=None,
     )
-    deflection = _TOLERANCE * P / springs.rate + h
-    clear = np.maximum(_GAPS * springs.minimum_gaps, _SOLID * deflection)
+    demand = _demand(springs.rate, P, h, cam_speed)
+    work = demand.work(springs)
+    deflection = springs.deflection(work.preload) + h
+    clear = np.maximum(
+        LOOSE_GAPS * springs.minimum_gaps, LOOSE_SOLID * demand.solid_clearance * deflection
+    )
     length = 1e-3 * np.ceil(1e3 * (springs.solid_length + deflection + clear))
     springs = replace(springs, free_length=length)
-    fits &= _holds(springs, P, h, cam_speed)
+    for kept in demand.kept(springs).values():
+        fits &= kept
     mass = np.where(fits, springs.mass, np.inf).reshape(shape[0], -1)
     best = mass.argmin(axis=1)
     points = []
@@ -108,16 +117,9 @@ def wound(
     return points
 
 
-def _holds(springs: WoundSprings, P: Array, h: Array, cam_speed: float) -> Array:
-    """Whether springs hold a preload and travel: strength, fatigue, solid, buckling, surge."""
-    greatest = _SURGE_FORCE * _TOLERANCE * (P + springs.rate * h)
-    strength = springs.static_strength
-    holds = springs.stress(greatest) <= _USED * strength
-    holds &= springs.fatigue_use(P, greatest) <= _USED / SPRING_FATIGUE.default
-    holds &= springs.solid_stress(_TOLERANCE * springs.rate) <= strength
-    holds &= springs.buckling_deflection >= _TOLERANCE * P / springs.rate + h
-    slowest = _SURGE * SPRING_SURGE.default * cam_speed / (2.0 * np.pi)
-    return np.asarray(holds & (springs.surge_frequency >= slowest))
+def _demand(rate: Number, preload: Number, travel: Number, speed: float) -> SpringDemand[Number]:
+    """Demand on a spring of a rate, N/m, preload, N, and travel, m, at a cam speed, rad/s."""
+    return SpringDemand(rate, preload, travel, cam_speed=speed, room=ROOM)
 
 
 def of_catalogue(
@@ -137,20 +139,6 @@ def of_catalogue(
                 preload = energy / travel - 0.5 * spring.rate * travel
                 if preload < 0.1 * spring.rate * travel:
                     continue
-                if _holds_one(spring, preload, travel, cam_speed):
+                if not _demand(spring.rate, preload, travel, cam_speed).shortfalls(spring):
                     points.append(SpringPoint(spring, preload, travel))
     return points
-
-
-def _holds_one(spring: HelicalSpring, preload: float, travel: float, cam_speed: float) -> bool:
-    greatest = _SURGE_FORCE * _TOLERANCE * (preload + spring.rate * travel)
-    deflection = _TOLERANCE * preload / spring.rate + travel
-    return bool(
-        spring.static_use(greatest) <= _USED
-        and spring.fatigue_safety(preload, greatest) >= SPRING_FATIGUE.default / _USED
-        and spring.gap_left(_TOLERANCE * preload, travel) >= spring.minimum_gaps
-        and spring.solid_clearance(_TOLERANCE * preload, travel) >= 0.1
-        and spring.solid_stress(_TOLERANCE * spring.rate) <= spring.static_strength
-        and deflection <= spring.buckling_deflection
-        and spring.surge_frequency >= SPRING_SURGE.default * cam_speed / (2.0 * np.pi)
-    )
