@@ -69,19 +69,6 @@ def _guide_edge_pressure(side: Side) -> Constraint[ScenarioCam]:
     )
 
 
-def _guide_heat(side: Side) -> Constraint[ScenarioCam]:
-    """Mean friction power at the greatest friction over that at the greatest temperature."""
-    place = "AB".index(side)
-
-    def utilisation(at: ScenarioCam, limit: float) -> Mean | None:
-        rubbing = at.hot
-        return None if rubbing is None else Mean(magnitude(rubbing[place] * at.velocity) / limit)
-
-    return Constraint(
-        f"guide_temperature_{side}", lambda ratings: ratings.guide_power[place], utilisation
-    )
-
-
 def _traction_demand(at: ScenarioCam, friction: float) -> Array | None:
     if at.ratings.drag is None:
         return None
@@ -238,8 +225,8 @@ PARTS: tuple[Constraint[ScenarioCam], ...] = (
     kept_loads(manufacture.guide_gap, lambda ratings: ratings.guide_gap),
     _guide_edge_pressure("A"),
     _guide_edge_pressure("B"),
-    _guide_heat("A"),
-    _guide_heat("B"),
+    kept_loads(guide_strength.guide_temperature_a, lambda ratings: ratings.guide_power[0]),
+    kept_loads(guide_strength.guide_temperature_b, lambda ratings: ratings.guide_power[1]),
     kept_loads(guide_wear.guide_wear_a, lambda ratings: ratings.guide_wear_pv[0]),
     kept_loads(guide_wear.guide_wear_b, lambda ratings: ratings.guide_wear_pv[1]),
     Constraint(
