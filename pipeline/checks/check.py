@@ -112,12 +112,14 @@ class Allowed(NamedTuple):
     missing: tuple[str, ...] = ()
 
 
-def of_key(key: str) -> Callable[[Numbers], Allowed]:
-    """Limit at a key of the case."""
+def of_key(key: str, share: AnyLimit | None = None) -> Callable[[Numbers], Allowed]:
+    """Limit at a key of the case; share: row of the table of limits whose share of it counts."""
 
     def allowed(numbers: Numbers) -> Allowed:
         value = numbers.get(key)
-        return Allowed(value, (key,) if value is None else ())
+        if value is None:
+            return Allowed(None, (key,))
+        return Allowed(value if share is None else numbers[f"limits.{share.id}"] * value)
 
     return allowed
 
@@ -146,6 +148,7 @@ class Kept(NamedTuple):
     value_max : float    maximum limit where limits conflict, SI
     power : float        of a mean, wear or life over the turn that is the utilisation
     once : bool          the same in the load cases of a preload and at tolerance corners
+    group : str          checks of one measure that are one constraint, at the least of their limits
     """
 
     use: Callable[[LoadedCam, float], Array | None] | None = None
@@ -153,6 +156,7 @@ class Kept(NamedTuple):
     value_max: float = math.inf
     power: float = 1.0
     once: bool = False
+    group: str = ""
 
 
 class Stroke(NamedTuple):
@@ -171,7 +175,8 @@ class Measured(NamedTuple):
     reduce : str         how the measure is reduced over the cam, by `worst_measure`
     worst : str          whether its greatest or its least value governs
     value : callable     worst measure, numbers -> demand: monotone
-    bound : callable     limit of the demand -> limit of the measure: its inverse, if `kept`
+    bound : callable     limit of the demand, numbers -> limit of the measure: its inverse, if
+                         `kept`; None: every value of the measure is within the limit
     allowed : callable   numbers -> limit
     needed : tuple       dotted keys without which there is no demand
     applies : callable   demand -> whether the check applies to the cam
@@ -188,7 +193,7 @@ class Measured(NamedTuple):
     reduce: Reduce
     worst: Literal["greatest", "least"]
     value: Callable[[Value, Numbers], Value]
-    bound: Callable[[float], float]
+    bound: Callable[[float, Numbers], float | None]
     allowed: Callable[[Numbers], Allowed]
     needed: tuple[str, ...]
     applies: Callable[[Value], NDArray[np.bool_]]
@@ -205,12 +210,18 @@ class Measured(NamedTuple):
         known = tuple(each for each in limits if each is not None)
         return known if len(known) == len(limits) else ()
 
+    def limit_of_measure(self, numbers: Numbers) -> float | None:
+        """Limit of the demand in terms of the measure; None: not known, or of no effect."""
+        limit = self.allowed(numbers).value
+        if limit is None or any(numbers.get(key) is None for key in self.needed):
+            return None
+        return self.bound(float(limit), numbers)
+
     def use(self, measure: Measure, cam: LoadedCam, limit: float) -> Array | None:
-        """Utilisation (..., n) of a limit in a synthesis, see `Kept`."""
+        """Utilisation (..., n) of a limit of the measure in a synthesis, see `Kept`."""
         if self.kept is not None and self.kept.use is not None:
             return self.kept.use(cam, limit)
-        bound = self.bound(limit)
-        return measure(cam) / bound if self.worst == "greatest" else 1.0 + bound - measure(cam)
+        return measure(cam) / limit if self.worst == "greatest" else 1.0 + limit - measure(cam)
 
 
 @dataclass(frozen=True)
@@ -454,7 +465,7 @@ class Declaring:
         *,
         worst: Literal["greatest", "least"] = "greatest",
         value: Callable[[Value, Numbers], Value] = lambda worst, _: worst,
-        bound: Callable[[float], float] = lambda limit: limit,
+        bound: Callable[[float, Numbers], float | None] = lambda limit, _: limit,
         allowed: Callable[[Numbers], Allowed] | None = None,
         needed: tuple[str, ...] = (),
         applies: Callable[[Value], NDArray[np.bool_]] = lambda _: np.array(True),
@@ -496,7 +507,7 @@ def _demand(measure: Measure, how: Measured, solution: Solution) -> Demand | Non
     allowed = None if limit.value is None else float(limit.value)
     lacks = tuple(key for key in how.needed if numbers.get(key) is None)
     if lacks:
-        return how.remark(Demand(None, allowed, missing=(*limit.missing, *lacks)), solution)
+        return how.remark(Demand(None, allowed, missing=(*lacks, *limit.missing)), solution)
 
     def worst_of(measured: Measure) -> Extreme:
         return worst_measure(

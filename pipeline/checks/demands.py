@@ -16,6 +16,8 @@ from camwright.pipeline.cycle.loaded_cam import LoadedCam
 
 CONTACT_FLOOR = 0.01
 """Least normal force over the least spring force in the quotients by the normal force."""
+NORMAL_FORCE, CAM_TORQUE, TOOTH_TORQUE = "roller_static", "key_pressure", "gear_bending"
+"""Groups of checks of one measure, which are one constraint of the synthesis; see `Kept`."""
 _MARGIN = 0.2  # of the least spring force, where the case keeps no contact force margin
 
 
@@ -30,6 +32,11 @@ class FatiguePoint(NamedTuple):
     mean: float
     endurance: float
     strength: float
+
+
+def normal_force(cam: LoadedCam) -> Array:
+    """Contact force, N."""
+    return cam.normal
 
 
 def ripple_reduction(before: Array, after: Array) -> Array:

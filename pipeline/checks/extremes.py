@@ -281,10 +281,14 @@ def worst_measure(
     at_least : bool   the least measure is the worst
     order : int       highest derivative of the lift in the measure of a contour, 2 or 3
     """
+
+    def of_turn(cycle: Cycle) -> float:
+        return value(mean_of(solution, measure, cycle))
+
     if reduce == "life":
-        return over_duty(
-            solution.cycles, lambda cycle: value(_mean_of(solution, measure, cycle)), life=True
-        )
+        return over_duty(solution.cycles, of_turn, life=True)
+    if reduce == "mean":
+        return worst_case(solution.cycles, of_turn, at_least=at_least)
     worst = _worst(solution, measure, reduce, at_least=at_least, order=order)
     return worst._replace(value=value(worst.value))
 
@@ -316,18 +320,19 @@ def _worst_of_cycles(
     solution: Solution, measure: Measure, reduce: Reduce, *, at_least: bool
 ) -> Extreme:
     cycles, sign = solution.cycles, -1.0 if at_least else 1.0
-    if reduce == "mean":
-        return worst_case(
-            cycles, lambda cycle: _mean_of(solution, measure, cycle), at_least=at_least
-        )
     if reduce == "wear":
-        return over_duty(cycles, lambda cycle: _mean_of(solution, measure, cycle))
+        return over_duty(cycles, lambda cycle: mean_of(solution, measure, cycle))
     if reduce == "forces":
         return _vertex(cycles, lambda cycle: measure(solution.cams_between[cycle]), sign)
     return _extreme(cycles, lambda cycle: measure(solution.cams[cycle]), sign)
 
 
-def _mean_of(solution: Solution, measure: Measure, cycle: Cycle) -> float:
+def mean_of(solution: Solution, measure: Measure, cycle: Cycle) -> float:
     """Mean of a measure over the turn of a cycle of a solution, or of fewer of its angles."""
+    return float(np.mean(measure(cam_of(solution, cycle))))
+
+
+def cam_of(solution: Solution, cycle: Cycle) -> SolvedCam:
+    """Loaded cam of a cycle of a solution, or of fewer of its angles."""
     cam = solution.cams.get(cycle)
-    return float(np.mean(measure(SolvedCam.of(cycle, solution.numbers) if cam is None else cam)))
+    return SolvedCam.of(cycle, solution.numbers) if cam is None else cam

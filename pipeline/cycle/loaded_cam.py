@@ -17,7 +17,7 @@ from camwright.geometry.arrays import Array, Value
 from camwright.geometry.flat_face_contour import FaceMotion
 from camwright.geometry.follower_path import Motion, Reaction
 from camwright.geometry.lift import Jet
-from camwright.geometry.pitch_curve import RollerMotion
+from camwright.geometry.pitch_curve import RollerMotion, rolling_share
 from camwright.pipeline.contact.hertz import peak_pressure_square
 from camwright.pipeline.cycle.numbers import Numbers
 from camwright.pipeline.follower.follower_forces import levers
@@ -106,6 +106,13 @@ class LoadedCam:
     def spin(self) -> Array:
         """Speed of the roller on its pin, rad/s."""
         return np.asarray(self.speed * self.motion.rolling)
+
+    @property
+    def spin_mean(self) -> Array:
+        """Mean speed of the roller over the turn (..., 1), rad/s: of one on the prime circle."""
+        numbers = self.numbers
+        rolling = rolling_share(np.asarray(numbers["cam.prime_radius"]), numbers["roller.radius"])
+        return np.asarray(self.speed * rolling)
 
     @cached_property
     def reactions(self) -> tuple[Reaction, Reaction]:

@@ -79,11 +79,20 @@ def _size(numbers: Numbers) -> Value:
     return numbers["roller.radius"] if width is None else 0.5 * width
 
 
+def _ball_circle(numbers: Numbers) -> Value | None:
+    """Pitch diameter of the balls, m: of the bearing, else of its ring."""
+    own: Value | None = None
+    if numbers.case is not None:
+        own = value_of(numbers.case, "roller.bearing.pitch_diameter")
+    return numbers.get("roller.bearing.ring.pitch_diameter") if own is None else own
+
+
 DERIVED: Mapping[str, Callable[[Numbers], Value | None]] = {
     "guides.a.friction_greatest": partial(_greatest_friction, "guides.a"),
     "guides.b.friction_greatest": partial(_greatest_friction, "guides.b"),
     "guides.a.mouth": _mouth,
     "follower.extent": _extent,
     "follower.size": _size,
+    "roller.bearing.pitch_diameter": _ball_circle,
 }
 """Numbers that follow from others, unless they are stated themselves."""

@@ -175,6 +175,10 @@ class SolvedCam(ForcesCam):
         return self.cycle.parts.friction.greatest.jam_index
 
     @property
+    def spin_mean(self) -> Array:
+        return np.asarray(np.mean(np.abs(self.spin)))
+
+    @property
     def surged(self) -> Array:
         return self.cycle.surged_force
 

@@ -103,13 +103,13 @@ def _within_standard(viscosity_ratio: float) -> None:
 def _modification(viscosity_ratio: Values, load: Values) -> Values:
     """a_ISO of kappa and e_C P_u / P, which a complex step may have changed."""
     most = GREATEST_VISCOSITY_RATIO
-    kappa = np.where(np.real(viscosity_ratio) < most, viscosity_ratio, most)
+    kappa = np.where(np.real(viscosity_ratio) > most, most, viscosity_ratio)
     size = np.real(kappa)
     exponent = np.where(size < 0.4, 0.054381, np.where(size < 1.0, 0.19087, 0.071739))
     film = np.where(size < 0.4, 2.2649, 1.9987) / kappa**exponent
     left = 1.0 - (2.5671 - film) ** 0.83 * load ** (1.0 / 3.0)
     least = (0.1 / GREATEST_MODIFICATION) ** (1.0 / 9.3)
-    modified: Values = 0.1 * np.where(np.real(left) > least, left, least) ** -9.3
+    modified: Values = 0.1 * np.where(np.real(left) < least, least, left) ** -9.3
     return modified
 
 

@@ -69,6 +69,11 @@ class ScreenedCam(LoadedCam):
         slope = self.jet.slope
         return np.where(np.abs(slope) > REST * self.block.stroke, slope, 0.0)
 
+    @property
+    def spin_mean(self) -> Array:
+        """Mean speed of the roller over the turn (m, 1), rad/s."""
+        return np.mean(np.abs(self.spin), axis=-1, keepdims=True)
+
     @cached_property
     def least_spring(self) -> Array:
         """Spring force at minimum lift of the cam angles of the loads (m, 1), N."""

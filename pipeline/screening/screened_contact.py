@@ -8,16 +8,11 @@ import numpy as np
 
 from camwright.geometry.arrays import Array
 from camwright.pipeline.case.limits import (
-    ROLLER_LIFE,
-    ROLLER_LOAD_SHARE,
-    ROLLER_SPEED_SHARE,
-    ROLLER_STATIC_SAFETY,
     Limit,
 )
 from camwright.pipeline.checks.contact_strength import LeastLimit, LoadCycles, pressure_limits
 from camwright.pipeline.contact.hertz import half_width_square
 from camwright.pipeline.follower.flat_face_motion import sliding_pv
-from camwright.pipeline.follower.roller_motion import rating_life
 from camwright.pipeline.screening.design_arrays import Designs, Judged
 from camwright.pipeline.screening.design_lengths import has_many_shapes
 from camwright.pipeline.screening.screened_cam import ScreenedCam
@@ -56,56 +51,6 @@ def _least_limit(designs: Designs, least: LeastLimit, safety: Limit, demand: Arr
         return np.full(designs.count, np.nan)
     limit = least.value * designs.machine.limits[safety] / designs.limit(safety)
     return np.where(demand > limit, limit, np.nan) if least.missing else limit
-
-
-def _greatest_force(designs: Designs) -> Array:
-    return designs.worst(lambda cam: cam.normal)
-
-
-def _bearing(key: str, designs: Designs) -> Array:
-    return designs.value(f"roller.bearing.{key}")[:, 0]
-
-
-def roller_static(designs: Designs) -> Judged:
-    force = _greatest_force(designs)
-    safety = np.divide(
-        _bearing("C0", designs), force, out=np.full_like(force, np.nan), where=force > 0.0
-    )
-    return safety, designs.limit(ROLLER_STATIC_SAFETY)
-
-
-def roller_load_share(designs: Designs) -> Judged:
-    return _greatest_force(designs) / _bearing("C", designs), designs.limit(ROLLER_LOAD_SHARE)
-
-
-def roller_radial(designs: Designs) -> Judged:
-    return _greatest_force(designs), _bearing("radial_limit", designs)
-
-
-def roller_static_radial(designs: Designs) -> Judged:
-    return _greatest_force(designs), _bearing("static_radial_limit", designs)
-
-
-def roller_speed(designs: Designs) -> Judged:
-    worst = designs.worst(lambda cam: np.abs(cam.spin))
-    return worst, designs.limit(ROLLER_SPEED_SHARE) * _bearing("speed_limit", designs)
-
-
-def roller_life(designs: Designs) -> Judged:
-    rating = _bearing("C", designs)
-    known = np.where(np.isnan(rating), 1.0, rating)
-    lives = [
-        (rating_life(cam.normal, cam.spin, known).seconds, each.duty)
-        for cam in designs.cams
-        if (each := cam.state).duty != 0.0
-    ]
-    if not lives:
-        life = np.full(designs.count, np.nan)
-    elif all(duty is None for _, duty in lives):
-        life = np.min([each for each, _ in lives], axis=0)
-    else:
-        life = 1.0 / np.sum([(duty or 0.0) / each for each, duty in lives], axis=0)
-    return np.where(np.isnan(rating), np.nan, life), designs.limit(ROLLER_LIFE)
 
 
 def face_width(designs: Designs) -> Judged:

@@ -10,7 +10,6 @@ from typing import Literal, NamedTuple, TypedDict
 import numpy as np
 import scipy
 
-from camwright.geometry.arrays import FULL_TURN
 from camwright.pipeline.base.material import ROOM
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.limits import (
@@ -18,23 +17,22 @@ from camwright.pipeline.case.limits import (
     JAM_INDEX,
     JUMP_SPEED,
     PRESSURE_ANGLE,
-    ROLLER_LIFE,
-    ROLLER_LOAD_SHARE,
-    ROLLER_RELIABILITY,
     ROLLER_STATIC_SAFETY,
     SPRING_FATIGUE,
     SPRING_SOLID,
-    VISCOSITY_RATIO,
 )
 from camwright.pipeline.case.machine import Machine, machines
+from camwright.pipeline.checks import roller_bearing
 from camwright.pipeline.checks.cam_shape import least_concave_radius
 from camwright.pipeline.checks.camshaft_strength import tooth_torque_limits
+from camwright.pipeline.checks.check import Declaration
 from camwright.pipeline.checks.contact_strength import (
     FACE_PASSES,
     LoadCycles,
     life_turns,
     pressure_allowables,
 )
+from camwright.pipeline.checks.demands import NORMAL_FORCE
 from camwright.pipeline.checks.guide_strength import pv_limit
 from camwright.pipeline.checks.guide_wear import greatest_temperatures, pv_of_wear
 from camwright.pipeline.checks.key_strength import keyway_root_of, torque_limits
@@ -47,7 +45,7 @@ from camwright.pipeline.checks.part_strength import (
     seat_pressure,
 )
 from camwright.pipeline.checks.registry import CHECKS
-from camwright.pipeline.checks.roller_bearing import Grease, allowed_spin, grease_of, least_speed
+from camwright.pipeline.checks.roller_bearing import Grease, grease_of
 from camwright.pipeline.checks.spring_strength import (
     Work,
     gas_pressure_at,
@@ -57,20 +55,19 @@ from camwright.pipeline.checks.spring_strength import (
     torsion_stress_at,
 )
 from camwright.pipeline.contact.traction import Drag
+from camwright.pipeline.cycle.numbers import Numbers
 from camwright.pipeline.cycle.part_loads import edge_pressure_of
 from camwright.pipeline.cycle.solution import Solution
+from camwright.pipeline.cycle.solved_cam import numbers_of
 from camwright.pipeline.cycle.speed_sweep import highest_speed
-from camwright.pipeline.follower.bearing_life import contamination_factor, reliability_factor
 from camwright.pipeline.follower.guide_friction import thermal_resistance
 from camwright.pipeline.follower.guide_reactions import Guide
 from camwright.pipeline.follower.roller import Roller
-from camwright.pipeline.follower.roller_parts import Bearing
 from camwright.pipeline.follower.spring import Spring
 from camwright.pipeline.follower.spring_kinds import GasSpring, TorsionSpring
 from camwright.pipeline.smoothing.constraints import rows_kept
 from camwright.pipeline.smoothing.scenario import Face, ModifiedLife, Ratings
 
-MILLION_TURNS = 1e6 * FULL_TURN  # rad
 _TRAVEL_LEAST, _TRAVEL_MOST = 1e-6, 1.0  # m, of any spring
 _LINE_LOADS = (1.0, 1e9)  # N/m, of any guide
 
@@ -78,7 +75,7 @@ _LINE_LOADS = (1.0, 1e9)  # N/m, of any guide
 def ratings_of(case: Case) -> Ratings:
     """Ratings of a case."""
     states = machines(case)
-    machine, covers = states[0], case.scope.covers
+    machine, covers, numbers = states[0], case.scope.covers, numbers_of(case, states)
     limits, guides = machine.limits, machine.guides
     roller, face = machine.roller, machine.face
     pressure, pressure_by = _least(pressure_allowables(machine, greatest_cycles(case)))
@@ -99,7 +96,7 @@ def ratings_of(case: Case) -> Ratings:
     if roller is not None:
         by_roller = _of_roller(machine, roller)
     if roller is not None and covers("roller_bearing"):
-        by_roller |= _of_bearing(machine, roller.bearing)
+        by_roller |= _of_bearing(numbers)
     return Ratings(
         roller_radius=machine.follower.contact_radius or 0.0,
         face=None if face is None else Face(face.width, face.side_friction, face.pv_limit),
@@ -137,11 +134,11 @@ class _RollerRatings(TypedDict, total=False):
     drag: Drag
     grease: Grease | None
     dynamic_rating: float | None
-    life_force_cubed: float
+    life_force_cubed: float | None
     roller_spin: float | None
     modified: ModifiedLife
     modified_rate: float
-    roller_spin_least: float
+    roller_spin_least: float | None
 
 
 def _of_roller(machine: Machine, roller: Roller) -> _RollerRatings:
@@ -154,26 +151,42 @@ def _of_roller(machine: Machine, roller: Roller) -> _RollerRatings:
     }
 
 
-def _of_bearing(machine: Machine, bearing: Bearing) -> _RollerRatings:
+def _of_bearing(numbers: Numbers) -> _RollerRatings:
     """Ratings of the roller bearing by life, speed, film and cleanliness."""
-    rated: _RollerRatings = {"roller_spin": allowed_spin(machine)}
-    limits, life = machine.limits, machine.limits[ROLLER_LIFE]
-    if bearing.C is not None and life is not None:
-        rated["life_force_cubed"] = bearing.C**3 * MILLION_TURNS / life
-    viscosity, circle = bearing.viscosity, bearing.ball_circle
-    if viscosity is None or circle is None:
-        return rated
-    slowest = least_speed(viscosity, circle, limits[VISCOSITY_RATIO])
-    if slowest is not None:
-        rated["roller_spin_least"] = slowest
-    rating, endured, cleanliness = bearing.C, bearing.fatigue_load_limit, bearing.contamination
-    if rating and endured and cleanliness and life:
-        share = contamination_factor(cleanliness, circle)
-        rated["modified"] = ModifiedLife(rating, share * endured, viscosity, circle)
-        rated["modified_rate"] = (
-            reliability_factor(limits[ROLLER_RELIABILITY]) * MILLION_TURNS / life
+    life = limit_of(roller_bearing.roller_life, numbers)
+    rated: _RollerRatings = {
+        "roller_spin": limit_of(roller_bearing.roller_speed, numbers),
+        "life_force_cubed": life,
+        "roller_spin_least": limit_of(roller_bearing.bearing_lubrication, numbers),
+    }
+    rate = limit_of(roller_bearing.roller_modified_life, numbers)
+    if rate is not None:
+        rated["modified"] = ModifiedLife(
+            float(numbers["roller.bearing.C"]),
+            roller_bearing.cleanliness_load(numbers),
+            float(numbers["roller.bearing.viscosity"]),
+            float(numbers["roller.bearing.pitch_diameter"]),
         )
+        rated["modified_rate"] = rate
     return rated
+
+
+def limit_of(declared: Declaration, numbers: Numbers) -> float | None:
+    """Limit of a check in terms of its measure, SI; None where it is not known or not kept."""
+    return None if declared.measured is None else declared.measured.limit_of_measure(numbers)
+
+
+def group_limits(group: str, machine: Machine, numbers: Numbers) -> dict[str, float]:
+    """Limits of the measure of a group of checks, of those of the scope, SI, by their ids."""
+    limits = {}
+    for each in CHECKS:
+        how = each.measured
+        if how is None or how.kept is None or how.kept.group != group:
+            continue
+        limit = how.limit_of_measure(numbers) if each.concerns(machine) else None
+        if limit is not None:
+            limits[each.id] = limit
+    return limits
 
 
 class _GuideRatings(TypedDict, total=False):
@@ -435,10 +448,12 @@ def _travels_of_torsion(spring: Spring, torsion: TorsionSpring) -> dict[str, flo
 
 def force_limits(case: Case) -> dict[str, float]:
     """Greatest normal force allowed by each check that the scope covers, N, by its id."""
-    roller, allowed = case.roller_given, {}
+    states = machines(case)
+    roller = case.roller_given
+    allowed = group_limits(NORMAL_FORCE, states[0], numbers_of(case, states))
     if roller is not None:
-        allowed = _forces_of_roller(case, roller)
-    pressure = bore_pressure_limit(machines(case)[0])
+        allowed |= _forces_of_roller(case, roller)
+    pressure = bore_pressure_limit(states[0])
     if pressure is not None:
         allowed["bore_pressure"] = pressure * 2.0 * case.cam.bore_radius * case.cam.width
     return allowed
@@ -446,18 +461,12 @@ def force_limits(case: Case) -> dict[str, float]:
 
 def _forces_of_roller(case: Case, roller: Roller) -> dict[str, float]:
     limits, covers = case.limits, case.scope.covers
-    bearing, pin = roller.bearing, roller.pin if covers("pin") else None
+    pin = roller.pin if covers("pin") else None
     fork = roller.fork if covers("fork") else None
-    rated = {
-        "roller_static": None if bearing.C0 is None else bearing.C0 / limits[ROLLER_STATIC_SAFETY],
-        "roller_radial": bearing.radial_limit,
-        "roller_static_radial": bearing.static_radial_limit,
-        "roller_load_share": None if bearing.C is None else bearing.C * limits[ROLLER_LOAD_SHARE],
-        "roller_ring_fatigue": ring_force_limit(machines(case)[0]),
-    }
     allowed = {}
-    if covers("roller_bearing"):
-        allowed = {name: force for name, force in rated.items() if force is not None}
+    ring = ring_force_limit(machines(case)[0]) if covers("roller_bearing") else None
+    if ring is not None:
+        allowed["roller_ring_fatigue"] = ring
     if pin is not None and roller.pin_stress_per_newton is not None:
         allowed["roller_pin"] = allowed_pin_stress(pin, limits) / roller.pin_stress_per_newton
     stresses = {}

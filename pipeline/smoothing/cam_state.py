@@ -19,7 +19,7 @@ from camwright.geometry.errors import GeometryError, InputError
 from camwright.geometry.flat_face_contour import FaceMotion
 from camwright.geometry.follower_path import Motion
 from camwright.geometry.lift import Jet
-from camwright.geometry.pitch_curve import RollerMotion
+from camwright.geometry.pitch_curve import RollerMotion, rolling_share
 from camwright.pipeline.case.limits import CONTACT_FORCE_MARGIN, AnyLimit, Limit, OpenLimit
 from camwright.pipeline.checks.check import Declaration
 from camwright.pipeline.checks.extremes import BY_DUTY
@@ -70,6 +70,7 @@ def _shaped_jet(energy: tuple[Array, ...], variables: DesignVariables, shape: Sp
 def _fixed(variables: DesignVariables, ratings: Ratings) -> dict[str, Value | None]:
     """Numbers of the machine that no scenario changes."""
     waves = ratings.waves
+    modified = ratings.modified
     fixed: dict[str, Value | None] = {
         "cam.prime_radius": variables.prime_radius,
         "cam.offset": ratings.offset,
@@ -83,6 +84,13 @@ def _fixed(variables: DesignVariables, ratings: Ratings) -> dict[str, Value | No
         "follower.size": ratings.follower_size,
         f"limits.{CONTACT_FORCE_MARGIN.id}": ratings.limits.get(CONTACT_FORCE_MARGIN),
     }
+    if modified is not None:
+        fixed |= {
+            "roller.bearing.C": modified.rating,
+            "roller.bearing.cleanliness_load": modified.cleanliness_load,
+            "roller.bearing.viscosity": modified.viscosity,
+            "roller.bearing.pitch_diameter": modified.circle,
+        }
     if ratings.face is not None:
         fixed |= {
             "follower.face.width": ratings.face.width,
@@ -116,6 +124,14 @@ class ScenarioCam(LoadedCam):
     @property
     def spring_shape(self) -> SpringShape | None:
         return self.variables.shape
+
+    @cached_property
+    def spin_mean(self) -> Array:
+        """That of the solved cam; before, of a roller on the prime circle."""
+        rolling, path = self.fix.rolling[..., :1], roller_of(self.motion)  # one value
+        prime = path.prime_radius[..., :1]
+        share = np.where(rolling > 0.0, rolling, rolling_share(prime, path.size))
+        return np.asarray(self.scenario.cam_speed * share)
 
     @property
     def surge(self) -> Array:
@@ -367,16 +383,22 @@ def kept(
 ) -> Constraint[LoadedCam]:
     """Constraint of a check that is declared by a measure.
 
-    limit: ratings -> limit of a part; None: the row of the check
+    limit: ratings -> limit of a part, of the measure; None: the row of the check
     """
     how, measure, row = declared.measured, declared.measure, declared.limit
     of_part = row if limit is None else limit
     if how is None or measure is None or how.kept is None or of_part is None:
         raise InputError(declared.id, "not declared", "kept by the synthesis, see `Measured`")
+    use = partial(how.use, measure)
+
+    def of_row(cam: LoadedCam, stated: float) -> Array | None:
+        bound = how.bound(stated, cam.numbers)
+        return None if bound is None else use(cam, bound)
+
     return Constraint(
         declared.id,
         of_part,
-        partial(how.use, measure),
+        of_row if limit is None and how.kept.use is None else use,
         factor_max=how.kept.factor_max,
         value_max=how.kept.value_max,
         needs=declared.needs,

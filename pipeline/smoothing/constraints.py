@@ -16,24 +16,22 @@ from typing import Literal
 
 from camwright.geometry.arrays import Array
 from camwright.geometry.lift import Jet
-from camwright.geometry.pitch_curve import magnitude
 from camwright.pipeline.case.limits import (
     CONTACT_FORCE_MARGIN,
     JAM_INDEX,
     JUMP,
     AnyLimit,
 )
-from camwright.pipeline.checks import cam_shape, demands, manufacture
+from camwright.pipeline.checks import cam_shape, demands, manufacture, roller_bearing
 from camwright.pipeline.checks.check import FACTOR_MAX
-from camwright.pipeline.cycle.loaded_cam import LoadedCam, not_negative
-from camwright.pipeline.follower.roller_motion import BALL_LIFE_EXPONENT, wear
+from camwright.pipeline.cycle.loaded_cam import LoadedCam
 from camwright.pipeline.smoothing.cam_state import (
     Constraint,
     Mean,
     ScenarioCam,
     State,
-    by_duty,
     kept,
+    kept_loads,
     loaded,
     unloaded,
 )
@@ -110,12 +108,6 @@ def _jam_index_friction_max(at: ScenarioCam, limit: float) -> Array | None:
     return None if worst is None else demands.jam_outward(at.slope, worst) / limit
 
 
-def _roller_life(at: ScenarioCam, limit: float) -> Mean:
-    """Of L10 = (C / P_m)^3 1e6 turns / mean spin, where P_m^3 mean spin is the mean of N^3 |n|."""
-    terms = wear(not_negative(at.surged), at.spin) / limit
-    return by_duty(terms, at.scenario, 1.0 / BALL_LIFE_EXPONENT)
-
-
 def _guide_pressure(side: Literal["A", "B"]) -> Constraint[ScenarioCam]:
     place = "AB".index(side)
 
@@ -175,27 +167,15 @@ LOADS: tuple[Constraint[ScenarioCam], ...] = (
         factor_max=FACTOR_MAX,
     ),
     Constraint("jam_index_friction_max", JAM_INDEX, _jam_index_friction_max),
-    Constraint(
-        "roller_static",
-        lambda ratings: ratings.normal_force,
-        lambda at, limit: at.normal / limit,
-        needs="roller",
-    ),
+    kept_loads(roller_bearing.roller_static, lambda ratings: ratings.normal_force),
     Constraint(
         "bore_pressure",
         lambda ratings: ratings.normal_force,
         lambda at, limit: at.normal / limit,
         needs="face",
     ),
-    Constraint(
-        "roller_speed",
-        lambda ratings: ratings.roller_spin,
-        lambda at, limit: magnitude(at.spin) / limit,
-        needs="roller",
-    ),
-    Constraint(
-        "roller_life", lambda ratings: ratings.life_force_cubed, _roller_life, needs="roller"
-    ),
+    kept_loads(roller_bearing.roller_speed, lambda ratings: ratings.roller_spin),
+    kept_loads(roller_bearing.roller_life, lambda ratings: ratings.life_force_cubed),
     _guide_pressure("A"),
     _guide_pv("A"),
     _guide_pressure("B"),

@@ -9,16 +9,14 @@ from __future__ import annotations
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
 from camwright.geometry.arrays import Array, Value
-from camwright.geometry.pitch_curve import magnitude, rolling_share
-from camwright.pipeline.base.units import factor
+from camwright.geometry.pitch_curve import magnitude
 from camwright.pipeline.case.limits import (
     CONTACT_FORCE_MARGIN,
     KEYWAY_SAFETY,
 )
-from camwright.pipeline.checks import demands, manufacture
+from camwright.pipeline.checks import demands, manufacture, roller_bearing
 from camwright.pipeline.checks.roller_bearing import STANDSTILL
 from camwright.pipeline.contact.hertz import half_width_square
 from camwright.pipeline.contact.traction import rolling_demand
@@ -145,36 +143,6 @@ def _keyway_root(at: ScenarioCam, limit: float) -> Array | None:
     return keyway.used_by(magnitude(at.torque), magnitude(at.normal), wall) * limit
 
 
-def _mean_spin(at: ScenarioCam) -> tuple[Array, NDArray[np.bool_]]:
-    """Mean speed of the roller (..., 1), rad/s, at least that of standstill; whether it turns.
-
-    That of the solved cam; before, of a roller on the prime circle.
-    """
-    rolling, path = at.fix.rolling[..., :1], roller_of(at.motion)  # one value
-    prime = path.prime_radius[..., :1]
-    share = np.where(rolling > 0.0, rolling, rolling_share(prime, path.size))
-    mean, least = at.scenario.cam_speed * share, STANDSTILL * factor("rpm")
-    turns = np.real(mean) >= least
-    return np.where(turns, mean, least), turns
-
-
-def _modified_life(at: ScenarioCam, limit: float) -> Mean | None:
-    """Of 1/L = sum q_i/(a1 a_ISO (C/P_i)^3), kappa at the mean speed of the roller."""
-    bearing = at.ratings.modified
-    if bearing is None:
-        return None
-    force = np.where(
-        np.real(not_negative(at.surged)) > _LEAST_FORCE, not_negative(at.surged), _LEAST_FORCE
-    )
-    speed, turns = _mean_spin(at)
-    rated = bearing_life.rated_viscosity(speed / factor("rpm"), bearing.circle)
-    kappa, least = bearing.viscosity / rated, bearing_life.LEAST_VISCOSITY_RATIO
-    kappa = np.where(np.real(kappa) > least, kappa, least)
-    used = bearing_life.life_used(force, bearing.rating, bearing.cleanliness_load, kappa)
-    terms = turns * used * magnitude(at.spin) / limit
-    return by_duty(terms, at.scenario, 1.0 / BALL_LIFE_EXPONENT)
-
-
 def _grease_life(at: ScenarioCam, limit: float) -> Mean | None:
     """Equivalent load over that at the life of the grease, both at the mean speed.
 
@@ -184,7 +152,8 @@ def _grease_life(at: ScenarioCam, limit: float) -> Mean | None:
     grease = at.ratings.grease
     if grease is None:
         return None
-    speed, turns = _mean_spin(at)
+    turns = np.real(at.spin_mean) >= STANDSTILL
+    speed = np.where(turns, at.spin_mean, STANDSTILL)
     worn = wear(not_negative(at.normal), at.spin) / (limit**BALL_LIFE_EXPONENT * speed)
     shares, root = duty_shares(at.scenario), 1.0 / BALL_LIFE_EXPONENT
     if shares is None:
@@ -207,13 +176,6 @@ def _grease_life(at: ScenarioCam, limit: float) -> Mean | None:
     members = np.concatenate([shares > 0.0, np.eye(count, dtype=bool)[running]])
     terms = np.concatenate([np.atleast_2d(known * worn), np.atleast_2d(left)])
     return Mean(terms, total=Total(of, members))
-
-
-def _lubrication(at: ScenarioCam, limit: float) -> Mean:
-    """Least mean speed of the roller over its mean speed; no film is necessary at rest."""
-    spin = magnitude(at.spin)
-    _, turns = _mean_spin(at)
-    return Mean(np.where(turns, spin / limit, _AMPLE + 0.0 * spin), -1.0)
 
 
 def _face_width(at: ScenarioCam, width: float) -> Array:
@@ -280,18 +242,8 @@ PARTS: tuple[Constraint[ScenarioCam], ...] = (
         _grease_life,
         needs="roller",
     ),
-    Constraint(
-        "roller_modified_life",
-        lambda ratings: ratings.modified_rate,
-        _modified_life,
-        needs="roller",
-    ),
-    Constraint(
-        "bearing_lubrication",
-        lambda ratings: ratings.roller_spin_least,
-        _lubrication,
-        needs="roller",
-    ),
+    kept_loads(roller_bearing.roller_modified_life, lambda ratings: ratings.modified_rate),
+    kept_loads(roller_bearing.bearing_lubrication, lambda ratings: ratings.roller_spin_least),
     Constraint(
         "face_width", lambda ratings: ratings.face and ratings.face.width, _face_width, needs="face"
     ),

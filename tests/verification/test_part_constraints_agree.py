@@ -18,7 +18,6 @@ from camwright.pipeline.case.load_case_torque import engine_torques
 from camwright.pipeline.checks.camshaft_strength import tooth_torque_limits
 from camwright.pipeline.checks.key_strength import torque_limits
 from camwright.pipeline.checks.registry import CHECKS, DECLARED, checks_of
-from camwright.pipeline.checks.roller_bearing import spin
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.part_loads import edge_pressure_of
 from camwright.pipeline.cycle.solution import solution
@@ -298,7 +297,7 @@ def ring_of(machine):
 
 def greased_load(machine, cycle):
     """Equivalent load, N; mean speed, rpm, outer diameter, mm, and temperature, degC."""
-    force, turning = cycle.loads.normal_force, np.abs(spin(cycle))
+    force, turning = cycle.loads.normal_force, np.abs(cycle.parts.roller_spin)
     load = (np.sum(force**3 * turning) / np.sum(turning)) ** (1.0 / 3.0)
     warm = machine.roller.bearing.temperature - KELVIN
     return load, (float(turning.mean()) * 30.0 / np.pi, 1e3 * ring_of(machine).outer_diameter, warm)
@@ -415,7 +414,10 @@ def greatest(each, states, ratings):
     """Greatest utilisation of a constraint, with its limit in these ratings."""
     limit, most = each.value(ratings), -np.inf
     for state in states:
-        cam = replace(state, ratings=ratings) if isinstance(state, ScenarioCam) else state
+        cam = state
+        if isinstance(state, ScenarioCam):
+            top, variables = float(np.real(state.highest)), state.variables
+            cam = loaded(state.jet, top, variables, ratings, state.scenario)
         use = None if limit is None else each.utilisation(cam, limit)
         if use is not None:
             most = max(most, float(np.max(use.value if isinstance(use, Mean) else use)))
