@@ -175,6 +175,7 @@ class Measured(NamedTuple):
     reduce : str         how the measure is reduced over the cam, by `worst_measure`
     worst : str          whether its greatest or its least value governs
     value : callable     worst measure, numbers -> demand: monotone
+    error : float        error share of the demand over that of the measure: power of `value`
     bound : callable     limit of the demand, numbers -> limit of the measure: its inverse, if
                          `kept`; None: every value of the measure is within the limit
     allowed : callable   numbers -> limit
@@ -193,6 +194,7 @@ class Measured(NamedTuple):
     reduce: Reduce
     worst: Literal["greatest", "least"]
     value: Callable[[Value, Numbers], Value]
+    error: float
     bound: Callable[[float, Numbers], float | None]
     allowed: Callable[[Numbers], Allowed]
     needed: tuple[str, ...]
@@ -465,6 +467,7 @@ class Declaring:
         *,
         worst: Literal["greatest", "least"] = "greatest",
         value: Callable[[Value, Numbers], Value] = lambda worst, _: worst,
+        error: float = 1.0,
         bound: Callable[[float, Numbers], float | None] = lambda limit, _: limit,
         allowed: Callable[[Numbers], Allowed] | None = None,
         needed: tuple[str, ...] = (),
@@ -482,6 +485,7 @@ class Declaring:
             reduce=reduce,
             worst=worst,
             value=value,
+            error=error,
             bound=bound,
             allowed=limit,
             needed=needed,
@@ -510,7 +514,7 @@ def _demand(measure: Measure, how: Measured, solution: Solution) -> Demand | Non
         return how.remark(Demand(None, allowed, missing=(*lacks, *limit.missing)), solution)
 
     def worst_of(measured: Measure) -> Extreme:
-        return worst_measure(
+        worst = worst_measure(
             solution,
             measured,
             how.reduce,
@@ -518,6 +522,7 @@ def _demand(measure: Measure, how: Measured, solution: Solution) -> Demand | Non
             at_least=how.worst == "least",
             order=how.order,
         )
+        return worst._replace(error_share=how.error * worst.error_share)
 
     if of_strokes := how.limits_of_strokes(numbers):
         worsts = [worst_of(each.measure) for each in how.strokes]

@@ -12,7 +12,7 @@ import numpy as np
 from camwright.geometry.arrays import Array, Value
 from camwright.geometry.pitch_curve import magnitude
 from camwright.pipeline.case.limits import CONTACT_FORCE_MARGIN
-from camwright.pipeline.cycle.loaded_cam import LoadedCam
+from camwright.pipeline.cycle.loaded_cam import LoadedCam, not_negative
 
 CONTACT_FLOOR = 0.01
 """Least normal force over the least spring force in the quotients by the normal force."""
@@ -62,10 +62,9 @@ def unloading(inertia: Array, closing: Array) -> Array:
 
 
 def greatest_unloading(inertia: Array, closing: Array) -> Array:
-    """As `unloading`, >= 0 and real; infinite where no force closes the contact at rest."""
+    """As `unloading`, >= 0; infinite where no force closes the contact at rest."""
     closed = np.where(closing == 0.0, np.nan, closing)
-    use = np.maximum(unloading(inertia, closed), 0.0)
-    return np.where(closing <= 0.0, np.inf, use)
+    return np.where(np.real(closing) <= 0.0, np.inf, not_negative(unloading(inertia, closed)))
 
 
 def force_left(closing: Array, inertia: Array, least_spring: float | Array) -> Array:
@@ -96,11 +95,6 @@ def over_normal_force(cam: LoadedCam, needed: Array) -> Array:
     normal, least = cam.normal, margin * cam.least_spring
     scale = np.where(np.real(normal) > np.real(least), normal, least)
     return 1.0 + (needed - normal) / scale
-
-
-def jam_outward(lift_slope: Array, jam_index: Array) -> Array:
-    """Jam index on the rise, 0 on the return: there friction cannot lock the follower."""
-    return np.where(np.real(lift_slope) > 0, jam_index, 0.0 * jam_index)
 
 
 def guide_pressure(bearing_load: Array, area: float | Array) -> Array:

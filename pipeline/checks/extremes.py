@@ -16,7 +16,6 @@ from camwright.pipeline.cycle.cycle import Cycle
 from camwright.pipeline.cycle.loaded_cam import LoadedCam
 from camwright.pipeline.cycle.solution import Solution
 from camwright.pipeline.cycle.solved_cam import ContourCam, SolvedCam
-from camwright.pipeline.follower.follower_forces import Loads
 
 
 class Extreme(NamedTuple):
@@ -55,23 +54,6 @@ def greatest(cycles: Iterable[Cycle], measure: Callable[[Cycle], Array]) -> Extr
 def least(cycles: Iterable[Cycle], measure: Callable[[Cycle], Array]) -> Extreme:
     """Least value over all load cases and angles; NaN if any is."""
     return _extreme(cycles, measure, -1.0)
-
-
-def greatest_force(cycles: Sequence[Cycle], measure: Callable[[Cycle, Loads], Array]) -> Extreme:
-    """Greatest value of forces over all load cases and angles, between the solved ones as well.
-
-    The vertex at the angles of `Cycle.loads_between`, see `sampled_peak`; NaN if any is.
-
-    Parameters
-    ----------
-    measure : callable   cycle, its forces at angles (m,) -> array (m,)
-    """
-    return _vertex(cycles, lambda cycle: measure(cycle, cycle.loads_between), 1.0)
-
-
-def least_force(cycles: Sequence[Cycle], measure: Callable[[Cycle, Loads], Array]) -> Extreme:
-    """Least value of forces over all load cases and angles; see `greatest_force`."""
-    return _vertex(cycles, lambda cycle: measure(cycle, cycle.loads_between), -1.0)
 
 
 def _vertex(cycles: Sequence[Cycle], measure: Callable[[Cycle], Array], sign: float) -> Extreme:

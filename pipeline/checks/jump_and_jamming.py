@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from camwright.geometry.arrays import Array
+from camwright.geometry.arrays import Array, Value
 from camwright.geometry.extrema import first_greatest, first_least
 from camwright.pipeline.base import levers
 from camwright.pipeline.base import value_groups as given
@@ -22,25 +22,44 @@ from camwright.pipeline.case.limits import (
 )
 from camwright.pipeline.case.machine import Machine
 from camwright.pipeline.checks import demands
-from camwright.pipeline.checks.check import SPEED_RANGE, Demand, check
+from camwright.pipeline.checks.check import (
+    FACTOR_MAX,
+    SPEED_RANGE,
+    Allowed,
+    Demand,
+    Kept,
+    check,
+)
 from camwright.pipeline.checks.extremes import (
     Extreme,
     greatest,
-    greatest_force,
     least,
-    least_force,
+    worst_measure,
 )
-from camwright.pipeline.checks.missing_keys import unset
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.cycle import Cycle, least_spring_force
 from camwright.pipeline.cycle.elastic_response import ElasticHistory
+from camwright.pipeline.cycle.loaded_cam import LoadedCam
+from camwright.pipeline.cycle.numbers import Numbers
 from camwright.pipeline.cycle.solution import Solution
 from camwright.pipeline.cycle.speed_sweep import SpeedSweep, highest_speed
 from camwright.pipeline.follower.follower_flight import LONGEST, Flight
-from camwright.pipeline.follower.follower_forces import Loads
 
 _DIGITS = 5  # of the force and of the preload of a follower that leaves the cam
 _TIE = 1e-9  # relative difference up to which two forces are equal, and one is none
+
+
+def _with_lift_off(demand: Demand, solution: Solution) -> Demand:
+    """With the force and the preload of a follower that leaves the cam, and where it does."""
+    lowest = worst_measure(solution, _required, "forces", float, at_least=True, order=2)
+    if not lowest.value < 0.0:
+        return demand
+    return replace(demand, value=0.0, at=lowest, note=_lifts_off(solution.cycles, lowest))
+
+
+def _required(cam: LoadedCam) -> Array:
+    """Axial force without guide friction, N; negative where the follower leaves the cam."""
+    return cam.required
 
 
 @check(
@@ -59,17 +78,17 @@ _TIE = 1e-9  # relative difference up to which two forces are equal, and one is 
     values=given.LOADS,
     levers=levers.CONTACT,
     page="Follower",
+).measured(
+    "forces",
+    worst="least",
+    value=lambda worst, _: np.maximum(worst, 0.0),
+    remark=_with_lift_off,
+    deviation=0.02,
+    kept=Kept(),
 )
-def contact_force_margin(solution: Solution) -> Demand:
-    """Minimum contact force over the least spring force."""
-    worst = least_force(
-        solution.cycles, lambda cycle, loads: loads.normal_force / cycle.least_spring_force
-    )
-    limit, lowest = solution.machine.limits[CONTACT_FORCE_MARGIN], _lowest(solution.cycles)
-    if lowest.value < 0.0:
-        worst = lowest
-    worst = worst._replace(value=float(np.maximum(worst.value, 0.0)))
-    return Demand(worst.value, limit, worst, note=_lifts_off(solution.cycles, lowest))
+def contact_force_margin(cam: LoadedCam) -> Array:
+    """Contact force over the least spring force."""
+    return cam.normal / cam.least_spring
 
 
 @check(
@@ -88,14 +107,22 @@ def contact_force_margin(solution: Solution) -> Demand:
     values=given.MOTION,
     levers=levers.CONTACT,
     page="Follower",
+).measured(
+    "forces",
+    deviation=0.003,
+    kept=Kept(lambda cam, limit: demands.unloading(cam.inertia, cam.closing) / limit),
 )
-def jump(solution: Solution) -> Demand:
-    """Maximum unloading inertia force over the closing force."""
-    worst = greatest_force(
-        solution.cycles,
-        lambda _, loads: demands.greatest_unloading(loads.inertia_force, loads.closing_force),
+def jump(cam: LoadedCam) -> Array:
+    """Unloading inertia force over the closing force, >= 0."""
+    return demands.greatest_unloading(cam.inertia, cam.closing)
+
+
+def _on_points(demand: Demand, solution: Solution) -> Demand:
+    """With that on point supports: c |tan alpha|, c = (mu_A (a + b) + mu_B a) / b."""
+    statics = greatest(
+        solution.cycles, lambda c: np.where(c.loads.lift_slope > 0, c.loads.jam_index_statics, 0.0)
     )
-    return Demand(worst.value, solution.machine.limits[JUMP], worst)
+    return replace(demand, note=f"{statics.value:.3g} on point supports")
 
 
 @check(
@@ -114,19 +141,21 @@ def jump(solution: Solution) -> Demand:
     values=given.LOADS,
     levers=levers.JAM,
     page="Guides",
-)
-def jam_index(solution: Solution) -> Demand:
+).measured("angles", remark=_on_points, deviation=0.01, kept=Kept(factor_max=FACTOR_MAX))
+def jam_index(cam: LoadedCam) -> Array:
     """Friction of the guides over the axial cam force on the rise."""
-    worst = greatest(
-        solution.cycles, lambda c: demands.jam_outward(c.loads.lift_slope, c.loads.jam_index)
-    )
-    # On point supports c |tan alpha| with c = (mu_A (a + b) + mu_B a) / b.
-    statics = greatest(
-        solution.cycles,
-        lambda c: demands.jam_outward(c.loads.lift_slope, c.loads.jam_index_statics),
-    )
-    note = f"{statics.value:.3g} on point supports"
-    return Demand(worst.value, solution.machine.limits[JAM_INDEX], worst, note=note)
+    return _outward(cam, cam.jam)
+
+
+def _outward(cam: LoadedCam, index: Array) -> Array:
+    """Jam index on the rise, 0 on the return: there friction cannot lock the follower."""
+    return np.where(np.real(cam.slope) > 0, index, 0.0 * index)
+
+
+def _worst_friction_kept(cam: LoadedCam, limit: float) -> Array | None:
+    """No constraint where the maximum friction is not known."""
+    worst = cam.jam_worst
+    return None if worst is None else _outward(cam, worst) / limit
 
 
 @check(
@@ -148,19 +177,42 @@ def jam_index(solution: Solution) -> Demand:
     values=given.LOADS,
     levers=levers.JAM,
     page="Guides",
-)
-def jam_index_friction_max(solution: Solution) -> Demand:
+).measured("angles", deviation=0.01, kept=Kept(_worst_friction_kept))
+def jam_index_friction_max(cam: LoadedCam) -> Array:
     """Jam index at the maximum friction coefficients of both guides."""
-    worst = greatest(solution.cycles, lambda cycle: cycle.parts.friction.jam_index_max)
-    return Demand(worst.value, solution.machine.limits[JAM_INDEX], worst)
+    worst = cam.jam_worst
+    return np.full_like(cam.jam, np.nan) if worst is None else _outward(cam, worst)
+
+
+def _speed_of_jump(worst: Value, numbers: Numbers) -> Value:
+    """Crank speed, rad/s, from the unloading at a cam speed of 1 rad/s; infinite without one."""
+    root = np.sqrt(np.asarray(worst))
+    some = ~(root <= 0.0)  # NaN stays
+    speed = numbers["mechanism.gear_ratio"] / np.where(some, root, 1.0)
+    return np.where(some, speed, np.inf)
+
+
+def _jump_speed_allowed(numbers: Numbers) -> Allowed:
+    """Least crank speed of the jump, rad/s: a share of the overspeed."""
+    key = f"limits.{OVERSPEED.id}"
+    if (over := numbers.get(key)) is None:
+        return Allowed(None, (key,))
+    fastest = numbers["cam.fastest"] * numbers["mechanism.gear_ratio"]
+    fastest = np.where(np.isnan(over), np.nan, fastest)[()]
+    return Allowed(numbers[f"limits.{JUMP_SPEED.id}"] * fastest)
+
+
+def _at_no_load_case(demand: Demand, _: Solution) -> Demand:
+    """At its cam angle alone: the speed is that of no load case."""
+    return replace(demand, at=demand.at and demand.at._replace(load_case=""))
 
 
 @check(
     JUMP_SPEED,
     title="Machine speed at follower jump",
     unit="rpm",
-    method="least w sqrt(F_c / (-m w^2 s'')) where the follower decelerates, without friction,"
-    " refined between samples",
+    method="w over the root of the greatest -m w^2 s'' / F_c, without friction, refined between"
+    " samples",
     lift_can_help=True,
     tier=Tier.SCREENING,
     formula="min(w sqrt(F_c / (-m w^2 s''))) >= limits.jump_speed times limits.overspeed; w: crank"
@@ -172,16 +224,33 @@ def jam_index_friction_max(solution: Solution) -> Demand:
     values=given.MOTION,
     levers=levers.CONTACT,
     page="Follower",
+).measured(
+    "forces",
+    value=_speed_of_jump,
+    error=0.5,
+    allowed=_jump_speed_allowed,
+    applies=lambda speed: ~np.isposinf(speed),
+    remark=_at_no_load_case,
+    deviation=0.003,
+    kept=Kept(lambda cam, limit: demands.unloading(cam.inertia_at(limit), cam.closing)),
 )
-def jump_speed(solution: Solution) -> Demand | None:
-    """Minimum crank speed of follower jump, rad/s; None for a round cam, which has no jump."""
-    worst = least_force(solution.cycles, _jump_speed)._replace(load_case="")
-    if np.isposinf(worst.value):
-        return None
-    over = overspeed(solution.machines)
-    if over is None:
-        return Demand(worst.value, None, worst, unset(solution.machine.limits, OVERSPEED))
-    return Demand(worst.value, solution.machine.limits[JUMP_SPEED] * over, worst)
+def jump_speed(cam: LoadedCam) -> Array:
+    """Unloading at a cam speed of 1 rad/s; of the demand, the crank speed of an unloading of 1.
+
+    None for a round cam, which has no jump.
+    """
+    return demands.greatest_unloading(cam.inertia / cam.speed**2, cam.closing)
+
+
+def _force_at(cam: LoadedCam, speed: Value) -> Array:
+    """Closing and inertia force at a cam speed, rad/s, over the least spring force."""
+    return demands.force_left(cam.closing, cam.inertia_at(speed), cam.least_spring)
+
+
+def _kept_at_overspeed(cam: LoadedCam, limit: float) -> Array | None:
+    """No constraint where no greatest speed is known."""
+    fastest = cam.numbers.get("cam.fastest")
+    return None if fastest is None else 1.0 + limit - _force_at(cam, fastest)
 
 
 @check(
@@ -201,21 +270,17 @@ def jump_speed(solution: Solution) -> Demand | None:
     values=given.LOADS,
     levers=levers.CONTACT,
     page="Follower",
+).measured(
+    "forces",
+    worst="least",
+    needed=(f"limits.{OVERSPEED.id}",),
+    remark=_at_no_load_case,
+    deviation=0.02,
+    kept=Kept(_kept_at_overspeed),
 )
-def contact_at_overspeed(solution: Solution) -> Demand:
-    """Minimum contact force at the overspeed over the least spring force."""
-    limit, over = solution.machine.limits[CONTACT_FORCE_MARGIN], overspeed(solution.machines)
-    if over is None:
-        return Demand(None, limit, missing=unset(solution.machine.limits, OVERSPEED))
-
-    def force(cycle: Cycle, loads: Loads) -> Array:
-        scale, held = (over / cycle.machine.crank_speed) ** 2, cycle.least_spring_force
-        return np.asarray(
-            demands.force_left(loads.closing_force, scale * loads.inertia_force, held)
-        )
-
-    worst = least_force(solution.cycles, force)._replace(load_case="")
-    return Demand(worst.value, limit, worst)
+def contact_at_overspeed(cam: LoadedCam) -> Array:
+    """Contact force at the overspeed over the least spring force, without friction."""
+    return _force_at(cam, cam.numbers["cam.fastest"])
 
 
 @check(
@@ -301,15 +366,8 @@ def elastic_contact(solution: Solution) -> Demand:
     )
 
 
-def _lowest(cycles: Sequence[Cycle]) -> Extreme:
-    """Least axial force without guide friction, N; negative where the follower leaves the cam."""
-    return least_force(cycles, lambda _, loads: loads.required_force)
-
-
 def _lifts_off(cycles: Sequence[Cycle], worst: Extreme) -> str:
     """Least axial force of a follower that leaves the cam, and the preload that keeps it on."""
-    if not worst.value < 0.0:
-        return ""
     preload = max(each.machine.spring.preload for each in cycles) - worst.value
     return (
         "the follower leaves the cam: axial force without friction"
@@ -397,16 +455,6 @@ def _landing(flight: Flight) -> str:
 
 def _place(angle: float) -> str:
     return f"{np.degrees(angle) % 360.0:.1f} deg"
-
-
-def _jump_speed(cycle: Cycle, loads: Loads) -> Array:
-    """Crank speed of follower jump by cam angle (n,), rad/s; NaN where not known."""
-    pull = -loads.inertia_force
-    slows = pull > _TIE * np.abs(pull).max()  # in a dwell the acceleration is round-off
-    closing = loads.closing_force
-    ratio = np.sqrt(np.where(closing < 0.0, 0.0, closing) / np.where(slows, pull, 1.0))
-    free = np.where(np.isnan(pull), np.nan, np.where(closing <= 0.0, 0.0, np.inf))
-    return np.where(slows, cycle.machine.crank_speed * ratio, free)
 
 
 def overspeed(machines: Sequence[Machine]) -> float | None:

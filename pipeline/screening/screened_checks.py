@@ -24,12 +24,6 @@ _SCREENED: tuple[Screened, ...] = (
         if each.measured is not None and each.measured.deviation is not None
     ),
     Screened("torque_reduction", loads.torque_reduction, 0.001),
-    Screened("contact_force_margin", loads.contact_force_margin, 0.02),
-    Screened("jump", loads.jump, 0.003),
-    Screened("jump_speed", loads.jump_speed, 0.003),
-    Screened("contact_at_overspeed", loads.contact_at_overspeed, 0.02),
-    Screened("jam_index", loads.jam_index, 0.01),
-    Screened("jam_index_friction_max", loads.jam_index_friction_max, 0.01),
     Screened(
         "contact_pressure",
         contact.contact("contact_pressure", CONTACT_SAFETY),

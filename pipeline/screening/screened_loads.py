@@ -8,14 +8,7 @@ from typing import Literal
 import numpy as np
 
 from camwright.geometry.arrays import Array
-from camwright.geometry.extrema import sampled_greatest, sampled_least
-from camwright.pipeline.case.limits import (
-    CONTACT_FORCE_MARGIN,
-    JAM_INDEX,
-    JUMP,
-    JUMP_SPEED,
-    OVERSPEED,
-)
+from camwright.geometry.extrema import sampled_least
 from camwright.pipeline.checks import demands
 from camwright.pipeline.checks.guide_strength import pv_limit
 from camwright.pipeline.screening.design_arrays import Designs, Judged
@@ -27,50 +20,6 @@ Side = Literal["a", "b"]
 def _least_spring_force(cam: ScreenedCam) -> Array:
     """Spring force at minimum lift (m, 1), N."""
     return sampled_least(cam.spring_force)[:, None]
-
-
-def contact_force_margin(designs: Designs) -> Judged:
-    least = designs.least(lambda cam: cam.normal / _least_spring_force(cam))
-    return np.maximum(least, 0.0), designs.limit(CONTACT_FORCE_MARGIN)
-
-
-def jump(designs: Designs) -> Judged:
-    worst = designs.worst(
-        lambda cam: demands.greatest_unloading(cam.inertia, cam.closing),
-    )
-    return worst, designs.limit(JUMP)
-
-
-def jump_speed(designs: Designs) -> Judged:
-    """From the greatest quotient of unloading inertia and spring force, at the crank speed."""
-    speeds = []
-    for cam in designs.cams:
-        use = demands.greatest_unloading(cam.inertia, cam.closing)
-        greatest = np.maximum(sampled_greatest(use), 0.0)
-        with np.errstate(divide="ignore"):
-            speeds.append(cam.crank_speed[:, 0] / np.sqrt(greatest))
-    over = np.where(np.isnan(designs.limit(OVERSPEED)), np.nan, designs.fastest)
-    return np.min(speeds, axis=0), designs.limit(JUMP_SPEED) * over
-
-
-def contact_at_overspeed(designs: Designs) -> Judged:
-    over = np.where(np.isnan(designs.limit(OVERSPEED)), np.nan, designs.fastest)[:, None]
-
-    def force(cam: ScreenedCam) -> Array:
-        inertia = (over / cam.crank_speed) ** 2 * cam.inertia
-        return demands.force_left(cam.closing, inertia, _least_spring_force(cam))
-
-    return designs.least(force), designs.limit(CONTACT_FORCE_MARGIN)
-
-
-def jam_index(designs: Designs) -> Judged:
-    worst = designs.worst(lambda cam: demands.jam_outward(cam.slope, cam.jam))
-    return worst, designs.limit(JAM_INDEX)
-
-
-def jam_index_friction_max(designs: Designs) -> Judged:
-    worst = designs.worst(lambda cam: demands.jam_outward(cam.slope, cam.jam_worst))
-    return worst, designs.limit(JAM_INDEX)
 
 
 def _area(designs: Designs, side: Side) -> Array:

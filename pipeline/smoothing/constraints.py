@@ -17,13 +17,15 @@ from typing import Literal
 from camwright.geometry.arrays import Array
 from camwright.geometry.lift import Jet
 from camwright.pipeline.case.limits import (
-    CONTACT_FORCE_MARGIN,
-    JAM_INDEX,
-    JUMP,
     AnyLimit,
 )
-from camwright.pipeline.checks import cam_shape, demands, manufacture, roller_bearing
-from camwright.pipeline.checks.check import FACTOR_MAX
+from camwright.pipeline.checks import (
+    cam_shape,
+    demands,
+    jump_and_jamming,
+    manufacture,
+    roller_bearing,
+)
 from camwright.pipeline.cycle.loaded_cam import LoadedCam
 from camwright.pipeline.smoothing.cam_state import (
     Constraint,
@@ -96,18 +98,6 @@ def _utilisations(
     return uses
 
 
-def _contact_at_overspeed(at: ScenarioCam, limit: float) -> Array | None:
-    if at.ratings.overspeed is None:
-        return None
-    thrown = at.inertia_at(at.ratings.overspeed)
-    return 1.0 + limit - demands.force_left(at.closing, thrown, at.least_spring)
-
-
-def _jam_index_friction_max(at: ScenarioCam, limit: float) -> Array | None:
-    worst = at.jam_worst
-    return None if worst is None else demands.jam_outward(at.slope, worst) / limit
-
-
 def _guide_pressure(side: Literal["A", "B"]) -> Constraint[ScenarioCam]:
     place = "AB".index(side)
 
@@ -144,29 +134,12 @@ SHAPE: tuple[Constraint[LoadedCam], ...] = (
 
 LOADS: tuple[Constraint[ScenarioCam], ...] = (
     Constraint("contact_pressure", lambda ratings: ratings.pressure, line_pressure),
-    Constraint(
-        "contact_force_margin",
-        CONTACT_FORCE_MARGIN,
-        lambda at, limit: 1.0 + limit - at.normal / at.least_spring,
-    ),
-    Constraint("contact_at_overspeed", CONTACT_FORCE_MARGIN, _contact_at_overspeed),
-    Constraint(
-        "jump",
-        JUMP,
-        lambda at, limit: demands.unloading(at.inertia, at.closing) / limit,
-    ),
-    Constraint(
-        "jump_speed",
-        lambda ratings: ratings.jump_speed,
-        lambda at, limit: demands.unloading(at.inertia_at(limit), at.closing),
-    ),
-    Constraint(
-        "jam_index",
-        JAM_INDEX,
-        lambda at, limit: demands.jam_outward(at.jet.slope, at.jam) / limit,
-        factor_max=FACTOR_MAX,
-    ),
-    Constraint("jam_index_friction_max", JAM_INDEX, _jam_index_friction_max),
+    kept_loads(jump_and_jamming.contact_force_margin),
+    kept_loads(jump_and_jamming.contact_at_overspeed),
+    kept_loads(jump_and_jamming.jump),
+    kept_loads(jump_and_jamming.jump_speed, lambda ratings: ratings.jump_speed),
+    kept_loads(jump_and_jamming.jam_index),
+    kept_loads(jump_and_jamming.jam_index_friction_max),
     kept_loads(roller_bearing.roller_static, lambda ratings: ratings.normal_force),
     Constraint(
         "bore_pressure",
