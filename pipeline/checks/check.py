@@ -119,7 +119,7 @@ def of_key(key: str, share: AnyLimit | None = None) -> Callable[[Numbers], Allow
         value = numbers.get(key)
         if value is None:
             return Allowed(None, (key,))
-        return Allowed(value if share is None else numbers[f"limits.{share.id}"] * value)
+        return Allowed(value if share is None else numbers.limit(share) * value)
 
     return allowed
 
@@ -185,6 +185,8 @@ class Measured(NamedTuple):
     order : int          highest derivative of the lift in the measure, 2 or 3
     deviation : float    of the demand of the screening from that of the preview, over the greater
                          of demand and limit, as measured; None: not screened
+    pointwise : bool     the demand bends over the measure: made at each angle, so that its error
+                         bar is that of the demand
     smooth : bool        the screening refines the measure between samples; False: it has poles
     strokes : tuple      measures with limits of their own, where the case sets each of them: that
                          of the greatest utilisation governs
@@ -202,6 +204,7 @@ class Measured(NamedTuple):
     remark: Callable[[Demand, Solution], Demand]
     order: int
     deviation: float | None
+    pointwise: bool
     smooth: bool
     strokes: tuple[Stroke, ...]
     kept: Kept | None
@@ -475,6 +478,7 @@ class Declaring:
         remark: Callable[[Demand, Solution], Demand] = lambda demand, _: demand,
         order: int = 2,
         deviation: float | None = None,
+        pointwise: bool = False,
         smooth: bool = True,
         strokes: tuple[Stroke, ...] = (),
         kept: Kept | None = None,
@@ -493,6 +497,7 @@ class Declaring:
             remark=remark,
             order=order,
             deviation=deviation,
+            pointwise=pointwise,
             smooth=smooth,
             strokes=strokes,
             kept=kept,
@@ -514,11 +519,14 @@ def _demand(measure: Measure, how: Measured, solution: Solution) -> Demand | Non
         return how.remark(Demand(None, allowed, missing=(*lacks, *limit.missing)), solution)
 
     def worst_of(measured: Measure) -> Extreme:
+        def value(worst: Value) -> Value:
+            return how.value(worst, numbers)
+
         worst = worst_measure(
             solution,
-            measured,
+            (lambda cam: np.asarray(value(measured(cam)))) if how.pointwise else measured,
             how.reduce,
-            lambda worst: float(how.value(worst, numbers)),
+            float if how.pointwise else lambda worst: float(value(worst)),
             at_least=how.worst == "least",
             order=how.order,
         )

@@ -131,7 +131,7 @@ def _modified_life(worst: Value, numbers: Numbers) -> Value:
 
 def _reliable(numbers: Numbers) -> float:
     """a1 million turns, rad."""
-    reliability = float(numbers[f"limits.{ROLLER_RELIABILITY.id}"])
+    reliability = float(numbers.limit(ROLLER_RELIABILITY))
     return bearing_life.reliability_factor(reliability) * MILLION_TURNS
 
 
@@ -164,7 +164,7 @@ def cleanliness_load(numbers: Numbers) -> float:
     stated = numbers.get("roller.bearing.cleanliness_load")
     if stated is not None:
         return float(stated)
-    roller = None if numbers.case is None else numbers.case.roller_given
+    roller = numbers.known_case.roller_given
     cleanliness = None if roller is None else roller.bearing.contamination
     if cleanliness is None:
         raise InputError("roller.bearing.contamination", "missing", "given")

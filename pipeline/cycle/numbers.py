@@ -10,6 +10,7 @@ from camwright.geometry.arrays import Value
 from camwright.geometry.errors import InputError
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_values import value_of
+from camwright.pipeline.case.limits import AnyLimit
 from camwright.pipeline.follower.guide_friction import friction_limits
 
 
@@ -50,6 +51,29 @@ class Numbers:
         if value is None:
             raise InputError(key, "missing", "given")
         return value
+
+    def limit(self, row: AnyLimit) -> Value:
+        """Value of a row of the table of limits.
+
+        Raises
+        ------
+        InputError
+            If there is none.
+        """
+        return self[f"limits.{row.id}"]
+
+    @property
+    def known_case(self) -> Case:
+        """Case of the numbers.
+
+        Raises
+        ------
+        InputError
+            If there is none.
+        """
+        if self.case is None:
+            raise InputError("case", "missing", "known, to read what is no number")
+        return self.case
 
     def __or__(self, changed: Mapping[str, Value | None]) -> Numbers:
         """With other numbers; what is read from the case is read once."""

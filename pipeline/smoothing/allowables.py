@@ -36,14 +36,6 @@ from camwright.pipeline.checks.demands import NORMAL_FORCE
 from camwright.pipeline.checks.guide_strength import pv_limit
 from camwright.pipeline.checks.guide_wear import greatest_temperatures, pv_of_wear
 from camwright.pipeline.checks.key_strength import keyway_root_of, torque_limits
-from camwright.pipeline.checks.part_strength import (
-    allowed_pin_stress,
-    bore_pressure_limit,
-    fork_pressure,
-    pin_shear,
-    ring_force_limit,
-    seat_pressure,
-)
 from camwright.pipeline.checks.registry import CHECKS
 from camwright.pipeline.checks.roller_bearing import Grease, grease_of
 from camwright.pipeline.checks.spring_strength import (
@@ -449,36 +441,7 @@ def _travels_of_torsion(spring: Spring, torsion: TorsionSpring) -> dict[str, flo
 def force_limits(case: Case) -> dict[str, float]:
     """Greatest normal force allowed by each check that the scope covers, N, by its id."""
     states = machines(case)
-    roller = case.roller_given
-    allowed = group_limits(NORMAL_FORCE, states[0], numbers_of(case, states))
-    if roller is not None:
-        allowed |= _forces_of_roller(case, roller)
-    pressure = bore_pressure_limit(states[0])
-    if pressure is not None:
-        allowed["bore_pressure"] = pressure * 2.0 * case.cam.bore_radius * case.cam.width
-    return allowed
-
-
-def _forces_of_roller(case: Case, roller: Roller) -> dict[str, float]:
-    limits, covers = case.limits, case.scope.covers
-    pin = roller.pin if covers("pin") else None
-    fork = roller.fork if covers("fork") else None
-    allowed = {}
-    ring = ring_force_limit(machines(case)[0]) if covers("roller_bearing") else None
-    if ring is not None:
-        allowed["roller_ring_fatigue"] = ring
-    if pin is not None and roller.pin_stress_per_newton is not None:
-        allowed["roller_pin"] = allowed_pin_stress(pin, limits) / roller.pin_stress_per_newton
-    stresses = {}
-    if pin is not None:
-        stresses["roller_pin_shear"] = pin_shear(pin, limits)
-        stresses["roller_pin_pressure"] = seat_pressure(roller, pin, limits)
-    if pin is not None and fork is not None:
-        stresses["cheek_pressure"] = fork_pressure(fork, pin, limits)
-    for name, stress in stresses.items():
-        if stress.allowed is not None:
-            allowed[name] = stress.allowed / stress.per_newton
-    return allowed
+    return group_limits(NORMAL_FORCE, states[0], numbers_of(case, states))
 
 
 def _least(limits: dict[str, float]) -> tuple[float | None, str]:

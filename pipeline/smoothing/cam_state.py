@@ -407,9 +407,15 @@ def kept(
 
 
 def kept_loads(
-    declared: Declaration, limit: Callable[[Ratings], float | None] | None = None
+    declared: Declaration,
+    limit: Callable[[Ratings], float | None] | None = None,
+    *,
+    needs: Literal["", "roller", "face"] = "",
 ) -> Constraint[ScenarioCam]:
-    """As `kept`, of a check on the loads: over the turn and the load cases where it is reduced."""
+    """As `kept`, of a check on the loads: over the turn and the load cases where it is reduced.
+
+    needs: kind of follower of the constraint of a group; "": that of the check
+    """
     of_cam, how = kept(declared, limit), declared.measured
 
     def utilisation(cam: ScenarioCam, limit: float) -> Array | Mean | None:
@@ -423,5 +429,10 @@ def kept_loads(
         return by_duty(use, cam.scenario, how.kept.power) if how.reduce in BY_DUTY else use
 
     return Constraint(
-        of_cam.check, of_cam.limit, utilisation, of_cam.factor_max, of_cam.value_max, of_cam.needs
+        of_cam.check,
+        of_cam.limit,
+        utilisation,
+        of_cam.factor_max,
+        of_cam.value_max,
+        needs or of_cam.needs,
     )

@@ -24,6 +24,7 @@ from camwright.pipeline.checks import (
     demands,
     jump_and_jamming,
     manufacture,
+    part_strength,
     roller_bearing,
 )
 from camwright.pipeline.cycle.loaded_cam import LoadedCam
@@ -141,12 +142,7 @@ LOADS: tuple[Constraint[ScenarioCam], ...] = (
     kept_loads(jump_and_jamming.jam_index),
     kept_loads(jump_and_jamming.jam_index_friction_max),
     kept_loads(roller_bearing.roller_static, lambda ratings: ratings.normal_force),
-    Constraint(
-        "bore_pressure",
-        lambda ratings: ratings.normal_force,
-        lambda at, limit: at.normal / limit,
-        needs="face",
-    ),
+    kept_loads(part_strength.bore_pressure, lambda ratings: ratings.normal_force, needs="face"),
     kept_loads(roller_bearing.roller_speed, lambda ratings: ratings.roller_spin),
     kept_loads(roller_bearing.roller_life, lambda ratings: ratings.life_force_cubed),
     _guide_pressure("A"),

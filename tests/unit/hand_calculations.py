@@ -97,6 +97,16 @@ def pin_fatigue() -> float:
     return float(least)
 
 
+def ring_amplitude(force: float) -> float:
+    """Goodman, MPa: the stress of the outer ring per newton is solved; its strength is 2000 MPa."""
+    roller = made.case().roller
+    assert roller is not None
+    solved = roller.ring(0.01, made.PRELOAD)
+    assert solved is not None
+    amplitude = solved.bending.stress_amplitude * force
+    return float(1e-6 * amplitude / (1.0 - solved.bending.stress_mean * force / 2000e6))
+
+
 def moving_mass() -> float:
     """Roller about its pin, pin, cheeks and bridge, stem, a fifth of the spring, g."""
     steel, stem = 7.85e-3, 140.0 - 12.0 - 5.0  # g/mm3; mm beyond the fork

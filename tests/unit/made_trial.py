@@ -328,11 +328,7 @@ def _parts(base: Cycle) -> PartLoads:
         heat_b=heat,
         heat_max_a=heat,
         heat_max_b=heat,
-        pin_stress=200e6 + 100e6 * WAVE,
-        ring_amplitude=300e6 + 100e6 * WAVE,
-        ring_mean=np.full(POSITIONS, 400e6),
         key_pressure=100e6 * WAVE,
-        bore_pressure=20e6 + 10e6 * WAVE,
         reversals=(),
     )
 
