@@ -181,7 +181,8 @@ class Measured(NamedTuple):
     allowed : callable   numbers -> limit
     needed : tuple       dotted keys without which there is no demand
     applies : callable   demand -> whether the check applies to the cam
-    remark : callable    demand, solution -> demand, with what it has in words
+    remark : callable    demand, solution -> demand, with what it has in words; None where the check
+                         does not apply
     order : int          highest derivative of the lift in the measure, 2 or 3
     deviation : float    of the demand of the screening from that of the preview, over the greater
                          of demand and limit, as measured; None: not screened
@@ -201,7 +202,7 @@ class Measured(NamedTuple):
     allowed: Callable[[Numbers], Allowed]
     needed: tuple[str, ...]
     applies: Callable[[Value], NDArray[np.bool_]]
-    remark: Callable[[Demand, Solution], Demand]
+    remark: Callable[[Demand, Solution], Demand | None]
     order: int
     deviation: float | None
     pointwise: bool
@@ -475,7 +476,7 @@ class Declaring:
         allowed: Callable[[Numbers], Allowed] | None = None,
         needed: tuple[str, ...] = (),
         applies: Callable[[Value], NDArray[np.bool_]] = lambda _: np.array(True),
-        remark: Callable[[Demand, Solution], Demand] = lambda demand, _: demand,
+        remark: Callable[[Demand, Solution], Demand | None] = lambda demand, _: demand,
         order: int = 2,
         deviation: float | None = None,
         pointwise: bool = False,

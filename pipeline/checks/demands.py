@@ -39,6 +39,25 @@ def normal_force(cam: LoadedCam) -> Array:
     return cam.normal
 
 
+def cam_torque(cam: LoadedCam) -> Array:
+    """Magnitude of the cam torque, N m."""
+    return magnitude(cam.torque)
+
+
+def tooth_torque(cam: LoadedCam) -> Array:
+    """Magnitude of the torque of the driving gear, with the drag of the camshaft, N m."""
+    drag = cam.numbers.get("camshaft.drag")
+    return magnitude(cam.torque + (0.0 if drag is None else drag))
+
+
+def rating_over(rating: Value, worst: Value, unloaded: float) -> Array:
+    """Rating (...) over a load or damage; `unloaded` without one, NaN where it is not known."""
+    load: Array = np.asarray(worst, dtype=float)
+    loaded = load > 0.0
+    without = np.where(np.isnan(load), np.nan, unloaded)
+    return np.where(loaded, rating / np.where(loaded, load, 1.0), without)[()]
+
+
 def ripple_reduction(before: Array, after: Array) -> Array:
     """1 - std of the torque (..., n) after over that before (...); NaN without a ripple."""
     ripple, left = np.std(before, axis=-1), np.std(after, axis=-1)

@@ -38,7 +38,7 @@ from camwright.pipeline.checks.check import (
     check,
     of_key,
 )
-from camwright.pipeline.checks.demands import NORMAL_FORCE, normal_force
+from camwright.pipeline.checks.demands import NORMAL_FORCE, normal_force, rating_over
 from camwright.pipeline.checks.extremes import (
     NOWHERE,
     Extreme,
@@ -94,14 +94,6 @@ def _with_card(demand: Demand, solution: Solution) -> Demand:
 
 def _card(bearing: Bearing) -> tuple[str]:
     return (f"{bearing.name}: {bearing.source}".rstrip(": "),)
-
-
-def rating_over(rating: Value, worst: Value, unloaded: float) -> Array:
-    """Rating (...) over a load or damage; `unloaded` without one, NaN where it is not known."""
-    load: Array = np.asarray(worst, dtype=float)
-    loaded = load > 0.0
-    without = np.where(np.isnan(load), np.nan, unloaded)
-    return np.where(loaded, rating / np.where(loaded, load, 1.0), without)[()]
 
 
 def _life(worst: Value, numbers: Numbers) -> Value:

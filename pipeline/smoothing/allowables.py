@@ -24,7 +24,6 @@ from camwright.pipeline.case.limits import (
 from camwright.pipeline.case.machine import Machine, machines
 from camwright.pipeline.checks import roller_bearing
 from camwright.pipeline.checks.cam_shape import least_concave_radius
-from camwright.pipeline.checks.camshaft_strength import tooth_torque_limits
 from camwright.pipeline.checks.check import Declaration
 from camwright.pipeline.checks.contact_strength import (
     FACE_PASSES,
@@ -32,10 +31,10 @@ from camwright.pipeline.checks.contact_strength import (
     life_turns,
     pressure_allowables,
 )
-from camwright.pipeline.checks.demands import NORMAL_FORCE
+from camwright.pipeline.checks.demands import CAM_TORQUE, NORMAL_FORCE, TOOTH_TORQUE
 from camwright.pipeline.checks.guide_strength import pv_limit
 from camwright.pipeline.checks.guide_wear import greatest_temperatures, pv_of_wear
-from camwright.pipeline.checks.key_strength import keyway_root_of, torque_limits
+from camwright.pipeline.checks.key_strength import keyway_root_of
 from camwright.pipeline.checks.registry import CHECKS
 from camwright.pipeline.checks.roller_bearing import Grease, grease_of
 from camwright.pipeline.checks.spring_strength import (
@@ -71,7 +70,7 @@ def ratings_of(case: Case) -> Ratings:
     limits, guides = machine.limits, machine.guides
     roller, face = machine.roller, machine.face
     pressure, pressure_by = _least(pressure_allowables(machine, greatest_cycles(case)))
-    normal_force, normal_force_by = _least(force_limits(case))
+    normal_force, normal_force_by = _least(part_limits(case, NORMAL_FORCE))
     by_rating = normal_force_by == "roller_static"
     # Without a stated over-speed the contact is kept at the fastest load case.
     over = highest_speed(states) / machine.gear_ratio
@@ -80,8 +79,8 @@ def ratings_of(case: Case) -> Ratings:
     by_guide: _GuideRatings = {}
     if covers("guides"):
         by_guide = _of_guides(case, machine, fastest=over)
-    torque, torque_by = _least(torque_limits(machine))
-    tooth, tooth_by = _least(tooth_torque_limits(machine))
+    torque, torque_by = _least(part_limits(case, CAM_TORQUE))
+    tooth, tooth_by = _least(part_limits(case, TOOTH_TORQUE))
     shaft, cam = machine.camshaft, machine.cam
     band = cam.profile_tolerance
     by_roller: _RollerRatings = {}
@@ -166,19 +165,6 @@ def _of_bearing(numbers: Numbers) -> _RollerRatings:
 def limit_of(declared: Declaration, numbers: Numbers) -> float | None:
     """Limit of a check in terms of its measure, SI; None where it is not known or not kept."""
     return None if declared.measured is None else declared.measured.limit_of_measure(numbers)
-
-
-def group_limits(group: str, machine: Machine, numbers: Numbers) -> dict[str, float]:
-    """Limits of the measure of a group of checks, of those of the scope, SI, by their ids."""
-    limits = {}
-    for each in CHECKS:
-        how = each.measured
-        if how is None or how.kept is None or how.kept.group != group:
-            continue
-        limit = how.limit_of_measure(numbers) if each.concerns(machine) else None
-        if limit is not None:
-            limits[each.id] = limit
-    return limits
 
 
 class _GuideRatings(TypedDict, total=False):
@@ -338,7 +324,7 @@ def corrected_ratings(ratings: Ratings, solved: Solution) -> Ratings:
     case = solved.case
     forces, pressures = scaled_limits(solved)
     pressure = _least(pressure_allowables(solved.machine, greatest_cycles(case)) | pressures)
-    force = _least(force_limits(case) | forces)
+    force = _least(part_limits(case, NORMAL_FORCE) | forces)
     static = force[1] == "roller_static"
     return replace(
         ratings,
@@ -438,10 +424,21 @@ def _travels_of_torsion(spring: Spring, torsion: TorsionSpring) -> dict[str, flo
     return allowed
 
 
-def force_limits(case: Case) -> dict[str, float]:
-    """Greatest normal force allowed by each check that the scope covers, N, by its id."""
-    states = machines(case)
-    return group_limits(NORMAL_FORCE, states[0], numbers_of(case, states))
+def part_limits(case: Case, group: str) -> dict[str, float]:
+    """Greatest normal force, N, or torque, N m, allowed by each check of a group, by its id.
+
+    Without those outside the scope.
+    """
+    states, limits = machines(case), {}
+    numbers = numbers_of(case, states)
+    for each in CHECKS:
+        how = each.measured
+        if how is None or how.kept is None or how.kept.group != group:
+            continue
+        limit = how.limit_of_measure(numbers) if each.concerns(states[0]) else None
+        if limit is not None:
+            limits[each.id] = limit
+    return limits
 
 
 def _least(limits: dict[str, float]) -> tuple[float | None, str]:

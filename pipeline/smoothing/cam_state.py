@@ -78,6 +78,7 @@ def _fixed(variables: DesignVariables, ratings: Ratings) -> dict[str, Value | No
         "contact.width": ratings.contact_width,
         "contact.modulus": ratings.contact_modulus,
         "cam.held_radius": ratings.held_radius,
+        "camshaft.drag": ratings.shaft_drag,
         "cam.fastest": ratings.overspeed,
         "cam.profile_tolerance": None if waves is None else 2.0 * waves[0],
         "cam.waviness_length": None if waves is None else waves[1],

@@ -16,7 +16,13 @@ from camwright.pipeline.case.limits import (
     CONTACT_FORCE_MARGIN,
     KEYWAY_SAFETY,
 )
-from camwright.pipeline.checks import demands, manufacture, roller_bearing
+from camwright.pipeline.checks import (
+    camshaft_strength,
+    demands,
+    key_strength,
+    manufacture,
+    roller_bearing,
+)
 from camwright.pipeline.checks.roller_bearing import STANDSTILL
 from camwright.pipeline.contact.hertz import half_width_square
 from camwright.pipeline.contact.traction import rolling_demand
@@ -225,16 +231,8 @@ PARTS: tuple[Constraint[ScenarioCam], ...] = (
     kept_loads(manufacture.profile_waviness),
     Constraint("contact_over_speed", CONTACT_FORCE_MARGIN, _swept_force),
     Constraint("elastic_contact", CONTACT_FORCE_MARGIN, _elastic_contact),
-    Constraint(
-        "key_pressure",
-        lambda ratings: ratings.cam_torque,
-        lambda at, limit: magnitude(at.torque) / limit,
-    ),
-    Constraint(
-        "gear_bending",
-        lambda ratings: ratings.tooth_torque,
-        lambda at, limit: magnitude(at.torque + at.ratings.shaft_drag) / limit,
-    ),
+    kept_loads(key_strength.key_pressure, lambda ratings: ratings.cam_torque),
+    kept_loads(camshaft_strength.gear_bending, lambda ratings: ratings.tooth_torque),
     Constraint("keyway_root", KEYWAY_SAFETY, _keyway_root),
     Constraint(
         "grease_life",
