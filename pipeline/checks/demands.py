@@ -114,16 +114,3 @@ def over_normal_force(cam: LoadedCam, needed: Array) -> Array:
     normal, least = cam.normal, margin * cam.least_spring
     scale = np.where(np.real(normal) > np.real(least), normal, least)
     return 1.0 + (needed - normal) / scale
-
-
-def guide_pressure(bearing_load: Array, area: float | Array) -> Array:
-    """Mean guide pressure, Pa, from the bearing load, N, and the projected area, m^2.
-
-    Bearing load: greater push on one side over the loaded share of the length.
-    """
-    return magnitude(bearing_load) / area
-
-
-def guide_pv(normal_load: Array, velocity: Array, area: float | Array) -> Array:
-    """PV value, Pa m/s, from the normal load, N, sliding speed, m/s, and projected area, m^2."""
-    return magnitude(normal_load * velocity) / area

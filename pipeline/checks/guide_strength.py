@@ -2,27 +2,29 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import replace
+from functools import partial
 from typing import Literal, NamedTuple
 
 import numpy as np
 
 from camwright.geometry.arrays import Array
 from camwright.geometry.extrema import first_greatest
+from camwright.geometry.pitch_curve import magnitude
 from camwright.pipeline.base import levers
 from camwright.pipeline.base import value_groups as given
 from camwright.pipeline.base.material import ROOM
 from camwright.pipeline.base.units import celsius, shown
 from camwright.pipeline.case.limits import GUIDE_LENGTH
 from camwright.pipeline.case.machine import Machine
-from camwright.pipeline.checks import demands
-from camwright.pipeline.checks.check import NONE, Declaration, Demand, check
-from camwright.pipeline.checks.extremes import Extreme, greatest, worst_case
+from camwright.pipeline.checks.check import NONE, Allowed, Declaration, Demand, Kept, check, of_key
+from camwright.pipeline.checks.extremes import NOWHERE, Extreme, Measure, greatest, worst_case
 from camwright.pipeline.checks.missing_keys import lacking, lacking_of_card
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.cycle import Cycle
 from camwright.pipeline.cycle.loaded_cam import LoadedCam
+from camwright.pipeline.cycle.numbers import Numbers
 from camwright.pipeline.cycle.part_loads import PartLoads
 from camwright.pipeline.cycle.solution import Solution
 from camwright.pipeline.follower.guide_friction import NYLON_PV, GuideHeat
@@ -107,6 +109,19 @@ def _at_temperature(
 
 
 def _guide_pressure(side: Side) -> Declaration:
+    place = GUIDES.index(side)
+
+    def at_its_temperature(demand: Demand, solution: Solution) -> Demand:
+        guide, worst = guide_of(solution.machine, side), demand.at or NOWHERE
+        limit = _at_temperature(solution, side, worst.value, guide.pressure_limit_at)
+        return replace(
+            demand,
+            allowed=limit.value,
+            missing=(*demand.missing, *limit.missing),
+            note="; ".join((*limit.notes, _pushes(solution, side, worst))),
+            source=_maker(guide),
+        )
+
     @check(
         id=f"guide_pressure_{side}",
         title=f"Mean bearing pressure in guide {side}",
@@ -134,23 +149,16 @@ def _guide_pressure(side: Side) -> Declaration:
         ),
         levers=levers.guide(side, "pressure_limit"),
         page="Guides",
+    ).measured(
+        "angles",
+        allowed=of_key(f"{table_of(side)}.pressure_limit"),
+        remark=at_its_temperature,
+        deviation=0.1,
+        kept=Kept(),
     )
-    def pressure(solution: Solution) -> Demand:
-        """Maximum over the turn of the mean pressure in a guide, Pa."""
-        guide = guide_of(solution.machine, side)
-        worst = greatest(
-            solution.cycles,
-            lambda c: demands.guide_pressure(_bearing_load(c, side), guide.projected_area),
-        )
-        limit = _at_temperature(solution, side, worst.value, guide.pressure_limit_at)
-        return Demand(
-            worst.value,
-            limit.value,
-            worst,
-            (*lacking(table_of(side), guide, "pressure_limit"), *limit.missing),
-            note="; ".join((*limit.notes, _pushes(solution, side, worst))),
-            source=_maker(guide),
-        )
+    def pressure(cam: LoadedCam) -> Array:
+        """Mean pressure in a guide, Pa."""
+        return magnitude(cam.bearing[place]) / cam.numbers[f"{table_of(side)}.area"]
 
     return pressure
 
@@ -172,20 +180,43 @@ def _pushes(solution: Solution, side: Side, worst: Extreme) -> str:
     return f"pushes of {greater} and {less} on opposite sides; {alone} by the net reaction"
 
 
-def mean_pv(cycle: Cycle, side: Side) -> float:
-    """PV value in guide A or B, mean over the turn, Pa m/s."""
-    load, area = _rubbing_load(cycle, side), guide_of(cycle.machine, side).projected_area
-    return float(np.mean(demands.guide_pv(load, cycle.loads.velocity, area)))
+def _pv_in(side: Side) -> Measure:
+    place = GUIDES.index(side)
+
+    def pv(cam: LoadedCam) -> Array:
+        """PV value in a guide at each angle, Pa m/s: of the sum of the pushes on both sides."""
+        return magnitude(cam.rubbing[place] * cam.velocity) / cam.numbers[f"{table_of(side)}.area"]
+
+    return pv
+
+
+PV: Mapping[Side, Measure] = {side: _pv_in(side) for side in GUIDES}
 
 
 def _pv_of_reaction(cycle: Cycle, side: Side) -> float:
     """PV value by the net reaction, in which loads on opposite sides of the bore cancel, Pa m/s."""
-    load, area = np.abs(_reaction(cycle, side)), guide_of(cycle.machine, side).projected_area
-    return float(np.mean(demands.guide_pv(load, cycle.loads.velocity, area)))
+    rubbed = np.mean(np.abs(_reaction(cycle, side) * cycle.loads.velocity))
+    return float(rubbed) / guide_of(cycle.machine, side).projected_area
+
+
+def _pv_allowed(side: Side, numbers: Numbers) -> Allowed:
+    """PV limit as stated, or of nylon by its lubrication."""
+    key, case = f"{table_of(side)}.pv_limit", numbers.case
+    stated = numbers.get(key)
+    if stated is None and case is not None:
+        stated = pv_limit(dict(case.guides.both)[side])
+    return Allowed(stated, (key,) if stated is None else ())
 
 
 def _guide_pv(side: Side) -> Declaration:
-    @check(
+    def in_words(demand: Demand, solution: Solution) -> Demand:
+        guide = guide_of(solution.machine, side)
+        alone = worst_case(solution.cycles, lambda cycle: _pv_of_reaction(cycle, side))
+        notes = _lubrication(guide, (demand.at or NOWHERE).value)
+        notes.append(f"{shown(alone.value, 'MPa m/s', 3)} by the net reaction")
+        return replace(demand, note="; ".join(notes), source=_pv_source(guide))
+
+    return check(
         id=f"guide_pv_{side}",
         title=f"PV value in guide {side}",
         unit="MPa m/s",
@@ -205,20 +236,13 @@ def _guide_pv(side: Side) -> Declaration:
         values=(*given.LOADS, *given.of_guide(side, "pv_limit")),
         levers=levers.guide(side, "pv_limit"),
         page="Guides",
-    )
-    def pv(solution: Solution) -> Demand:
-        """PV value in a guide, mean over the turn, Pa m/s."""
-        guide = guide_of(solution.machine, side)
-        worst = worst_case(solution.cycles, lambda cycle: mean_pv(cycle, side))
-        alone = worst_case(solution.cycles, lambda cycle: _pv_of_reaction(cycle, side))
-        limit = pv_limit(guide)
-        missing = lacking(table_of(side), guide, "pv_limit") if limit is None else ()
-        notes = _lubrication(guide, worst.value)
-        notes.append(f"{shown(alone.value, 'MPa m/s', 3)} by the net reaction")
-        source = _pv_source(guide)
-        return Demand(worst.value, limit, worst, missing, note="; ".join(notes), source=source)
-
-    return pv
+    ).measured(
+        "mean",
+        allowed=partial(_pv_allowed, side),
+        remark=in_words,
+        deviation=0.03,
+        kept=Kept(),
+    )(PV[side])
 
 
 def pv_limit(guide: Guide) -> float | None:
@@ -368,13 +392,18 @@ def _guide_speed(side: Side) -> Declaration:
         values=(*given.LOADS, *given.of_guide(side, "speed_limit")),
         levers=levers.rubbing_speed(side),
         page="Guides",
+    ).measured(
+        "angles",
+        allowed=of_key(f"{table_of(side)}.speed_limit"),
+        remark=lambda demand, solution: replace(
+            demand, source=_maker(guide_of(solution.machine, side))
+        ),
+        deviation=0.002,
+        kept=Kept(lambda cam, limit: magnitude(cam.jet.slope) / limit),
     )
-    def speed(solution: Solution) -> Demand:
-        """Maximum sliding speed, m/s."""
-        guide = guide_of(solution.machine, side)
-        worst = greatest(solution.cycles, lambda cycle: np.abs(cycle.loads.velocity))
-        missing = lacking(table_of(side), guide, "speed_limit")
-        return Demand(worst.value, guide.speed_limit, worst, missing, source=_maker(guide))
+    def speed(cam: LoadedCam) -> Array:
+        """Sliding speed, m/s; the synthesis keeps the lift per radian of the fastest load case."""
+        return magnitude(cam.velocity)
 
     return speed
 

@@ -2,24 +2,27 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
+from camwright.geometry.arrays import Value
 from camwright.pipeline.base import levers
 from camwright.pipeline.base import value_groups as given
 from camwright.pipeline.base.material import ROOM, Material
 from camwright.pipeline.base.units import shown
 from camwright.pipeline.case.limits import TARGET_LIFE, WEAR_DEPTH, LimitValues
-from camwright.pipeline.checks.check import Declaration, Demand, check
-from camwright.pipeline.checks.extremes import over_duty
+from camwright.pipeline.checks.check import Allowed, Declaration, Demand, Kept, check, of_row
 from camwright.pipeline.checks.guide_strength import (
+    PV,
     Side,
     guide_of,
     heat_path_lacks,
     hottest,
-    mean_pv,
     table_of,
 )
-from camwright.pipeline.checks.missing_keys import lacking, lacking_of_card, unset
+from camwright.pipeline.checks.missing_keys import lacking, lacking_of_card
+from camwright.pipeline.cycle.numbers import Numbers
 from camwright.pipeline.cycle.solution import Solution
 from camwright.pipeline.follower.guide_friction import bore_closure
 from camwright.pipeline.follower.guide_reactions import Guide
@@ -123,7 +126,19 @@ def pv_of_wear(guide: Guide, limits: LimitValues) -> float | None:
 
 
 def _guide_wear(side: Side) -> Declaration:
-    @check(
+    rate, life = f"{table_of(side)}.wear_rate", f"limits.{TARGET_LIFE.id}"
+
+    def depth(worst: Value, numbers: Numbers) -> Value:
+        """Wear depth over the target life, m, of a mean PV value, Pa m/s."""
+        per_pv, time = numbers.get(rate), numbers.get(life)
+        return np.nan if per_pv is None or time is None else per_pv * worst * time
+
+    def allowed(numbers: Numbers) -> Allowed:
+        lacks = tuple(key for key in (rate, life) if numbers.get(key) is None)
+        limit = of_row(WEAR_DEPTH)(numbers)
+        return limit._replace(missing=(*limit.missing, *lacks))
+
+    return check(
         WEAR_DEPTH,
         id=f"guide_wear_{side}",
         title=f"Wear depth of guide {side} at target life",
@@ -142,21 +157,15 @@ def _guide_wear(side: Side) -> Declaration:
             *levers.guide(side, "pv_limit"),
         ),
         page="Guides",
-    )
-    def wear(solution: Solution) -> Demand:
-        """Wear depth of a guide over the target life, m."""
-        guide, limits = guide_of(solution.machine, side), solution.machine.limits
-        rate, life = guide.wear_rate, limits[TARGET_LIFE]
-        worst = over_duty(solution.cycles, lambda cycle: mean_pv(cycle, side))
-        return Demand(
-            None if life is None or rate is None else rate * worst.value * life,
-            limits[WEAR_DEPTH],
-            worst,
-            (*lacking(table_of(side), guide, "wear_rate"), *unset(limits, TARGET_LIFE)),
-            figures=(guide.source,),
-        )
-
-    return wear
+    ).measured(
+        "wear",
+        value=depth,
+        allowed=allowed,
+        remark=lambda demand, solution: replace(
+            demand, figures=(guide_of(solution.machine, side).source,)
+        ),
+        kept=Kept(lambda cam, limit: PV[side](cam) / limit),
+    )(PV[side])
 
 
 guide_expansion_a, guide_expansion_b = _guide_expansion("A"), _guide_expansion("B")

@@ -86,6 +86,11 @@ def _greatest_friction(guide: str, numbers: Numbers) -> Value:
     return friction_limits(nominal, None, stated, numbers["tolerances.friction"])[1]
 
 
+def _area(guide: str, numbers: Numbers) -> Value:
+    """Projected area of a guide, m^2."""
+    return numbers[f"{guide}.length"] * numbers[f"{guide}.diameter"]
+
+
 def _mouth(numbers: Numbers) -> Value:
     """End of guide A over the reference point of the follower at maximum lift, m."""
     return numbers["follower.overhang_at_max_lift"] - 0.5 * numbers["guides.a.length"]
@@ -114,6 +119,8 @@ def _ball_circle(numbers: Numbers) -> Value | None:
 DERIVED: Mapping[str, Callable[[Numbers], Value | None]] = {
     "guides.a.friction_greatest": partial(_greatest_friction, "guides.a"),
     "guides.b.friction_greatest": partial(_greatest_friction, "guides.b"),
+    "guides.a.area": partial(_area, "guides.a"),
+    "guides.b.area": partial(_area, "guides.b"),
     "guides.a.mouth": _mouth,
     "follower.extent": _extent,
     "follower.size": _size,

@@ -82,6 +82,8 @@ def _fixed(variables: DesignVariables, ratings: Ratings) -> dict[str, Value | No
         "cam.fastest": ratings.overspeed,
         "cam.profile_tolerance": None if waves is None else 2.0 * waves[0],
         "cam.waviness_length": None if waves is None else waves[1],
+        "guides.a.area": ratings.guide_area[0],
+        "guides.b.area": ratings.guide_area[1],
         "guides.a.mouth": ratings.guide_mouth,
         "follower.size": ratings.follower_size,
         f"limits.{CONTACT_FORCE_MARGIN.id}": ratings.limits.get(CONTACT_FORCE_MARGIN),

@@ -21,7 +21,7 @@ from camwright.pipeline.case.limits import (
 )
 from camwright.pipeline.checks import (
     cam_shape,
-    demands,
+    guide_strength,
     jump_and_jamming,
     manufacture,
     part_strength,
@@ -99,27 +99,6 @@ def _utilisations(
     return uses
 
 
-def _guide_pressure(side: Literal["A", "B"]) -> Constraint[ScenarioCam]:
-    place = "AB".index(side)
-
-    def utilisation(at: ScenarioCam, limit: float) -> Array:
-        return demands.guide_pressure(at.bearing[place], at.ratings.guide_area[place]) / limit
-
-    return Constraint(
-        f"guide_pressure_{side}", lambda ratings: ratings.guide_pressure[place], utilisation
-    )
-
-
-def _guide_pv(side: Literal["A", "B"]) -> Constraint[ScenarioCam]:
-    place = "AB".index(side)
-
-    def utilisation(at: ScenarioCam, limit: float) -> Mean:
-        load, area = at.rubbing[place], at.ratings.guide_area[place]
-        return Mean(demands.guide_pv(load, at.velocity, area) / limit)
-
-    return Constraint(f"guide_pv_{side}", lambda ratings: ratings.guide_pv[place], utilisation)
-
-
 SHAPE: tuple[Constraint[LoadedCam], ...] = (
     kept(cam_shape.spring_travel, lambda ratings: ratings.travel),
     kept(cam_shape.pressure_angle),
@@ -145,10 +124,10 @@ LOADS: tuple[Constraint[ScenarioCam], ...] = (
     kept_loads(part_strength.bore_pressure, lambda ratings: ratings.normal_force, needs="face"),
     kept_loads(roller_bearing.roller_speed, lambda ratings: ratings.roller_spin),
     kept_loads(roller_bearing.roller_life, lambda ratings: ratings.life_force_cubed),
-    _guide_pressure("A"),
-    _guide_pv("A"),
-    _guide_pressure("B"),
-    _guide_pv("B"),
+    kept_loads(guide_strength.guide_pressure_a, lambda ratings: ratings.guide_pressure[0]),
+    kept_loads(guide_strength.guide_pv_a, lambda ratings: ratings.guide_pv[0]),
+    kept_loads(guide_strength.guide_pressure_b, lambda ratings: ratings.guide_pressure[1]),
+    kept_loads(guide_strength.guide_pv_b, lambda ratings: ratings.guide_pv[1]),
     *PARTS,
 )
 """Limits on the loads of the cam in one scenario."""

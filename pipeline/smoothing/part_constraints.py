@@ -19,6 +19,8 @@ from camwright.pipeline.case.limits import (
 from camwright.pipeline.checks import (
     camshaft_strength,
     demands,
+    guide_strength,
+    guide_wear,
     key_strength,
     manufacture,
     roller_bearing,
@@ -39,9 +41,9 @@ from camwright.pipeline.smoothing.cam_state import (
     Mean,
     ScenarioCam,
     Total,
-    by_duty,
     duty_shares,
     face_of,
+    kept,
     kept_loads,
     roller_of,
     where_applies,
@@ -52,15 +54,6 @@ _LEAST_RADIUS = 1e-6  # m, of curvature, of a half-width
 _AMPLE = 100.0  # times the least mean speed, of a roller at rest, which needs no film
 
 Side = Literal["A", "B"]
-
-
-def _guide_speed(side: Side) -> Constraint[LoadedCam]:
-    place = "AB".index(side)
-    return Constraint(
-        f"guide_speed_{side}",
-        lambda ratings: ratings.guide_slope[place],
-        lambda cam, limit: magnitude(cam.jet.slope) / limit,
-    )
 
 
 def _guide_edge_pressure(side: Side) -> Constraint[ScenarioCam]:
@@ -85,20 +78,6 @@ def _guide_heat(side: Side) -> Constraint[ScenarioCam]:
 
     return Constraint(
         f"guide_temperature_{side}", lambda ratings: ratings.guide_power[place], utilisation
-    )
-
-
-def _guide_wear(side: Side) -> Constraint[ScenarioCam]:
-    """Mean PV value over that of the greatest wear depth."""
-    place = "AB".index(side)
-
-    def utilisation(at: ScenarioCam, limit: float) -> Mean:
-        load = at.rubbing[place]
-        pv = demands.guide_pv(load, at.velocity, at.ratings.guide_area[place])
-        return by_duty(pv / limit, at.scenario)
-
-    return Constraint(
-        f"guide_wear_{side}", lambda ratings: ratings.guide_wear_pv[place], utilisation
     )
 
 
@@ -212,8 +191,8 @@ def line_pressure(at: ScenarioCam, allowed: Value) -> Array:
 
 
 PART_SHAPE: tuple[Constraint[LoadedCam], ...] = (
-    _guide_speed("A"),
-    _guide_speed("B"),
+    kept(guide_strength.guide_speed_a, lambda ratings: ratings.guide_slope[0]),
+    kept(guide_strength.guide_speed_b, lambda ratings: ratings.guide_slope[1]),
 )
 """Limits of the parts on the shape of the cam."""
 
@@ -223,8 +202,8 @@ PARTS: tuple[Constraint[ScenarioCam], ...] = (
     _guide_edge_pressure("B"),
     _guide_heat("A"),
     _guide_heat("B"),
-    _guide_wear("A"),
-    _guide_wear("B"),
+    kept_loads(guide_wear.guide_wear_a, lambda ratings: ratings.guide_wear_pv[0]),
+    kept_loads(guide_wear.guide_wear_b, lambda ratings: ratings.guide_wear_pv[1]),
     Constraint(
         "traction_demand", lambda ratings: ratings.friction, _traction_demand, needs="roller"
     ),
