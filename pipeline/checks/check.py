@@ -30,6 +30,7 @@ Status = Literal["pass", "fail", "not_evaluated", "waived"]
 Verdict = Literal["pass", "incomplete", "fail"]
 Screen = Literal["open", "fail"]
 Error = Literal["sampling", "contact", "ends", "guides", "guide_edges", "bore", "unknown"]
+Bounded = Literal["", "crown", "line"]
 RestsOn = Literal["", "contact", "loads"]
 Page = Literal[
     "",
@@ -106,10 +107,14 @@ class Demand:
 
 
 class Allowed(NamedTuple):
-    """Limit of a demand, SI; None: none. missing: dotted keys that the case lacks."""
+    """Limit of a demand, SI; None: none. missing: dotted keys that the case lacks.
+
+    if_exceeded: the value is that of the known parts alone: a demand can only fail by it.
+    """
 
     value: Value | None
     missing: tuple[str, ...] = ()
+    if_exceeded: bool = False
 
 
 def of_key(key: str, share: AnyLimit | None = None) -> Callable[[Numbers], Allowed]:
@@ -189,6 +194,8 @@ class Measured(NamedTuple):
     pointwise : bool     the demand bends over the measure: made at each angle, so that its error
                          bar is that of the demand
     smooth : bool        the screening refines the measure between samples; False: it has poles
+    bounded : str        the screened demand is a lower bound where the lines of contact are too
+                         many to be solved: "crown", of crowned bodies; "line", of any; "": never
     strokes : tuple      measures with limits of their own, where the case sets each of them: that
                          of the greatest utilisation governs
     kept : Kept          None: the synthesis does not keep it
@@ -207,6 +214,7 @@ class Measured(NamedTuple):
     deviation: float | None
     pointwise: bool
     smooth: bool
+    bounded: Bounded
     strokes: tuple[Stroke, ...]
     kept: Kept | None
 
@@ -481,6 +489,7 @@ class Declaring:
         deviation: float | None = None,
         pointwise: bool = False,
         smooth: bool = True,
+        bounded: Bounded = "",
         strokes: tuple[Stroke, ...] = (),
         kept: Kept | None = None,
     ) -> Callable[[Measure], Declaration]:
@@ -500,6 +509,7 @@ class Declaring:
             deviation=deviation,
             pointwise=pointwise,
             smooth=smooth,
+            bounded=bounded,
             strokes=strokes,
             kept=kept,
         )
@@ -543,6 +553,8 @@ def _demand(measure: Measure, how: Measured, solution: Solution) -> Demand | Non
     worst = worst_of(measure)
     if not how.applies(worst.value):
         return None
+    if limit.if_exceeded and not (allowed is not None and worst.value > allowed):
+        allowed = None
     return how.remark(Demand(worst.value, allowed, worst, limit.missing), solution)
 
 

@@ -17,6 +17,7 @@ from camwright.pipeline.cycle.loaded_cam import LoadedCam, not_negative
 CONTACT_FLOOR = 0.01
 """Least normal force over the least spring force in the quotients by the normal force."""
 NORMAL_FORCE, CAM_TORQUE, TOOTH_TORQUE = "roller_static", "key_pressure", "gear_bending"
+PRESSURE = "contact_pressure"
 """Groups of checks of one measure, which are one constraint of the synthesis; see `Kept`."""
 _MARGIN = 0.2  # of the least spring force, where the case keeps no contact force margin
 

@@ -14,11 +14,13 @@ from typing import NamedTuple
 import numpy as np
 
 from camwright.geometry.arrays import Array, Value
+from camwright.geometry.errors import GeometryError
 from camwright.geometry.flat_face_contour import FaceMotion
 from camwright.geometry.follower_path import Motion, Reaction
 from camwright.geometry.lift import Jet
 from camwright.geometry.pitch_curve import RollerMotion, rolling_share
-from camwright.pipeline.contact.hertz import peak_pressure_square
+from camwright.pipeline.contact.hertz import half_width_square, peak_pressure_square
+from camwright.pipeline.contact.traction import Drag
 from camwright.pipeline.cycle.numbers import Numbers
 from camwright.pipeline.follower.follower_forces import levers
 from camwright.pipeline.follower.spring_kinds import SpringShape, rise
@@ -31,6 +33,32 @@ def motion_of(jet: Jet, numbers: Numbers) -> Motion:
         friction = numbers.get("follower.face.friction")
         return FaceMotion(jet, prime, offset, 0.0 if friction is None else friction)
     return RollerMotion(jet, np.sqrt(prime**2 - offset**2), offset, numbers["roller.radius"])
+
+
+def roller_of(path: Motion) -> RollerMotion:
+    """The motion of a roller.
+
+    Raises
+    ------
+    GeometryError
+        If it is that of a flat face.
+    """
+    if isinstance(path, RollerMotion):
+        return path
+    raise GeometryError("the follower of the cam is no roller")
+
+
+def face_of(path: Motion) -> FaceMotion:
+    """The motion of a flat face.
+
+    Raises
+    ------
+    GeometryError
+        If it is that of a roller.
+    """
+    if isinstance(path, FaceMotion):
+        return path
+    raise GeometryError("the follower of the cam is no flat face")
 
 
 def not_negative(values: Array) -> Array:
@@ -86,6 +114,13 @@ class LoadedCam:
         """Rise of the force of a spring that is not linear; None: linear."""
         case = self.numbers.case
         return None if case is None else case.spring.shape
+
+    @property
+    def drag(self) -> Drag | None:
+        """Inertia and drag of the roller; None without one."""
+        case = self.numbers.case
+        roller = None if case is None else case.roller_given
+        return None if roller is None else roller.drag
 
     @property
     def speed(self) -> Value:
@@ -242,3 +277,22 @@ class LoadedCam:
     def p0(self) -> Array:
         """Contact pressure in the middle of the line of contact, Pa."""
         return self.pressure_factor * np.sqrt(self.flat_square / (1.0 - self.motion.sharpness))
+
+    @property
+    def p0_signed(self) -> Array:
+        """Contact pressure with ends and tilt, Pa; here that of a line without ends."""
+        return self.p0
+
+    @property
+    def half_width(self) -> Array:
+        """Half-width of the contact, m: at the same force it falls as the pressure rises."""
+        numbers, radius = self.numbers, self.motion.size * (1.0 - self.motion.sharpness)
+        force = np.where(np.real(self.normal) < _LEAST_FORCE, _LEAST_FORCE, self.normal)
+        radius = np.where(np.real(radius) < _LEAST_RADIUS, _LEAST_RADIUS, radius)
+        load = force / numbers["contact.width"]
+        square = half_width_square(load, radius, numbers["contact.modulus"])
+        return np.sqrt(square) / self.pressure_factor
+
+
+_LEAST_FORCE = 1.0  # N, of a half-width
+_LEAST_RADIUS = 1e-6  # m, of curvature, of a half-width

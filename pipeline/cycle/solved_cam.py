@@ -196,6 +196,15 @@ class SolvedCam(ForcesCam):
     def p0(self) -> Array:
         return self.cycle.surface.p0
 
+    @property
+    def p0_signed(self) -> Array:
+        """NaN without the ends."""
+        return self.cycle.signed_pressure
+
+    @property
+    def half_width(self) -> Array:
+        return self.cycle.contact.half_width
+
 
 def _jet(cycle: Cycle, numbers: Numbers, loads: Loads) -> tuple[Jet, Numbers, float]:
     """Lift at the angles of the loads, numbers of the load case, maximum lift, m."""

@@ -10,7 +10,6 @@ In the order of the calculation:
 | `design_arrays`     | lift, contour and load cases of many designs        | s, m                 |
 | `screened_shape`    | checks of the cam shape                             | m, rad               |
 | `screened_loads`    | checks of forces, guides and torque                 | N, N m, Pa           |
-| `screened_contact`  | checks of contact, roller bearing and flat face     | p0, Pa; h            |
 | `screened_springs`  | checks of wound, gas and torsion springs            | Pa, m                |
 | `screened_checks`   | the checks that screening judges                    |                      |
 | `design_screening`  | columns of the screening: demands, status, `screen` | as in the record     |

@@ -31,7 +31,7 @@ from camwright.pipeline.checks.contact_strength import (
     life_turns,
     pressure_allowables,
 )
-from camwright.pipeline.checks.demands import CAM_TORQUE, NORMAL_FORCE, TOOTH_TORQUE
+from camwright.pipeline.checks.demands import CAM_TORQUE, NORMAL_FORCE, PRESSURE, TOOTH_TORQUE
 from camwright.pipeline.checks.guide_strength import pv_limit
 from camwright.pipeline.checks.guide_wear import greatest_temperatures, pv_of_wear
 from camwright.pipeline.checks.key_strength import keyway_root_of
@@ -69,7 +69,7 @@ def ratings_of(case: Case) -> Ratings:
     machine, covers, numbers = states[0], case.scope.covers, numbers_of(case, states)
     limits, guides = machine.limits, machine.guides
     roller, face = machine.roller, machine.face
-    pressure, pressure_by = _least(pressure_allowables(machine, greatest_cycles(case)))
+    pressure, pressure_by = _least(_pressure_limits(machine, case))
     normal_force, normal_force_by = _least(part_limits(case, NORMAL_FORCE))
     by_rating = normal_force_by == "roller_static"
     # Without a stated over-speed the contact is kept at the fastest load case.
@@ -323,7 +323,7 @@ def corrected_ratings(ratings: Ratings, solved: Solution) -> Ratings:
     """Ratings with the limits that follow from a solved cam; see `surge_of`, `scaled_limits`."""
     case = solved.case
     forces, pressures = scaled_limits(solved)
-    pressure = _least(pressure_allowables(solved.machine, greatest_cycles(case)) | pressures)
+    pressure = _least(_pressure_limits(solved.machine, case) | pressures)
     force = _least(part_limits(case, NORMAL_FORCE) | forces)
     static = force[1] == "roller_static"
     return replace(
@@ -424,8 +424,13 @@ def _travels_of_torsion(spring: Spring, torsion: TorsionSpring) -> dict[str, flo
     return allowed
 
 
+def _pressure_limits(machine: Machine, case: Case) -> dict[str, float]:
+    estimated = pressure_allowables(machine, greatest_cycles(case))
+    return part_limits(case, PRESSURE) | estimated
+
+
 def part_limits(case: Case, group: str) -> dict[str, float]:
-    """Greatest normal force, N, or torque, N m, allowed by each check of a group, by its id.
+    """Greatest force, torque or pressure, SI, allowed by each check of a group, by its id.
 
     Without those outside the scope.
     """

@@ -15,19 +15,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from camwright.geometry.arrays import Array, Value
-from camwright.geometry.errors import GeometryError, InputError
-from camwright.geometry.flat_face_contour import FaceMotion
-from camwright.geometry.follower_path import Motion
+from camwright.geometry.errors import InputError
 from camwright.geometry.lift import Jet
-from camwright.geometry.pitch_curve import RollerMotion, rolling_share
+from camwright.geometry.pitch_curve import rolling_share
 from camwright.pipeline.case.limits import CONTACT_FORCE_MARGIN, AnyLimit, Limit, OpenLimit
 from camwright.pipeline.checks.check import Declaration
 from camwright.pipeline.checks.extremes import BY_DUTY
+from camwright.pipeline.contact.traction import Drag
 from camwright.pipeline.cycle.loaded_cam import (
     LoadedCam,
     OfGuides,
     greatest_friction,
     not_negative,
+    roller_of,
 )
 from camwright.pipeline.cycle.numbers import Numbers
 from camwright.pipeline.follower.spring_kinds import SpringShape, rise, shaped_deflection
@@ -124,6 +124,10 @@ class ScenarioCam(LoadedCam):
     def fix(self) -> Correction:
         """Correction of the scenario."""
         return self.scenario.correction
+
+    @property
+    def drag(self) -> Drag | None:
+        return self.ratings.drag
 
     @property
     def spring_shape(self) -> SpringShape | None:
@@ -310,32 +314,6 @@ def by_duty(terms: Array, scenario: Scenario, power: float = 1.0) -> Mean:
     return Mean(
         terms, power, Total(lambda means: not_negative(means @ shares.T) ** power, shares > 0)
     )
-
-
-def roller_of(path: Motion) -> RollerMotion:
-    """The motion of a roller.
-
-    Raises
-    ------
-    GeometryError
-        If it is that of a flat face.
-    """
-    if isinstance(path, RollerMotion):
-        return path
-    raise GeometryError("the follower of the cam is no roller")
-
-
-def face_of(path: Motion) -> FaceMotion:
-    """The motion of a flat face.
-
-    Raises
-    ------
-    GeometryError
-        If it is that of a roller.
-    """
-    if isinstance(path, FaceMotion):
-        return path
-    raise GeometryError("the follower of the cam is no flat face")
 
 
 State = TypeVar("State", LoadedCam, ScenarioCam)

@@ -21,6 +21,7 @@ from camwright.pipeline.case.limits import (
 )
 from camwright.pipeline.checks import (
     cam_shape,
+    contact_strength,
     guide_strength,
     jump_and_jamming,
     manufacture,
@@ -41,7 +42,6 @@ from camwright.pipeline.smoothing.cam_state import (
 from camwright.pipeline.smoothing.part_constraints import (
     PART_SHAPE,
     PARTS,
-    line_pressure,
 )
 from camwright.pipeline.smoothing.scenario import DesignVariables, Ratings, Scenario
 
@@ -113,7 +113,7 @@ SHAPE: tuple[Constraint[LoadedCam], ...] = (
 """Limits on the shape of the cam."""
 
 LOADS: tuple[Constraint[ScenarioCam], ...] = (
-    Constraint("contact_pressure", lambda ratings: ratings.pressure, line_pressure),
+    kept_loads(contact_strength.contact_pressure, lambda ratings: ratings.pressure),
     kept_loads(jump_and_jamming.contact_force_margin),
     kept_loads(jump_and_jamming.contact_at_overspeed),
     kept_loads(jump_and_jamming.jump),

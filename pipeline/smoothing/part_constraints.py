@@ -10,7 +10,7 @@ from typing import Literal
 
 import numpy as np
 
-from camwright.geometry.arrays import Array, Value
+from camwright.geometry.arrays import Array
 from camwright.geometry.pitch_curve import magnitude
 from camwright.pipeline.case.limits import (
     CONTACT_FORCE_MARGIN,
@@ -19,21 +19,19 @@ from camwright.pipeline.case.limits import (
 from camwright.pipeline.checks import (
     camshaft_strength,
     demands,
+    flat_face_sliding,
     guide_strength,
     guide_wear,
     key_strength,
     manufacture,
     roller_bearing,
+    surface_durability,
 )
 from camwright.pipeline.checks.roller_bearing import STANDSTILL
-from camwright.pipeline.contact.hertz import half_width_square
-from camwright.pipeline.contact.traction import rolling_demand
 from camwright.pipeline.cycle.loaded_cam import LoadedCam, not_negative
 from camwright.pipeline.follower import bearing_life
-from camwright.pipeline.follower.flat_face_motion import MEAN_SHARE
 from camwright.pipeline.follower.roller_motion import (
     BALL_LIFE_EXPONENT,
-    path_speed_slope,
     wear,
 )
 from camwright.pipeline.smoothing.cam_state import (
@@ -42,10 +40,8 @@ from camwright.pipeline.smoothing.cam_state import (
     ScenarioCam,
     Total,
     duty_shares,
-    face_of,
     kept,
     kept_loads,
-    roller_of,
     where_applies,
 )
 
@@ -79,18 +75,6 @@ def _guide_heat(side: Side) -> Constraint[ScenarioCam]:
     return Constraint(
         f"guide_temperature_{side}", lambda ratings: ratings.guide_power[place], utilisation
     )
-
-
-def _traction_demand(at: ScenarioCam, friction: float) -> Array | None:
-    if at.ratings.drag is None:
-        return None
-    jet, path = at.jet, roller_of(at.motion)
-    radius = path.size
-    rate = path_speed_slope(path.along, path.height, jet.slope, jet.bend, path.path_speed)
-    acceleration = at.scenario.cam_speed**2 * rate / radius
-    force = not_negative(at.normal)
-    demand = rolling_demand(at.ratings.drag, force, at.spin, acceleration, radius)
-    return demands.over_normal_force(at, magnitude(demand) / friction)
 
 
 def _swept_force(at: ScenarioCam, limit: float) -> Array | None:
@@ -163,33 +147,6 @@ def _grease_life(at: ScenarioCam, limit: float) -> Mean | None:
     return Mean(terms, total=Total(of, members))
 
 
-def _face_width(at: ScenarioCam, width: float) -> Array:
-    """Twice the distance of the contact from the stem axis and its half-width, over the width.
-
-    At the same force the half-width falls as the pressure rises.
-    """
-    ratings, path = at.ratings, face_of(at.motion)
-    force = np.where(np.real(at.normal) > _LEAST_FORCE, at.normal, _LEAST_FORCE)
-    radius = np.where(np.real(path.radius) > _LEAST_RADIUS, path.radius, _LEAST_RADIUS)
-    load = force / ratings.contact_width
-    half = np.sqrt(half_width_square(load, radius, ratings.contact_modulus))
-    return 2.0 * (magnitude(path.arm) + half / at.fix.contact) / width
-
-
-def _face_pv(at: ScenarioCam, limit: float) -> Array:
-    """As `line_pressure`, of the pressure whose mean is at the PV limit at the sliding speed."""
-    return line_pressure(at, limit / (MEAN_SHARE * at.scenario.cam_speed * at.motion.height))
-
-
-def line_pressure(at: ScenarioCam, allowed: Value) -> Array:
-    """sharpness + R_p / size <= 1, equivalent to p0 <= allowed.
-
-    R_p is the relative radius at which the line contact has the allowed pressure. Pressure and
-    undercut depend on the same undercut factor, 1 - sharpness.
-    """
-    return at.motion.sharpness + at.pressure_factor**2 * at.flat_square / allowed**2
-
-
 PART_SHAPE: tuple[Constraint[LoadedCam], ...] = (
     kept(guide_strength.guide_speed_a, lambda ratings: ratings.guide_slope[0]),
     kept(guide_strength.guide_speed_b, lambda ratings: ratings.guide_slope[1]),
@@ -204,9 +161,7 @@ PARTS: tuple[Constraint[ScenarioCam], ...] = (
     _guide_heat("B"),
     kept_loads(guide_wear.guide_wear_a, lambda ratings: ratings.guide_wear_pv[0]),
     kept_loads(guide_wear.guide_wear_b, lambda ratings: ratings.guide_wear_pv[1]),
-    Constraint(
-        "traction_demand", lambda ratings: ratings.friction, _traction_demand, needs="roller"
-    ),
+    kept_loads(surface_durability.traction_demand, lambda ratings: ratings.friction),
     kept_loads(manufacture.profile_waviness),
     Constraint("contact_over_speed", CONTACT_FORCE_MARGIN, _swept_force),
     Constraint("elastic_contact", CONTACT_FORCE_MARGIN, _elastic_contact),
@@ -221,9 +176,7 @@ PARTS: tuple[Constraint[ScenarioCam], ...] = (
     ),
     kept_loads(roller_bearing.roller_modified_life, lambda ratings: ratings.modified_rate),
     kept_loads(roller_bearing.bearing_lubrication, lambda ratings: ratings.roller_spin_least),
-    Constraint(
-        "face_width", lambda ratings: ratings.face and ratings.face.width, _face_width, needs="face"
-    ),
-    Constraint("face_pv", lambda ratings: ratings.face and ratings.face.pv, _face_pv, needs="face"),
+    kept_loads(flat_face_sliding.face_width, lambda ratings: ratings.face and ratings.face.width),
+    kept_loads(flat_face_sliding.face_pv, lambda ratings: ratings.face and ratings.face.pv),
 )
 """Limits of the parts on the loads of the cam in one scenario."""

@@ -276,12 +276,11 @@ def _pressure(base: Cycle, torque: np.ndarray) -> np.ndarray:
 
 
 def _rolling(base: Cycle) -> RollingHistory:
-    still, sliding = np.zeros(POSITIONS), base.rolling.sliding
+    still = np.zeros(POSITIONS)
     rolling = put(
         base.rolling,
         traction_demand=0.02 + 0.01 * WAVE,
         von_mises=420e6 + 100e6 * WAVE,
-        sliding=sliding and replace(sliding, pv=100e6 + 50e6 * WAVE),
     )
     return replace(
         rolling,

@@ -19,14 +19,12 @@ from camwright.pipeline.case.case_values import replaced, value_of
 from camwright.pipeline.case.load_case_torque import engine_torques
 from camwright.pipeline.case.machine import machines
 from camwright.pipeline.checks.check import depends_on_lift, within_depth
-from camwright.pipeline.checks.contact_strength import pressure_allowables
-from camwright.pipeline.checks.demands import CAM_TORQUE, NORMAL_FORCE, TOOTH_TORQUE
+from camwright.pipeline.checks.demands import CAM_TORQUE, NORMAL_FORCE, PRESSURE, TOOTH_TORQUE
 from camwright.pipeline.checks.key_strength import KeywayRoot
 from camwright.pipeline.checks.registry import checks_of
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.solution import solution
 from camwright.pipeline.smoothing.allowables import (
-    greatest_cycles,
     part_limits,
     power_limits,
     ratings_of,
@@ -349,7 +347,7 @@ def own_limits(case):
         ratings_of(case),
         held_radius=case.cam.held_radius,
         normal_force=part_limits(case, NORMAL_FORCE)["bore_pressure"],
-        pressure=pressure_allowables(machine, greatest_cycles(case))["contact_pressure"],
+        pressure=part_limits(case, PRESSURE)["contact_pressure"],
         cam_torque=part_limits(case, CAM_TORQUE)["key_pressure"],
         tooth_torque=part_limits(case, TOOTH_TORQUE)["gear_bending"],
         guide_power=tuple(

@@ -75,9 +75,10 @@ MEASURES = {
     for one in CHECKS
     if one.measured is not None and one.measured.reduce not in ("contour", "top")
     for follower in ("roller", "face")
-    if one.needs in ("", follower) and not one.id.startswith("guide_pressure")
+    if one.needs in ("", follower) and not one.id.startswith(("guide_pressure", "edge_pressure"))
 }
-"""Of a load case; the limit at the temperature of a guide is in the correction of its pressure."""
+"""Of a load case; the limit at the temperature of a guide is in the correction of its pressure,
+and the ends of the contact are in the bound of theirs."""
 
 
 def contour_of(case: Case) -> Contour:
