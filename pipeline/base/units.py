@@ -14,7 +14,7 @@ import re
 from decimal import ROUND_CEILING, Decimal, InvalidOperation
 from functools import lru_cache
 from math import ceil, degrees, isfinite, isnan, log10
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple, TypeVar
 
 from camwright.geometry.errors import InputError
 
@@ -22,6 +22,9 @@ if TYPE_CHECKING:
     from pint import UnitRegistry
     from pint.facets.plain import PlainUnit
 
+    from camwright.geometry.arrays import Array, Value
+
+_Temperature = TypeVar("_Temperature", float, "Array", "Value")
 _NUMBER = (  # no digits of other scripts, of which some look like another one of ours
     r"[+-]?(?:[0-9][0-9_]*(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]{1,3})?"
     r"|[+-]?(?:nan|inf|infinity)"
@@ -290,8 +293,8 @@ def in_unit(value: float, unit: str) -> float:
     return value / factor(unit)
 
 
-def celsius(temperature: float) -> float:
-    """Celsius temperature, degC, of a temperature in K."""
+def celsius(temperature: _Temperature) -> _Temperature:
+    """Celsius temperature (...), degC, of a temperature in K."""
     return temperature - float(_ZERO_CELSIUS)
 
 

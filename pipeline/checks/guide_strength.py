@@ -9,7 +9,7 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
-from camwright.geometry.arrays import Array
+from camwright.geometry.arrays import Array, Value
 from camwright.geometry.extrema import first_greatest
 from camwright.geometry.pitch_curve import magnitude
 from camwright.pipeline.base import levers
@@ -19,7 +19,14 @@ from camwright.pipeline.base.units import celsius, shown
 from camwright.pipeline.case.limits import GUIDE_LENGTH
 from camwright.pipeline.case.machine import Machine
 from camwright.pipeline.checks.check import NONE, Allowed, Declaration, Demand, Kept, check, of_key
-from camwright.pipeline.checks.extremes import NOWHERE, Extreme, Measure, greatest, worst_case
+from camwright.pipeline.checks.extremes import (
+    NOWHERE,
+    Extreme,
+    Measure,
+    greatest,
+    worst_case,
+    worst_measure,
+)
 from camwright.pipeline.checks.missing_keys import lacking, lacking_of_card
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.cycle import Cycle
@@ -27,7 +34,11 @@ from camwright.pipeline.cycle.loaded_cam import LoadedCam
 from camwright.pipeline.cycle.numbers import Numbers
 from camwright.pipeline.cycle.part_loads import PartLoads
 from camwright.pipeline.cycle.solution import Solution
-from camwright.pipeline.follower.guide_friction import NYLON_PV, GuideHeat
+from camwright.pipeline.follower.guide_friction import (
+    NYLON_PV,
+    bush_temperature,
+    thermal_resistance,
+)
 from camwright.pipeline.follower.guide_reactions import Guide
 
 Side = Literal["A", "B"]
@@ -44,11 +55,6 @@ def table_of(side: Side) -> str:
     return f"guides.{side.lower()}"
 
 
-def heat_max_of(parts: PartLoads, side: Side) -> GuideHeat:
-    """Friction heat of guide A or B at the greatest friction."""
-    return parts.heat_max_a if side == "A" else parts.heat_max_b
-
-
 def _reaction(cycle: Cycle, side: Side) -> Array:
     return cycle.guides.reaction_a if side == "A" else cycle.guides.reaction_b
 
@@ -61,12 +67,40 @@ def _bearing_load(cycle: Cycle, side: Side) -> Array:
     return cycle.guides.bearing_load_a if side == "A" else cycle.guides.bearing_load_b
 
 
+def _heat_in(side: Side) -> Measure:
+    place = GUIDES.index(side)
+
+    def heat(cam: LoadedCam) -> Array:
+        """Friction power of a guide at the greatest friction, W."""
+        power = cam.heat
+        return np.full_like(cam.velocity, np.nan) if power is None else power[place]
+
+    return heat
+
+
+HEAT: Mapping[Side, Measure] = {side: _heat_in(side) for side in GUIDES}
+
+
+def _temperature(side: Side, power: Value, numbers: Numbers) -> Value:
+    """Steady temperature of a guide, K, by its mean friction power, W."""
+    case = numbers.case
+    resistance = None if case is None else thermal_resistance(dict(case.guides.both)[side])
+    return bush_temperature(power, resistance, numbers.get("guides.ambient_temperature"))
+
+
 def hottest(solution: Solution, side: Side) -> Extreme:
     """Temperature of guide A or B at the greatest friction, K, of the hottest load case.
 
     NaN where ambient or thermal resistance is not known.
     """
-    return worst_case(solution.cycles, lambda cycle: heat_max_of(cycle.parts, side).temperature)
+    return worst_measure(
+        solution,
+        HEAT[side],
+        "mean",
+        lambda power: float(_temperature(side, power, solution.numbers)),
+        at_least=False,
+        order=2,
+    )
 
 
 class _Limit(NamedTuple):
@@ -325,7 +359,18 @@ def _edge(parts: PartLoads, side: Side) -> Array:
 
 
 def _guide_temperature(side: Side) -> Declaration:
-    @check(
+    def allowed(numbers: Numbers) -> Allowed:
+        case = numbers.case
+        stated = None if case is None else dict(case.guides.both)[side].material.temperature_limit
+        return Allowed(None if stated is None else celsius(stated))
+
+    def in_words(demand: Demand, solution: Solution) -> Demand:
+        machine = solution.machine
+        card = guide_of(machine, side).material
+        missing = (*heat_path_lacks(machine, side), *lacking_of_card(card, "temperature_limit"))
+        return replace(demand, missing=missing, source=f"{card.name}: {card.source}")
+
+    return check(
         id=f"guide_temperature_{side}",
         title=f"Temperature of guide {side}",
         unit="degC",
@@ -349,20 +394,13 @@ def _guide_temperature(side: Side) -> Declaration:
             *levers.guide(side, "friction_max"),
         ),
         page="Guides",
-    )
-    def temperature(solution: Solution) -> Demand:
-        """Steady temperature of a guide, degC."""
-        machine = solution.machine
-        card, worst = guide_of(machine, side).material, hottest(solution, side)
-        return Demand(
-            celsius(worst.value),
-            None if card.temperature_limit is None else celsius(card.temperature_limit),
-            worst,
-            (*heat_path_lacks(machine, side), *lacking_of_card(card, "temperature_limit")),
-            source=f"{card.name}: {card.source}",
-        )
-
-    return temperature
+    ).measured(
+        "mean",
+        value=lambda power, numbers: celsius(_temperature(side, power, numbers)),
+        allowed=allowed,
+        remark=in_words,
+        kept=Kept(lambda cam, limit: None if cam.heat is None else HEAT[side](cam) / limit),
+    )(HEAT[side])
 
 
 def heat_path_lacks(machine: Machine, side: Side) -> tuple[str, ...]:

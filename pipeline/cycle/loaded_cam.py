@@ -18,7 +18,7 @@ from camwright.geometry.errors import GeometryError
 from camwright.geometry.flat_face_contour import FaceMotion
 from camwright.geometry.follower_path import Motion, Reaction
 from camwright.geometry.lift import Jet
-from camwright.geometry.pitch_curve import RollerMotion, rolling_share
+from camwright.geometry.pitch_curve import RollerMotion, magnitude, rolling_share
 from camwright.pipeline.contact.hertz import half_width_square, peak_pressure_square
 from camwright.pipeline.contact.traction import Drag
 from camwright.pipeline.cycle.numbers import Numbers
@@ -260,6 +260,27 @@ class LoadedCam:
     def bearing(self) -> OfGuides:
         """Greater push on one side of a guide over the loaded share of its length, N."""
         return OfGuides(*(self.axial * each.on_points for each in self.reactions))
+
+    @property
+    def hot_share(self) -> OfGuides:
+        """As `rubbing_share`, at the maximum friction."""
+        return OfGuides(*(each.on_points for each in self.reactions))
+
+    @cached_property
+    def hot(self) -> OfGuides | None:
+        """Friction of the guides at the maximum friction, N; None where that is not known."""
+        friction, jam = greatest_friction(self.numbers), self.jam_worst
+        if friction is None or jam is None:
+            return None
+        axial = self.axial * self.share / (1.0 - np.sign(np.real(self.slope)) * jam)
+        loads = self.hot_share
+        return OfGuides(friction.a * loads.a * axial, friction.b * loads.b * axial)
+
+    @property
+    def heat(self) -> OfGuides | None:
+        """Friction power of the guides at the maximum friction, W; None where it is not known."""
+        hot = self.hot
+        return None if hot is None else OfGuides(*(magnitude(each * self.velocity) for each in hot))
 
     @property
     def pressure_factor(self) -> Value:

@@ -26,9 +26,7 @@ from camwright.pipeline.follower.camshaft_loads import (
 from camwright.pipeline.follower.follower_forces import Loads
 from camwright.pipeline.follower.guide_friction import (
     FrictionBounds,
-    GuideHeat,
-    guide_heat,
-    thermal_resistance,
+    friction_power,
 )
 from camwright.pipeline.follower.guide_reactions import Guide
 from camwright.pipeline.follower.roller_motion import RollerMotion, roller_motion
@@ -40,7 +38,7 @@ class PartLoads(Displayed):
     """One turn; arrays (n,) SI, None where the case does not describe the part.
 
     guide_edge_pressure_* are the pressures of the stem in the bore where its line load is greatest;
-    heat_max_* is the heat at the greatest friction of both guides.
+    heat_* is the friction power of the guides, heat_max_* that at the greatest friction of both.
     ring_amplitude and ring_mean are of the stress in the groove of the bearing's outer ring, which
     rotates under the load; ring_correction is the relative change of the maximum contact pressure
     from a contact over a ball, as solved, to one between two balls.
@@ -48,10 +46,10 @@ class PartLoads(Displayed):
 
     guide_edge_pressure_a: Array
     guide_edge_pressure_b: Array
-    heat_a: GuideHeat
-    heat_b: GuideHeat
-    heat_max_a: GuideHeat
-    heat_max_b: GuideHeat
+    heat_a: Array
+    heat_b: Array
+    heat_max_a: Array
+    heat_max_b: Array
     friction: FrictionBounds
     viscous_force: Array
     reversals: tuple[Reversal, ...]
@@ -83,8 +81,8 @@ class PartLoads(Displayed):
             Column(
                 "guide_edge_pressure_B", "MPa", "Maximum pressure of the stem in guide B"
             ): self.guide_edge_pressure_b,
-            Column("guide_friction_power_A", "W", "Friction power of guide A"): self.heat_a.power,
-            Column("guide_friction_power_B", "W", "Friction power of guide B"): self.heat_b.power,
+            Column("guide_friction_power_A", "W", "Friction power of guide A"): self.heat_a,
+            Column("guide_friction_power_B", "W", "Friction power of guide B"): self.heat_b,
             Column("viscous_force", "N", "Viscous drag on the follower"): self.viscous_force,
             Column(
                 "normal_force_friction_min", "N", "Normal force at minimum guide friction"
@@ -147,15 +145,15 @@ def part_loads(
     spring = machine.spring.design
     amplitude, mean, correction = _ring(machine, contour, loads, contact_width)
     motion, pair = _roller_motion(machine, contour, loads), machine.guides
-    nominal = machine.friction.nominal
+    nominal, worst = machine.friction.nominal, friction.greatest
     pin = None if machine.roller is None else machine.roller.pin_stress_per_newton
     return PartLoads(
         guide_edge_pressure_a=edge_pressure_of(machine, pair.a)(guides.line_pressure_max_a),
         guide_edge_pressure_b=edge_pressure_of(machine, pair.b)(guides.line_pressure_max_b),
-        heat_a=_heat(machine, pair.a, nominal[0] * guides.rubbing_load_a, loads),
-        heat_b=_heat(machine, pair.b, nominal[1] * guides.rubbing_load_b, loads),
-        heat_max_a=_heat(machine, pair.a, friction.greatest.friction_force_a, friction.greatest),
-        heat_max_b=_heat(machine, pair.b, friction.greatest.friction_force_b, friction.greatest),
+        heat_a=friction_power(nominal[0] * guides.rubbing_load_a, loads.velocity),
+        heat_b=friction_power(nominal[1] * guides.rubbing_load_b, loads.velocity),
+        heat_max_a=friction_power(worst.friction_force_a, worst.velocity),
+        heat_max_b=friction_power(worst.friction_force_b, worst.velocity),
         friction=friction,
         viscous_force=loads.viscous_force,
         reversals=torque_reversals(
@@ -203,11 +201,6 @@ def edge_pressure_of(machine: Machine, guide: Guide) -> Callable[[Array], Array]
     radius, clearance = 0.5 * machine.stem.diameter, 0.5 * guide.clearance
     bodies = guide_bodies(machine, guide)
     return lambda line_load: peak_pressure(line_load, radius, clearance, *bodies)[0]
-
-
-def _heat(machine: Machine, guide: Guide, friction_force: Array, loads: Loads) -> GuideHeat:
-    ambient = machine.guides.ambient_temperature
-    return guide_heat(friction_force, loads.velocity, thermal_resistance(guide), ambient)
 
 
 def _key_pressure(machine: Machine, loads: Loads) -> Array | None:

@@ -193,6 +193,10 @@ class SolvedCam(ForcesCam):
         return OfGuides(guides.bearing_load_a, guides.bearing_load_b)
 
     @property
+    def heat(self) -> OfGuides:
+        return OfGuides(self.cycle.parts.heat_max_a, self.cycle.parts.heat_max_b)
+
+    @property
     def p0(self) -> Array:
         return self.cycle.surface.p0
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import NamedTuple, Protocol
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -87,56 +87,6 @@ class LoadEnds(NamedTuple):
     lost: NDArray[np.bool_]
     first: NDArray[np.intp]
     leaves: NDArray[np.bool_]
-
-
-class MovedMass(Protocol):
-    """Mass, friction and supports of a follower, or of many: floats, or arrays (m, 1).
-
-    See `FollowerSystem`.
-    """
-
-    @property
-    def mass(self) -> float | Array: ...
-    @property
-    def guide_spacing(self) -> float | Array: ...
-    @property
-    def overhang_at_max_lift(self) -> float | Array: ...
-    @property
-    def friction_a(self) -> float | Array: ...
-    @property
-    def friction_b(self) -> float | Array: ...
-    @property
-    def viscous_damping(self) -> float | Array: ...
-    @property
-    def face_friction(self) -> float | Array: ...
-
-    def spring_force(self, lift: Array) -> Array:
-        """Force (..., n) of the spring at a lift, N."""
-        ...
-
-    def applied_force(self, theta: Array) -> Array:
-        """Weight and external force at cam angles (n,), N, positive towards the cam."""
-        ...
-
-    def rubbing_factors(self, push: Push, overhang: Array, theta: Array) -> tuple[Array, Array]:
-        """Rubbing load of guides A and B over axial force and side-load factor."""
-        ...
-
-
-class FollowerMotion(NamedTuple):
-    """Motion of a follower, or of many, over cam angles; arrays (..., n), SI.
-
-    Lift and its derivatives by the cam angle, slopes of a dwell zero; highest (..., 1): maximum
-    lift; height of the reference point over the cam axis; push of the cam on the stem.
-    """
-
-    lift: Array
-    slope: Array
-    bend: Array
-    highest: float | Array
-    pressure_angle: Array
-    height: Array
-    push: Push
 
 
 @dataclass(frozen=True)
@@ -471,48 +421,16 @@ def follower_loads(
     """
     theta = finite("theta", theta)
     lift, slope, bend = pitch.lift.derivatives(theta, 2)
-    motion = FollowerMotion(
-        lift=lift,
-        slope=np.where(np.abs(slope) > REST * pitch.lift.stroke, slope, 0.0),
-        bend=bend,
-        highest=pitch.lift.highest.value,
-        pressure_angle=pitch.pressure_angle(theta),
-        height=pitch.height(theta),
-        push=Push.of(pitch, system, theta),
-    )
-    rate = finite("cam_acceleration", cam_acceleration)
-    return loads_of(motion, system, _forward(cam_speed, theta), theta, rate)
-
-
-def loads_of(
-    motion: FollowerMotion,
-    system: MovedMass,
-    cam_speed: Array,
-    theta: Array,
-    cam_acceleration: ArrayLike = 0.0,
-) -> Loads:
-    """Forces of `follower_loads`, of one follower or of many at once.
-
-    Parameters
-    ----------
-    motion : FollowerMotion         arrays (..., n)
-    system : MovedMass              floats, or arrays (..., 1)
-    cam_speed : array (..., n or 1) rad/s, >= 0
-    theta : array (n,)              cam angles, rad
-    cam_acceleration : array (n,)   rad/s2
-
-    Returns
-    -------
-    Loads   arrays (..., n)
-    """
-    lift, slope, push = motion.lift, motion.slope, motion.push
-    acceleration = motion.bend * cam_speed**2 + slope * np.asarray(cam_acceleration)
+    slope = np.where(np.abs(slope) > REST * pitch.lift.stroke, slope, 0.0)
+    push, pressure_angle = Push.of(pitch, system, theta), pitch.pressure_angle(theta)
+    rate, speed = finite("cam_acceleration", cam_acceleration), _forward(cam_speed, theta)
+    acceleration = bend * speed**2 + slope * rate
     spring_force, applied_force = system.spring_force(lift), system.applied_force(theta)
     inertia_force = system.mass * acceleration
-    viscous_force = system.viscous_damping * slope * cam_speed
+    viscous_force = system.viscous_damping * slope * speed
     demand = spring_force + applied_force + inertia_force + viscous_force
 
-    overhang = system.overhang_at_max_lift + (motion.highest - lift)
+    overhang = system.overhang_at_max_lift + (pitch.lift.highest.value - lift)
     on_points = push.on_points(*levers(overhang, system.guide_spacing))
     rubbing_a, rubbing_b = system.rubbing_factors(push, overhang, theta)
     jam_index = (system.friction_a * rubbing_a + system.friction_b * rubbing_b) * push.side_factor
@@ -520,21 +438,21 @@ def loads_of(
     side_load = axial_force * push.side_factor
     friction_a = system.friction_a * rubbing_a * side_load
     friction_b = system.friction_b * rubbing_b * side_load
-    sliding = system.face_friction * axial_force * motion.height
+    sliding = system.face_friction * axial_force * pitch.height(theta)
     friction_power = (friction_a + friction_b) * np.abs(slope) + viscous_force * slope + sliding
     return Loads(
         theta=theta,
         lift=lift,
         lift_slope=slope,
-        pressure_angle=motion.pressure_angle,
+        pressure_angle=pressure_angle,
         overhang=overhang,
-        velocity=slope * cam_speed,
+        velocity=slope * speed,
         acceleration=acceleration,
         spring_force=spring_force,
         applied_force=applied_force,
         inertia_force=inertia_force,
         axial_force=axial_force,
-        normal_force=axial_force / np.cos(motion.pressure_angle),
+        normal_force=axial_force / np.cos(pressure_angle),
         tangential_force=axial_force * push.side,
         friction_force_a=friction_a,
         friction_force_b=friction_b,
@@ -542,7 +460,7 @@ def loads_of(
         reaction_b=axial_force * on_points[1],
         cam_torque=axial_force * slope + sliding,
         jam_index=jam_index,
-        friction_power=friction_power * cam_speed,
+        friction_power=friction_power * speed,
         viscous_force=viscous_force,
         rubbing_a=rubbing_a,
         rubbing_b=rubbing_b,

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import ArrayLike
 
-from camwright.geometry.arrays import Array, Value, finite, freeze
+from camwright.geometry.arrays import Array, Value, finite
 from camwright.geometry.errors import InputError
 from camwright.pipeline.follower.follower_forces import FollowerSystem, Loads
 from camwright.pipeline.follower.guide_reactions import Guide, GuidePair
@@ -140,52 +140,29 @@ def friction_bounds(
     return FrictionBounds(loads(friction.least), loads(friction.nominal), loads(friction.greatest))
 
 
-@dataclass(frozen=True, eq=False)
-class GuideHeat:
-    """Friction power of one guide (n,), W, and bush temperature, K.
-
-    The temperature is NaN without a thermal resistance or an ambient temperature.
-    """
-
-    power: Array
-    temperature: float
-
-    def __post_init__(self) -> None:
-        freeze(self, power=self.power)
-
-    @property
-    def mean_power(self) -> float:
-        """Mean friction power over the turn, W."""
-        return float(np.mean(self.power))
-
-
-def guide_heat(
-    friction_force: ArrayLike,
-    velocity: ArrayLike,
-    resistance: float | None,
-    ambient: float | None,
-) -> GuideHeat:
-    """Friction power at equal cam angles, and temperature of the bush.
-
-    Parameters
-    ----------
-    friction_force : array (n,)   N, >= 0
-    velocity : array (n,)         m/s
-    resistance : float            thermal, from rubbing surface to ambient, K/W; None: unknown
-    ambient : float               K; None: unknown
+def friction_power(friction_force: ArrayLike, velocity: ArrayLike) -> Array:
+    """Friction power (n,) of a guide, W, of a friction force, N, >= 0, at a velocity, m/s; (n,).
 
     Raises
     ------
     InputError
-        If a value is not finite or negative.
+        If a value is not finite or a force negative.
     """
     force = finite("guide.friction_force", friction_force)
     if (force < 0.0).any():
         raise InputError("guide.friction_force", float(force.min()), ">= 0 N")
-    power = force * np.abs(finite("velocity", velocity))
+    return force * np.abs(finite("velocity", velocity))
+
+
+def bush_temperature(power: Value, resistance: float | None, ambient: Value | None) -> Value:
+    """Steady temperature of a bush, K, by its mean friction power, W.
+
+    resistance: thermal, from rubbing surface to ambient, K/W; NaN where that or the ambient
+    temperature, K, is not known.
+    """
     if resistance is None or ambient is None:
-        return GuideHeat(power, np.nan)
-    return GuideHeat(power, ambient + resistance * float(np.mean(power)))
+        return np.nan
+    return ambient + resistance * power
 
 
 def thermal_resistance(guide: Guide) -> float | None:

@@ -215,10 +215,6 @@ class Designs:
         """Greatest over load cases and cam angles (m,) of a measure (m, n)."""
         return np.max([sampled_greatest(measure(cam)) for cam in self.cams], axis=0)
 
-    def least(self, measure: Callable[[ScreenedCam], Array]) -> Array:
-        """Least over load cases and cam angles (m,) of a measure (m, n)."""
-        return np.min([sampled_least(measure(cam)) for cam in self.cams], axis=0)
-
     def in_load_cases(self, kept: Sequence[bool]) -> Designs:
         """The designs in some of their load cases; figures without loads are not computed again."""
         part = copy.copy(self)

@@ -1,23 +1,13 @@
-"""Demand and limit of the checks of forces, guides and torque, of many designs at once."""
+"""Demand and limit of the checks of the torque, of many designs at once."""
 
 from __future__ import annotations
-
-from typing import Literal
 
 import numpy as np
 
 from camwright.geometry.arrays import Array
-from camwright.geometry.extrema import sampled_least
 from camwright.pipeline.checks import demands
 from camwright.pipeline.screening.design_arrays import Designs, Judged
 from camwright.pipeline.screening.screened_cam import ScreenedCam
-
-Side = Literal["a", "b"]
-
-
-def _least_spring_force(cam: ScreenedCam) -> Array:
-    """Spring force at minimum lift (m, 1), N."""
-    return sampled_least(cam.spring_force)[:, None]
 
 
 def torque_after(designs: Designs, cam: ScreenedCam) -> Array:

@@ -1,4 +1,4 @@
-"""Demand and limit of the checks of the cam shape, of many designs at once."""
+"""Demand and limit of the checks that are declared by a measure, of many designs at once."""
 
 from __future__ import annotations
 

@@ -25,7 +25,6 @@ from camwright.pipeline.contact.traction import Drag
 from camwright.pipeline.cycle.loaded_cam import (
     LoadedCam,
     OfGuides,
-    greatest_friction,
     not_negative,
     roller_of,
 )
@@ -175,15 +174,9 @@ class ScenarioCam(LoadedCam):
         on_points = super().jam_worst
         return None if on_points is None else on_points * self.fix.jam
 
-    @cached_property
-    def hot(self) -> OfGuides | None:
-        """Friction of the guides at the greatest friction, N; None where that is not known."""
-        friction, jam = greatest_friction(self.numbers), self.jam_worst
-        if friction is None or jam is None:
-            return None
-        axial = self.axial * self.share / (1.0 - np.sign(np.real(self.slope)) * jam)
-        loads = self._corrected(self.fix.hot_a, self.fix.hot_b)
-        return OfGuides(friction.a * loads.a * axial, friction.b * loads.b * axial)
+    @property
+    def hot_share(self) -> OfGuides:
+        return self._corrected(self.fix.hot_a, self.fix.hot_b)
 
 
 def loaded(

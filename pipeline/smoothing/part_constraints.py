@@ -45,10 +45,6 @@ from camwright.pipeline.smoothing.cam_state import (
     where_applies,
 )
 
-_LEAST_FORCE = 1.0  # N, of a force that damages a bearing
-_LEAST_RADIUS = 1e-6  # m, of curvature, of a half-width
-_AMPLE = 100.0  # times the least mean speed, of a roller at rest, which needs no film
-
 Side = Literal["A", "B"]
 
 
@@ -61,19 +57,6 @@ def _guide_edge_pressure(side: Side) -> Constraint[ScenarioCam]:
 
     return Constraint(
         f"guide_edge_pressure_{side}", lambda ratings: ratings.guide_edge_load[place], utilisation
-    )
-
-
-def _guide_heat(side: Side) -> Constraint[ScenarioCam]:
-    """Mean friction power at the greatest friction over that at the greatest temperature."""
-    place = "AB".index(side)
-
-    def utilisation(at: ScenarioCam, limit: float) -> Mean | None:
-        rubbing = at.hot
-        return None if rubbing is None else Mean(magnitude(rubbing[place] * at.velocity) / limit)
-
-    return Constraint(
-        f"guide_temperature_{side}", lambda ratings: ratings.guide_power[place], utilisation
     )
 
 
@@ -157,8 +140,8 @@ PARTS: tuple[Constraint[ScenarioCam], ...] = (
     kept_loads(manufacture.guide_gap, lambda ratings: ratings.guide_gap),
     _guide_edge_pressure("A"),
     _guide_edge_pressure("B"),
-    _guide_heat("A"),
-    _guide_heat("B"),
+    kept_loads(guide_strength.guide_temperature_a, lambda ratings: ratings.guide_power[0]),
+    kept_loads(guide_strength.guide_temperature_b, lambda ratings: ratings.guide_power[1]),
     kept_loads(guide_wear.guide_wear_a, lambda ratings: ratings.guide_wear_pv[0]),
     kept_loads(guide_wear.guide_wear_b, lambda ratings: ratings.guide_wear_pv[1]),
     kept_loads(surface_durability.traction_demand, lambda ratings: ratings.friction),

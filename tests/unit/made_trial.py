@@ -44,7 +44,7 @@ from camwright.pipeline.cycle.part_loads import PartLoads
 from camwright.pipeline.cycle.rolling_history import RollingHistory, SweptStress
 from camwright.pipeline.cycle.solution import ContactMesh, Solution
 from camwright.pipeline.cycle.turn import Turn
-from camwright.pipeline.follower.guide_friction import GuideHeat
+from camwright.pipeline.follower.guide_friction import thermal_resistance
 
 POSITIONS = 72
 THETA = uniform_turn(POSITIONS)
@@ -310,7 +310,15 @@ def _rolling(base: Cycle) -> RollingHistory:
 
 def _parts(base: Cycle) -> PartLoads:
     parts = base.parts
-    heat = GuideHeat(10.0 * np.abs(base.loads.velocity), 330.0)  # of the 10 N in each guide
+    heat = 10.0 * np.abs(base.loads.velocity)  # of the 10 N in each guide
+    guides = base.machine.guides
+    hot_a, hot_b = (
+        heat
+        / (heat.mean() or 1.0)
+        * (330.0 - guides.ambient_temperature)
+        / thermal_resistance(guide)
+        for _, guide in guides.both
+    )  # of bushes at 330 K
     still = np.zeros(POSITIONS)
     roughest = replace(
         parts.friction.greatest,
@@ -325,8 +333,8 @@ def _parts(base: Cycle) -> PartLoads:
         guide_edge_pressure_b=20e6 + 10e6 * WAVE,
         heat_a=heat,
         heat_b=heat,
-        heat_max_a=heat,
-        heat_max_b=heat,
+        heat_max_a=hot_a,
+        heat_max_b=hot_b,
         key_pressure=100e6 * WAVE,
         reversals=(),
     )

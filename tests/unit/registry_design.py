@@ -30,8 +30,8 @@ from trial_variants import (
     with_parts,
     with_rolling,
     with_speed,
-    with_temperature,
     without_endurance,
+    without_heat,
 )
 
 # function
@@ -293,7 +293,7 @@ for _side, _load in (("a", 500.0), ("b", 200.0)):
         _name,
         limited(_name, lambda t: with_material("nylon", temperature_limit=t + 273.15)),
         lambda: with_material("nylon", temperature_limit=None),
-        lambda s=_side: with_temperature(s, np.nan),
+        lambda s=_side: without_heat(s),
         56.85,
         "330 K",
     )

@@ -24,9 +24,9 @@ from trial_variants import (
     with_ring,
     with_shaft,
     with_speed,
-    with_temperature,
     with_worst_friction,
     without_endurance,
+    without_heat,
 )
 
 # Four times the greatest shear along the surface over p0 at a traction coefficient of 0.03, of the
@@ -412,7 +412,7 @@ for _side, _load in (("a", 500.0), ("b", 200.0)):
         _name,
         limited(_name, lambda gap, s=_side: with_guide(s, clearance=gap)),
         lambda s=_side: with_guide(s, wall=None),
-        lambda s=_side: with_temperature(s, np.nan),
+        lambda s=_side: without_heat(s),
         10.0 * (1.25 * 1.4 / 1.45 * (8e-5 * 36.85 + 0.002) + 1.2e-5 * 36.85),
         "Lame, held axially: (k - 1)(1 + nu)/(1 + (1 - 2 nu) k) of k = 1.5^2; and the stem",
     )

@@ -19,8 +19,9 @@ from camwright.pipeline.follower.guide_friction import (
     NYLON_PV,
     FrictionRange,
     bush_resistance,
+    bush_temperature,
     friction_bounds,
-    guide_heat,
+    friction_power,
 )
 from camwright.pipeline.follower.guide_reactions import Guide, GuidePair
 from camwright.pipeline.follower.spring import Spring
@@ -135,19 +136,18 @@ def test_viscous_drag_and_rubbing_together():
 
 def test_heat_and_temperature():
     """mu R v in the mean, and its way out."""
-    found = guide_heat(np.full(4, 10.0), np.array([1.0, -1.0, 2.0, 0.0]), 5.0, 300.0)
-    np.testing.assert_allclose(found.power, [10.0, 10.0, 20.0, 0.0])
-    assert found.mean_power == pytest.approx(10.0)
-    assert found.temperature == pytest.approx(350.0)
-    assert np.isnan(guide_heat([1.0], [1.0], None, 300.0).temperature)
-    assert np.isnan(guide_heat([1.0], [1.0], 5.0, None).temperature)
+    power = friction_power(np.full(4, 10.0), np.array([1.0, -1.0, 2.0, 0.0]))
+    np.testing.assert_allclose(power, [10.0, 10.0, 20.0, 0.0])
+    assert bush_temperature(10.0, 5.0, 300.0) == pytest.approx(350.0)
+    assert np.isnan(bush_temperature(1.0, None, 300.0))
+    assert np.isnan(bush_temperature(1.0, 5.0, None))
 
 
 def test_heat_of_the_guides_is_the_cycle_s_friction():
     """With point supports the rubbing loads are the reactions: the same power."""
     loads = follower_loads(PITCH, SYSTEM, SPEED, THETA)
     both = [
-        guide_heat(mu * np.abs(reaction), loads.velocity, None, 300.0).power
+        friction_power(mu * np.abs(reaction), loads.velocity)
         for reaction, mu in ((loads.reaction_a, 0.04), (loads.reaction_b, 0.2))
     ]
     np.testing.assert_allclose(sum(both), loads.friction_power, rtol=1e-12, atol=1e-12)
@@ -166,6 +166,6 @@ def test_nylon_bears_more_the_better_it_is_greased():
 
 def test_heat_refusals():
     with pytest.raises(InputError, match="friction_force"):
-        guide_heat([-1.0], [1.0], 5.0, 300.0)
+        friction_power([-1.0], [1.0])
     with pytest.raises(InputError, match="friction_force"):
-        guide_heat([np.nan], [1.0], 5.0, 300.0)
+        friction_power([np.nan], [1.0])

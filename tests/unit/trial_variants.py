@@ -17,7 +17,6 @@ from camwright.pipeline.cycle.cycle import Cycle
 from camwright.pipeline.cycle.rolling_history import RollingHistory, SweptStress
 from camwright.pipeline.cycle.solution import Solution
 from camwright.pipeline.follower.camshaft_loads import Reversal
-from camwright.pipeline.follower.guide_friction import GuideHeat
 from camwright.pipeline.follower.spring_kinds import GasSpring, TorsionSpring
 
 NAN = np.full(made.POSITIONS, np.nan)
@@ -160,9 +159,9 @@ def with_parts(**values: Any) -> Solution:
     return with_cycle(cycle_with("parts", **values))
 
 
-def with_temperature(side: str, temperature: float) -> Solution:
-    heat = getattr(made.cycle().parts, f"heat_max_{side}")
-    return with_parts(**{f"heat_max_{side}": GuideHeat(heat.power, temperature)})
+def without_heat(side: str) -> Solution:
+    """The friction power of a guide at the greatest friction is NaN."""
+    return with_parts(**{f"heat_max_{side}": NAN})
 
 
 def with_worst_friction(**values: Any) -> Solution:

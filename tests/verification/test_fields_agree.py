@@ -64,6 +64,8 @@ FIELDS: dict[str, Callable[[LoadedCam], Array]] = {
     "rubbing_b": lambda cam: np.abs(cam.rubbing.b),
     "bearing_a": lambda cam: np.abs(cam.bearing.a),
     "bearing_b": lambda cam: np.abs(cam.bearing.b),
+    "heat_a": lambda cam: cam.heat.a,
+    "heat_b": lambda cam: cam.heat.b,
     "p0": lambda cam: cam.p0,
     "contour_radius": lambda cam: cam.motion.contour_radius,
     "sharpness": lambda cam: cam.motion.sharpness,
@@ -125,7 +127,7 @@ def test_a_field_of_the_scenario_is_that_of_the_solved_cam(solved, both, name, f
     for known, scenario in both[follower]:
         expected, own = np.broadcast_arrays(FIELDS[name](known), FIELDS[name](scenario))
         compared = np.ones(expected.shape, dtype=bool)
-        if name == "jam_worst":
+        if name in ("jam_worst", "heat_a", "heat_b"):
             statics = known.cycle.parts.friction.greatest.jam_index_statics
             compared = statics > CORRECTED * statics.max()
         if name.startswith("bearing"):

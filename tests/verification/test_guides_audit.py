@@ -34,7 +34,11 @@ from camwright.pipeline.checks.solution_verification import mesh_reaction
 from camwright.pipeline.cycle.cycle import Cycle
 from camwright.pipeline.cycle.part_loads import guide_bodies
 from camwright.pipeline.cycle.solution import Solution
-from camwright.pipeline.follower.guide_friction import bore_closure, guide_heat, thermal_resistance
+from camwright.pipeline.follower.guide_friction import (
+    bore_closure,
+    bush_temperature,
+    thermal_resistance,
+)
 from camwright.pipeline.follower.guide_reactions import (
     Guide,
     guide_reactions,
@@ -350,9 +354,9 @@ def test_heat_of_a_bush_raises_its_housing() -> None:
     """43.2 W through 5 K/W of housing at 20 degC ambient: 236 degC, and the drop in the wall."""
     case = tight()
     guide = replace(case.guides.a, housing_resistance=5.0)
-    heat = guide_heat(np.full(8, 43.2), np.ones(8), thermal_resistance(guide), 293.15)
+    hot = bush_temperature(43.2, thermal_resistance(guide), 293.15)
     wall = 43.2 * np.log(13.0 / 10.0) / (2.0 * np.pi * 60.0 * 0.03)
-    assert heat.temperature - 273.15 == pytest.approx(236.0 + wall, abs=1e-6)
+    assert hot - 273.15 == pytest.approx(236.0 + wall, abs=1e-6)
 
 
 @pytest.mark.parametrize("field", ["wall", "housing_resistance"])
