@@ -218,6 +218,11 @@ class Case(Displayed, Section):
         return self.roller_given
 
     @property
+    def bodies(self) -> dict[str, Material]:
+        """Materials of the two bodies in contact: the cam, and the roller or face."""
+        return {"cam": self.cam.material, self.facing.word: self.facing.material}
+
+    @property
     def period(self) -> Period:
         """Cycle of the machine and the drive of its cam; a lift is a cycle by itself.
 

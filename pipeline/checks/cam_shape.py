@@ -223,7 +223,7 @@ undercut = check(
 ).measured(
     "contour",
     value=lambda worst, _: 1.0 - worst,
-    bound=lambda limit: 1.0 - limit,
+    bound=lambda limit, _: 1.0 - limit,
     remark=_method_of_undercut,
     deviation=1e-4,
     kept=Kept(),

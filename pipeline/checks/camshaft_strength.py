@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from camwright.geometry.arrays import Array
 from camwright.geometry.errors import InputError
@@ -16,6 +15,7 @@ from camwright.pipeline.base import levers
 from camwright.pipeline.base import value_groups as given
 from camwright.pipeline.base.material import Material
 from camwright.pipeline.base.units import shown
+from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.limits import (
     GEAR_BENDING_SAFETY,
     GEAR_CONTACT_SAFETY,
@@ -28,12 +28,20 @@ from camwright.pipeline.case.limits import (
     SHAFT_YIELD_SAFETY,
 )
 from camwright.pipeline.case.machine import Machine
-from camwright.pipeline.checks.check import BY_DUTY, Demand, check
-from camwright.pipeline.checks.demands import FatiguePoint
+from camwright.pipeline.checks.check import (
+    BY_DUTY,
+    Allowed,
+    Declaration,
+    Demand,
+    Kept,
+    check,
+)
+from camwright.pipeline.checks.demands import TOOTH_TORQUE, FatiguePoint, tooth_torque
 from camwright.pipeline.checks.extremes import Extreme, greatest, over_duty, worst_case
 from camwright.pipeline.checks.missing_keys import lacking, lacking_of_card, unset
 from camwright.pipeline.contact.hertz import contact_modulus
 from camwright.pipeline.cycle.cycle import Cycle
+from camwright.pipeline.cycle.numbers import Numbers
 from camwright.pipeline.cycle.solution import Solution
 from camwright.pipeline.follower.camshaft_loads import (
     Camshaft,
@@ -74,8 +82,8 @@ class _Shaft:
     sections: tuple[ShaftSection, ...]
 
 
-def _camshaft(machine: Machine) -> Camshaft:
-    """Camshaft of the machine; its checks are made only where it is described."""
+def _camshaft(machine: Machine | Case) -> Camshaft:
+    """Camshaft of a machine or case; its checks are made only where it is described."""
     if machine.camshaft is None:
         raise InputError("camshaft", "missing", "described for its checks")
     return machine.camshaft
@@ -410,83 +418,124 @@ def shaft_bearing_life(solution: Solution) -> Demand:
     )
 
 
-@check(
-    GEAR_BENDING_SAFETY,
-    id="gear_bending",
-    title="Tooth root bending stress of the driving gear",
-    unit="MPa",
-    method="F K/(b m pi y) at the greatest torque, load on the tip of one tooth",
-    lift_can_help=True,
-    part="gear",
-    formula="F K_A/(b m pi y) <= 0.7 s_F / S; F = |T + drag|/r, y = 0.154 - 0.912/z: Lewis, s_F:"
-    " camshaft.gear.bending_limit, 0.7: reversed torque, S: limits.gear_bending_safety",
-    reason="a broken tooth stops the camshaft",
-    values=(
-        *given.LOADS,
-        "camshaft.gear.bending_limit",
-        "camshaft.gear.application_factor",
-        "camshaft.drag",
-    ),
-    levers=(levers.one("camshaft.gear.width"), *levers.GENTLER),
-    page="Camshaft",
-)
-def gear_bending(solution: Solution) -> Demand:
-    """Tooth root bending stress of the gear on the camshaft, Pa."""
-    gear = _gear(_camshaft(solution.machine))
-    figure = f"{gear.material.name}: {gear.source}".rstrip(": ")
-    return _bending_of(solution, gear.teeth, "bending_limit", figure)
+def _geared(numbers: Numbers) -> tuple[Camshaft, CamshaftGear]:
+    shaft = _camshaft(numbers.known_case)
+    return shaft, _gear(shaft)
 
 
-@check(
-    GEAR_BENDING_SAFETY,
-    id="pinion_bending",
-    title="Tooth root bending stress of the pinion on the machine shaft",
-    unit="MPa",
-    method="F K/(b m pi y) at the greatest torque, load on the tip of one tooth",
-    lift_can_help=True,
-    part="gear",
-    formula="as gear_bending, with the teeth of the pinion and camshaft.gear.pinion_bending_limit;"
-    " fewer teeth are thinner at the root",
-    reason="a broken tooth stops the camshaft, and the pinion has the weaker tooth",
-    values=(
-        *given.LOADS,
-        "camshaft.gear.pinion_bending_limit",
-        "camshaft.gear.bending_limit",
-        "camshaft.gear.application_factor",
-        "camshaft.drag",
-    ),
-    levers=(levers.one("camshaft.gear.width"), *levers.GENTLER),
-    page="Camshaft",
-)
-def pinion_bending(solution: Solution) -> Demand:
-    """Tooth root bending stress of the pinion on the machine shaft, Pa."""
-    gear = _gear(_camshaft(solution.machine))
-    figure = f"{(gear.pinion_material or gear.material).name}: {gear.source}".rstrip(": ")
-    return _bending_of(solution, gear.pinion_teeth, "pinion_bending_limit", figure)
+def _push(numbers: Numbers) -> float:
+    """Force on the pitch circle, application factor included, of a torque of 1 N m, N."""
+    shaft, gear = _geared(numbers)
+    return gear.application_factor / shaft.gear_radius
 
 
-def _bending_of(solution: Solution, teeth: int, key: str, figure: str) -> Demand:
+def _tooth_bending(
+    name: str,
+    title: str,
+    formula: str,
+    reason: str,
+    values: tuple[str, ...],
+    key: str,
+    wheel: Callable[[CamshaftGear], tuple[int, Material]],
+) -> Declaration:
     """Tooth root stress of a wheel with its own form factor; key: of its bending limit."""
-    shaft = _camshaft(solution.machine)
-    gear = _gear(shaft)
-    limit: float | None = getattr(gear, key)
-    module = 2.0 * shaft.gear_radius / gear.teeth
 
-    def stress(cycle: Cycle) -> Array:
-        return tooth_root_stress(_tooth_force(cycle, shaft, gear), gear.width, module, teeth)
+    def per_torque(numbers: Numbers) -> float:
+        shaft, gear = _geared(numbers)
+        module, teeth = 2.0 * shaft.gear_radius / gear.teeth, wheel(gear)[0]
+        return float(tooth_root_stress(_push(numbers), gear.width, module, teeth))
 
-    safety = solution.machine.limits[GEAR_BENDING_SAFETY]
-    worst = greatest(solution.cycles, stress)
-    return Demand(
-        worst.value,
-        None if limit is None else REVERSED * limit / safety,
-        worst,
-        lacking(gear.table, gear, key),
-        figures=(figure,),
+    def allowed(numbers: Numbers) -> Allowed:
+        limit = numbers.get(key)
+        if limit is None:
+            return Allowed(None, (key,))
+        return Allowed(REVERSED * limit / numbers.limit(GEAR_BENDING_SAFETY))
+
+    def with_card(demand: Demand, solution: Solution) -> Demand:
+        gear = _gear(_camshaft(solution.machine))
+        figure = f"{wheel(gear)[1].name}: {gear.source}".rstrip(": ")
+        return replace(demand, figures=(figure,))
+
+    return check(
+        GEAR_BENDING_SAFETY,
+        id=name,
+        title=title,
+        unit="MPa",
+        method="F K/(b m pi y) at the greatest torque, load on the tip of one tooth",
+        lift_can_help=True,
+        part="gear",
+        formula=formula,
+        reason=reason,
+        values=(
+            *given.LOADS,
+            *values,
+            "camshaft.gear.bending_limit",
+            "camshaft.gear.application_factor",
+            "camshaft.drag",
+        ),
+        levers=(levers.one("camshaft.gear.width"), *levers.GENTLER),
+        page="Camshaft",
+    ).measured(
+        "angles",
+        value=lambda worst, numbers: per_torque(numbers) * worst,
+        bound=lambda limit, numbers: limit / per_torque(numbers),
+        allowed=allowed,
+        remark=with_card,
+        kept=Kept(group=TOOTH_TORQUE),
+    )(tooth_torque)
+
+
+gear_bending = _tooth_bending(
+    "gear_bending",
+    "Tooth root bending stress of the driving gear",
+    "F K_A/(b m pi y) <= 0.7 s_F / S; F = |T + drag|/r, y = 0.154 - 0.912/z: Lewis, s_F:"
+    " camshaft.gear.bending_limit, 0.7: reversed torque, S: limits.gear_bending_safety",
+    "a broken tooth stops the camshaft",
+    (),
+    "camshaft.gear.bending_limit",
+    lambda gear: (gear.teeth, gear.material),
+)
+pinion_bending = _tooth_bending(
+    "pinion_bending",
+    "Tooth root bending stress of the pinion on the machine shaft",
+    "as gear_bending, with the teeth of the pinion and camshaft.gear.pinion_bending_limit;"
+    " fewer teeth are thinner at the root",
+    "a broken tooth stops the camshaft, and the pinion has the weaker tooth",
+    ("camshaft.gear.pinion_bending_limit",),
+    "camshaft.gear.pinion_bending_limit",
+    lambda gear: (gear.pinion_teeth, gear.pinion_material or gear.material),
+)
+
+
+def _flank(numbers: Numbers) -> float:
+    """Hertz pressure of the teeth at a torque of 1 N m, Pa; it grows with its root."""
+    shaft, gear = _geared(numbers)
+    card, mate = gear.material, gear.pinion_material or gear.material
+    ratio = max(gear.teeth, gear.pinion_teeth) / min(gear.teeth, gear.pinion_teeth)
+    pinion = 2.0 * shaft.gear_radius * min(1.0, gear.pinion_teeth / gear.teeth)
+    modulus = contact_modulus(card.E, card.nu, mate.E, mate.nu)
+    force = _push(numbers)
+    return float(
+        tooth_contact_stress(force, gear.width, pinion, ratio, shaft.pressure_angle, modulus)
     )
 
 
-@check(
+def _flank_allowed(numbers: Numbers) -> Allowed:
+    gear = _geared(numbers)[1]
+    limits = gear.contact_limit, gear.pinion_contact_limit
+    missing = lacking(gear.table, gear, "contact_limit", "pinion_contact_limit")
+    known = [limit for limit in limits if limit is not None]
+    if missing:
+        return Allowed(None, missing)
+    return Allowed(min(known) / numbers.limit(GEAR_CONTACT_SAFETY))
+
+
+def _with_card_of_gear(demand: Demand, solution: Solution) -> Demand:
+    gear = _gear(_camshaft(solution.machine))
+    return replace(demand, figures=(f"{gear.material.name}: {gear.source}".rstrip(": "),))
+
+
+gear_contact = check(
     GEAR_CONTACT_SAFETY,
     id="gear_contact",
     title="Tooth flank contact pressure of the driving gear",
@@ -508,67 +557,15 @@ def _bending_of(solution: Solution, teeth: int, key: str, figure: str) -> Demand
     ),
     levers=(levers.one("camshaft.gear.width"), *levers.GENTLER),
     page="Camshaft",
-)
-def gear_contact(solution: Solution) -> Demand:
-    """Contact pressure on the tooth flanks of the driving gear, Pa."""
-    shaft = _camshaft(solution.machine)
-    gear = _gear(shaft)
-    card = gear.material
-
-    def stress(cycle: Cycle) -> Array:
-        return _flank_pressure(_tooth_force(cycle, shaft, gear), shaft, gear)
-
-    limits = gear.contact_limit, gear.pinion_contact_limit
-    known = [limit for limit in limits if limit is not None]
-    missing = lacking(gear.table, gear, "contact_limit", "pinion_contact_limit")
-    safety = solution.machine.limits[GEAR_CONTACT_SAFETY]
-    worst = greatest(solution.cycles, stress)
-    return Demand(
-        worst.value,
-        None if missing else min(known) / safety,
-        worst,
-        missing,
-        figures=(f"{card.name}: {gear.source}".rstrip(": "),),
-    )
-
-
-def tooth_torque_limits(machine: Machine) -> dict[str, float]:
-    """Greatest torque of the driving gear allowed by each of its checks, N m, by its id."""
-    shaft = machine.camshaft
-    gear = None if shaft is None else shaft.gear
-    if shaft is None or gear is None or not machine.scope.covers("gear"):
-        return {}
-    module = 2.0 * shaft.gear_radius / gear.teeth
-    force = gear.application_factor / shaft.gear_radius  # of a torque of 1 N m
-    safety, allowed = machine.limits[GEAR_BENDING_SAFETY], {}
-    for name, teeth, limit in (
-        ("gear_bending", gear.teeth, gear.bending_limit),
-        ("pinion_bending", gear.pinion_teeth, gear.pinion_bending_limit),
-    ):
-        if limit is not None:
-            stress = float(tooth_root_stress(force, gear.width, module, teeth))
-            allowed[name] = REVERSED * limit / safety / stress
-    contact, other = gear.contact_limit, gear.pinion_contact_limit
-    if contact is not None and other is not None:
-        least = min(contact, other) / machine.limits[GEAR_CONTACT_SAFETY]
-        # the pressure grows with the root of the torque
-        allowed["gear_contact"] = (least / float(_flank_pressure(force, shaft, gear))) ** 2
-    return allowed
-
-
-def _flank_pressure(force: ArrayLike, shaft: Camshaft, gear: CamshaftGear) -> Array:
-    """Hertz pressure of the teeth (...), Pa, under a force on the pitch circle, N."""
-    card, mate = gear.material, gear.pinion_material or gear.material
-    ratio = max(gear.teeth, gear.pinion_teeth) / min(gear.teeth, gear.pinion_teeth)
-    pinion = 2.0 * shaft.gear_radius * min(1.0, gear.pinion_teeth / gear.teeth)
-    modulus = contact_modulus(card.E, card.nu, mate.E, mate.nu)
-    return tooth_contact_stress(force, gear.width, pinion, ratio, shaft.pressure_angle, modulus)
-
-
-def _tooth_force(cycle: Cycle, shaft: Camshaft, gear: CamshaftGear) -> Array:
-    """Force on the pitch circle (n,), application factor included, N."""
-    torque = np.abs(cycle.loads.cam_torque + shaft.drag)
-    return np.asarray(gear.application_factor * torque / shaft.gear_radius)
+).measured(
+    "angles",
+    value=lambda worst, numbers: _flank(numbers) * np.sqrt(worst),
+    bound=lambda limit, numbers: (limit / _flank(numbers)) ** 2,
+    allowed=_flank_allowed,
+    remark=_with_card_of_gear,
+    pointwise=True,
+    kept=Kept(group=TOOTH_TORQUE),
+)(tooth_torque)
 
 
 def _loads(cycle: Cycle) -> ShaftLoads:

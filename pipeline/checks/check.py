@@ -30,6 +30,7 @@ Status = Literal["pass", "fail", "not_evaluated", "waived"]
 Verdict = Literal["pass", "incomplete", "fail"]
 Screen = Literal["open", "fail"]
 Error = Literal["sampling", "contact", "ends", "guides", "guide_edges", "bore", "unknown"]
+Bounded = Literal["", "crown", "line"]
 RestsOn = Literal["", "contact", "loads"]
 Page = Literal[
     "",
@@ -106,18 +107,24 @@ class Demand:
 
 
 class Allowed(NamedTuple):
-    """Limit of a demand, SI; None: none. missing: dotted keys that the case lacks."""
+    """Limit of a demand, SI; None: none. missing: dotted keys that the case lacks.
+
+    if_exceeded: the value is that of the known parts alone: a demand can only fail by it.
+    """
 
     value: Value | None
     missing: tuple[str, ...] = ()
+    if_exceeded: bool = False
 
 
-def of_key(key: str) -> Callable[[Numbers], Allowed]:
-    """Limit at a key of the case."""
+def of_key(key: str, share: AnyLimit | None = None) -> Callable[[Numbers], Allowed]:
+    """Limit at a key of the case; share: row of the table of limits whose share of it counts."""
 
     def allowed(numbers: Numbers) -> Allowed:
         value = numbers.get(key)
-        return Allowed(value, (key,) if value is None else ())
+        if value is None:
+            return Allowed(None, (key,))
+        return Allowed(value if share is None else numbers.limit(share) * value)
 
     return allowed
 
@@ -146,6 +153,7 @@ class Kept(NamedTuple):
     value_max : float    maximum limit where limits conflict, SI
     power : float        of a mean, wear or life over the turn that is the utilisation
     once : bool          the same in the load cases of a preload and at tolerance corners
+    group : str          checks of one measure that are one constraint, at the least of their limits
     """
 
     use: Callable[[LoadedCam, float], Array | None] | None = None
@@ -153,6 +161,7 @@ class Kept(NamedTuple):
     value_max: float = math.inf
     power: float = 1.0
     once: bool = False
+    group: str = ""
 
 
 class Stroke(NamedTuple):
@@ -172,17 +181,23 @@ class Measured(NamedTuple):
     worst : str          whether its greatest or its least value governs
     value : callable     worst measure, numbers -> demand: monotone
     error : float        error share of the demand over that of the measure: power of `value`
-    bound : callable     limit of the demand -> limit of the measure: its inverse, if `kept`
+    bound : callable     limit of the demand, numbers -> limit of the measure: its inverse, if
+                         `kept`; None: every value of the measure is within the limit
     allowed : callable   numbers -> limit
     needed : tuple       dotted keys without which there is no demand
     applies : callable   demand -> whether the check applies to the cam
-    remark : callable    demand, solution -> demand, with what it has in words
+    remark : callable    demand, solution -> demand, with what it has in words; None where the check
+                         does not apply
     solved : callable    solution above the screening -> demand, of which that by the measure is a
                          bound; None: the measure is the demand at every depth
     order : int          highest derivative of the lift in the measure, 2 or 3
     deviation : float    of the demand of the screening from that of the preview, over the greater
                          of demand and limit, as measured; None: not screened
+    pointwise : bool     the demand bends over the measure: made at each angle, so that its error
+                         bar is that of the demand
     smooth : bool        the screening refines the measure between samples; False: it has poles
+    bounded : str        the screened demand is a lower bound where the lines of contact are too
+                         many to be solved: "crown", of crowned bodies; "line", of any; "": never
     strokes : tuple      measures with limits of their own, where the case sets each of them: that
                          of the greatest utilisation governs
     kept : Kept          None: the synthesis does not keep it
@@ -192,15 +207,17 @@ class Measured(NamedTuple):
     worst: Literal["greatest", "least"]
     value: Callable[[Value, Numbers], Value]
     error: float
-    bound: Callable[[float], float]
+    bound: Callable[[float, Numbers], float | None]
     allowed: Callable[[Numbers], Allowed]
     needed: tuple[str, ...]
     applies: Callable[[Value], NDArray[np.bool_]]
-    remark: Callable[[Demand, Solution], Demand]
+    remark: Callable[[Demand, Solution], Demand | None]
     solved: Callable[[Solution], Demand] | None
     order: int
     deviation: float | None
+    pointwise: bool
     smooth: bool
+    bounded: Bounded
     strokes: tuple[Stroke, ...]
     kept: Kept | None
 
@@ -210,12 +227,18 @@ class Measured(NamedTuple):
         known = tuple(each for each in limits if each is not None)
         return known if len(known) == len(limits) else ()
 
+    def limit_of_measure(self, numbers: Numbers) -> float | None:
+        """Limit of the demand in terms of the measure; None: not known, or of no effect."""
+        limit = self.allowed(numbers).value
+        if limit is None or any(numbers.get(key) is None for key in self.needed):
+            return None
+        return self.bound(float(limit), numbers)
+
     def use(self, measure: Measure, cam: LoadedCam, limit: float) -> Array | None:
-        """Utilisation (..., n) of a limit in a synthesis, see `Kept`."""
+        """Utilisation (..., n) of a limit of the measure in a synthesis, see `Kept`."""
         if self.kept is not None and self.kept.use is not None:
             return self.kept.use(cam, limit)
-        bound = self.bound(limit)
-        return measure(cam) / bound if self.worst == "greatest" else 1.0 + bound - measure(cam)
+        return measure(cam) / limit if self.worst == "greatest" else 1.0 + limit - measure(cam)
 
 
 @dataclass(frozen=True)
@@ -460,15 +483,17 @@ class Declaring:
         worst: Literal["greatest", "least"] = "greatest",
         value: Callable[[Value, Numbers], Value] = lambda worst, _: worst,
         error: float = 1.0,
-        bound: Callable[[float], float] = lambda limit: limit,
+        bound: Callable[[float, Numbers], float | None] = lambda limit, _: limit,
         allowed: Callable[[Numbers], Allowed] | None = None,
         needed: tuple[str, ...] = (),
         applies: Callable[[Value], NDArray[np.bool_]] = lambda _: np.array(True),
-        remark: Callable[[Demand, Solution], Demand] = lambda demand, _: demand,
+        remark: Callable[[Demand, Solution], Demand | None] = lambda demand, _: demand,
         solved: Callable[[Solution], Demand] | None = None,
         order: int = 2,
         deviation: float | None = None,
+        pointwise: bool = False,
         smooth: bool = True,
+        bounded: Bounded = "",
         strokes: tuple[Stroke, ...] = (),
         kept: Kept | None = None,
     ) -> Callable[[Measure], Declaration]:
@@ -487,7 +512,9 @@ class Declaring:
             solved=solved,
             order=order,
             deviation=deviation,
+            pointwise=pointwise,
             smooth=smooth,
+            bounded=bounded,
             strokes=strokes,
             kept=kept,
         )
@@ -507,14 +534,17 @@ def _demand(measure: Measure, how: Measured, solution: Solution) -> Demand | Non
     allowed = None if limit.value is None else float(limit.value)
     lacks = tuple(key for key in how.needed if numbers.get(key) is None)
     if lacks:
-        return how.remark(Demand(None, allowed, missing=(*limit.missing, *lacks)), solution)
+        return how.remark(Demand(None, allowed, missing=(*lacks, *limit.missing)), solution)
 
     def worst_of(measured: Measure) -> Extreme:
+        def value(worst: Value) -> Value:
+            return how.value(worst, numbers)
+
         worst = worst_measure(
             solution,
-            measured,
+            (lambda cam: np.asarray(value(measured(cam)))) if how.pointwise else measured,
             how.reduce,
-            lambda worst: float(how.value(worst, numbers)),
+            float if how.pointwise else lambda worst: float(value(worst)),
             at_least=how.worst == "least",
             order=how.order,
         )
@@ -530,6 +560,8 @@ def _demand(measure: Measure, how: Measured, solution: Solution) -> Demand | Non
     worst = worst_of(measure)
     if not how.applies(worst.value):
         return None
+    if limit.if_exceeded and not (allowed is not None and worst.value > allowed):
+        allowed = None
     return how.remark(Demand(worst.value, allowed, worst, limit.missing), solution)
 
 

@@ -8,14 +8,14 @@ from __future__ import annotations
 
 import math
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
 
-from camwright.geometry.arrays import FULL_TURN, Array, uniform_turn
+from camwright.geometry.arrays import FULL_TURN, Array, Value, uniform_turn
 from camwright.geometry.contour import Contour
 from camwright.geometry.extrema import first_least
 from camwright.geometry.pitch_curve import rolling_share
@@ -31,7 +31,8 @@ from camwright.pipeline.case.limits import (
     YIELD_SAFETY,
 )
 from camwright.pipeline.case.machine import Machine
-from camwright.pipeline.checks.check import NONE, Demand, check
+from camwright.pipeline.checks.check import NONE, Allowed, Demand, Kept, check
+from camwright.pipeline.checks.demands import PRESSURE
 from camwright.pipeline.checks.extremes import Extreme, greatest
 from camwright.pipeline.checks.missing_keys import (
     lacking,
@@ -45,7 +46,10 @@ from camwright.pipeline.contact.rolling_envelope import smallest_sphere
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.cycle import Cycle
 from camwright.pipeline.cycle.length_history import factor_at_pressure
+from camwright.pipeline.cycle.loaded_cam import LoadedCam
+from camwright.pipeline.cycle.numbers import Numbers
 from camwright.pipeline.cycle.solution import Solution
+from camwright.pipeline.follower.follower_kind import FollowerKind
 
 PSI = 6894.757293168  # Pa
 SHAKEDOWN = 4.0  # p0 / k, free rolling line contact
@@ -85,7 +89,7 @@ class LeastLimit(NamedTuple):
 
 
 def least_of_bodies(
-    machine: Machine,
+    bodies: Mapping[str, Material],
     limit: Callable[[str, Material], float | None],
     lacks: Callable[[str, Material], tuple[str, ...]] = lambda *_: (),
 ) -> LeastLimit:
@@ -96,13 +100,13 @@ def least_of_bodies(
     limit : callable   body, card -> limit, SI; None: the card lacks a datum
     lacks : callable   body, card -> keys that the card lacks
     """
-    limits = {body: limit(body, card) for body, card in machine.bodies.items()}
+    limits = {body: limit(body, card) for body, card in bodies.items()}
     known = {body: value for body, value in limits.items() if value is not None}
     missing = tuple(
-        key for body in limits if body not in known for key in lacks(body, machine.bodies[body])
+        key for body in limits if body not in known for key in lacks(body, bodies[body])
     )
     body = list(known)[first_least(list(known.values()))] if known else "cam"
-    return LeastLimit(known.get(body), body, machine.bodies[body], missing)
+    return LeastLimit(known.get(body), body, bodies[body], missing)
 
 
 def endurance_of(machine: Machine, card: Material) -> Endurance:
@@ -110,21 +114,18 @@ def endurance_of(machine: Machine, card: Material) -> Endurance:
     return card.endurance(sliding=machine.follower.slides)
 
 
-def pressure_limits(machine: Machine, cycles: LoadCycles) -> dict[str, LeastLimit]:
-    """Allowable plane-strain pressure by check, Pa, the least over both bodies.
+def pressure_allowables(machine: Machine, cycles: LoadCycles) -> dict[str, float]:
+    """Estimated plane-strain pressure by check of ends, traction and life, Pa.
 
-    At the ends it is an estimate, which a solved cam corrects. Under traction it is that of full
-    sliding, the greatest traction of a follower: a roller that transmits less has more, see
-    `equivalent_pressure`.
+    The least over both bodies; checks without data are left out. A solved cam corrects those of the
+    ends. Under traction it is that of full sliding, the greatest traction of a follower: a roller
+    that transmits less has more, see `equivalent_pressure`.
     """
     limits, follower = machine.limits, machine.follower
     ends = estimated_length_factor(machine)
     shear = shear_yield(machine)
     endurance = _least_endurance(machine)
-    allowed = {
-        "contact_pressure": endurance,
-        "shakedown": _times(shear, SHAKEDOWN),
-    }
+    allowed = {}
     if ends is not None:
         allowed["edge_pressure"] = _times(endurance, 1.0 / ends)
     if follower.friction is not None:
@@ -134,36 +135,41 @@ def pressure_limits(machine: Machine, cycles: LoadCycles) -> dict[str, LeastLimi
             allowed["edge_shakedown"] = _times(shear, factor / ends)
     if limits[TARGET_LIFE] is not None and ends is not None:
         allowed["contact_pressure_at_life"] = _times(_life_limit(machine, cycles), 1.0 / ends)
-    return allowed
+    return {name: each.value for name, each in allowed.items() if each.value is not None}
 
 
 def _life_limit(machine: Machine, cycles: LoadCycles) -> LeastLimit:
     """Least endurance pressure of cam and follower at the target life."""
     return least_of_bodies(
-        machine,
+        machine.bodies,
         lambda body, card: _at_life(machine, body, card, cycles),
         lambda body, card: _life_lacks(machine, body, card, cycles),
     )
 
 
-def pressure_allowables(machine: Machine, cycles: LoadCycles) -> dict[str, float]:
-    """Allowable contact pressure by check, Pa; checks without data are left out."""
-    limits = pressure_limits(machine, cycles)
-    return {name: each.value for name, each in limits.items() if each.value is not None}
-
-
 def _least_endurance(machine: Machine) -> LeastLimit:
-    key = "sliding_endurance_pressure" if machine.follower.slides else "endurance_pressure"
+    return _times(_endurance(machine.bodies, machine.follower), 1.0, machine.limits[CONTACT_SAFETY])
+
+
+def _endurance(bodies: Mapping[str, Material], follower: FollowerKind) -> LeastLimit:
+    """Least endurance pressure of the bodies, without safety, Pa."""
+    key = "sliding_endurance_pressure" if follower.slides else "endurance_pressure"
     return least_of_bodies(
-        machine,
-        lambda _, card: _endurance(machine, card),
+        bodies,
+        lambda _, card: card.endurance(sliding=follower.slides).pressure,
         lambda _, card: lacking_of_card(card, key),
     )
 
 
-def _endurance(machine: Machine, card: Material) -> float | None:
-    pressure = endurance_of(machine, card).pressure
-    return None if pressure is None else pressure / machine.limits[CONTACT_SAFETY]
+def _endurance_allowed(numbers: Numbers) -> Allowed:
+    least = _endurance(numbers.known_case.bodies, numbers.known_case.facing)
+    value = None if least.value is None else least.value / numbers.limit(CONTACT_SAFETY)
+    return Allowed(value, least.missing, if_exceeded=bool(least.missing))
+
+
+def _shakedown_allowed(numbers: Numbers) -> Allowed:
+    yields = min(card.yield_strength for card in numbers.known_case.bodies.values())
+    return Allowed(SHAKEDOWN * (yields / (math.sqrt(3.0) * numbers.limit(SHAKEDOWN_SAFETY))))
 
 
 def _at_life(machine: Machine, body: str, card: Material, cycles: LoadCycles) -> float | None:
@@ -189,15 +195,15 @@ def _life_lacks(machine: Machine, body: str, card: Material, cycles: LoadCycles)
     return lacking_of_card(card, *line)
 
 
-def _times(limit: LeastLimit, factor: float) -> LeastLimit:
+def _times(limit: LeastLimit, factor: float, safety: float = 1.0) -> LeastLimit:
     value = limit.value
-    return limit if value is None else limit._replace(value=factor * value)
+    return limit if value is None else limit._replace(value=factor * value / safety)
 
 
 def shear_yield(machine: Machine) -> LeastLimit:
     """Shear yield strength Y/sqrt(3) over the shakedown safety, Pa, least of both bodies."""
     safety = math.sqrt(3.0) * machine.limits[SHAKEDOWN_SAFETY]
-    return least_of_bodies(machine, lambda _, card: card.yield_strength / safety)
+    return least_of_bodies(machine.bodies, lambda _, card: card.yield_strength / safety)
 
 
 def least_poisson(machine: Machine) -> float:
@@ -237,9 +243,18 @@ def load_cycles(machines: tuple[Machine, ...], contour: Contour) -> LoadCycles:
     return LoadCycles(turns, turns * float(np.mean(np.abs(rolling_share(speed, roller.radius)))))
 
 
-def peak_pressure(solution: Solution) -> Extreme:
-    """Maximum contact pressure over the turn in the middle of the line, Pa."""
-    return greatest(solution.cycles, lambda cycle: cycle.surface.p0)
+def contact_p0(cam: LoadedCam) -> Array:
+    """Contact pressure in the middle of the line, Pa."""
+    return cam.p0
+
+
+def line_pressure(cam: LoadedCam, allowed: Value) -> Array:
+    """sharpness + R_p / size <= 1, equivalent to p0 <= allowed.
+
+    R_p is the relative radius at which the line contact has the allowed pressure. Pressure and
+    undercut depend on the same undercut factor, 1 - sharpness.
+    """
+    return cam.motion.sharpness + cam.pressure_factor**2 * cam.flat_square / allowed**2
 
 
 def _judged(
@@ -263,12 +278,34 @@ def _judged(
     )
 
 
-def _pressure_note(solution: Solution) -> str:
-    """Model of the pressure in the middle of a crowned line of contact."""
+def _pressure_in_words(demand: Demand, solution: Solution) -> Demand:
+    """With the model of the pressure in the middle of a crowned line of contact."""
+    figured = _with_endurance(demand, solution)
     if not solution.machine.is_crowned:
-        return ""
+        return figured
     most = max((float(c.length.centre.max()) for c in solution.cycles if c.length), default=np.nan)
-    return f"in the middle of the crowned line, up to {most:.4g} times plane strain"
+    note = f"in the middle of the crowned line, up to {most:.4g} times plane strain"
+    return replace(figured, note=note)
+
+
+def _with_endurance(demand: Demand, solution: Solution) -> Demand:
+    return replace(demand, figures=(_least_endurance(solution.machine).source,))
+
+
+def _shakedown_in_words(demand: Demand, solution: Solution) -> Demand:
+    note = "without traction; sliding at the surface lowers the limit"
+    return replace(demand, note=note, figures=(shear_yield(solution.machine).source,))
+
+
+def _ends_in_words(demand: Demand, solution: Solution) -> Demand:
+    machine, worst = solution.machine, demand.at
+    mean = f"limits.end_mean_length: {machine.limits.source(END_MEAN_LENGTH)}"
+    return replace(
+        demand,
+        missing=(*demand.missing, *lacking_ends(machine)),
+        note="" if worst is None else signed_sentence(solution, worst),
+        figures=(_least_endurance(machine).source, mean),
+    )
 
 
 def traction_coefficient(cycle: Cycle) -> Array:
@@ -315,7 +352,7 @@ def shakedown_factors(friction: float, poisson: float) -> tuple[Array, Array]:
     return known["nodes"], known["factors"]
 
 
-@check(
+contact_pressure = check(
     CONTACT_SAFETY,
     id="contact_pressure",
     title="Peak contact pressure vs. endurance limit",
@@ -334,12 +371,14 @@ def shakedown_factors(friction: float, poisson: float) -> tuple[Array, Array]:
     levers=(levers.RECROWNED, *levers.ENDURANCE),
     page="Contact",
     certified_by="p0",
-)
-def contact_pressure(solution: Solution) -> Demand:
-    """Maximum contact pressure, Pa, against the least endurance of cam and follower."""
-    machine = solution.machine
-    limit = _least_endurance(machine)
-    return _judged(peak_pressure(solution), limit, note=_pressure_note(solution))
+).measured(
+    "angles",
+    allowed=_endurance_allowed,
+    remark=_pressure_in_words,
+    deviation=0.001,
+    bounded="crown",
+    kept=Kept(line_pressure, group=PRESSURE),
+)(contact_p0)
 
 
 @check(
@@ -363,7 +402,7 @@ def first_yield(solution: Solution) -> Demand:
     """Maximum von Mises stress with traction, Pa; shakedown permits values above first yield."""
     machine = solution.machine
     safety = machine.limits[YIELD_SAFETY]
-    limit = least_of_bodies(machine, lambda _, card: card.yield_strength / safety)
+    limit = least_of_bodies(machine.bodies, lambda _, card: card.yield_strength / safety)
     onset = shown(FIRST_YIELD * limit.card.yield_strength, "MPa")
     note = f"first yield without traction at a contact pressure of {onset}"
     worst = greatest(solution.cycles, _stress_with_traction)
@@ -375,7 +414,7 @@ def _stress_with_traction(cycle: Cycle) -> Array:
     return np.full(cycle.theta.size, np.nan) if stress is None else stress
 
 
-@check(
+shakedown = check(
     SHAKEDOWN_SAFETY,
     id="shakedown",
     title="Peak contact pressure vs. shakedown limit",
@@ -393,12 +432,14 @@ def _stress_with_traction(cycle: Cycle) -> Array:
     levers=(levers.RECROWNED, *levers.YIELD),
     page="Contact",
     certified_by="p0",
-)
-def shakedown(solution: Solution) -> Demand:
-    """Maximum contact pressure, Pa, against elastic shakedown of free rolling."""
-    limit = _times(shear_yield(solution.machine), SHAKEDOWN)
-    note = "without traction; sliding at the surface lowers the limit"
-    return _judged(peak_pressure(solution), limit, note=note)
+).measured(
+    "angles",
+    allowed=_shakedown_allowed,
+    remark=_shakedown_in_words,
+    deviation=0.001,
+    bounded="crown",
+    kept=Kept(line_pressure, group=PRESSURE),
+)(contact_p0)
 
 
 @check(
@@ -492,15 +533,16 @@ _SIGNED = (
     page="Contact",
     certified_by="p0",
     scales_with=("contact_pressure", 1.0),
+).measured(
+    "angles",
+    allowed=_endurance_allowed,
+    remark=_ends_in_words,
+    deviation=0.01,  # the friction of the guides, which holds a tilt, is interpolated
+    bounded="line",
 )
-def edge_pressure(solution: Solution) -> Demand:
-    """Greatest signed contact pressure, Pa, against the least endurance of cam and follower."""
-    machine = solution.machine
-    worst = greatest(solution.cycles, lambda cycle: cycle.signed_pressure)
-    note, lacks = signed_sentence(solution, worst), lacking_ends(machine)
-    made = _judged(worst, _least_endurance(machine), missing=lacks, note=note)
-    mean = f"limits.end_mean_length: {machine.limits.source(END_MEAN_LENGTH)}"
-    return replace(made, figures=(*made.figures, mean))
+def edge_pressure(cam: LoadedCam) -> Array:
+    """Signed contact pressure, Pa, ends and tilt included."""
+    return cam.p0_signed
 
 
 @check(

@@ -10,11 +10,15 @@ from typing import NamedTuple
 import numpy as np
 
 from camwright.geometry.arrays import Array, Value
+from camwright.geometry.pitch_curve import magnitude
 from camwright.pipeline.case.limits import CONTACT_FORCE_MARGIN
 from camwright.pipeline.cycle.loaded_cam import LoadedCam, not_negative
 
 CONTACT_FLOOR = 0.01
 """Least normal force over the least spring force in the quotients by the normal force."""
+NORMAL_FORCE, CAM_TORQUE, TOOTH_TORQUE = "roller_static", "key_pressure", "gear_bending"
+PRESSURE = "contact_pressure"
+"""Groups of checks of one measure, which are one constraint of the synthesis; see `Kept`."""
 _MARGIN = 0.2  # of the least spring force, where the case keeps no contact force margin
 
 
@@ -29,6 +33,30 @@ class FatiguePoint(NamedTuple):
     mean: float
     endurance: float
     strength: float
+
+
+def normal_force(cam: LoadedCam) -> Array:
+    """Contact force, N."""
+    return cam.normal
+
+
+def cam_torque(cam: LoadedCam) -> Array:
+    """Magnitude of the cam torque, N m."""
+    return magnitude(cam.torque)
+
+
+def tooth_torque(cam: LoadedCam) -> Array:
+    """Magnitude of the torque of the driving gear, with the drag of the camshaft, N m."""
+    drag = cam.numbers.get("camshaft.drag")
+    return magnitude(cam.torque + (0.0 if drag is None else drag))
+
+
+def rating_over(rating: Value, worst: Value, unloaded: float) -> Array:
+    """Rating (...) over a load or damage; `unloaded` without one, NaN where it is not known."""
+    load: Array = np.asarray(worst, dtype=float)
+    loaded = load > 0.0
+    without = np.where(np.isnan(load), np.nan, unloaded)
+    return np.where(loaded, rating / np.where(loaded, load, 1.0), without)[()]
 
 
 def ripple_reduction(before: Array, after: Array) -> Array:

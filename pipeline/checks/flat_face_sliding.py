@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from camwright.geometry.arrays import Array
+from camwright.geometry.pitch_curve import magnitude
 from camwright.pipeline.base import levers
 from camwright.pipeline.base import value_groups as given
-from camwright.pipeline.checks.check import Demand, check
-from camwright.pipeline.checks.extremes import greatest
-from camwright.pipeline.checks.missing_keys import lacking
+from camwright.pipeline.checks.check import Demand, Kept, check, of_key
+from camwright.pipeline.checks.contact_strength import line_pressure
 from camwright.pipeline.contact.tiers import Tier
-from camwright.pipeline.cycle.cycle import Cycle
+from camwright.pipeline.cycle.loaded_cam import LoadedCam, face_of
 from camwright.pipeline.cycle.solution import Solution
+from camwright.pipeline.follower.flat_face_motion import MEAN_SHARE
 
 
 @check(
@@ -28,19 +31,20 @@ from camwright.pipeline.cycle.solution import Solution
     reason="beyond the face the contact runs on its edge",
     levers=(levers.one("follower.face.width"), *levers.GENTLER),
     page="Flat face",
-)
-def face_width(solution: Solution) -> Demand | None:
+).measured("angles", allowed=of_key("follower.face.width"), deviation=0.001, kept=Kept())
+def face_width(cam: LoadedCam) -> Array:
     """Required width of the face, contact half-width included, m."""
+    return 2.0 * (magnitude(face_of(cam.motion).arm) + cam.half_width)
+
+
+def _of_its_source(demand: Demand, solution: Solution) -> Demand:
     face = solution.machine.face
-    if face is None:
-        return None
+    return demand if face is None else replace(demand, source=face.source)
 
-    def needed(cycle: Cycle) -> Array:
-        arm = np.abs(cycle.contour.pitch.push_arm(cycle.theta))
-        return 2.0 * (arm + cycle.contact.half_width)
 
-    worst = greatest(solution.cycles, needed)
-    return Demand(worst.value, face.width, worst)
+def _sliding(cam: LoadedCam) -> Array:
+    """Mean over peak pressure of Hertz times the sliding speed, m/s."""
+    return np.asarray(MEAN_SHARE * cam.speed * face_of(cam.motion).height)
 
 
 @check(
@@ -57,23 +61,13 @@ def face_width(solution: Solution) -> Demand | None:
     values=(*given.CONTACT, "follower.face.pv_limit"),
     levers=(levers.one("follower.face.depth"), *levers.GENTLER),
     page="Flat face",
+).measured(
+    "angles",
+    allowed=of_key("follower.face.pv_limit"),
+    remark=_of_its_source,
+    deviation=0.001,
+    kept=Kept(lambda cam, limit: line_pressure(cam, limit / _sliding(cam))),
 )
-def face_pv(solution: Solution) -> Demand | None:
+def face_pv(cam: LoadedCam) -> Array:
     """Mean contact pressure times sliding speed, Pa m/s."""
-    face = solution.machine.face
-    if face is None:
-        return None
-    worst, limit = greatest(solution.cycles, _pv), face.pv_limit
-    return Demand(
-        worst.value,
-        limit,
-        worst,
-        lacking(face.table, face, "pv_limit"),
-        source=face.source,
-    )
-
-
-def _pv(cycle: Cycle) -> Array:
-    """PV value (n,), Pa m/s; NaN where it is not known."""
-    sliding = cycle.rolling.sliding
-    return np.full(cycle.theta.size, np.nan) if sliding is None else sliding.pv
+    return _sliding(cam) * cam.p0

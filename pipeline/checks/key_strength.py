@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -12,6 +13,7 @@ from camwright.pipeline.base import levers
 from camwright.pipeline.base import value_groups as given
 from camwright.pipeline.base.material import Material
 from camwright.pipeline.base.units import shown
+from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.limits import (
     CAM_SLIP,
     KEY_REVERSAL,
@@ -20,11 +22,13 @@ from camwright.pipeline.case.limits import (
     SHAFT_RELIABILITY,
 )
 from camwright.pipeline.case.machine import Machine
-from camwright.pipeline.checks.check import Demand, check
-from camwright.pipeline.checks.extremes import greatest, least
+from camwright.pipeline.checks.check import Allowed, Declaration, Demand, Kept, check
+from camwright.pipeline.checks.demands import CAM_TORQUE, cam_torque, rating_over
+from camwright.pipeline.checks.extremes import least
 from camwright.pipeline.checks.missing_keys import lacking, lacking_of_card
 from camwright.pipeline.contact.cam_body import CamBody, Key
 from camwright.pipeline.cycle.cycle import Cycle
+from camwright.pipeline.cycle.numbers import Numbers
 from camwright.pipeline.cycle.solution import Solution
 from camwright.pipeline.follower.camshaft_loads import KeyStress, key_stress
 from camwright.pipeline.follower.shaft_strength import (
@@ -45,74 +49,143 @@ TINY = 1e-12
 """Utilisation of an unloaded root: its safety is finite."""
 
 
-@check(
-    KEY_SHARE,
-    id="key_pressure",
-    title="Key flank pressure on the cam",
-    unit="MPa",
-    method=METHOD,
-    lift_can_help=True,
-    part="key",
-    formula="p = 2 K_A T/(d l_tr (h - t1 - s)) <= f S R_e; T: greatest cam torque, d: bore"
+class _Mate(NamedTuple):
+    """Material of the part beside the key; missing: its key in the case. None: not judged."""
+
+    card: Material | None
+    missing: tuple[str, ...] = ()
+
+
+def _key_check(
+    name: str,
+    title: str,
+    formula: str,
+    of: Callable[[KeyStress], Array],
+    mate_of: Callable[[Case], _Mate | None],
+    *,
+    factor: float = 1.0,
+) -> Declaration:
+    """Stress of the key against the yield strength of the weaker of the key and its mate.
+
+    factor: allowed stress over the allowed normal stress
+    """
+
+    def per_torque(numbers: Numbers) -> float:
+        cam = numbers.known_case.cam
+        key, flanks = cam.key or Key(), cam.key_flanks
+        if flanks is None:
+            return np.nan
+        return float(of(key_stress(key.application_factor, 2.0 * cam.bore_radius, flanks)))
+
+    def allowed_in(numbers: Numbers, *, reverses: bool = True) -> Allowed:
+        case = numbers.known_case
+        mate, key = mate_of(case), case.cam.key or Key()
+        if mate is None:
+            return Allowed(None)
+        missing = (*mate.missing, *_no_key_data(case.cam), *lacking(key.table, key, "material"))
+        share = numbers.limit(KEY_SHARE) * (numbers.limit(KEY_REVERSAL) if reverses else 1.0)
+        yields = [card.core_yield_strength or card.yield_strength for card in _cards(key, mate)]
+        return Allowed(None, missing) if missing else Allowed(factor * (share * min(yields)))
+
+    def in_words(demand: Demand, solution: Solution) -> Demand | None:
+        case, reverses = solution.case, _reverses(solution)
+        mate = mate_of(case)
+        if mate is None:
+            return None
+        figures = tuple(f"{card.name}: {card.source}" for card in _cards(case.cam.key, mate))
+        if reverses:
+            figures = (solution.machine.limits.source(KEY_REVERSAL), *figures)
+        known = allowed_in(solution.numbers, reverses=reverses).value
+        judged = replace(demand, allowed=None if known is None else float(known), figures=figures)
+        return judged if case.cam.key_flanks else replace(judged, value=None, at=None)
+
+    return check(
+        KEY_SHARE,
+        id=name,
+        title=title,
+        unit="MPa",
+        method=METHOD,
+        lift_can_help=True,
+        part="key",
+        formula=formula,
+        reason=LOOSE,
+        values=given.KEY,
+        levers=(levers.Scaled(("cam.key.length", "cam.width"), 1), *levers.GENTLER),
+        page="Camshaft",
+    ).measured(
+        "angles",
+        value=lambda worst, numbers: per_torque(numbers) * worst,
+        bound=lambda limit, numbers: limit / per_torque(numbers),
+        allowed=allowed_in,
+        remark=in_words,
+        kept=Kept(group=CAM_TORQUE),
+    )(cam_torque)
+
+
+def _cards(key: Key | None, mate: _Mate) -> list[Material]:
+    """Known materials of the key and its mate."""
+    both = None if key is None else key.material, mate.card
+    return [card for card in both if card is not None]
+
+
+def _shaft_beside(case: Case) -> _Mate | None:
+    """None if the shaft is not covered."""
+    if not case.scope.covers("camshaft"):
+        return None
+    card = None if case.camshaft is None else case.camshaft.material
+    return _Mate(card, () if card is not None else ("camshaft.material",))
+
+
+key_pressure = _key_check(
+    "key_pressure",
+    "Key flank pressure on the cam",
+    "p = 2 K_A T/(d l_tr (h - t1 - s)) <= f S R_e; T: greatest cam torque, d: bore"
     " diameter, l_tr: bearing length, h, t1, s: height, shaft depth and chamfer of the key, "
     + ALLOWED,
-    reason=LOOSE,
-    values=given.KEY,
-    levers=(levers.Scaled(("cam.key.length", "cam.width"), 1), *levers.GENTLER),
-    page="Camshaft",
+    lambda stress: stress.hub,
+    lambda case: _Mate(case.cam.material),
 )
-def key_pressure(solution: Solution) -> Demand:
-    """Pressure of the key on its keyway in the cam, Pa."""
-    return _judged(solution, lambda stress: stress.hub, solution.machine.cam.material)
-
-
-@check(
-    KEY_SHARE,
-    id="key_pressure_shaft",
-    title="Key flank pressure on the camshaft",
-    unit="MPa",
-    method=METHOD,
-    lift_can_help=True,
-    part="key",
-    formula="p = 2 K_A T/(d l_tr (t1 - s)) <= f S R_e; as key_pressure, with the depth t1 of the"
+key_pressure_shaft = _key_check(
+    "key_pressure_shaft",
+    "Key flank pressure on the camshaft",
+    "p = 2 K_A T/(d l_tr (t1 - s)) <= f S R_e; as key_pressure, with the depth t1 of the"
     " keyway in the shaft",
-    reason=LOOSE,
-    values=given.KEY,
-    levers=(levers.Scaled(("cam.key.length", "cam.width"), 1), *levers.GENTLER),
-    page="Camshaft",
+    lambda stress: stress.shaft,
+    _shaft_beside,
 )
-def key_pressure_shaft(solution: Solution) -> Demand | None:
-    """Pressure of the key on its keyway in the shaft, Pa; None if the shaft is not covered."""
-    machine = solution.machine
-    if not machine.scope.covers("camshaft"):
-        return None
-    card = None if machine.camshaft is None else machine.camshaft.material
-    missing = () if card is not None else ("camshaft.material",)
-    return _judged(solution, lambda stress: stress.shaft, card, missing)
-
-
-@check(
-    KEY_SHARE,
-    id="key_shear",
-    title="Key shear stress",
-    unit="MPa",
-    method=METHOD,
-    lift_can_help=True,
-    part="key",
-    formula="tau = 2 K_A T/(d b l_tr) <= f S R_e/sqrt(3); b: width of the key, R_e: yield strength"
+key_shear = _key_check(
+    "key_shear",
+    "Key shear stress",
+    "tau = 2 K_A T/(d b l_tr) <= f S R_e/sqrt(3); b: width of the key, R_e: yield strength"
     " of the key, else as key_pressure",
-    reason=LOOSE,
-    values=given.KEY,
-    levers=(levers.Scaled(("cam.key.length", "cam.width"), 1), *levers.GENTLER),
-    page="Camshaft",
+    lambda stress: stress.shear,
+    lambda _: _Mate(None),
+    factor=1.0 / np.sqrt(3.0),
 )
-def key_shear(solution: Solution) -> Demand:
-    """Shear stress in the section of the cam's key, Pa."""
-    return _judged(solution, lambda stress: stress.shear, None, factor=1.0 / np.sqrt(3.0))
+_SLIP = "camshaft.slip_torque"
 
 
-@check(
+def _application(numbers: Numbers) -> float:
+    """Application factor of the key, 1 without one."""
+    key = numbers.known_case.cam.key
+    return 1.0 if key is None else key.application_factor
+
+
+def _slip_at(limit: float, numbers: Numbers) -> float | None:
+    """Cam torque at a slip safety, N m; none of a sliding fit, which no lift can pass."""
+    slip = float(numbers[_SLIP])
+    return slip / (limit * _application(numbers)) if slip else None
+
+
+def _slip_in_words(demand: Demand, solution: Solution) -> Demand | None:
+    """None if the torque does not reverse."""
+    sliding = demand.value is not None and solution.numbers[_SLIP] == 0.0
+    return replace(demand, note="sliding fit" if sliding else "") if _reverses(solution) else None
+
+
+cam_slip = check(
     CAM_SLIP,
+    id="cam_slip",
     title="Slip torque of the cam seat over the greatest cam torque",
     method="slip torque of the seat over K_A T; evaluated where the torque reverses",
     lift_can_help=True,
@@ -125,22 +198,14 @@ def key_shear(solution: Solution) -> Demand:
     values=(*given.KEY, "camshaft.slip_torque"),
     levers=(levers.one("camshaft.slip_torque"), *levers.GENTLER),
     page="Camshaft",
-)
-def cam_slip(solution: Solution) -> Demand | None:
-    """Slip torque of the cam's seat over its torque; None if the torque does not reverse."""
-    if not _reverses(solution):
-        return None
-    shaft, key = solution.machine.camshaft, solution.machine.cam.key
-    slip = None if shaft is None else shaft.slip_torque
-    factor = 1.0 if key is None else key.application_factor
-    worst = greatest(solution.cycles, lambda cycle: factor * np.abs(cycle.loads.cam_torque))
-    return Demand(
-        None if slip is None else slip / worst.value,
-        solution.machine.limits[CAM_SLIP],
-        worst,
-        ("camshaft.slip_torque",) if slip is None else (),
-        note="sliding fit" if slip == 0.0 else "",
-    )
+).measured(
+    "angles",
+    value=lambda worst, numbers: rating_over(numbers[_SLIP], _application(numbers) * worst, np.inf),
+    bound=_slip_at,
+    needed=(_SLIP,),
+    remark=_slip_in_words,
+    kept=Kept(group=CAM_TORQUE),
+)(cam_torque)
 
 
 @check(
@@ -198,74 +263,6 @@ def keyway_root(solution: Solution) -> Demand:
 def _no_key_data(cam: CamBody) -> tuple[str, ...]:
     """Keys of the key's dimensions that are not in the case and of no standard."""
     return tuple(f"{Key.table}.{name}" for name, value in cam.key_data.items() if value is None)
-
-
-def _judged(
-    solution: Solution,
-    of: Callable[[KeyStress], Array],
-    mate: Material | None,
-    missing: tuple[str, ...] = (),
-    *,
-    factor: float = 1.0,
-) -> Demand:
-    """A stress of the key against the yield strength of the weaker of the key and its mate."""
-    machine = solution.machine
-    cam, flanks = machine.cam, machine.cam.key_flanks
-    key, reverses = cam.key or Key(), _reverses(solution)
-    missing += *_no_key_data(cam), *lacking(key.table, key, "material")
-    cards = [card for card in (key.material, mate) if card is not None]
-    figures = tuple(f"{card.name}: {card.source}" for card in cards)
-    if reverses:
-        figures = (machine.limits.source(KEY_REVERSAL), *figures)
-    strength = _strength(machine, mate, reverses=reverses)
-    allowed = None if strength is None or missing else factor * strength
-    if flanks is None:
-        return Demand(None, allowed, missing=missing, figures=figures)
-    diameter = 2.0 * cam.bore_radius
-
-    def stress(cycle: Cycle) -> Array:
-        torque = key.application_factor * cycle.loads.cam_torque
-        if not np.isfinite(torque).all():
-            return np.full(cycle.theta.size, np.nan)
-        return np.abs(of(key_stress(torque, diameter, flanks)))
-
-    worst = greatest(solution.cycles, stress)
-    return Demand(worst.value, allowed, worst, missing, figures=figures)
-
-
-def _strength(machine: Machine, mate: Material | None, *, reverses: bool) -> float | None:
-    """Allowed normal stress of the key and its mate, Pa; None without a material."""
-    key = machine.cam.key
-    cards = [card for card in (None if key is None else key.material, mate) if card is not None]
-    share = machine.limits[KEY_SHARE] * (machine.limits[KEY_REVERSAL] if reverses else 1.0)
-    weakest = min((card.core_yield_strength or card.yield_strength for card in cards), default=None)
-    return None if weakest is None else share * weakest
-
-
-def torque_limits(machine: Machine) -> dict[str, float]:
-    """Greatest reversing cam torque allowed by each check of key and seat, N m, by its id."""
-    cam, shaft, covers = machine.cam, machine.camshaft, machine.scope.covers
-    key, flanks, allowed = cam.key, cam.key_flanks, {}
-    factor = 1.0 if key is None else key.application_factor
-    if key is not None and key.material is not None and flanks is not None and covers("key"):
-        stress = key_stress(factor, 2.0 * cam.bore_radius, flanks)
-        shaft_card = None if shaft is None else shaft.material
-        limits = {
-            "key_pressure": (stress.hub, _strength(machine, cam.material, reverses=True)),
-            "key_shear": (np.sqrt(3.0) * stress.shear, _strength(machine, None, reverses=True)),
-        }
-        if covers("camshaft") and shaft_card is not None:
-            strength = _strength(machine, shaft_card, reverses=True)
-            limits["key_pressure_shaft"] = stress.shaft, strength
-        allowed = {
-            name: strength / float(each)
-            for name, (each, strength) in limits.items()
-            if strength is not None
-        }
-    slip = None if shaft is None or not covers("camshaft") else shaft.slip_torque
-    if slip:
-        allowed["cam_slip"] = slip / (machine.limits[CAM_SLIP] * factor)
-    return allowed
 
 
 class KeywayRoot(NamedTuple):

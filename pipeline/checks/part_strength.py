@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
 
-from camwright.geometry.arrays import Array, uniform_turn
+from camwright.geometry.arrays import Value, uniform_turn
 from camwright.geometry.errors import InputError
 from camwright.pipeline.base import levers
 from camwright.pipeline.base import value_groups as given
 from camwright.pipeline.base.material import Material
 from camwright.pipeline.base.units import shown
+from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.limits import (
     BORE_SHARE,
     FOLLOWER_MASS_RATIO,
@@ -19,24 +22,71 @@ from camwright.pipeline.case.limits import (
     PIN_PRESSURE_SHARE,
     PIN_SHARE,
     UNBALANCE,
-    LimitValues,
+    Limit,
 )
-from camwright.pipeline.case.machine import Machine
-from camwright.pipeline.checks.check import NONE, Demand, check
-from camwright.pipeline.checks.extremes import Extreme, greatest, worst_case
+from camwright.pipeline.checks.check import NONE, Allowed, Demand, Kept, check, of_key
+from camwright.pipeline.checks.demands import NORMAL_FORCE, normal_force
+from camwright.pipeline.checks.extremes import worst_case
 from camwright.pipeline.checks.missing_keys import lacking, lacking_of_card
 from camwright.pipeline.cycle.cam_balance import Balance, balance, rotor_unbalance
 from camwright.pipeline.cycle.cycle import Cycle
-from camwright.pipeline.cycle.part_loads import PartLoads
+from camwright.pipeline.cycle.numbers import Numbers
 from camwright.pipeline.cycle.solution import Solution
 from camwright.pipeline.follower import pin_strength
-from camwright.pipeline.follower.bearing_ring import goodman
+from camwright.pipeline.follower.bearing_ring import RingBending, goodman
 from camwright.pipeline.follower.camshaft_loads import Camshaft
 from camwright.pipeline.follower.roller import Roller
 from camwright.pipeline.follower.roller_parts import Fork, OuterRing, Pin
 
 
-@check(
+class Stress(NamedTuple):
+    """Stress of a part per newton of normal force, Pa/N, as a function of numbers."""
+
+    per_newton: Callable[[Numbers], float]
+
+    def value(self, worst: Value, numbers: Numbers) -> Value:
+        """Stress, Pa, under a normal force, N."""
+        return self.per_newton(numbers) * worst
+
+    def bound(self, limit: float, numbers: Numbers) -> float:
+        """Normal force, N, at a stress, Pa."""
+        return limit / self.per_newton(numbers)
+
+
+def _pin_of(roller: Roller | None) -> tuple[Roller, Pin]:
+    """Roller and its pin.
+
+    Raises
+    ------
+    InputError
+        If the case describes none.
+    """
+    if roller is None or roller.pin is None:
+        raise InputError("roller.pin", "missing", "given for its checks")
+    return roller, roller.pin
+
+
+def _described(numbers: Numbers) -> tuple[Roller, Pin]:
+    return _pin_of(numbers.known_case.roller_given)
+
+
+def _bending(numbers: Numbers) -> float:
+    return _described(numbers)[0].pin_stress_per_newton or 0.0
+
+
+def _bending_allowed(numbers: Numbers) -> Allowed:
+    yields = _described(numbers)[1].material.yield_strength
+    return Allowed(numbers.limit(PIN_SHARE) * yields)
+
+
+def _pin_in_words(demand: Demand, solution: Solution) -> Demand:
+    pin = _pin_of(solution.machine.roller)[1]
+    method = f"32 M/(pi d^3), {pin.mounting}, load uniform over the bearing width"
+    return replace(demand, figures=_sources(pin.material), method=method)
+
+
+_of_bending = Stress(_bending)
+roller_pin = check(
     PIN_SHARE,
     id="roller_pin",
     title="Bending stress of the roller pin",
@@ -52,79 +102,25 @@ from camwright.pipeline.follower.roller_parts import Fork, OuterRing, Pin
     values=(*given.LOADS, "roller.pin.material.yield_strength"),
     levers=(levers.one("roller.pin.diameter", most=2.0), *levers.LOAD),
     page="Roller",
-)
-def roller_pin(solution: Solution) -> Demand:
-    """Bending stress of the roller pin, Pa."""
-    pin = _roller_and_pin(solution)[1]
-    worst = greatest(solution.cycles, lambda cycle: _known(cycle.parts.pin_stress))
-    return Demand(
-        worst.value,
-        allowed_pin_stress(pin, solution.machine.limits),
-        worst,
-        figures=_sources(pin.material),
-        method=f"32 M/(pi d^3), {pin.mounting}, load uniform over the bearing width",
-    )
-
-
-def allowed_pin_stress(pin: Pin, limits: LimitValues) -> float:
-    """Maximum bending stress of the roller pin, Pa."""
-    return limits[PIN_SHARE] * pin.material.yield_strength
+).measured(
+    "angles",
+    value=_of_bending.value,
+    bound=_of_bending.bound,
+    allowed=_bending_allowed,
+    remark=_pin_in_words,
+    kept=Kept(group=NORMAL_FORCE),
+)(normal_force)
 
 
 _FIBRES = 180  # around the pin; between two of them the stress differs by 1e-4 at most
-
-
-class Stress(NamedTuple):
-    """Stress of a part per newton of normal force, Pa/N, and its limit, Pa; None: missing."""
-
-    per_newton: float
-    allowed: float | None
-
-
-def pin_shear(pin: Pin, limits: LimitValues) -> Stress:
-    """Shear stress of the roller pin; by von Mises the share of the yield strength in bending."""
-    allowed = allowed_pin_stress(pin, limits) / 3.0**0.5
-    return Stress(pin_strength.pin_shear_stress(1.0, pin.diameter, pin.overhung), allowed)
-
-
-def seat_pressure(roller: Roller, pin: Pin, limits: LimitValues) -> Stress:
-    """Pressure of the pin in the bore of its bearing."""
-    tensile, share = pin.material.tensile_strength, limits[PIN_PRESSURE_SHARE]
-    area = pin.diameter * roller.width
-    return Stress(1.0 / area, None if tensile is None else share * tensile)
-
-
-def fork_pressure(fork: Fork, pin: Pin, limits: LimitValues) -> Stress:
-    """Pressure of the pin in the cheeks of its fork."""
-    sizes = (pin.diameter, fork.cheek_width, pin.span, pin.overhung)
-    per_newton = pin_strength.cheek_pressure(1.0, *sizes)
-    one, other = fork.material.tensile_strength, pin.material.tensile_strength
-    if fork.pressure_limit is not None or one is None or other is None:
-        return Stress(per_newton, fork.pressure_limit)
-    return Stress(per_newton, limits[PIN_PRESSURE_SHARE] * min(one, other))
-
-
-def _roller_and_pin(solution: Solution) -> tuple[Roller, Pin]:
-    """Roller and its pin.
-
-    Raises
-    ------
-    InputError
-        If the case describes none.
-    """
-    roller = solution.machine.roller
-    if roller is None or roller.pin is None:
-        raise InputError("roller.pin", "missing", "given for its checks")
-    return roller, roller.pin
 
 
 def _sources(*cards: Material) -> tuple[str, ...]:
     return tuple(f"{card.name}: {card.source}" for card in cards)
 
 
-def _normal_force(solution: Solution, factor: float) -> Extreme:
-    """Greatest normal force times a factor."""
-    return greatest(solution.cycles, lambda cycle: factor * cycle.loads.normal_force)
+def _with_card_of_pin(demand: Demand, solution: Solution) -> Demand:
+    return replace(demand, figures=_sources(_pin_of(solution.machine.roller)[1].material))
 
 
 @check(
@@ -151,7 +147,7 @@ def _normal_force(solution: Solution, factor: float) -> Extreme:
 )
 def roller_pin_fatigue(solution: Solution) -> Demand:
     """Fatigue safety factor of the roller pin."""
-    roller, pin = _roller_and_pin(solution)
+    roller, pin = _pin_of(solution.machine.roller)
     card, per_newton = pin.material, roller.pin_stress_per_newton
     tensile, endured = card.tensile_strength, card.fatigue_bending
     missing = lacking_of_card(card, "fatigue_bending", "tensile_strength")
@@ -171,7 +167,19 @@ def roller_pin_fatigue(solution: Solution) -> Demand:
     return Demand(worst.value, limit, worst, missing, figures=_sources(card))
 
 
-@check(
+def _shear(numbers: Numbers) -> float:
+    pin = _described(numbers)[1]
+    return pin_strength.pin_shear_stress(1.0, pin.diameter, pin.overhung)
+
+
+def _shear_allowed(numbers: Numbers) -> Allowed:
+    """By von Mises the share of the yield strength in bending."""
+    bending = _bending_allowed(numbers).value
+    return Allowed(None if bending is None else bending / 3.0**0.5)
+
+
+_of_shear = Stress(_shear)
+roller_pin_shear = check(
     PIN_SHARE,
     id="roller_pin_shear",
     title="Shear stress of the roller pin",
@@ -187,16 +195,30 @@ def roller_pin_fatigue(solution: Solution) -> Demand:
     values=(*given.LOADS, "roller.pin.material.yield_strength"),
     levers=(levers.one("roller.pin.diameter", most=2.0), *levers.LOAD),
     page="Roller",
-)
-def roller_pin_shear(solution: Solution) -> Demand:
-    """Shear stress of the roller pin, Pa."""
-    pin = _roller_and_pin(solution)[1]
-    stress = pin_shear(pin, solution.machine.limits)
-    worst = _normal_force(solution, stress.per_newton)
-    return Demand(worst.value, stress.allowed, worst, figures=_sources(pin.material))
+).measured(
+    "angles",
+    value=_of_shear.value,
+    bound=_of_shear.bound,
+    allowed=_shear_allowed,
+    remark=_with_card_of_pin,
+    kept=Kept(group=NORMAL_FORCE),
+)(normal_force)
 
 
-@check(
+def _seat(numbers: Numbers) -> float:
+    roller, pin = _described(numbers)
+    return 1.0 / (pin.diameter * roller.width)
+
+
+def _share_of_tensile(row: Limit, cards: Sequence[Material], numbers: Numbers) -> Allowed:
+    """Share of the lower tensile strength of the materials of a seat."""
+    missing = tuple(key for card in cards for key in lacking_of_card(card, "tensile_strength"))
+    known = [card.tensile_strength for card in cards if card.tensile_strength is not None]
+    return Allowed(None, missing) if missing else Allowed(numbers.limit(row) * min(known))
+
+
+_of_seat = Stress(_seat)
+roller_pin_pressure = check(
     PIN_PRESSURE_SHARE,
     id="roller_pin_pressure",
     title="Pressure of the roller pin in the bore of its bearing",
@@ -216,17 +238,55 @@ def roller_pin_shear(solution: Solution) -> Demand:
     ),
     levers=(levers.one("roller.pin.diameter", most=2.0), *levers.LOAD),
     page="Roller",
-)
-def roller_pin_pressure(solution: Solution) -> Demand:
-    """Pressure of the roller pin in the bore of its bearing, Pa."""
-    roller, pin = _roller_and_pin(solution)
-    stress = seat_pressure(roller, pin, solution.machine.limits)
-    worst, card = _normal_force(solution, stress.per_newton), pin.material
-    missing = lacking_of_card(card, "tensile_strength")
-    return Demand(worst.value, stress.allowed, worst, missing, figures=_sources(card))
+).measured(
+    "angles",
+    value=_of_seat.value,
+    bound=_of_seat.bound,
+    allowed=lambda numbers: _share_of_tensile(
+        PIN_PRESSURE_SHARE, (_described(numbers)[1].material,), numbers
+    ),
+    remark=_with_card_of_pin,
+    kept=Kept(group=NORMAL_FORCE),
+)(normal_force)
 
 
-@check(
+def _fork_and_pin(roller: Roller | None) -> tuple[Fork, Pin] | None:
+    """Fork and the pin in it; None where one is not described."""
+    if roller is None or roller.fork is None or roller.pin is None:
+        return None
+    return roller.fork, roller.pin
+
+
+def _cheek(numbers: Numbers) -> float:
+    both = _fork_and_pin(numbers.known_case.roller_given)
+    if both is None:
+        return np.nan
+    fork, pin = both
+    return pin_strength.cheek_pressure(1.0, pin.diameter, fork.cheek_width, pin.span, pin.overhung)
+
+
+def _cheek_allowed(numbers: Numbers) -> Allowed:
+    both = _fork_and_pin(numbers.known_case.roller_given)
+    if both is None:
+        return Allowed(None)
+    fork, pin = both
+    if fork.pressure_limit is not None:
+        return Allowed(fork.pressure_limit)
+    return _share_of_tensile(PIN_PRESSURE_SHARE, (fork.material, pin.material), numbers)
+
+
+def _cheek_in_words(demand: Demand, solution: Solution) -> Demand:
+    both = _fork_and_pin(solution.machine.roller)
+    if both is None:
+        return demand
+    fork, pin = both
+    if fork.pressure_limit is not None:
+        return replace(demand, source=fork.source or fork.table)
+    return replace(demand, figures=_sources(fork.material, pin.material))
+
+
+_of_cheek = Stress(_cheek)
+cheek_pressure = check(
     PIN_PRESSURE_SHARE,
     id="cheek_pressure",
     title="Pressure of the roller pin in its fork",
@@ -248,21 +308,15 @@ def roller_pin_pressure(solution: Solution) -> Demand:
     ),
     levers=(levers.one("roller.fork.cheek_width"), *levers.LOAD),
     page="Roller",
-)
-def cheek_pressure(solution: Solution) -> Demand:
-    """Pressure of the roller pin in its fork, Pa."""
-    roller = solution.machine.roller
-    pin = None if roller is None else roller.pin
-    fork = None if roller is None else roller.fork
-    if fork is None or pin is None:
-        return Demand(None, None, missing=(Pin.table,))
-    stress = fork_pressure(fork, pin, solution.machine.limits)
-    worst = _normal_force(solution, stress.per_newton)
-    if fork.pressure_limit is not None:
-        return Demand(worst.value, stress.allowed, worst, source=fork.source or "roller.fork")
-    cards = (fork.material, pin.material)
-    missing = tuple(key for card in cards for key in lacking_of_card(card, "tensile_strength"))
-    return Demand(worst.value, stress.allowed, worst, missing, figures=_sources(*cards))
+).measured(
+    "angles",
+    value=_of_cheek.value,
+    bound=_of_cheek.bound,
+    allowed=_cheek_allowed,
+    needed=(Pin.table,),
+    remark=_cheek_in_words,
+    kept=Kept(group=NORMAL_FORCE),
+)(normal_force)
 
 
 @check(
@@ -341,7 +395,48 @@ def moving_masses(solution: Solution) -> tuple[dict[str, float], tuple[str, ...]
     return masses, tuple(missing)
 
 
-@check(
+_TENSILE = "roller.bearing.ring.tensile_strength"
+
+
+def _groove(numbers: Numbers) -> RingBending | None:
+    """Stress at the groove of the outer ring per newton; None of a solid roller."""
+    roller = numbers.known_case.roller_given
+    preload = float(numbers["spring.preload"])
+    solved = None if roller is None else roller.ring(float(numbers["contact.width"]), preload)
+    return None if solved is None else solved.bending
+
+
+def _ring_amplitude(worst: Value, numbers: Numbers) -> Value:
+    """Amplitude at zero mean stress by the Goodman line, Pa, under a normal force, N."""
+    bending, force = _groove(numbers), np.asarray(worst)
+    if bending is None:
+        return np.full(force.shape, np.nan)
+    mean = bending.stress_mean * force
+    return goodman(bending.stress_amplitude * force, mean, float(numbers[_TENSILE]))
+
+
+def _ring_force(limit: float, numbers: Numbers) -> float | None:
+    """Normal force at an amplitude, N: a N/(1 - m N/R_m) = s_W."""
+    bending = _groove(numbers)
+    if bending is None:
+        return None
+    mean = limit * bending.stress_mean / float(numbers[_TENSILE])
+    return limit / (bending.stress_amplitude + mean)
+
+
+def _ring_in_words(demand: Demand, solution: Solution) -> Demand:
+    """Not judged of a roller that is modelled as solid."""
+    roller = solution.machine.roller
+    ring = None if roller is None else roller.bearing.ring
+    if roller is None or ring is None or roller.solid_reason:
+        reason = "there is no roller" if roller is None else roller.solid_reason
+        note = f"{reason}: the roller is modelled as solid on its hub"
+        undescribed = (OuterRing.table,) if ring is None else ()
+        return Demand(None, None, missing=undescribed, note=note, must_have=ring is None)
+    return replace(demand, figures=(ring.source,))
+
+
+roller_ring_fatigue = check(
     id="roller_ring_fatigue",
     title="Bending fatigue of the roller's outer ring",
     unit="MPa",
@@ -364,49 +459,43 @@ def moving_masses(solution: Solution) -> tuple[dict[str, float], tuple[str, ...]
     ),
     levers=(levers.Catalogued(levers.BEARING, "C0"), *levers.LOAD),
     page="Roller",
-)
-def roller_ring_fatigue(solution: Solution) -> Demand:
-    """Stress amplitude of the outer ring rolling on the cam, Pa."""
-    roller = solution.machine.roller
-    ring = None if roller is None else roller.bearing.ring
-    if roller is None or ring is None or roller.solid_reason:
-        reason = "there is no roller" if roller is None else roller.solid_reason
-        note = f"{reason}: the roller is modelled as solid on its hub"
-        undescribed = (OuterRing.table,) if ring is None else ()
-        return Demand(None, None, missing=undescribed, note=note, must_have=ring is None)
-    tensile = ring.tensile_strength
-    worst = greatest(solution.cycles, lambda cycle: _ring_amplitude(cycle.parts, tensile))
-    return Demand(
-        None if tensile is None else worst.value,
-        ring.fatigue_bending,
-        worst,
-        lacking(ring.table, ring, "fatigue_bending", "tensile_strength"),
-        figures=(ring.source,),
-    )
+).measured(
+    "angles",
+    value=_ring_amplitude,
+    bound=_ring_force,
+    allowed=of_key("roller.bearing.ring.fatigue_bending"),
+    needed=(_TENSILE,),
+    remark=_ring_in_words,
+    pointwise=True,
+    kept=Kept(group=NORMAL_FORCE),
+)(normal_force)
 
 
-def ring_force_limit(machine: Machine) -> float | None:
-    """Normal force at the bending fatigue of the outer ring, N; None without its data."""
-    roller = machine.roller
-    ring = None if roller is None else roller.bearing.ring
-    solved = roller and roller.ring(machine.contact_width, machine.spring.preload)
-    if ring is None or not solved or ring.fatigue_bending is None or ring.tensile_strength is None:
-        return None
-    bending, endured = solved.bending, ring.fatigue_bending
-    # Goodman: a N / (1 - m N / R_m) = s_W
-    return endured / (
-        bending.stress_amplitude + endured * bending.stress_mean / ring.tensile_strength
-    )
+def _bore(numbers: Numbers) -> float:
+    return 1.0 / float(2.0 * numbers["cam.bore_radius"] * numbers["cam.width"])
 
 
-def _ring_amplitude(parts: PartLoads, tensile_strength: float | None) -> Array:
-    amplitude, mean = _known(parts.ring_amplitude), _known(parts.ring_mean)
-    if tensile_strength is None:
-        return np.full_like(amplitude, np.nan)
-    return goodman(amplitude, mean, tensile_strength)
+def _bore_cards(case: Case) -> tuple[list[Material], tuple[str, ...]]:
+    """Materials of cam and camshaft, and the key of the missing one."""
+    shaft, cards = case.camshaft, [case.cam.material]
+    if not case.scope.covers("camshaft"):
+        return cards, ()
+    card = None if shaft is None else shaft.material
+    return ([*cards, card], ()) if card is not None else (cards, ("camshaft.material",))
 
 
-@check(
+def _bore_allowed(numbers: Numbers) -> Allowed:
+    cards, missing = _bore_cards(numbers.known_case)
+    known = _share_of_tensile(BORE_SHARE, cards, numbers)
+    return Allowed(None, (*missing, *known.missing)) if missing else known
+
+
+def _with_cards_of_bore(demand: Demand, solution: Solution) -> Demand:
+    return replace(demand, figures=tuple(dict.fromkeys(_sources(*_bore_cards(solution.case)[0]))))
+
+
+_of_bore = Stress(_bore)
+bore_pressure = check(
     BORE_SHARE,
     id="bore_pressure",
     title="Mean bore pressure on the camshaft",
@@ -423,37 +512,14 @@ def _ring_amplitude(parts: PartLoads, tensile_strength: float | None) -> Array:
     ),
     levers=(levers.one("cam.width"), levers.one("cam.bore_radius", most=2.0), *levers.LOAD),
     page="Cam",
-)
-def bore_pressure(solution: Solution) -> Demand:
-    """Mean pressure of the bore on the shaft, Pa."""
-    machine = solution.machine
-    worst = greatest(solution.cycles, lambda cycle: cycle.parts.bore_pressure)
-    cards, missing = _bore_cards(machine)
-    missing += [key for card in cards for key in lacking_of_card(card, "tensile_strength")]
-    return Demand(
-        worst.value,
-        bore_pressure_limit(machine),
-        worst,
-        tuple(missing),
-        figures=tuple(dict.fromkeys(f"{card.name}: {card.source}" for card in cards)),
-    )
-
-
-def _bore_cards(machine: Machine) -> tuple[list[Material], list[str]]:
-    """Materials of cam and camshaft, and the key of the missing one."""
-    shaft, cards = machine.camshaft, [machine.cam.material]
-    if not machine.scope.covers("camshaft"):
-        return cards, []
-    card = None if shaft is None else shaft.material
-    missing = ["camshaft.material"] if card is None else []
-    return [*cards, *([] if card is None else [card])], missing
-
-
-def bore_pressure_limit(machine: Machine) -> float | None:
-    """Allowed mean pressure of the bore on the shaft, Pa; None without the data."""
-    cards, missing = _bore_cards(machine)
-    known = [card.tensile_strength for card in cards if card.tensile_strength is not None]
-    return None if missing or len(known) < len(cards) else machine.limits[BORE_SHARE] * min(known)
+).measured(
+    "angles",
+    value=_of_bore.value,
+    bound=_of_bore.bound,
+    allowed=_bore_allowed,
+    remark=_with_cards_of_bore,
+    kept=Kept(group=NORMAL_FORCE),
+)(normal_force)
 
 
 @check(
@@ -530,7 +596,3 @@ def _hole(balanced: Balance) -> str:
     removes = "removes" if balanced.drilled else "would remove"
     diameter = shown(2.0 * hole.radius, "mm", 4)
     return f"{missed}; a hole of {diameter} at ({x}, {y}) {removes} {share:.0%} of it"
-
-
-def _known(values: Array | None) -> Array:
-    return np.array([np.nan]) if values is None else values

@@ -7,13 +7,15 @@ duty of the load cases; without one that in the worst load case, run all the tim
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
 import scipy
 
-from camwright.geometry.arrays import Array, Values
+from camwright.geometry.arrays import FULL_TURN, Array, Value, Values
 from camwright.geometry.errors import InputError
+from camwright.geometry.pitch_curve import magnitude
 from camwright.pipeline.base import levers
 from camwright.pipeline.base import value_groups as given
 from camwright.pipeline.base.units import factor, in_unit
@@ -27,31 +29,49 @@ from camwright.pipeline.case.limits import (
     VISCOSITY_RATIO,
 )
 from camwright.pipeline.case.machine import Machine
-from camwright.pipeline.checks.check import BY_DUTY, NONE, Declaration, Demand, check
+from camwright.pipeline.checks.check import (
+    BY_DUTY,
+    NONE,
+    Declaration,
+    Demand,
+    Kept,
+    check,
+    of_key,
+)
+from camwright.pipeline.checks.demands import NORMAL_FORCE, normal_force, rating_over
 from camwright.pipeline.checks.extremes import (
     NOWHERE,
     Extreme,
+    Measure,
+    cam_of,
     duty_parts,
-    greatest,
+    mean_of,
     over_duty,
-    worst_case,
 )
 from camwright.pipeline.checks.missing_keys import lacking, unset
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.cycle import Cycle
+from camwright.pipeline.cycle.loaded_cam import LoadedCam, not_negative
+from camwright.pipeline.cycle.numbers import Numbers
 from camwright.pipeline.cycle.solution import Solution
 from camwright.pipeline.follower import bearing_life
 from camwright.pipeline.follower.roller import Roller
 from camwright.pipeline.follower.roller_motion import (
+    BALL_LIFE_EXPONENT,
+    RATED_REVOLUTIONS,
     equivalent_load,
-    rating_life,
-    roller_motion,
-    static_safety,
+    wear,
 )
 from camwright.pipeline.follower.roller_parts import Bearing
 
-STANDSTILL = 1.0  # rpm of the roller, below which the viscosity ratio does not apply
+STANDSTILL = factor("rpm")
+"""Mean speed of the roller below which the viscosity ratio does not apply, rad/s."""
 FASTEST = 1e7  # rpm, of any roller
+MILLION_TURNS = RATED_REVOLUTIONS * FULL_TURN  # rad
+_LEAST_FORCE = 1.0  # N, of a force that damages a bearing
+_AMPLE = 100.0  # times the least mean speed, of a roller at rest, which needs no film
+_RATING, _STATIC = "roller.bearing.C", "roller.bearing.C0"
+_VISCOSITY, _CIRCLE = "roller.bearing.viscosity", "roller.bearing.pitch_diameter"
 
 
 def bearing_of(solution: Solution) -> Bearing:
@@ -68,31 +88,129 @@ def bearing_of(solution: Solution) -> Bearing:
     return roller.bearing
 
 
-def spin(cycle: Cycle) -> Array:
-    """Speed of the roller on its pin, rad/s, (n,)."""
-    contour = cycle.contour.require_roller()
-    return roller_motion(contour.pitch, contour.roller_radius, cycle.cam_speed, cycle.theta).spin
-
-
-def allowed_spin(machine: Machine) -> float | None:
-    """Maximum speed of the roller on its pin, rad/s; None without a limiting speed."""
-    speed = None if machine.roller is None else machine.roller.bearing.speed_limit
-    return None if speed is None else machine.limits[ROLLER_SPEED_SHARE] * speed
-
-
-def _force(solution: Solution) -> Extreme:
-    return greatest(solution.cycles, lambda cycle: cycle.loads.normal_force)
+def _with_card(demand: Demand, solution: Solution) -> Demand:
+    return replace(demand, figures=_card(bearing_of(solution)))
 
 
 def _card(bearing: Bearing) -> tuple[str]:
     return (f"{bearing.name}: {bearing.source}".rstrip(": "),)
 
 
-def _known(force: Array) -> bool:
-    return bool(np.isfinite(force).all())
+def _life(worst: Value, numbers: Numbers) -> Value:
+    """L10 (...), s, of a mean N^3 |n|."""
+    return rating_over(_cube(numbers), worst, np.inf)
 
 
-@check(
+def _cube(numbers: Numbers) -> Value:
+    """C^3 million turns, N^3 rad."""
+    return numbers[_RATING] ** BALL_LIFE_EXPONENT * MILLION_TURNS
+
+
+def _damage(cam: LoadedCam) -> Array:
+    """N^3 |n|, N^3 rad/s; of the demand, L10 = (C/P_m)^3 10^6/n, s: P_m^3 n is the mean."""
+    return wear(not_negative(cam.surged), cam.spin)
+
+
+def _with_damage(demand: Demand, solution: Solution) -> Demand:
+    notes = [] if demand.value is None else _damage_note(solution, _damage, _life)
+    return _with_card(replace(demand, note="; ".join(notes)), solution)
+
+
+def _modified_life(worst: Value, numbers: Numbers) -> Value:
+    """L_nm (...), s, of a mean |n| (P/C)^3/a_ISO."""
+    return rating_over(_reliable(numbers), worst, np.inf)
+
+
+def _reliable(numbers: Numbers) -> float:
+    """a1 million turns, rad."""
+    reliability = float(numbers.limit(ROLLER_RELIABILITY))
+    return bearing_life.reliability_factor(reliability) * MILLION_TURNS
+
+
+def _modified_damage(cam: LoadedCam) -> Array:
+    """|n| (P/C)^3/a_ISO, rad/s; NaN where the viscosity ratio is outside of ISO 281."""
+    kappa = _viscosity_ratio(cam.spin_mean, cam.numbers)
+    within = np.real(kappa) >= bearing_life.LEAST_VISCOSITY_RATIO
+    return _used(cam, np.where(within, kappa, np.nan))
+
+
+def _modified_kept(cam: LoadedCam, limit: float) -> Array | None:
+    """At the least viscosity ratio of ISO 281 below it; no constraint without data."""
+    if cam.numbers.get(_VISCOSITY) is None:
+        return None
+    kappa, least = _viscosity_ratio(cam.spin_mean, cam.numbers), bearing_life.LEAST_VISCOSITY_RATIO
+    return _used(cam, np.where(np.real(kappa) > least, kappa, least)) / limit
+
+
+def _used(cam: LoadedCam, kappa: Array) -> Array:
+    """|n| (P/C)^3/a_ISO (...), rad/s, at a viscosity ratio; zero of a roller at rest."""
+    numbers, surged = cam.numbers, not_negative(cam.surged)
+    force = np.where(np.real(surged) < _LEAST_FORCE, _LEAST_FORCE, surged)
+    rating, clean = float(numbers[_RATING]), cleanliness_load(numbers)
+    used = bearing_life.life_used(force, rating, clean, kappa) * magnitude(cam.spin)
+    return np.where(np.real(cam.spin_mean) < STANDSTILL, 0.0, used)
+
+
+def cleanliness_load(numbers: Numbers) -> float:
+    """e_C P_u, N."""
+    stated = numbers.get("roller.bearing.cleanliness_load")
+    if stated is not None:
+        return float(stated)
+    roller = numbers.known_case.roller_given
+    cleanliness = None if roller is None else roller.bearing.contamination
+    if cleanliness is None:
+        raise InputError("roller.bearing.contamination", "missing", "given")
+    share = bearing_life.contamination_factor(cleanliness, float(numbers[_CIRCLE]))
+    return share * float(numbers["roller.bearing.fatigue_load_limit"])
+
+
+def _with_modified_damage(demand: Demand, solution: Solution) -> Demand:
+    limits, notes = solution.machine.limits, list[str]()
+    if demand.value is not None and np.isnan(demand.value):
+        notes.append("not known for a viscosity ratio below 0.1: outside of ISO 281")
+    elif demand.value is not None:
+        notes = _damage_note(solution, _modified_damage, _modified_life)
+    reliability, card = limits.source(ROLLER_RELIABILITY), _card(bearing_of(solution))
+    figures = reliability, bearing_life.SOURCE, *card
+    return replace(demand, note="; ".join(notes), figures=figures)
+
+
+def _viscosity_ratio(mean: Value, numbers: Numbers) -> Array:
+    """Viscosity over v1 (...) at a mean speed of the roller, rad/s, at least that of standstill."""
+    held = np.where(np.real(np.asarray(mean)) < STANDSTILL, STANDSTILL, mean)
+    rated = bearing_life.rated_viscosity(held / factor("rpm"), float(numbers[_CIRCLE]))
+    return np.asarray(numbers[_VISCOSITY] / rated)
+
+
+def _film_ratio(mean: Value, numbers: Numbers) -> Value:
+    """Viscosity ratio (...) at a mean speed of the roller, rad/s; infinite at rest."""
+    return np.where(mean < STANDSTILL, np.inf, _viscosity_ratio(mean, numbers))[()]
+
+
+def _film_kept(cam: LoadedCam, limit: float) -> Array:
+    """Speed over the least mean speed; no film is necessary at rest."""
+    spin = magnitude(cam.spin)
+    turns = np.real(cam.spin_mean) >= STANDSTILL
+    return np.where(turns, spin / limit, _AMPLE + 0.0 * spin)
+
+
+def _damage_note(
+    solution: Solution, measure: Measure, life: Callable[[Value, Numbers], Value]
+) -> list[str]:
+    """Shares of the load cases in the damage of a life; none without a duty."""
+
+    def of_turn(cycle: Cycle) -> float:
+        return float(life(mean_of(solution, measure, cycle), solution.numbers))
+
+    parts = duty_parts(solution.cycles, of_turn, life=True)
+    whole = sum(parts.values())
+    if not whole > 0.0:
+        return []
+    shares = (f"{part / whole:.0%} {name}" for name, part in parts.items())
+    return [f"damage by duty: {', '.join(shares)}"]
+
+
+roller_static = check(
     ROLLER_STATIC_SAFETY,
     id="roller_static",
     title="Static safety factor of the roller bearing",
@@ -108,22 +226,18 @@ def _known(force: Array) -> bool:
     values=(*given.LOADS, "roller.bearing.C0"),
     levers=(levers.Catalogued(levers.BEARING, "C0", inverse=True), *levers.LOAD),
     page="Roller",
-)
-def roller_static(solution: Solution) -> Demand:
-    """Static safety factor s0 of the bearing."""
-    bearing, worst = bearing_of(solution), _force(solution)
-    rating = bearing.C0
-    rated = rating is not None and worst.value > 0
-    return Demand(
-        static_safety(worst.value, rating) if rated and rating is not None else None,
-        solution.machine.limits[ROLLER_STATIC_SAFETY],
-        worst,
-        lacking(bearing.table, bearing, "C0"),
-        figures=_card(bearing),
-    )
+).measured(
+    "angles",
+    value=lambda worst, numbers: rating_over(numbers[_STATIC], worst, np.nan),
+    bound=lambda limit, numbers: float(numbers[_STATIC]) / limit,
+    needed=(_STATIC,),
+    remark=_with_card,
+    deviation=0.005,
+    kept=Kept(group=NORMAL_FORCE),
+)(normal_force)
 
 
-@check(
+roller_load_share = check(
     ROLLER_LOAD_SHARE,
     id="roller_load_share",
     title="Greatest load over dynamic rating of the roller bearing",
@@ -138,22 +252,20 @@ def roller_static(solution: Solution) -> Demand:
     values=(*given.LOADS, "roller.bearing.C"),
     levers=(levers.Catalogued(levers.BEARING, "C", inverse=True), *levers.LOAD),
     page="Roller",
-)
-def roller_load_share(solution: Solution) -> Demand:
-    """Greatest normal force over the dynamic rating."""
-    bearing, worst = bearing_of(solution), _force(solution)
-    rating = bearing.C
-    return Demand(
-        worst.value / rating if rating else None,
-        solution.machine.limits[ROLLER_LOAD_SHARE],
-        worst,
-        lacking(bearing.table, bearing, "C"),
-        figures=_card(bearing),
-    )
+).measured(
+    "angles",
+    value=lambda worst, numbers: worst / numbers[_RATING],
+    bound=lambda limit, numbers: float(numbers[_RATING]) * limit,
+    needed=(_RATING,),
+    remark=_with_card,
+    deviation=0.005,
+    kept=Kept(group=NORMAL_FORCE),
+)(normal_force)
 
 
-@check(
+roller_life = check(
     ROLLER_LIFE,
+    id="roller_life",
     title="L10 rating life of the roller bearing",
     method="(C / P_m)^3 million revolutions, P_m the cube mean of the normal force,"
     " surge of a coil spring included",
@@ -175,44 +287,18 @@ def roller_load_share(solution: Solution) -> Demand:
     ),
     levers=(levers.Catalogued(levers.BEARING, "C"), *levers.LOAD),
     page="Roller",
-)
-def roller_life(solution: Solution) -> Demand:
-    """L10 rating life of the bearing, s."""
-    bearing, target = bearing_of(solution), solution.machine.limits[ROLLER_LIFE]
-
-    def life(cycle: Cycle) -> float:
-        return _life(cycle, bearing.C)
-
-    worst = over_duty(solution.cycles, life, life=True)
-    return Demand(
-        worst.value,
-        target,
-        worst,
-        (*lacking(bearing.table, bearing, "C"), *unset(solution.machine.limits, ROLLER_LIFE)),
-        note="; ".join(damage_note(solution, life)),
-        figures=_card(bearing),
-    )
+).measured(
+    "life",
+    value=_life,
+    bound=lambda limit, numbers: float(_cube(numbers)) / limit,
+    needed=(_RATING,),
+    remark=_with_damage,
+    deviation=0.03,
+    kept=Kept(power=1.0 / BALL_LIFE_EXPONENT),
+)(_damage)
 
 
-def damage_note(solution: Solution, life: Callable[[Cycle], float]) -> list[str]:
-    """Shares of the load cases in the damage of a life; none without a duty."""
-    parts = duty_parts(solution.cycles, life, life=True)
-    whole = sum(parts.values())
-    if not whole > 0.0:
-        return []
-    shares = (f"{part / whole:.0%} {name}" for name, part in parts.items())
-    return [f"damage by duty: {', '.join(shares)}"]
-
-
-def _life(cycle: Cycle, rating: float | None) -> float:
-    """L10, s; NaN without a rating or a force."""
-    force = cycle.surged_force
-    if rating is None or not _known(force):
-        return np.nan
-    return float(rating_life(force, spin(cycle), rating).seconds)
-
-
-@check(
+roller_modified_life = check(
     ROLLER_LIFE,
     id="roller_modified_life",
     title="Modified rating life of the roller bearing",
@@ -241,43 +327,20 @@ def _life(cycle: Cycle, rating: float | None) -> float:
         *levers.LOAD,
     ),
     page="Roller",
-)
-def roller_modified_life(solution: Solution) -> Demand:
-    """Modified rating life L_nm of the bearing, s."""
-    bearing, limits = bearing_of(solution), solution.machine.limits
-    rating, endured, circle = bearing.C, bearing.fatigue_load_limit, bearing.ball_circle
-    cleanliness, viscosity = bearing.contamination, bearing.viscosity
-    missing = lacking(
-        bearing.table, bearing, "C", "fatigue_load_limit", "contamination", "viscosity"
-    )
-    missing += _no_ball_circle(bearing) + unset(limits, ROLLER_LIFE)
-    worst, notes = NOWHERE, list[str]()
-    if rating and endured and cleanliness and viscosity and circle:
-        share = bearing_life.contamination_factor(cleanliness, circle)
-
-        def life(cycle: Cycle) -> float:
-            force, kappa = cycle.surged_force, _viscosity_ratio(cycle, bearing)
-            if np.isinf(kappa):
-                return np.inf
-            if not _known(force) or not kappa >= bearing_life.LEAST_VISCOSITY_RATIO:
-                return np.nan
-            return bearing_life.modified_life(
-                force, spin(cycle), rating, share * endured, kappa, limits[ROLLER_RELIABILITY]
-            )
-
-        worst = over_duty(solution.cycles, life, life=True)
-        if np.isnan(worst.value):
-            notes.append("not known for a viscosity ratio below 0.1: outside of ISO 281")
-        else:
-            notes += damage_note(solution, life)
-    return Demand(
-        worst.value,
-        limits[ROLLER_LIFE],
-        worst,
-        missing,
-        note="; ".join(notes),
-        figures=(limits.source(ROLLER_RELIABILITY), bearing_life.SOURCE, *_card(bearing)),
-    )
+).measured(
+    "life",
+    value=_modified_life,
+    bound=lambda limit, numbers: _reliable(numbers) / limit,
+    needed=(
+        _RATING,
+        "roller.bearing.fatigue_load_limit",
+        "roller.bearing.contamination",
+        _VISCOSITY,
+        _CIRCLE,
+    ),
+    remark=_with_modified_damage,
+    kept=Kept(_modified_kept, power=1.0 / BALL_LIFE_EXPONENT),
+)(_modified_damage)
 
 
 @check(
@@ -301,22 +364,20 @@ def roller_modified_life(solution: Solution) -> Demand:
         *levers.GENTLER,
     ),
     page="Roller",
+).measured(
+    "angles",
+    allowed=of_key("roller.bearing.speed_limit", ROLLER_SPEED_SHARE),
+    remark=lambda demand, solution: replace(demand, figures=(bearing_of(solution).source,)),
+    deviation=0.0002,
+    kept=Kept(),
 )
-def roller_speed(solution: Solution) -> Demand:
-    """Maximum speed of the roller on its pin, rad/s."""
-    bearing, allowed = bearing_of(solution), allowed_spin(solution.machine)
-    worst = greatest(solution.cycles, lambda cycle: np.abs(spin(cycle)))
-    return Demand(
-        worst.value,
-        allowed,
-        worst,
-        lacking(bearing.table, bearing, "speed_limit"),
-        figures=(bearing.source,),
-    )
+def roller_speed(cam: LoadedCam) -> Array:
+    """Speed of the roller on its pin, rad/s."""
+    return magnitude(cam.spin)
 
 
 def _outer_ring(name: str, words: str, symbol: str, reason: str, key: str) -> Declaration:
-    @check(
+    return check(
         id=name,
         title=f"Normal force vs. maximum {words} load of the outer ring",
         unit="N",
@@ -332,19 +393,13 @@ def _outer_ring(name: str, words: str, symbol: str, reason: str, key: str) -> De
         values=(*given.LOADS, f"roller.bearing.{key}"),
         levers=(levers.Catalogued(levers.BEARING, key, inverse=True), *levers.LOAD),
         page="Roller",
-    )
-    def against_the_ring(solution: Solution) -> Demand:
-        """Maximum normal force, N, against the rating of an unsupported outer ring."""
-        bearing, worst = bearing_of(solution), _force(solution)
-        return Demand(
-            worst.value,
-            getattr(bearing, key),
-            worst,
-            lacking(bearing.table, bearing, key),
-            figures=_card(bearing),
-        )
-
-    return against_the_ring
+    ).measured(
+        "angles",
+        allowed=of_key(f"roller.bearing.{key}"),
+        remark=_with_card,
+        deviation=0.005,
+        kept=Kept(group=NORMAL_FORCE),
+    )(normal_force)
 
 
 roller_radial = _outer_ring(
@@ -376,25 +431,22 @@ roller_static_radial = _outer_ring(
     values=("roller.bearing.viscosity", "roller.bearing.*pitch_diameter"),
     levers=(levers.one("roller.bearing.viscosity"),),
     page="Roller",
+).measured(
+    "mean",
+    worst="least",
+    value=_film_ratio,
+    bound=lambda limit, numbers: least_speed(
+        float(numbers[_VISCOSITY]), float(numbers[_CIRCLE]), limit
+    ),
+    needed=(_VISCOSITY, _CIRCLE),
+    remark=lambda demand, solution: replace(
+        demand, figures=(bearing_life.SOURCE, bearing_of(solution).source)
+    ),
+    kept=Kept(_film_kept, power=-1.0),
 )
-def bearing_lubrication(solution: Solution) -> Demand:
-    """Viscosity ratio of the roller bearing."""
-    bearing = bearing_of(solution)
-    worst = worst_case(
-        solution.cycles, lambda cycle: _viscosity_ratio(cycle, bearing), at_least=True
-    )
-    return Demand(
-        worst.value,
-        solution.machine.limits[VISCOSITY_RATIO],
-        worst,
-        lacking(bearing.table, bearing, "viscosity") + _no_ball_circle(bearing),
-        figures=(bearing_life.SOURCE, bearing.source),
-    )
-
-
-def _no_ball_circle(bearing: Bearing) -> tuple[str, ...]:
-    """Key of the pitch diameter of the balls where neither the bearing nor its ring has one."""
-    return () if bearing.ball_circle else lacking(bearing.table, bearing, "pitch_diameter")
+def bearing_lubrication(cam: LoadedCam) -> Array:
+    """Speed of the roller on its pin, rad/s; of the demand, viscosity ratio at its mean."""
+    return magnitude(cam.spin)
 
 
 def least_speed(viscosity: float, circle: float, ratio: float) -> float | None:
@@ -410,26 +462,11 @@ def least_speed(viscosity: float, circle: float, ratio: float) -> float | None:
         rated = bearing_life.rated_viscosity(np.exp(np.asarray(log_speed)), circle)
         return float(np.log(viscosity / rated / ratio))
 
-    ends = np.log(STANDSTILL), np.log(FASTEST)
+    ends = np.log(STANDSTILL / factor("rpm")), np.log(FASTEST)
     if not excess(ends[0]) < 0.0 < excess(ends[1]):
         return None
     speed = float(np.exp(scipy.optimize.brentq(excess, *ends, xtol=1e-13)))
     return speed * factor("rpm")
-
-
-def _viscosity_ratio(cycle: Cycle, bearing: Bearing) -> float:
-    """Viscosity ratio at the mean speed; infinite at rest, NaN without its data."""
-    speed, viscosity, circle = _mean_speed(cycle), bearing.viscosity, bearing.ball_circle
-    if viscosity is None or circle is None or np.isnan(speed):
-        return np.nan
-    if speed < STANDSTILL:
-        return np.inf
-    return viscosity / float(bearing_life.rated_viscosity(np.asarray(speed), circle))
-
-
-def _mean_speed(cycle: Cycle) -> float:
-    """Mean speed of the roller, rpm."""
-    return in_unit(float(np.mean(np.abs(spin(cycle)))), "rpm")
 
 
 @check(
@@ -489,12 +526,16 @@ def grease_life(solution: Solution) -> Demand | None:
 
 def _grease_life(cycle: Cycle, solution: Solution) -> float:
     """Estimated life of the grease in a load case, s; NaN without its data or out of its range."""
-    bearing, force, roller = bearing_of(solution), cycle.loads.normal_force, solution.machine.roller
-    if not bearing.C or bearing.temperature is None or roller is None or not _known(force):
+    bearing, roller, cam = bearing_of(solution), solution.machine.roller, cam_of(solution, cycle)
+    if not bearing.C or bearing.temperature is None or roller is None:
         return np.nan
-    share = float(equivalent_load(force, spin(cycle))) / bearing.C
+    if not np.isfinite(cam.normal).all():
+        return np.nan
+    share = float(equivalent_load(cam.normal, cam.spin)) / bearing.C
     across = _greased_diameter(roller)
-    return bearing_life.grease_life(_mean_speed(cycle), across, share, bearing.temperature)
+    return bearing_life.grease_life(
+        in_unit(float(cam.spin_mean), "rpm"), across, share, bearing.temperature
+    )
 
 
 def _greased_diameter(roller: Roller) -> float:

@@ -211,7 +211,7 @@ spring_fatigue = check(
 ).measured(
     "top",
     value=lambda worst, _: 1.0 / worst,
-    bound=lambda limit: 1.0 / limit,
+    bound=lambda limit, _: 1.0 / limit,
     remark=_at_rest,
     solved=_fatigue_over_speed,
     deviation=0.1,

@@ -10,6 +10,7 @@ import numpy as np
 
 from camwright.geometry.arrays import Array
 from camwright.geometry.extrema import first_greatest
+from camwright.geometry.pitch_curve import magnitude
 from camwright.pipeline.base import levers
 from camwright.pipeline.base import value_groups as given
 from camwright.pipeline.base.material import Material
@@ -23,20 +24,22 @@ from camwright.pipeline.case.limits import (
 )
 from camwright.pipeline.case.machine import Machine
 from camwright.pipeline.checks import demands
-from camwright.pipeline.checks.check import NONE, Demand, check
-from camwright.pipeline.checks.contact_strength import endurance_of, peak_pressure
+from camwright.pipeline.checks.check import NONE, Demand, Kept, check, of_key
+from camwright.pipeline.checks.contact_strength import endurance_of
 from camwright.pipeline.checks.extremes import greatest, least, worst_case
 from camwright.pipeline.checks.missing_keys import (
     lacking,
     lacking_ends,
     lacking_of_card,
-    no_friction,
 )
 from camwright.pipeline.contact.oil_film import Lubricant
 from camwright.pipeline.contact.rolling_envelope import Envelope
+from camwright.pipeline.contact.traction import rolling_demand
 from camwright.pipeline.cycle.cycle import Cycle
+from camwright.pipeline.cycle.loaded_cam import LoadedCam, not_negative, roller_of
 from camwright.pipeline.cycle.rolling_history import SweptStress
 from camwright.pipeline.cycle.solution import Solution
+from camwright.pipeline.follower.roller_motion import path_speed_slope
 
 CASE_CARBURISED = 1500e6  # Pa, quality MQ
 BUCKINGHAM_MAX = 400.0  # HB
@@ -44,7 +47,30 @@ THROUGH_HARDENED_MAX = 390.0  # HV
 RULE_RATIO = 1.5
 
 
-@check(
+def _tangential(cam: LoadedCam) -> Array:
+    """Magnitude of the tangential force of rolling without slip, N."""
+    path, jet, drag = roller_of(cam.motion), cam.jet, cam.drag
+    if drag is None:
+        return np.full(np.shape(cam.normal), np.nan)
+    rate = path_speed_slope(path.along, path.height, jet.slope, jet.bend, path.path_speed)
+    acceleration, force = cam.speed**2 * rate / path.size, not_negative(cam.normal)
+    return magnitude(rolling_demand(drag, force, cam.spin, acceleration, path.size))
+
+
+def _traction(cam: LoadedCam) -> Array:
+    """Tangential over normal force of rolling without slip; 0 where unloaded."""
+    share = demands.over_contact_force(_tangential(cam), cam.normal, cam.least_spring)
+    return np.where(np.real(cam.normal) <= 0.0, 0.0, share)
+
+
+def _traction_kept(cam: LoadedCam, friction: float) -> Array | None:
+    """No constraint without the drag of the roller."""
+    if cam.drag is None:
+        return None
+    return demands.over_normal_force(cam, _tangential(cam) / friction)
+
+
+traction_demand = check(
     id="traction_demand",
     title="Traction coefficient vs. friction coefficient",
     source="rolling without slip, Rothbart, Cam Design Handbook (2004), eq. 10.7: verify",
@@ -57,13 +83,14 @@ RULE_RATIO = 1.5
     reason="a roller that slips wears the track, and its endurance is that of sliding",
     values=given.TRACTION,
     page="Contact",
-)
-def traction_demand(solution: Solution) -> Demand:
-    """Maximum tangential over normal force of rolling without slip."""
-    return _traction_demand(solution, 1.0)
+).measured(
+    "angles",
+    allowed=of_key("roller.friction"),
+    kept=Kept(_traction_kept),
+)(_traction)
 
 
-@check(
+traction_reserve = check(
     TRACTION_SHARE,
     id="traction_reserve",
     title="Traction coefficient vs. share of the friction coefficient",
@@ -76,20 +103,7 @@ def traction_demand(solution: Solution) -> Demand:
     " traction_demand",
     values=given.TRACTION,
     page="Contact",
-)
-def traction_reserve(solution: Solution) -> Demand:
-    """Maximum tangential over normal force of rolling, against a share of friction."""
-    return _traction_demand(solution, solution.machine.limits[TRACTION_SHARE])
-
-
-def _traction_demand(solution: Solution, share: float) -> Demand:
-    worst, friction = greatest(solution.cycles, _traction), solution.machine.follower.friction
-    return Demand(
-        worst.value,
-        None if friction is None else share * friction,
-        worst,
-        no_friction(solution.machine),
-    )
+).measured("angles", allowed=of_key("roller.friction", TRACTION_SHARE))(_traction)
 
 
 @check(
@@ -440,7 +454,7 @@ def _estimate(
 
     lacks: keys that the rule needs; reason: why it does not hold for a card that has them.
     """
-    worst = peak_pressure(solution)
+    worst = greatest(solution.cycles, lambda cycle: cycle.surface.p0)
     limits = {body: rule(card) for body, card in bodies.items()}
     known = {body: value for body, value in limits.items() if value is not None}
     incomplete = {body: card for body, card in bodies.items() if body not in known}
@@ -534,16 +548,6 @@ def gear_limit(card: Material) -> float | None:
         return None
     slope, start, most = lines[card.treatment]
     return slope * card.hardness_vickers + start if card.hardness_vickers <= most else None
-
-
-def _traction(cycle: Cycle) -> Array:
-    """Traction coefficient (n,), 0 where unloaded; NaN where it is not known."""
-    demand, normal = cycle.rolling.traction_demand, cycle.loads.normal_force
-    if demand is None:
-        return np.full(cycle.theta.size, np.nan)
-    force = demand * normal
-    share = demands.over_contact_force(force, normal, cycle.least_spring_force)
-    return np.where(np.isnan(demand), 0.0, share)
 
 
 def _lambda(cycle: Cycle) -> Array:

@@ -107,7 +107,7 @@ def peak_pressure_square(line_load: Values, curvature: Values | float, modulus: 
     return line_load * curvature * (modulus / np.pi)
 
 
-def half_width_square(line_load: Values, radius: Values | float, modulus: float) -> Values:
+def half_width_square(line_load: Values, radius: Values | float, modulus: Value) -> Values:
     """a^2 (...), m^2, at the relative radius R, m."""
     return line_load * radius * (4.0 / (np.pi * modulus))
 

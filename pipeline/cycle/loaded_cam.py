@@ -14,13 +14,14 @@ from typing import NamedTuple
 import numpy as np
 
 from camwright.geometry.arrays import Array, Value
-from camwright.geometry.errors import InputError
+from camwright.geometry.errors import GeometryError, InputError
 from camwright.geometry.flat_face_contour import FaceMotion
 from camwright.geometry.follower_path import Motion, Reaction
 from camwright.geometry.lift import Jet
-from camwright.geometry.pitch_curve import RollerMotion, magnitude
+from camwright.geometry.pitch_curve import RollerMotion, magnitude, rolling_share
 from camwright.pipeline.case.case_values import wound_spring
-from camwright.pipeline.contact.hertz import peak_pressure_square
+from camwright.pipeline.contact.hertz import half_width_square, peak_pressure_square
+from camwright.pipeline.contact.traction import Drag
 from camwright.pipeline.cycle.numbers import Numbers
 from camwright.pipeline.follower.follower_forces import levers
 from camwright.pipeline.follower.spring import SpringWork, WoundWire
@@ -34,6 +35,32 @@ def motion_of(jet: Jet, numbers: Numbers) -> Motion:
         friction = numbers.get("follower.face.friction")
         return FaceMotion(jet, prime, offset, 0.0 if friction is None else friction)
     return RollerMotion(jet, np.sqrt(prime**2 - offset**2), offset, numbers["roller.radius"])
+
+
+def roller_of(path: Motion) -> RollerMotion:
+    """The motion of a roller.
+
+    Raises
+    ------
+    GeometryError
+        If it is that of a flat face.
+    """
+    if isinstance(path, RollerMotion):
+        return path
+    raise GeometryError("the follower of the cam is no roller")
+
+
+def face_of(path: Motion) -> FaceMotion:
+    """The motion of a flat face.
+
+    Raises
+    ------
+    GeometryError
+        If it is that of a roller.
+    """
+    if isinstance(path, FaceMotion):
+        return path
+    raise GeometryError("the follower of the cam is no flat face")
 
 
 def not_negative(values: Array) -> Array:
@@ -105,6 +132,13 @@ class LoadedCam:
         return None if case is None else case.spring.shape
 
     @property
+    def drag(self) -> Drag | None:
+        """Inertia and drag of the roller; None without one."""
+        case = self.numbers.case
+        roller = None if case is None else case.roller_given
+        return None if roller is None else roller.drag
+
+    @property
     def speed(self) -> Value:
         """Cam speed, rad/s."""
         return self.numbers["cam.speed"]
@@ -123,6 +157,13 @@ class LoadedCam:
     def spin(self) -> Array:
         """Speed of the roller on its pin, rad/s."""
         return np.asarray(self.speed * self.motion.rolling)
+
+    @property
+    def spin_mean(self) -> Array:
+        """Mean speed of the roller over the turn (..., 1), rad/s: of one on the prime circle."""
+        numbers = self.numbers
+        rolling = rolling_share(np.asarray(numbers["cam.prime_radius"]), numbers["roller.radius"])
+        return np.asarray(self.speed * rolling)
 
     @cached_property
     def reactions(self) -> tuple[Reaction, Reaction]:
@@ -309,3 +350,22 @@ class LoadedCam:
     def p0(self) -> Array:
         """Contact pressure in the middle of the line of contact, Pa."""
         return self.pressure_factor * np.sqrt(self.flat_square / (1.0 - self.motion.sharpness))
+
+    @property
+    def p0_signed(self) -> Array:
+        """Contact pressure with ends and tilt, Pa; here that of a line without ends."""
+        return self.p0
+
+    @property
+    def half_width(self) -> Array:
+        """Half-width of the contact, m: at the same force it falls as the pressure rises."""
+        numbers, radius = self.numbers, self.motion.size * (1.0 - self.motion.sharpness)
+        force = np.where(np.real(self.normal) < _LEAST_FORCE, _LEAST_FORCE, self.normal)
+        radius = np.where(np.real(radius) < _LEAST_RADIUS, _LEAST_RADIUS, radius)
+        load = force / numbers["contact.width"]
+        square = half_width_square(load, radius, numbers["contact.modulus"])
+        return np.sqrt(square) / self.pressure_factor
+
+
+_LEAST_FORCE = 1.0  # N, of a half-width
+_LEAST_RADIUS = 1e-6  # m, of curvature, of a half-width

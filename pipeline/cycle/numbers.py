@@ -10,6 +10,7 @@ from camwright.geometry.arrays import Value
 from camwright.geometry.errors import InputError
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_values import value_of
+from camwright.pipeline.case.limits import AnyLimit
 from camwright.pipeline.follower.guide_friction import friction_limits
 
 
@@ -51,6 +52,29 @@ class Numbers:
             raise InputError(key, "missing", "given")
         return value
 
+    def limit(self, row: AnyLimit) -> Value:
+        """Value of a row of the table of limits.
+
+        Raises
+        ------
+        InputError
+            If there is none.
+        """
+        return self[f"limits.{row.id}"]
+
+    @property
+    def known_case(self) -> Case:
+        """Case of the numbers.
+
+        Raises
+        ------
+        InputError
+            If there is none.
+        """
+        if self.case is None:
+            raise InputError("case", "missing", "known, to read what is no number")
+        return self.case
+
     def __or__(self, changed: Mapping[str, Value | None]) -> Numbers:
         """With other numbers; what is read from the case is read once."""
         return Numbers({**self.changed, **changed}, self.case, self._read)
@@ -84,6 +108,14 @@ def _size(numbers: Numbers) -> Value:
     return numbers["roller.radius"] if width is None else 0.5 * width
 
 
+def _ball_circle(numbers: Numbers) -> Value | None:
+    """Pitch diameter of the balls, m: of the bearing, else of its ring."""
+    own: Value | None = None
+    if numbers.case is not None:
+        own = value_of(numbers.case, "roller.bearing.pitch_diameter")
+    return numbers.get("roller.bearing.ring.pitch_diameter") if own is None else own
+
+
 DERIVED: Mapping[str, Callable[[Numbers], Value | None]] = {
     "guides.a.friction_greatest": partial(_greatest_friction, "guides.a"),
     "guides.b.friction_greatest": partial(_greatest_friction, "guides.b"),
@@ -92,5 +124,6 @@ DERIVED: Mapping[str, Callable[[Numbers], Value | None]] = {
     "guides.a.mouth": _mouth,
     "follower.extent": _extent,
     "follower.size": _size,
+    "roller.bearing.pitch_diameter": _ball_circle,
 }
 """Numbers that follow from others, unless they are stated themselves."""

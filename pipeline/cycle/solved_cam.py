@@ -178,6 +178,10 @@ class SolvedCam(ForcesCam):
         return self.cycle.parts.friction.greatest.jam_index
 
     @property
+    def spin_mean(self) -> Array:
+        return np.asarray(np.mean(np.abs(self.spin)))
+
+    @property
     def surged(self) -> Array:
         return self.cycle.surged_force
 
@@ -198,6 +202,15 @@ class SolvedCam(ForcesCam):
     @property
     def p0(self) -> Array:
         return self.cycle.surface.p0
+
+    @property
+    def p0_signed(self) -> Array:
+        """NaN without the ends."""
+        return self.cycle.signed_pressure
+
+    @property
+    def half_width(self) -> Array:
+        return self.cycle.contact.half_width
 
 
 def _jet(cycle: Cycle, numbers: Numbers, loads: Loads) -> tuple[Jet, Numbers, float]:

@@ -8,10 +8,10 @@ from types import MappingProxyType
 import numpy as np
 from numpy.typing import ArrayLike
 
-from camwright.geometry.arrays import FULL_TURN, Array, Values, finite
+from camwright.geometry.arrays import Array, Values, finite
 from camwright.geometry.errors import InputError
 from camwright.pipeline.base.units import celsius
-from camwright.pipeline.follower.roller_motion import BALL_LIFE_EXPONENT, RATED_REVOLUTIONS
+from camwright.pipeline.follower.roller_motion import BALL_LIFE_EXPONENT
 from camwright.pipeline.follower.roller_parts import Cleanliness
 
 LEAST_VISCOSITY_RATIO, GREATEST_VISCOSITY_RATIO = 0.1, 4.0  # range of a_ISO, ISO 281:2007, 9.3.3
@@ -103,13 +103,13 @@ def _within_standard(viscosity_ratio: float) -> None:
 def _modification(viscosity_ratio: Values, load: Values) -> Values:
     """a_ISO of kappa and e_C P_u / P, which a complex step may have changed."""
     most = GREATEST_VISCOSITY_RATIO
-    kappa = np.where(np.real(viscosity_ratio) < most, viscosity_ratio, most)
+    kappa = np.where(np.real(viscosity_ratio) > most, most, viscosity_ratio)
     size = np.real(kappa)
     exponent = np.where(size < 0.4, 0.054381, np.where(size < 1.0, 0.19087, 0.071739))
     film = np.where(size < 0.4, 2.2649, 1.9987) / kappa**exponent
     left = 1.0 - (2.5671 - film) ** 0.83 * load ** (1.0 / 3.0)
     least = (0.1 / GREATEST_MODIFICATION) ** (1.0 / 9.3)
-    modified: Values = 0.1 * np.where(np.real(left) > least, left, least) ** -9.3
+    modified: Values = 0.1 * np.where(np.real(left) < least, least, left) ** -9.3
     return modified
 
 
@@ -127,41 +127,6 @@ def life_used(
     """
     modified = _modification(viscosity_ratio, cleanliness_load / force)
     return (force / dynamic_rating) ** BALL_LIFE_EXPONENT / modified
-
-
-def modified_life(
-    normal_force: Array,
-    spin: Array,
-    dynamic_rating: float,
-    cleanliness_load: float,
-    viscosity_ratio: float,
-    reliability: float,
-) -> float:
-    """Modified rating life L_nm under the load of a turn, s; infinite without load.
-
-    The shares of life at the positions of the turn are added up, each with the a_ISO of its load:
-    1/L = sum q_i/(a1 a_ISO,i (C/P_i)^3).
-
-    Parameters
-    ----------
-    normal_force, spin : array (n,)   N, >= 0, and rad/s, at positions equally spaced in time
-    dynamic_rating : float            C, N, > 0
-    cleanliness_load : float          e_C P_u, N, >= 0
-    viscosity_ratio : float           kappa at the mean speed
-    reliability : float               0.9 to 1
-
-    References
-    ----------
-    ISO 281:2007, 9.3: L_nm = a1 a_ISO L10; Palmgren and Miner for the varying load.
-    """
-    loaded = normal_force > 0.0
-    force = normal_force[loaded]
-    _within_standard(viscosity_ratio)
-    used = life_used(force, dynamic_rating, cleanliness_load, np.asarray(viscosity_ratio))
-    rate = float(np.sum(used * np.abs(spin[loaded]))) / normal_force.size / FULL_TURN
-    if rate == 0.0:
-        return np.inf
-    return reliability_factor(reliability) * RATED_REVOLUTIONS / rate
 
 
 def grease_life(

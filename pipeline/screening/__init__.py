@@ -10,7 +10,6 @@ In the order of the calculation:
 | `design_arrays`     | lift, contour and load cases of many designs        | s, m                 |
 | `screened_shape`    | checks that are declared by a measure               |                      |
 | `screened_loads`    | checks of the torque                                | N m                  |
-| `screened_contact`  | checks of contact, roller bearing and flat face     | p0, Pa; h            |
 | `screened_checks`   | the checks that screening judges                    |                      |
 | `design_screening`  | columns of the screening: demands, status, `screen` | as in the record     |
 

@@ -11,7 +11,7 @@ import numpy as np
 from camwright.geometry.arrays import FULL_TURN, Array
 from camwright.geometry.extrema import sampled_least
 from camwright.geometry.follower_path import Motion
-from camwright.pipeline.contact.hertz import peak_pressure_square
+from camwright.pipeline.contact.hertz import half_width_square, peak_pressure_square
 from camwright.pipeline.cycle.length_history import FactorRange
 from camwright.pipeline.cycle.loaded_cam import LoadedCam, OfGuides
 from camwright.pipeline.follower.follower_forces import REST, LoadEnds, ends_of, share_left
@@ -68,6 +68,11 @@ class ScreenedCam(LoadedCam):
         """Slope of the lift, m/rad; zero in a dwell."""
         slope = self.jet.slope
         return np.where(np.abs(slope) > REST * self.block.stroke, slope, 0.0)
+
+    @property
+    def spin_mean(self) -> Array:
+        """Mean speed of the roller over the turn (m, 1), rad/s."""
+        return np.mean(np.abs(self.spin), axis=-1, keepdims=True)
 
     @cached_property
     def least_spring(self) -> Array:
@@ -180,6 +185,12 @@ class ScreenedCam(LoadedCam):
         if factors is None:
             return self._unsolved
         return self.p0_line * np.maximum(factors.level, factors.tilted)
+
+    @property
+    def half_width(self) -> Array:
+        load = np.maximum(self.normal, 0.0) / self.numbers["contact.width"]
+        modulus = self.numbers["contact.modulus"]
+        return np.sqrt(half_width_square(load, self.block.relative_radius, modulus))
 
     @property
     def _unsolved(self) -> Array:

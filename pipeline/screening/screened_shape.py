@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 
 from camwright.geometry.arrays import Array, Value
 from camwright.geometry.errors import InputError
 from camwright.geometry.extrema import sampled_greatest, sampled_least
-from camwright.pipeline.checks.check import Declaration, Measured
+from camwright.pipeline.checks.check import Bounded, Declaration, Measured
 from camwright.pipeline.checks.extremes import BY_DUTY, Measure
 from camwright.pipeline.screening.design_arrays import Designs, Judged, Screened
+from camwright.pipeline.screening.design_lengths import has_many_shapes
 
 
 def by_measure(declared: Declaration) -> Screened:
@@ -28,15 +29,23 @@ def by_measure(declared: Declaration) -> Screened:
 
     def judged(designs: Designs) -> Judged:
         numbers, shape = designs.numbers, (designs.count, 1)
-        allowed = how.allowed(numbers).value
+        allowed, _, if_exceeded = how.allowed(numbers)
         demand, limit = _demand(measure, how, designs), np.nan if allowed is None else allowed
         demand, limit = np.broadcast_to(demand, shape), np.broadcast_to(limit, shape)
+        limit = np.where(demand > limit, limit, np.nan) if if_exceeded else limit
         if own := how.limits_of_strokes(numbers):
             demands = [_demand(each.measure, how, designs) for each in how.strokes]
             demand, limit = _of_strokes(demand, limit, demands, own)
         return demand[:, 0], np.asarray(limit, dtype=float)[:, 0]
 
-    return Screened(declared.id, judged, how.deviation, how.applies)
+    return Screened(declared.id, judged, how.deviation, how.applies, _BOUNDED[how.bounded])
+
+
+_BOUNDED: Mapping[Bounded, Callable[[Designs], bool]] = {
+    "": lambda _: False,
+    "crown": lambda designs: designs.machine.is_crowned and has_many_shapes(designs),
+    "line": has_many_shapes,
+}
 
 
 def _of_strokes(

@@ -8,7 +8,7 @@ from typing import Literal, NamedTuple, TypedDict
 import numpy as np
 import scipy
 
-from camwright.geometry.arrays import FULL_TURN, Array, Value
+from camwright.geometry.arrays import Array, Value
 from camwright.geometry.lift import Jet
 from camwright.pipeline.base.material import ROOM
 from camwright.pipeline.case.case import Case
@@ -17,15 +17,11 @@ from camwright.pipeline.case.limits import (
     JAM_INDEX,
     JUMP_SPEED,
     PRESSURE_ANGLE,
-    ROLLER_LIFE,
-    ROLLER_LOAD_SHARE,
-    ROLLER_RELIABILITY,
     ROLLER_STATIC_SAFETY,
-    VISCOSITY_RATIO,
 )
 from camwright.pipeline.case.machine import Machine, machines
+from camwright.pipeline.checks import roller_bearing
 from camwright.pipeline.checks.cam_shape import least_concave_radius, lift
-from camwright.pipeline.checks.camshaft_strength import tooth_torque_limits
 from camwright.pipeline.checks.check import Declaration, Measured
 from camwright.pipeline.checks.contact_strength import (
     FACE_PASSES,
@@ -33,19 +29,12 @@ from camwright.pipeline.checks.contact_strength import (
     life_turns,
     pressure_allowables,
 )
+from camwright.pipeline.checks.demands import CAM_TORQUE, NORMAL_FORCE, PRESSURE, TOOTH_TORQUE
 from camwright.pipeline.checks.guide_strength import pv_limit
 from camwright.pipeline.checks.guide_wear import greatest_temperatures, pv_of_wear
-from camwright.pipeline.checks.key_strength import keyway_root_of, torque_limits
-from camwright.pipeline.checks.part_strength import (
-    allowed_pin_stress,
-    bore_pressure_limit,
-    fork_pressure,
-    pin_shear,
-    ring_force_limit,
-    seat_pressure,
-)
+from camwright.pipeline.checks.key_strength import keyway_root_of
 from camwright.pipeline.checks.registry import CHECKS
-from camwright.pipeline.checks.roller_bearing import Grease, allowed_spin, grease_of, least_speed
+from camwright.pipeline.checks.roller_bearing import Grease, grease_of
 from camwright.pipeline.contact.traction import Drag
 from camwright.pipeline.cycle.loaded_cam import LoadedCam
 from camwright.pipeline.cycle.numbers import Numbers
@@ -53,17 +42,14 @@ from camwright.pipeline.cycle.part_loads import edge_pressure_of
 from camwright.pipeline.cycle.solution import Solution
 from camwright.pipeline.cycle.solved_cam import ContourCam, numbers_of
 from camwright.pipeline.cycle.speed_sweep import highest_speed
-from camwright.pipeline.follower.bearing_life import contamination_factor, reliability_factor
 from camwright.pipeline.follower.guide_friction import thermal_resistance
 from camwright.pipeline.follower.guide_reactions import Guide
 from camwright.pipeline.follower.roller import Roller
-from camwright.pipeline.follower.roller_parts import Bearing
 from camwright.pipeline.follower.spring import SpringWork
 from camwright.pipeline.follower.spring_kinds import GasSpring
 from camwright.pipeline.smoothing.constraints import rows_kept
 from camwright.pipeline.smoothing.scenario import Face, ModifiedLife, Ratings
 
-MILLION_TURNS = 1e6 * FULL_TURN  # rad
 _TRAVEL_LEAST, _TRAVEL_MOST = 1e-6, 1.0  # m, of any spring
 _LINE_LOADS = (1.0, 1e9)  # N/m, of any guide
 
@@ -71,11 +57,11 @@ _LINE_LOADS = (1.0, 1e9)  # N/m, of any guide
 def ratings_of(case: Case) -> Ratings:
     """Ratings of a case."""
     states = machines(case)
-    machine, covers = states[0], case.scope.covers
+    machine, covers, numbers = states[0], case.scope.covers, numbers_of(case, states)
     limits, guides = machine.limits, machine.guides
     roller, face = machine.roller, machine.face
-    pressure, pressure_by = _least(pressure_allowables(machine, greatest_cycles(case)))
-    normal_force, normal_force_by = _least(force_limits(case))
+    pressure, pressure_by = _least(_pressure_limits(machine, case))
+    normal_force, normal_force_by = _least(part_limits(case, NORMAL_FORCE))
     by_rating = normal_force_by == "roller_static"
     # Without a stated over-speed the contact is kept at the fastest load case.
     over = highest_speed(states) / machine.gear_ratio
@@ -85,15 +71,15 @@ def ratings_of(case: Case) -> Ratings:
     by_guide: _GuideRatings = {}
     if covers("guides"):
         by_guide = _of_guides(case, machine, fastest=over)
-    torque, torque_by = _least(torque_limits(machine))
-    tooth, tooth_by = _least(tooth_torque_limits(machine))
+    torque, torque_by = _least(part_limits(case, CAM_TORQUE))
+    tooth, tooth_by = _least(part_limits(case, TOOTH_TORQUE))
     shaft, cam = machine.camshaft, machine.cam
     band = cam.profile_tolerance
     by_roller: _RollerRatings = {}
     if roller is not None:
         by_roller = _of_roller(machine, roller)
     if roller is not None and covers("roller_bearing"):
-        by_roller |= _of_bearing(machine, roller.bearing)
+        by_roller |= _of_bearing(numbers)
     return Ratings(
         roller_radius=machine.follower.contact_radius or 0.0,
         face=None if face is None else Face(face.width, face.side_friction, face.pv_limit),
@@ -132,11 +118,11 @@ class _RollerRatings(TypedDict, total=False):
     drag: Drag
     grease: Grease | None
     dynamic_rating: float | None
-    life_force_cubed: float
+    life_force_cubed: float | None
     roller_spin: float | None
     modified: ModifiedLife
     modified_rate: float
-    roller_spin_least: float
+    roller_spin_least: float | None
 
 
 def _of_roller(machine: Machine, roller: Roller) -> _RollerRatings:
@@ -149,26 +135,29 @@ def _of_roller(machine: Machine, roller: Roller) -> _RollerRatings:
     }
 
 
-def _of_bearing(machine: Machine, bearing: Bearing) -> _RollerRatings:
+def _of_bearing(numbers: Numbers) -> _RollerRatings:
     """Ratings of the roller bearing by life, speed, film and cleanliness."""
-    rated: _RollerRatings = {"roller_spin": allowed_spin(machine)}
-    limits, life = machine.limits, machine.limits[ROLLER_LIFE]
-    if bearing.C is not None and life is not None:
-        rated["life_force_cubed"] = bearing.C**3 * MILLION_TURNS / life
-    viscosity, circle = bearing.viscosity, bearing.ball_circle
-    if viscosity is None or circle is None:
-        return rated
-    slowest = least_speed(viscosity, circle, limits[VISCOSITY_RATIO])
-    if slowest is not None:
-        rated["roller_spin_least"] = slowest
-    rating, endured, cleanliness = bearing.C, bearing.fatigue_load_limit, bearing.contamination
-    if rating and endured and cleanliness and life:
-        share = contamination_factor(cleanliness, circle)
-        rated["modified"] = ModifiedLife(rating, share * endured, viscosity, circle)
-        rated["modified_rate"] = (
-            reliability_factor(limits[ROLLER_RELIABILITY]) * MILLION_TURNS / life
+    life = limit_of(roller_bearing.roller_life, numbers)
+    rated: _RollerRatings = {
+        "roller_spin": limit_of(roller_bearing.roller_speed, numbers),
+        "life_force_cubed": life,
+        "roller_spin_least": limit_of(roller_bearing.bearing_lubrication, numbers),
+    }
+    rate = limit_of(roller_bearing.roller_modified_life, numbers)
+    if rate is not None:
+        rated["modified"] = ModifiedLife(
+            float(numbers["roller.bearing.C"]),
+            roller_bearing.cleanliness_load(numbers),
+            float(numbers["roller.bearing.viscosity"]),
+            float(numbers["roller.bearing.pitch_diameter"]),
         )
+        rated["modified_rate"] = rate
     return rated
+
+
+def limit_of(declared: Declaration, numbers: Numbers) -> float | None:
+    """Limit of a check in terms of its measure, SI; None where it is not known or not kept."""
+    return None if declared.measured is None else declared.measured.limit_of_measure(numbers)
 
 
 class _GuideRatings(TypedDict, total=False):
@@ -345,8 +334,8 @@ def corrected_ratings(ratings: Ratings, solved: Solution) -> Ratings:
     """Ratings with the limits that follow from a solved cam; see `surge_of`, `scaled_limits`."""
     case = solved.case
     forces, pressures = scaled_limits(solved)
-    pressure = _least(pressure_allowables(solved.machine, greatest_cycles(case)) | pressures)
-    force = _least(force_limits(case) | forces)
+    pressure = _least(_pressure_limits(solved.machine, case) | pressures)
+    force = _least(part_limits(case, NORMAL_FORCE) | forces)
     static = force[1] == "roller_static"
     return replace(
         ratings,
@@ -402,43 +391,26 @@ def _travel(one: Declaration, how: Measured, numbers: Numbers, last: Surge) -> f
     return float(scipy.optimize.brentq(excess, least, most, xtol=1e-12))
 
 
-def force_limits(case: Case) -> dict[str, float]:
-    """Greatest normal force allowed by each check that the scope covers, N, by its id."""
-    roller, allowed = case.roller_given, {}
-    if roller is not None:
-        allowed = _forces_of_roller(case, roller)
-    pressure = bore_pressure_limit(machines(case)[0])
-    if pressure is not None:
-        allowed["bore_pressure"] = pressure * 2.0 * case.cam.bore_radius * case.cam.width
-    return allowed
+def _pressure_limits(machine: Machine, case: Case) -> dict[str, float]:
+    estimated = pressure_allowables(machine, greatest_cycles(case))
+    return part_limits(case, PRESSURE) | estimated
 
 
-def _forces_of_roller(case: Case, roller: Roller) -> dict[str, float]:
-    limits, covers = case.limits, case.scope.covers
-    bearing, pin = roller.bearing, roller.pin if covers("pin") else None
-    fork = roller.fork if covers("fork") else None
-    rated = {
-        "roller_static": None if bearing.C0 is None else bearing.C0 / limits[ROLLER_STATIC_SAFETY],
-        "roller_radial": bearing.radial_limit,
-        "roller_static_radial": bearing.static_radial_limit,
-        "roller_load_share": None if bearing.C is None else bearing.C * limits[ROLLER_LOAD_SHARE],
-        "roller_ring_fatigue": ring_force_limit(machines(case)[0]),
-    }
-    allowed = {}
-    if covers("roller_bearing"):
-        allowed = {name: force for name, force in rated.items() if force is not None}
-    if pin is not None and roller.pin_stress_per_newton is not None:
-        allowed["roller_pin"] = allowed_pin_stress(pin, limits) / roller.pin_stress_per_newton
-    stresses = {}
-    if pin is not None:
-        stresses["roller_pin_shear"] = pin_shear(pin, limits)
-        stresses["roller_pin_pressure"] = seat_pressure(roller, pin, limits)
-    if pin is not None and fork is not None:
-        stresses["cheek_pressure"] = fork_pressure(fork, pin, limits)
-    for name, stress in stresses.items():
-        if stress.allowed is not None:
-            allowed[name] = stress.allowed / stress.per_newton
-    return allowed
+def part_limits(case: Case, group: str) -> dict[str, float]:
+    """Greatest force, torque or pressure, SI, allowed by each check of a group, by its id.
+
+    Without those outside the scope.
+    """
+    states, limits = machines(case), {}
+    numbers = numbers_of(case, states)
+    for each in CHECKS:
+        how = each.measured
+        if how is None or how.kept is None or how.kept.group != group:
+            continue
+        limit = how.limit_of_measure(numbers) if each.concerns(states[0]) else None
+        if limit is not None:
+            limits[each.id] = limit
+    return limits
 
 
 def _least(limits: dict[str, float]) -> tuple[float | None, str]:

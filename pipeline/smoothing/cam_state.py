@@ -15,18 +15,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from camwright.geometry.arrays import Array, Value
-from camwright.geometry.errors import GeometryError, InputError
-from camwright.geometry.flat_face_contour import FaceMotion
-from camwright.geometry.follower_path import Motion
+from camwright.geometry.errors import InputError
 from camwright.geometry.lift import Jet
-from camwright.geometry.pitch_curve import RollerMotion, magnitude
+from camwright.geometry.pitch_curve import magnitude, rolling_share
 from camwright.pipeline.case.limits import CONTACT_FORCE_MARGIN, AnyLimit, Limit, OpenLimit
 from camwright.pipeline.checks.check import Declaration
 from camwright.pipeline.checks.extremes import BY_DUTY
+from camwright.pipeline.contact.traction import Drag
 from camwright.pipeline.cycle.loaded_cam import (
     LoadedCam,
     OfGuides,
     not_negative,
+    roller_of,
 )
 from camwright.pipeline.cycle.numbers import Numbers
 from camwright.pipeline.follower.spring_kinds import SpringShape, rise, shaped_deflection
@@ -69,6 +69,7 @@ def _shaped_jet(energy: tuple[Array, ...], variables: DesignVariables, shape: Sp
 def _fixed(variables: DesignVariables, ratings: Ratings) -> dict[str, Value | None]:
     """Numbers of the machine that no scenario changes."""
     waves = ratings.waves
+    modified = ratings.modified
     fixed: dict[str, Value | None] = {
         "cam.prime_radius": variables.prime_radius,
         "cam.offset": ratings.offset,
@@ -76,6 +77,7 @@ def _fixed(variables: DesignVariables, ratings: Ratings) -> dict[str, Value | No
         "contact.width": ratings.contact_width,
         "contact.modulus": ratings.contact_modulus,
         "cam.held_radius": ratings.held_radius,
+        "camshaft.drag": ratings.shaft_drag,
         "cam.fastest": ratings.overspeed,
         "cam.profile_tolerance": None if waves is None else 2.0 * waves[0],
         "cam.waviness_length": None if waves is None else waves[1],
@@ -85,6 +87,13 @@ def _fixed(variables: DesignVariables, ratings: Ratings) -> dict[str, Value | No
         "follower.size": ratings.follower_size,
         f"limits.{CONTACT_FORCE_MARGIN.id}": ratings.limits.get(CONTACT_FORCE_MARGIN),
     }
+    if modified is not None:
+        fixed |= {
+            "roller.bearing.C": modified.rating,
+            "roller.bearing.cleanliness_load": modified.cleanliness_load,
+            "roller.bearing.viscosity": modified.viscosity,
+            "roller.bearing.pitch_diameter": modified.circle,
+        }
     if ratings.face is not None:
         fixed |= {
             "follower.face.width": ratings.face.width,
@@ -116,8 +125,20 @@ class ScenarioCam(LoadedCam):
         return self.scenario.correction
 
     @property
+    def drag(self) -> Drag | None:
+        return self.ratings.drag
+
+    @property
     def spring_shape(self) -> SpringShape | None:
         return self.variables.shape
+
+    @cached_property
+    def spin_mean(self) -> Array:
+        """That of the solved cam; before, of a roller on the prime circle."""
+        rolling, path = self.fix.rolling[..., :1], roller_of(self.motion)  # one value
+        prime = path.prime_radius[..., :1]
+        share = np.where(rolling > 0.0, rolling, rolling_share(prime, path.size))
+        return np.asarray(self.scenario.cam_speed * share)
 
     @property
     def direction(self) -> Array:
@@ -298,32 +319,6 @@ def by_duty(terms: Array, scenario: Scenario, power: float = 1.0) -> Mean:
     )
 
 
-def roller_of(path: Motion) -> RollerMotion:
-    """The motion of a roller.
-
-    Raises
-    ------
-    GeometryError
-        If it is that of a flat face.
-    """
-    if isinstance(path, RollerMotion):
-        return path
-    raise GeometryError("the follower of the cam is no roller")
-
-
-def face_of(path: Motion) -> FaceMotion:
-    """The motion of a flat face.
-
-    Raises
-    ------
-    GeometryError
-        If it is that of a roller.
-    """
-    if isinstance(path, FaceMotion):
-        return path
-    raise GeometryError("the follower of the cam is no flat face")
-
-
 State = TypeVar("State", LoadedCam, ScenarioCam)
 
 
@@ -373,16 +368,22 @@ def kept(
 ) -> Constraint[LoadedCam]:
     """Constraint of a check that is declared by a measure.
 
-    limit: ratings -> limit of a part; None: the row of the check
+    limit: ratings -> limit of a part, of the measure; None: the row of the check
     """
     how, measure, row = declared.measured, declared.measure, declared.limit
     of_part = row if limit is None else limit
     if how is None or measure is None or how.kept is None or of_part is None:
         raise InputError(declared.id, "not declared", "kept by the synthesis, see `Measured`")
+    use = partial(how.use, measure)
+
+    def of_row(cam: LoadedCam, stated: float) -> Array | None:
+        bound = how.bound(stated, cam.numbers)
+        return None if bound is None else use(cam, bound)
+
     return Constraint(
         declared.id,
         of_part,
-        partial(how.use, measure),
+        of_row if limit is None and how.kept.use is None else use,
         factor_max=how.kept.factor_max,
         value_max=how.kept.value_max,
         needs=declared.needs,
@@ -390,9 +391,15 @@ def kept(
 
 
 def kept_loads(
-    declared: Declaration, limit: Callable[[Ratings], float | None] | None = None
+    declared: Declaration,
+    limit: Callable[[Ratings], float | None] | None = None,
+    *,
+    needs: Literal["", "roller", "face"] = "",
 ) -> Constraint[ScenarioCam]:
-    """As `kept`, of a check on the loads: over the turn and the load cases where it is reduced."""
+    """As `kept`, of a check on the loads: over the turn and the load cases where it is reduced.
+
+    needs: kind of follower of the constraint of a group; "": that of the check
+    """
     of_cam, how = kept(declared, limit), declared.measured
 
     def utilisation(cam: ScenarioCam, limit: float) -> Array | Mean | None:
@@ -406,5 +413,10 @@ def kept_loads(
         return by_duty(use, cam.scenario, how.kept.power) if how.reduce in BY_DUTY else use
 
     return Constraint(
-        of_cam.check, of_cam.limit, utilisation, of_cam.factor_max, of_cam.value_max, of_cam.needs
+        of_cam.check,
+        of_cam.limit,
+        utilisation,
+        of_cam.factor_max,
+        of_cam.value_max,
+        needs or of_cam.needs,
     )

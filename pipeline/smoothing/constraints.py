@@ -16,19 +16,24 @@ from typing import Literal
 
 from camwright.geometry.arrays import Array
 from camwright.geometry.lift import Jet
-from camwright.geometry.pitch_curve import magnitude
 from camwright.pipeline.case.limits import (
     AnyLimit,
 )
-from camwright.pipeline.checks import cam_shape, guide_strength, jump_and_jamming, manufacture
-from camwright.pipeline.cycle.loaded_cam import LoadedCam, not_negative
-from camwright.pipeline.follower.roller_motion import BALL_LIFE_EXPONENT, wear
+from camwright.pipeline.checks import (
+    cam_shape,
+    contact_strength,
+    guide_strength,
+    jump_and_jamming,
+    manufacture,
+    part_strength,
+    roller_bearing,
+)
+from camwright.pipeline.cycle.loaded_cam import LoadedCam
 from camwright.pipeline.smoothing.cam_state import (
     Constraint,
     Mean,
     ScenarioCam,
     State,
-    by_duty,
     kept,
     kept_loads,
     loaded,
@@ -37,7 +42,6 @@ from camwright.pipeline.smoothing.cam_state import (
 from camwright.pipeline.smoothing.part_constraints import (
     PART_SHAPE,
     PARTS,
-    line_pressure,
 )
 from camwright.pipeline.smoothing.scenario import DesignVariables, Ratings, Scenario
 
@@ -95,12 +99,6 @@ def _utilisations(
     return uses
 
 
-def _roller_life(at: ScenarioCam, limit: float) -> Mean:
-    """Of L10 = (C / P_m)^3 1e6 turns / mean spin, where P_m^3 mean spin is the mean of N^3 |n|."""
-    terms = wear(not_negative(at.surged), at.spin) / limit
-    return by_duty(terms, at.scenario, 1.0 / BALL_LIFE_EXPONENT)
-
-
 SHAPE: tuple[Constraint[LoadedCam], ...] = (
     kept(cam_shape.spring_travel, lambda ratings: ratings.travel),
     kept(cam_shape.pressure_angle),
@@ -115,34 +113,17 @@ SHAPE: tuple[Constraint[LoadedCam], ...] = (
 """Limits on the shape of the cam."""
 
 LOADS: tuple[Constraint[ScenarioCam], ...] = (
-    Constraint("contact_pressure", lambda ratings: ratings.pressure, line_pressure),
+    kept_loads(contact_strength.contact_pressure, lambda ratings: ratings.pressure),
     kept_loads(jump_and_jamming.contact_force_margin),
     kept_loads(jump_and_jamming.contact_at_overspeed),
     kept_loads(jump_and_jamming.jump),
     kept_loads(jump_and_jamming.jump_speed, lambda ratings: ratings.jump_speed),
     kept_loads(jump_and_jamming.jam_index),
     kept_loads(jump_and_jamming.jam_index_friction_max),
-    Constraint(
-        "roller_static",
-        lambda ratings: ratings.normal_force,
-        lambda at, limit: at.normal / limit,
-        needs="roller",
-    ),
-    Constraint(
-        "bore_pressure",
-        lambda ratings: ratings.normal_force,
-        lambda at, limit: at.normal / limit,
-        needs="face",
-    ),
-    Constraint(
-        "roller_speed",
-        lambda ratings: ratings.roller_spin,
-        lambda at, limit: magnitude(at.spin) / limit,
-        needs="roller",
-    ),
-    Constraint(
-        "roller_life", lambda ratings: ratings.life_force_cubed, _roller_life, needs="roller"
-    ),
+    kept_loads(roller_bearing.roller_static, lambda ratings: ratings.normal_force),
+    kept_loads(part_strength.bore_pressure, lambda ratings: ratings.normal_force, needs="face"),
+    kept_loads(roller_bearing.roller_speed, lambda ratings: ratings.roller_spin),
+    kept_loads(roller_bearing.roller_life, lambda ratings: ratings.life_force_cubed),
     kept_loads(guide_strength.guide_pressure_a, lambda ratings: ratings.guide_pressure[0]),
     kept_loads(guide_strength.guide_pv_a, lambda ratings: ratings.guide_pv[0]),
     kept_loads(guide_strength.guide_pressure_b, lambda ratings: ratings.guide_pressure[1]),

@@ -9,31 +9,30 @@ from __future__ import annotations
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
-from camwright.geometry.arrays import Array, Value
-from camwright.geometry.pitch_curve import magnitude, rolling_share
-from camwright.pipeline.base.units import factor
+from camwright.geometry.arrays import Array
+from camwright.geometry.pitch_curve import magnitude
 from camwright.pipeline.case.limits import (
     CONTACT_FORCE_MARGIN,
     KEYWAY_SAFETY,
 )
 from camwright.pipeline.checks import (
+    camshaft_strength,
     demands,
+    flat_face_sliding,
     guide_strength,
     guide_wear,
+    key_strength,
     manufacture,
+    roller_bearing,
     spring_strength,
+    surface_durability,
 )
 from camwright.pipeline.checks.roller_bearing import STANDSTILL
-from camwright.pipeline.contact.hertz import half_width_square
-from camwright.pipeline.contact.traction import rolling_demand
 from camwright.pipeline.cycle.loaded_cam import LoadedCam, not_negative
 from camwright.pipeline.follower import bearing_life
-from camwright.pipeline.follower.flat_face_motion import MEAN_SHARE
 from camwright.pipeline.follower.roller_motion import (
     BALL_LIFE_EXPONENT,
-    path_speed_slope,
     wear,
 )
 from camwright.pipeline.smoothing.cam_state import (
@@ -41,18 +40,11 @@ from camwright.pipeline.smoothing.cam_state import (
     Mean,
     ScenarioCam,
     Total,
-    by_duty,
     duty_shares,
-    face_of,
     kept,
     kept_loads,
-    roller_of,
     where_applies,
 )
-
-_LEAST_FORCE = 1.0  # N, of a force that damages a bearing
-_LEAST_RADIUS = 1e-6  # m, of curvature, of a half-width
-_AMPLE = 100.0  # times the least mean speed, of a roller at rest, which needs no film
 
 Side = Literal["A", "B"]
 
@@ -67,18 +59,6 @@ def _guide_edge_pressure(side: Side) -> Constraint[ScenarioCam]:
     return Constraint(
         f"guide_edge_pressure_{side}", lambda ratings: ratings.guide_edge_load[place], utilisation
     )
-
-
-def _traction_demand(at: ScenarioCam, friction: float) -> Array | None:
-    if at.ratings.drag is None:
-        return None
-    jet, path = at.jet, roller_of(at.motion)
-    radius = path.size
-    rate = path_speed_slope(path.along, path.height, jet.slope, jet.bend, path.path_speed)
-    acceleration = at.scenario.cam_speed**2 * rate / radius
-    force = not_negative(at.normal)
-    demand = rolling_demand(at.ratings.drag, force, at.spin, acceleration, radius)
-    return demands.over_normal_force(at, magnitude(demand) / friction)
 
 
 def _swept_force(at: ScenarioCam, limit: float) -> Array | None:
@@ -116,36 +96,6 @@ def _keyway_root(at: ScenarioCam, limit: float) -> Array | None:
     return keyway.used_by(magnitude(at.torque), magnitude(at.normal), wall) * limit
 
 
-def _mean_spin(at: ScenarioCam) -> tuple[Array, NDArray[np.bool_]]:
-    """Mean speed of the roller (..., 1), rad/s, at least that of standstill; whether it turns.
-
-    That of the solved cam; before, of a roller on the prime circle.
-    """
-    rolling, path = at.fix.rolling[..., :1], roller_of(at.motion)  # one value
-    prime = path.prime_radius[..., :1]
-    share = np.where(rolling > 0.0, rolling, rolling_share(prime, path.size))
-    mean, least = at.scenario.cam_speed * share, STANDSTILL * factor("rpm")
-    turns = np.real(mean) >= least
-    return np.where(turns, mean, least), turns
-
-
-def _modified_life(at: ScenarioCam, limit: float) -> Mean | None:
-    """Of 1/L = sum q_i/(a1 a_ISO (C/P_i)^3), kappa at the mean speed of the roller."""
-    bearing = at.ratings.modified
-    if bearing is None:
-        return None
-    force = np.where(
-        np.real(not_negative(at.surged)) > _LEAST_FORCE, not_negative(at.surged), _LEAST_FORCE
-    )
-    speed, turns = _mean_spin(at)
-    rated = bearing_life.rated_viscosity(speed / factor("rpm"), bearing.circle)
-    kappa, least = bearing.viscosity / rated, bearing_life.LEAST_VISCOSITY_RATIO
-    kappa = np.where(np.real(kappa) > least, kappa, least)
-    used = bearing_life.life_used(force, bearing.rating, bearing.cleanliness_load, kappa)
-    terms = turns * used * magnitude(at.spin) / limit
-    return by_duty(terms, at.scenario, 1.0 / BALL_LIFE_EXPONENT)
-
-
 def _grease_life(at: ScenarioCam, limit: float) -> Mean | None:
     """Equivalent load over that at the life of the grease, both at the mean speed.
 
@@ -155,7 +105,8 @@ def _grease_life(at: ScenarioCam, limit: float) -> Mean | None:
     grease = at.ratings.grease
     if grease is None:
         return None
-    speed, turns = _mean_spin(at)
+    turns = np.real(at.spin_mean) >= STANDSTILL
+    speed = np.where(turns, at.spin_mean, STANDSTILL)
     worn = wear(not_negative(at.normal), at.spin) / (limit**BALL_LIFE_EXPONENT * speed)
     shares, root = duty_shares(at.scenario), 1.0 / BALL_LIFE_EXPONENT
     if shares is None:
@@ -180,40 +131,6 @@ def _grease_life(at: ScenarioCam, limit: float) -> Mean | None:
     return Mean(terms, total=Total(of, members))
 
 
-def _lubrication(at: ScenarioCam, limit: float) -> Mean:
-    """Least mean speed of the roller over its mean speed; no film is necessary at rest."""
-    spin = magnitude(at.spin)
-    _, turns = _mean_spin(at)
-    return Mean(np.where(turns, spin / limit, _AMPLE + 0.0 * spin), -1.0)
-
-
-def _face_width(at: ScenarioCam, width: float) -> Array:
-    """Twice the distance of the contact from the stem axis and its half-width, over the width.
-
-    At the same force the half-width falls as the pressure rises.
-    """
-    ratings, path = at.ratings, face_of(at.motion)
-    force = np.where(np.real(at.normal) > _LEAST_FORCE, at.normal, _LEAST_FORCE)
-    radius = np.where(np.real(path.radius) > _LEAST_RADIUS, path.radius, _LEAST_RADIUS)
-    load = force / ratings.contact_width
-    half = np.sqrt(half_width_square(load, radius, ratings.contact_modulus))
-    return 2.0 * (magnitude(path.arm) + half / at.fix.contact) / width
-
-
-def _face_pv(at: ScenarioCam, limit: float) -> Array:
-    """As `line_pressure`, of the pressure whose mean is at the PV limit at the sliding speed."""
-    return line_pressure(at, limit / (MEAN_SHARE * at.scenario.cam_speed * at.motion.height))
-
-
-def line_pressure(at: ScenarioCam, allowed: Value) -> Array:
-    """sharpness + R_p / size <= 1, equivalent to p0 <= allowed.
-
-    R_p is the relative radius at which the line contact has the allowed pressure. Pressure and
-    undercut depend on the same undercut factor, 1 - sharpness.
-    """
-    return at.motion.sharpness + at.pressure_factor**2 * at.flat_square / allowed**2
-
-
 PART_SHAPE: tuple[Constraint[LoadedCam], ...] = (
     kept(guide_strength.guide_speed_a, lambda ratings: ratings.guide_slope[0]),
     kept(guide_strength.guide_speed_b, lambda ratings: ratings.guide_slope[1]),
@@ -229,22 +146,12 @@ PARTS: tuple[Constraint[ScenarioCam], ...] = (
     kept_loads(guide_strength.guide_temperature_b, lambda ratings: ratings.guide_power[1]),
     kept_loads(guide_wear.guide_wear_a, lambda ratings: ratings.guide_wear_pv[0]),
     kept_loads(guide_wear.guide_wear_b, lambda ratings: ratings.guide_wear_pv[1]),
-    Constraint(
-        "traction_demand", lambda ratings: ratings.friction, _traction_demand, needs="roller"
-    ),
+    kept_loads(surface_durability.traction_demand, lambda ratings: ratings.friction),
     kept_loads(manufacture.profile_waviness),
     Constraint("contact_over_speed", CONTACT_FORCE_MARGIN, _swept_force),
     Constraint("elastic_contact", CONTACT_FORCE_MARGIN, _elastic_contact),
-    Constraint(
-        "key_pressure",
-        lambda ratings: ratings.cam_torque,
-        lambda at, limit: magnitude(at.torque) / limit,
-    ),
-    Constraint(
-        "gear_bending",
-        lambda ratings: ratings.tooth_torque,
-        lambda at, limit: magnitude(at.torque + at.ratings.shaft_drag) / limit,
-    ),
+    kept_loads(key_strength.key_pressure, lambda ratings: ratings.cam_torque),
+    kept_loads(camshaft_strength.gear_bending, lambda ratings: ratings.tooth_torque),
     Constraint("keyway_root", KEYWAY_SAFETY, _keyway_root),
     Constraint(
         "grease_life",
@@ -252,21 +159,9 @@ PARTS: tuple[Constraint[ScenarioCam], ...] = (
         _grease_life,
         needs="roller",
     ),
-    Constraint(
-        "roller_modified_life",
-        lambda ratings: ratings.modified_rate,
-        _modified_life,
-        needs="roller",
-    ),
-    Constraint(
-        "bearing_lubrication",
-        lambda ratings: ratings.roller_spin_least,
-        _lubrication,
-        needs="roller",
-    ),
-    Constraint(
-        "face_width", lambda ratings: ratings.face and ratings.face.width, _face_width, needs="face"
-    ),
-    Constraint("face_pv", lambda ratings: ratings.face and ratings.face.pv, _face_pv, needs="face"),
+    kept_loads(roller_bearing.roller_modified_life, lambda ratings: ratings.modified_rate),
+    kept_loads(roller_bearing.bearing_lubrication, lambda ratings: ratings.roller_spin_least),
+    kept_loads(flat_face_sliding.face_width, lambda ratings: ratings.face and ratings.face.width),
+    kept_loads(flat_face_sliding.face_pv, lambda ratings: ratings.face and ratings.face.pv),
 )
 """Limits of the parts on the loads of the cam in one scenario."""

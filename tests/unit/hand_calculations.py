@@ -97,6 +97,31 @@ def pin_fatigue() -> float:
     return float(least)
 
 
+def traction() -> float:
+    """Inertia of the solid ring 8/4 mm over 300 + 100 sin N: its centre runs at |P'| w."""
+    slope, high = 0.5 * made.STROKE * np.sin(made.THETA), made.BASE + S
+    length = np.hypot(slope, high)
+    rate = made.CAM_SPEED**2 * (slope * BEND + high * slope) / length / made.ROLLER
+    inertia = 0.5 * 7850.0 * np.pi * (0.008**4 - 0.004**4) * 0.01
+    return float(np.max(np.abs(inertia * rate / made.ROLLER) / (300.0 + 100.0 * made.WAVE)))
+
+
+def sliding() -> float:
+    """Mean pressure, pi/4 of 800 + 100 sin MPa, times w (r + s) of a face, MPa m/s."""
+    speed = made.CAM_SPEED * (made.BASE + S)
+    return float(np.max(0.25 * np.pi * (800.0 + 100.0 * made.WAVE) * speed))
+
+
+def ring_amplitude(force: float) -> float:
+    """Goodman, MPa: the stress of the outer ring per newton is solved; its strength is 2000 MPa."""
+    roller = made.case().roller
+    assert roller is not None
+    solved = roller.ring(0.01, made.PRELOAD)
+    assert solved is not None
+    amplitude = solved.bending.stress_amplitude * force
+    return float(1e-6 * amplitude / (1.0 - solved.bending.stress_mean * force / 2000e6))
+
+
 def moving_mass() -> float:
     """Roller about its pin, pin, cheeks and bridge, stem, a fifth of the spring, g."""
     steel, stem = 7.85e-3, 140.0 - 12.0 - 5.0  # g/mm3; mm beyond the fork

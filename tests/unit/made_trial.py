@@ -276,12 +276,11 @@ def _pressure(base: Cycle, torque: np.ndarray) -> np.ndarray:
 
 
 def _rolling(base: Cycle) -> RollingHistory:
-    still, sliding = np.zeros(POSITIONS), base.rolling.sliding
+    still = np.zeros(POSITIONS)
     rolling = put(
         base.rolling,
         traction_demand=0.02 + 0.01 * WAVE,
         von_mises=420e6 + 100e6 * WAVE,
-        sliding=sliding and replace(sliding, pv=100e6 + 50e6 * WAVE),
     )
     return replace(
         rolling,
@@ -336,11 +335,7 @@ def _parts(base: Cycle) -> PartLoads:
         heat_b=heat,
         heat_max_a=hot_a,
         heat_max_b=hot_b,
-        pin_stress=200e6 + 100e6 * WAVE,
-        ring_amplitude=300e6 + 100e6 * WAVE,
-        ring_mean=np.full(POSITIONS, 400e6),
         key_pressure=100e6 * WAVE,
-        bore_pressure=20e6 + 10e6 * WAVE,
         reversals=(),
     )
 

@@ -319,16 +319,16 @@ tried(
     "traction_demand",
     limited("traction_demand", lambda mu: with_part("roller", friction=mu)),
     lambda: with_part("roller", friction=None),
-    lambda: with_rolling(traction_demand=None),
-    0.03,
-    "0.02 + 0.01 sin",
+    lambda: with_loads(normal_force=NAN),
+    by_hand.traction(),
+    "I d2(phi)/dt2 / (r N)",
 )
 by_limit(
     "traction_reserve",
     "traction_share",
-    lambda: with_rolling(traction_demand=None),
-    0.03,
-    "0.02 + 0.01 sin",
+    lambda: with_loads(normal_force=NAN),
+    by_hand.traction(),
+    "I d2(phi)/dt2 / (r N)",
     factor=1.0 / 0.1,
     missing=lambda: with_part("roller", friction=None),
 )

@@ -21,7 +21,6 @@ from trial_variants import (
     with_loads,
     with_material,
     with_part,
-    with_parts,
     with_ring,
     with_shaft,
     with_speed,
@@ -193,9 +192,9 @@ by_limit(
 by_limit(
     "bore_pressure",
     "bore_share",
-    lambda: with_parts(bore_pressure=NAN),
-    30.0,
-    "20 + 10 sin; N/(d w) in test_parts_checks",
+    lambda: with_loads(normal_force=NAN),
+    400.0 / (17.0 * 10.0),
+    "N/(d w)",
     factor=1.0 / 900e6,
     missing=lambda: with_material("steel", tensile_strength=None),
 )
@@ -325,9 +324,9 @@ tried(
 by_limit(
     "roller_pin",
     "pin_share",
-    lambda: with_parts(pin_stress=NAN),
-    300.0,
-    "200 + 100 sin; 32 M/(pi d^3) in test_parts_checks",
+    lambda: with_loads(normal_force=NAN),
+    32.0 * 400.0 * (16.0 / 4.0 - 10.0 / 8.0) / (np.pi * 5.0**3),
+    "32 M/(pi d^3)",
     factor=1.0 / 1500e6,
     missing=lambda: with_part("roller", pin=None),
 )
@@ -379,9 +378,9 @@ tried(
     "roller_ring_fatigue",
     limited("roller_ring_fatigue", lambda p: with_ring(fatigue_bending=p)),
     lambda: with_ring(fatigue_bending=None),
-    lambda: with_parts(ring_amplitude=NAN),
-    400.0 / (1.0 - 0.2),
-    "Goodman: 400 MPa about 400 of 2000, Shigley ch. 6",
+    lambda: with_loads(normal_force=NAN),
+    by_hand.ring_amplitude(400.0),
+    "Goodman, the solved stress per newton, Shigley ch. 6",
 )
 tried(
     "torque_reversals",

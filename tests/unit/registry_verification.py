@@ -6,7 +6,6 @@ import numpy as np
 from check_tools import by_limit, limited, loaded, tried
 from trial_variants import (
     NAN,
-    NO_ROLLING,
     cycle_with,
     faced,
     unknown,
@@ -208,9 +207,9 @@ tried(
     "face_pv",
     limited("face_pv", lambda pv: faced(pv_limit=pv), faced),
     lambda: faced(pv_limit=None),
-    lambda: faced(made.cycle(made.face_contour(), rolling=NO_ROLLING)),
-    150.0,
-    "100 + 50 sin",
+    lambda: faced(cycle_with("contact", made.cycle(made.face_contour()), p0=NAN)),
+    by_hand.sliding(),
+    "pi/4 p0 w (r + s)",
     base=faced,
 )
 # verification of the solution

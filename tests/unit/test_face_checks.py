@@ -1,5 +1,6 @@
 """Checks of a flat face: at their limits, and what they leave out."""
 
+import hand_calculations as by_hand
 import made_trial as made
 import pytest
 from trial_variants import faced
@@ -12,7 +13,7 @@ from camwright.pipeline.checks import (
 )
 from camwright.pipeline.checks.registry import FORECAST
 
-HALF_WIDTH, PV = 1e-4, 150e6
+HALF_WIDTH, PV = 1e-4, 1e6 * by_hand.sliding()
 
 
 @pytest.mark.parametrize(("share", "status"), [(0.99, "fail"), (1.01, "pass")])

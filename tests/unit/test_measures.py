@@ -118,7 +118,9 @@ def test_the_bound_of_a_measure_is_at_the_limit_of_the_demand(
     if how.kept is None or how.kept.use is not None:
         pytest.skip("another form of the inequality, which the agreement of constraints holds")
     for limit in (0.3, 0.6):
-        demand = how.value(np.float64(how.bound(limit)), NUMBERS[follower])
+        bound = how.bound(limit, NUMBERS[follower])
+        assert bound is not None
+        demand = how.value(np.float64(bound), NUMBERS[follower])
         assert demand == pytest.approx(limit, rel=1e-14)
 
 

@@ -20,6 +20,7 @@ from camwright.pipeline.checks.contact_strength import (
     load_cycles,
     pressure_allowables,
 )
+from camwright.pipeline.checks.demands import NORMAL_FORCE, PRESSURE
 from camwright.pipeline.checks.key_strength import KeywayRoot
 from camwright.pipeline.checks.registry import CHECKS, checks_of
 from camwright.pipeline.checks.roller_bearing import Grease
@@ -28,7 +29,7 @@ from camwright.pipeline.contact.traction import Drag
 from camwright.pipeline.cycle.solution import Solution, solution
 from camwright.pipeline.follower.roller_parts import Fork
 from camwright.pipeline.smoothing.allowables import (
-    force_limits,
+    part_limits,
     ratings_of,
     scaled_limits,
     travel_limits,
@@ -203,7 +204,7 @@ def test_hollow_is_that_of_its_check(case):
 
 @pytest.mark.parametrize("name", LOAD)
 def test_load_limit_is_that_of_its_check(case, judged, name):
-    ratings, forces = ratings_of(case), force_limits(case)
+    ratings, forces = ratings_of(case), part_limits(case, NORMAL_FORCE)
     assert ratings.normal_force == min(forces.values())
     assert forces[ratings.normal_force_by] == ratings.normal_force
     ratings = replace(ratings, normal_force=forces.get(name, ratings.normal_force))
@@ -220,7 +221,8 @@ def test_pressure_limit_is_that_of_each_check(case, judged):
     solved, checks, problem = judged
     contour, theta = solved.contour, uniform_turn(POSITIONS)
     top = contour.pitch.lift.highest.value
-    limits = pressure_allowables(solved.machine, load_cycles(solved.machines, contour))
+    estimated = pressure_allowables(solved.machine, load_cycles(solved.machines, contour))
+    limits = part_limits(case, PRESSURE) | estimated
     assert set(limits) == {
         "contact_pressure", "shakedown", "edge_pressure", "shakedown_traction", "edge_shakedown",
         "contact_pressure_at_life",

@@ -33,7 +33,7 @@ THETA = uniform_turn(POSITIONS)
 STROKE, BASE, ROLLER, WIDTH, OMEGA = 0.01, 0.05, 0.008, 0.01, 80.0
 E_STEEL = 210e9
 MODULES = ("contact_strength", "surface_durability", "flat_face_sliding")
-OWN = [each for each in CHECKS if each.demand.__module__.endswith(MODULES)]
+OWN = [each for each in CHECKS if (each.measure or each.demand).__module__.endswith(MODULES)]
 FACE = {
     "width": "20 mm", "depth": "10 mm", "thickness": "5 mm", "friction": 0.1,
     "roughness": "0.1 um", "pv_limit": "200 MPa m/s", "material": "hard", "source": "f",

@@ -18,16 +18,14 @@ from camwright.pipeline.case.case_file import read_case
 from camwright.pipeline.case.case_values import replaced, value_of
 from camwright.pipeline.case.load_case_torque import engine_torques
 from camwright.pipeline.case.machine import machines
-from camwright.pipeline.checks.camshaft_strength import tooth_torque_limits
 from camwright.pipeline.checks.check import depends_on_lift, within_depth
-from camwright.pipeline.checks.contact_strength import pressure_allowables
-from camwright.pipeline.checks.key_strength import KeywayRoot, torque_limits
+from camwright.pipeline.checks.demands import CAM_TORQUE, NORMAL_FORCE, PRESSURE, TOOTH_TORQUE
+from camwright.pipeline.checks.key_strength import KeywayRoot
 from camwright.pipeline.checks.registry import checks_of
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.solution import solution
 from camwright.pipeline.smoothing.allowables import (
-    force_limits,
-    greatest_cycles,
+    part_limits,
     power_limits,
     ratings_of,
 )
@@ -352,10 +350,10 @@ def own_limits(case):
     return replace(
         ratings_of(case),
         held_radius=case.cam.held_radius,
-        normal_force=force_limits(case)["bore_pressure"],
-        pressure=pressure_allowables(machine, greatest_cycles(case))["contact_pressure"],
-        cam_torque=torque_limits(machine)["key_pressure"],
-        tooth_torque=tooth_torque_limits(machine)["gear_bending"],
+        normal_force=part_limits(case, NORMAL_FORCE)["bore_pressure"],
+        pressure=part_limits(case, PRESSURE)["contact_pressure"],
+        cam_torque=part_limits(case, CAM_TORQUE)["key_pressure"],
+        tooth_torque=part_limits(case, TOOTH_TORQUE)["gear_bending"],
         guide_power=tuple(
             each[f"guide_temperature_{side}"] for each, side in zip(powers, "AB", strict=True)
         ),

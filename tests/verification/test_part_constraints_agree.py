@@ -15,10 +15,8 @@ from camwright.geometry.lift import Jet, Lift
 from camwright.geometry.pitch_curve import PitchCurve
 from camwright.pipeline.case.case_file import read_case
 from camwright.pipeline.case.load_case_torque import engine_torques
-from camwright.pipeline.checks.camshaft_strength import tooth_torque_limits
-from camwright.pipeline.checks.key_strength import torque_limits
+from camwright.pipeline.checks import demands
 from camwright.pipeline.checks.registry import CHECKS, DECLARED, checks_of
-from camwright.pipeline.checks.roller_bearing import spin
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.part_loads import edge_pressure_of
 from camwright.pipeline.cycle.solution import solution
@@ -28,7 +26,7 @@ from camwright.pipeline.preview import preview_case
 from camwright.pipeline.smoothing.allowables import (
     corrected_ratings,
     edge_load,
-    force_limits,
+    part_limits,
     power_limits,
     ratings_of,
     scaled_limits,
@@ -147,11 +145,17 @@ def own(case, machine, name):
     """Constraint that keeps a check, and ratings with the limit of that check alone."""
     ratings = ratings_of(case)
     if name in NORMAL_FORCE:
-        return "roller_static", replace(ratings, normal_force=force_limits(case)[name])
+        return "roller_static", replace(
+            ratings, normal_force=part_limits(case, demands.NORMAL_FORCE)[name]
+        )
     if name in TORQUE:
-        return "key_pressure", replace(ratings, cam_torque=torque_limits(machine)[name])
+        return "key_pressure", replace(
+            ratings, cam_torque=part_limits(case, demands.CAM_TORQUE)[name]
+        )
     if name in TOOTH:
-        return "gear_bending", replace(ratings, tooth_torque=tooth_torque_limits(machine)[name])
+        return "gear_bending", replace(
+            ratings, tooth_torque=part_limits(case, demands.TOOTH_TORQUE)[name]
+        )
     side = name[-1]
     guides = dict(machine.guides.both)
     if name in HEAT:
@@ -215,7 +219,7 @@ def in_check(case, checks, solved, name, use):
     if name == "roller_ring_fatigue":
         ring, roller = machine.roller.bearing.ring, machine.roller
         bending = roller.ring(machine.contact_width, machine.spring.preload).bending
-        force = use * force_limits(case)[name]
+        force = use * part_limits(case, demands.NORMAL_FORCE)[name]
         mean = bending.stress_mean * force / ring.tensile_strength
         return bending.stress_amplitude * force / (1.0 - mean), check.demand
     return use, check.utilisation
@@ -298,7 +302,7 @@ def ring_of(machine):
 
 def greased_load(machine, cycle):
     """Equivalent load, N; mean speed, rpm, outer diameter, mm, and temperature, degC."""
-    force, turning = cycle.loads.normal_force, np.abs(spin(cycle))
+    force, turning = cycle.loads.normal_force, np.abs(cycle.parts.roller_spin)
     load = (np.sum(force**3 * turning) / np.sum(turning)) ** (1.0 / 3.0)
     warm = machine.roller.bearing.temperature - KELVIN
     return load, (float(turning.mean()) * 30.0 / np.pi, 1e3 * ring_of(machine).outer_diameter, warm)
@@ -405,7 +409,9 @@ def test_limits_scaled_from_a_solved_cam_are_those_of_its_checks(case, solved, c
     peak = max(float(cycle.surface.p0.max()) for cycle in solved.cycles)
     assert peak / pressures["hardened_case"] == pytest.approx(checks["hardened_case"].utilisation)
     corrected = corrected_ratings(ratings_of(case), solved)
-    assert corrected.normal_force == min((force_limits(case) | forces).values())
+    assert corrected.normal_force == min(
+        (part_limits(case, demands.NORMAL_FORCE) | forces).values()
+    )
     weak = rated(ratings_of(case), normal_force=1.0)
     assert corrected_ratings(weak, solved).normal_force == corrected.normal_force
 
@@ -414,7 +420,10 @@ def greatest(each, states, ratings):
     """Greatest utilisation of a constraint, with its limit in these ratings."""
     limit, most = each.value(ratings), -np.inf
     for state in states:
-        cam = replace(state, ratings=ratings) if isinstance(state, ScenarioCam) else state
+        cam = state
+        if isinstance(state, ScenarioCam):
+            top, variables = float(np.real(state.highest)), state.variables
+            cam = loaded(state.jet, top, variables, ratings, state.scenario)
         use = None if limit is None else each.utilisation(cam, limit)
         if use is not None:
             most = max(most, float(np.max(use.value if isinstance(use, Mean) else use)))

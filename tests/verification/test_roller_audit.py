@@ -145,7 +145,9 @@ def test_modified_life_by_adding_damage(reliability, table):
     endured = 1e6 * a_iso(kappa, 0.5 * 60.0 / surged()) * (1140.0 / surged()) ** 3
     life = cam_period() / np.sum(turns_per_step() / endured) / HOUR
     limits = case().limits.model_copy(update={"roller_reliability": reliability})
-    other = replace(run(), machines=tuple(replace(m, limits=limits) for m in run().machines))
+    stated = case().model_copy(update={"limits": limits})
+    machines = tuple(replace(each, limits=limits) for each in run().machines)
+    other = replace(run(), case=stated, machines=machines)
     assert demand("roller_modified_life", other) == pytest.approx(table * life, rel=8e-3)
 
 
