@@ -51,6 +51,16 @@ def tooth_torque(cam: LoadedCam) -> Array:
     return magnitude(cam.torque + (0.0 if drag is None else drag))
 
 
+def follower_speed(cam: LoadedCam) -> Array:
+    """Speed of the follower, m/s."""
+    return magnitude(cam.velocity)
+
+
+def slope_over(cam: LoadedCam, limit: float) -> Array:
+    """Lift per radian over that at the greatest speed, m/rad, of the fastest load case."""
+    return magnitude(cam.jet.slope) / limit
+
+
 def rating_over(rating: Value, worst: Value, unloaded: float) -> Array:
     """Rating (...) over a load or damage; `unloaded` without one, NaN where it is not known."""
     load: Array = np.asarray(worst, dtype=float)

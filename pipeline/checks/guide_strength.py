@@ -19,6 +19,7 @@ from camwright.pipeline.base.units import celsius, shown
 from camwright.pipeline.case.limits import GUIDE_LENGTH
 from camwright.pipeline.case.machine import Machine
 from camwright.pipeline.checks.check import NONE, Allowed, Declaration, Demand, Kept, check, of_key
+from camwright.pipeline.checks.demands import follower_speed, slope_over
 from camwright.pipeline.checks.extremes import (
     NOWHERE,
     Extreme,
@@ -414,7 +415,7 @@ def heat_path_lacks(machine: Machine, side: Side) -> tuple[str, ...]:
 
 
 def _guide_speed(side: Side) -> Declaration:
-    @check(
+    return check(
         id=f"guide_speed_{side}",
         title=f"Maximum sliding speed in guide {side}",
         unit="m/s",
@@ -437,13 +438,8 @@ def _guide_speed(side: Side) -> Declaration:
             demand, source=_maker(guide_of(solution.machine, side))
         ),
         deviation=0.002,
-        kept=Kept(lambda cam, limit: magnitude(cam.jet.slope) / limit),
-    )
-    def speed(cam: LoadedCam) -> Array:
-        """Sliding speed, m/s; the synthesis keeps the lift per radian of the fastest load case."""
-        return magnitude(cam.velocity)
-
-    return speed
+        kept=Kept(slope_over),
+    )(follower_speed)
 
 
 guide_pressure_a, guide_pressure_b = _guide_pressure("A"), _guide_pressure("B")

@@ -14,7 +14,6 @@ import numpy as np
 from camwright.geometry.arrays import Array, Value
 from camwright.geometry.errors import InputError
 from camwright.geometry.extrema import first_greatest
-from camwright.geometry.pitch_curve import magnitude
 from camwright.pipeline.base import levers
 from camwright.pipeline.base import value_groups as given
 from camwright.pipeline.base.levers import Lever
@@ -32,7 +31,7 @@ from camwright.pipeline.checks.check import (
     check,
     of_key,
 )
-from camwright.pipeline.checks.demands import FatiguePoint
+from camwright.pipeline.checks.demands import FatiguePoint, follower_speed, slope_over
 from camwright.pipeline.checks.extremes import Extreme, Measure
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.loaded_cam import LoadedCam, wire_of
@@ -466,11 +465,6 @@ def _warmest(numbers: Numbers) -> Allowed:
     return limit if limit.value is None else limit._replace(value=celsius(limit.value))
 
 
-def speed(cam: LoadedCam) -> Array:
-    """Speed of the follower, m/s."""
-    return magnitude(cam.velocity)
-
-
 gas_pressure = _gas_check(
     "gas_pressure",
     title="Maximum pressure of the gas spring",
@@ -524,8 +518,8 @@ gas_speed = _gas_check(
     allowed=of_key("spring.gas.speed_limit"),
     remark=_of_gas,
     deviation=2e-3,
-    kept=Kept(lambda cam, limit: magnitude(cam.jet.slope) / limit),
-)(speed)
+    kept=Kept(slope_over),
+)(follower_speed)
 gas_temperature = _gas_check(
     "gas_temperature",
     title="Temperature of the gas spring",

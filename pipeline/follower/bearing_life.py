@@ -6,9 +6,8 @@ from math import exp, log
 from types import MappingProxyType
 
 import numpy as np
-from numpy.typing import ArrayLike
 
-from camwright.geometry.arrays import Array, Values, finite
+from camwright.geometry.arrays import Array, Values
 from camwright.geometry.errors import InputError
 from camwright.pipeline.base.units import celsius
 from camwright.pipeline.follower.roller_motion import BALL_LIFE_EXPONENT
@@ -73,41 +72,26 @@ def reliability_factor(reliability: float) -> float:
     return float(0.05 + 0.95 * share ** (1.0 / 1.5))
 
 
-def life_modification(viscosity_ratio: float, cleanliness_ratio: ArrayLike) -> Array:
-    """Life modification factor a_ISO of radial ball bearings, at most 50.
+def life_modification(viscosity_ratio: Values, cleanliness_ratio: Values) -> Values:
+    """Life modification factor a_ISO of radial ball bearings (...), at most 50.
 
     Parameters
     ----------
-    viscosity_ratio : float            kappa, >= 0.1; above 4 as at 4
+    viscosity_ratio : array (...)      kappa, >= 0.1; above 4 as at 4
     cleanliness_ratio : array (...)    e_C P_u / P, >= 0
 
-    Raises
-    ------
-    InputError
-        If kappa is below 0.1 or not a number: outside the standard.
+    A complex step may have changed either.
 
     References
     ----------
     ISO 281:2007, eqs 31-33; coefficients compared with a second transcription: verify.
     """
-    _within_standard(viscosity_ratio)
-    kappa = np.asarray(viscosity_ratio, dtype=float)
-    return _modification(kappa, finite("e_C P_u / P", cleanliness_ratio))
-
-
-def _within_standard(viscosity_ratio: float) -> None:
-    if not viscosity_ratio >= LEAST_VISCOSITY_RATIO:
-        raise InputError("viscosity ratio", viscosity_ratio, f">= {LEAST_VISCOSITY_RATIO:g}")
-
-
-def _modification(viscosity_ratio: Values, load: Values) -> Values:
-    """a_ISO of kappa and e_C P_u / P, which a complex step may have changed."""
     most = GREATEST_VISCOSITY_RATIO
     kappa = np.where(np.real(viscosity_ratio) > most, most, viscosity_ratio)
     size = np.real(kappa)
     exponent = np.where(size < 0.4, 0.054381, np.where(size < 1.0, 0.19087, 0.071739))
     film = np.where(size < 0.4, 2.2649, 1.9987) / kappa**exponent
-    left = 1.0 - (2.5671 - film) ** 0.83 * load ** (1.0 / 3.0)
+    left = 1.0 - (2.5671 - film) ** 0.83 * cleanliness_ratio ** (1.0 / 3.0)
     least = (0.1 / GREATEST_MODIFICATION) ** (1.0 / 9.3)
     modified: Values = 0.1 * np.where(np.real(left) < least, least, left) ** -9.3
     return modified
@@ -125,7 +109,7 @@ def life_used(
     cleanliness_load : float        e_C P_u, N, >= 0
     viscosity_ratio : array (...)   kappa, >= 0.1
     """
-    modified = _modification(viscosity_ratio, cleanliness_load / force)
+    modified = life_modification(viscosity_ratio, cleanliness_load / force)
     return (force / dynamic_rating) ** BALL_LIFE_EXPONENT / modified
 
 

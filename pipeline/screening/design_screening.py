@@ -29,8 +29,7 @@ from camwright.pipeline.preview import preview_case
 from camwright.pipeline.screening.design_arrays import Designs, Screened, Source, TorqueOfSpeed
 from camwright.pipeline.screening.design_factors import Factor, Group, count_of, groups, refusals
 from camwright.pipeline.screening.screened_cam import ScreenedCam
-from camwright.pipeline.screening.screened_checks import SCREENED
-from camwright.pipeline.screening.screened_loads import torque_after
+from camwright.pipeline.screening.screened_checks import SCREENED, torque_after
 from camwright.pipeline.smoothing.smoothers import Smoother, smoothed
 
 if TYPE_CHECKING:

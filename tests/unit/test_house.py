@@ -290,7 +290,7 @@ NAME_CHECKS = {
     "pipeline.follower.elastic_follower", "pipeline.follower.flat_face_motion",
     "pipeline.follower.roller_parts", "pipeline.iteration", "pipeline.recomputation",
     "pipeline.results.model_limits", "pipeline.results.run_records",
-    "pipeline.screening.screened_checks", "pipeline.sizing.sizing", "pipeline.smoothing.allowables",
+    "pipeline.sizing.sizing", "pipeline.smoothing.allowables",
     "pipeline.smoothing.bounds",
     "pipeline.smoothing.part_constraints", "pipeline.smoothing.problem_setup",
     "pipeline.smoothing.scenario", "pipeline.smoothing.shadow_prices",
