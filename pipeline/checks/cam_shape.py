@@ -384,6 +384,7 @@ spring_travel = check(
     id="spring_travel",
     title="Maximum lift vs. spring travel",
     tier=Tier.SCREENING,
+    kept_as="spring travel",
     formula="max s <= x; s: lift, x: spring.travel_max",
     reason="Beyond its travel the spring is solid and the follower is blocked.",
     unit="mm",

@@ -124,6 +124,7 @@ def _place(section: ShaftSection) -> str:
     method="rotating bending and torsion at every section, unbalance included; Goodman line",
     lift_can_help=True,
     part="camshaft",
+    kept_as="normal force at the fatigue of the camshaft",
     formula="1/(s_a/S_e + s_m/R_m) >= S; s_a, s_m: von Mises amplitude and mean of bending K_f M"
     " and torsion K_fs (T + drag) of the turning fibre, S_e = k_a k_b k_e S_e': endurance with"
     " factors of surface, size and reliability, S: limits.shaft_safety. Least over cam, gear, both"
@@ -238,6 +239,7 @@ def shaft_fatigue_points(solution: Solution) -> list[FatiguePoint]:
     method="bending and torsion at every section, with the fatigue notch factors",
     lift_can_help=True,
     part="camshaft",
+    kept_as="normal force at the yield of the camshaft",
     formula="sqrt((K_f M/W)^2 + 3 (K_fs (T + drag)/(2 W))^2) <= R_p / S; M, T: bending moment and"
     " torque at one angle, W = pi d^3/32, R_p: yield strength of the core, S:"
     " limits.shaft_yield_safety. Greatest over all sections, angles and load cases",
@@ -282,6 +284,7 @@ def shaft_yield(solution: Solution) -> Demand:
     method="beam of the least diameter of the sections on two rigid bearings, without shear",
     lift_can_help=True,
     part="camshaft",
+    kept_as="normal force at the maximum deflection of the camshaft",
     formula="f/l <= limits.shaft_deflection; f: greatest deflection at the cam by the unit-load"
     " method, l: bearing spacing",
     reason="the deflection is an error of the lift and tilts the contact line",
@@ -311,6 +314,7 @@ def shaft_deflection(solution: Solution) -> Demand:
     method="beam of the least diameter of the sections on two rigid bearings, without shear",
     lift_can_help=True,
     part="camshaft",
+    kept_as="normal force at the maximum slope of the camshaft",
     formula="phi <= limits.shaft_slope; phi: greatest slope at either bearing by the unit-load"
     " method",
     reason="beyond their slope the balls run on the edge of the groove, and the rating"
@@ -341,6 +345,7 @@ def shaft_slope(solution: Solution) -> Demand:
     method="static rating over the greatest load of either bearing, unbalance included",
     lift_can_help=True,
     part="camshaft_bearings",
+    kept_as="normal force at the static load rating of the camshaft bearings",
     formula="C0/P0 >= limits.shaft_bearing_static_safety; C0: camshaft.bearing_static_rating, P0:"
     " greatest radial load of either bearing over all load cases and angles",
     reason="dents of the raceway under the greatest load are permanent",
@@ -375,6 +380,7 @@ def shaft_bearing_static(solution: Solution) -> Demand:
     method="(C/P_m)^3 million turns, P_m the cube mean of the bearing's load, unbalance included",
     lift_can_help=True,
     part="camshaft_bearings",
+    kept_as="normal force at the rating life of the camshaft bearings",
     formula="L10 >= limits.shaft_bearing_life; L10 = (C/P_m)^3 10^6 turns, C:"
     " camshaft.bearing_rating, P_m: cube mean of the radial load over the turn, P <= C/2"
     f" throughout. Least over both bearings; over the load cases {BY_DUTY}",
@@ -437,6 +443,8 @@ def _tooth_bending(
     values: tuple[str, ...],
     key: str,
     wheel: Callable[[CamshaftGear], tuple[int, Material]],
+    *,
+    kept_as: str,
 ) -> Declaration:
     """Tooth root stress of a wheel with its own form factor; key: of its bending limit."""
 
@@ -464,6 +472,7 @@ def _tooth_bending(
         method="F K/(b m pi y) at the greatest torque, load on the tip of one tooth",
         lift_can_help=True,
         part="gear",
+        kept_as=kept_as,
         formula=formula,
         reason=reason,
         values=(
@@ -494,6 +503,7 @@ gear_bending = _tooth_bending(
     (),
     "camshaft.gear.bending_limit",
     lambda gear: (gear.teeth, gear.material),
+    kept_as="torque at the maximum root stress of the driving gear",
 )
 pinion_bending = _tooth_bending(
     "pinion_bending",
@@ -504,6 +514,7 @@ pinion_bending = _tooth_bending(
     ("camshaft.gear.pinion_bending_limit",),
     "camshaft.gear.pinion_bending_limit",
     lambda gear: (gear.pinion_teeth, gear.pinion_material or gear.material),
+    kept_as="torque at the maximum root stress of the pinion",
 )
 
 
@@ -543,6 +554,7 @@ gear_contact = check(
     method="Z_H Z_E sqrt(F K (u + 1)/(b d u)) at the pitch point, at the greatest torque",
     lift_can_help=True,
     part="gear",
+    kept_as="torque at the maximum flank pressure of the driving gear",
     formula="Z_H Z_E sqrt(F K_A (u + 1)/(b d u)) <= s_H / S; d, u: pitch diameter of the smaller"
     " wheel and ratio of teeth, s_H: lower contact limit of gear and pinion, S:"
     " limits.gear_contact_safety",

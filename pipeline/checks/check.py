@@ -276,6 +276,7 @@ class Declaration:
     levers : tuple             changes of the case that can turn it to pass; (): none, its data are
                                missing, or what it compares is stated in the case
     page : str                 part of the mechanism that it judges
+    kept_as : str              what the synthesis bounds where a part sets the limit, in words
     certified_by : str         certified quantity of its error on the contact; "": that of the
                                greatest error
     scales_with : tuple        "normal_force" or "contact_pressure", and the power of its greatest
@@ -310,6 +311,7 @@ class Declaration:
     values: tuple[str, ...]
     levers: tuple[Lever, ...]
     page: Page
+    kept_as: str
     certified_by: str
     scales_with: Scaling | tuple[()]
     demand: Callable[[Solution], Demand | None] = field(repr=False)
@@ -401,6 +403,7 @@ def check(
     values: tuple[str, ...] = (),
     levers: tuple[Lever, ...] = (),
     page: Page = "",
+    kept_as: str = "",
     certified_by: str = "",
     scales_with: Scaling | tuple[()] = (),
 ) -> Declaring:
@@ -444,6 +447,7 @@ def check(
             values=values,
             levers=levers,
             page=page,
+            kept_as=kept_as,
             certified_by=certified_by,
             scales_with=scales_with,
             demand=demand,

@@ -363,6 +363,7 @@ contact_pressure = check(
     tier=Tier.SCREENING,
     forecast=True,
     error="contact",
+    kept_as="contact pressure at the endurance limit",
     formula="p0 <= p_E / S; p0: greatest contact pressure over all load cases and angles, p_E:"
     " least endurance pressure of cam and follower, of rolling for a roller and of rolling with"
     " sliding for a flat face, S: limits.contact_safety",
@@ -425,6 +426,7 @@ shakedown = check(
     tier=Tier.SCREENING,
     forecast=True,
     error="contact",
+    kept_as="shakedown pressure",
     formula="p0 <= 4 k / S; k = Y/sqrt(3): least shear yield strength of cam and follower, S:"
     " limits.shakedown_safety",
     reason="above the limit every passage adds plastic strain",
@@ -452,6 +454,7 @@ shakedown = check(
     " in the fastest load case; least of cam and follower",
     lift_can_help=True,
     error="ends",
+    kept_as="contact pressure at the target life",
     formula="p <= sqrt(K E*/pi) / S; p: signed contact pressure as of edge_pressure,"
     " log10 K = (B - log10 n)/A with K in psi, n: load cycles of"
     " the body in limits.target_life; a body without A and B keeps its endurance pressure up to its"
@@ -525,6 +528,7 @@ _SIGNED = (
     lift_can_help=True,
     tier=Tier.SCREENING,
     error="ends",
+    kept_as="edge pressure at the endurance limit",
     formula="K p0 <= p_E / S; p0: contact pressure of plane strain, K: signed pressure over it, p_E"
     " and S as of contact_pressure",
     reason="a line contact fails at its ends first, and most where it is tilted",
@@ -553,6 +557,7 @@ def edge_pressure(cam: LoadedCam) -> Array:
     method=_SIGNED + "; equivalent pressure as of shakedown_traction",
     lift_can_help=True,
     error="ends",
+    kept_as="edge pressure at shakedown with sliding",
     formula="K p_eq <= 4 k / S; K: as of edge_pressure, p_eq: equivalent pressure of plane strain,"
     " see shakedown_traction",
     reason="the ends yield first, and an end that does not shake down is rolled out",
@@ -585,6 +590,7 @@ def edge_shakedown(solution: Solution) -> Demand:
     " the shakedown limit; traction of a roller min(mu, T/N), of a face full sliding",
     lift_can_help=True,
     error="contact",
+    kept_as="shakedown pressure with sliding",
     formula="p_eq = 4 p0 / lambda(t) <= 4 k / S; t: traction coefficient, lambda = p0/k at"
     " shakedown: 1/max|tau_xz| below the surface, von Mises at the surface above about 0.3",
     reason="traction brings the plastic strain to the surface and lowers the limit",

@@ -26,6 +26,7 @@ from camwright.pipeline.follower.flat_face_motion import MEAN_SHARE
     method="twice the sum of |s' - e| and contact half-width, greatest over the turn",
     lift_can_help=True,
     needs="face",
+    kept_as="width of the flat face",
     formula="2 (|s' - e| + a) <= w; s': slope of the lift, e: cam.offset, a: half-width of the"
     " contact, w: follower.face.width",
     reason="beyond the face the contact runs on its edge",
@@ -55,6 +56,7 @@ def _sliding(cam: LoadedCam) -> Array:
     method="greatest pi/4 p0 w (r + s) over the turn",
     lift_can_help=True,
     needs="face",
+    kept_as="PV of the flat face",
     formula="pi/4 p0 omega (r + s) <= PV; p0: contact pressure, omega: speed of the cam, r: base"
     " radius, s: lift, PV: follower.face.pv_limit",
     reason="a face slides at all angles, and beyond its PV limit it seizes or melts",

@@ -169,6 +169,7 @@ def _guide_pressure(side: Side) -> Declaration:
         forecast=True,
         error="guide_edges",
         part="guides",
+        kept_as=f"bearing pressure of guide {side}",
         formula="F / (d l) <= p R(T) / R(T_p); F: push on one side of the bore, the integral of its"
         " line load, l: loaded length of that side, d: diameter of the bore, of the side and angle"
         " with the greatest quotient; p: guides.*.pressure_limit, R: yield strength of the bush at"
@@ -263,6 +264,7 @@ def _guide_pv(side: Side) -> Declaration:
         forecast=True,
         error="guides",
         part="guides",
+        kept_as=f"PV of guide {side}",
         formula="mean(|R v|) / (d L) <= PV; R: sum of the pushes on both sides of the bore, v:"
         " sliding speed, mean over the turn, d, L: diameter and length of the guide; PV:"
         " guides.*.pv_limit, or the limit of nylon by guides.*.lubrication.",
@@ -326,6 +328,7 @@ def _guide_edge_pressure(side: Side) -> Declaration:
         tier=Tier.PREVIEW,
         error="guide_edges",
         part="guides",
+        kept_as=f"line load of guide {side} at the yield strength",
         formula="p <= R(T); p: greatest pressure between stem and bore, where the line load along"
         " the guide is greatest, R: yield strength of the bush at its temperature T.",
         reason="an edge above the yield strength is pressed out, and the guide loses its"
@@ -380,6 +383,7 @@ def _guide_temperature(side: Side) -> Declaration:
         " resistance of wall and housing, steady state",
         lift_can_help=True,
         part="guides",
+        kept_as=f"friction power of guide {side} at its greatest temperature",
         formula="T_amb + Q (R_wall + R_housing) <= T_max; Q: mean friction power over the turn at"
         " the greatest friction, R_wall: ln(1 + 2 t/d) / (2 pi lambda L) of a wall t:"
         " guides.*.wall, R_housing: guides.*.housing_resistance; guides.*.thermal_resistance in"
@@ -425,6 +429,7 @@ def _guide_speed(side: Side) -> Declaration:
         tier=Tier.SCREENING,
         moved_by_tolerance=False,
         part="guides",
+        kept_as=f"lift per radian at the maximum sliding speed in guide {side}",
         formula="max |v| <= v_max; v: speed of the stem in the bush, v_max: guides.*.speed_limit.",
         reason="a PV limit holds up to the greatest speed of the bush; above it the"
         " rubbing surface overheats at any load.",

@@ -38,6 +38,7 @@ def _guide_expansion(side: Side) -> Declaration:
         " stem, at the temperature at the greatest friction",
         lift_can_help=True,
         part="guides",
+        kept_as=f"friction power of guide {side} at its least clearance",
         formula="c d e + d a_s (T - 20 degC) <= C; e = a_b (T - 20 degC) + w: free strain of the"
         " bush by heat and moisture, c = (k - 1)(1 + nu) / (1 + (1 - 2 nu) k) with"
         " k = (1 + 2 t/d)^2: Lame's closure of the bore of a wall t, guides.*.wall, held axially,"
@@ -146,6 +147,7 @@ def _guide_wear(side: Side) -> Declaration:
         " duty; without a duty all of the life in the worst load case",
         lift_can_help=True,
         part="guides",
+        kept_as=f"PV of guide {side} at its wear depth",
         formula="K t sum q_i PV_i <= h; K: guides.*.wear_rate, volume per load and distance, PV_i:"
         " mean PV value of the guide in a load case, q_i: load_case.duty, t: limits.target_life, h:"
         " limits.wear_depth. Without a duty the greatest PV_i counts for the whole life.",

@@ -215,6 +215,7 @@ def _at_no_load_case(demand: Demand, _: Solution) -> Demand:
     " samples",
     lift_can_help=True,
     tier=Tier.SCREENING,
+    kept_as="cam speed without follower jump",
     formula="min(w sqrt(F_c / (-m w^2 s''))) >= limits.jump_speed times limits.overspeed; w: crank"
     " speed, F_c: closing force, of the spring with weight and external force, m: moving mass, s'':"
     " second derivative of the lift",

@@ -63,6 +63,7 @@ def _key_check(
     of: Callable[[KeyStress], Array],
     mate_of: Callable[[Case], _Mate | None],
     *,
+    kept_as: str,
     factor: float = 1.0,
 ) -> Declaration:
     """Stress of the key against the yield strength of the weaker of the key and its mate.
@@ -107,6 +108,7 @@ def _key_check(
         method=METHOD,
         lift_can_help=True,
         part="key",
+        kept_as=kept_as,
         formula=formula,
         reason=LOOSE,
         values=given.KEY,
@@ -144,6 +146,7 @@ key_pressure = _key_check(
     + ALLOWED,
     lambda stress: stress.hub,
     lambda case: _Mate(case.cam.material),
+    kept_as="cam torque at the maximum pressure of the key on the cam",
 )
 key_pressure_shaft = _key_check(
     "key_pressure_shaft",
@@ -152,6 +155,7 @@ key_pressure_shaft = _key_check(
     " keyway in the shaft",
     lambda stress: stress.shaft,
     _shaft_beside,
+    kept_as="cam torque at the maximum pressure of the key on the camshaft",
 )
 key_shear = _key_check(
     "key_shear",
@@ -160,6 +164,7 @@ key_shear = _key_check(
     " of the key, else as key_pressure",
     lambda stress: stress.shear,
     lambda _: _Mate(None),
+    kept_as="cam torque at the maximum shear stress of the key",
     factor=1.0 / np.sqrt(3.0),
 )
 _SLIP = "camshaft.slip_torque"
@@ -190,6 +195,7 @@ cam_slip = check(
     method="slip torque of the seat over K_A T; evaluated where the torque reverses",
     lift_can_help=True,
     part="camshaft",
+    kept_as="cam torque at the slip of the cam's seat",
     formula="T_slip/(K_A T) >= limits.cam_slip; T_slip: camshaft.slip_torque of the press or"
     " clamped seat without its key, 0 for a sliding fit, T: greatest cam torque, K_A: application"
     " factor of the key, or 1 without one",

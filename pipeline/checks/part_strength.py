@@ -95,6 +95,7 @@ roller_pin = check(
     lift_can_help=True,
     needs="roller",
     part="pin",
+    kept_as="normal force at the maximum stress of the roller pin",
     formula="32 M/(pi d^3) <= x Y; M: N (l/4 - b/8) of a pin held at both ends, N l of an overhung"
     " one, N: greatest normal force over all load cases and angles, l: span, b: roller width, d:"
     " pin diameter, Y: yield strength, x: limits.pin_share. Fatigue: roller_pin_fatigue.",
@@ -132,6 +133,7 @@ def _with_card_of_pin(demand: Demand, solution: Solution) -> Demand:
     lift_can_help=True,
     needs="roller",
     part="pin",
+    kept_as="normal force at the bending fatigue of the roller pin",
     formula="s_W (1 - s_m/R_m)/s_a >= S; s_a, s_m: amplitude and mean of the bending stress of a"
     " fibre over a turn, s_W: fatigue strength in bending, R_m: tensile strength, S:"
     " limits.pin_fatigue_safety; worst fibre and load case.",
@@ -188,6 +190,7 @@ roller_pin_shear = check(
     lift_can_help=True,
     needs="roller",
     part="pin",
+    kept_as="normal force at the maximum shear stress of the roller pin",
     formula="4 Q/(3 A) <= x Y/sqrt(3); Q: N/2 of a pin held at both ends, N of an overhung one, N:"
     " greatest normal force over all load cases and angles, A: section, Y: yield strength, x:"
     " limits.pin_share.",
@@ -227,6 +230,7 @@ roller_pin_pressure = check(
     lift_can_help=True,
     needs="roller",
     part="pin",
+    kept_as="normal force at the maximum pressure in the bearing's bore",
     formula="N/(d b) <= x R_m; N: greatest normal force over all load cases and angles, d: pin"
     " diameter, b: roller width, R_m: tensile strength of the pin, softer than the ring, x:"
     " limits.pin_pressure_share.",
@@ -295,6 +299,7 @@ cheek_pressure = check(
     lift_can_help=True,
     needs="roller",
     part="fork",
+    kept_as="normal force at the maximum pressure of the pin in its fork",
     formula="p <= roller.fork.pressure_limit, else x R_m; p: N/(2 d t) under a pin held at both"
     " ends, N (6 l + 4 t)/(d t^2) beside an overhung one, N: greatest normal force over all load"
     " cases and angles, d: pin diameter, t: cheek width, l: cheek to bearing centre, R_m: lower"
@@ -446,6 +451,7 @@ roller_ring_fatigue = check(
     lift_can_help=True,
     needs="roller",
     part="roller_bearing",
+    kept_as="normal force at the bending fatigue of the roller's outer ring",
     formula="s_a/(1 - s_m/R_m) <= s_W; s_a, s_m: amplitude and mean of the stress at the groove per"
     " newton, times the greatest normal force over all load cases and angles, R_m, s_W: tensile and"
     " fatigue strength of the ring. A ring in a roller of its own is held by it: not judged.",
@@ -502,6 +508,7 @@ bore_pressure = check(
     unit="MPa",
     method="greatest normal force over bore diameter and cam width",
     lift_can_help=True,
+    kept_as="normal force at the maximum pressure of the cam's bore",
     formula="F_n/(d b) <= limits.bore_share R_m; F_n: greatest normal force over all load cases and"
     " angles, d: bore diameter, b: cam width, R_m: lower tensile strength of cam and camshaft",
     reason="a widened bore loosens the cam on its shaft",

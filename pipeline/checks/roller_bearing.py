@@ -220,6 +220,7 @@ roller_static = check(
     forecast=True,
     needs="roller",
     part="roller_bearing",
+    kept_as="static load rating of the roller",
     formula="C0/N >= S; C0: static rating, N: greatest normal force over all load cases and angles,"
     " S: limits.roller_static_safety",
     reason="beyond it the balls dent the raceways",
@@ -246,6 +247,7 @@ roller_load_share = check(
     tier=Tier.SCREENING,
     needs="roller",
     part="roller_bearing",
+    kept_as="share of the dynamic load rating of the roller",
     formula="N/C <= x; N: greatest normal force over all load cases and angles, C: dynamic rating,"
     " x: limits.roller_load_share",
     reason="beyond it the balls yield in their raceways and no rating life is valid",
@@ -274,6 +276,7 @@ roller_life = check(
     forecast=True,
     needs="roller",
     part="roller_bearing",
+    kept_as="dynamic load rating of the roller",
     formula="(C/P_m)^3 10^6/n >= L; C: dynamic rating, P_m: cube mean of the normal force over the"
     " revolutions of the roller, n: its mean speed, L: limits.roller_life. Over the load cases"
     f" {BY_DUTY}.",
@@ -307,6 +310,7 @@ roller_modified_life = check(
     lift_can_help=True,
     needs="roller",
     part="roller_bearing",
+    kept_as="dynamic load rating of the roller at its modified life",
     formula="a1 a_ISO (C/P)^3 10^6/n >= L; a1: of limits.roller_reliability, a_ISO: of the"
     " viscosity ratio and of e_C P_u/P, e_C: of roller.bearing.contamination, P_u: fatigue load"
     f" limit, L: limits.roller_life. Over the load cases {BY_DUTY}.",
@@ -354,6 +358,7 @@ roller_modified_life = check(
     forecast=True,
     needs="roller",
     part="roller_bearing",
+    kept_as="limiting speed of the roller",
     formula="w (|dP/dtheta| - r)/r <= x n_g; P: pitch curve, r: roller radius, n_g: limiting speed,"
     " x: limits.roller_speed_share",
     reason="beyond it seals and grease overheat",
@@ -376,7 +381,9 @@ def roller_speed(cam: LoadedCam) -> Array:
     return magnitude(cam.spin)
 
 
-def _outer_ring(name: str, words: str, symbol: str, reason: str, key: str) -> Declaration:
+def _outer_ring(
+    name: str, words: str, kept: str, symbol: str, reason: str, key: str
+) -> Declaration:
     return check(
         id=name,
         title=f"Normal force vs. maximum {words} load of the outer ring",
@@ -387,6 +394,7 @@ def _outer_ring(name: str, words: str, symbol: str, reason: str, key: str) -> De
         tier=Tier.SCREENING,
         needs="roller",
         part="roller_bearing",
+        kept_as=f"maximum {kept} load of the roller's outer ring",
         formula=f"N <= {symbol}; N: greatest normal force over all load cases and angles, {symbol}:"
         f" maximum {words} load of an outer ring without a housing",
         reason=reason,
@@ -405,12 +413,14 @@ def _outer_ring(name: str, words: str, symbol: str, reason: str, key: str) -> De
 roller_radial = _outer_ring(
     "roller_radial",
     "dynamic radial",
+    "radial",
     "F_r,max",
     "an outer ring on a cam bends, and breaks in fatigue",
     "radial_limit",
 )
 roller_static_radial = _outer_ring(
     "roller_static_radial",
+    "static radial",
     "static radial",
     "F_0r,max",
     "an outer ring on a cam bends, and breaks under a single overload",
@@ -425,6 +435,7 @@ roller_static_radial = _outer_ring(
     method="viscosity over v1 at the mean speed of the roller; infinite at rest",
     needs="roller",
     part="roller_bearing",
+    kept_as="mean speed of the roller at the least viscosity ratio",
     formula="v/v1 >= k; v: viscosity in operation, v1: rated viscosity of ISO 281 at the mean speed"
     " of the roller and the pitch diameter of its balls, k: limits.viscosity_ratio",
     reason="below it the film is torn, and the modified life does not count the wear",
@@ -480,6 +491,7 @@ def least_speed(viscosity: float, circle: float, ratio: float) -> float | None:
     lift_can_help=True,
     needs="roller",
     part="roller_bearing",
+    kept_as="dynamic load rating of the roller at the life of its grease",
     formula="log10 F = 6.10 - 4.40e-6 D n - 2.50 (P/C - 0.05) - (0.021 - 1.80e-8 D n) T; F >= L;"
     " D: outer diameter in mm, n: mean speed in rpm, P: equivalent load, C: dynamic rating, T:"
     " temperature in degC, L: limits.target_life of a bearing greased for life, else"

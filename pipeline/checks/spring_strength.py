@@ -429,6 +429,7 @@ def _gas_check(
     lift_can_help: bool = True,
     values: tuple[str, ...],
     cured_by: tuple[Lever, ...] = (),
+    kept_as: str = "",
 ) -> Declaring:
     """Check of a gas spring against a limit of its maker."""
     return check(
@@ -441,6 +442,7 @@ def _gas_check(
         tier=Tier.SCREENING,
         moved_by_tolerance=False,
         part="gas_spring",
+        kept_as=kept_as,
         formula=formula,
         reason=reason,
         load_cases=NONE,
@@ -505,6 +507,7 @@ gas_speed = _gas_check(
     title="Maximum piston speed of the gas spring",
     unit="m/s",
     method="greatest speed of the follower over the load cases",
+    kept_as="lift per radian at the maximum speed of the gas spring",
     formula="max|w s'| <= spring.gas.speed_limit over all load cases; w: cam speed, s': slope of"
     " the lift",
     reason="a faster seal overheats and wears.",

@@ -77,6 +77,7 @@ traction_demand = check(
     method="(roller inertia + bearing drag) over roller radius and normal force",
     lift_can_help=True,
     needs="roller",
+    kept_as="friction of the roller on the cam",
     formula="T/N <= mu; T: tangential force of rolling without slip, from the inertia of the roller"
     " and the drag of its bearing, N: normal force, at least 1 % of the least spring force, mu:"
     " roller.friction",
@@ -214,6 +215,7 @@ def dang_van(solution: Solution) -> Demand:
     " from surface to core over the case depth; the worse of cam and follower, where hardened",
     lift_can_help=True,
     error="contact",
+    kept_as="contact pressure at the strength of case and core",
     formula="max sigma_v(z)/Y(z) <= 1 / S; Y(z): yield strength, linear from surface to core over"
     " the case depth, S: limits.case_safety",
     reason="of a hardened surface: a core that yields lets the case break in",
@@ -249,6 +251,7 @@ def hardened_case(solution: Solution) -> Demand | None:
     " worse of cam and follower, where hardened",
     lift_can_help=True,
     error="contact",
+    kept_as="contact pressure at the shear fatigue of case and core",
     formula="max (range of tau_xz(z) / 2)/t(z) <= 1 / S; t(z): fully reversed fatigue limit in"
     " torsion, linear from fatigue_torsion to core_fatigue_torsion over the case depth, S:"
     " limits.fatigue_safety",
@@ -346,6 +349,7 @@ def _signed_depth(cycle: Cycle) -> Array:
     method="effective case depth of the material over the greatest depth of tau_max over the turn,"
     " at the signed contact pressure of edge_pressure; least of cam and follower, where hardened",
     lift_can_help=True,
+    kept_as="normal force at the least case depth",
     formula="d / z >= limits.case_depth_ratio; d: case_depth, z: greatest depth of the maximum"
     " shear stress over all load cases, of plane strain times the factor of edge_pressure",
     reason="of a hardened surface: the maximum shear stress must lie within the case",

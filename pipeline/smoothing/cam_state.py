@@ -18,7 +18,7 @@ from camwright.geometry.arrays import Array, Value
 from camwright.geometry.errors import InputError
 from camwright.geometry.lift import Jet
 from camwright.geometry.pitch_curve import magnitude, rolling_share
-from camwright.pipeline.case.limits import CONTACT_FORCE_MARGIN, AnyLimit, Limit, OpenLimit
+from camwright.pipeline.case.limits import CONTACT_FORCE_MARGIN, AnyLimit
 from camwright.pipeline.checks.check import Declaration
 from camwright.pipeline.checks.extremes import BY_DUTY
 from camwright.pipeline.contact.traction import Drag
@@ -30,7 +30,13 @@ from camwright.pipeline.cycle.loaded_cam import (
 )
 from camwright.pipeline.cycle.numbers import Numbers
 from camwright.pipeline.follower.spring_kinds import SpringShape, rise, shaped_deflection
-from camwright.pipeline.smoothing.scenario import Correction, DesignVariables, Ratings, Scenario
+from camwright.pipeline.smoothing.scenario import (
+    Correction,
+    DesignVariables,
+    Rating,
+    Ratings,
+    Scenario,
+)
 
 
 def lift_jet(energy: tuple[Array, ...], variables: DesignVariables) -> Jet:
@@ -329,8 +335,8 @@ class Constraint(Generic[State]):
     Parameters
     ----------
     check : str              id of the check of the same demand
-    limit : Limit or callable   row of the table of limits; or ratings -> limit, SI, of a limit
-                             that a part sets. A value of None: not constrained
+    limit : Limit or Rating  row of the table of limits, or the rating of a part. A value of None:
+                             not constrained
     utilisation : callable   cam, limit -> (n,), or a `Mean` of the turn; None: does not apply
     factor_max : float       maximum factor on a row's limit where limits conflict; 0: fixed
     value_max : float        maximum value of a row's limit where limits conflict, SI
@@ -338,7 +344,7 @@ class Constraint(Generic[State]):
     """
 
     check: str
-    limit: AnyLimit | Callable[[Ratings], float | None]
+    limit: AnyLimit | Rating
     utilisation: Callable[[State, float], Array | Mean | None] = field(repr=False)
     factor_max: float = 0.0
     value_max: float = inf
@@ -347,15 +353,15 @@ class Constraint(Generic[State]):
     @property
     def row(self) -> AnyLimit | None:
         """Row of the table of limits; None: a part sets the limit."""
-        return self.limit if isinstance(self.limit, Limit | OpenLimit) else None
+        return None if isinstance(self.limit, Rating) else self.limit
 
     def value(self, ratings: Ratings) -> float | None:
         """Limit, SI; None: not constrained."""
         if self.needs not in ("", ratings.follower):
             return None
-        if isinstance(self.limit, Limit | OpenLimit):
-            return ratings.limits.get(self.limit)
-        return self.limit(ratings)
+        if isinstance(self.limit, Rating):
+            return self.limit.of(ratings)
+        return ratings.limits.get(self.limit)
 
 
 def where_applies(applies: Value, use: Array) -> Array:
@@ -363,12 +369,10 @@ def where_applies(applies: Value, use: Array) -> Array:
     return np.where(np.asarray(applies) != 0.0, use, _FAR + 0.0 * use)
 
 
-def kept(
-    declared: Declaration, limit: Callable[[Ratings], float | None] | None = None
-) -> Constraint[LoadedCam]:
+def kept(declared: Declaration, limit: Rating | None = None) -> Constraint[LoadedCam]:
     """Constraint of a check that is declared by a measure.
 
-    limit: ratings -> limit of a part, of the measure; None: the row of the check
+    limit: of a part, of the measure; None: the row of the check
     """
     how, measure, row = declared.measured, declared.measure, declared.limit
     of_part = row if limit is None else limit
@@ -392,7 +396,7 @@ def kept(
 
 def kept_loads(
     declared: Declaration,
-    limit: Callable[[Ratings], float | None] | None = None,
+    limit: Rating | None = None,
     *,
     needs: Literal["", "roller", "face"] = "",
 ) -> Constraint[ScenarioCam]:

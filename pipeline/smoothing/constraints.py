@@ -16,9 +16,7 @@ from typing import Literal
 
 from camwright.geometry.arrays import Array
 from camwright.geometry.lift import Jet
-from camwright.pipeline.case.limits import (
-    AnyLimit,
-)
+from camwright.pipeline.case.limits import JUMP_SPEED, AnyLimit
 from camwright.pipeline.checks import (
     cam_shape,
     contact_strength,
@@ -43,7 +41,7 @@ from camwright.pipeline.smoothing.part_constraints import (
     PART_SHAPE,
     PARTS,
 )
-from camwright.pipeline.smoothing.scenario import DesignVariables, Ratings, Scenario
+from camwright.pipeline.smoothing.scenario import DesignVariables, Rating, Ratings, Scenario
 
 
 def shape_utilisations(
@@ -99,12 +97,14 @@ def _utilisations(
     return uses
 
 
+_FORCE = Rating("normal_force", "N", by="normal_force_by", factor="force_safety")
+
 SHAPE: tuple[Constraint[LoadedCam], ...] = (
-    kept(cam_shape.spring_travel, lambda ratings: ratings.travel),
+    kept(cam_shape.spring_travel, Rating("travel", "mm")),
     kept(cam_shape.pressure_angle),
     kept(cam_shape.curvature_ratio),
     kept(cam_shape.undercut),
-    kept(cam_shape.concave_radius, lambda ratings: ratings.hollow_radius),
+    kept(cam_shape.concave_radius, Rating("hollow_radius", "mm")),
     kept(cam_shape.curvature_rate),
     kept(manufacture.cam_radius),
     kept(cam_shape.minimum_wall),
@@ -113,21 +113,21 @@ SHAPE: tuple[Constraint[LoadedCam], ...] = (
 """Limits on the shape of the cam."""
 
 LOADS: tuple[Constraint[ScenarioCam], ...] = (
-    kept_loads(contact_strength.contact_pressure, lambda ratings: ratings.pressure),
+    kept_loads(contact_strength.contact_pressure, Rating("pressure", "MPa", by="pressure_by")),
     kept_loads(jump_and_jamming.contact_force_margin),
     kept_loads(jump_and_jamming.contact_at_overspeed),
     kept_loads(jump_and_jamming.jump),
-    kept_loads(jump_and_jamming.jump_speed, lambda ratings: ratings.jump_speed),
+    kept_loads(jump_and_jamming.jump_speed, Rating(JUMP_SPEED.id, "rpm", power=-2.0)),
     kept_loads(jump_and_jamming.jam_index),
     kept_loads(jump_and_jamming.jam_index_friction_max),
-    kept_loads(roller_bearing.roller_static, lambda ratings: ratings.normal_force),
-    kept_loads(part_strength.bore_pressure, lambda ratings: ratings.normal_force, needs="face"),
-    kept_loads(roller_bearing.roller_speed, lambda ratings: ratings.roller_spin),
-    kept_loads(roller_bearing.roller_life, lambda ratings: ratings.life_force_cubed),
-    kept_loads(guide_strength.guide_pressure_a, lambda ratings: ratings.guide_pressure[0]),
-    kept_loads(guide_strength.guide_pv_a, lambda ratings: ratings.guide_pv[0]),
-    kept_loads(guide_strength.guide_pressure_b, lambda ratings: ratings.guide_pressure[1]),
-    kept_loads(guide_strength.guide_pv_b, lambda ratings: ratings.guide_pv[1]),
+    kept_loads(roller_bearing.roller_static, _FORCE),
+    kept_loads(part_strength.bore_pressure, _FORCE, needs="face"),
+    kept_loads(roller_bearing.roller_speed, Rating("roller_spin", "rpm")),
+    kept_loads(roller_bearing.roller_life, Rating("life_force_cubed", "N^3 rad/s")),
+    kept_loads(guide_strength.guide_pressure_a, Rating("guide_pressure", "MPa", 0)),
+    kept_loads(guide_strength.guide_pv_a, Rating("guide_pv", "MPa m/s", 0)),
+    kept_loads(guide_strength.guide_pressure_b, Rating("guide_pressure", "MPa", 1)),
+    kept_loads(guide_strength.guide_pv_b, Rating("guide_pv", "MPa m/s", 1)),
     *PARTS,
 )
 """Limits on the loads of the cam in one scenario."""

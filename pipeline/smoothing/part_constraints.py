@@ -45,6 +45,7 @@ from camwright.pipeline.smoothing.cam_state import (
     kept_loads,
     where_applies,
 )
+from camwright.pipeline.smoothing.scenario import Rating
 
 Side = Literal["A", "B"]
 
@@ -57,7 +58,7 @@ def _guide_edge_pressure(side: Side) -> Constraint[ScenarioCam]:
         return magnitude(at.edge[place]) / (at.ratings.guide_length[place] * limit)
 
     return Constraint(
-        f"guide_edge_pressure_{side}", lambda ratings: ratings.guide_edge_load[place], utilisation
+        f"guide_edge_pressure_{side}", Rating("guide_edge_load", "N/mm", place), utilisation
     )
 
 
@@ -132,36 +133,40 @@ def _grease_life(at: ScenarioCam, limit: float) -> Mean | None:
 
 
 PART_SHAPE: tuple[Constraint[LoadedCam], ...] = (
-    kept(guide_strength.guide_speed_a, lambda ratings: ratings.guide_slope[0]),
-    kept(guide_strength.guide_speed_b, lambda ratings: ratings.guide_slope[1]),
-    kept(spring_strength.gas_speed, lambda ratings: ratings.gas_slope),
+    kept(guide_strength.guide_speed_a, Rating("guide_slope", "mm", 0)),
+    kept(guide_strength.guide_speed_b, Rating("guide_slope", "mm", 1)),
+    kept(spring_strength.gas_speed, Rating("gas_slope", "mm")),
 )
 """Limits of the parts on the shape of the cam."""
 
 PARTS: tuple[Constraint[ScenarioCam], ...] = (
-    kept_loads(manufacture.guide_gap, lambda ratings: ratings.guide_gap),
+    kept_loads(manufacture.guide_gap, Rating("guide_gap", "mm")),
     _guide_edge_pressure("A"),
     _guide_edge_pressure("B"),
-    kept_loads(guide_strength.guide_temperature_a, lambda ratings: ratings.guide_power[0]),
-    kept_loads(guide_strength.guide_temperature_b, lambda ratings: ratings.guide_power[1]),
-    kept_loads(guide_wear.guide_wear_a, lambda ratings: ratings.guide_wear_pv[0]),
-    kept_loads(guide_wear.guide_wear_b, lambda ratings: ratings.guide_wear_pv[1]),
-    kept_loads(surface_durability.traction_demand, lambda ratings: ratings.friction),
+    kept_loads(
+        guide_strength.guide_temperature_a, Rating("guide_power", "W", 0, by="guide_power_by")
+    ),
+    kept_loads(
+        guide_strength.guide_temperature_b, Rating("guide_power", "W", 1, by="guide_power_by")
+    ),
+    kept_loads(guide_wear.guide_wear_a, Rating("guide_wear_pv", "MPa m/s", 0)),
+    kept_loads(guide_wear.guide_wear_b, Rating("guide_wear_pv", "MPa m/s", 1)),
+    kept_loads(surface_durability.traction_demand, Rating("friction", "-")),
     kept_loads(manufacture.profile_waviness),
     Constraint("contact_over_speed", CONTACT_FORCE_MARGIN, _swept_force),
     Constraint("elastic_contact", CONTACT_FORCE_MARGIN, _elastic_contact),
-    kept_loads(key_strength.key_pressure, lambda ratings: ratings.cam_torque),
-    kept_loads(camshaft_strength.gear_bending, lambda ratings: ratings.tooth_torque),
+    kept_loads(key_strength.key_pressure, Rating("cam_torque", "N m", by="cam_torque_by")),
+    kept_loads(camshaft_strength.gear_bending, Rating("tooth_torque", "N m", by="tooth_torque_by")),
     Constraint("keyway_root", KEYWAY_SAFETY, _keyway_root),
     Constraint(
         "grease_life",
-        lambda ratings: None if ratings.grease is None else ratings.grease.rating,
+        Rating("grease", "N", "rating"),
         _grease_life,
         needs="roller",
     ),
-    kept_loads(roller_bearing.roller_modified_life, lambda ratings: ratings.modified_rate),
-    kept_loads(roller_bearing.bearing_lubrication, lambda ratings: ratings.roller_spin_least),
-    kept_loads(flat_face_sliding.face_width, lambda ratings: ratings.face and ratings.face.width),
-    kept_loads(flat_face_sliding.face_pv, lambda ratings: ratings.face and ratings.face.pv),
+    kept_loads(roller_bearing.roller_modified_life, Rating("modified_rate", "rad/s")),
+    kept_loads(roller_bearing.bearing_lubrication, Rating("roller_spin_least", "rpm", power=-1.0)),
+    kept_loads(flat_face_sliding.face_width, Rating("face", "mm", "width")),
+    kept_loads(flat_face_sliding.face_pv, Rating("face", "MPa m/s", "pv")),
 )
 """Limits of the parts on the loads of the cam in one scenario."""

@@ -9,6 +9,7 @@ from typing import Literal, NamedTuple
 import numpy as np
 
 from camwright.geometry.arrays import FULL_TURN, Array, Value, readonly, uniform_turn
+from camwright.pipeline.base.units import in_unit
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.limits import AnyLimit
 from camwright.pipeline.checks.key_strength import KeywayRoot
@@ -176,6 +177,62 @@ class Ratings:
     def follower_size(self) -> float:
         """Roller radius, or half of the width of a face, m: scale of a gap."""
         return self.roller_radius if self.face is None else 0.5 * self.face.width
+
+
+class Rating(NamedTuple):
+    """A limit that a part sets: where it stands in the ratings.
+
+    Parameters
+    ----------
+    name : str      field of `Ratings`
+    unit : str      in which it is shown
+    place : int or str   of a pair, or of a tuple of named values; None: the field itself
+    by : str        field of the check it comes from, where it is the least of several; "": its own
+    factor : str    field of the factor on it with which it is shown; "": 1
+    power : float   of it with which the utilisation falls; negative: it rises, and is not relaxed
+    """
+
+    name: str
+    unit: str
+    place: int | str | None = None
+    by: str = ""
+    factor: str = ""
+    power: float = 1.0
+
+    def of(self, ratings: Ratings) -> float | None:
+        """Limit, SI; None: none."""
+        held = getattr(ratings, self.name)
+        if held is None or self.place is None:
+            limit: float | None = held
+        elif isinstance(self.place, int):
+            limit = held[self.place]
+        else:
+            limit = getattr(held, self.place)
+        return limit
+
+    def times(self, ratings: Ratings, factor: float) -> Ratings:
+        """Ratings with the limit times a factor."""
+        held, value = getattr(ratings, self.name), self.of(ratings)
+        if value is None:
+            return ratings
+        changed: object = value * factor
+        if isinstance(self.place, int):
+            changed = tuple(changed if k == self.place else each for k, each in enumerate(held))
+        elif self.place is not None:
+            changed = held._replace(**{self.place: changed})
+        return replace(ratings, **{self.name: changed})  # type: ignore[arg-type]
+
+    def check_of(self, ratings: Ratings, own: str) -> str:
+        """Id of the check that sets it; own: where it is no least of several."""
+        if not self.by:
+            return own
+        by = getattr(ratings, self.by)
+        return str(by[self.place] if isinstance(self.place, int) else by)
+
+    def shown(self, ratings: Ratings) -> float | None:
+        """Limit in its unit, by its factor."""
+        value, factor = self.of(ratings), getattr(ratings, self.factor) if self.factor else 1.0
+        return None if value is None else in_unit(value * factor, self.unit)
 
 
 _FACTORS = (

@@ -291,7 +291,6 @@ NAME_CHECKS = {
     "pipeline.follower.roller_parts", "pipeline.iteration", "pipeline.recomputation",
     "pipeline.results.model_limits", "pipeline.results.run_records",
     "pipeline.sizing.sizing", "pipeline.smoothing.allowables",
-    "pipeline.smoothing.bounds",
     "pipeline.smoothing.part_constraints", "pipeline.smoothing.problem_setup",
     "pipeline.smoothing.scenario", "pipeline.smoothing.shadow_prices",
     "pipeline.studies.design.candidate_search", "pipeline.studies.design.synthesised_points",

@@ -23,10 +23,12 @@ from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_file import read_case
 from camwright.pipeline.case.machine import machines
 from camwright.pipeline.checks.check import Declaration
-from camwright.pipeline.checks.registry import CHECKS
+from camwright.pipeline.checks.registry import CHECKS, DECLARED
 from camwright.pipeline.cycle.loaded_cam import LoadedCam
 from camwright.pipeline.cycle.solved_cam import numbers_of
 from camwright.pipeline.smoothing.allowables import travel_limits
+from camwright.pipeline.smoothing.constraints import CONSTRAINTS
+from camwright.pipeline.smoothing.scenario import Rating
 
 CASES = Path(__file__).parents[2] / "cases"
 POINTS = 180
@@ -149,3 +151,17 @@ def test_a_check_at_maximum_lift_is_at_its_limit_at_the_greatest_lift_allowed(na
             demand, limit = one.measured.value(worst, numbers), one.measured.allowed(numbers)
             assert float(demand[0]) == pytest.approx(float(limit.value), rel=1e-9), one.id
     assert len(allowed) == {"roller": 7, "face": 7, "gas spring": 2, "torsion spring": 2}[name]
+
+
+def test_what_the_synthesis_bounds_has_words() -> None:
+    """Of a rating the check that sets it says what is bounded; of a row the row does."""
+    rated = {each.check for each in CONSTRAINTS if isinstance(each.limit, Rating)}
+    grouped = {one.id for one in CHECKS
+               if one.scales_with or (one.measured and one.measured.kept
+                                      and one.measured.kept.group)}  # fmt: skip
+    unnamed = {name for name in rated | grouped if not DECLARED[name].kept_as}
+    assert unnamed == {"guide_gap", "concave_radius"}  # in the words of their rows
+    words = [one.kept_as for one in CHECKS if one.kept_as]
+    assert len(set(words)) == len(words)
+    idle = {one.id for one in CHECKS if one.kept_as} - rated - grouped
+    assert idle == {"shakedown_traction", "guide_expansion_A", "guide_expansion_B"}  # estimated
