@@ -5,13 +5,13 @@ the derivative to round-off. A constraint is met at a utilisation of at most 1. 
 be at least its limit, the utilisation is 1 plus the shortfall, which is smooth where the quotient
 of limit and demand is not.
 
-A constraint is declared once, in `SHAPE` or `LOADS`. One on a row of the table of limits takes
-value, title, unit and slope from the row.
+A check that is kept at a row of the table of limits is one by its declaration, with value, title,
+unit and slope of the row; one that is kept at the limit of a part is listed here with its `Rating`.
 """
 
 from __future__ import annotations
 
-from collections.abc import Container, Mapping
+from collections.abc import Container, Iterable, Mapping
 from typing import Literal
 
 from camwright.geometry.arrays import Array
@@ -26,6 +26,8 @@ from camwright.pipeline.checks import (
     part_strength,
     roller_bearing,
 )
+from camwright.pipeline.checks.check import Declaration
+from camwright.pipeline.checks.registry import CHECKS
 from camwright.pipeline.cycle.loaded_cam import LoadedCam
 from camwright.pipeline.smoothing.cam_state import (
     Constraint,
@@ -97,9 +99,28 @@ def _utilisations(
     return uses
 
 
-_FORCE = Rating("normal_force", "N", by="normal_force_by", factor="force_safety")
+def kept_at_rows(
+    checks: Iterable[Declaration], others: Container[str]
+) -> tuple[tuple[Constraint[LoadedCam], ...], tuple[Constraint[ScenarioCam], ...]]:
+    """Constraints on shape and loads of the checks that are kept at a row of the table of limits.
 
-SHAPE: tuple[Constraint[LoadedCam], ...] = (
+    Without others, the least limit of a group, and maximum lift, which `travel_limits` bounds.
+    """
+    shape, loads = [], []
+    for each in checks:
+        how = each.measured
+        if how is None or how.kept is None or each.limit is None or each.id in others:
+            continue
+        if how.reduce == "contour":
+            shape.append(kept(each))
+        elif not how.kept.group and how.reduce not in ("top", "case"):
+            loads.append(kept_loads(each))
+    return tuple(shape), tuple(loads)
+
+
+_FORCE = Rating("normal_force", "N", by="normal_force_by", factor="force_safety")
+# Listed in the order of the rows of the search, on which its round-off depends; others follow.
+_SHAPE: tuple[Constraint[LoadedCam], ...] = (
     kept(cam_shape.spring_travel, Rating("travel", "mm")),
     kept(cam_shape.pressure_angle),
     kept(cam_shape.curvature_ratio),
@@ -110,9 +131,7 @@ SHAPE: tuple[Constraint[LoadedCam], ...] = (
     kept(cam_shape.minimum_wall),
     *PART_SHAPE,
 )
-"""Limits on the shape of the cam."""
-
-LOADS: tuple[Constraint[ScenarioCam], ...] = (
+_LOADS: tuple[Constraint[ScenarioCam], ...] = (
     kept_loads(contact_strength.contact_pressure, Rating("pressure", "MPa", by="pressure_by")),
     kept_loads(jump_and_jamming.contact_force_margin),
     kept_loads(jump_and_jamming.contact_at_overspeed),
@@ -130,6 +149,11 @@ LOADS: tuple[Constraint[ScenarioCam], ...] = (
     kept_loads(guide_strength.guide_pv_b, Rating("guide_pv", "MPa m/s", 1)),
     *PARTS,
 )
+_LISTED = {each.check for each in _SHAPE} | {each.check for each in _LOADS}
+_OTHERS = kept_at_rows(CHECKS, _LISTED)
+SHAPE: tuple[Constraint[LoadedCam], ...] = (*_SHAPE, *_OTHERS[0])
+"""Limits on the shape of the cam."""
+LOADS: tuple[Constraint[ScenarioCam], ...] = (*_LOADS, *_OTHERS[1])
 """Limits on the loads of the cam in one scenario."""
 
 CONSTRAINTS: tuple[Constraint[LoadedCam] | Constraint[ScenarioCam], ...] = (*SHAPE, *LOADS)

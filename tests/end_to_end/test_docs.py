@@ -13,7 +13,7 @@ import textwrap
 import tomllib
 from functools import cache
 from pathlib import Path
-from types import ModuleType, SimpleNamespace
+from types import ModuleType
 
 import numpy as np
 import pytest
@@ -145,14 +145,14 @@ def fragments(heading: str) -> list[str]:
 
 
 def test_the_check_of_contributing_is_declared() -> None:
-    row, declared, constraint, entry = fragments("A check with a limit")
+    row, declared, entry = fragments("A check with a limit")
     names = dict(vars(limits))
     exec(row, names)
     inside = {**vars(cam_shape), "LIFT_JERK": names["LIFT_JERK"]}
     exec(declared, inside)
     assert inside["lift_jerk"].id == "lift_jerk"
-    kept = eval(constraint, {**vars(constraints), "cam_shape": SimpleNamespace(**inside)})
-    assert kept.limit is names["LIFT_JERK"]
+    (kept,), loads = constraints.kept_at_rows([inside["lift_jerk"]], ())
+    assert kept.limit is names["LIFT_JERK"] and not loads
     assert ast.parse(entry)
 
 

@@ -27,7 +27,7 @@ from camwright.pipeline.checks.registry import CHECKS, DECLARED
 from camwright.pipeline.cycle.loaded_cam import LoadedCam
 from camwright.pipeline.cycle.solved_cam import numbers_of
 from camwright.pipeline.smoothing.allowables import travel_limits
-from camwright.pipeline.smoothing.constraints import CONSTRAINTS
+from camwright.pipeline.smoothing.constraints import CONSTRAINTS, kept_at_rows
 from camwright.pipeline.smoothing.scenario import Rating
 
 CASES = Path(__file__).parents[2] / "cases"
@@ -165,3 +165,18 @@ def test_what_the_synthesis_bounds_has_words() -> None:
     assert len(set(words)) == len(words)
     idle = {one.id for one in CHECKS if one.kept_as} - rated - grouped
     assert idle == {"shakedown_traction", "guide_expansion_A", "guide_expansion_B"}  # estimated
+
+
+def test_a_check_that_is_declared_as_kept_is_a_constraint() -> None:
+    """By its row without a line elsewhere; by a rating, a group or the maximum lift."""
+    of_groups = {one.measured.kept.group for one in CHECKS
+                 if one.measured and one.measured.kept}  # fmt: skip
+    listed = {each.check for each in CONSTRAINTS}
+    assert of_groups - {""} <= listed
+    for one in CHECKS:
+        how = one.measured
+        if how is not None and how.kept is not None:
+            assert how.kept.group or how.reduce == "top" or one.id in listed, one.id
+    rows = {each.check for each in CONSTRAINTS if each.row is not None}
+    assert {each.check for kind in kept_at_rows(CHECKS, listed - rows) for each in kind} == rows - {
+        "contact_over_speed", "elastic_contact", "keyway_root"}  # fmt: skip
