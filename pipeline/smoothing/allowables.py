@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Literal, NamedTuple, TypedDict
 
@@ -60,9 +61,6 @@ def ratings_of(case: Case) -> Ratings:
     machine, covers, numbers = states[0], case.scope.covers, numbers_of(case, states)
     limits, guides = machine.limits, machine.guides
     roller, face = machine.roller, machine.face
-    pressure, pressure_by = _least(_pressure_limits(machine, case))
-    normal_force, normal_force_by = _least(part_limits(case, NORMAL_FORCE))
-    by_rating = normal_force_by == "roller_static"
     # Without a stated over-speed the contact is kept at the fastest load case.
     over = highest_speed(states) / machine.gear_ratio
     follower: Literal["roller", "face"] = "face" if roller is None else "roller"
@@ -80,36 +78,53 @@ def ratings_of(case: Case) -> Ratings:
         by_roller = _of_roller(machine, roller)
     if roller is not None and covers("roller_bearing"):
         by_roller |= _of_bearing(numbers)
-    return Ratings(
+    ratings = Ratings(
         roller_radius=machine.follower.contact_radius or 0.0,
         face=None if face is None else Face(face.width, face.side_friction, face.pv_limit),
         offset=machine.cam.offset,
         limits={row: value for row in kept if (value := limits[row]) is not None},
         travel=_least(travel_limits(case))[0],
         hollow_radius=least_concave_radius(case),
-        pressure=pressure,
-        pressure_by=pressure_by,
         contact_width=machine.contact_width,
         contact_modulus=machine.contact_modulus,
         overspeed=over,
         fastest=over,
         jump_speed=limits[JUMP_SPEED] * over,
-        normal_force=normal_force,
-        normal_force_by=normal_force_by or "roller_static",
-        force_safety=limits[ROLLER_STATIC_SAFETY] if by_rating else 1.0,
         guide_gap=limits[GUIDE_GAP],
         guide_mouth=machine.overhang_at_max_lift - 0.5 * guides.a.length,
         held_radius=cam.held_radius if "prime_radius" in case.smoothing.free else None,
         waves=None if band is None else (0.5 * band, cam.waviness_length),
         cam_torque=torque,
-        cam_torque_by=torque_by or "key_pressure",
+        cam_torque_by=torque_by,
         tooth_torque=tooth,
-        tooth_torque_by=tooth_by or "gear_bending",
+        tooth_torque_by=tooth_by,
         shaft_drag=0.0 if shaft is None else shaft.drag,
         keyway=keyway_root_of(machine),
         gas_slope=None if gas is None else _slope_limit(gas, over),
         **by_roller,
         **by_guide,
+    )
+    return _with_contact(ratings, case, {}, {})
+
+
+def _with_contact(
+    ratings: Ratings, case: Case, forces: Mapping[str, float], pressures: Mapping[str, float]
+) -> Ratings:
+    """Ratings with the least limits of contact pressure and normal force.
+
+    forces, pressures: further limits, N and Pa, by their checks
+    """
+    estimated = pressure_allowables(machines(case)[0], greatest_cycles(case))
+    pressure, pressure_by = _least({**part_limits(case, PRESSURE), **estimated, **pressures})
+    force, force_by = _least({**part_limits(case, NORMAL_FORCE), **forces})
+    by_rating = force_by == roller_bearing.roller_static.id
+    return replace(
+        ratings,
+        pressure=pressure,
+        pressure_by=pressure_by,
+        normal_force=force,
+        normal_force_by=force_by,
+        force_safety=case.limits[ROLLER_STATIC_SAFETY] if by_rating else 1.0,
     )
 
 
@@ -334,18 +349,8 @@ def corrected_ratings(ratings: Ratings, solved: Solution) -> Ratings:
     """Ratings with the limits that follow from a solved cam; see `surge_of`, `scaled_limits`."""
     case = solved.case
     forces, pressures = scaled_limits(solved)
-    pressure = _least(_pressure_limits(solved.machine, case) | pressures)
-    force = _least(part_limits(case, NORMAL_FORCE) | forces)
-    static = force[1] == "roller_static"
-    return replace(
-        ratings,
-        travel=_least(travel_limits(case, surge_of(solved)))[0],
-        pressure=pressure[0],
-        pressure_by=pressure[1],
-        normal_force=force[0],
-        normal_force_by=force[1] or "roller_static",
-        force_safety=case.limits[ROLLER_STATIC_SAFETY] if static else 1.0,
-    )
+    travel, _ = _least(travel_limits(case, surge_of(solved)))
+    return _with_contact(replace(ratings, travel=travel), case, forces, pressures)
 
 
 def travel_limits(case: Case, surge: Surge | None = None) -> dict[str, float]:
@@ -389,11 +394,6 @@ def _travel(one: Declaration, how: Measured, numbers: Numbers, last: Surge) -> f
     if not excess(least) < 0.0 < excess(most):
         return None
     return float(scipy.optimize.brentq(excess, least, most, xtol=1e-12))
-
-
-def _pressure_limits(machine: Machine, case: Case) -> dict[str, float]:
-    estimated = pressure_allowables(machine, greatest_cycles(case))
-    return part_limits(case, PRESSURE) | estimated
 
 
 def part_limits(case: Case, group: str) -> dict[str, float]:

@@ -124,14 +124,14 @@ class Ratings:
     travel: float | None = None
     hollow_radius: float | None = None
     pressure: float | None = None
-    pressure_by: str = "contact_pressure"
+    pressure_by: str = ""
     contact_width: float = 1.0
     contact_modulus: float = 1.0
     overspeed: float | None = None
     fastest: float | None = None
     jump_speed: float | None = None
     normal_force: float | None = None
-    normal_force_by: str = "roller_static"
+    normal_force_by: str = ""
     force_safety: float = 1.0
     dynamic_rating: float | None = None
     life_force_cubed: float | None = None
@@ -142,7 +142,7 @@ class Ratings:
     guide_area: tuple[float, float] = (1.0, 1.0)
     guide_edge_load: tuple[float | None, float | None] = (None, None)
     guide_power: tuple[float | None, float | None] = (None, None)
-    guide_power_by: tuple[str, str] = ("guide_temperature_A", "guide_temperature_B")
+    guide_power_by: tuple[str, str] = ("", "")
     guide_slope: tuple[float | None, float | None] = (None, None)
     gas_slope: float | None = None
     guide_length: tuple[float, float] = (1.0, 1.0)
@@ -153,9 +153,9 @@ class Ratings:
     drag: Drag | None = None
     waves: tuple[float, float] | None = None
     cam_torque: float | None = None
-    cam_torque_by: str = "key_pressure"
+    cam_torque_by: str = ""
     tooth_torque: float | None = None
-    tooth_torque_by: str = "gear_bending"
+    tooth_torque_by: str = ""
     shaft_drag: float = 0.0
     keyway: KeywayRoot | None = None
     grease: Grease | None = None
@@ -223,11 +223,11 @@ class Rating(NamedTuple):
         return replace(ratings, **{self.name: changed})  # type: ignore[arg-type]
 
     def check_of(self, ratings: Ratings, own: str) -> str:
-        """Id of the check that sets it; own: where it is no least of several."""
+        """Id of the check that sets it; own: of that of the constraint, where no other is named."""
         if not self.by:
             return own
         by = getattr(ratings, self.by)
-        return str(by[self.place] if isinstance(self.place, int) else by)
+        return (by[self.place] if isinstance(self.place, int) else by) or own
 
     def shown(self, ratings: Ratings) -> float | None:
         """Limit in its unit, by its factor."""

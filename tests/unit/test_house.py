@@ -292,7 +292,7 @@ NAME_CHECKS = {
     "pipeline.results.model_limits", "pipeline.results.run_records",
     "pipeline.sizing.sizing", "pipeline.smoothing.allowables",
     "pipeline.smoothing.part_constraints", "pipeline.smoothing.problem_setup",
-    "pipeline.smoothing.scenario", "pipeline.smoothing.shadow_prices",
+    "pipeline.smoothing.shadow_prices",
     "pipeline.studies.design.candidate_search", "pipeline.studies.design.synthesised_points",
     "pipeline.studies.papers.figures_2015_valve", "pipeline.studies.papers.petrescu_2015",
     "pipeline.studies.redesign.design_point", "pipeline.studies.redesign.redesign_study",
