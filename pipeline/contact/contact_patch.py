@@ -20,7 +20,7 @@ from camwright.geometry.arrays import Array, freeze, readonly
 from camwright.geometry.errors import ContactError
 from camwright.meshes import body_mesh, element_size, gmsh_mesher, outline
 from camwright.meshes.body_mesh import half_disc_mesh
-from camwright.meshes.element_size import Sizing
+from camwright.meshes.element_size import ElementSize
 from camwright.pipeline.base import disk_cache
 from camwright.pipeline.contact import hertz
 from camwright.pipeline.contact.elasticity import (
@@ -127,7 +127,7 @@ def patch_body(
     size = 1 / elements_per_half_width
     mesh = half_disc_mesh(
         _RADIUS,
-        Sizing(
+        ElementSize(
             contact_point=readonly((0.0, 0.0)), contact_size=size, contact_extent=1.7, far_size=5.0
         ),
     )
