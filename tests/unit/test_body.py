@@ -290,8 +290,8 @@ def test_fingerprint_covers_points_and_triangles():
 def test_another_process_gives_the_same_mesh(roller):
     script = (
         "from camwright.meshes.body_mesh import roller_mesh;"
-        "from camwright.meshes.element_size import Sizing;"
-        f"print(roller_mesh(0.008, 0.003, 0.7, Sizing.from_half_width({HALF_WIDTH}, 4e-3)).sha256)"
+        "from camwright.meshes.element_size import ElementSize;"
+        f"print(roller_mesh(0.008, 0.003, 0.7, ElementSize.from_half_width({HALF_WIDTH}, 4e-3)).sha256)"
     )
     process = subprocess.run(
         [sys.executable, "-c", script], capture_output=True, text=True, check=True, timeout=120
