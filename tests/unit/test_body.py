@@ -291,7 +291,8 @@ def test_another_process_gives_the_same_mesh(roller):
     script = (
         "from camwright.meshes.body_mesh import roller_mesh;"
         "from camwright.meshes.element_size import ElementSize;"
-        f"print(roller_mesh(0.008, 0.003, 0.7, ElementSize.from_half_width({HALF_WIDTH}, 4e-3)).sha256)"
+        f"size = ElementSize.from_half_width({HALF_WIDTH}, 4e-3);"
+        "print(roller_mesh(0.008, 0.003, 0.7, size).sha256)"
     )
     process = subprocess.run(
         [sys.executable, "-c", script], capture_output=True, text=True, check=True, timeout=120
