@@ -30,8 +30,8 @@ from camwright.pipeline.studies.batch.dataset import DATASET, SHARDS, parquet_by
 from camwright.pipeline.studies.batch.design_plan import Plan
 from camwright.pipeline.studies.batch.design_solver import DesignSolver
 from camwright.pipeline.studies.batch.design_task import Settings
-from camwright.pipeline.studies.batch.row_selection import Figures
-from camwright.pipeline.studies.batch.sampling import Designs
+from camwright.pipeline.studies.batch.row_selection import RowFigures
+from camwright.pipeline.studies.batch.sampling import SampledDesigns
 from camwright.pipeline.studies.batch.study_file import study_of
 from camwright.pipeline.studies.batch.study_run import planned, run_study
 
@@ -84,7 +84,7 @@ def rows(folder: Path) -> None:
     )
     tables = [read_parquet(path) for path in shards]
     tracemalloc.start()
-    figures = Figures(())
+    figures = RowFigures(())
     for each in tables:
         figures.add(each)
     size, _ = tracemalloc.get_traced_memory()
@@ -99,7 +99,7 @@ def rows(folder: Path) -> None:
                 write_atomic(path, content)
             wrote = time.perf_counter() - clock
             for _ in contents:
-                Figures(()).add(read_parquet(path))
+                RowFigures(()).add(read_parquet(path))
             spent = (time.process_time() - began) / len(contents)
         print(
             f"main process: {1e3 * spent:.1f} ms CPU a shard of {size} rows, written, read back "
@@ -186,7 +186,7 @@ def plan() -> None:
         si = staticmethod(lambda column: column)
 
     settings = Settings({"made": "0"}, {}, "own", 180, True, (), 1.0, 1)
-    designs = Designs((Axis(),), {"spring.preload": values}, count)
+    designs = SampledDesigns((Axis(),), {"spring.preload": values}, count)
     tracemalloc.start()
     made_plan = Plan.of(["made"], designs, settings)
     size, _ = tracemalloc.get_traced_memory()

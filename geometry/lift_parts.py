@@ -11,7 +11,7 @@ import numpy as np
 from camwright.geometry.arrays import FULL_TURN, Array
 from camwright.geometry.extrema import Extremum, refined
 from camwright.geometry.lift import Lift
-from camwright.geometry.motion_laws import DWELL, LAWS, Motion, Segment
+from camwright.geometry.motion_laws import DWELL, LAWS, Segment, SegmentMotion
 
 LiftFunction = Callable[[Array, Array, Array], Array]
 """Lift s, s' and s'' (...) -> value (...)."""
@@ -78,7 +78,7 @@ class LiftParts:
         return cls((LiftPart(0.0, FULL_TURN, derivatives, lift.search_count + 1),))
 
     @classmethod
-    def of_motion(cls, motion: Motion) -> LiftParts:
+    def of_motion(cls, motion: SegmentMotion) -> LiftParts:
         """Segments by their motion laws, in closed form; each law in two halves."""
         ends = np.cumsum([segment.stroke for segment in motion.segments])
         levels = np.concatenate([[0.0], ends[:-1]])

@@ -207,7 +207,7 @@ class Segment:
 
 
 @dataclass(frozen=True)
-class Motion:
+class SegmentMotion:
     """Lift by segments from angle 0, zero at its minimum, repeated over the turn.
 
     Parameters

@@ -24,9 +24,9 @@ from camwright.meshes.cam_outline import (
     hole_size,
     trace,
 )
-from camwright.meshes.element_size import EDGES_PER_TURN, SizeField, Sizing
+from camwright.meshes.element_size import EDGES_PER_TURN, ElementSize, SizeField
 from camwright.meshes.gmsh_mesher import Index, Triangulation, triangulate
-from camwright.meshes.outline import Facets, Piece, Zone, arc, facets, line
+from camwright.meshes.outline import Facets, OutlinePiece, Zone, arc, facets, line
 
 if TYPE_CHECKING:
     from skfem import MeshTri2
@@ -175,11 +175,11 @@ def _body(mesh: Triangulation) -> BodyMesh:
     return BodyMesh(mesh.points, mesh.triangles, mesh.boundaries)
 
 
-def _discretised(loops: list[list[Piece]], size: SizeField) -> list[list[Facets]]:
+def _discretised(loops: list[list[OutlinePiece]], size: SizeField) -> list[list[Facets]]:
     return [[facets(piece, size) for piece in loop] for loop in loops]
 
 
-def _zone(sizing: Sizing, centre: float) -> Zone | None:
+def _zone(sizing: ElementSize, centre: float) -> Zone | None:
     """Equal facets about an arc length, m, shifted by the phase; None without a contact."""
     if sizing.contact_size is None or not sizing.refined:
         return None
@@ -187,14 +187,16 @@ def _zone(sizing: Sizing, centre: float) -> Zone | None:
     return Zone(centre + sizing.phase * step, step, sizing.steps)
 
 
-def roller_mesh(radius: float, hub_radius: float, contact_angle: float, sizing: Sizing) -> BodyMesh:
+def roller_mesh(
+    radius: float, hub_radius: float, contact_angle: float, sizing: ElementSize
+) -> BodyMesh:
     """Mesh of a roller centred on the origin, refined at the rim point at `contact_angle`.
 
     Parameters
     ----------
     radius, hub_radius : float    outer radius and radius of the hole, m; 0 makes a full disc
     contact_angle : float         angle of the contact, rad; sets ``sizing.contact_point``
-    sizing : Sizing
+    sizing : ElementSize
 
     Returns
     -------
@@ -223,7 +225,7 @@ def roller_mesh(radius: float, hub_radius: float, contact_angle: float, sizing: 
     return _body(triangulate(_discretised(loops, size), size))
 
 
-def block_mesh(width: float, depth: float, sizing: Sizing) -> BodyMesh:
+def block_mesh(width: float, depth: float, sizing: ElementSize) -> BodyMesh:
     """Mesh of the rectangle [-width/2, width/2] x [-depth, 0], refined at the contact point.
 
     Returns
@@ -243,7 +245,9 @@ def block_mesh(width: float, depth: float, sizing: Sizing) -> BodyMesh:
     return _rectangle(width, depth, back, sizing)
 
 
-def face_mesh(width: float, thickness: float, stem_diameter: float, sizing: Sizing) -> BodyMesh:
+def face_mesh(
+    width: float, thickness: float, stem_diameter: float, sizing: ElementSize
+) -> BodyMesh:
     """Mesh of the block of a flat face, the stem's cross-section as a boundary of its back.
 
     Returns
@@ -271,7 +275,9 @@ def face_mesh(width: float, thickness: float, stem_diameter: float, sizing: Sizi
     return _rectangle(width, thickness, back, sizing)
 
 
-def _rectangle(width: float, depth: float, back: list[Piece], sizing: Sizing) -> BodyMesh:
+def _rectangle(
+    width: float, depth: float, back: list[OutlinePiece], sizing: ElementSize
+) -> BodyMesh:
     """Mesh of [-width/2, width/2] x [-depth, 0], its back in pieces from left to right."""
     half = 0.5 * width
     zone = None
@@ -290,7 +296,7 @@ def _rectangle(width: float, depth: float, back: list[Piece], sizing: Sizing) ->
     return _body(triangulate(_discretised([loop], size), size))
 
 
-def half_disc_mesh(radius: float, sizing: Sizing) -> BodyMesh:
+def half_disc_mesh(radius: float, sizing: ElementSize) -> BodyMesh:
     """Mesh of the half disc y <= 0 about the origin, refined there: the contact patch.
 
     One quarter is meshed and mirrored: the mesh is symmetric about x = 0 to the last bit.
@@ -351,7 +357,7 @@ def cam_mesh(
     contour: ContourLike,
     bore_radius: float,
     keyway: KeywayLike | None,
-    sizing: Sizing,
+    sizing: ElementSize,
     counter_hole: HoleLike | None = None,
 ) -> BodyMesh:
     """Mesh of the cam, refined at the contact point on its contour.
@@ -361,7 +367,7 @@ def cam_mesh(
     contour : ContourLike           ``points(theta)``, ``normal(theta)``, ``curvature(theta)``
     bore_radius : float             m, bore centred on the origin
     keyway : KeywayLike or None     slot into the bore: width, depth (m), angle (rad)
-    sizing : Sizing
+    sizing : ElementSize
     counter_hole : HoleLike or None   round hole, clear of bore and contour
 
     Returns

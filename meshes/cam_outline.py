@@ -12,8 +12,8 @@ from camwright.geometry.cutouts import HoleLike, KeywayLike
 from camwright.geometry.errors import GeometryError, InputError, in_millimetres
 from camwright.geometry.extrema import least_argument
 from camwright.geometry.monotone_cubic import MonotoneCubic
-from camwright.meshes.element_size import EDGES_PER_TURN, SizeField, Sizing
-from camwright.meshes.outline import Piece, Zone, arc, line
+from camwright.meshes.element_size import EDGES_PER_TURN, ElementSize, SizeField
+from camwright.meshes.outline import OutlinePiece, Zone, arc, line
 
 _SAMPLES = 7200  # of the contour, 0.05 deg apart
 _WALL_MIN = 0.01  # over the bore radius
@@ -30,7 +30,7 @@ class ContourLike(Protocol):
 
 
 @dataclass(frozen=True, eq=False)
-class Trace:
+class SampledContour:
     """Contour sampled over one turn: cam angle, rad; points and arc length, m."""
 
     contour: ContourLike
@@ -44,7 +44,7 @@ class Trace:
         return float(self.arc_length[-1])
 
 
-def trace(contour: ContourLike) -> Trace:
+def trace(contour: ContourLike) -> SampledContour:
     """Samples of a contour over one turn.
 
     Raises
@@ -61,10 +61,10 @@ def trace(contour: ContourLike) -> Trace:
         worst = theta[int(np.argmin(forward))]
         where = f"cam angle {np.degrees(worst):.2f} deg"
         raise GeometryError(f"contour = undercut at {where}, must be sound")
-    return Trace(contour, theta, points, np.r_[0.0, np.cumsum(np.hypot(*chord))])
+    return SampledContour(contour, theta, points, np.r_[0.0, np.cumsum(np.hypot(*chord))])
 
 
-def contour_piece(path: Trace, sizing: Sizing) -> Piece:
+def contour_piece(path: SampledContour, sizing: ElementSize) -> OutlinePiece:
     """Contour by arc length, with equal facets about the contact.
 
     Raises
@@ -83,10 +83,10 @@ def contour_piece(path: Trace, sizing: Sizing) -> Piece:
         inverse = MonotoneCubic(path.theta, path.arc_length)
         centre = float(inverse(theta)) + sizing.phase * sizing.contact_size
         zone = Zone(centre, sizing.contact_size, sizing.steps)
-    return Piece("contour", at, path.length, zone, closed=True)
+    return OutlinePiece("contour", at, path.length, zone, closed=True)
 
 
-def _foot(path: Trace, point: Array, tolerance: float) -> float:
+def _foot(path: SampledContour, point: Array, tolerance: float) -> float:
     """Cam angle, rad, of the contour point nearest to `point`, at most `tolerance` (m) from it."""
     from scipy.optimize import brentq
 
@@ -110,7 +110,7 @@ def _foot(path: Trace, point: Array, tolerance: float) -> float:
 
 
 def cam_size(
-    path: Trace, bore_radius: float, keyway: KeywayLike | None, sizing: Sizing
+    path: SampledContour, bore_radius: float, keyway: KeywayLike | None, sizing: ElementSize
 ) -> SizeField:
     """Element size in the cam: the sizing, limited by bore, keyway, fillets, wall and curvature.
 
@@ -144,7 +144,7 @@ def cam_size(
     return size.below(path.points, limits)
 
 
-def hole_size(size: SizeField, path: Trace, hole: HoleLike) -> SizeField:
+def hole_size(size: SizeField, path: SampledContour, hole: HoleLike) -> SizeField:
     """Element size limited by a hole and by the wall between it and the contour.
 
     Raises
@@ -170,7 +170,9 @@ def _finer_at_fillets(size: SizeField, bore_radius: float, keyway: KeywayLike) -
     return size
 
 
-def least_wall(path: Trace, bore_radius: float, keyway: KeywayLike | None) -> tuple[float, Array]:
+def least_wall(
+    path: SampledContour, bore_radius: float, keyway: KeywayLike | None
+) -> tuple[float, Array]:
     """Minimum distance from bore and keyway to the contour, m, and the sample (2,), m, there.
 
     Negative where the bore or the keyway crosses the contour.
@@ -207,7 +209,7 @@ def _winds_around_origin(points: Array) -> bool:
     return bool(np.isclose(turning.sum(), FULL_TURN, atol=1e-6))
 
 
-def hole_pieces(bore_radius: float, keyway: KeywayLike | None) -> list[Piece]:
+def hole_pieces(bore_radius: float, keyway: KeywayLike | None) -> list[OutlinePiece]:
     """Bore with its keyway as a clockwise loop.
 
     Raises

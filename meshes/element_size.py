@@ -17,7 +17,7 @@ _DECIMALS = 6  # of a size over its limit: sizes nearer to each other are equal
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Sizing:
+class ElementSize:
     """Element size of one body: constant at the contact, growing with the distance.
 
     The size is ``min(far_size, contact_size + growth * max(0, r - contact_extent))`` at the
@@ -78,7 +78,7 @@ class Sizing:
         reach: float = 2.0,
         growth: float = 0.15,
         phase: float = 0.0,
-    ) -> Sizing:
+    ) -> ElementSize:
         """Sizing of `edges` per Hertz half-width (m), constant up to `reach` half-widths.
 
         Eight quadratic elements per half-width, up to 1.8 half-widths, resolve the maximum

@@ -16,7 +16,7 @@ from camwright.geometry.errors import MeshError, ResultError
 from camwright.meshes.body_mesh import BodyMesh
 from camwright.meshes.element_size import MILLIMETRE
 from camwright.meshes.gmsh_mesher import Index, session
-from camwright.meshes.vtu import HEXAHEDRON, QUADRANGLE, QUADRATIC_TRIANGLE, Grid, vtu
+from camwright.meshes.vtu import HEXAHEDRON, QUADRANGLE, QUADRATIC_TRIANGLE, VtuGrid, vtu
 
 UNITS = "units_mm_N_MPa"
 """Field data that names the units of every VTU file."""
@@ -108,7 +108,7 @@ def write_vtu(
     if len(bodies) > 1:
         fields["body"] = np.repeat(np.arange(len(bodies)), np.diff(starts))
         cell_data["body"] = np.repeat(np.arange(len(bodies)), [len(s) for s in shifted])
-    grid = Grid(
+    grid = VtuGrid(
         _in_space(points),
         np.vstack(shifted),
         QUADRATIC_TRIANGLE,
@@ -123,7 +123,7 @@ def _in_space(points: Array) -> Array:
     return np.column_stack([points.T, np.zeros(points.shape[1])])
 
 
-def _write_grid(path: str | Path, grid: Grid) -> None:
+def _write_grid(path: str | Path, grid: VtuGrid) -> None:
     with replacing(path) as temporary:
         temporary.write_bytes(vtu(grid))
 
@@ -166,7 +166,7 @@ def write_rectangles(path: str | Path, x: Array, y: Array, cell_data: Mapping[st
     first = np.arange(across.size).reshape(across.shape)[:-1, :-1].ravel()
     cells = np.stack([first, first + 1, first + x.size + 1, first + x.size], axis=1)
     values = {name: np.ascontiguousarray(field).ravel() for name, field in cell_data.items()}
-    grid = Grid(points, cells, QUADRANGLE, {}, values, {UNITS: 1.0})
+    grid = VtuGrid(points, cells, QUADRANGLE, {}, values, {UNITS: 1.0})
     with replacing(path) as temporary:
         temporary.write_bytes(vtu(grid))
 
@@ -193,7 +193,7 @@ def write_hexahedra(
     ResultError
         If the file cannot be written; one already there is left as it was.
     """
-    grid = Grid(
+    grid = VtuGrid(
         points / MILLIMETRE,
         cells,
         HEXAHEDRON,

@@ -30,7 +30,7 @@ class Zone:
 
 
 @dataclass(frozen=True, eq=False)
-class Piece:
+class OutlinePiece:
     """Named piece of outline, the body on its left.
 
     `at` maps arc length (n,), 0..`length`, m, to points (2, n), m. A `closed` piece is a loop of
@@ -56,7 +56,7 @@ class Facets:
         freeze(self, ends=self.ends, middles=self.middles)
 
 
-def facets(piece: Piece, size: SizeField) -> Facets:
+def facets(piece: OutlinePiece, size: SizeField) -> Facets:
     """Element edges along `piece`, of the local element size.
 
     Raises
@@ -132,11 +132,11 @@ def _side(a: Array, b: Array, p: Array) -> Array:
     return np.sign((b[0] - a[0]) * (p[1] - a[1]) - (b[1] - a[1]) * (p[0] - a[0]))
 
 
-def line(name: str, start: Array, stop: Array, zone: Zone | None = None) -> Piece:
+def line(name: str, start: Array, stop: Array, zone: Zone | None = None) -> OutlinePiece:
     """Straight piece from `start` to `stop`, (2,), m."""
     length = float(np.hypot(*(stop - start)))
     along = (stop - start) / length
-    return Piece(name, lambda s: start[:, None] + along[:, None] * s, length, zone)
+    return OutlinePiece(name, lambda s: start[:, None] + along[:, None] * s, length, zone)
 
 
 def arc(
@@ -146,7 +146,7 @@ def arc(
     stop: float,
     centre: tuple[float, float] = (0.0, 0.0),
     zone: Zone | None = None,
-) -> Piece:
+) -> OutlinePiece:
     """Circular piece of `radius` (m) between two angles, rad, clockwise if `stop` < `start`."""
     sense = 1.0 if stop > start else -1.0
 
@@ -155,4 +155,4 @@ def arc(
         return np.array([centre[0] + radius * np.cos(angle), centre[1] + radius * np.sin(angle)])
 
     turn = abs(stop - start)
-    return Piece(name, at, radius * turn, zone, closed=bool(np.isclose(turn, 2 * np.pi)))
+    return OutlinePiece(name, at, radius * turn, zone, closed=bool(np.isclose(turn, 2 * np.pi)))

@@ -24,7 +24,7 @@ Numbers = NDArray[np.float64] | NDArray[np.int64] | NDArray[np.int32] | NDArray[
 
 
 @dataclass(frozen=True, eq=False)
-class Grid:
+class VtuGrid:
     """Points (n, 3), cells (m, k) of one VTK type, fields at points (n, ...) and cells (m, ...)."""
 
     points: Numbers
@@ -35,7 +35,7 @@ class Grid:
     field_data: Mapping[str, float]
 
 
-def vtu(grid: Grid) -> bytes:
+def vtu(grid: VtuGrid) -> bytes:
     """Content of the VTU file."""
     appended = _Appended()
     count, corners = grid.cells.shape

@@ -11,7 +11,7 @@ from typing import Any
 
 from camwright.geometry.errors import CamError
 from camwright.pipeline.base.progress import SILENT, Progress, utc
-from camwright.pipeline.base.worker_processes import ALONE, Crew, Task, crew
+from camwright.pipeline.base.worker_processes import ALONE, Crew, PendingCall, crew
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_values import refused_as_written
 from camwright.pipeline.case.load_case_torque import (
@@ -129,7 +129,7 @@ def _solved(
     if torques:
         folder.write_torque(torque_columns(torques[case.load_cases[0].name]))
     writer = TrialWriter(folder)
-    sought: list[Task] = []
+    sought: list[PendingCall] = []
 
     def on_final(trial: Trial) -> None:
         if depth is Tier.CERTIFIED:
@@ -180,7 +180,7 @@ def _solved(
     return summary | judged_of(certified, restated(statement, failing, _failing(certified)))
 
 
-def _remedies_begun(final: Trial, workers: Crew, folder: Path) -> list[Task]:
+def _remedies_begun(final: Trial, workers: Crew, folder: Path) -> list[PendingCall]:
     """Search of the remedies of a final trial in worker processes; empty if no check fails."""
     return [workers.submit(texts_of, part) for part in order_of(final, folder).parts]
 

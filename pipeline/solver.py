@@ -8,7 +8,7 @@ from dataclasses import replace
 
 from camwright.geometry.contour import Contour
 from camwright.pipeline.base.progress import SILENT, Progress
-from camwright.pipeline.base.worker_processes import Crew, Task, crew
+from camwright.pipeline.base.worker_processes import Crew, PendingCall, crew
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.load_case_torque import engine_torques
 from camwright.pipeline.checks.check import Check, in_order
@@ -68,7 +68,7 @@ def solve(
     """
     known = engine_torques(case) if torques is None else torques
     with crew(jobs) if workers is None else nullcontext(workers) as hands:
-        tried: Task | None = None
+        tried: PendingCall | None = None
         if corners and tier > Tier.SCREENING:
             tried = hands.submit(outcomes, case, known, contour)
         solved = solution(

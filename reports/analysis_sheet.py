@@ -22,7 +22,7 @@ from camwright.reports.figures import (
 from camwright.reports.machine_words import MachineWords
 from camwright.reports.part_figures import PART_FIGURES
 from camwright.reports.report_tables import isolated, number, quantity, words
-from camwright.reports.sheet_turn import Turn, angle_figure, both_ways, curves_of
+from camwright.reports.sheet_turn import SheetTurn, angle_figure, both_ways, curves_of
 
 GROUPS = (
     ("Torque", ("torque", "torque-spectrum", "torque-components", "crank-speed", "ripple-map")),
@@ -55,9 +55,9 @@ _ORDERS = 24  # harmonics of a cam turn
 _SHOWN, _MOST = 0.5, 6  # utilisation from which a limit is shown, and the number of limits
 
 
-def groups(turn: Turn) -> tuple[tuple[str, tuple[Figure, ...]], ...]:
+def groups(turn: SheetTurn) -> tuple[tuple[str, tuple[Figure, ...]], ...]:
     """Figures for which the run has columns, by group."""
-    makers: tuple[Callable[[Turn], Figure | None], ...] = (
+    makers: tuple[Callable[[SheetTurn], Figure | None], ...] = (
         _torque, _spectrum, _components, _crank_speed, _lift, _outline, _pressure_angle, _face,
         _radii, _limits_strip, _pressure, _half_width, _stress, *PART_FIGURES,
         _ripple_map, _trial_points,
@@ -68,7 +68,7 @@ def groups(turn: Turn) -> tuple[tuple[str, tuple[Figure, ...]], ...]:
     return tuple((title, figures) for title, figures in grouped if figures)
 
 
-def _torque(turn: Turn) -> Figure | None:
+def _torque(turn: SheetTurn) -> Figure | None:
     turn = turn.balanced
     curves = curves_of(
         turn, ("torque_before_Nm", turn.words.alone), ("torque_after_Nm", "with the cam"),
@@ -85,7 +85,7 @@ def _torque(turn: Turn) -> Figure | None:
     )  # fmt: skip
 
 
-def _spectrum(turn: Turn) -> Figure | None:
+def _spectrum(turn: SheetTurn) -> Figure | None:
     """Amplitudes of the torque by harmonic order of the machine's shaft."""
     turn = turn.balanced
     names = (("torque_before_Nm", turn.words.alone), ("torque_after_Nm", "with the cam"))
@@ -107,7 +107,7 @@ def _spectrum(turn: Turn) -> Figure | None:
     )  # fmt: skip
 
 
-def _crank_speed(turn: Turn) -> Figure | None:
+def _crank_speed(turn: SheetTurn) -> Figure | None:
     speed = turn.speed
     if speed is None:
         return None
@@ -129,7 +129,7 @@ def _crank_speed(turn: Turn) -> Figure | None:
     )  # fmt: skip
 
 
-def _components(turn: Turn) -> Figure | None:
+def _components(turn: SheetTurn) -> Figure | None:
     if turn.torque is None:
         return None
     whole = ("crank_angle_deg", "total_Nm", "error_bar_Nm")
@@ -150,7 +150,7 @@ def _components(turn: Turn) -> Figure | None:
     )  # fmt: skip
 
 
-def _lift(turn: Turn) -> Figure | None:
+def _lift(turn: SheetTurn) -> Figure | None:
     columns = turn.lift
     travel = turn.limit("spring travel", "mm", "spring_travel")
     rows = (
@@ -168,7 +168,7 @@ def _lift(turn: Turn) -> Figure | None:
     )  # fmt: skip
 
 
-def _outline(turn: Turn) -> Figure | None:
+def _outline(turn: SheetTurn) -> Figure | None:
     c = turn.contour
     theta = turn.columns["cam_angle_deg"][turn.worst]
     distance = np.abs((c["cam_angle_deg"] - theta + 180.0) % 360.0 - 180.0)
@@ -186,7 +186,7 @@ def _outline(turn: Turn) -> Figure | None:
     )  # fmt: skip
 
 
-def _balance(turn: Turn) -> str:
+def _balance(turn: SheetTurn) -> str:
     """Unbalance without and with the counter-hole."""
     balance = turn.balance
     unbalance = (
@@ -206,7 +206,7 @@ def _balance(turn: Turn) -> str:
     )
 
 
-def _roller_outline(turn: Turn, at: int) -> Array | None:
+def _roller_outline(turn: SheetTurn, at: int) -> Array | None:
     """Roller (2, n), mm, at a row of the contour; None if its radius is unknown."""
     radius, c = turn.length("roller", "radius"), turn.contour
     if radius is None:
@@ -214,7 +214,7 @@ def _roller_outline(turn: Turn, at: int) -> Array | None:
     return circle((float(c["pitch_x_mm"][at]), float(c["pitch_y_mm"][at])), radius)
 
 
-def _face_outline(turn: Turn, at: int) -> Array | None:
+def _face_outline(turn: SheetTurn, at: int) -> Array | None:
     """Block of the face (2, 5), mm, at a row of the contour; None if its size is unknown."""
     c, place = turn.contour, turn.columns["face_contact_offset_mm"][turn.worst]
     width, thick = (turn.length("follower", "face", key) for key in ("width", "thickness"))
@@ -228,7 +228,7 @@ def _face_outline(turn: Turn, at: int) -> Array | None:
     return np.array([middle + x * width * along + y * thick * normal for x, y in corners]).T
 
 
-def _face(turn: Turn) -> Figure | None:
+def _face(turn: SheetTurn) -> Figure | None:
     """Contact position, sliding speed and pressure times speed of a flat face."""
     half = turn.length("follower", "face", "width")
     edges = () if half is None else (LimitLine(0.5 * half, "edge"), LimitLine(-0.5 * half, "edge"))
@@ -243,7 +243,7 @@ def _face(turn: Turn) -> Figure | None:
     )  # fmt: skip
 
 
-def _pressure_angle(turn: Turn) -> Figure | None:
+def _pressure_angle(turn: SheetTurn) -> Figure | None:
     if not turn.rolls:  # zero at every angle
         return None
     both = (*both_ways(turn.limit("limit", "deg", "pressure_angle")),
@@ -258,7 +258,7 @@ def _pressure_angle(turn: Turn) -> Figure | None:
     )  # fmt: skip
 
 
-def _radii(turn: Turn) -> Figure | None:
+def _radii(turn: SheetTurn) -> Figure | None:
     roller = turn.length("roller", "radius")
     limits: tuple[LimitLine, ...] = ()
     if roller is not None:
@@ -292,7 +292,7 @@ def _radius_span(curves: Sequence[Curve]) -> tuple[float, float]:
     return min([0.0, *lows]) * 1.05, LARGEST_RADIUS_MM * 1.12
 
 
-def _pressure(turn: Turn) -> Figure | None:
+def _pressure(turn: SheetTurn) -> Figure | None:
     limits = turn.limit("endurance", "MPa", "contact_pressure")
     limits += turn.limit("shakedown", "MPa", "shakedown")
     curves = curves_of(
@@ -306,7 +306,7 @@ def _pressure(turn: Turn) -> Figure | None:
     )  # fmt: skip
 
 
-def _half_width(turn: Turn) -> Figure | None:
+def _half_width(turn: SheetTurn) -> Figure | None:
     curves = curves_of(
         turn, ("half_width_fe_mm", "finite elements"), ("half_width_hertz_mm", "Hertz"), dashed=(1,)
     )  # fmt: skip
@@ -317,7 +317,7 @@ def _half_width(turn: Turn) -> Figure | None:
     )  # fmt: skip
 
 
-def _stress(turn: Turn) -> Figure | None:
+def _stress(turn: SheetTurn) -> Figure | None:
     stress = curves_of(turn, ("von_mises_MPa", "von Mises"), ("tau_max_MPa", "maximum shear"))
     depth = curves_of(
         turn, ("von_mises_depth_mm", "von Mises"), ("tau_depth_mm", "maximum shear")
@@ -331,7 +331,7 @@ def _stress(turn: Turn) -> Figure | None:
     )  # fmt: skip
 
 
-def _ripple_map(turn: Turn) -> Figure | None:
+def _ripple_map(turn: SheetTurn) -> Figure | None:
     """Residual torque ripple by speed and engine load."""
     record = turn.ripple_map
     if record is None or "refused" in record:
@@ -354,7 +354,7 @@ def _ripple_map(turn: Turn) -> Figure | None:
     )  # fmt: skip
 
 
-def _trial_points(turn: Turn) -> Figure | None:
+def _trial_points(turn: SheetTurn) -> Figure | None:
     """Ripple and worst utilisation by trial; None of a single trial."""
     if len(turn.points) < 2:
         return None
@@ -376,7 +376,7 @@ def _trial_points(turn: Turn) -> Figure | None:
     )  # fmt: skip
 
 
-def _limits_strip(turn: Turn) -> Figure | None:
+def _limits_strip(turn: SheetTurn) -> Figure | None:
     return limits_strip(turn.limits, turn.gear_ratio, turn.words)
 
 

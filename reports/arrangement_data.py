@@ -9,10 +9,10 @@ import numpy as np
 from camwright.geometry.arrays import median
 from camwright.pipeline.base.files import Json
 from camwright.reports.drawing import arrangement
-from camwright.reports.drawing.arrangement import FORCES, Bush, Mechanism, Motion
+from camwright.reports.drawing.arrangement import FORCES, DrawnBush, DrawnMechanism, DrawnMotion
 from camwright.reports.drawing.drawing_shapes import Drawing
-from camwright.reports.drawing.spring_shapes import Coil, Gas, Spring, Torsion
-from camwright.reports.sheet_turn import Turn
+from camwright.reports.drawing.spring_shapes import Coil, DrawnGasSpring, Spring, Torsion
+from camwright.reports.sheet_turn import SheetTurn
 
 _COLUMNS = {"contact": "normal_force_N", "spring": "spring_force_N",
             "guide-a": "guide_reaction_A_N", "guide-b": "guide_reaction_B_N"}  # fmt: skip
@@ -24,13 +24,13 @@ _STATIONS = 360
 """Most cam angles at which a page draws the arrangement."""
 
 
-def arrangement_at(turn: Turn, row: int | None = None) -> Drawing:
+def arrangement_at(turn: SheetTurn, row: int | None = None) -> Drawing:
     """The mechanism at a row of the cycle; None: at the maximum contact pressure."""
     return arrangement.drawing(mechanism_of(turn), motion_of(turn), turn.worst if row is None
                                else row)  # fmt: skip
 
 
-def moving_data(turn: Turn) -> dict[str, Json]:
+def moving_data(turn: SheetTurn) -> dict[str, Json]:
     """The arrangement over the turn for a page: poses, arrows, values, angles; see `moving_record`.
 
     `at` is the place of the maximum contact pressure, `shaft` the angle of the machine's shaft.
@@ -47,10 +47,10 @@ def moving_data(turn: Turn) -> dict[str, Json]:
     }
 
 
-def motion_of(turn: Turn) -> Motion:
+def motion_of(turn: SheetTurn) -> DrawnMotion:
     """Motion and forces of the load case of a report."""
     c = turn.columns
-    return Motion(
+    return DrawnMotion(
         turn.load_case, np.radians(c["cam_angle_deg"]), turn.crank, turn.words.shaft,
         c["lift_mm"], np.radians(c["pressure_angle_deg"]), c.get("face_contact_offset_mm"),
         {name: np.nan_to_num(c[_COLUMNS[name]]) for name in FORCES},
@@ -58,7 +58,7 @@ def motion_of(turn: Turn) -> Motion:
 
 
 @lru_cache(maxsize=2)
-def mechanism_of(turn: Turn) -> Mechanism:
+def mechanism_of(turn: SheetTurn) -> DrawnMechanism:
     """Sizes of the mechanism; those that the case does not state follow from the stem."""
     contour = np.array([turn.contour["contour_x_mm"], turn.contour["contour_y_mm"]])
     axis, lowest = _reference(turn)
@@ -67,14 +67,14 @@ def mechanism_of(turn: Turn) -> Mechanism:
     guides = _guides(turn, stem, lowest + stroke)
     spring = _spring(turn, stem, stroke, guides)
     roller = turn.length("roller", "radius") if turn.rolls else None
-    return Mechanism(
+    return DrawnMechanism(
         contour, turn.length("cam", "bore_radius"), turn.keyway, _drilled(turn), axis, lowest,
         stroke, roller, _pin(turn, roller or 0.0), _face(turn) if roller is None else None, stem,
         _stem_end(turn, stem, lowest, guides, spring), guides, spring,
     )  # fmt: skip
 
 
-def _reference(turn: Turn) -> tuple[float, float]:
+def _reference(turn: SheetTurn) -> tuple[float, float]:
     """x of the follower axis and height of roller centre or face at zero lift, mm."""
     c, lift = turn.contour, turn.lift["lift_mm"]
     if not turn.rolls:
@@ -86,12 +86,12 @@ def _reference(turn: Turn) -> tuple[float, float]:
     return median(across), median(along - lift)
 
 
-def _drilled(turn: Turn) -> tuple[float, float, float] | None:
+def _drilled(turn: SheetTurn) -> tuple[float, float, float] | None:
     hole = turn.counter_hole
     return hole[:3] if hole is not None and hole[3] else None
 
 
-def _pin(turn: Turn, roller: float) -> float:
+def _pin(turn: SheetTurn, roller: float) -> float:
     """Radius of the roller pin, mm."""
     stated = turn.length("roller", "pin", "diameter")
     hub = turn.length("roller", "hub_radius")
@@ -99,7 +99,7 @@ def _pin(turn: Turn, roller: float) -> float:
     return min(radius, 0.8 * roller)
 
 
-def _face(turn: Turn) -> tuple[float, float]:
+def _face(turn: SheetTurn) -> tuple[float, float]:
     width = turn.length("follower", "face", "width")
     thick = turn.length("follower", "face", "thickness")
     wanders = turn.columns.get("face_contact_offset_mm")
@@ -107,26 +107,30 @@ def _face(turn: Turn) -> tuple[float, float]:
     return width or least, thick or 0.3 * (width or least)
 
 
-def _guides(turn: Turn, stem: float, highest: float) -> tuple[Bush, Bush]:
+def _guides(turn: SheetTurn, stem: float, highest: float) -> tuple[DrawnBush, DrawnBush]:
     """Guide A at its overhang from roller centre or face at maximum lift, guide B beyond it."""
     overhang = turn.length("follower", "overhang_at_max_lift") or _OVERHANG * stem
     spacing = turn.length("guides", "spacing") or _SPACING * stem
     a, b = (
-        Bush(middle, turn.length("guides", name, "length") or _GUIDE * stem,
+        DrawnBush(middle, turn.length("guides", name, "length") or _GUIDE * stem,
              max(turn.length("guides", name, "diameter") or stem, stem))
         for name, middle in (("a", highest + overhang), ("b", highest + overhang + spacing))
     )  # fmt: skip
     return a, b
 
 
-def _spring(turn: Turn, stem: float, stroke: float, guides: tuple[Bush, Bush]) -> Spring:
+def _spring(
+    turn: SheetTurn, stem: float, stroke: float, guides: tuple[DrawnBush, DrawnBush]
+) -> Spring:
     """The spring between the guides where it fits there, else above them."""
     kind, seat = turn.case.get("spring", {}).get("kind", "coil"), arrangement.SEAT * stem
     above = _top(guides[1]) + seat + 0.3 * stem
     if kind == "gas":
         area = turn.length("spring", "gas", "area", unit="mm^2") or stem**2
         volume = turn.length("spring", "gas", "volume", unit="cm^3")
-        return Gas.of(area, stroke * area if volume is None else 1e3 * volume, above, stroke)
+        return DrawnGasSpring.of(
+            area, stroke * area if volume is None else 1e3 * volume, above, stroke
+        )
     if kind == "torsion":
         arm = turn.length("spring", "torsion", "arm") or 2.0 * stroke
         raised = turn.length("spring", "torsion", "arm_angle", unit="rad") or 0.0
@@ -147,7 +151,7 @@ def _spring(turn: Turn, stem: float, stroke: float, guides: tuple[Bush, Bush]) -
     return Coil(wire, diameter, turns, above, length)
 
 
-def _installed(turn: Turn) -> float | None:
+def _installed(turn: SheetTurn) -> float | None:
     """Length of a coil spring at zero lift, mm: free length less preload over rate."""
     free = turn.length("spring", "design", "free_length")
     lift, force = turn.columns["lift_mm"], turn.columns["spring_force_N"]
@@ -160,7 +164,7 @@ def _installed(turn: Turn) -> float | None:
 
 
 def _stem_end(
-    turn: Turn, stem: float, lowest: float, guides: tuple[Bush, Bush], spring: Spring
+    turn: SheetTurn, stem: float, lowest: float, guides: tuple[DrawnBush, DrawnBush], spring: Spring
 ) -> float:
     """Height of the end of the stem at zero lift, mm."""
     stated = turn.length("follower", "stem_length")
@@ -169,9 +173,9 @@ def _stem_end(
     return max(_top(guides[1]) + 0.4 * stem, spring.seat)
 
 
-def _top(bush: Bush) -> float:
+def _top(bush: DrawnBush) -> float:
     return bush.middle + 0.5 * bush.length
 
 
-def _bottom(bush: Bush) -> float:
+def _bottom(bush: DrawnBush) -> float:
     return bush.middle - 0.5 * bush.length

@@ -14,15 +14,15 @@ from camwright.pipeline.base.fits import size_of
 from camwright.pipeline.base.spreadsheets import SUFFIX, Excerpt, spreadsheet
 from camwright.pipeline.base.tables import CAM_ANGLE
 from camwright.pipeline.base.units import celsius, parse
-from camwright.pipeline.base.worker_processes import Crew, Task
+from camwright.pipeline.base.worker_processes import Crew, PendingCall
 from camwright.pipeline.results.check_records import judged, utilisation_of
 from camwright.pipeline.results.run_reader import results_sha256
 from camwright.reports import pdf
 from camwright.reports.arrangement_data import arrangement_at
 from camwright.reports.drawing.drawing_shapes import Drawing
-from camwright.reports.drawing.part_view import Part, Track, crown_words, scale_words, views
+from camwright.reports.drawing.part_view import DrawnCam, Track, crown_words, scale_words, views
 from camwright.reports.report_content import Report, Signatures, report_content, verdict_of
-from camwright.reports.report_data import Material, title_block
+from camwright.reports.report_data import ReportMaterial, title_block
 from camwright.reports.report_tables import (
     DASH,
     CheckRow,
@@ -88,7 +88,7 @@ class SignoffSheet:
     lines: Sequence[str] = Signatures.lines
 
 
-def write_signoff(material: Material) -> list[Path]:
+def write_signoff(material: ReportMaterial) -> list[Path]:
     """Write the sheet to sign.
 
     Raises
@@ -108,7 +108,7 @@ class PrintedReport:
     report: Report
 
 
-def write_report(material: Material) -> list[Path]:
+def write_report(material: ReportMaterial) -> list[Path]:
     """Write ``8_report.pdf``.
 
     Raises
@@ -120,7 +120,7 @@ def write_report(material: Material) -> list[Path]:
     return [write_atomic(material.folder / PDF, pdf.typeset("report.typ", printed))]
 
 
-def sheet_content(material: Material) -> SignoffSheet:
+def sheet_content(material: ReportMaterial) -> SignoffSheet:
     """Contents of the sheet of a run."""
     run, verdict = material.run, verdict_of(material)
     rows = [row for row in check_rows(run.final.checks) if row.must_have and not row.judged_at]
@@ -163,7 +163,7 @@ def _others(rows: Sequence[CheckRow], known: Sequence[CheckRow]) -> str:
     return f"Further required checks: {listed}." if listed else ""
 
 
-def _facts(material: Material) -> Iterator[tuple[str, str]]:
+def _facts(material: ReportMaterial) -> Iterator[tuple[str, str]]:
     """Load case, life, lubricant, temperatures, key figures."""
     case, checks = material.case, material.run.final.checks
     yield "Drawn load case", shortened(material.turn.load_case, 40)
@@ -243,7 +243,7 @@ class ShopDrawing:
     results: str
 
 
-def write_drawing(material: Material) -> list[Path]:
+def write_drawing(material: ReportMaterial) -> list[Path]:
     """Write the shop drawing; none of a contour that encloses no body.
 
     Raises
@@ -257,7 +257,7 @@ def write_drawing(material: Material) -> list[Path]:
     return [write_atomic(material.folder / DRAWING, pdf.typeset("drawing.typ", content))]
 
 
-def drawing_content(material: Material) -> ShopDrawing | None:
+def drawing_content(material: ReportMaterial) -> ShopDrawing | None:
     """Contents of the drawing of a run; None if its contour encloses no body.
 
     Raises
@@ -275,7 +275,7 @@ def drawing_content(material: Material) -> ShopDrawing | None:
         raise ResultError(f"{file}: {type(error).__name__}: {error}") from None
 
 
-def _content(material: Material, record: Record) -> ShopDrawing:
+def _content(material: ReportMaterial, record: Record) -> ShopDrawing:
     part, case = _part(material, record), material.case
     title = str(case.get("title") or case["name"])
     roughness, thickness = record["roughness_rq_um"], record["thickness_mm"]
@@ -316,14 +316,14 @@ def _content(material: Material, record: Record) -> ShopDrawing:
     )  # fmt: skip
 
 
-def _part(material: Material, record: Record) -> Part:
+def _part(material: ReportMaterial, record: Record) -> DrawnCam:
     contour = material.turn.contour
     keyway, hole, roughness = record["keyway"], record["counter_hole"], record["roughness_rq_um"]
     bore = size_of(record["bore"])
     width = depth = None
     if keyway is not None:
         width, depth = size_of(keyway["width"]), size_of(keyway["depth"])
-    return Part(
+    return DrawnCam(
         np.array([contour["contour_x_mm"], contour["contour_y_mm"]]),
         None if width is None or depth is None else (
             _MM * width.nominal, _MM * (depth.nominal - bore.nominal),
@@ -370,7 +370,7 @@ def _mating(tracks: Record) -> str:
 # --- spreadsheets
 
 
-def write_tables(material: Material) -> list[Path]:
+def write_tables(material: ReportMaterial) -> list[Path]:
     """Write the spreadsheets, beside the tables of the run that they show.
 
     Raises
@@ -387,7 +387,7 @@ def write_tables(material: Material) -> list[Path]:
     return written
 
 
-def begun(material: Material, workers: Crew) -> dict[str, Task]:
+def begun(material: ReportMaterial, workers: Crew) -> dict[str, PendingCall]:
     """Spreadsheets handed to worker processes, by their table."""
     return {
         name: workers.submit(spreadsheet, material.run.path / name, excerpt)
@@ -395,7 +395,7 @@ def begun(material: Material, workers: Crew) -> dict[str, Task]:
     }
 
 
-def _tables(material: Material) -> dict[str, Excerpt | None]:
+def _tables(material: ReportMaterial) -> dict[str, Excerpt | None]:
     """Tables of the run that people read; of the inspection sheet an excerpt to print."""
     # Crowns stand in the workbook of the inspection sheet.
     files: dict[str, Excerpt | None] = {

@@ -23,7 +23,7 @@ from numpy.typing import NDArray
 from camwright.geometry.arrays import Array
 from camwright.geometry.errors import ResultError
 from camwright.pipeline.base.worker_processes import module_command
-from camwright.pipeline.results.field_file import ZONE, Step, read_series
+from camwright.pipeline.results.field_file import ZONE, FieldStep, read_series
 from camwright.reports import field_raster
 from camwright.reports.figure_svg import import_matplotlib
 from camwright.reports.report_tables import Record
@@ -127,7 +127,7 @@ def read_field(path: Path) -> Field:
     return Field(points, triangles, mises, moved, body, outline, notes)
 
 
-def _outline(step: Step) -> NDArray[np.int64]:
+def _outline(step: FieldStep) -> NDArray[np.int64]:
     """Edges (2, k) of a body, without those of hidden triangles."""
     edges = np.stack([step.triangles, np.roll(step.triangles, -1, axis=0)]).reshape(2, -1)
     _, first, count = np.unique(
@@ -137,7 +137,7 @@ def _outline(step: Step) -> NDArray[np.int64]:
     return edges[:, outer[~np.tile(step.hidden, 3)[outer]]]
 
 
-def _surface(step: Step) -> NDArray[np.int64]:
+def _surface(step: FieldStep) -> NDArray[np.int64]:
     """Edges (2, k) of the mesh below a contact, without its arc."""
     edges = _outline(step)
     # Nodes of a ring follow one another; edges along the surface lead to the next ring.

@@ -25,7 +25,7 @@ from markupsafe import Markup
 from numpy.typing import ArrayLike
 
 from camwright.pipeline.base.files import write_atomic
-from camwright.pipeline.base.worker_processes import Crew, Task
+from camwright.pipeline.base.worker_processes import Crew, PendingCall
 from camwright.reports.analysis_sheet import groups
 from camwright.reports.figures import (
     CAM_AXIS,
@@ -41,7 +41,7 @@ from camwright.reports.figures import (
     placed_limits,
     vertical_span,
 )
-from camwright.reports.report_data import FIGURES, Material
+from camwright.reports.report_data import FIGURES, ReportMaterial
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -102,7 +102,7 @@ class Drawn:
 
 
 @lru_cache(maxsize=1)
-def drawn_groups(material: Material) -> Sequence[tuple[str, Sequence[Drawn]]]:
+def drawn_groups(material: ReportMaterial) -> Sequence[tuple[str, Sequence[Drawn]]]:
     """Drawings of the sheet, by group; cached."""
 
     def drawn(figure: Figure) -> Drawn:
@@ -112,7 +112,7 @@ def drawn_groups(material: Material) -> Sequence[tuple[str, Sequence[Drawn]]]:
     return tuple((title, tuple(map(drawn, figures))) for title, figures in groups(material.turn))
 
 
-def begun(material: Material, workers: Crew) -> dict[str, Task]:
+def begun(material: ReportMaterial, workers: Crew) -> dict[str, PendingCall]:
     """Drawings of the sheet handed to worker processes, by the content of each figure."""
     figures = [figure for _, group in groups(material.turn) for figure in group]
     return {content_key(figure): workers.submit(svg_of, figure) for figure in figures}
@@ -123,7 +123,7 @@ def content_key(figure: Figure) -> str:
     return hashlib.sha256(pickle.dumps(figure)).hexdigest()
 
 
-def write(material: Material) -> list[Path]:
+def write(material: ReportMaterial) -> list[Path]:
     """Write ``figures/ID.png`` of each figure."""
     return [
         write_atomic(material.folder / FIGURES / f"{each.id}.png", png_of(each))

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from camwright.geometry.arrays import Array
-from camwright.reports.machine_words import Mark
+from camwright.reports.machine_words import NamedStroke
 
 SERIES = ("blue", "vermillion", "green", "purple", "orange", "sky")
 FAR_LIMIT = 1.6
@@ -187,7 +187,7 @@ class AngleFigure:
     crank: Array
     panels: tuple[Panel, ...]
     gear_ratio: float = 2.0
-    marks: tuple[Mark, ...] = ()
+    marks: tuple[NamedStroke, ...] = ()
     shaft: str = "crank"
     worst: float | None = None
 

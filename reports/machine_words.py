@@ -17,7 +17,7 @@ _WHOLE = 1e-6  # of the cycles in a cam turn
 
 
 @dataclass(frozen=True)
-class Mark:
+class NamedStroke:
     """A named part of the cycle, deg of the shaft; every second one is shaded."""
 
     start: float
@@ -41,7 +41,7 @@ class MachineWords:
     shaft: str
     alone: str
     origin: str
-    marks: tuple[Mark, ...] = ()
+    marks: tuple[NamedStroke, ...] = ()
 
     @property
     def title(self) -> str:
@@ -71,7 +71,7 @@ def words_of(case: Record, gear_ratio: float, *, balances: bool = True) -> Machi
     return MachineWords("crank", "engine alone", origin, marks)
 
 
-def _marks_of(torque: Mapping[str, Json], turn: float) -> tuple[Mark, ...]:
+def _marks_of(torque: Mapping[str, Json], turn: float) -> tuple[NamedStroke, ...]:
     """Marks that a torque carries, in every cycle of a cam turn."""
     stated = torque.get("marks")
     rows = [row for row in stated if isinstance(row, Mapping)] if isinstance(stated, list) else []
@@ -85,13 +85,13 @@ def _marks_of(torque: Mapping[str, Json], turn: float) -> tuple[Mark, ...]:
 
 def _repeated(
     starts: list[float], names: list[str] | tuple[str, ...], cycle: float, turn: float
-) -> tuple[Mark, ...]:
+) -> tuple[NamedStroke, ...]:
     count = round(turn / cycle)
     if not starts or count < 1 or abs(turn / cycle - count) > _WHOLE * count:
         return ()
     ends = [*starts[1:], cycle]
     return tuple(
-        Mark(k * cycle + start, k * cycle + end, name, place % 2 == 1)
+        NamedStroke(k * cycle + start, k * cycle + end, name, place % 2 == 1)
         for k in range(count)
         for place, (start, end, name) in enumerate(zip(starts, ends, names, strict=True))
     )

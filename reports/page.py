@@ -14,8 +14,8 @@ from camwright.reports import interactive
 from camwright.reports.arrangement_data import arrangement_at, moving_data
 from camwright.reports.drawing.drawing_svg import svg_of
 from camwright.reports.figure_svg import COLOURS, drawn_groups
-from camwright.reports.report_content import SHORT, Section, failed_checks, report_content
-from camwright.reports.report_data import Material
+from camwright.reports.report_content import SHORT, ReportSection, failed_checks, report_content
+from camwright.reports.report_data import ReportMaterial
 from camwright.reports.report_tables import plain, shortened
 from camwright.reports.utilisation_chart import LIMIT_SHARE, utilisation_chart
 
@@ -30,12 +30,12 @@ LINKS = (
 _PAGE_COLOURS = {name: f"var(--{name})" for name in COLOURS}
 
 
-def write(material: Material) -> list[Path]:
+def write(material: ReportMaterial) -> list[Path]:
     """Write ``8_report.html``."""
     return [write_atomic(material.folder / PAGE, text(material))]
 
 
-def text(material: Material) -> bytes:
+def text(material: ReportMaterial) -> bytes:
     """The page in UTF-8."""
     figures = [drawn.figure for _, group in drawn_groups(material) for drawn in group]
     report, drawing = report_content(material), arrangement_at(material.turn)
@@ -51,18 +51,18 @@ def text(material: Material) -> bytes:
     return page.encode("utf-8", "replace")
 
 
-def _is_check_table(section: Section) -> bool:
+def _is_check_table(section: ReportSection) -> bool:
     """Whether a section is the table of all checks, the last one of the page."""
     return section.id == "checks"
 
 
-def links(material: Material) -> list[tuple[str, str]]:
+def links(material: ReportMaterial) -> list[tuple[str, str]]:
     """(words, relative address) of the files of the run that are there."""
     places = (material.folder, material.run.path)
     return [(words, name) for words, name in LINKS if any((p / name).is_file() for p in places)]
 
 
-def study_page(title: str, sections: Sequence[Section], lead: str = "") -> str:
+def study_page(title: str, sections: Sequence[ReportSection], lead: str = "") -> str:
     """Page of a study: tables and pictures, no scripts."""
     page: str = environment().get_template("study.html").render(
         title=title, lead=lead, sections=sections

@@ -11,7 +11,7 @@ import numpy as np
 from camwright.geometry.arrays import Array
 from camwright.reports.figures import SERIES, Curve, Figure, LimitLine, LineFigure, Panel
 from camwright.reports.report_tables import Record, number
-from camwright.reports.sheet_turn import Turn, angle_figure, both_ways, curves_of, lowest
+from camwright.reports.sheet_turn import SheetTurn, angle_figure, both_ways, curves_of, lowest
 
 _TRAVEL_POINTS = 31
 _DEAD_COILS = 2.0  # of squared and ground ends
@@ -19,7 +19,7 @@ _PROMINENCE = 0.1
 _LOST = LimitLine(0.0, "contact lost at")
 
 
-def _forces(turn: Turn) -> Figure | None:
+def _forces(turn: SheetTurn) -> Figure | None:
     curves = curves_of(
         turn, ("spring_force_N", "spring"), ("inertia_force_N", "inertia"),
         ("side_force_N", "side force"), ("guide_friction_A_N", "friction A"),
@@ -36,7 +36,7 @@ def _forces(turn: Turn) -> Figure | None:
     )  # fmt: skip
 
 
-def _spring_force(turn: Turn) -> Figure | None:
+def _spring_force(turn: SheetTurn) -> Figure | None:
     """Over the travel in use; of a coil spring with its force at solid length."""
     spring = turn.case.get("spring", {})
     lift, first = np.unique(turn.columns["lift_mm"], return_index=True)
@@ -60,7 +60,7 @@ def _spring_force(turn: Turn) -> Figure | None:
     )  # fmt: skip
 
 
-def _energy(turn: Turn) -> Figure | None:
+def _energy(turn: SheetTurn) -> Figure | None:
     """Energies of spring and follower, and what cam and guides have exchanged since the angle 0."""
     c = turn.columns
     mass = turn.length("follower", "mass", unit="kg")
@@ -92,7 +92,7 @@ def _summed(values: Array, over: Array) -> Array:
     return np.concatenate([[0.0], np.cumsum(np.nan_to_num(steps))])
 
 
-def _load_cases(turn: Turn) -> Figure | None:
+def _load_cases(turn: SheetTurn) -> Figure | None:
     """Extremes of the load cases side by side; None of a single one."""
     if len(turn.others) < 2:
         return None
@@ -127,7 +127,7 @@ def _load_cases(turn: Turn) -> Figure | None:
     )  # fmt: skip
 
 
-def _speed_sweep(turn: Turn) -> Figure | None:
+def _speed_sweep(turn: SheetTurn) -> Figure | None:
     """Contact force and surge over the speed, with the resonances of the spring."""
     sweep = turn.sweep
     if sweep is None:
@@ -171,7 +171,7 @@ def _peaks(values: Array) -> list[int]:
     return sorted(sorted(clear, key=lambda k: -values[k])[:3])
 
 
-def _force_limits(turn: Turn) -> tuple[LimitLine, ...]:
+def _force_limits(turn: SheetTurn) -> tuple[LimitLine, ...]:
     """Greatest normal force that both the roller bearing and its outer ring carry."""
     return lowest(
         *turn.static_rating("static rating of the roller", "roller_static", "roller", "bearing",
@@ -181,7 +181,7 @@ def _force_limits(turn: Turn) -> tuple[LimitLine, ...]:
     )  # fmt: skip
 
 
-def _normal_force(turn: Turn) -> Figure | None:
+def _normal_force(turn: SheetTurn) -> Figure | None:
     curves = curves_of(
         turn, ("normal_force_N", "normal force"), ("axial_force_N", "axial force"),
         ("normal_force_statics_N", "normal force, point guides"), dashed=(2,),
@@ -200,7 +200,7 @@ def _normal_force(turn: Turn) -> Figure | None:
     )  # fmt: skip
 
 
-def _guides(turn: Turn) -> Figure | None:
+def _guides(turn: SheetTurn) -> Figure | None:
     pairs = (
         ("guide_reaction_A_N", "A, finite elements"), ("guide_reaction_A_statics_N", "A, statics"),
         ("guide_reaction_B_N", "B, finite elements"), ("guide_reaction_B_statics_N", "B, statics"),
@@ -221,7 +221,7 @@ def _guides(turn: Turn) -> Figure | None:
     )  # fmt: skip
 
 
-def _jamming(turn: Turn) -> Figure | None:
+def _jamming(turn: SheetTurn) -> Figure | None:
     limits = turn.limit("limit", "", "jam_index")
     indices = (
         ("jam_index", "finite guides"), ("jam_index_statics", "point supports"),
@@ -235,7 +235,7 @@ def _jamming(turn: Turn) -> Figure | None:
     )  # fmt: skip
 
 
-def _speed(turn: Turn) -> Figure | None:
+def _speed(turn: SheetTurn) -> Figure | None:
     velocity = turn.columns["follower_velocity_m_per_s"]
     curves: list[Curve] = []
     means: list[Curve] = []
@@ -263,7 +263,7 @@ def _speed(turn: Turn) -> Figure | None:
     )  # fmt: skip
 
 
-def _roller(turn: Turn) -> Figure | None:
+def _roller(turn: SheetTurn) -> Figure | None:
     limits = lowest(*turn.limit("limit with reserve", "", "traction_reserve"),
                     *turn.limit("coefficient of friction", "", "traction_demand"))  # fmt: skip
     return angle_figure(
@@ -280,7 +280,7 @@ def _roller(turn: Turn) -> Figure | None:
     )  # fmt: skip
 
 
-def _film(turn: Turn) -> Figure | None:
+def _film(turn: SheetTurn) -> Figure | None:
     limits = turn.limit("limit", "", "film_ratio")
     thickness = (
         ("film_thickness_um", "smooth surfaces"),
@@ -295,7 +295,7 @@ def _film(turn: Turn) -> Figure | None:
     )  # fmt: skip
 
 
-def _edge_pressure(turn: Turn) -> Figure | None:
+def _edge_pressure(turn: SheetTurn) -> Figure | None:
     peaks = (("guide_edge_pressure_A_MPa", "guide A"), ("guide_edge_pressure_B_MPa", "guide B"))
     heats = (("guide_friction_power_A_W", "guide A"), ("guide_friction_power_B_W", "guide B"))
     limits = turn.limit("limit A", "MPa", "guide_edge_pressure_A") + turn.limit(
@@ -310,7 +310,7 @@ def _edge_pressure(turn: Turn) -> Figure | None:
     )  # fmt: skip
 
 
-def _elastic(turn: Turn) -> Figure | None:
+def _elastic(turn: SheetTurn) -> Figure | None:
     forces = (
         ("contact_force_elastic_stem_N", "elastic stem, no friction"),
         ("normal_force_friction_min_N", "minimum friction"),
@@ -326,7 +326,7 @@ def _elastic(turn: Turn) -> Figure | None:
     )  # fmt: skip
 
 
-def _parts(turn: Turn) -> Figure | None:
+def _parts(turn: SheetTurn) -> Figure | None:
     """Each stress on its own axes, with its limit where a check has one of the same stress."""
     stresses = (
         ("spring_stress_MPa", "spring wire", ()),
@@ -359,7 +359,7 @@ def _relative(point: Record) -> tuple[str, float, float]:
     return str(point["name"]), mean / point["strength_MPa"], amplitude / point["endurance_MPa"]
 
 
-def _goodman(turn: Turn, part: str) -> Figure | None:
+def _goodman(turn: SheetTurn, part: str) -> Figure | None:
     """Goodman diagram of a part, stresses over its strengths."""
     record = turn.fatigue.get(part)
     if record is None:
@@ -385,7 +385,7 @@ def _goodman(turn: Turn, part: str) -> Figure | None:
     )  # fmt: skip
 
 
-PART_FIGURES: tuple[Callable[[Turn], Figure | None], ...] = (
+PART_FIGURES: tuple[Callable[[SheetTurn], Figure | None], ...] = (
     _forces, _spring_force, _energy, _load_cases, _speed_sweep, _normal_force, _guides, _jamming,
     _speed, partial(_goodman, part="spring"), partial(_goodman, part="camshaft"), _edge_pressure,
     _elastic, _roller, _film, _parts,

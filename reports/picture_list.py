@@ -12,7 +12,7 @@ import numpy as np
 
 from camwright.geometry.errors import ResultError
 from camwright.pipeline.base.files import write_atomic
-from camwright.pipeline.base.worker_processes import Crew, Task
+from camwright.pipeline.base.worker_processes import Crew, PendingCall
 from camwright.reports import (
     field_picture,
     field_raster,
@@ -21,7 +21,7 @@ from camwright.reports import (
     stress_map,
 )
 from camwright.reports.figure_svg import shipped
-from camwright.reports.report_data import FIGURES, Material
+from camwright.reports.report_data import FIGURES, ReportMaterial
 
 FIELD = Path("fields") / "stress.vtkhdf"
 
@@ -49,7 +49,7 @@ class Picture:
 
 @lru_cache(maxsize=1)
 @shipped()
-def stress_pictures(material: Material) -> Sequence[Picture]:
+def stress_pictures(material: ReportMaterial) -> Sequence[Picture]:
     """Stress field below the contact and in both bodies."""
     turn, path = material.turn, material.run.path / FIELD
     try:
@@ -95,7 +95,7 @@ def stress_pictures(material: Material) -> Sequence[Picture]:
 
 @lru_cache(maxsize=1)
 @shipped()
-def envelope_pictures(material: Material) -> Sequence[Picture]:
+def envelope_pictures(material: ReportMaterial) -> Sequence[Picture]:
     """Maps of the maximum stress below the contour; none for a contour that encloses no body."""
     file = material.run.final.path / stress_map.FILE
     if not file.exists():
@@ -137,7 +137,7 @@ def envelope_pictures(material: Material) -> Sequence[Picture]:
 
 @lru_cache(maxsize=1)
 @shipped()
-def guide_pictures(material: Material) -> Sequence[Picture]:
+def guide_pictures(material: ReportMaterial) -> Sequence[Picture]:
     """Pressure in both guides; none for a contour that encloses no body."""
     file = material.run.final.path / pressure_figures.FILE
     if not file.exists():
@@ -169,7 +169,7 @@ def guide_pictures(material: Material) -> Sequence[Picture]:
 
 @lru_cache(maxsize=1)
 @shipped()
-def axial_pictures(material: Material) -> Sequence[Picture]:
+def axial_pictures(material: ReportMaterial) -> Sequence[Picture]:
     """Pressure along the line of contact; none where the case lacks an end."""
     final = material.run.final
     file, follower = final.path / pressure_figures.AXIAL, material.turn.follower_name
@@ -214,7 +214,7 @@ def axial_pictures(material: Material) -> Sequence[Picture]:
     )
 
 
-PICTURES: tuple[Callable[[Material], Sequence[Picture]], ...] = (
+PICTURES: tuple[Callable[[ReportMaterial], Sequence[Picture]], ...] = (
     stress_pictures,
     axial_pictures,
     envelope_pictures,
@@ -223,7 +223,7 @@ PICTURES: tuple[Callable[[Material], Sequence[Picture]], ...] = (
 """Pictures of the report, in this order."""
 
 
-def pictures(material: Material) -> list[Picture]:
+def pictures(material: ReportMaterial) -> list[Picture]:
     """Pictures of the report, those begun ahead from their worker."""
     every: list[Picture] = []
     for draw in PICTURES:
@@ -232,7 +232,7 @@ def pictures(material: Material) -> list[Picture]:
     return every
 
 
-def begun(material: Material, workers: Crew) -> dict[str, Task]:
+def begun(material: ReportMaterial, workers: Crew) -> dict[str, PendingCall]:
     """Pictures that need no certificate handed to worker processes, by kind and load case."""
     return {
         _key(draw, material): workers.submit(draw, material)
@@ -241,12 +241,14 @@ def begun(material: Material, workers: Crew) -> dict[str, Task]:
     }
 
 
-def _key(draw: Callable[[Material], Sequence[Picture]], material: Material) -> str:
+def _key(draw: Callable[[ReportMaterial], Sequence[Picture]], material: ReportMaterial) -> str:
     """Kind of a picture and its load case, on which alone of the checks it depends."""
     return f"{draw.__name__}: {material.turn.load_case}"
 
 
-def write_pictures(draw: Callable[[Material], Sequence[Picture]], material: Material) -> list[Path]:
+def write_pictures(
+    draw: Callable[[ReportMaterial], Sequence[Picture]], material: ReportMaterial
+) -> list[Path]:
     """Write ``figures/NAME.png`` of each picture that is available."""
     return [
         write_atomic(material.folder / FIGURES / f"{picture.name}.png", picture.png)

@@ -16,20 +16,20 @@ from camwright.pipeline.results.run_reader import TrialRecord, load_end_words, r
 from camwright.reports import report_tables, verification_tables
 from camwright.reports.check_parts import PARTS
 from camwright.reports.figure_svg import Drawn, drawn_groups
-from camwright.reports.report_data import Material
+from camwright.reports.report_data import ReportMaterial
 from camwright.reports.report_tables import (
     DASH,
     STATUS,
     CheckRow,
     InputTable,
     Record,
+    ReportTable,
     Status,
-    Table,
     Tile,
     isolated,
     shortened,
 )
-from camwright.reports.sheet_turn import Turn
+from camwright.reports.sheet_turn import SheetTurn
 from camwright.reports.verdict_text import Verdict, governing_load_case, verdict
 
 if TYPE_CHECKING:
@@ -87,7 +87,7 @@ class Tabular:
     """A table."""
 
     kind: ClassVar[str] = "table"
-    table: Table
+    table: ReportTable
 
 
 @dataclass(frozen=True)
@@ -154,7 +154,7 @@ Content = Checks | Tabular | Pairs | Figures | Pictures | Inputs | Points | Note
 
 
 @dataclass(frozen=True, eq=False)
-class Block:
+class SectionBlock:
     """Part of a section: title, introduction, content; `narrow` ones are set side by side."""
 
     content: Content | None
@@ -164,12 +164,12 @@ class Block:
 
 
 @dataclass(frozen=True, eq=False)
-class Section:
+class ReportSection:
     """Section of a report; `brief` is its title in the contents."""
 
     id: str
     title: str
-    blocks: Sequence[Block]
+    blocks: Sequence[SectionBlock]
     lead: str = ""
     brief: str = ""
 
@@ -182,7 +182,7 @@ class Report:
     facts: Sequence[tuple[str, str]]
     verdict: Verdict
     tiles: Sequence[Tile]
-    sections: Sequence[Section]
+    sections: Sequence[ReportSection]
     footer: str
     kicker: str = "Cam sign-off"
 
@@ -192,7 +192,7 @@ class Report:
         return shortened(self.title, SHORT)
 
 
-def report_content(material: Material) -> Report:
+def report_content(material: ReportMaterial) -> Report:
     """Contents of the report of a run."""
     # study pages share these tables, without matplotlib
     from camwright.reports.picture_list import pictures
@@ -205,20 +205,20 @@ def report_content(material: Material) -> Report:
         report_tables.tiles(run.summary["headline"]),
         (
             _sheet(material), _numbers(material),
-            Section(
+            ReportSection(
                 "fields", "Stress fields",
-                (Block(Pictures(pictures(material))),),
+                (SectionBlock(Pictures(pictures(material))),),
                 brief="Stress fields",
             ),
             _trials(material), _evidence(material),
-            Section(
+            ReportSection(
                 "inputs", "Inputs and sources",
-                (Block(Inputs(report_tables.input_tables(material.case))),),
+                (SectionBlock(Inputs(report_tables.input_tables(material.case))),),
                 "Resolved case, defaults included.", "Inputs",
             ),
-            Section(
+            ReportSection(
                 "assumptions", "Assumptions and limitations",
-                (Block(Points([each.statement for each in MODEL_LIMITS])),),
+                (SectionBlock(Points([each.statement for each in MODEL_LIMITS])),),
                 brief="Assumptions",
             ),
             _checks(material), _versions(material),
@@ -228,7 +228,7 @@ def report_content(material: Material) -> Report:
     )  # fmt: skip
 
 
-def verdict_of(material: Material) -> Verdict:
+def verdict_of(material: ReportMaterial) -> Verdict:
     """Verdict of a run in sentences."""
     run, final = material.run, material.run.final
     return verdict(
@@ -245,7 +245,7 @@ def titled(text: str, checks: Sequence[Record]) -> str:
     return re.sub(r"\b\w+\b", lambda word: titles.get(word.group(), word.group()), text)
 
 
-def _facts(material: Material) -> list[tuple[str, str]]:
+def _facts(material: ReportMaterial) -> list[tuple[str, str]]:
     """Identification of the run."""
     summary, count = material.run.summary, len(material.run.trials)
     versions = summary["versions"]
@@ -259,21 +259,23 @@ def _facts(material: Material) -> list[tuple[str, str]]:
     ]
 
 
-def _checks(material: Material) -> Section:
+def _checks(material: ReportMaterial) -> ReportSection:
     """All checks in one table: failed, without data, waived, passed."""
     rows = report_tables.check_rows(material.run.final.checks)
     order = ("fail", "not_evaluated", "waived", "pass")
     rows.sort(key=lambda row: (bool(row.judged_at), order.index(row.status.id),
                                row.evidence, not row.must_have))  # fmt: skip
-    return Section(
-        "checks", "All checks", [Block(Checks(CHECKS_HEAD, rows, "All checks", filtered=True))],
+    return ReportSection(
+        "checks",
+        "All checks",
+        [SectionBlock(Checks(CHECKS_HEAD, rows, "All checks", filtered=True))],
         f"Failed, without data, waived, passed; by decreasing utilisation. {BAR_WORDS} {MISSING} "
         f"{EVIDENCE}",
         "All checks",
-    )  # fmt: skip
+    )
 
 
-def failed_checks(material: Material) -> Section:
+def failed_checks(material: ReportMaterial) -> ReportSection:
     """Checks that fail, required ones first; required ones without data."""
     rows = [row for row in report_tables.check_rows(material.run.final.checks) if not row.judged_at]
     groups = (
@@ -282,53 +284,53 @@ def failed_checks(material: Material) -> Section:
                                    and not row.must_have]),
     )  # fmt: skip
     blocks = [
-        Block(Checks(CHECKS_HEAD, part, f"Failed checks: {title or 'required'}"), title)
+        SectionBlock(Checks(CHECKS_HEAD, part, f"Failed checks: {title or 'required'}"), title)
         for title, part in groups
         if part
     ]
     lead = BAR_WORDS if groups[0][1] else "No required check fails."
-    return Section("failed", "Failed checks", blocks, lead)
+    return ReportSection("failed", "Failed checks", blocks, lead)
 
 
-def _numbers(material: Material) -> Section:
+def _numbers(material: ReportMaterial) -> ReportSection:
     summary = material.run.summary
     headline = report_tables.headline_rows(summary["headline"])
-    blocks = [Block(Pairs("Key figures", headline, 2))]
+    blocks = [SectionBlock(Pairs("Key figures", headline, 2))]
     machine = material.turn.words
     speed = verification_tables.crank_speed(summary["speed"], machine)
     blocks += _tables((speed, f"{machine.title} speed", ""))
     lead = f"Over one turn of the final trial. {_beyond_hertz(material)}".rstrip()
-    return Section("numbers", "Key figures", blocks, lead)
+    return ReportSection("numbers", "Key figures", blocks, lead)
 
 
-def _beyond_hertz(material: Material) -> str:
+def _beyond_hertz(material: ReportMaterial) -> str:
     """What finite elements add to Hertz theory in the final trial, one sentence."""
     return verification_tables.hertz_difference(material.run.final.record["hertz_difference"])
 
 
-def _governing_load_case(material: Material) -> str:
+def _governing_load_case(material: ReportMaterial) -> str:
     final = material.run.final
     return governing_load_case(final.checks, final.cycle.load_cases)
 
 
-def _sheet(material: Material) -> Section:
+def _sheet(material: ReportMaterial) -> ReportSection:
     turn = material.turn
     count, others = len(turn.others), ""
     if count > 1:
         whole = turn.load_case == _governing_load_case(material)
         words = "the governing one" if whole else "in which the follower stays on the cam"
         others = f", {words}; ribbons: range of all {count} load cases"
-    return Section(
+    return ReportSection(
         "sheet", "Cam analysis sheet",
-        [Block(Figures(drawn), title) for title, drawn in drawn_groups(material)],
+        [SectionBlock(Figures(drawn), title) for title, drawn in drawn_groups(material)],
         f"Load case {isolated(turn.load_case)}{others}. Dotted line: cam angle of the maximum "
         f"contact pressure. Red dashed lines: limits. {_beyond_hertz(material)}".rstrip(),
     )  # fmt: skip
 
 
-def _trials(material: Material) -> Section:
+def _trials(material: ReportMaterial) -> ReportSection:
     run = material.run
-    table = Table("Trials", TRIALS_HEAD, [_trial(trial) for trial in run.trials], 2, 2)
+    table = ReportTable("Trials", TRIALS_HEAD, [_trial(trial) for trial in run.trials], 2, 2)
     prices = verification_tables.prices(run.summary["prices"])
     shaft = material.turn.words.shaft
     lead = (
@@ -342,10 +344,10 @@ def _trials(material: Material) -> Section:
         "anew: the greatest change would help most. A greater roller keeps the base radius. The "
         "phase of the cam on the shaft has no price: the lift shifts with the torque."
     )
-    return Section(
+    return ReportSection(
         "trials", "Trials and shadow prices",
         [
-            Block(Tabular(table)),
+            SectionBlock(Tabular(table)),
             *_tables(
                 (prices, "Shadow prices of the limits", lead),
                 (machine, "Prices of the numbers of the machine", machine_lead),
@@ -375,7 +377,7 @@ def _trial(trial: TrialRecord) -> list[str | Status]:
     ]  # fmt: skip
 
 
-def _evidence(material: Material) -> Section:
+def _evidence(material: ReportMaterial) -> ReportSection:
     summary, final = material.run.summary, material.run.final
     points = final.record["certificate"]
     method = str(final.record["contact_method"])
@@ -389,14 +391,14 @@ def _evidence(material: Material) -> Section:
         if k not in _RUNNING
     ]
     blocks = [
-        Block(
+        SectionBlock(
             Tabular(certificate), "Certificate points",
             "The contact is solved again at these cam angles, with both bodies meshed: at the two "
             "of the greatest pressure on three successively finer meshes, at the others on the two "
             "coarser ones, with the least order observed there. Edges are counted across the "
             "half-width a. Order: of convergence; scatter where none is observed. GCI: grid "
             "convergence index of the finest mesh. Deviation: of the cycle from the extrapolated.",
-        ) if certificate.rows else Block(
+        ) if certificate.rows else SectionBlock(
             None, "Certificate points", "The final trial has no certificate points."
         ),
         *_tables(
@@ -429,29 +431,34 @@ def _evidence(material: Material) -> Section:
         )
         notes = verification_tables.measurement_notes(summary.get("measurement"))
         barred = any("error bar" in title for title, _ in measured)
-        blocks.append(Block(
+        blocks.append(SectionBlock(
             Pairs("Measurement", measured), "Measurement",
             " ".join((*((words,) if barred else ()), *notes)), narrow=True,
         ))  # fmt: skip
     if benchmarks:
-        blocks.append(Block(
+        blocks.append(SectionBlock(
             Pairs("Benchmarks", benchmarks), "Benchmarks",
             "Relative difference to the reference solution, in the environment of this run.",
             narrow=True,
         ))  # fmt: skip
     blocks += [
-        Block(Pairs("Residuals", residuals(material.turn)), "Residuals",
-              "Maximum over the turn, relative.", narrow=True),
-        Block(Pairs("Mesh", report_tables.named_rows(mesh)), "Mesh", narrow=True) if mesh else
-        Block(None, "Mesh", "No mesh quality is recorded.", narrow=True),
-        Block(Pairs("Solver time", times), "Solver time", narrow=True),
-    ]  # fmt: skip
+        SectionBlock(
+            Pairs("Residuals", residuals(material.turn)),
+            "Residuals",
+            "Maximum over the turn, relative.",
+            narrow=True,
+        ),
+        SectionBlock(Pairs("Mesh", report_tables.named_rows(mesh)), "Mesh", narrow=True)
+        if mesh
+        else SectionBlock(None, "Mesh", "No mesh quality is recorded.", narrow=True),
+        SectionBlock(Pairs("Solver time", times), "Solver time", narrow=True),
+    ]
     lead = f"Contact model: {method}. {_beyond_hertz(material)}".rstrip() if method else ""
     lead = f"{lead} {verification_tables.ends_refused(final.record)}".strip()
-    return Section("evidence", "Evidence", blocks, lead)
+    return ReportSection("evidence", "Evidence", blocks, lead)
 
 
-def _versions(material: Material) -> Section:
+def _versions(material: ReportMaterial) -> ReportSection:
     summary = material.run.summary
     kept = (
         f" run.json lists the SHA-256 of {len(summary['files'])} results, whose hash stands above, "
@@ -459,17 +466,20 @@ def _versions(material: Material) -> Section:
         "--verify-record the signatures, with --recompute the checks."
     )
     versions = [(str(k), str(v)) for k, v in summary["versions"].items()]
-    return Section(
-        "versions", "Versions and hashes",
+    return ReportSection(
+        "versions",
+        "Versions and hashes",
         (
-            Block(Pairs("Versions", versions, 2)),
-            Block(Pairs("SHA-256", _hashes(material), code=True), "SHA-256"),
-            Block(Note(f"Record schema {summary['schema']}.{kept}")), Block(Signatures()),
-        ), brief="Versions",
-    )  # fmt: skip
+            SectionBlock(Pairs("Versions", versions, 2)),
+            SectionBlock(Pairs("SHA-256", _hashes(material), code=True), "SHA-256"),
+            SectionBlock(Note(f"Record schema {summary['schema']}.{kept}")),
+            SectionBlock(Signatures()),
+        ),
+        brief="Versions",
+    )
 
 
-def _hashes(material: Material) -> list[tuple[str, str]]:
+def _hashes(material: ReportMaterial) -> list[tuple[str, str]]:
     """SHA-256 of input, results, source and meshes."""
     summary, mesh = material.run.summary, material.run.final.record["mesh"] or {}
     meshes = mesh.get("sha256")
@@ -481,7 +491,7 @@ def _hashes(material: Material) -> list[tuple[str, str]]:
     return [(name, str(digest)) for name, digest in digests.items() if digest]
 
 
-def residuals(turn: Turn) -> list[tuple[str, str]]:
+def residuals(turn: SheetTurn) -> list[tuple[str, str]]:
     """Maximum relative residual of each equation over the turn."""
     names = {
         "residual_equilibrium": "contact pressure and load",
@@ -496,6 +506,6 @@ def residuals(turn: Turn) -> list[tuple[str, str]]:
     ]
 
 
-def _tables(*parts: tuple[Table, str, str]) -> list[Block]:
+def _tables(*parts: tuple[ReportTable, str, str]) -> list[SectionBlock]:
     """Blocks of the tables that have rows, with title and introduction."""
-    return [Block(Tabular(table), title, lead) for table, title, lead in parts if table.rows]
+    return [SectionBlock(Tabular(table), title, lead) for table, title, lead in parts if table.rows]

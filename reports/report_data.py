@@ -8,10 +8,10 @@ from pathlib import Path
 
 from camwright.geometry.errors import ResultError
 from camwright.pipeline.base.files import parse_toml
-from camwright.pipeline.base.worker_processes import Task
+from camwright.pipeline.base.worker_processes import PendingCall
 from camwright.pipeline.results.run_reader import Run, read_run
 from camwright.reports.report_tables import Record, shortened
-from camwright.reports.sheet_turn import Turn
+from camwright.reports.sheet_turn import SheetTurn
 from camwright.reports.verdict_text import governing_load_case
 
 FIGURES = "figures"
@@ -27,7 +27,7 @@ _ENTRIES = {
 
 
 @dataclass(frozen=True, eq=False)
-class Material:
+class ReportMaterial:
     """A run, the folder of its report, and the load case that the sheet draws.
 
     Compared by identity, so that drawings can be cached by it. `ahead` are drawings begun before
@@ -37,11 +37,11 @@ class Material:
     folder: Path
     run: Run
     case: Record
-    turn: Turn
-    ahead: Mapping[str, Task] = field(default_factory=dict)
+    turn: SheetTurn
+    ahead: Mapping[str, PendingCall] = field(default_factory=dict)
 
 
-def read_material(folder: Path, ahead: Mapping[str, Task] | None = None) -> Material:
+def read_material(folder: Path, ahead: Mapping[str, PendingCall] | None = None) -> ReportMaterial:
     """Data of a run folder, into which its report is written.
 
     Raises
@@ -51,10 +51,10 @@ def read_material(folder: Path, ahead: Mapping[str, Task] | None = None) -> Mate
     """
     run = read_run(folder)
     case = parse_toml(run.case_text, str(run.path / "case.toml"))
-    return Material(Path(folder), run, case, governing_turn(run, case), ahead or {})
+    return ReportMaterial(Path(folder), run, case, governing_turn(run, case), ahead or {})
 
 
-def governing_turn(run: Run, case: Record) -> Turn:
+def governing_turn(run: Run, case: Record) -> SheetTurn:
     """The governing load case of the final trial among those that keep the follower on the cam.
 
     Of all of them where it leaves the cam or locks in each.
@@ -67,7 +67,7 @@ def governing_turn(run: Run, case: Record) -> Turn:
     ended = {each["load_case"] for each in run.summary.get("load_ends", ())}
     whole = [name for name in names if name not in ended]
     drawn = governing_load_case(final.checks, whole or names)
-    return Turn(
+    return SheetTurn(
         by_name[drawn], tuple(by_name.values()), final.lift, final.contour, run.torque,
         final.checks, case, final.record["balance"], drawn, run.speed, final.limits,
         run.summary["trial_points"], run.summary["ripple_map"], final.sweep,

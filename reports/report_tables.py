@@ -175,7 +175,7 @@ Cell = str | Status
 
 
 @dataclass(frozen=True)
-class Table:
+class ReportTable:
     """Table of a report.
 
     The first `text` columns hold words, the next `numbers` columns numbers (None: all others). On

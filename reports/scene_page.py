@@ -18,7 +18,7 @@ from camwright.reports import stress_map
 from camwright.reports.interactive import script_safe_json, scripts
 from camwright.reports.page import environment
 from camwright.reports.pressure_figures import Record
-from camwright.reports.report_data import Material
+from camwright.reports.report_data import ReportMaterial
 from camwright.reports.scene_solids import (
     Lattice,
     Solid,
@@ -116,7 +116,7 @@ def read_turn_view(folder: Path) -> TurnView:
     )  # fmt: skip
 
 
-def write(material: Material) -> Sequence[Path]:
+def write(material: ReportMaterial) -> Sequence[Path]:
     """Write ``scene.html``; nothing for a run without a recorded turn."""
     try:
         view = read_turn_view(material.run.path)
@@ -136,7 +136,7 @@ def write(material: Material) -> Sequence[Path]:
     return [write_atomic(material.folder / FILE, text.encode("utf-8", "replace"))]
 
 
-def scene(material: Material, view: TurnView) -> dict[str, Json]:
+def scene(material: ReportMaterial, view: TurnView) -> dict[str, Json]:
     """Data of the page: bodies as triangles, mm, their positions, values at each angle.
 
     The axis of the cam is z; the follower moves along y.
@@ -177,7 +177,7 @@ def scene(material: Material, view: TurnView) -> dict[str, Json]:
     }
 
 
-def _flank(material: Material, view: TurnView, width: float) -> Json:
+def _flank(material: ReportMaterial, view: TurnView, width: float) -> Json:
     """The flank, with the maximum stress of the turn below each point of the contour."""
     outer = view.contour
     record = ring(outer, width).as_record(_DIGITS)
@@ -189,7 +189,7 @@ def _flank(material: Material, view: TurnView, width: float) -> Json:
     return record
 
 
-def _greatest(material: Material, view: TurnView, stations: int) -> Array | None:
+def _greatest(material: ReportMaterial, view: TurnView, stations: int) -> Array | None:
     """Maximum von Mises stress below each point of the contour, MPa; None without a map."""
     try:
         envelope = stress_map.read_envelope(
@@ -221,7 +221,7 @@ def _roller(view: TurnView, width: float) -> Json:
     return solid.as_record(_DIGITS) | {"spoke": _rounded(spoke)}
 
 
-def _follower(material: Material, view: TurnView, width: float, stem: float) -> Solid:
+def _follower(material: ReportMaterial, view: TurnView, width: float, stem: float) -> Solid:
     """Stem with fork and pin of a roller, or with the block of a flat face."""
     low, high = view.follower.min(axis=1), view.follower.max(axis=1)
     top = _stem_end(material, view, stem)
@@ -249,7 +249,7 @@ def _pin_radius(view: TurnView) -> float:
     return float(min(0.98 * away.min(), 0.52 * away.max()))
 
 
-def _guide(material: Material, view: TurnView, stem: float) -> Solid | None:
+def _guide(material: ReportMaterial, view: TurnView, stem: float) -> Solid | None:
     """Bush of guide A; None if the case does not state its position."""
     length = material.turn.length("guides", "a", "length")
     overhang = material.turn.length("follower", "overhang_at_max_lift")
@@ -277,7 +277,7 @@ def _contacts(view: TurnView, lab: Array) -> Array:
     return np.stack(lowest, axis=1)
 
 
-def _stem_end(material: Material, view: TurnView, stem: float) -> float:
+def _stem_end(material: ReportMaterial, view: TurnView, stem: float) -> float:
     """Height of the stem end above the follower origin, mm: beyond guide A at any lift."""
     length = material.turn.length("guides", "a", "length")
     overhang = material.turn.length("follower", "overhang_at_max_lift")
@@ -287,7 +287,7 @@ def _stem_end(material: Material, view: TurnView, stem: float) -> float:
     return overhang + 0.5 * length + float(np.ptp(lifted)) + 0.5 * stem
 
 
-def _ends(material: Material) -> Json:
+def _ends(material: ReportMaterial) -> Json:
     """Halves of both bodies at the contact of the worst certified angle; None without a field.
 
     The follower is drawn apart from the cam; width and depth are stretched, so that they are
@@ -337,7 +337,7 @@ def _end_block(field: EndField, of_body: NDArray[np.bool_], reach: float) -> dic
     }
 
 
-def _end_words(material: Material, field: EndField) -> str:
+def _end_words(material: ReportMaterial, field: EndField) -> str:
     """Place and load of the field."""
     records: Sequence[Record] = material.run.final.record.get("length_certificate") or []
     cases = [

@@ -11,7 +11,7 @@ from pathlib import Path
 from camwright.geometry.errors import InputError, ResultError
 from camwright.pipeline.base.progress import SILENT, Progress
 from camwright.pipeline.base.spreadsheets import SUFFIX
-from camwright.pipeline.base.worker_processes import Crew, Task
+from camwright.pipeline.base.worker_processes import Crew, PendingCall
 from camwright.pipeline.results.folder_exchange import amended, is_being_written, settle_recorded
 from camwright.reports import (
     documents,
@@ -20,11 +20,11 @@ from camwright.reports import (
     picture_list,
     scene_page,
 )
-from camwright.reports.report_data import FIGURES, Material, read_material
+from camwright.reports.report_data import FIGURES, ReportMaterial, read_material
 
 
 @dataclass(frozen=True)
-class Part:
+class ReportPart:
     """A part of a report.
 
     `write` writes the files of the part into the run folder and returns them; `files` is the
@@ -34,38 +34,64 @@ class Part:
 
     name: str
     words: str
-    write: Callable[[Material], Sequence[Path]]
+    write: Callable[[ReportMaterial], Sequence[Path]]
     files: str
     on_request: bool = False
     as_png: bool = False
 
 
-def _pictures(name: str, words: str, write: Callable[[Material], Sequence[Path]]) -> Part:
-    return Part(name, f"{words} as PNG", write, f"{FIGURES}/*.png", on_request=True, as_png=True)
+def _pictures(
+    name: str, words: str, write: Callable[[ReportMaterial], Sequence[Path]]
+) -> ReportPart:
+    return ReportPart(
+        name, f"{words} as PNG", write, f"{FIGURES}/*.png", on_request=True, as_png=True
+    )
 
 
 PARTS = (
     _pictures("figures", "figures", figure_svg.write),
-    _pictures("fields", "pictures of the stress fields",
-              partial(picture_list.write_pictures, picture_list.stress_pictures)),
-    _pictures("length", "picture of the pressure along the line of contact",
-              partial(picture_list.write_pictures, picture_list.axial_pictures)),
-    _pictures("guides", "picture of the guide pressure",
-              partial(picture_list.write_pictures, picture_list.guide_pictures)),
-    _pictures("envelope", "maps of the maximum stress below the contour",
-              partial(picture_list.write_pictures, picture_list.envelope_pictures)),
-    Part("scene", f"{scene_page.FILE}, interactive 3-D view", scene_page.write, scene_page.FILE),
-    Part("sheet", f"{documents.SIGNOFF}, one page to sign", documents.write_signoff,
-         documents.SIGNOFF),
-    Part("drawing", f"{documents.DRAWING}, dimensioned drawing", documents.write_drawing,
-         documents.DRAWING),
-    Part("tables", "tables as spreadsheets", documents.write_tables, f"*{SUFFIX}"),
-    Part("pdf", documents.PDF, documents.write_report, documents.PDF, on_request=True),
-    Part("page", page.PAGE, page.write, page.PAGE),  # last: it links to the others
-)  # fmt: skip
+    _pictures(
+        "fields",
+        "pictures of the stress fields",
+        partial(picture_list.write_pictures, picture_list.stress_pictures),
+    ),
+    _pictures(
+        "length",
+        "picture of the pressure along the line of contact",
+        partial(picture_list.write_pictures, picture_list.axial_pictures),
+    ),
+    _pictures(
+        "guides",
+        "picture of the guide pressure",
+        partial(picture_list.write_pictures, picture_list.guide_pictures),
+    ),
+    _pictures(
+        "envelope",
+        "maps of the maximum stress below the contour",
+        partial(picture_list.write_pictures, picture_list.envelope_pictures),
+    ),
+    ReportPart(
+        "scene", f"{scene_page.FILE}, interactive 3-D view", scene_page.write, scene_page.FILE
+    ),
+    ReportPart(
+        "sheet",
+        f"{documents.SIGNOFF}, one page to sign",
+        documents.write_signoff,
+        documents.SIGNOFF,
+    ),
+    ReportPart(
+        "drawing",
+        f"{documents.DRAWING}, dimensioned drawing",
+        documents.write_drawing,
+        documents.DRAWING,
+    ),
+    ReportPart("tables", "tables as spreadsheets", documents.write_tables, f"*{SUFFIX}"),
+    ReportPart("pdf", documents.PDF, documents.write_report, documents.PDF, on_request=True),
+    ReportPart("page", page.PAGE, page.write, page.PAGE),  # last: it links to the others
+)
 
 
-def chosen(names: Iterable[str] = (), *, png: bool = False) -> tuple[Part, ...]:
+def chosen(names: Iterable[str] = (), *, png: bool = False) -> tuple[ReportPart, ...]:
     """Parts of these names, in order; without names all parts that are not on request.
 
     Parameters
@@ -96,8 +122,8 @@ class Ahead:
     A figure that the certificate changes, such as by another governing load case, is drawn again.
     """
 
-    parts: Sequence[Part]
-    _begun: dict[str, Task] = field(default_factory=dict)
+    parts: Sequence[ReportPart]
+    _begun: dict[str, PendingCall] = field(default_factory=dict)
 
     def begin(self, folder: Path, workers: Crew) -> None:
         """Begin the drawings of a run folder, unless there is but one process."""
@@ -113,7 +139,7 @@ class Ahead:
 
 
 def report(
-    folder: Path, parts: Iterable[Part] | None = None, progress: Progress = SILENT
+    folder: Path, parts: Iterable[ReportPart] | None = None, progress: Progress = SILENT
 ) -> dict[str, Sequence[Path]]:
     """Write parts of the report of a run, all or none; nothing is solved.
 
@@ -138,8 +164,8 @@ def report(
 
 def draw(
     folder: Path,
-    parts: Iterable[Part] | None = None,
-    ahead: Mapping[str, Task] | None = None,
+    parts: Iterable[ReportPart] | None = None,
+    ahead: Mapping[str, PendingCall] | None = None,
     progress: Progress = SILENT,
 ) -> dict[str, Sequence[Path]]:
     """Write parts of the report of a run, also of one that has no record yet; see `report`.

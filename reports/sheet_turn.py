@@ -23,7 +23,7 @@ _LOW_HEIGHT = 0.6  # of a panel for small curves
 
 
 @dataclass(frozen=True, eq=False)
-class Turn:
+class SheetTurn:
     """One load case of the final trial.
 
     Parameters
@@ -89,7 +89,7 @@ class Turn:
         return words_of(self.case, self.gear_ratio, balances=self.torque is not None)
 
     @property
-    def balanced(self) -> Turn:
+    def balanced(self) -> SheetTurn:
         """The same of the first load case with a torque of the machine; itself without one."""
         for table in (self.columns, *self.others):
             torque = table.get("torque_before_Nm")
@@ -173,7 +173,7 @@ def lowest(*limits: LimitLine) -> tuple[LimitLine, ...]:
 
 
 def curves_of(
-    turn: Turn, *wanted: tuple[str, str], dashed: Sequence[int] = ()
+    turn: SheetTurn, *wanted: tuple[str, str], dashed: Sequence[int] = ()
 ) -> tuple[Curve, ...]:
     """Curves of (column, label) pairs; missing columns are omitted."""
     made = []
@@ -190,7 +190,7 @@ def curves_of(
 
 
 def angle_figure(
-    turn: Turn, figure_id: str, title: str, caption: str, *panels: Panel, mark: bool = True,
+    turn: SheetTurn, figure_id: str, title: str, caption: str, *panels: Panel, mark: bool = True,
     crank: Array | None = None,
 ) -> Figure | None:  # fmt: skip
     """Figure of the panels that have curves; None without any."""

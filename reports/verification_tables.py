@@ -11,7 +11,7 @@ from camwright.reports.report_tables import (
     DASH,
     MINUS,
     Record,
-    Table,
+    ReportTable,
     number,
     quantity,
     words,
@@ -87,7 +87,7 @@ STATES = {
 }
 
 
-def prices(records: Json) -> Table:
+def prices(records: Json) -> ReportTable:
     """Shadow prices of the active limits as recorded, highest first."""
     rows = [
         [
@@ -97,10 +97,10 @@ def prices(records: Json) -> Table:
         ]
         for record in _records(records)
     ]  # fmt: skip
-    return Table("Shadow prices of the limits", PRICES_HEAD, rows)
+    return ReportTable("Shadow prices of the limits", PRICES_HEAD, rows)
 
 
-def machine_prices(records: Json) -> Table:
+def machine_prices(records: Json) -> ReportTable:
     """Prices of the numbers of the machine as recorded, greatest first."""
     rows = [
         [
@@ -110,10 +110,10 @@ def machine_prices(records: Json) -> Table:
         ]
         for record in _records(records)
     ]  # fmt: skip
-    return Table("Prices of the numbers of the machine", MACHINE_PRICES_HEAD, rows)
+    return ReportTable("Prices of the numbers of the machine", MACHINE_PRICES_HEAD, rows)
 
 
-def consistency(records: Sequence[Record] | None) -> tuple[Table, bool]:
+def consistency(records: Sequence[Record] | None) -> tuple[ReportTable, bool]:
     """Inputs beside the values that other inputs imply, and whether any of them is flagged."""
     compared = records or ()
     rows = [
@@ -125,10 +125,10 @@ def consistency(records: Sequence[Record] | None) -> tuple[Table, bool]:
         for one in compared
     ]  # fmt: skip
     flagged = any(one["flagged"] for one in compared)
-    return Table("Consistency of the inputs", CONSISTENCY_HEAD, rows, 3), flagged
+    return ReportTable("Consistency of the inputs", CONSISTENCY_HEAD, rows, 3), flagged
 
 
-def crank_speed(record: Json, machine: MachineWords) -> Table:
+def crank_speed(record: Json, machine: MachineWords) -> ReportTable:
     """Ripple of the speed of the shaft with and without the cam, by load case."""
     rows = [
         [
@@ -141,10 +141,10 @@ def crank_speed(record: Json, machine: MachineWords) -> Table:
         for state, shown in STATES.items()
         if isinstance(states.get(state), Mapping)
     ]  # fmt: skip
-    return Table(f"{machine.title} speed", SPEED_HEAD, rows, 2)
+    return ReportTable(f"{machine.title} speed", SPEED_HEAD, rows, 2)
 
 
-def valve_train(record: Json) -> Table:
+def valve_train(record: Json) -> ReportTable:
     """Machine motion of a valve cam; reconstructed values are marked as such."""
     rows = [
         [
@@ -153,7 +153,7 @@ def valve_train(record: Json) -> Table:
         ]
         for one in _records(record.get("rows") if isinstance(record, Mapping) else None)
     ]  # fmt: skip
-    return Table("Machine motion of the valve cam", VALVE_HEAD, rows, 3)
+    return ReportTable("Machine motion of the valve cam", VALVE_HEAD, rows, 3)
 
 
 def benchmarks(record: Json) -> list[tuple[str, str]]:
@@ -183,7 +183,7 @@ def measurement_notes(record: Json) -> list[str]:
     return [sentence(note) for note in listed if isinstance(note, str)]
 
 
-def certificate(points: Sequence[Record]) -> Table:
+def certificate(points: Sequence[Record]) -> ReportTable:
     """Peak pressure on each mesh, extrapolation and grid convergence, by certificate point."""
     rows = []
     for point in points:
@@ -196,10 +196,10 @@ def certificate(points: Sequence[Record]) -> Table:
             number(pressure.get("cycle"), 5), _deviation(pressure),
             number(point.get("residual_equilibrium"), 2),
         ])  # fmt: skip
-    return Table("Certificate points", CERTIFICATE_HEAD, rows, wide=True)
+    return ReportTable("Certificate points", CERTIFICATE_HEAD, rows, wide=True)
 
 
-def certified(points: Sequence[Record]) -> Table:
+def certified(points: Sequence[Record]) -> ReportTable:
     """Half-width and stresses, by certificate point."""
     rows = [
         [
@@ -212,11 +212,11 @@ def certified(points: Sequence[Record]) -> Table:
         for name, title in CERTIFIED.items()
         if (figure := _figure(point, name))
     ]  # fmt: skip
-    return Table("Half-width and stresses at the certificate points", CERTIFIED_HEAD, rows, 2,
+    return ReportTable("Half-width and stresses at the certificate points", CERTIFIED_HEAD, rows, 2,
                  wide=True)  # fmt: skip
 
 
-def ends(points: Sequence[Record]) -> Table:
+def ends(points: Sequence[Record]) -> ReportTable:
     """Signed pressure at the ends of the contact over plane strain by both tiers."""
     rows = []
     for point in points:
@@ -230,10 +230,10 @@ def ends(points: Sequence[Record]) -> Table:
             number(point.get("signed_gci_percent"), 2), number(point.get("ratio")),
             number(blocks.get("centre")),
         ])  # fmt: skip
-    return Table("Ends of the contact, over plane strain", ENDS_HEAD, rows, wide=True)
+    return ReportTable("Ends of the contact, over plane strain", ENDS_HEAD, rows, wide=True)
 
 
-def stress_below(points: Sequence[Record]) -> Table:
+def stress_below(points: Sequence[Record]) -> ReportTable:
     """Greatest stresses below middle and ends of the contact at the first certified angle."""
     rows = []
     for point in points[:1]:
@@ -246,10 +246,10 @@ def stress_below(points: Sequence[Record]) -> Table:
                     number(peak["von_mises_depth_mm"], 3), number(p0 * float(peak["shear"])),
                     number(peak["shear_depth_mm"], 3),
                 ])  # fmt: skip
-    return Table("Stress below middle and ends of the contact", STRESS_HEAD, rows, wide=True)
+    return ReportTable("Stress below middle and ends of the contact", STRESS_HEAD, rows, wide=True)
 
 
-def of_ends(trial: Record) -> list[tuple[Table, str, str]]:
+def of_ends(trial: Record) -> list[tuple[ReportTable, str, str]]:
     """Tables of the finite-element ends of a trial, their titles and introductions."""
     points = _records(trial.get("length_certificate"))
     return [
@@ -299,14 +299,14 @@ def _span(ends: Sequence[float]) -> str:
     return f"{low}\N{NO-BREAK SPACE}%" if low == high else f"{low} to {high}\N{NO-BREAK SPACE}%"
 
 
-def corners(checks: Sequence[Record]) -> Table:
+def corners(checks: Sequence[Record]) -> ReportTable:
     """Checks whose demand at a tolerance corner exceeds the nominal one."""
     rows = [
         [str(check["title"]), at[0], quantity(check["demand"], str(check["unit"])), at[1]]
         for check in checks
         if (at := worst_corner(check)) is not None
     ]
-    return Table("Tolerance corners", CORNERS_HEAD, rows, 2)
+    return ReportTable("Tolerance corners", CORNERS_HEAD, rows, 2)
 
 
 def _figure(point: Record, name: str) -> Record:

@@ -14,7 +14,7 @@ from skfem.models.elasticity import lame_parameters, linear_elasticity
 from camwright.geometry.arrays import Array
 from camwright.geometry.errors import InputError
 from camwright.pipeline.contact.elasticity.active_set import Complementarity, solve
-from camwright.pipeline.contact.elasticity.radial_compliance import Bush, Pin
+from camwright.pipeline.contact.elasticity.radial_compliance import Bush, SolidBar
 
 _CORE = 0.01  # radius at which the pin is held: its force comes in from along the bar
 _FAR = 400.0  # outer radius of a body without another surface
@@ -38,7 +38,7 @@ def half_annulus(knots: Array, inner: float, outer: float, layers: int) -> MeshQ
     return MeshQuad2(np.stack([radius * np.cos(angle), radius * np.sin(angle)]), flat.t)
 
 
-def radial_compliance(knots: Array, body: Pin, inner: float, outer: float) -> Array:
+def radial_compliance(knots: Array, body: SolidBar, inner: float, outer: float) -> Array:
     """Radial displacement weighted with each hat under each hat's pressure on radius 1, (k, k).
 
     The hats stand at `knots` but the last, on one half of the circumference. The other circle
@@ -59,7 +59,7 @@ def radial_compliance(knots: Array, body: Pin, inner: float, outer: float) -> Ar
 
 
 def pin_in_hole_by_elements(
-    load: float, clearance: float, pin: Pin, bush: Bush, window: float, knots: int = 32
+    load: float, clearance: float, pin: SolidBar, bush: Bush, window: float, knots: int = 32
 ) -> tuple[Array, Complementarity]:
     """Pressures at equal angles (knots,) up to a window, both bodies by finite elements; radius 1.
 

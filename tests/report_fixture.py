@@ -18,7 +18,7 @@ from camwright.geometry.periodic_spline import periodic_quintic
 from camwright.pipeline.case.scope_section import Scope
 from camwright.pipeline.results import signoff
 from camwright.pipeline.results.check_records import binding_of, verdict_of
-from camwright.pipeline.results.field_file import Block, field_file
+from camwright.pipeline.results.field_file import MeshBlock, field_file
 from camwright.pipeline.results.run_reader import SCHEMA, input_sha256
 from camwright.pipeline.results.run_records import SPLINE
 
@@ -403,7 +403,7 @@ def write_field(
         keep &= ~Outline(hole.T).contains_points(mid.T)
         away = cloud - contact[:, None]
         across = np.array([-inward[1], inward[0]])
-        blocks[name] = Block(corners[keep].T.astype(np.int64), cloud.shape[1], cloud * 1e3)
+        blocks[name] = MeshBlock(corners[keep].T.astype(np.int64), cloud.shape[1], cloud * 1e3)
         stress[name] = p0 * hertz_stress(across @ away / a, inward @ away / a)
     notes = {
         "cam_angle_deg": [cycle["cam_angle_deg"][worst]],

@@ -8,7 +8,7 @@ import numpy as np
 import report_fixture
 
 from camwright.meshes.body_mesh import roller_mesh
-from camwright.meshes.element_size import Sizing
+from camwright.meshes.element_size import ElementSize
 
 FRAMES = 6
 
@@ -21,7 +21,7 @@ def add_turn(folder: Path, positions: int, load_case: str = "idle") -> Path:
     outer = 1e3 * g["contour"]
     inner = 1e3 * report_fixture.BORE * outer / np.hypot(*outer)
     roller = roller_mesh(
-        report_fixture.ROLLER, report_fixture.HUB, 0.5 * np.pi, Sizing(far_size=2e-3)
+        report_fixture.ROLLER, report_fixture.HUB, 0.5 * np.pi, ElementSize(far_size=2e-3)
     )
     normal = g["normal"][:, shown]
     facing = np.arctan2(-normal[1], -normal[0]) - 0.5 * np.pi

@@ -160,7 +160,7 @@ def _stop_sending(workers_pool: ProcessPoolExecutor) -> None:
         queue._reader.close()
 
 
-class Task(Protocol):
+class PendingCall(Protocol):
     """A call whose result is read later."""
 
     def result(self) -> Any:
@@ -195,7 +195,7 @@ class Crew:
             for _ in range(self.workers):
                 self.submit(_imported, module)
 
-    def submit(self, function: Callable[..., Any], *arguments: object) -> Task:
+    def submit(self, function: Callable[..., Any], *arguments: object) -> PendingCall:
         """Call a function of the package in a worker, or later here with one process."""
         if self.workers <= 1:
             return _Later(partial(function, *arguments))

@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 
 from pydantic import AfterValidator, Discriminator, Field, Tag
 
-from camwright.geometry.motion_laws import DWELL, LAWS, Motion, Segment
+from camwright.geometry.motion_laws import DWELL, LAWS, Segment, SegmentMotion
 from camwright.pipeline.base.quantities import FileName, In, Length
 from camwright.pipeline.case.section import Section, Table, refusal, suggestion
 from camwright.pipeline.case.toml_text import TomlValue
@@ -93,7 +93,7 @@ GivenLift = Annotated[
 LIFT_KINDS = ("table", "segments", "points", "eccentric")
 
 
-def motion_of(section: LiftSegments) -> Motion:
+def motion_of(section: LiftSegments) -> SegmentMotion:
     """Motion of the segments of a case.
 
     Raises
@@ -102,4 +102,4 @@ def motion_of(section: LiftSegments) -> Motion:
         If they do not add up to a turn or do not close.
     """
     segments = tuple(Segment(part.law, part.angle, part.stroke) for part in section.segments)
-    return Motion(segments, section.repeat)
+    return SegmentMotion(segments, section.repeat)

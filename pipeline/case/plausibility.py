@@ -22,7 +22,7 @@ from camwright.pipeline.case.given_lift import table_overshoot
 from camwright.pipeline.case.load_case_torque import pressure, torque_key
 from camwright.pipeline.engine.crankshaft import energy_swing
 from camwright.pipeline.engine.pressure_trace import PressureTable
-from camwright.pipeline.engine.torque_consistency import Finding
+from camwright.pipeline.engine.torque_consistency import Implied
 from camwright.pipeline.follower.spring import stored_lift
 from camwright.pipeline.torque.motor_line import MotorLine
 from camwright.pipeline.torque.torque import Torque
@@ -41,17 +41,17 @@ class Usual:
     source: str
     keys: Sequence[str] = ()
 
-    def finding(self, title: str, value: float, text: str) -> Finding | None:
+    def finding(self, title: str, value: float, text: str) -> Implied | None:
         """Finding on a value (SI) with its text; None within the range and 10 % beyond."""
         stated = in_unit(value, self.unit)
         nearest = min(max(stated, self.low), self.high)
         unit = f" {self.unit}".replace(" -", "")
         words = f"{text}, usually {self.low:g} to {self.high:g}{unit} ({self.source})"
-        made = Finding(PLAUSIBILITY, title, stated, nearest, self.unit, words)
+        made = Implied(PLAUSIBILITY, title, stated, nearest, self.unit, words)
         return made if made.flagged else None
 
 
-def implausible(case: Case, torques: Mapping[str, Torque]) -> tuple[Finding, ...]:
+def implausible(case: Case, torques: Mapping[str, Torque]) -> tuple[Implied, ...]:
     """Values of a case beyond their usual ranges, one finding each.
 
     Besides the values of single keys: the peak-to-peak torque, the speed at which a motor carries
@@ -61,7 +61,7 @@ def implausible(case: Case, torques: Mapping[str, Torque]) -> tuple[Finding, ...
     ----------
     torques : mapping   engine torque by load case
     """
-    judged: list[Finding | None] = []
+    judged: list[Implied | None] = []
     for usual in _ranges():
         for key in _keys_in(case, usual.keys):
             value = value_of(case, key)
@@ -82,7 +82,7 @@ _OVERSHOOT = 0.01
 cycloidal rise in 60 deg is 0.4 %."""
 
 
-def _lift_finding(case: Case) -> Finding | None:
+def _lift_finding(case: Case) -> Implied | None:
     """The curve through a lift table beyond its points, as beside a step or a kink of the lift."""
     over = table_overshoot(case)
     if over is None or over[0] <= _OVERSHOOT:
@@ -91,13 +91,13 @@ def _lift_finding(case: Case) -> Finding | None:
     words = f"lift.file: the curve through its points leaves them by {share:.2%} of the stroke at "
     words += f"{shown(place, 'deg')}; loads and flights there are those of the curve: set more "
     words += "points where the lift bends sharply, or state lift.noise of a measured table"
-    return Finding(PLAUSIBILITY, "lift.file", share, 0.0, "-", words)
+    return Implied(PLAUSIBILITY, "lift.file", share, 0.0, "-", words)
 
 
 _TORQUES = ("engine", "engine.file", "torque", "torque.file")
 
 
-def _torque_findings(case: Case, torques: Mapping[str, Torque]) -> Iterator[Finding | None]:
+def _torque_findings(case: Case, torques: Mapping[str, Torque]) -> Iterator[Implied | None]:
     """Peak-to-peak torque of the engine, in its design load case, and of further files."""
     for k, state in enumerate(case.load_cases):
         torque = torques.get(state.name)
@@ -110,7 +110,7 @@ def _torque_findings(case: Case, torques: Mapping[str, Torque]) -> Iterator[Find
         yield _usual("torque").finding(key, swing, text)
 
 
-def _pressure_findings(case: Case) -> Iterator[Finding | None]:
+def _pressure_findings(case: Case) -> Iterator[Implied | None]:
     """Friction that the brake torque leaves, and dead centre, of a measured cylinder pressure."""
     if not isinstance(case.engine, PressureTable):
         return
@@ -125,14 +125,14 @@ def _pressure_findings(case: Case) -> Iterator[Finding | None]:
         if stated is not None:
             key = "engine.friction_pressure"
             words = f"{key} = {text_of(case, key)}, but {text}"
-            made = Finding(PLAUSIBILITY, key, 1e-3 * stated, 1e-3 * friction, "kPa", words)
+            made = Implied(PLAUSIBILITY, key, 1e-3 * stated, 1e-3 * friction, "kPa", words)
             yield made if made.flagged else None
     if lead is not None:
         text = f"engine.motored_file: peak {shown(lead, 'deg')} before the dead centre"
         yield _usual("motored_lead").finding("engine.motored_file", lead, text)
 
 
-def _motor_findings(case: Case, torques: Mapping[str, Torque]) -> Iterator[Finding | None]:
+def _motor_findings(case: Case, torques: Mapping[str, Torque]) -> Iterator[Implied | None]:
     """The speed at which the motor line carries the mean torque, against that of a load case."""
     motor = None if case.crankshaft is None else case.crankshaft.load
     if not isinstance(motor, MotorLine):
@@ -145,11 +145,11 @@ def _motor_findings(case: Case, torques: Mapping[str, Torque]) -> Iterator[Findi
         words = f"{key} = {shown(state.speed, 'rpm')}, but crankshaft.motor_line carries the mean"
         words += f" torque of {shown(-torque.mean, 'N m')} at {shown(speed, 'rpm')}"
         stated, carried = (in_unit(each, "rpm") for each in (state.speed, speed))
-        made = Finding(PLAUSIBILITY, key, stated, carried, "rpm", words)
+        made = Implied(PLAUSIBILITY, key, stated, carried, "rpm", words)
         yield made if made.flagged else None
 
 
-def _spring_findings(case: Case, torques: Mapping[str, Torque]) -> Iterator[Finding]:
+def _spring_findings(case: Case, torques: Mapping[str, Torque]) -> Iterator[Implied]:
     """The spring against the energy swing, unless the synthesis chooses it: one finding."""
     torque, smoothing, spring = torques.get(case.load_cases[0].name), case.smoothing, case.spring
     chosen = smoothing.kind == "constrained" and {"spring_rate", "preload"} & {*smoothing.free}

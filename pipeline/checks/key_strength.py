@@ -26,7 +26,7 @@ from camwright.pipeline.checks.check import Allowed, Declaration, Demand, Kept, 
 from camwright.pipeline.checks.demands import CAM_TORQUE, cam_torque, rating_over
 from camwright.pipeline.checks.extremes import least
 from camwright.pipeline.checks.missing_keys import lacking, lacking_of_card
-from camwright.pipeline.contact.cam_body import CamBody, Key
+from camwright.pipeline.contact.cam_body import CamBody, ParallelKey
 from camwright.pipeline.cycle.cycle import Cycle
 from camwright.pipeline.cycle.numbers import Numbers
 from camwright.pipeline.cycle.solution import Solution
@@ -73,14 +73,14 @@ def _key_check(
 
     def per_torque(numbers: Numbers) -> float:
         cam = numbers.known_case.cam
-        key, flanks = cam.key or Key(), cam.key_flanks
+        key, flanks = cam.key or ParallelKey(), cam.key_flanks
         if flanks is None:
             return np.nan
         return float(of(key_stress(key.application_factor, 2.0 * cam.bore_radius, flanks)))
 
     def allowed_in(numbers: Numbers, *, reverses: bool = True) -> Allowed:
         case = numbers.known_case
-        mate, key = mate_of(case), case.cam.key or Key()
+        mate, key = mate_of(case), case.cam.key or ParallelKey()
         if mate is None:
             return Allowed(None)
         missing = (*mate.missing, *_no_key_data(case.cam), *lacking(key.table, key, "material"))
@@ -124,7 +124,7 @@ def _key_check(
     )(cam_torque)
 
 
-def _cards(key: Key | None, mate: _Mate) -> list[Material]:
+def _cards(key: ParallelKey | None, mate: _Mate) -> list[Material]:
     """Known materials of the key and its mate."""
     both = None if key is None else key.material, mate.card
     return [card for card in both if card is not None]
@@ -268,7 +268,9 @@ def keyway_root(solution: Solution) -> Demand:
 
 def _no_key_data(cam: CamBody) -> tuple[str, ...]:
     """Keys of the key's dimensions that are not in the case and of no standard."""
-    return tuple(f"{Key.table}.{name}" for name, value in cam.key_data.items() if value is None)
+    return tuple(
+        f"{ParallelKey.table}.{name}" for name, value in cam.key_data.items() if value is None
+    )
 
 
 class KeywayRoot(NamedTuple):

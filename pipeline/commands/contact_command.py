@@ -84,11 +84,11 @@ def contact(
     "80 kN/m".
     """
     from camwright.pipeline.studies.finite_length_document import LengthOptions
-    from camwright.pipeline.studies.two_cylinders_document import Options, lines, solved
+    from camwright.pipeline.studies.two_cylinders_document import ContactOptions, lines, solved
 
     use_cache(not no_cache)
     lengths = LengthOptions(length1, length2, end1, end2, crown, tilt, moment, mean_length)
-    options = Options(
+    options = ContactOptions(
         r1, r2, e1, e2, nu1, nu2, line_load, load, width, friction, depth1, depth2, lengths
     )
     with progress_shown() as progress:

@@ -130,7 +130,7 @@ def write_study_report(folder: Path) -> Path:
         int(number): f"{RUNS}/{name}/{page.PAGE}"
         for number, name in zip(data["design"], data["id"], strict=True) if name in kept
     }  # fmt: skip
-    designs = study_page.Designs(
+    designs = study_page.DesignRows(
         data["design"], state, data["governing"],
         columns | {answers.UTILISATION: answers.governing_utilisation(data)}, data.units, links,
     )  # fmt: skip

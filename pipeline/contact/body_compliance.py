@@ -47,7 +47,7 @@ RECIPE = (sys.modules[__name__], elastic_body, sparse_factor, halfplane)
 
 
 @dataclass(frozen=True, eq=False)
-class Correction:
+class CorrectionField:
     """Correction field of a body per unit line load, at `count` contact points.
 
     along (count,) stress along the surface, Pa per N/m, the only component on a free surface;
@@ -104,7 +104,7 @@ class LoadedBody:
         steps = self.body.mesh.points[:, end] - self.body.mesh.points[:, start]
         return float(np.hypot(*steps).max())
 
-    def correction(self, contacts: Array, normals: Array) -> Correction:
+    def correction(self, contacts: Array, normals: Array) -> CorrectionField:
         """Correction at contact points (2, count) with outward normals (2, count).
 
         Cached on disk by mesh, supports, material and contacts.
@@ -245,15 +245,15 @@ class LoadedBody:
             load * (nodal + near),
         )
 
-    def correction_of(self, displaced: Array, contacts: Array, normals: Array) -> Correction:
+    def correction_of(self, displaced: Array, contacts: Array, normals: Array) -> CorrectionField:
         """Correction at contacts (2, count) from its `correction_fields` there, m per N/m."""
         at_surface = displaced[:, self.condensed_nodes]
         return self._as_correction(*self._at_contacts(at_surface, contacts, normals))
 
-    def _as_correction(self, slope: Array, bend: Array) -> Correction:
+    def _as_correction(self, slope: Array, bend: Array) -> CorrectionField:
         """Correction of the slopes of its displacement, see `_displacement_slopes`."""
         modulus = self._plane_strain_modulus
-        return Correction(along=modulus * slope, bend=bend, along_by_depth=modulus * bend)
+        return CorrectionField(along=modulus * slope, bend=bend, along_by_depth=modulus * bend)
 
     def correction_fields(self, contacts: Array, normals: Array) -> tuple[Array, Array]:
         """Displacement (2, nodes, count), m, and stress (3, nodes, count), Pa, per N/m."""

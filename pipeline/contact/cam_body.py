@@ -56,7 +56,7 @@ STANDARD_KEYS: Mapping[int, StandardKey] = {
 
 
 @dataclass(frozen=True, kw_only=True)
-class Key(Part):
+class ParallelKey(Part):
     """Parallel key of the cam.
 
     height, h; shaft_depth, t1: of its keyway in the shaft; chamfer: of its edges; form A has round
@@ -125,7 +125,7 @@ class CamBody(Part):
     bore_radius: Length
     material: Material
     keyway: Keyway | None = None
-    key: Key | None = None
+    key: ParallelKey | None = None
     roughness: Annotated[float, In("um", above=0, at_most=1000)] | None = None
     profile_tolerance: Annotated[float, In("mm", above=0, at_most=10)] = 1e-4
     waviness_length: Length = 0.005
@@ -150,7 +150,7 @@ class CamBody(Part):
 
         None: not stated, and of no standard width.
         """
-        key, row = self.key or Key(), self._standard_key
+        key, row = self.key or ParallelKey(), self._standard_key
         return {
             "length": key.length,
             "height": key.height or (row and row.height),

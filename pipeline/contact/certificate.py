@@ -10,7 +10,7 @@ import numpy as np
 from camwright.geometry.arrays import Array
 from camwright.geometry.errors import ContactError
 from camwright.meshes.body_mesh import BodyMesh, cam_mesh
-from camwright.meshes.element_size import Sizing
+from camwright.meshes.element_size import ElementSize
 from camwright.pipeline.base.units import shown
 from camwright.pipeline.contact import hertz
 from camwright.pipeline.contact.contact_history import CertificatePoint, ContactHistory
@@ -52,8 +52,8 @@ def contact_meshes(
     """Meshes of cam and follower in the cam frame with `edges` element edges per half-width."""
     contact = pair.contour.points(theta)
 
-    def sizing(far_size: float) -> Sizing:
-        return Sizing.from_half_width(
+    def sizing(far_size: float) -> ElementSize:
+        return ElementSize.from_half_width(
             half_width,
             far_size,
             contact_point=contact,

@@ -13,7 +13,7 @@ import numpy as np
 from camwright.geometry.arrays import Array
 from camwright.meshes import body_mesh, element_size
 from camwright.meshes.body_mesh import BodyMesh, block_mesh, roller_mesh
-from camwright.meshes.element_size import Sizing
+from camwright.meshes.element_size import ElementSize
 from camwright.pipeline.base import disk_cache
 from camwright.pipeline.contact import full_contact, hertz
 from camwright.pipeline.contact.elasticity import (
@@ -89,8 +89,10 @@ def disc_on_block(
     modulus = hertz.contact_modulus(moduli[0], NU, moduli[1], NU)
     half_width = float(hertz.line_contact(line_load, radius, modulus)[0])
 
-    def sizing(point: tuple[float, float]) -> Sizing:
-        return Sizing.from_half_width(half_width, 0.2 * radius, contact_point=point, edges=EDGES)
+    def sizing(point: tuple[float, float]) -> ElementSize:
+        return ElementSize.from_half_width(
+            half_width, 0.2 * radius, contact_point=point, edges=EDGES
+        )
 
     block = block_mesh(side, side, sizing((0.0, 0.0)))
     disc = roller_mesh(radius, 0.0, -0.5 * np.pi, sizing((0.0, -radius)))

@@ -20,7 +20,7 @@ from camwright.geometry.arrays import Array, freeze, readonly
 from camwright.geometry.errors import ContactError
 from camwright.meshes import body_mesh, element_size, gmsh_mesher, outline
 from camwright.meshes.body_mesh import half_disc_mesh
-from camwright.meshes.element_size import Sizing
+from camwright.meshes.element_size import ElementSize
 from camwright.pipeline.base import disk_cache
 from camwright.pipeline.contact import hertz
 from camwright.pipeline.contact.elasticity import (
@@ -120,14 +120,18 @@ def contact_patch(
     return ContactPatch(poisson, **kept, dofs=int(arrays["dofs"]))
 
 
+@lru_cache(maxsize=1)
 def patch_body(
     poisson: float, elements_per_half_width: int
 ) -> tuple[ElasticBody, ContactFrame, PressureShapes]:
-    """Half-disc of a template, its contact frame and pressure shapes."""
+    """Half-disc of a template, its contact frame and pressure shapes.
+
+    The last one is kept, as both templates of a Poisson ratio share its factors.
+    """
     size = 1 / elements_per_half_width
     mesh = half_disc_mesh(
         _RADIUS,
-        Sizing(
+        ElementSize(
             contact_point=readonly((0.0, 0.0)), contact_size=size, contact_extent=1.7, far_size=5.0
         ),
     )
@@ -138,25 +142,45 @@ def patch_body(
     return body, frame, PressureShapes(readonly(np.arange(-count, count + 1) * (size / 2)))
 
 
+@lru_cache(maxsize=1)
+def stress_near(body: ElasticBody) -> StressRecovery:
+    """Stress of a half-disc within `STRESS_REACH`."""
+    return StressRecovery(body, elements_near(body, np.zeros(2), STRESS_REACH))
+
+
 def _computed(poisson: float, elements_per_half_width: int) -> dict[str, Array]:
-    """The arrays of a template by their names in `ContactPatch`."""
+    """The arrays of a template by their names in `ContactPatch`.
+
+    The mesh is symmetric about the middle: the shapes of the right half are solved, those of the
+    left half are their mirror images.
+    """
     body, frame, shapes = patch_body(poisson, elements_per_half_width)
-    mesh = body.mesh
+    mesh, left = body.mesh, shapes.centres.size // 2
     loads = normal_loads(mesh, "top", frame, shapes)
-    displacement = body.displacement(-loads, _far_displacement(mesh.points, shapes, poisson))
-    compliance = -np.einsum("cni,cnj->ij", loads, displacement)
-    recovery = StressRecovery(body, elements_near(body, frame.origin, STRESS_REACH))
+    held = _far_displacement(mesh.points, shapes, poisson)
+    displacement = body.displacement(-loads[..., left:], held[..., left:])
+    right = -np.tensordot(loads, displacement, axes=([0, 1], [0, 1]))
+    compliance = np.hstack([right[::-1, :0:-1], right])
+    recovery = stress_near(body)
     points = mesh.points[:, recovery.nodes] * np.array([[1.0], [-1.0]])
     nodal = recovery(displacement)
     # Depth is counted into the body, opposite to y: the shear changes sign.
     nodal[2] *= -1
+    images = nodal[:, _mirrored(points), :0:-1] * np.array([1.0, 1.0, -1.0])[:, None, None]
     return {
         "knots": shapes.knots,
         "compliance": (compliance + compliance.T) / 2,
         "points": points,
-        "stress": nodal,
+        "stress": np.concatenate([images, nodal], axis=2),
         "dofs": np.array(body.dof_count),
     }
+
+
+def _mirrored(points: Array) -> NDArray[np.intp]:
+    """Numbers (m,) of the mirror images in x = 0 of points (2, m)."""
+    images = np.empty(points.shape[1], dtype=np.intp)
+    images[np.lexsort((-points[0], points[1]))] = np.lexsort(points)
+    return images
 
 
 def _far_displacement(points: Array, shapes: PressureShapes, poisson: float) -> Array:

@@ -10,7 +10,7 @@ import numpy as np
 from camwright.geometry.arrays import Array
 from camwright.geometry.contour import Contour
 from camwright.meshes.body_mesh import BodyMesh, face_mesh, roller_mesh
-from camwright.meshes.element_size import Sizing
+from camwright.meshes.element_size import ElementSize
 from camwright.pipeline.contact.elasticity.elastic_body import Elastic, Springs
 
 # The correction field of a body varies over the thickness of its wall.
@@ -53,7 +53,7 @@ class FollowerBody(Protocol):
         """Contact points (2, n), m, and outward normals (2, n); (2, 1) where all are equal."""
         ...
 
-    def mesh_at(self, contour: Contour, theta: float, sizing: Sizing) -> BodyMesh:
+    def mesh_at(self, contour: Contour, theta: float, sizing: ElementSize) -> BodyMesh:
         """Mesh in the cam frame, refined at the contact."""
         ...
 
@@ -81,14 +81,14 @@ class RollerBody:
 
     def coarse_mesh(self) -> BodyMesh:
         wall = (self.radius - self.hub_radius) / EDGES_ACROSS_WALL
-        size = Sizing(far_size=min(self.radius / 8, wall))
+        size = ElementSize(far_size=min(self.radius / 8, wall))
         return roller_mesh(self.radius, self.hub_radius, 0.5 * np.pi, size)
 
     def contacts(self, _contour: Contour, _theta: Array, /) -> tuple[Array, Array]:
         """The top of the roller, for every cam angle."""
         return np.array([[0.0], [self.radius]]), np.array([[0.0], [1.0]])
 
-    def mesh_at(self, contour: Contour, theta: float, sizing: Sizing) -> BodyMesh:
+    def mesh_at(self, contour: Contour, theta: float, sizing: ElementSize) -> BodyMesh:
         contact, normal = contour.points(theta), contour.normal(theta)
         facing = float(np.arctan2(-normal[1], -normal[0]))
         mesh = roller_mesh(self.radius, self.hub_radius, facing, sizing)
@@ -126,7 +126,7 @@ class FaceBody:
 
     def coarse_mesh(self) -> BodyMesh:
         size = min(self.thickness / _EDGES_ACROSS_FACE, self.width / _EDGES_ALONG_FACE)
-        return face_mesh(self.width, self.thickness, self.stem_diameter, Sizing(far_size=size))
+        return face_mesh(self.width, self.thickness, self.stem_diameter, ElementSize(far_size=size))
 
     def contacts(self, contour: Contour, theta: Array, /) -> tuple[Array, Array]:
         """Contact at s' - e along the face."""
@@ -134,7 +134,7 @@ class FaceBody:
         nothing, one = np.zeros_like(along), np.ones_like(along)
         return np.stack([along, nothing]), np.stack([nothing, one])
 
-    def mesh_at(self, contour: Contour, theta: float, sizing: Sizing) -> BodyMesh:
+    def mesh_at(self, contour: Contour, theta: float, sizing: ElementSize) -> BodyMesh:
         arm = float(contour.pitch.push_arm(theta))
         here = replace(sizing, contact_point=np.array([arm, 0.0]))
         mesh = face_mesh(self.width, self.thickness, self.stem_diameter, here)

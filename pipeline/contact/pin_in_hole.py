@@ -27,7 +27,7 @@ from camwright.pipeline.contact.elasticity import active_set, radial_compliance
 from camwright.pipeline.contact.elasticity.active_set import solve
 from camwright.pipeline.contact.elasticity.radial_compliance import (
     Bush,
-    Pin,
+    SolidBar,
     bush_compliance,
     pin_compliance,
 )
@@ -115,7 +115,7 @@ def persson_contact_angle(clearance_number: float) -> float:
 
 
 def pin_in_hole(
-    load: float, radius: float, clearance: float, pin: Pin, bush: Bush, knots: int = KNOTS
+    load: float, radius: float, clearance: float, pin: SolidBar, bush: Bush, knots: int = KNOTS
 ) -> Conforming:
     """Pressure between pin and hole by complementarity at angular knots.
 
@@ -124,7 +124,7 @@ def pin_in_hole(
     load : float        Q, N/m, > 0
     radius : float      R, m, > 0
     clearance : float   dR, radial, m, >= 0; 0 is a perfect fit
-    pin, bush : Pin, Bush
+    pin, bush : SolidBar, Bush
     knots : int         of the pressure on half the contact
 
     Returns
@@ -187,13 +187,13 @@ def hat_coefficients(window: float, knots: int, count: int) -> Array:
     return coefficients
 
 
-def _mean_compliance(pin: Pin, bush: Bush) -> float:
+def _mean_compliance(pin: SolidBar, bush: Bush) -> float:
     """Mean of the compliances 1/E' of both bodies, 1/Pa."""
     return 0.5 * (1.0 / pin.plane_strain_modulus + 1.0 / bush.plane_strain_modulus)
 
 
 def _in_window(
-    window: float, clearance_number: float, pin: Pin, bush: Bush, knots: int
+    window: float, clearance_number: float, pin: SolidBar, bush: Bush, knots: int
 ) -> Conforming:
     """Contact at unit load and radius; lengths over load times mean compliance."""
     count = int(_HARMONICS * knots / window) + 8
@@ -240,7 +240,7 @@ def _peak(angle: Array, pressure: Array) -> float:
 
 
 @lru_cache(maxsize=16)
-def _peak_table(pin: Pin, bush: Bush) -> tuple[MonotoneCubic, MonotoneCubic, float]:
+def _peak_table(pin: SolidBar, bush: Bush) -> tuple[MonotoneCubic, MonotoneCubic, float]:
     """Peak p R/Q and contact angle over log(1 + clearance number); largest clearance number.
 
     The solutions are cached on disk.
@@ -252,7 +252,7 @@ def _peak_table(pin: Pin, bush: Bush) -> tuple[MonotoneCubic, MonotoneCubic, flo
     return peaks, angles, float(table["number"][-1])
 
 
-def _solved_table(pin: Pin, bush: Bush) -> dict[str, Array]:
+def _solved_table(pin: SolidBar, bush: Bush) -> dict[str, Array]:
     """Clearance numbers, peak p R/Q and contact angle (n,), rad, by complementarity."""
     largest = float(persson_clearance(_LEAST_ANGLE)) / 2.0
     numbers = np.r_[0.0, np.geomspace(1e-2, largest, 28)]
@@ -266,7 +266,7 @@ def _solved_table(pin: Pin, bush: Bush) -> dict[str, Array]:
 
 
 def peak_pressure(
-    load: ArrayLike, radius: float, clearance: float, pin: Pin, bush: Bush
+    load: ArrayLike, radius: float, clearance: float, pin: SolidBar, bush: Bush
 ) -> tuple[Array, Array]:
     """Peak pressure and half contact angle of many loads, from a table of solutions.
 

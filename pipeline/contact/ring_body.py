@@ -16,7 +16,7 @@ from camwright.geometry.arrays import FULL_TURN, Array
 from camwright.geometry.contour import Contour
 from camwright.geometry.errors import InputError
 from camwright.meshes.body_mesh import BodyMesh
-from camwright.meshes.element_size import Sizing
+from camwright.meshes.element_size import ElementSize
 from camwright.pipeline.base import disk_cache
 from camwright.pipeline.contact import body_compliance, contact_patch, follower_body
 from camwright.pipeline.contact.body_compliance import LoadedBody
@@ -96,7 +96,7 @@ class RingBody:
         """The top of the ring, for every cam angle: the balls keep their place to the contact."""
         return self._annulus.contacts(contour, theta)
 
-    def mesh_at(self, contour: Contour, theta: float, sizing: Sizing) -> BodyMesh:
+    def mesh_at(self, contour: Contour, theta: float, sizing: ElementSize) -> BodyMesh:
         return self._annulus.mesh_at(contour, theta, sizing)
 
     def springs(self, mesh: BodyMesh, contour: Contour | None, theta: float) -> Springs:

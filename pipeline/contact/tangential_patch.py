@@ -18,7 +18,6 @@ from camwright.geometry.arrays import Array, freeze
 from camwright.pipeline.base import disk_cache
 from camwright.pipeline.contact import contact_patch, traction
 from camwright.pipeline.contact.elasticity import plane_stress_measures
-from camwright.pipeline.contact.elasticity.elastic_body import StressRecovery, elements_near
 from camwright.pipeline.contact.elasticity.halfplane import point_force_displacement
 from camwright.pipeline.contact.elasticity.plane_stress_measures import (
     PeakFinder,
@@ -93,29 +92,38 @@ def _increase(poisson: float, friction: float) -> disk_cache.Arrays:
 
 
 def _increased(poisson: float, friction: float) -> dict[str, Array]:
-    normal, along = contact_patch.contact_patch(poisson), tangential_patch(poisson)
+    normal = contact_patch.contact_patch(poisson)
     centres = normal.shapes.centres
     shares = np.linspace(0.0, 1.0, _SHARES)
     pressure = np.sqrt(np.maximum(1 - centres**2, 0.0))
     sideways = np.stack([traction.rolling_traction(centres, share) for share in shares], axis=1)
     inside = np.where(np.abs(centres)[:, None] < 1, sideways, 0.0)
-    field = (normal.stress @ pressure)[:, :, None] + friction * (along.stress @ inside)
+    points, stress = _solved(poisson, contact_patch.ELEMENTS_PER_HALF_WIDTH, inside)
+    along = TangentialPatch(poisson, points, stress)
+    field = (normal.stress @ pressure)[:, :, None] + friction * along.stress
     shear, _ = along.peaks(shear_in_plane(field))
     mises, _ = along.peaks(von_mises(field, poisson))
     return {"shares": shares, "shear": shear / shear[0], "mises": mises / mises[0]}
 
 
 def _computed(poisson: float, elements_per_half_width: int) -> dict[str, Array]:
+    _, _, shapes = contact_patch.patch_body(poisson, elements_per_half_width)
+    points, stress = _solved(poisson, elements_per_half_width, np.eye(shapes.centres.size))
+    return {"points": points, "stress": stress}
+
+
+def _solved(poisson: float, elements_per_half_width: int, tractions: Array) -> tuple[Array, Array]:
+    """Points (2, m) and stress (3, m, k) of a template under tractions (n, k) at the knots."""
     body, frame, shapes = contact_patch.patch_body(poisson, elements_per_half_width)
-    upward = normal_loads(body.mesh, "top", frame, shapes)
-    loads = np.stack([upward[1], np.zeros_like(upward[1])])
-    held = _arc_displacement(body.mesh.points, body.mesh.boundary_nodes("arc"), shapes, poisson)
-    recovery = StressRecovery(body, elements_near(body, frame.origin, contact_patch.STRESS_REACH))
+    along = normal_loads(body.mesh, "top", frame, shapes)[1] @ tractions
+    loads = np.stack([along, np.zeros_like(along)])
+    arc = body.mesh.boundary_nodes("arc")
+    held = _arc_displacement(body.mesh.points, arc, shapes, poisson) @ tractions
+    recovery = contact_patch.stress_near(body)
     nodal = recovery(body.displacement(loads, held))
     # Depth is counted into the body, opposite to y: the shear changes sign.
     nodal[2] *= -1
-    points = body.mesh.points[:, recovery.nodes] * np.array([[1.0], [-1.0]])
-    return {"points": points, "stress": nodal}
+    return body.mesh.points[:, recovery.nodes] * np.array([[1.0], [-1.0]]), nodal
 
 
 def _arc_displacement(

@@ -9,10 +9,10 @@ import numpy as np
 from camwright.geometry.arrays import Array
 from camwright.geometry.errors import InputError
 from camwright.meshes.body_mesh import cam_mesh
-from camwright.meshes.element_size import Sizing
+from camwright.meshes.element_size import ElementSize
 from camwright.pipeline.base.units import shown
 from camwright.pipeline.contact import hertz
-from camwright.pipeline.contact.body_compliance import Correction, LoadedBody
+from camwright.pipeline.contact.body_compliance import CorrectionField, LoadedBody
 from camwright.pipeline.contact.closed_form import closed_form_history
 from camwright.pipeline.contact.contact_history import GAP_ROUND_OFF_MAX, ContactHistory
 from camwright.pipeline.contact.contact_pair import ContactPair, elastic_body
@@ -63,10 +63,10 @@ def loaded_cam(pair: ContactPair, refinement: float = 1.0) -> LoadedBody:
         )
         raise InputError("cam.bore_radius", shown(pair.bore_radius, "mm"), limit)
     edge = outline / _GRID_OF_CYCLE_MESH
-    sizing = Sizing(far_size=min(edge, wall / EDGES_ACROSS_WALL) / refinement)
+    sizing = ElementSize(far_size=min(edge, wall / EDGES_ACROSS_WALL) / refinement)
     if wall < edge:  # fine everywhere it would be a million triangles: fine where the wall is thin
         edges = EDGES_ACROSS_WALL * refinement
-        sizing = Sizing(far_size=edge / refinement, wall_edges=edges)
+        sizing = ElementSize(far_size=edge / refinement, wall_edges=edges)
     cam = cam_mesh(pair.contour, pair.bore_radius, pair.keyway, sizing, pair.counter_hole)
     cut = tuple(name for name in ("keyway", "counter_hole") if name in cam.boundaries)
     return LoadedBody(elastic_body(cam, pair.cam, "bore"), "contour", cut)
@@ -213,7 +213,7 @@ def patch_gap(pair: ContactPair, theta: Array, half_width: Array, unit_xi: Array
 
 def stress_on_patch(
     pair: ContactPair,
-    cam: Correction,
+    cam: CorrectionField,
     theta: Array,
     load: Array,
     half_width: Array,

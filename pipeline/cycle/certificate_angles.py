@@ -10,7 +10,7 @@ import numpy as np
 from camwright.geometry.arrays import Array
 from camwright.geometry.errors import ResultError
 from camwright.geometry.extrema import first_greatest, first_least
-from camwright.pipeline.base.worker_processes import Crew, Task
+from camwright.pipeline.base.worker_processes import Crew, PendingCall
 from camwright.pipeline.contact.certificate import (
     EDGES,
     MeshFigures,
@@ -162,7 +162,7 @@ class BegunCertificate:
     cycles: Sequence[Cycle]
     chosen: Sequence[tuple[int, int]]
     finest: Sequence[tuple[int, int]]
-    tasks: Mapping[tuple[tuple[int, int], float], Task]
+    tasks: Mapping[tuple[tuple[int, int], float], PendingCall]
     observed: tuple[CertificatePoint, ...] = ()
 
     def points(self, advance: Callable[[int, int], None]) -> tuple[CertificatePoint, ...]:
@@ -198,7 +198,7 @@ def begun(
     solved again.
     """
     finest = () if observed else finest_positions(cycles, chosen)
-    tasks: dict[tuple[tuple[int, int], float], Task] = {}
+    tasks: dict[tuple[tuple[int, int], float], PendingCall] = {}
     for edges in reversed(EDGES):  # the longest first
         for at in chosen:
             if edges == EDGES[-1] and at not in finest:

@@ -26,7 +26,7 @@ from camwright.pipeline.engine.crankshaft import (
     equivalent_inertia,
 )
 from camwright.pipeline.engine.torque_consistency import (
-    Finding,
+    Implied,
     energy_finding,
     inertia_finding,
     ratio_finding,
@@ -298,7 +298,7 @@ def consistency(
     demand: Array | None = None,
     rubbing: Rubbing | None = None,
     measured: bool = False,
-) -> tuple[Finding, ...]:
+) -> tuple[Implied, ...]:
     """Inertia, power, energy and work against the values that the other inputs imply.
 
     Parameters

@@ -29,7 +29,7 @@ from camwright.pipeline.contact.finite_length.length_certificate import EndCorre
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.contact.two_scale import CycleBodies
 from camwright.pipeline.cycle.elastic_response import ElasticHistory, elastic_history
-from camwright.pipeline.cycle.length_history import LengthHistory, LineContact, length_histories
+from camwright.pipeline.cycle.length_history import LengthHistory, TurnOfLine, length_histories
 from camwright.pipeline.cycle.part_loads import PartLoads, part_loads, shaft_of, spring_surge
 from camwright.pipeline.cycle.rolling_history import RollingHistory, rolling_history
 from camwright.pipeline.cycle.turn import Turn
@@ -403,7 +403,7 @@ class Cycle(Tabled):
 
 def _lengths(cycles: Sequence[Cycle]) -> list[LengthHistory | None]:
     """Pressure along the line of contact of cycles whose contour encloses a body."""
-    turns = [LineContact(c.machine, c.contact, c.loads.normal_force, c.guides) for c in cycles]
+    turns = [TurnOfLine(c.machine, c.contact, c.loads.normal_force, c.guides) for c in cycles]
     return [
         solved if solved is None or cycle.ends is None else solved.corrected(cycle.ends)
         for cycle, solved in zip(cycles, length_histories(turns), strict=True)

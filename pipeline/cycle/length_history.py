@@ -145,7 +145,7 @@ class LengthHistory:
         return replace(plane, **{name: getattr(plane, name) * self.centre for name in names})
 
 
-class LineContact(NamedTuple):
+class TurnOfLine(NamedTuple):
     """A turn of which the pressure along the line is sought; force (n,): normal force, N."""
 
     machine: Machine
@@ -181,7 +181,7 @@ class LineContact(NamedTuple):
         return history if solved is None else history.with_rows(self.rows, solved)
 
 
-def length_histories(turns: Sequence[LineContact]) -> tuple[LengthHistory | None, ...]:
+def length_histories(turns: Sequence[TurnOfLine]) -> tuple[LengthHistory | None, ...]:
     """Pressure along the line of contact of each turn; None where the case lacks an end.
 
     The stem aligns itself with the cam up to the friction of its guides: the moment lies between
@@ -210,7 +210,7 @@ def length_histories(turns: Sequence[LineContact]) -> tuple[LengthHistory | None
     return tuple(histories)
 
 
-def _parts(turns: Sequence[LineContact], members: Sequence[int]) -> Iterator[list[int]]:
+def _parts(turns: Sequence[TurnOfLine], members: Sequence[int]) -> Iterator[list[int]]:
     """Members of up to `_TOGETHER` contacts; one turn at least."""
     part: list[int] = []
     contacts = 0

@@ -12,7 +12,7 @@ from camwright.geometry.contour import Contour
 from camwright.geometry.display import Displayed
 from camwright.pipeline.base.tables import Column
 from camwright.pipeline.case.machine import Machine
-from camwright.pipeline.contact.elasticity.radial_compliance import Bush, Pin
+from camwright.pipeline.contact.elasticity.radial_compliance import Bush, SolidBar
 from camwright.pipeline.contact.pin_in_hole import peak_pressure
 from camwright.pipeline.cycle.cam_balance import camshaft_loads
 from camwright.pipeline.cycle.elastic_response import ElasticHistory
@@ -29,7 +29,7 @@ from camwright.pipeline.follower.guide_friction import (
     friction_power,
 )
 from camwright.pipeline.follower.guide_reactions import Guide
-from camwright.pipeline.follower.roller_motion import RollerMotion, roller_motion
+from camwright.pipeline.follower.roller_motion import RollingRoller, roller_motion
 from camwright.pipeline.follower.spring import natural_frequency, surge_force
 
 
@@ -188,10 +188,10 @@ def spring_surge(machine: Machine, lift: Array) -> Array | None:
     return surge_force(lift, machine.cam_speed, rate, frequency, design.damping)
 
 
-def guide_bodies(machine: Machine, guide: Guide) -> tuple[Pin, Bush]:
+def guide_bodies(machine: Machine, guide: Guide) -> tuple[SolidBar, Bush]:
     """Stem and bore of a guide as pin and hole."""
     stem, bush = machine.stem, guide.material
-    return Pin(stem.elastic_modulus, stem.poisson_ratio), Bush(
+    return SolidBar(stem.elastic_modulus, stem.poisson_ratio), Bush(
         bush.E, bush.nu, 2.0 * guide.wall_share
     )
 
@@ -221,7 +221,7 @@ def shaft_of(turn: Turn, contour: Contour) -> ShaftLoads | None:
     return camshaft_loads(turn.loads, shaft, cam, contour, machine.cam_speed)
 
 
-def _roller_motion(machine: Machine, contour: Contour, loads: Loads) -> RollerMotion | None:
+def _roller_motion(machine: Machine, contour: Contour, loads: Loads) -> RollingRoller | None:
     """Motion of a roller that does not slip; None under a flat face."""
     if machine.roller is None:
         return None

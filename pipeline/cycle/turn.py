@@ -14,7 +14,7 @@ from camwright.geometry.errors import CamError
 from camwright.pipeline.case.machine import Machine
 from camwright.pipeline.cycle.crank_speed import DrivenCam, driven_cam
 from camwright.pipeline.follower.follower_forces import FollowerSystem, Loads
-from camwright.pipeline.follower.friction_coupling import Guided, Stroke, guided_strokes
+from camwright.pipeline.follower.friction_coupling import Guided, MovingFollower, guided_strokes
 from camwright.pipeline.follower.guide_friction import FrictionBounds, friction_bounds
 from camwright.pipeline.follower.guide_reactions import KNOTS, GuidePair, GuideReactions
 from camwright.pipeline.follower.stem_beam import Stem
@@ -161,12 +161,12 @@ class _Strokes:
         CamError
             If one of them cannot be solved.
         """
-        left: dict[tuple[Stem, GuidePair], dict[_Key, Stroke]] = {}
+        left: dict[tuple[Stem, GuidePair], dict[_Key, MovingFollower]] = {}
         for turn_input, system in wanted:
             key, machine = _key(turn_input, system), turn_input.machine
             if key not in self._known:
                 strokes = left.setdefault((machine.stem, machine.guides), {})
-                strokes[key] = Stroke(
+                strokes[key] = MovingFollower(
                     turn_input.contour.pitch, system, machine.cam_speed, self.theta
                 )
         for (stem, guides), strokes in left.items():

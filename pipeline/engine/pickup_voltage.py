@@ -349,7 +349,7 @@ def _enough(field: str, crossings: Crossings) -> Crossings:
 
 
 @dataclass(frozen=True, eq=False)
-class Passage:
+class PickupRun:
     """Edges of one run past a pick-up.
 
     Parameters
@@ -366,7 +366,7 @@ class Passage:
 
 def passage(
     field: str, crossings: Crossings, base: float, wheel: TriggerWheel, extra: int
-) -> Passage:
+) -> PickupRun:
     """Edges that passed a pick-up, both kinds, with the places of their teeth.
 
     The falling crossings, which are steep, are counted. Rising ones in the gap of the wheel are
@@ -400,10 +400,10 @@ def passage(
     single &= np.bincount(index, minlength=middles.size)[index] == 1
     index, between = index[single], between[single]
     if vague or between.size < 2:
-        return Passage(tuple(edges), lead, wheel.tooth_share)
+        return PickupRun(tuple(edges), lead, wheel.tooth_share)
     after = (between - middles[index - 1]) / (middles[index] - middles[index - 1])
     edges.append(Edges(between, places[index - 1], True))
-    return Passage(tuple(edges), lead, float(np.median(after)))
+    return PickupRun(tuple(edges), lead, float(np.median(after)))
 
 
 def speed_from_voltage(

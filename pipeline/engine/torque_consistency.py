@@ -16,7 +16,7 @@ FLAG_ABOVE = 0.10
 
 
 @dataclass(frozen=True)
-class Finding:
+class Implied:
     """A quantity as stated and as the other inputs imply it.
 
     Parameters
@@ -88,9 +88,9 @@ def inertia_finding(
     mean_speed: float,
     speed_std: float,
     span: float = CYCLE_ANGLE,
-) -> Finding:
+) -> Implied:
     """Stated inertia against that implied by torque and measured speed ripple."""
-    return Finding(
+    return Implied(
         "inertia",
         "inertia at the crank",
         stated,
@@ -100,7 +100,7 @@ def inertia_finding(
     )
 
 
-def ratio_finding(crank_torque: ArrayLike, cam_torque: ArrayLike, gear_ratio: float) -> Finding:
+def ratio_finding(crank_torque: ArrayLike, cam_torque: ArrayLike, gear_ratio: float) -> Implied:
     """Cam torque over the crank torque that it balances, against the gear ratio.
 
     The cam speed is the crank speed over the gear ratio: for equal power at every angle the cam
@@ -113,7 +113,7 @@ def ratio_finding(crank_torque: ArrayLike, cam_torque: ArrayLike, gear_ratio: fl
     gear_ratio : float          crank turns per cam turn
     """
     crank, cam = finite("crank_torque", crank_torque), finite("cam_torque", cam_torque)
-    return Finding(
+    return Implied(
         "power",
         "power balance crank to cam, torque ratio",
         gear_ratio,
@@ -128,18 +128,18 @@ def energy_finding(
     stored: float,
     title: str = "energy stored per cycle",
     span: float = CYCLE_ANGLE,
-) -> Finding:
+) -> Implied:
     """Energy stored by a spring against the energy swing of the torque to balance, J."""
     swing = float(np.ptp(energy_swing(crank_torque, span)))
-    return Finding(
+    return Implied(
         "energy", title, swing, stored, "J",
         "spring energy at full lift against the swing of the torque's integral",
     )  # fmt: skip
 
 
-def work_finding(friction_loss: float, crank_work: float) -> Finding:
+def work_finding(friction_loss: float, crank_work: float) -> Implied:
     """Work of the shaft on the mechanism per cycle against the friction loss of its guides, J."""
-    return Finding(
+    return Implied(
         "work",
         "work of the mechanism per cycle",
         friction_loss,

@@ -16,7 +16,7 @@ MEAN_SHARE = pi / 4.0  # mean over peak pressure of Hertz
 
 
 @dataclass(frozen=True, eq=False)
-class FaceMotion:
+class SlidingFace:
     """Contact place (n,) m and surface speeds (n,) m/s under a face.
 
     place: of the contact from the stem axis; sliding: speed of the cam surface along the face;
@@ -31,7 +31,7 @@ class FaceMotion:
         freeze(self, place=self.place, sliding=self.sliding, entrainment=self.entrainment)
 
 
-def face_motion(path: FollowerPath, cam_speed: float, theta: ArrayLike) -> FaceMotion:
+def face_motion(path: FollowerPath, cam_speed: float, theta: ArrayLike) -> SlidingFace:
     """Sliding speed w (r + s) and entrainment speed w |(r + s)/2 + s''| of a face.
 
     Parameters
@@ -52,7 +52,7 @@ def face_motion(path: FollowerPath, cam_speed: float, theta: ArrayLike) -> FaceM
     angle, speed = finite("theta", theta), float(finite("cam_speed", cam_speed))
     height, bend = path.height(angle), path.lift(angle, 2)
     passing = np.abs(speed * (0.5 * height + bend))
-    return FaceMotion(path.push_arm(angle), speed * height, passing)
+    return SlidingFace(path.push_arm(angle), speed * height, passing)
 
 
 def sliding_pv(peak: Array, speed: Array) -> Array:
@@ -80,7 +80,7 @@ class FaceSliding:
 
     @classmethod
     def of(
-        cls, motion: FaceMotion, peak: Array, force: Array, friction: float, cam_speed: float
+        cls, motion: SlidingFace, peak: Array, force: Array, friction: float, cam_speed: float
     ) -> FaceSliding:
         """From peak pressures (n,) Pa and normal forces (n,) N."""
         power = friction * np.maximum(force, 0.0) * motion.sliding

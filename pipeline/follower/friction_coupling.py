@@ -42,7 +42,7 @@ _CLIMB = 40  # rounds without bisection at positions that have no upper bound ye
 FixedPointMap = Callable[[Array, NDArray[np.intp]], Array]
 
 
-class Stroke(NamedTuple):
+class MovingFollower(NamedTuple):
     """A follower and its motion over cam angles (n,), rad, at a cam speed, rad/s.
 
     The system is without its `rubbing`.
@@ -114,13 +114,13 @@ def guided_loads(
     ContactError
         If the residual of an axial equilibrium exceeds 1e-10 of the axial force.
     """
-    stroke = Stroke(pitch, system, cam_speed, finite("theta", theta))
+    stroke = MovingFollower(pitch, system, cam_speed, finite("theta", theta))
     (guided,) = guided_strokes([stroke], stem, guides, knots)
     return guided
 
 
 def guided_strokes(
-    strokes: Sequence[Stroke], stem: Stem, guides: GuidePair, knots: int = KNOTS
+    strokes: Sequence[MovingFollower], stem: Stem, guides: GuidePair, knots: int = KNOTS
 ) -> tuple[Guided, ...]:
     """As `guided_loads` of each stroke in the same guides, all positions solved at once."""
     points = [

@@ -24,7 +24,7 @@ from camwright.pipeline.contact.traction import Drag, RollingContact, ring_inert
 from camwright.pipeline.follower.follower_kind import SurfaceMotion
 from camwright.pipeline.follower.pin_strength import pin_bending_stress
 from camwright.pipeline.follower.ring_on_balls import RingOnBalls, ring_on_balls, solid_reason
-from camwright.pipeline.follower.roller_motion import RollerMotion, roller_motion
+from camwright.pipeline.follower.roller_motion import RollingRoller, roller_motion
 from camwright.pipeline.follower.roller_parts import Bearing, Fork, Pin
 from camwright.pipeline.follower.stem_beam import Stem
 
@@ -188,7 +188,7 @@ class Roller(Part):
         )
 
     def _driven(
-        self, motion: RollerMotion, contact: ContactHistory, force: Array, speed: float
+        self, motion: RollingRoller, contact: ContactHistory, force: Array, speed: float
     ) -> RollingContact:
         """Rolling contact under inertia and bearing drag."""
         return rolling_contact(

@@ -16,7 +16,7 @@ RATED_REVOLUTIONS = 1e6  # of the dynamic rating, ISO 281
 
 
 @dataclass(frozen=True, eq=False)
-class RollerMotion:
+class RollingRoller:
     """Motion of a roller without slip; arrays (n,), SI.
 
     `spin` and `spin_acceleration`: of the outer ring relative to the follower, rad/s and rad/s2;
@@ -54,7 +54,7 @@ def roller_motion(
     cam_speed: float,
     theta: ArrayLike,
     cam_acceleration: float = 0.0,
-) -> RollerMotion:
+) -> RollingRoller:
     """Spin and rolling speed of a roller without slip.
 
     In the cam frame the roller centre moves along the pitch curve at w |P'| and the roller turns at
@@ -92,7 +92,7 @@ def roller_motion(
     along, across = slope - pitch.offset, pitch.height_base + lift
     stretch_rate = path_speed_slope(along, across, slope, bend, stretch)
     spin_per_turn = rolling_share(stretch, roller_radius)
-    return RollerMotion(
+    return RollingRoller(
         theta=theta,
         spin=speed * spin_per_turn,
         spin_acceleration=speed**2 * stretch_rate / roller_radius

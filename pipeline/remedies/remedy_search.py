@@ -214,7 +214,7 @@ def remedies(
     judge = Judge(engine_torques(case), lift, corners)
     base = judge.preview(case, known, undercut=True)
     bench = Workbench(case, cards, _greatest_line_load(base))
-    return _Search(bench, judge, base, wanted).remedies()
+    return _RemedySearch(bench, judge, base, wanted).remedies()
 
 
 def _greatest_line_load(base: Preview) -> float | None:
@@ -254,7 +254,7 @@ class _Confirmed(NamedTuple):
 
 
 @dataclass(eq=False)
-class _Search:
+class _RemedySearch:
     """Search of the remedies of one case.
 
     base: preview of the case; previews by corners and changes; closest: step of each check that

@@ -47,7 +47,7 @@ Notes = Mapping[str, ArrayLike | Sequence[str]]
 
 
 @dataclass(frozen=True, eq=False)
-class Block:
+class MeshBlock:
     """Mesh of a block: triangles (3, t) on `nodes` nodes.
 
     points (2, nodes), mm, are those of every step; None: they move.
@@ -59,7 +59,7 @@ class Block:
 
 
 @dataclass(frozen=True, eq=False)
-class Step:
+class FieldStep:
     """A block at one step: points (2, n), mm, triangles (3, t), hidden (t,) and point data."""
 
     points: Array
@@ -80,7 +80,7 @@ class FieldFile:
     """
 
     def __init__(
-        self, file: h5py.File, times: ArrayLike, blocks: Mapping[str, Block],
+        self, file: h5py.File, times: ArrayLike, blocks: Mapping[str, MeshBlock],
         fields: Mapping[str, int], notes: Notes,
     ) -> None:  # fmt: skip
         self._times = np.asarray(times, dtype=float)
@@ -95,7 +95,7 @@ class FieldFile:
             self._open(group, block, fields)
         self._note(root, notes)
 
-    def _open(self, group: h5py.Group, block: Block, fields: Mapping[str, int]) -> None:
+    def _open(self, group: h5py.Group, block: MeshBlock, fields: Mapping[str, int]) -> None:
         """Mesh, steps and room for the data of a block."""
         count, cells, steps = block.nodes, block.triangles.shape[1], self._times.size
         group["NumberOfPoints"] = np.array([count])
@@ -171,7 +171,7 @@ class FieldFile:
 
 @contextmanager
 def field_file(
-    path: Path, times: ArrayLike, blocks: Mapping[str, Block], fields: Mapping[str, int],
+    path: Path, times: ArrayLike, blocks: Mapping[str, MeshBlock], fields: Mapping[str, int],
     notes: Notes,
 ) -> Iterator[FieldFile]:  # fmt: skip
     """The file at `path`, to be filled; see `FieldFile`. Same input, same bytes.
@@ -195,7 +195,7 @@ class Series:
     times: Array
     notes: Mapping[str, NDArray[Any]]
 
-    def step(self, number: int) -> dict[str, Step]:
+    def step(self, number: int) -> dict[str, FieldStep]:
         """The blocks at one step, by name.
 
         Raises
@@ -308,12 +308,12 @@ def _names(root: h5py.Group) -> list[str]:
     return sorted(names, key=lambda name: int(root[name].attrs["Index"]))
 
 
-def _step(group: h5py.Group, number: int) -> Step:
+def _step(group: h5py.Group, number: int) -> FieldStep:
     count, cells = int(group["NumberOfPoints"][0]), int(group["NumberOfCells"][0])
     start = int(group["Steps/PointOffsets"][number])
     rows = slice(number * count, (number + 1) * count)
     hidden = group[f"CellData/{HIDDEN}"][number * cells : (number + 1) * cells]
-    return Step(
+    return FieldStep(
         group["Points"][start : start + count].T[:2].astype(float),
         group["Connectivity"][()].reshape(-1, 3).T,
         (hidden & _HIDDEN_CELL) > 0,

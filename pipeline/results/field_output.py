@@ -25,7 +25,7 @@ from camwright.pipeline.contact.two_scale import CycleBodies
 from camwright.pipeline.cycle.certificate_angles import positions_to_certify
 from camwright.pipeline.cycle.cycle import Cycle
 from camwright.pipeline.results.contact_zone import zone_nodes
-from camwright.pipeline.results.field_file import Block, FieldFile, Notes, field_file
+from camwright.pipeline.results.field_file import FieldFile, MeshBlock, Notes, field_file
 from camwright.pipeline.results.stress_fields import (
     BodyField,
     IntArray,
@@ -161,10 +161,10 @@ def write_stress(
     cam, _ = fields.names
     coarse = {cam: fields.bodies.cam.body.mesh, fields.names[1]: fields.bodies.follower.body.mesh}
     blocks = {
-        name: Block(triangles, coarse[name].corners if name in coarse else zone_nodes())
+        name: MeshBlock(triangles, coarse[name].corners if name in coarse else zone_nodes())
         for name, triangles in fields.triangles.items()
     }
-    blocks[cam] = Block(
+    blocks[cam] = MeshBlock(
         blocks[cam].triangles,
         blocks[cam].nodes,
         coarse[cam].points[:, : blocks[cam].nodes] / _MILLIMETRE,
@@ -202,7 +202,7 @@ def _notes(fields: TurnFields, positions: IntArray, times: Array) -> Notes:
 
 
 def _write(
-    file: FieldFile, name: str, first: int, field: BodyField, poisson: float, block: Block
+    file: FieldFile, name: str, first: int, field: BodyField, poisson: float, block: MeshBlock
 ) -> None:
     """One block at consecutive positions."""
     points = None

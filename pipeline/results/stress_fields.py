@@ -16,7 +16,7 @@ from camwright.geometry.arrays import Array
 from camwright.geometry.contour import Contour
 from camwright.geometry.errors import GeometryError
 from camwright.meshes.gmsh_mesher import Index
-from camwright.pipeline.contact.body_compliance import Correction, from_contact_axes
+from camwright.pipeline.contact.body_compliance import CorrectionField, from_contact_axes
 from camwright.pipeline.contact.contact_pair import ContactPair
 from camwright.pipeline.contact.two_scale import CycleBodies, stress_on_patch
 from camwright.pipeline.cycle.cycle import Cycle
@@ -45,7 +45,7 @@ class BodyField:
     stress: Array
     hidden: NDArray[np.bool_]
 
-    def placed(self, places: Places) -> BodyField:
+    def placed(self, places: Poses) -> BodyField:
         """The field of a body in its own frame, in that of the cam."""
         turn = places.turn
         xx, yy, xy = self.stress
@@ -61,7 +61,7 @@ class BodyField:
 
 
 @dataclass(frozen=True, eq=False)
-class Places:
+class Poses:
     """Poses of a body at k cam angles: origins (k, 2), m, and rotations (k, 2, 2) of its axes."""
 
     origin: Array
@@ -73,14 +73,14 @@ class Places:
         return np.arctan2(self.turn[:, 1, 0], self.turn[:, 0, 0])
 
 
-def follower_places(pair: ContactPair, theta: Array) -> Places:
+def follower_places(pair: ContactPair, theta: Array) -> Poses:
     """Poses of the follower's body in the cam frame at cam angles (k,)."""
     contacts, normals = pair.contour.points(theta), -pair.contour.normal(theta)
     at, up = pair.follower.contacts(pair.contour, theta)
     cosine, sine = (up * normals).sum(axis=0), up[0] * normals[1] - up[1] * normals[0]
     turn = np.array([[cosine, -sine], [sine, cosine]]).transpose(2, 0, 1)
     at = np.broadcast_to(at, contacts.shape)
-    return Places(contacts.T - np.einsum("kab,bk->ka", turn, at), turn)
+    return Poses(contacts.T - np.einsum("kab,bk->ka", turn, at), turn)
 
 
 @dataclass(frozen=True, eq=False)
@@ -208,7 +208,7 @@ class Loaded:
         """Correction (2, nodes, c), (3, nodes, c) on the coarse mesh."""
         return self.site.body.correction_fields(self.contacts, self.normals)
 
-    def reduced(self, chosen: NDArray[np.bool_]) -> Correction:
+    def reduced(self, chosen: NDArray[np.bool_]) -> CorrectionField:
         """Correction at some of k different contacts."""
         displaced = self.correction[0][:, :, chosen]
         return self.site.body.correction_of(

@@ -30,7 +30,7 @@ from camwright.pipeline.follower.follower_forces import (
 )
 from camwright.pipeline.follower.guide_table import SupportOfMany
 from camwright.pipeline.follower.spring import stored_lift
-from camwright.pipeline.screening.screened_cam import ScreenedCam, State
+from camwright.pipeline.screening.screened_cam import ScreenedCam, ScreenedState
 
 Judged = tuple[Array, Array | float | None]
 """Demand (m,) and limit (m,) of a check, SI; NaN and None are missing."""
@@ -180,10 +180,10 @@ class Designs:
         return (self.highest - sampled_least(self.jets[0]))[:, None]
 
     @cached_property
-    def states(self) -> tuple[State, ...]:
+    def states(self) -> tuple[ScreenedState, ...]:
         """Load cases of the designs, then standstill and over-speed at each preload."""
         base, stated = self.value("spring.preload"), self.case.load_cases
-        states: list[State] = []
+        states: list[ScreenedState] = []
         preloads: list[Array] = []
         for k, each in enumerate(stated):
             own = self.value(f"load_case[{k}].preload")
@@ -193,13 +193,13 @@ class Designs:
             torque = self.torques.get(k)
             torque = None if torque is None else self.at_loads(torque)
             speed = self.value(f"load_case[{k}].speed")
-            states.append(State(speed, preload, torque, self._required(each), each.duty))
+            states.append(ScreenedState(speed, preload, torque, self._required(each), each.duty))
         over = self.value(f"limits.{OVERSPEED.id}")
         idle = None if stated[0].duty is None else 0.0
         for speed in (np.zeros_like(over), over):
             if np.isnan(speed).all():
                 continue
-            states += [State(speed, preload, None, None, idle) for preload in preloads]
+            states += [ScreenedState(speed, preload, None, None, idle) for preload in preloads]
         return tuple(states)
 
     def _required(self, state: LoadCase) -> Array | None:
@@ -224,7 +224,7 @@ class Designs:
         """Loaded cams in each load case."""
         return tuple(self._loaded(state) for state in self.states)
 
-    def _loaded(self, state: State) -> ScreenedCam:
+    def _loaded(self, state: ScreenedState) -> ScreenedCam:
         crank = np.maximum(state.speed, CREEP)
         own = {
             "cam.speed": crank / self.case.mechanism.gear_ratio,

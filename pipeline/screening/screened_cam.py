@@ -19,7 +19,7 @@ from camwright.pipeline.follower.guide_table import GuideLoads, SupportOfMany
 from camwright.pipeline.screening.design_lengths import DesignValues, factors_of, has_many_shapes
 
 
-class State(NamedTuple):
+class ScreenedState(NamedTuple):
     """A load case of many designs: crank speed, rad/s, and preload, N, (m, 1).
 
     torque (m or 1, n): of the engine less its mean, crank N m, at the cam angles of the loads; None
@@ -56,7 +56,7 @@ class ScreenedCam(LoadedCam):
     """
 
     block: Block
-    state: State
+    state: ScreenedState
     crank_speed: Array
 
     @property

@@ -40,10 +40,10 @@ from camwright.pipeline.follower.roller import Roller
 from camwright.pipeline.preview import preview_case
 from camwright.pipeline.sizing.least_crown import (
     KINDS,
+    AxialFactor,
     ContactStates,
     CrownKind,
     CrownProblem,
-    Factor,
     LeastCrown,
     families,
     least_crown,
@@ -401,7 +401,7 @@ def _states(cycles: Sequence[Cycle]) -> tuple[ContactStates, Array]:
     return states.at(kept), theta[kept]
 
 
-def _factor_of(mean_length: float) -> Factor:
+def _factor_of(mean_length: float) -> AxialFactor:
     """Signed factor by contacts solved one by one; mean_length, m, at a corner."""
 
     def factor(

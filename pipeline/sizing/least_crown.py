@@ -183,7 +183,7 @@ class DeviatedCrown:
         return np.asarray(self.crown.drop(y) + self.deviation * (2.0 * y / self.length) ** 2)
 
 
-class Factor(Protocol):
+class AxialFactor(Protocol):
     """Signed axial pressure of a pair over plane strain."""
 
     def __call__(
@@ -206,14 +206,14 @@ class CrownProblem:
     states : ContactStates     loads of each pair
     tilt : float               greatest, rad, that the couples may hold
     families : tuple           crowns to choose from
-    factor : Factor            signed axial pressure over plane strain
+    factor : AxialFactor            signed axial pressure over plane strain
     """
 
     pairs: Callable[[Crown], tuple[FinitePair, ...]]
     states: ContactStates
     tilt: float
     families: tuple[CrownFamily, ...]
-    factor: Factor
+    factor: AxialFactor
 
     def factors(self, crown: Crown, rows: IntArray | None = None, tilt: float = 1.0) -> Array:
         """Signed axial pressure over plane strain (count,), of the worse end.
@@ -318,7 +318,7 @@ def _of_family(
     """
     rows, aim = _governing(problem.states, straight), ratio
     while True:
-        search = _Search(problem, family, rows)
+        search = _CrownSearch(problem, family, rows)
         load, heaviest = search.within(aim)
         ratios = problem.ratios(family.crown(load))
         worst = int(ratios.argmax())
@@ -342,7 +342,7 @@ def _greatest_of_each(states: ContactStates, measure: Array) -> IntArray:
     return np.array([own[np.argmax(measure[own])] for own in cases], dtype=np.intp)
 
 
-class _Search:
+class _CrownSearch:
     """Greatest ratio of some rows over the design load (N/m), each computed once."""
 
     def __init__(self, problem: CrownProblem, family: CrownFamily, rows: IntArray) -> None:

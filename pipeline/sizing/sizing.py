@@ -215,7 +215,7 @@ def sized(opened: OpenCase, *, least_radius: float = 0.0, progress: Progress = S
     """
     with refused_as_written(opened.case):
         shapes = shapes_of(opened, least_radius)
-        return _Search(opened, shapes, engine_torques(opened.case), progress).sized()
+        return _SizeSearch(opened, shapes, engine_torques(opened.case), progress).sized()
 
 
 _Tried = tuple[ChosenSpring, Shape, tuple[str, Case, Trial]]
@@ -223,7 +223,7 @@ _Tried = tuple[ChosenSpring, Shape, tuple[str, Case, Trial]]
 
 
 @dataclass(frozen=True, eq=False)
-class _Search:
+class _SizeSearch:
     opened: OpenCase
     shapes: Shapes
     torques: Mapping[str, Torque]

@@ -58,9 +58,10 @@ def descended(
 ) -> Descent:
     """Local optimum of a search from its start.
 
-    Outside the limits the search ends, `stuck`, where the least violation of the linear models is
-    that of the cam and a step foresees next to no gain: a greater penalty would gain nothing, and
-    limits that jump at the reversals of the follower make it creep.
+    Outside the limits the search ends, `stuck`, where a step foresees next to no gain and the least
+    violation of the linear models is that of the cam, or all wider steps from here were refused: a
+    greater penalty would gain nothing, and limits that jump at the reversals of the follower make
+    it creep.
 
     Parameters
     ----------
@@ -100,7 +101,7 @@ def descended(
         if before is not None and priced is not None:
             bend = lagrangian_curvature(search, state, model, before, priced)
             model = model._replace(curvature=_convex(model.curvature + bend))
-        proven, gain, tested = False, np.inf, False
+        proven, gain, tested, widest = False, np.inf, False, trust
         while True:
             program, there, model = _program(search, state, model, trust, penalty, ripple_weight)
             if program is None:
@@ -128,7 +129,7 @@ def descended(
             beyond = any(value > 1.0 for value in state.utilisation.values())
             if beyond and creeping and not tested:
                 tested = True
-                if _stuck(search, state, model):
+                if widest >= _PROOF > trust or _stuck(search, state, model):
                     return Descent(state, model, program, step, gain, penalty, stuck=True)
             actual = now - there.merit(penalty, ripple_weight)
             if predicted > least and actual < _CORRECTED * predicted:

@@ -29,7 +29,7 @@ from camwright.pipeline.contact.contact_patch import (
 )
 from camwright.pipeline.contact.elasticity import plane_stress_measures
 from camwright.pipeline.contact.elasticity.elastic_body import Elastic, elements_near
-from camwright.pipeline.contact.elasticity.radial_compliance import Bush, Pin
+from camwright.pipeline.contact.elasticity.radial_compliance import Bush, SolidBar
 from camwright.pipeline.contact.pin_in_hole import (
     persson_contact_angle,
     persson_pressure,
@@ -235,7 +235,7 @@ def conforming(pair: TwoCylinders) -> ConformingContact:
         pair.line_load,
         radius,
         clearance,
-        Pin(pin_body.modulus, pin_body.poisson),
+        SolidBar(pin_body.modulus, pin_body.poisson),
         Bush(hole_body.modulus, hole_body.poisson),
     )
     return ConformingContact(

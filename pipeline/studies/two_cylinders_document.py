@@ -49,7 +49,7 @@ _OPTIONS = {"radius_1": "--r1", "radius_2": "--r2", "friction": "--friction"}
 
 
 @dataclass(frozen=True)
-class Options:
+class ContactOptions:
     """Options of the command as text; numbers without unit in mm, MPa, N/mm or N."""
 
     r1: str
@@ -135,7 +135,9 @@ class Options:
         return width
 
 
-def solved(options: Options, *, with_approach: bool = False, field: Path | None = None) -> Document:
+def solved(
+    options: ContactOptions, *, with_approach: bool = False, field: Path | None = None
+) -> Document:
     """Results of the command, in mm, MPa and N.
 
     Raises

@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike
 
 from camwright.geometry.arrays import FULL_TURN, Array, uniform_turn
 from camwright.geometry.errors import ContactError, InputError
-from camwright.geometry.motion_laws import Motion
+from camwright.geometry.motion_laws import SegmentMotion
 from camwright.pipeline.follower.follower_forces import Loads
 
 _SEARCH = 7200
@@ -28,7 +28,7 @@ class ValveCam:
 
     Parameters
     ----------
-    motion : Motion              s(phi), closed form
+    motion : SegmentMotion              s(phi), closed form
     base_radius : float          r0 of the base circle, m, > 0
     roller_radius : float        rb, m, > 0 for module B; unused for C
     offset : float               e, m
@@ -41,7 +41,7 @@ class ValveCam:
     Petrescu, Petrescu, Independent J. Management & Production 6 (2015), no. 3.
     """
 
-    motion: Motion
+    motion: SegmentMotion
     base_radius: float
     roller_radius: float = 0.0
     offset: float = 0.0
@@ -242,7 +242,7 @@ class ElasticValve:
             return np.asarray(s - work / (reach + np.sqrt(square)))
         return s - work / (2.0 * reach)
 
-    def integrated(self, motion: Motion, speed: float, phi: ArrayLike) -> Array:
+    def integrated(self, motion: SegmentMotion, speed: float, phi: ArrayLike) -> Array:
         """Displacement (n,) by eq. 12 at constant speed, m, from rest at increasing angles, rad.
 
         Raises

@@ -9,8 +9,8 @@ from camwright.pipeline.base.files import write_atomic
 from camwright.reports.figure_svg import COLOURS, png, shipped
 from camwright.reports.page import study_page
 from camwright.reports.picture_list import Picture
-from camwright.reports.report_content import Block, Note, Pictures, Section, Tabular
-from camwright.reports.report_tables import Cell, Record, Scalar, Status, Table, listed
+from camwright.reports.report_content import Note, Pictures, ReportSection, SectionBlock, Tabular
+from camwright.reports.report_tables import Cell, Record, ReportTable, Scalar, Status, listed
 
 COLUMNS = (
     ("file", "case"),
@@ -95,15 +95,19 @@ def _page(document: Record, picture: bytes) -> str:
     alt = f"Residual torque ripple over {AXES[document['against']][1]}"
     excluded = document["without_result"]
     front = [
-        *([] if excluded is None else [Block(Note(f"{line}.")) for line in excluded["lines"]]),
+        *(
+            []
+            if excluded is None
+            else [SectionBlock(Note(f"{line}.")) for line in excluded["lines"]]
+        ),
         _table("Points of the front", [words for _, words in COLUMNS], points, 5, 7),
-        Block(Pictures([Picture("Front", alt=alt, png=picture)])),
+        SectionBlock(Pictures([Picture("Front", alt=alt, png=picture)])),
     ]
     return study_page(title, [
-        Section("points", "", front),
-        Section("refused", "Designs not on the front",
+        ReportSection("points", "", front),
+        ReportSection("refused", "Designs not on the front",
                 [_table("Not on the front", ("parts", "reason"), refused, 2)]),
-        Section("pruned", "Parts excluded by bounds",
+        ReportSection("pruned", "Parts excluded by bounds",
                 [_table("Excluded", ("part", "reason"), pruned, 2)]),
     ], words)  # fmt: skip
 
@@ -116,5 +120,7 @@ def _cell(name: str, value: Scalar | Sequence[Scalar]) -> Cell:
 
 def _table(
     label: str, head: Sequence[str], rows: Sequence[Sequence[Cell]], text: int, numbers: int = 0
-) -> Block:
-    return Block(Tabular(Table(label, head, rows, text, numbers)) if rows else Note("None."))
+) -> SectionBlock:
+    return SectionBlock(
+        Tabular(ReportTable(label, head, rows, text, numbers)) if rows else Note("None.")
+    )

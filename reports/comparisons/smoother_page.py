@@ -16,8 +16,8 @@ from camwright.reports.figure_svg import COLOURS, png, shipped, style
 from camwright.reports.figures import CAM_STEP, SERIES
 from camwright.reports.page import study_page
 from camwright.reports.picture_list import Picture
-from camwright.reports.report_content import Block, Note, Pictures, Section, Tabular
-from camwright.reports.report_tables import Cell, Record, Scalar, Status, Table, listed, words
+from camwright.reports.report_content import Note, Pictures, ReportSection, SectionBlock, Tabular
+from camwright.reports.report_tables import Cell, Record, ReportTable, Scalar, Status, listed, words
 
 Cells = Scalar | Sequence[Scalar]
 COLUMNS = (
@@ -67,18 +67,20 @@ def write(
     picture = drawn(lifts)
     write_atomic(folder / "smoothers.png", picture)
     cells = [[_cell(name, row.get(name), common) for name, _ in COLUMNS] for row in rows]
-    table = Table("Smoothers", [title for _, title in COLUMNS], cells, 3, 6)
+    table = ReportTable("Smoothers", [title for _, title in COLUMNS], cells, 3, 6)
     content = [
         *(
-            [Block(Note(f"Missing data, whatever the smoother: {listed(common)}."))]
+            [SectionBlock(Note(f"Missing data, whatever the smoother: {listed(common)}."))]
             if common
             else []
         ),
-        Block(Tabular(table)),
-        Block(Pictures([Picture("Lift", alt="Lift over one cam turn by smoother", png=picture)])),
+        SectionBlock(Tabular(table)),
+        SectionBlock(
+            Pictures([Picture("Lift", alt="Lift over one cam turn by smoother", png=picture)])
+        ),
     ]
     return write_atomic(
-        folder / "smoothers.html", study_page(title, [Section("", "", content)], lead)
+        folder / "smoothers.html", study_page(title, [ReportSection("", "", content)], lead)
     )
 
 

@@ -17,11 +17,11 @@ from camwright.pipeline.base.files import Json
 from camwright.reports.drawing.drawing_shapes import (
     Arrow,
     Drawing,
-    Group,
-    Outline,
+    DrawnOutline,
     Pen,
     Pose,
     Shape,
+    ShapeGroup,
     Text,
     bore_outline,
     circle,
@@ -43,7 +43,7 @@ COLOURS = {"contact": "vermillion", "spring": "green", "guide-a": "blue", "guide
 
 
 @dataclass(frozen=True)
-class Bush:
+class DrawnBush:
     """Guide of the stem: height of its middle, length and bore, mm."""
 
     middle: float
@@ -57,7 +57,7 @@ class Bush:
 
 
 @dataclass(frozen=True, eq=False)
-class Mechanism:
+class DrawnMechanism:
     """Sizes in mm, angles in rad.
 
     contour : array (2, n)   in the frame of the cam, angle zero along x
@@ -82,7 +82,7 @@ class Mechanism:
     face: tuple[float, float] | None
     stem: float
     stem_end: float
-    guides: tuple[Bush, Bush]
+    guides: tuple[DrawnBush, DrawnBush]
     spring: Spring
 
     @cached_property
@@ -118,7 +118,7 @@ class Mechanism:
 
 
 @dataclass(frozen=True, eq=False)
-class Motion:
+class DrawnMotion:
     """One load case over the turn; arrays (n,), SI but for lengths in mm.
 
     theta : cam angle, rad; lift, mm; pressure_angle, rad; contact_offset : of the contact from the
@@ -146,26 +146,26 @@ def cam_turn(theta: float) -> float:
     return 0.5 * np.pi - theta
 
 
-def drawing(mechanism: Mechanism, motion: Motion, row: int) -> Drawing:
+def drawing(mechanism: DrawnMechanism, motion: DrawnMotion, row: int) -> Drawing:
     """The mechanism at one row of the motion."""
     m, lift = mechanism, float(motion.lift[row])
     behind, before = m.spring.groups(m.axis, lift)
     theta = float(motion.theta[row])
     groups = (
-        Group("axes", tuple(_axes(m))),
-        Group("cam", tuple(_cam(m)), Pose(cam_turn(theta))),
-        Group("turning", tuple(_turning(m))),
+        ShapeGroup("axes", tuple(_axes(m))),
+        ShapeGroup("cam", tuple(_cam(m)), Pose(cam_turn(theta))),
+        ShapeGroup("turning", tuple(_turning(m))),
         *behind,
-        Group("follower", tuple(_follower(m)), Pose(shift=(m.axis, m.lowest + lift))),
+        ShapeGroup("follower", tuple(_follower(m)), Pose(shift=(m.axis, m.lowest + lift))),
         *before,
-        Group("guides", tuple(_guides(m))),
-        Group("forces", tuple(arrows(m, motion, row))),
-        Group("values", tuple(_values(m, motion, row))),
+        ShapeGroup("guides", tuple(_guides(m))),
+        ShapeGroup("forces", tuple(arrows(m, motion, row))),
+        ShapeGroup("values", tuple(_values(m, motion, row))),
     )
     return Drawing("Arrangement", alt(motion, row), groups, _box(m))
 
 
-def alt(motion: Motion, row: int) -> str:
+def alt(motion: DrawnMotion, row: int) -> str:
     """Text alternative: angle and forces."""
     forces = ", ".join(f"{name.lower()} {_newtons(motion, key, row)}" for key, name in
                        FORCES.items())  # fmt: skip
@@ -176,27 +176,29 @@ def alt(motion: Motion, row: int) -> str:
     )
 
 
-def _angle_words(motion: Motion, row: int) -> str:
+def _angle_words(motion: DrawnMotion, row: int) -> str:
     cam, shaft = np.degrees(motion.theta[row]), motion.shaft_angle[row]
     return f"cam {cam:.1f}°, {motion.shaft} {shaft:.1f}°"
 
 
-def _newtons(motion: Motion, name: str, row: int) -> str:
+def _newtons(motion: DrawnMotion, name: str, row: int) -> str:
     value = abs(float(motion.forces[name][row]))
     return f"{value:.0f} N" if value >= 100.0 else f"{value:.3g} N"
 
 
-def _axes(m: Mechanism) -> list[Shape]:
+def _axes(m: DrawnMechanism) -> list[Shape]:
     """Follower axis and centre lines of the cam."""
     pen = Pen("muted", _THIN * m.scale, dash="dashdot")
     reach = m.radius_max + 0.8 * m.text
     return [
-        Outline((segment((m.axis, -reach), (m.axis, m.top + 0.8 * m.text)),), pen, closed=False),
-        Outline((segment((-reach, 0.0), (reach, 0.0)),), pen, closed=False),
+        DrawnOutline(
+            (segment((m.axis, -reach), (m.axis, m.top + 0.8 * m.text)),), pen, closed=False
+        ),
+        DrawnOutline((segment((-reach, 0.0), (reach, 0.0)),), pen, closed=False),
     ]
 
 
-def _cam(m: Mechanism) -> list[Shape]:
+def _cam(m: DrawnMechanism) -> list[Shape]:
     """Contour, openings and the mark of the angle zero, in the frame of the cam."""
     edge = Pen("ink", _EDGE * m.scale, "steel")
     holes = [] if m.bore is None else [bore_outline(m.bore, m.keyway)]
@@ -209,26 +211,26 @@ def _cam(m: Mechanism) -> list[Shape]:
     words = Text("0°", tuple(0.78 * m.contour[:, 0] - 0.4 * m.text * np.array([0.0, 1.0])),
                  0.85 * m.text, "muted", "middle")  # fmt: skip
     return [
-        Outline((m.contour, *holes), edge),
-        Outline((mark,), Pen("ink", 1.6 * edge.width), closed=False),
+        DrawnOutline((m.contour, *holes), edge),
+        DrawnOutline((mark,), Pen("ink", 1.6 * edge.width), closed=False),
         words,
     ]
 
 
-def _turning(m: Mechanism) -> list[Shape]:
+def _turning(m: DrawnMechanism) -> list[Shape]:
     """Arc with an arrow in the direction of turning, below the cam on its left."""
     radius = m.radius_max + 0.9 * m.text
     angle = np.radians(np.linspace(247.0, 218.0, 25))
     arc = radius * np.stack([np.cos(angle), np.sin(angle)])
     width = 0.8 * m.scale
     return [
-        Outline((arc[:, :-1],), Pen("muted", width), closed=False),
+        DrawnOutline((arc[:, :-1],), Pen("muted", width), closed=False),
         Arrow("turning", tuple(arc[:, -5]), tuple(arc[:, -1] + 0.6 * (arc[:, -1] - arc[:, -2])),
               "muted", width),
     ]  # fmt: skip
 
 
-def _follower(m: Mechanism) -> list[Shape]:
+def _follower(m: DrawnMechanism) -> list[Shape]:
     """Roller with pin and fork, or face; stem and moving seat; origin at roller centre or face."""
     edge = Pen("ink", _EDGE * m.scale, "steel")
     half, end = 0.5 * m.stem, m.stem_end - m.lowest
@@ -236,26 +238,28 @@ def _follower(m: Mechanism) -> list[Shape]:
     if m.roller is not None:
         bridge = m.roller + 0.25 * m.stem
         made += [
-            Outline((rectangle(-half, 0.0, half, end),), edge),
-            Outline((rectangle(-1.1 * half, bridge, 1.1 * half, bridge + 0.35 * m.stem),), edge),
-            Outline((circle(m.roller), circle(m.pin)), Pen("ink", edge.width, "card")),
-            Outline((circle(m.pin),), edge),
+            DrawnOutline((rectangle(-half, 0.0, half, end),), edge),
+            DrawnOutline(
+                (rectangle(-1.1 * half, bridge, 1.1 * half, bridge + 0.35 * m.stem),), edge
+            ),
+            DrawnOutline((circle(m.roller), circle(m.pin)), Pen("ink", edge.width, "card")),
+            DrawnOutline((circle(m.pin),), edge),
         ]
     elif m.face is not None:
         width, thick = m.face
         made += [
-            Outline((rectangle(-half, thick, half, end),), edge),
-            Outline((rectangle(-0.5 * width, 0.0, 0.5 * width, thick),), edge),
+            DrawnOutline((rectangle(-half, thick, half, end),), edge),
+            DrawnOutline((rectangle(-0.5 * width, 0.0, 0.5 * width, thick),), edge),
         ]
     seat, reach = m.spring.seat - m.lowest, min(m.spring.reach, 4.0 * m.stem)
     thick = SEAT * m.stem
     if not isinstance(m.spring, Coil):
         reach = 0.8 * m.stem
-    made.append(Outline((rectangle(-reach, seat - thick, reach, seat),), edge))
+    made.append(DrawnOutline((rectangle(-reach, seat - thick, reach, seat),), edge))
     return made
 
 
-def _guides(m: Mechanism) -> list[Shape]:
+def _guides(m: DrawnMechanism) -> list[Shape]:
     """Bushes in hatched housings, and the fixed seat of the spring."""
     edge, thin = Pen("ink", _EDGE * m.scale, "shade"), Pen("muted", _THIN * m.scale)
     made: list[Shape] = []
@@ -266,10 +270,10 @@ def _guides(m: Mechanism) -> list[Shape]:
             outer, far = inner + side * bush.wall, inner + side * (bush.wall + 0.55 * m.stem)
             box = (min(outer, far), low, max(outer, far), high)
             made += [
-                Outline(hatching(box, 3.2 * m.scale), thin, closed=False),
-                Outline((segment((outer, low), (outer, high)),), Pen("ink", edge.width),
+                DrawnOutline(hatching(box, 3.2 * m.scale), thin, closed=False),
+                DrawnOutline((segment((outer, low), (outer, high)),), Pen("ink", edge.width),
                         closed=False),
-                Outline((rectangle(min(inner, outer), low, max(inner, outer), high),), edge),
+                DrawnOutline((rectangle(min(inner, outer), low, max(inner, outer), high),), edge),
             ]  # fmt: skip
     if isinstance(m.spring, Coil):
         for side in (-1.0, 1.0):
@@ -278,13 +282,13 @@ def _guides(m: Mechanism) -> list[Shape]:
                 m.axis + side * (m.spring.reach + m.stem / 4),
             )
             box = (min(inner, outer), m.spring.top, max(inner, outer), m.spring.top + SEAT * m.stem)
-            made += [Outline(hatching(box, 3.2 * m.scale), thin, closed=False),
-                     Outline((segment((inner, m.spring.top), (outer, m.spring.top)),),
+            made += [DrawnOutline(hatching(box, 3.2 * m.scale), thin, closed=False),
+                     DrawnOutline((segment((inner, m.spring.top), (outer, m.spring.top)),),
                              Pen("ink", edge.width), closed=False)]  # fmt: skip
     return made
 
 
-def contact_point(mechanism: Mechanism, motion: Motion) -> Array:
+def contact_point(mechanism: DrawnMechanism, motion: DrawnMotion) -> Array:
     """Contact (2, n), mm."""
     m, height = mechanism, mechanism.lowest + motion.lift
     if m.roller is None:
@@ -294,7 +298,7 @@ def contact_point(mechanism: Mechanism, motion: Motion) -> Array:
     return np.stack([m.axis - m.roller * np.sin(angle), height - m.roller * np.cos(angle)])
 
 
-def arrows(mechanism: Mechanism, motion: Motion, row: int) -> list[Arrow]:
+def arrows(mechanism: DrawnMechanism, motion: DrawnMotion, row: int) -> list[Arrow]:
     """Forces on the follower at one row, to one scale over the turn."""
     m = mechanism
     scale = m.arrow_length / motion.greatest_force if motion.greatest_force > 0.0 else 0.0
@@ -320,7 +324,7 @@ def arrows(mechanism: Mechanism, motion: Motion, row: int) -> list[Arrow]:
     return made
 
 
-def label_places(mechanism: Mechanism) -> dict[str, tuple[float, float]]:
+def label_places(mechanism: DrawnMechanism) -> dict[str, tuple[float, float]]:
     """Places of the values, in a column right of all that moves; none overlaps another."""
     m, pitch = mechanism, 2.7 * mechanism.text
     wanted = sorted(
@@ -337,7 +341,7 @@ def label_places(mechanism: Mechanism) -> dict[str, tuple[float, float]]:
     return places
 
 
-def _column(m: Mechanism) -> float:
+def _column(m: DrawnMechanism) -> float:
     """Left edge of the values: right of spring, face, guides and the arrows beside them, mm."""
     bush = max(0.5 * each.bore + each.wall for each in m.guides) + 0.55 * m.stem
     face = 0.0 if m.face is None else 0.5 * m.face[0]
@@ -345,7 +349,7 @@ def _column(m: Mechanism) -> float:
     return m.axis + max(beside, face, bush, 0.5 * m.stem + m.arrow_length) + 0.8 * m.text
 
 
-def _values(m: Mechanism, motion: Motion, row: int) -> list[Shape]:
+def _values(m: DrawnMechanism, motion: DrawnMotion, row: int) -> list[Shape]:
     """Names and values of the forces; angle; scale of the arrows."""
     made: list[Shape] = []
     for name, (x, y) in label_places(m).items():
@@ -365,7 +369,7 @@ def _values(m: Mechanism, motion: Motion, row: int) -> list[Shape]:
         low = foot + 1.6 * m.text  # above the line of the angle
         bar, y = segment((end - length, low), (end, low)), low + 0.5 * m.text
         made += [
-            Outline((bar,), Pen("ink", 1.5 * m.scale), closed=False),
+            DrawnOutline((bar,), Pen("ink", 1.5 * m.scale), closed=False),
             Text(f"{stated:g} N", (end, y), 0.82 * m.text, "muted", "end"),
         ]
     return made
@@ -378,7 +382,7 @@ def _round(value: float) -> float:
 
 
 @lru_cache(maxsize=2)
-def _box(m: Mechanism) -> tuple[float, float, float, float]:
+def _box(m: DrawnMechanism) -> tuple[float, float, float, float]:
     margin = 1.4 * m.text
     places = label_places(m)
     widest = max(Text(name, (0.0, 0.0), 0.82 * m.text).box[2] for name in FORCES.values())
@@ -388,7 +392,9 @@ def _box(m: Mechanism) -> tuple[float, float, float, float]:
     return left, -m.radius_max - 2.4 * margin, right, top
 
 
-def moving_record(mechanism: Mechanism, motion: Motion, rows: Sequence[int]) -> dict[str, Json]:
+def moving_record(
+    mechanism: DrawnMechanism, motion: DrawnMotion, rows: Sequence[int]
+) -> dict[str, Json]:
     """Poses of the moving groups, arrows and values at rows of the motion, for a page.
 
     Poses are turn (deg, counter-clockwise), shift x and y (mm) and stretch of each row.

@@ -27,7 +27,7 @@ class Pen:
 
 
 @dataclass(frozen=True, eq=False)
-class Outline:
+class DrawnOutline:
     """Lines (2, n), mm; the second and further ones are holes of a closed first one."""
 
     lines: tuple[Array, ...]
@@ -72,7 +72,7 @@ class Text:
         return left, y - 0.25 * self.height, left + width, y + 0.8 * self.height
 
 
-Shape = Outline | Arrow | Text
+Shape = DrawnOutline | Arrow | Text
 
 
 @dataclass(frozen=True)
@@ -90,7 +90,7 @@ class Pose:
 
 
 @dataclass(frozen=True, eq=False)
-class Group:
+class ShapeGroup:
     """Shapes that move together, from the bottom layer to the top one."""
 
     name: str
@@ -104,7 +104,7 @@ class Drawing:
 
     title: str
     alt: str
-    groups: tuple[Group, ...]
+    groups: tuple[ShapeGroup, ...]
     box: tuple[float, float, float, float]
 
     @property

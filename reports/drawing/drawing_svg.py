@@ -8,7 +8,7 @@ from html import escape
 import numpy as np
 
 from camwright.geometry.arrays import Array
-from camwright.reports.drawing.drawing_shapes import Arrow, Drawing, Group, Outline, Text
+from camwright.reports.drawing.drawing_shapes import Arrow, Drawing, DrawnOutline, ShapeGroup, Text
 
 _DASHES = {"dashed": (4.0, 2.5), "dashdot": (9.0, 2.0, 1.5, 2.0)}  # widths of the line
 
@@ -44,7 +44,7 @@ def _head(name: str, colour: str) -> str:
     )
 
 
-def _group(group: Group, colours: Mapping[str, str]) -> str:
+def _group(group: ShapeGroup, colours: Mapping[str, str]) -> str:
     pose = group.pose
     place = ""
     if pose.turn or any(pose.shift):
@@ -59,13 +59,13 @@ def transform(turn: float, x: float, y: float) -> str:
     return f"translate({_n(x)} {_n(-y)}) rotate({_n(-np.degrees(turn))})"
 
 
-def _shape(shape: Outline | Arrow | Text, stretch: float, colours: Mapping[str, str]) -> str:
-    if isinstance(shape, Outline):
+def _shape(shape: DrawnOutline | Arrow | Text, stretch: float, colours: Mapping[str, str]) -> str:
+    if isinstance(shape, DrawnOutline):
         return _outline(shape, stretch, colours)
     return _arrow(shape, colours) if isinstance(shape, Arrow) else _text(shape, colours)
 
 
-def _outline(shape: Outline, stretch: float, colours: Mapping[str, str]) -> str:
+def _outline(shape: DrawnOutline, stretch: float, colours: Mapping[str, str]) -> str:
     pen = shape.pen
     fill = colours[pen.fill] if pen.fill else "none"
     style = f'fill="{fill}"'

@@ -16,10 +16,10 @@ from camwright.reports.drawing.drawing_shapes import (
     HEAD,
     Arrow,
     Drawing,
-    Group,
-    Outline,
+    DrawnOutline,
     Pen,
     Shape,
+    ShapeGroup,
     Text,
     bore_outline,
     circle,
@@ -102,7 +102,7 @@ class Track:
 
 
 @dataclass(frozen=True, eq=False)
-class Part:
+class DrawnCam:
     """A cam to draw; lengths in mm, angles in rad.
 
     contour : array (2, n)   angle zero along x
@@ -166,14 +166,14 @@ def scale_words(scale: float) -> str:
     return f"{scale:.6g}:1" if scale >= 1.0 else f"1:{1.0 / scale:.6g}"
 
 
-def views(part: Part) -> Drawing:
+def views(part: DrawnCam) -> Drawing:
     """Front view at the top left, section beside it, detail of the bore below."""
     middle = (0.5 * _FRONT, HEIGHT - 0.5 * _FRONT - 12.0)
     groups = (
-        Group("front", tuple(_front(part, *middle))),
-        Group("section", tuple(_section(part, _FRONT + 8.0, middle[1]))),
-        Group("detail", tuple(_detail(part, 62.0, 36.0))),
-        Group("track", tuple(_track(part, 186.0, 46.0))),
+        ShapeGroup("front", tuple(_front(part, *middle))),
+        ShapeGroup("section", tuple(_section(part, _FRONT + 8.0, middle[1]))),
+        ShapeGroup("detail", tuple(_detail(part, 62.0, 36.0))),
+        ShapeGroup("track", tuple(_track(part, 186.0, 46.0))),
     )
     words = (
         "Cam in front view, section and details of its bore and of the section of its surface; "
@@ -182,8 +182,8 @@ def views(part: Part) -> Drawing:
     return Drawing("Cam", words, groups, (0.0, 0.0, WIDTH, HEIGHT))
 
 
-def _thin(*lines: Array, dash: str = "solid") -> Outline:
-    return Outline(lines, Pen("ink", _THIN, dash=dash), closed=False)
+def _thin(*lines: Array, dash: str = "solid") -> DrawnOutline:
+    return DrawnOutline(lines, Pen("ink", _THIN, dash=dash), closed=False)
 
 
 def _arrow(tail: tuple[float, float], tip: tuple[float, float]) -> Iterator[Shape]:
@@ -200,15 +200,15 @@ def _from_polar(radius: float, degrees: float, x: float, y: float) -> tuple[floa
     return float(x + radius * np.cos(turn)), float(y + radius * np.sin(turn))
 
 
-def _front(part: Part, x: float, y: float) -> Iterator[Shape]:
+def _front(part: DrawnCam, x: float, y: float) -> Iterator[Shape]:
     scale, centre = part.scale, np.array([[x], [y]])
     edge = Pen("ink", _EDGE)
     contour = scale * part.contour + centre
-    yield Outline((contour,), edge)
-    yield Outline((scale * part.hole + centre,), edge)
+    yield DrawnOutline((contour,), edge)
+    yield DrawnOutline((scale * part.hole + centre,), edge)
     if part.counter_hole is not None:
         hole_x, hole_y, radius = (scale * each for each in part.counter_hole)
-        yield Outline((circle(radius, (x + hole_x, y + hole_y)),), edge)
+        yield DrawnOutline((circle(radius, (x + hole_x, y + hole_y)),), edge)
     radii = scale * np.array([radius_at(part.contour, np.radians(k)) for k in range(0, 360, 5)])
     for degrees in range(0, 360, _EVERY):
         out = float(radii[degrees // 5])
@@ -223,14 +223,16 @@ def _front(part: Part, x: float, y: float) -> Iterator[Shape]:
     yield _thin(segment((x - float(radii[180 // 5]), y), (x, y)), dash="dashdot")
     for sign, end in ((1.0, high), (-1.0, -low)):  # the plane of the section
         mark = y + end + sign * 9.0
-        yield Outline((segment((x, mark), (x, mark + sign * 4.0)),), Pen("ink", 0.7), closed=False)
+        yield DrawnOutline(
+            (segment((x, mark), (x, mark + sign * 4.0)),), Pen("ink", 0.7), closed=False
+        )
         yield Text("C", (x - 4.0, mark + 2.0 * sign - 1.2), _TEXT, align="middle", bold=True)
     yield from _turning(part, x, y, scale)
     yield from _tolerance_frame(part, contour, x, y)
     yield from _roughness(part, contour, x, y)
 
 
-def _turning(part: Part, x: float, y: float, scale: float) -> Iterator[Shape]:
+def _turning(part: DrawnCam, x: float, y: float, scale: float) -> Iterator[Shape]:
     """Arrow in the direction of turning, clockwise, between bore and contour."""
     held = part.bore_radius + (0.0 if part.keyway is None else part.keyway[1])
     least = float(np.hypot(*part.contour).min())
@@ -241,7 +243,7 @@ def _turning(part: Part, x: float, y: float, scale: float) -> Iterator[Shape]:
     yield from _arrow(*ends)
 
 
-def _tolerance_frame(part: Part, contour: Array, x: float, y: float) -> Iterator[Shape]:
+def _tolerance_frame(part: DrawnCam, contour: Array, x: float, y: float) -> Iterator[Shape]:
     """Profile of a line with its datums, ISO 1101, on a leader to the contour."""
     touch = _on_contour(contour, _PROFILE_AT, x, y)
     low, left, height = HEIGHT - 11.0, 10.0, 7.0
@@ -249,7 +251,7 @@ def _tolerance_frame(part: Part, contour: Array, x: float, y: float) -> Iterator
               4.0 + GLYPH * _TEXT * len(part.datum))  # fmt: skip
     edges = left + np.concatenate([[0.0], np.cumsum(widths)])
     for start, stop in pairwise(edges.tolist()):
-        yield Outline((rectangle(start, low, stop, low + height),), Pen("ink", _THIN))
+        yield DrawnOutline((rectangle(start, low, stop, low + height),), Pen("ink", _THIN))
     around = np.linspace(0.0, np.pi, 25)
     arc = np.array([[edges[0] + 4.0], [low + 2.4]]) + 2.6 * np.stack(
         [np.cos(around), np.sin(around)]
@@ -262,7 +264,7 @@ def _tolerance_frame(part: Part, contour: Array, x: float, y: float) -> Iterator
     yield from _arrow(knee, touch)
 
 
-def _roughness(part: Part, contour: Array, x: float, y: float) -> Iterator[Shape]:
+def _roughness(part: DrawnCam, contour: Array, x: float, y: float) -> Iterator[Shape]:
     """Surface texture of the contour, ISO 21920-1: material removed."""
     touch = _on_contour(contour, _ROUGH_AT, x, y)
     left, low = x + 34.0, HEIGHT - 12.0
@@ -279,7 +281,7 @@ def _roughness(part: Part, contour: Array, x: float, y: float) -> Iterator[Shape
     yield Text(words, (foot + 5.0, low + 2.4), _TEXT)
 
 
-def _section(part: Part, left: float, y: float) -> Iterator[Shape]:
+def _section(part: DrawnCam, left: float, y: float) -> Iterator[Shape]:
     scale = part.scale
     high, low = (scale * radius_at(part.contour, turn) for turn in (0.5 * np.pi, 1.5 * np.pi))
     up, down = (scale * radius_at(part.hole, turn) for turn in (0.5 * np.pi, 1.5 * np.pi))
@@ -287,8 +289,8 @@ def _section(part: Part, left: float, y: float) -> Iterator[Shape]:
     for bottom, top in ((y + up, y + high), (y - low, y - down)):
         box = (left, bottom, right, top)
         yield _thin(*hatching(box, 2.5))
-        yield Outline((rectangle(*box),), Pen("ink", _EDGE))
-    yield Outline((rectangle(left, y - down, right, y + up),), Pen("ink", _EDGE))
+        yield DrawnOutline((rectangle(*box),), Pen("ink", _EDGE))
+    yield DrawnOutline((rectangle(left, y - down, right, y + up),), Pen("ink", _EDGE))
     yield _thin(segment((left - 3.0, y), (right + 3.0, y)), dash="dashdot")
     yield from _dimension(
         (left, right), y + high, y + high + 9.0, f"{part.thickness:.6g}", above=True
@@ -299,12 +301,12 @@ def _section(part: Part, left: float, y: float) -> Iterator[Shape]:
     yield Text("C–C", (0.5 * (left + right), y - low - 8.0), _TEXT, align="middle", bold=True)
 
 
-def _detail(part: Part, x: float, y: float) -> Iterator[Shape]:
+def _detail(part: DrawnCam, x: float, y: float) -> Iterator[Shape]:
     """Bore with its keyway turned upwards, at its own scale."""
     scale, radius = part.detail_scale, part.detail_scale * part.bore_radius
     upright = None if part.keyway is None else (*part.keyway[:2], 0.5 * np.pi)
     hole = scale * bore_outline(part.bore_radius, upright)
-    yield Outline((hole + np.array([[x], [y]]),), Pen("ink", _EDGE))
+    yield DrawnOutline((hole + np.array([[x], [y]]),), Pen("ink", _EDGE))
     top = y + float(hole[1].max())
     yield _thin(segment((x - radius - 3.0, y), (x + radius + 3.0, y)),
                 segment((x, y - radius - 3.0), (x, top + 3.0)), dash="dashdot")  # fmt: skip
@@ -338,7 +340,7 @@ def crown_words(kind: str) -> str:
     return _CROWNS.get(kind, kind)
 
 
-def _track(part: Part, x: float, y: float) -> Iterator[Shape]:
+def _track(part: DrawnCam, x: float, y: float) -> Iterator[Shape]:
     """Axial section of the surface in contact, its middle at x, y; the drop stretched."""
     track, scale = part.track, part.track_scale
     line = scale * track.line() + np.array([[x], [y]])
@@ -349,7 +351,7 @@ def _track(part: Part, x: float, y: float) -> Iterator[Shape]:
     yield _thin(*hatching((left, low + 1.0, right, bottom), 2.5))
     body = np.hstack([line[:, :1], line, line[:, -1:]])
     body[1, [0, -1]] = tear[1, [-1, 0]]
-    yield Outline((body,), Pen("ink", _EDGE), closed=False)
+    yield DrawnOutline((body,), Pen("ink", _EDGE), closed=False)
     yield _thin(tear)
     yield _thin(segment((x, low - 2.0), (x, y + 3.0)), dash="dashdot")
     half = 0.5 * scale * track.flat
@@ -392,7 +394,9 @@ def _dimension(
     else:
         yield Text(words, (high + 7.5, line + 1.2), _TEXT)
     if flag:
-        yield Outline((rectangle(stop, line - 3.0, stop + 6.0, line + 3.0),), Pen("ink", _THIN))
+        yield DrawnOutline(
+            (rectangle(stop, line - 3.0, stop + 6.0, line + 3.0),), Pen("ink", _THIN)
+        )
         yield Text(flag, (stop + 3.0, line - 1.3), _TEXT, align="middle", bold=True)
 
 

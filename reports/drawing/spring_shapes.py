@@ -10,10 +10,10 @@ import numpy as np
 
 from camwright.geometry.arrays import Array
 from camwright.reports.drawing.drawing_shapes import (
-    Group,
-    Outline,
+    DrawnOutline,
     Pen,
     Pose,
+    ShapeGroup,
     circle,
     rectangle,
     segment,
@@ -48,13 +48,15 @@ class Coil:
         """Height of the fixed seat, mm."""
         return self.seat + self.length
 
-    def groups(self, axis: float, lift: float) -> tuple[tuple[Group, ...], tuple[Group, ...]]:
+    def groups(
+        self, axis: float, lift: float
+    ) -> tuple[tuple[ShapeGroup, ...], tuple[ShapeGroup, ...]]:
         """Groups behind and before the stem at a lift."""
         pose = self.pose(axis, lift)
         behind, before = self._strands()
         return (
-            (Group("spring-behind", self._drawn(behind, "muted"), pose),),
-            (Group("spring-before", self._drawn(before, "steel"), pose),),
+            (ShapeGroup("spring-behind", self._drawn(behind, "muted"), pose),),
+            (ShapeGroup("spring-before", self._drawn(before, "steel"), pose),),
         )
 
     def pose(self, axis: float, lift: float) -> Pose:
@@ -73,18 +75,18 @@ class Coil:
         ]
         return strands[1::2], strands[::2]
 
-    def _drawn(self, strands: list[Array], fill: str) -> tuple[Outline, ...]:
+    def _drawn(self, strands: list[Array], fill: str) -> tuple[DrawnOutline, ...]:
         """Strands of wire with an edge."""
         widths = (("ink", self.wire), (fill, (1.0 - 2.0 * _WIRE_EDGE) * self.wire))
         return tuple(
-            Outline((strand,), Pen(stroke, width), closed=False)
+            DrawnOutline((strand,), Pen(stroke, width), closed=False)
             for strand in strands
             for stroke, width in widths
         )
 
 
 @dataclass(frozen=True)
-class Gas:
+class DrawnGasSpring:
     """Gas spring: rod on a seat that moves with the follower, cylinder held above it; mm."""
 
     bore: float
@@ -93,7 +95,7 @@ class Gas:
     body: float
 
     @classmethod
-    def of(cls, area: float, volume: float, seat: float, stroke: float) -> Gas:
+    def of(cls, area: float, volume: float, seat: float, stroke: float) -> DrawnGasSpring:
         """From the area of the piston, mm2, and the volume of the gas, mm3."""
         bore = 2.0 * sqrt(area / pi)
         inside = min(max(volume / area, 1.2 * stroke), 4.0 * stroke)
@@ -109,7 +111,9 @@ class Gas:
         """Height of the fixed end, mm."""
         return self.seat + 1.25 * self.stroke + self.body
 
-    def groups(self, axis: float, lift: float) -> tuple[tuple[Group, ...], tuple[Group, ...]]:
+    def groups(
+        self, axis: float, lift: float
+    ) -> tuple[tuple[ShapeGroup, ...], tuple[ShapeGroup, ...]]:
         """Groups behind and before the stem at a lift."""
         wall = _WALL_SHARE * self.bore
         low, rod = self.top - self.body, 0.5 * _ROD_SHARE * self.bore
@@ -118,16 +122,18 @@ class Gas:
         outside = rectangle(-half - wall, low, half + wall, self.top)
         inside = rectangle(-half, low + wall, half, self.top - wall)
         body = (
-            Outline((outside,), Pen("ink", _EDGE, "steel")),
-            Outline((inside,), Pen("ink", _EDGE, "card")),
+            DrawnOutline((outside,), Pen("ink", _EDGE, "steel")),
+            DrawnOutline((inside,), Pen("ink", _EDGE, "card")),
         )
         moving = (
-            Outline((rectangle(-rod, 0.0, rod, piston),), Pen("ink", _EDGE, "steel")),
-            Outline((rectangle(-half, piston, half, piston + wall),), Pen("ink", _EDGE, "muted")),
+            DrawnOutline((rectangle(-rod, 0.0, rod, piston),), Pen("ink", _EDGE, "steel")),
+            DrawnOutline(
+                (rectangle(-half, piston, half, piston + wall),), Pen("ink", _EDGE, "muted")
+            ),
         )
         return (), (
-            Group("gas-body", body, Pose(shift=(axis, 0.0))),
-            Group("follower-rod", moving, Pose(shift=(axis, self.seat + lift))),
+            ShapeGroup("gas-body", body, Pose(shift=(axis, 0.0))),
+            ShapeGroup("follower-rod", moving, Pose(shift=(axis, self.seat + lift))),
         )
 
 
@@ -165,23 +171,25 @@ class Torsion:
         raised = asin(min(max(sin(self.arm_angle) + lift / self.arm, -1.0), 1.0))
         return Pose(-raised, self._pivot(axis))
 
-    def groups(self, axis: float, lift: float) -> tuple[tuple[Group, ...], tuple[Group, ...]]:
+    def groups(
+        self, axis: float, lift: float
+    ) -> tuple[tuple[ShapeGroup, ...], tuple[ShapeGroup, ...]]:
         """Groups behind and before the stem at a lift."""
         half = 0.5 * self.diameter
-        coil = Outline((circle(half + 0.5 * self.wire), circle(half - 0.5 * self.wire)),
+        coil = DrawnOutline((circle(half + 0.5 * self.wire), circle(half - 0.5 * self.wire)),
                        Pen("ink", _EDGE, "steel"))  # fmt: skip
         strand = segment((0.0, half), (-self.arm, 0.0))
         arm = tuple(
-            Outline((strand,), Pen(stroke, width), closed=False)
+            DrawnOutline((strand,), Pen(stroke, width), closed=False)
             for stroke, width in (
                 ("ink", self.wire),
                 ("steel", (1.0 - 2.0 * _WIRE_EDGE) * self.wire),
             )
         )
         return (), (
-            Group("coil", (coil,), Pose(shift=self._pivot(axis))),
-            Group("spring-arm", arm, self.pose(axis, lift)),
+            ShapeGroup("coil", (coil,), Pose(shift=self._pivot(axis))),
+            ShapeGroup("spring-arm", arm, self.pose(axis, lift)),
         )
 
 
-Spring = Coil | Gas | Torsion
+Spring = Coil | DrawnGasSpring | Torsion

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from camwright.reports.page import environment
 from camwright.reports.papers.paper_chart import Chart
-from camwright.reports.report_tables import Record, Table, number
+from camwright.reports.report_tables import Record, ReportTable, number
 
 LEAD = (
     "Each cam is that of a preview: contact by Hertz theory, every limit but those of the finite "
@@ -24,13 +24,13 @@ ROWS = {
 
 
 @dataclass(frozen=True, eq=False)
-class Entry:
+class GalleryEntry:
     """One machine: figure, words under it, table of its key values."""
 
     chart: Chart
     case: str
     words: str
-    table: Table
+    table: ReportTable
 
 
 def page(document: Record) -> str:
@@ -42,16 +42,16 @@ def page(document: Record) -> str:
     return text
 
 
-def _entry(machine: Record) -> Entry:
+def _entry(machine: Record) -> GalleryEntry:
     lobes = machine["cycles_per_cam_turn"]
     words = SCREENS[str(machine["screen"])]
     if machine["governing"]:
         words += f"; nearest to its limit: {machine['governing']}"
     turns = "one cycle" if lobes == 1 else f"{lobes} cycles"
     rows = [[*ROWS[name], number(float(value))] for name, value in machine["values"].items()]
-    return Entry(
+    return GalleryEntry(
         Chart(machine["figure"]),
         machine["case"],
         f"{turns} of the machine in a cam turn; {words}.",
-        Table(f"Values of {machine['name']}", ("quantity", "unit", "value"), rows, 2),
+        ReportTable(f"Values of {machine['name']}", ("quantity", "unit", "value"), rows, 2),
     )

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from camwright.reports.page import environment
 from camwright.reports.papers.paper_chart import Chart
-from camwright.reports.report_tables import DASH, Cell, Record, Table, number, words
+from camwright.reports.report_tables import DASH, Cell, Record, ReportTable, number, words
 
 UNITS = {unit: unit for unit in ("mm", "deg", "MPa", "N", "J")} | {"Nm": "N m"}
 NO_BREAK = "\N{NON-BREAKING HYPHEN}"
@@ -22,11 +22,11 @@ INTRODUCTION = (
 
 
 @dataclass(frozen=True, eq=False)
-class Entry:
+class PaperEntry:
     """A figure with its values beside the published ones, and a table of further ones."""
 
     chart: Chart
-    tables: tuple[Table, ...]
+    tables: tuple[ReportTable, ...]
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,7 +35,7 @@ class Paper:
 
     key: str
     citation: str
-    entries: tuple[Entry, ...]
+    entries: tuple[PaperEntry, ...]
 
 
 def page(document: Record) -> str:
@@ -52,22 +52,24 @@ def page(document: Record) -> str:
     return text
 
 
-def _entry(record: Record) -> Entry:
+def _entry(record: Record) -> PaperEntry:
     rows = [_row(value) for value in record["values"]]
-    tables = [Table(f"Values of {record['name']}", HEAD, rows, 2, 3, wide=True)] if rows else []
+    tables = (
+        [ReportTable(f"Values of {record['name']}", HEAD, rows, 2, 3, wide=True)] if rows else []
+    )
     if record["table"]:
         tables.append(_columns(f"Table of {record['name']}", record["table"]))
-    return Entry(Chart(record), tuple(tables))
+    return PaperEntry(Chart(record), tuple(tables))
 
 
-def _columns(label: str, rows: Sequence[Record]) -> Table:
+def _columns(label: str, rows: Sequence[Record]) -> ReportTable:
     """Rows of a table as columns, the first value of each as its heading."""
     first, *names = rows[0]
     cells: list[list[Cell]] = [
         [_quantity(name), *(DASH if row[name] is None else _text(row[name]) for row in rows)]
         for name in names
     ]
-    return Table(label, [first, *(str(row[first]) for row in rows)], cells, wide=True)
+    return ReportTable(label, [first, *(str(row[first]) for row in rows)], cells, wide=True)
 
 
 def _quantity(name: str) -> str:

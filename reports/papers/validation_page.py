@@ -9,8 +9,8 @@ from camwright.reports.figure_svg import png, shipped, style
 from camwright.reports.page import study_page
 from camwright.reports.papers.paper_chart import Chart, drawn
 from camwright.reports.picture_list import Picture
-from camwright.reports.report_content import Block, Pictures, Section, Tabular
-from camwright.reports.report_tables import DASH, Cell, Record, Status, Table, words
+from camwright.reports.report_content import Pictures, ReportSection, SectionBlock, Tabular
+from camwright.reports.report_tables import DASH, Cell, Record, ReportTable, Status, words
 
 HEAD = (
     "row", "quantity", "published", "obtained", "unit", "verdict", "reason", "tolerance", "basis",
@@ -37,33 +37,33 @@ def page(document: Record) -> str:
     return study_page("Reproduction of published studies", sections, INTRODUCTION)
 
 
-def _summary(document: Record) -> Section:
+def _summary(document: Record) -> ReportSection:
     rows = [
         [basis, *(str(numbers[name]) for name in COUNTS_HEAD[1:4]), BASES[basis]]
         for basis, numbers in document["counts"].items()
     ]
-    table = Table("Published values by basis and verdict", COUNTS_HEAD, rows, 1, 3)
-    return Section("summary", "Summary", [Block(Tabular(table))], "")
+    table = ReportTable("Published values by basis and verdict", COUNTS_HEAD, rows, 1, 3)
+    return ReportSection("summary", "Summary", [SectionBlock(Tabular(table))], "")
 
 
-def _paper(document: Record, key: str) -> Section:
+def _paper(document: Record, key: str) -> ReportSection:
     paper = document["papers"][key]
     doi = f", doi {paper['doi']}" if paper.get("doi") else ""
     rows = [row for row in document["rows"] if row["paper"] == key]
     blocks = []
     for group in dict.fromkeys(row["group"] for row in rows):
         cells = [_row(row) for row in rows if row["group"] == group]
-        table = Table(f"Figures of {key}: {group}", HEAD, cells, 2, 2)
-        blocks.append(Block(Tabular(table), f"{key}: {group}"))
+        table = ReportTable(f"Figures of {key}: {group}", HEAD, cells, 2, 2)
+        blocks.append(SectionBlock(Tabular(table), f"{key}: {group}"))
         pictures = [
             _picture(figure)
             for figure in document["figures"]
             if (figure["paper"], figure["title"]) == (key, group)
         ]
-        blocks.append(Block(Pictures(pictures)))
+        blocks.append(SectionBlock(Pictures(pictures)))
     for name, study in document["studies"].get(key, {}).items():
-        blocks.append(Block(Tabular(_study(name, study)), f"Study: {name}"))
-    return Section(key, key, blocks, f"{paper['citation']}{doi}")
+        blocks.append(SectionBlock(Tabular(_study(name, study)), f"Study: {name}"))
+    return ReportSection(key, key, blocks, f"{paper['citation']}{doi}")
 
 
 @shipped()
@@ -85,11 +85,11 @@ def _row(row: Record) -> list[Cell]:
     ]  # fmt: skip
 
 
-def _study(name: str, rows: Sequence[Record]) -> Table:
+def _study(name: str, rows: Sequence[Record]) -> ReportTable:
     first = list(rows[0].values())
     text = next((k for k, value in enumerate(first) if not isinstance(value, str)), len(first))
     cells = [[_text(value) for value in row.values()] for row in rows]
-    return Table(name, [words(key) for key in rows[0]], cells, text)
+    return ReportTable(name, [words(key) for key in rows[0]], cells, text)
 
 
 def _text(value: Json) -> str:

@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from camwright.reports.report_content import Block, Pairs, Section, Tabular
+from camwright.reports.report_content import Pairs, ReportSection, SectionBlock, Tabular
 from camwright.reports.report_tables import (
     DASH,
     HEADLINES,
     Record,
-    Table,
+    ReportTable,
     Tile,
     number,
     plain,
@@ -28,7 +28,7 @@ _FAILURES = 25
 
 
 @dataclass(frozen=True)
-class Share:
+class YieldShare:
     """Yield in large type, with the sentences beside it and its interval."""
 
     name: str
@@ -55,7 +55,7 @@ class FailureRow:
 
 
 @dataclass(frozen=True)
-class Swing:
+class TornadoBar:
     """Bar of a tornado; positions as shares of its width."""
 
     factor: str
@@ -95,7 +95,7 @@ class Effect:
     title: str
     span: str
     mean: float
-    tornado: Sequence[Swing]
+    tornado: Sequence[TornadoBar]
     indices_title: str
     indices: Sequence[IndexRow]
 
@@ -129,7 +129,7 @@ class Page:
     title: str
     kicker: str
     facts: Sequence[tuple[str, str]]
-    share: Share
+    share: YieldShare
     tiles: Sequence[Tile]
     states: Sequence[str]
     failures: Sequence[FailureRow]
@@ -140,7 +140,7 @@ class Page:
     front_lead: str
     front: DesignTable | None
     worst: DesignTable | None
-    sections: Sequence[Section]
+    sections: Sequence[ReportSection]
 
 
 def titled(name: str, unit: str = "") -> tuple[str, str]:
@@ -182,7 +182,7 @@ def page_of(
     )  # fmt: skip
 
 
-def _share(answers: Record) -> Share:
+def _share(answers: Record) -> YieldShare:
     share, by = answers["yield"], answers["designs"]["by"]
     value, interval = share["value"], share["interval"]
     passing = (
@@ -191,7 +191,7 @@ def _share(answers: Record) -> Share:
     )  # fmt: skip
     name = "Yield" if interval else "Share of the designs"
     if value is None:
-        return Share(name, DASH, "No design has a result.", (), None, None)
+        return YieldShare(name, DASH, "No design has a result.", (), None, None)
     sentence = f"{_counted(share['passed'])} of {_counted(share['count'])} designs {passing}."
     lines = []
     if interval:
@@ -215,7 +215,7 @@ def _share(answers: Record) -> Share:
             f"{_counted(share['dependent'])} designs of the Sobol indices depend on others of the "
             "sample and are left out."
         )
-    return Share(name, _percent(value), sentence, lines, value, interval)
+    return YieldShare(name, _percent(value), sentence, lines, value, interval)
 
 
 def _whole(share: Record) -> int:
@@ -314,7 +314,7 @@ def _effect(output: Record) -> Effect | None:
             level if isinstance(level, str) else number(level[end], 3)
             for level, end in ((levels[0], 0), (levels[-1], 1))
         )
-        tornado.append(Swing(
+        tornado.append(TornadoBar(
             row["factor"], span, place(ends[0]), place(ends[1]), place(first), place(last),
             number(row["swing"], 3),
             f"{row['factor']}: mean from {number(ends[0], 3)} to {quantity(ends[1], unit, 3)}",
@@ -387,7 +387,7 @@ def _worst(answers: Record, links: Mapping[int, str]) -> DesignTable | None:
     return DesignTable("Worst design", head, [row])
 
 
-def _sections(answers: Record) -> list[Section]:
+def _sections(answers: Record) -> list[ReportSection]:
     blocks = []
     spread = [
         [titled(o["name"], o["unit"])[0], titled(o["name"], o["unit"])[1] or DASH,
@@ -398,22 +398,25 @@ def _sections(answers: Record) -> list[Section]:
     ]  # fmt: skip
     head = ("Output", "Unit", "Least", "at design", "Median", "Mean", "Standard deviation",
             "Greatest", "at design", "Designs")  # fmt: skip
-    extremes = Section("extremes", "Extremes of the outputs",
-                       [Block(Tabular(Table("Extremes", head, spread, 2)))])  # fmt: skip
+    extremes = ReportSection(
+        "extremes",
+        "Extremes of the outputs",
+        [SectionBlock(Tabular(ReportTable("Extremes", head, spread, 2)))],
+    )
     factors = [
         (f["key"], ", ".join(f["values"]) if "values" in f
          else f"{number(f['least'])} to {quantity(f['greatest'], f['unit'])}")
         for f in answers["factors"]
     ]  # fmt: skip
-    blocks.append(Block(Pairs("Factors", factors), "Factors"))
+    blocks.append(SectionBlock(Pairs("Factors", factors), "Factors"))
     counts = answers["designs"]
     if counts["messages"]:
         rows = [[shortened(m["message"], 300), _counted(m["count"]), number(m["design"])]
                 for m in counts["messages"]]  # fmt: skip
         left = counts["messages_left_out"]
         lead = f"{left} further messages are in the dataset." if left else ""
-        blocks.append(Block(
-            Tabular(Table("Messages", ("Message", "Designs", "First"), rows)),
+        blocks.append(SectionBlock(
+            Tabular(ReportTable("Messages", ("Message", "Designs", "First"), rows)),
             "Designs without a result", lead,
         ))  # fmt: skip
-    return [extremes, Section("inputs", "Factors and messages", blocks)]
+    return [extremes, ReportSection("inputs", "Factors and messages", blocks)]

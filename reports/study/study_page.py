@@ -32,7 +32,7 @@ _AXES, _MATRIX, _LABEL = 9, 5, 60
 
 
 @dataclass(frozen=True, eq=False)
-class Designs:
+class DesignRows:
     """Designs of a study for its page, one row each.
 
     design (n,) numbers; state (n,) 0 to 2: passes, fails, no result; columns by name of the
@@ -47,7 +47,7 @@ class Designs:
     units: Mapping[str, str]
     links: Mapping[int, str]
 
-    def thinned(self, needed: Sequence[int], most: int = MOST_ROWS) -> Designs:
+    def thinned(self, needed: Sequence[int], most: int = MOST_ROWS) -> DesignRows:
         """At most about `most` designs: evenly spaced ones, those kept and the `needed`."""
         count = self.design.size
         if count <= most:
@@ -55,14 +55,14 @@ class Designs:
         rows = np.unique(np.linspace(0, count - 1, most).astype(np.int64))
         also = np.flatnonzero(np.isin(self.design, [*needed, *self.links]))
         rows = np.union1d(rows, also)
-        return Designs(
+        return DesignRows(
             self.design[rows], self.state[rows], self.governing[rows],
             {name: values[rows] for name, values in self.columns.items()}, self.units, self.links,
         )  # fmt: skip
 
 
 def write(
-    path: Path, title: str, facts: Sequence[tuple[str, str]], answers: Record, designs: Designs
+    path: Path, title: str, facts: Sequence[tuple[str, str]], answers: Record, designs: DesignRows
 ) -> Path:
     """Write the page.
 
@@ -74,7 +74,9 @@ def write(
     return write_atomic(path, text(title, facts, answers, designs))
 
 
-def text(title: str, facts: Sequence[tuple[str, str]], answers: Record, designs: Designs) -> bytes:
+def text(
+    title: str, facts: Sequence[tuple[str, str]], answers: Record, designs: DesignRows
+) -> bytes:
     """The page in UTF-8."""
     front = [row["design"] for row in (answers["front"] or {"designs": ()})["designs"]]
     worst = [answers["worst"]["design"]] if answers["worst"] else []
@@ -88,7 +90,7 @@ def text(title: str, facts: Sequence[tuple[str, str]], answers: Record, designs:
     return text_of.encode("utf-8", "replace")
 
 
-def _data(answers: Record, designs: Designs) -> Record:
+def _data(answers: Record, designs: DesignRows) -> Record:
     """Data of the drawings: columns as base64 of little-endian numbers."""
     names = _drawn(answers, designs)
     axes, matrix = _first_choice(answers, names)
@@ -118,7 +120,7 @@ def _data(answers: Record, designs: Designs) -> Record:
     }  # fmt: skip
 
 
-def _drawn(answers: Record, designs: Designs) -> list[str]:
+def _drawn(answers: Record, designs: DesignRows) -> list[str]:
     """Columns of the drawings: factors, outputs and objectives that vary."""
     objectives = [o["column"] for o in (answers["front"] or {"objectives": ()})["objectives"]]
     outputs = [o["name"] for o in answers["outputs"] if o["name"] != PASS and o["count"]]

@@ -24,7 +24,7 @@ from camwright.pipeline.commands.terminal import EXIT_CODE, FAILED, PASSED
 from camwright.pipeline.results.run_folder import versions
 from camwright.pipeline.results.run_reader import read_verdict
 from camwright.pipeline.studies.design.candidate_search import candidates
-from camwright.pipeline.studies.design.synthesised_points import Study, drafts, solved_front
+from camwright.pipeline.studies.design.synthesised_points import PointStudy, drafts, solved_front
 from camwright.pipeline.studies.design.torque_task import task_of
 
 pytestmark = pytest.mark.slow
@@ -75,7 +75,7 @@ def passes_by_closed_forms(out: Path, name: str, options: dict[str, str]) -> boo
     table = out.with_name(f"{name}.csv")
     task = task_of(table, **{"speed": MACHINES[name].speed, **options})
     folder = out.with_name(f"{out.stem}_design").absolute()
-    study = Study(task, folder, table.name, versions()["source"])
+    study = PointStudy(task, folder, table.name, versions()["source"])
     with crew(None) as workers:
         screened = candidates(task, study.folder, study.file, SILENT)
         drafted = drafts(study, screened, workers)

@@ -23,7 +23,7 @@ from camwright.pipeline.case.case_file import parse_case
 from camwright.pipeline.results.workshop_files import dimensions_record
 from camwright.reports import documents, figure_svg
 from camwright.reports.drawing.part_view import scale_words, standard_scale
-from camwright.reports.report_data import Material, read_material
+from camwright.reports.report_data import ReportMaterial, read_material
 from camwright.reports.report_tables import input_tables
 
 LONG = "W" * 60
@@ -33,11 +33,11 @@ DOCUMENT = {
 }  # fmt: skip
 
 
-def with_document(material: Material, **more: object) -> Material:
+def with_document(material: ReportMaterial, **more: object) -> ReportMaterial:
     return dataclasses.replace(material, case={**material.case, "document": DOCUMENT, **more})
 
 
-def longest(folder: Path) -> Material:
+def longest(folder: Path) -> ReportMaterial:
     """A run whose every text is as long as it may be, with more checks and values than fit."""
     one = report_fixture.checks()
     values = [f"materials.a_long_name_{k}.endurance_pressure" for k in range(90)]
@@ -132,7 +132,7 @@ def test_the_table_of_safeties_is_of_the_worst_tolerance_corner(tmp_path: Path) 
     assert (row.actual, row.safety) == ("50\N{NO-BREAK SPACE}deg", "0.6")
 
 
-def drawing(folder: Path, scale: float, *, keyed: bool) -> Material:
+def drawing(folder: Path, scale: float, *, keyed: bool) -> ReportMaterial:
     """A run of the fixture with the dimensions of a small machine's cam, changed by a factor."""
     keyway = '\n[cam.keyway]\nwidth = "6 mm"\ndepth = "2.8 mm"\nangle = "35 deg"\n\n[roller]\n'
     text = small_machine("part")

@@ -19,7 +19,7 @@ import report_fixture
 from camwright.pipeline.results.model_limits import MODEL_LIMITS
 from camwright.reports import documents, figure_svg, pdf, report_content
 from camwright.reports.figure_svg import drawn_groups
-from camwright.reports.report_data import Material, read_material
+from camwright.reports.report_data import ReportMaterial, read_material
 
 HOSTILE = "<script>window.broken=1</script>\"'&../\u202eעברית\U0001f600 </script><!--"
 TYPST = (
@@ -30,7 +30,7 @@ A4 = (595.0, 842.0)  # points
 
 
 @pytest.fixture(scope="module")
-def material(tmp_path_factory: pytest.TempPathFactory) -> Material:
+def material(tmp_path_factory: pytest.TempPathFactory) -> ReportMaterial:
     folder = tmp_path_factory.mktemp("paper") / "run"
     report_fixture.write_run(folder, positions=36, title=HOSTILE, field=False)
     return read_material(folder)
@@ -53,7 +53,7 @@ def undrawn(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.fixture(scope="module")
-def printed(material: Material) -> pypdf.PdfReader:
+def printed(material: ReportMaterial) -> pypdf.PdfReader:
     return pypdf.PdfReader(io.BytesIO(documents.write_report(material)[0].read_bytes()))
 
 
@@ -81,7 +81,7 @@ def test_every_page_is_a4_and_numbered(printed: pypdf.PdfReader, words: list[str
         assert "Camwright·gx120" in said
 
 
-def test_no_plot_is_cut(material: Material, words: list[str]) -> None:
+def test_no_plot_is_cut(material: ReportMaterial, words: list[str]) -> None:
     """Its title above it and its caption below it stand on one page, and so does the plot."""
     figures = [one.figure for _, group in drawn_groups(material) for one in group]
     assert len(figures) >= 12
@@ -94,7 +94,7 @@ def test_plots_are_drawn_as_lines_with_text(words: list[str]) -> None:
     assert sum(said.count("crankangle,deg") for said in words) >= 12
 
 
-def test_pdf_says_what_the_page_says(material: Material, words: list[str]) -> None:
+def test_pdf_says_what_the_page_says(material: ReportMaterial, words: list[str]) -> None:
     """Across the ends of pages, too, where head and foot of the page interrupt a paragraph."""
     alike = takewhile(lambda marks: len(set(marks)) == 1, zip(*words[1:], strict=False))
     head = "".join(marks[0] for marks in alike)
@@ -132,7 +132,7 @@ def test_every_font_is_in_the_file(printed: pypdf.PdfReader) -> None:
 
 
 def test_it_is_an_archive_file_with_tags_and_nothing_that_runs(
-    material: Material, printed: pypdf.PdfReader
+    material: ReportMaterial, printed: pypdf.PdfReader
 ) -> None:
     raw = (material.folder / documents.PDF).read_bytes()
     assert b"<pdfaid:part>2</pdfaid:part>" in raw and b"<pdfuaid:part>1</pdfuaid:part>" in raw
@@ -155,7 +155,7 @@ def tags(printed: pypdf.PdfReader) -> list[pypdf.generic.DictionaryObject]:
     return nodes
 
 
-def test_the_first_page_is_the_sheet_to_sign(material: Material, words: list[str]) -> None:
+def test_the_first_page_is_the_sheet_to_sign(material: ReportMaterial, words: list[str]) -> None:
     sheet = pypdf.PdfReader(io.BytesIO(documents.write_signoff(material)[0].read_bytes()))
     alone = squeezed(sheet.pages[0].extract_text()).replace("page1of1", "")
     assert alone == words[0].replace(f"page1of{len(words)}", "")
@@ -163,7 +163,7 @@ def test_the_first_page_is_the_sheet_to_sign(material: Material, words: list[str
     assert sum(said.count("Signature") for said in words[1:]) == 0  # signed in one place
 
 
-def test_no_text_lies_on_text_and_no_page_is_half_empty(material: Material) -> None:
+def test_no_text_lies_on_text_and_no_page_is_half_empty(material: ReportMaterial) -> None:
     pages = printed_text.pages(documents.write_report(material)[0])
     assert len(pages) <= 20
     assert [printed_text.covered(page) for page in pages] == [[]] * len(pages)
@@ -227,7 +227,9 @@ def read(folder: Path) -> pypdf.PdfReader:
     )
 
 
-def test_the_same_run_gives_the_same_bytes(material: Material, printed: pypdf.PdfReader) -> None:
+def test_the_same_run_gives_the_same_bytes(
+    material: ReportMaterial, printed: pypdf.PdfReader
+) -> None:
     first = (material.folder / documents.PDF).read_bytes()
     drawn_groups.cache_clear()
     assert documents.write_report(read_material(material.folder))[0].read_bytes() == first

@@ -221,7 +221,7 @@ def test_files_a_case_includes_go_with_its_points(tmp_path):
     path = tmp_path / "own.toml"
     path.write_text(to_toml(case, {"torque.csv": "torque.csv"}), encoding="utf-8")
     parts, out = catalogue_of(None), tmp_path / "out"
-    asked = redesign_study.Search(read_case(path), tmp_path, parts, out, "v")
+    asked = redesign_study.RedesignTask(read_case(path), tmp_path, parts, out, "v")
     redesign_study._prepare(asked)
     text = asked.text(Choice(ROLLER, "60 x 42", "bronze"))
     point = parse_case(text, out)

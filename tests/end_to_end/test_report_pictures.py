@@ -18,7 +18,7 @@ import report_fixture
 from browser_fixture import chromium
 
 from camwright.geometry.errors import ResultError
-from camwright.pipeline.results.field_file import Block, field_file
+from camwright.pipeline.results.field_file import MeshBlock, field_file
 from camwright.reports import field_picture, picture_list, sections
 
 
@@ -134,7 +134,7 @@ def test_a_file_without_field_is_refused(tmp_path):
     (tmp_path / "text.vtkhdf").write_text("no HDF5")
     with pytest.raises(ResultError, match=r"text.vtkhdf: not a field file"):
         field_picture.read_field(tmp_path / "text.vtkhdf")
-    blocks = {"cam": Block(np.array([[0], [1], [2]]), 3, np.zeros((2, 3)))}
+    blocks = {"cam": MeshBlock(np.array([[0], [1], [2]]), 3, np.zeros((2, 3)))}
     with field_file(tmp_path / "bare.vtkhdf", [0.0], blocks, {}, {}):
         pass
     with pytest.raises(ResultError, match=r"bare.vtkhdf: no stress field .*p0_hertz_MPa"):

@@ -10,7 +10,7 @@ from small_machine import small_machine
 from camwright.geometry.arrays import uniform_turn
 from camwright.geometry.errors import InputError
 from camwright.geometry.lift import Lift
-from camwright.geometry.motion_laws import Motion, Segment
+from camwright.geometry.motion_laws import Segment, SegmentMotion
 from camwright.geometry.pitch_curve import PitchCurve
 from camwright.pipeline.base.external_force import STANDARD_GRAVITY, ExternalForce
 from camwright.pipeline.base.units import in_unit
@@ -43,7 +43,7 @@ STROKES = "\n".join(f"{angle},{300.0 if 100 <= angle < 160 else 0.0}" for angle 
 
 @cache
 def pitch():
-    motion = Motion((
+    motion = SegmentMotion((
         Segment("cycloidal", np.radians(120.0), 0.01), Segment("dwell", np.radians(40.0)),
         Segment("polynomial_345", np.radians(140.0), -0.01), Segment("dwell", np.radians(60.0)),
     ))  # fmt: skip

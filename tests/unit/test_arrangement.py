@@ -19,7 +19,7 @@ from camwright.reports.arrangement_data import arrangement_at, mechanism_of, mot
 from camwright.reports.drawing import arrangement
 from camwright.reports.drawing.drawing_shapes import Arrow, Text, bore_outline, hatching
 from camwright.reports.drawing.drawing_svg import svg_of
-from camwright.reports.drawing.spring_shapes import Gas, Torsion
+from camwright.reports.drawing.spring_shapes import DrawnGasSpring, Torsion
 from camwright.reports.figure_svg import COLOURS
 from camwright.reports.report_data import read_material
 
@@ -178,7 +178,7 @@ def test_the_arm_of_a_torsion_spring_follows_its_pin():
 
 
 def test_the_piston_of_a_gas_spring_stays_in_its_cylinder():
-    spring = Gas.of(area=300.0, volume=6000.0, seat=50.0, stroke=10.0)
+    spring = DrawnGasSpring.of(area=300.0, volume=6000.0, seat=50.0, stroke=10.0)
     for lift in (0.0, 10.0):
         body, rod = spring.groups(0.0, lift)[1]
         piston = rod.pose.of(rod.shapes[1].lines[0])[1]

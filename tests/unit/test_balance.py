@@ -16,7 +16,7 @@ from camwright.geometry.errors import GeometryError
 from camwright.geometry.lift import Lift
 from camwright.geometry.pitch_curve import PitchCurve
 from camwright.meshes.body_mesh import cam_mesh
-from camwright.meshes.element_size import Sizing
+from camwright.meshes.element_size import ElementSize
 from camwright.meshes.gmsh_mesher import session
 from camwright.pipeline.case.case_file import parse_case
 from camwright.pipeline.case.machine import machines
@@ -29,7 +29,7 @@ from camwright.pipeline.cycle.contact_setup import contact_pair
 from camwright.pipeline.cycle.solution import Solution
 from camwright.pipeline.follower.camshaft_loads import CounterHole, greatest_hole, unbalance
 from camwright.pipeline.results.workshop_files import outline_of, write_workshop
-from camwright.reports.sheet_turn import Turn
+from camwright.reports.sheet_turn import SheetTurn
 
 KEY = '\n[cam.keyway]\nwidth = "6 mm"\ndepth = "2.8 mm"\nangle = "50 deg"\n'
 ORDERED = "\n[cam.counter_hole]\n"
@@ -191,7 +191,7 @@ def test_the_contact_feels_the_hole():
 
 
 def test_the_mesh_leaves_the_hole_out():
-    hole, sizing = balance(case_of().cam, HEAVY).hole, Sizing(far_size=3e-3)
+    hole, sizing = balance(case_of().cam, HEAVY).hole, ElementSize(far_size=3e-3)
     holed, whole = (cam_mesh(HEAVY, 0.01, None, sizing, each) for each in (hole, None))
     assert mesh_area(whole) - mesh_area(holed) == pytest.approx(np.pi * hole.radius**2, rel=1e-4)
     assert "counter_hole" in holed.boundaries
@@ -211,5 +211,5 @@ def test_the_mesh_leaves_the_hole_out():
 def test_a_hole_that_does_not_balance_the_cam_is_not_proposed(note, drilled, drawn):
     sizes = {"hole_x_mm": 20.0, "hole_y_mm": -37.0, "hole_diameter_mm": 56.0}
     turn = SimpleNamespace(balance=sizes | {"hole_note": note, "hole_drilled": drilled})
-    hole = Turn.counter_hole.fget(turn)
+    hole = SheetTurn.counter_hole.fget(turn)
     assert hole == ((20.0, -37.0, 28.0, drilled) if drawn else None)

@@ -17,7 +17,7 @@ from camwright.geometry.errors import GeometryError, InputError, MeshError
 from camwright.geometry.lift import Lift
 from camwright.geometry.pitch_curve import PitchCurve
 from camwright.meshes.body_mesh import BodyMesh, block_mesh, cam_mesh, half_disc_mesh, roller_mesh
-from camwright.meshes.element_size import Sizing
+from camwright.meshes.element_size import ElementSize
 from camwright.meshes.gmsh_mesher import signals_kept
 from camwright.meshes.mesh_quality import quality
 
@@ -36,7 +36,7 @@ CONTOUR = cam_contour()
 
 
 def fine(contact_point=None, **changes):
-    return Sizing.from_half_width(HALF_WIDTH, 4e-3, contact_point=contact_point, **changes)
+    return ElementSize.from_half_width(HALF_WIDTH, 4e-3, contact_point=contact_point, **changes)
 
 
 def contact(theta):
@@ -170,7 +170,7 @@ def test_curved_nose_gets_smaller_facets():
     lift = Lift(THETA, 0.012 * np.exp(-(((THETA - np.pi) / 0.5) ** 2)))
     nose = RollerContour(PitchCurve(lift, 0.03), 0.008)
     kappa = float(nose.curvature(np.array([np.pi]))[0])
-    mesh = cam_mesh(nose, BORE, None, Sizing(far_size=4e-3))
+    mesh = cam_mesh(nose, BORE, None, ElementSize(far_size=4e-3))
     start = mesh.points[:, mesh.facet_triples("contour")[0]]
     tip = np.argmin(np.hypot(*(start - nose.points(np.array([np.pi])))))
     assert facet_lengths(mesh, "contour")[tip] < 1.3 * 2 * np.pi / 40 / kappa
@@ -207,17 +207,17 @@ class Limacon(Circle):
 
 def test_contour_that_does_not_go_round_the_bore_is_refused():
     with pytest.raises(GeometryError, match="minimum wall"):
-        cam_mesh(Circle(0.03, 0.05), BORE, None, Sizing(far_size=3e-3))
+        cam_mesh(Circle(0.03, 0.05), BORE, None, ElementSize(far_size=3e-3))
 
 
 def test_contour_that_crosses_itself_is_refused_with_the_place():
     """gmsh would search for ever."""
     with pytest.raises(GeometryError, match=r"crosses itself at \(-4\d\.\d+, -?\d\.\d+\) mm"):
-        cam_mesh(Limacon(0.03, 0.0), 2e-3, None, Sizing(far_size=3e-3))
+        cam_mesh(Limacon(0.03, 0.0), 2e-3, None, ElementSize(far_size=3e-3))
 
 
 def test_thin_wall_gets_two_elements_across():
-    mesh = cam_mesh(Circle(0.02, 9e-3), BORE, None, Sizing(far_size=4e-3))
+    mesh = cam_mesh(Circle(0.02, 9e-3), BORE, None, ElementSize(far_size=4e-3))
     wall = 0.02 - 9e-3 - BORE
     for name, x in (("contour", 9e-3 - 0.02), ("bore", -BORE)):
         start = mesh.points[:, mesh.facet_triples(name)[0]]
@@ -227,9 +227,9 @@ def test_thin_wall_gets_two_elements_across():
 
 
 def test_keyway_and_fillets_are_resolved():
-    sharp = cam_mesh(CONTOUR, BORE, Keyway(6e-3, 3e-3), Sizing(far_size=4e-3))
+    sharp = cam_mesh(CONTOUR, BORE, Keyway(6e-3, 3e-3), ElementSize(far_size=4e-3))
     assert facet_lengths(sharp, "keyway").max() < 1e-3 * 1.05
-    rounded = cam_mesh(CONTOUR, BORE, Keyway(6e-3, 3e-3, 0.0, 5e-4), Sizing(far_size=4e-3))
+    rounded = cam_mesh(CONTOUR, BORE, Keyway(6e-3, 3e-3, 0.0, 5e-4), ElementSize(far_size=4e-3))
     x, y = rounded.points[:, rounded.facet_triples("keyway")[0]]
     on_fillet = (x > 0.013 - 5e-4 - 1e-9) & (y > 3e-3 - 5e-4 - 1e-9)
     assert on_fillet.sum() >= 5  # four facets on the quarter circle
@@ -290,8 +290,9 @@ def test_fingerprint_covers_points_and_triangles():
 def test_another_process_gives_the_same_mesh(roller):
     script = (
         "from camwright.meshes.body_mesh import roller_mesh;"
-        "from camwright.meshes.element_size import Sizing;"
-        f"print(roller_mesh(0.008, 0.003, 0.7, Sizing.from_half_width({HALF_WIDTH}, 4e-3)).sha256)"
+        "from camwright.meshes.element_size import ElementSize;"
+        f"size = ElementSize.from_half_width({HALF_WIDTH}, 4e-3);"
+        "print(roller_mesh(0.008, 0.003, 0.7, size).sha256)"
     )
     process = subprocess.run(
         [sys.executable, "-c", script], capture_output=True, text=True, check=True, timeout=120
@@ -349,7 +350,7 @@ def test_meshing_keeps_what_each_signal_does():
         for number in caught:
             signal.signal(number, lambda number, _: received.append(number))
         there = dispositions()
-        roller_mesh(0.008, 0.003, 0.0, Sizing(far_size=2e-3))
+        roller_mesh(0.008, 0.003, 0.0, ElementSize(far_size=2e-3))
         assert dispositions() == there
         with signals_kept():
             signal.pthread_kill(threading.get_ident(), signal.SIGTERM)
@@ -363,29 +364,29 @@ def test_meshing_keeps_what_each_signal_does():
 def test_gmsh_ends_with_the_mesh():
     import gmsh
 
-    roller_mesh(0.008, 0.003, 0.0, Sizing(far_size=2e-3))
+    roller_mesh(0.008, 0.003, 0.0, ElementSize(far_size=2e-3))
     assert not gmsh.isInitialized()
 
 
 def test_bore_reaching_the_contour_names_the_wall():
     # The contour's least radius is 50 - 8 = 42 mm; the wall must be over 1 % of the bore radius.
     with pytest.raises(GeometryError, match=r"wall .* = 0\.4 mm"):
-        cam_mesh(CONTOUR, 0.0416, None, Sizing(far_size=3e-3))
+        cam_mesh(CONTOUR, 0.0416, None, ElementSize(far_size=3e-3))
     with pytest.raises(GeometryError, match=r"wall .* = -1 mm"):
-        cam_mesh(CONTOUR, 0.043, None, Sizing(far_size=3e-3))
+        cam_mesh(CONTOUR, 0.043, None, ElementSize(far_size=3e-3))
 
 
 def test_keyway_reaching_the_contour_names_the_wall():
     towards_base = Keyway(6e-3, 0.034, 0.0)
     with pytest.raises(GeometryError, match="minimum wall"):
-        cam_mesh(CONTOUR, BORE, towards_base, Sizing(far_size=3e-3))
+        cam_mesh(CONTOUR, BORE, towards_base, ElementSize(far_size=3e-3))
     away = Keyway(6e-3, 0.034, np.pi)
-    assert "keyway" in cam_mesh(CONTOUR, BORE, away, Sizing(far_size=3e-3)).boundaries
+    assert "keyway" in cam_mesh(CONTOUR, BORE, away, ElementSize(far_size=3e-3)).boundaries
 
 
 def test_widest_fillet_still_makes_a_good_mesh():
     rounded = Keyway(6e-3, 3e-3, 1.0, 0.8 * 3e-3)
-    shape = quality(cam_mesh(CONTOUR, BORE, rounded, Sizing(far_size=3e-3)))
+    shape = quality(cam_mesh(CONTOUR, BORE, rounded, ElementSize(far_size=3e-3)))
     assert shape.min_angle_deg > 20
     assert shape.min_scaled_jacobian > 0.4
 
@@ -395,7 +396,7 @@ def test_undercut_contour_is_refused_with_its_angle():
     contour = RollerContour(PitchCurve(sharp, 0.03), 0.012)
     assert contour.undercut().present
     with pytest.raises(GeometryError, match=r"undercut at cam angle 1\d\d\.\d\d deg"):
-        cam_mesh(contour, BORE, None, Sizing(far_size=3e-3))
+        cam_mesh(contour, BORE, None, ElementSize(far_size=3e-3))
 
 
 @pytest.mark.parametrize(
@@ -422,7 +423,7 @@ def test_bad_dimensions_name_their_field(build, field):
 
 def test_contact_zone_longer_than_the_rim_is_refused():
     with pytest.raises(MeshError, match="contact zone on 'rim'"):
-        roller_mesh(0.008, 0.0, 0.0, Sizing.from_half_width(0.02, 4e-3))
+        roller_mesh(0.008, 0.0, 0.0, ElementSize.from_half_width(0.02, 4e-3))
 
 
 def test_unknown_boundary_is_refused_with_the_known_ones(cam):

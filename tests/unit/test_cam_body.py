@@ -10,7 +10,7 @@ from camwright.geometry.arrays import uniform_turn
 from camwright.geometry.contour import RollerContour
 from camwright.geometry.errors import GeometryError, InputError
 from camwright.geometry.lift import Lift
-from camwright.geometry.motion_laws import Motion, Segment
+from camwright.geometry.motion_laws import Segment, SegmentMotion
 from camwright.geometry.pitch_curve import PitchCurve
 from camwright.pipeline.case.case_file import parse_case
 from camwright.pipeline.contact.cam_body import KeyFlanks, Keyway
@@ -224,7 +224,7 @@ def test_counter_hole_refuses_what_does_not_fit():
 def tripled(*, notch=None):
     """Three lobes a turn: beyond its valleys the distance to the contour grows again."""
     rise = np.pi / 9
-    lift = Motion(
+    lift = SegmentMotion(
         (Segment("harmonic", rise, 0.01), Segment("harmonic", rise, -0.01),
          Segment("dwell", 4 * np.pi / 9)), repeat=3,
     ).lift()  # fmt: skip

@@ -29,7 +29,7 @@ from camwright.geometry.arrays import uniform_turn
 from camwright.geometry.contour import RollerContour
 from camwright.geometry.errors import InputError
 from camwright.geometry.lift import Lift
-from camwright.geometry.motion_laws import Motion, Segment
+from camwright.geometry.motion_laws import Segment, SegmentMotion
 from camwright.geometry.pitch_curve import PitchCurve
 from camwright.pipeline.case.machine import CREEP
 from camwright.pipeline.case.requirements_section import Waiver
@@ -255,7 +255,7 @@ def test_pressure_angle_of_an_eccentric_disc():
 @pytest.mark.parametrize("offset", [0.0, 0.004, -0.004])
 def test_pressure_angles_of_both_strokes(offset):
     """On the other stroke s' counts as zero, which the bottom of the lift has in any case."""
-    lift = Motion(
+    lift = SegmentMotion(
         (Segment("cycloidal", 1.2, 0.01), Segment("cycloidal", 2.0 * np.pi - 1.2, -0.01))
     ).lift()
     pitch, theta = PitchCurve(lift, 0.03, offset), np.linspace(0.0, 2.0 * np.pi, 20001)

@@ -21,7 +21,7 @@ from small_run import check, small_case, summary, write_run, write_trial
 
 from camwright.geometry.errors import ContactError, ResultError
 from camwright.meshes.body_mesh import roller_mesh
-from camwright.meshes.element_size import Sizing
+from camwright.meshes.element_size import ElementSize
 from camwright.pipeline.case.case_file import read_case
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.results.run_folder import RunFolder
@@ -210,7 +210,7 @@ def test_a_signal_says_how_to_go_on(
     """After a mesh, too: gmsh would leave the process to end at once, without a word."""
 
     def stopped(case: Any, out: Path, **_: Any) -> None:
-        roller_mesh(0.008, 0.003, 0.0, Sizing(far_size=2e-3))
+        roller_mesh(0.008, 0.003, 0.0, ElementSize(far_size=2e-3))
         with RunFolder(out, case) as folder:
             folder.contact_store(1).save("idle", 0, {"p0": np.array([1.0])}, key="a")
             os.kill(os.getpid(), number)

@@ -6,7 +6,7 @@ import pytest
 from camwright.geometry.errors import InputError
 from camwright.pipeline.engine.crankshaft import Inertia, crank_motion
 from camwright.pipeline.engine.torque_consistency import (
-    Finding,
+    Implied,
     energy_finding,
     implied_inertia,
     inertia_finding,
@@ -19,7 +19,7 @@ TORQUE = 10.0 * np.sin(THETA)  # integral -10 cos: std 10/sqrt(2) J, swing 20 J
 
 
 def finding(given, implied):
-    return Finding("x", "x", given, implied, "J", "")
+    return Implied("x", "x", given, implied, "J", "")
 
 
 @pytest.mark.parametrize(

@@ -27,8 +27,8 @@ from camwright.pipeline.studies.design.design_study import _prepare, designed
 from camwright.pipeline.studies.design.machine_frame import frame_of
 from camwright.pipeline.studies.design.relaxation_search import WIDTH, relaxations
 from camwright.pipeline.studies.design.synthesised_points import (
+    PointStudy,
     Solved,
-    Study,
     draft,
     drafts,
     likeliest,
@@ -222,7 +222,7 @@ class Searched:
         monkeypatch.setattr(relaxation_search, "candidates", lambda *_: [])
         monkeypatch.setattr(relaxation_search, "passing_draft", self.draft)
 
-    def draft(self, study: Study, *_: object) -> Solved | None:
+    def draft(self, study: PointStudy, *_: object) -> Solved | None:
         self.tasks.append(study.task)
         return drafted(study.task, 0.97) if self.passes(study.task) else None
 
@@ -254,7 +254,7 @@ def test_the_first_relaxation_is_the_smallest_of_all_options(
 ) -> None:
     """Least changes stated: the first passes, fails 2 % nearer, and no option has a smaller one."""
     searched = Searched(monkeypatch, speed, life, remove)
-    study = Study(task_in(tmp_path), tmp_path, "torque.csv", "")
+    study = PointStudy(task_in(tmp_path), tmp_path, "torque.csv", "")
     near = None if nearest is None else drafted(study.task, nearest)
     first, *others = relaxations(study, near, tmp_path / "c.toml", ALONE, SILENT)
     sizes = {"--speed": np.log(300.0 / speed), "--life": np.log(2000.0 / life),
@@ -278,7 +278,7 @@ def test_without_a_relaxation_none_is_listed(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     searched = Searched(monkeypatch, 0.0, 0.0, 0.0)
-    study = Study(task_in(tmp_path), tmp_path, "torque.csv", "")
+    study = PointStudy(task_in(tmp_path), tmp_path, "torque.csv", "")
     assert relaxations(study, None, tmp_path / "c.toml", ALONE, SILENT) == []
     loosest = {"remove": 0.125, "speed": 120.0 * RPM, "overspeed": 300.0 * RPM, "life": 3.6e5}
     for name, value in loosest.items():
@@ -414,7 +414,7 @@ def test_a_pump_is_synthesised_with_free_radius_and_preload(tmp_path: Path) -> N
     offset = candidate.with_offset.design.offset
     assert offset == pytest.approx(slopes.mean(), abs=5.1e-5)
     assert 0.0 < offset < 0.2 * candidate.design.prime_radius
-    study = Study(task, tmp_path, table_of_pump.name, "")
+    study = PointStudy(task, tmp_path, table_of_pump.name, "")
     point = draft(study, candidate)
     assert point.passes
     assert point.record["prime_radius_mm"] <= 1e3 * 1.1 * point.design.prime_radius * 1.0001

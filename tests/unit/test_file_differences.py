@@ -23,7 +23,7 @@ from camwright.geometry.contour import Contour, RollerContour
 from camwright.geometry.lift import Lift
 from camwright.geometry.pitch_curve import PitchCurve
 from camwright.meshes.body_mesh import roller_mesh
-from camwright.meshes.element_size import Sizing
+from camwright.meshes.element_size import ElementSize
 from camwright.meshes.mesh_files import write_hexahedra, write_msh
 from camwright.pipeline.base import disk_cache
 from camwright.pipeline.base.files import npz_bytes
@@ -92,7 +92,7 @@ def written(folder: Path, noise: float) -> Path:
     (folder / "trial_1" / "5_pressure.npz").write_bytes(npz_bytes({"pressure_MPa": wave}))
     write_msh(
         folder / "trial_1" / "4_mesh.msh",
-        {"roller": roller_mesh(0.008 * (1.0 + noise), 0.002, 0.0, Sizing(far_size=2e-3))},
+        {"roller": roller_mesh(0.008 * (1.0 + noise), 0.002, 0.0, ElementSize(far_size=2e-3))},
     )
     t = turn(36)
     field = cycle_columns(t, shape(t))

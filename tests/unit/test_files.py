@@ -6,17 +6,17 @@ import pytest
 
 from camwright.geometry.errors import MeshError, ResultError
 from camwright.meshes.body_mesh import block_mesh, roller_mesh
-from camwright.meshes.element_size import Sizing
+from camwright.meshes.element_size import ElementSize
 from camwright.meshes.gmsh_mesher import session
 from camwright.meshes.mesh_files import write_msh, write_vtu
-from camwright.meshes.vtu import QUADRATIC_TRIANGLE, Grid, vtu
+from camwright.meshes.vtu import QUADRATIC_TRIANGLE, VtuGrid, vtu
 
 
 @pytest.fixture(scope="module")
 def bodies():
     return {
-        "cam": block_mesh(0.02, 0.01, Sizing(far_size=2e-3)),
-        "roller": roller_mesh(0.008, 0.003, 0.0, Sizing(far_size=2e-3)),
+        "cam": block_mesh(0.02, 0.01, ElementSize(far_size=2e-3)),
+        "roller": roller_mesh(0.008, 0.003, 0.0, ElementSize(far_size=2e-3)),
     }
 
 
@@ -104,7 +104,7 @@ def test_vtu_keeps_what_fills_one_block_or_many(tmp_path, values):
     points = rng.random((values, 3))
     field = np.r_[np.nan, np.inf, rng.standard_normal(values - 2)]
     cells = np.arange(values // 6 * 6).reshape(-1, 6)
-    grid = Grid(points, cells, QUADRATIC_TRIANGLE, {"x": field}, {}, {})
+    grid = VtuGrid(points, cells, QUADRATIC_TRIANGLE, {"x": field}, {}, {})
     path = tmp_path / "big.vtu"
     path.write_bytes(vtu(grid))
     for read in (meshio.read(path), pyvista.read(path)):

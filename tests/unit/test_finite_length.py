@@ -11,7 +11,7 @@ from camwright.pipeline.contact.finite_length.length_tiers import both_tiers
 from camwright.pipeline.contact.finite_length.pressure_cells import CellSizes
 from camwright.pipeline.studies import finite_length_document
 from camwright.pipeline.studies.finite_length_document import LengthOptions
-from camwright.pipeline.studies.two_cylinders_document import Options, lines, solved
+from camwright.pipeline.studies.two_cylinders_document import ContactOptions, lines, solved
 
 COARSE = CellSizes(per_half_width=4.0, at_end=40e-6, uniform=2, growth=2.0)
 FACTORS = ("centre", "greatest", "end1_mean", "end2_mean")
@@ -19,7 +19,7 @@ FACTORS = ("centre", "greatest", "end1_mean", "end2_mean")
 
 def options(line_load="200", load=None, width=None, depths=("2", "2"), **lengths):
     both = {"length_1": "2", "length_2": "2"} | lengths
-    return Options(
+    return ContactOptions(
         *("8", "20", "210 GPa", None, 0.3, None, line_load, load, width),
         depth_1=depths[0],
         depth_2=depths[1],

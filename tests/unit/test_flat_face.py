@@ -8,7 +8,7 @@ from camwright.geometry.errors import InputError
 from camwright.geometry.extrema import least
 from camwright.geometry.flat_face_contour import FacePath, FlatFaceContour
 from camwright.geometry.lift import Lift
-from camwright.geometry.motion_laws import Motion, Segment
+from camwright.geometry.motion_laws import Segment, SegmentMotion
 from camwright.geometry.pitch_curve import PitchCurve
 
 THETA = np.linspace(0, 2 * np.pi, 200)
@@ -59,7 +59,7 @@ def test_velocity_is_the_derivative_of_the_point(circle):
 
 
 def test_curvature_condition_decides_at_its_limit():
-    lift = Motion(
+    lift = SegmentMotion(
         (Segment("cycloidal", 1.0, 0.01), Segment("cycloidal", 1.0, -0.01),
          Segment("dwell", 2 * np.pi - 2.0))
     ).lift()  # fmt: skip

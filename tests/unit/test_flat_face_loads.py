@@ -7,7 +7,7 @@ from camwright.geometry.arrays import uniform_turn
 from camwright.geometry.errors import InputError
 from camwright.geometry.flat_face_contour import FacePath, FlatFaceContour
 from camwright.geometry.lift import Lift
-from camwright.geometry.motion_laws import Motion, Segment
+from camwright.geometry.motion_laws import Segment, SegmentMotion
 from camwright.pipeline.follower.flat_face_motion import FaceSliding, face_motion
 from camwright.pipeline.follower.follower_forces import (
     FollowerSystem,
@@ -101,7 +101,7 @@ def test_surfaces_pass_as_on_a_turning_circle():
 def test_friction_rests_in_a_dwell():
     """A drag of the face leans the stem there too, but nothing moves: the push is the spring's."""
     turn = 2 * np.pi
-    motion = Motion(
+    motion = SegmentMotion(
         (Segment("cycloidal", 0.2 * turn, 0.006), Segment("cycloidal", 0.2 * turn, -0.006),
          Segment("dwell", 0.6 * turn))
     )  # fmt: skip

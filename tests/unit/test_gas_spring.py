@@ -38,7 +38,7 @@ from camwright.pipeline.smoothing.sampled_problem import Search
 from camwright.pipeline.smoothing.scenario import stacked
 from camwright.pipeline.smoothing.smoothers import Smoother
 from camwright.reports import part_figures
-from camwright.reports.sheet_turn import Turn
+from camwright.reports.sheet_turn import SheetTurn
 
 GAS = GasSpring(pressure=30e5, area=113e-6, volume=6e-6, exponent=1.3)
 SPRING = Spring(kind="gas", gas=GAS, rate=GAS.rate, preload=GAS.preload)
@@ -345,7 +345,9 @@ def test_figure_of_the_force_over_the_travel():
     """Of a gas spring without a limit, of a coil spring with its force at solid length."""
     lift = 0.015 * (1.0 - np.cos(np.linspace(0.0, np.pi, 40)))
     columns = Table({"lift_mm": 1e3 * lift, "spring_force_N": SPRING.force(lift)})
-    turn = Turn(columns, (columns,), columns, columns, None, (), {"spring": {"kind": "gas"}}, {})
+    turn = SheetTurn(
+        columns, (columns,), columns, columns, None, (), {"spring": {"kind": "gas"}}, {}
+    )
     figure = part_figures._spring_force(turn)
     (panel,) = figure.panels
     exact = SPRING.force(1e-3 * figure.x)

@@ -145,6 +145,17 @@ def test_every_module_is_in_a_known_package() -> None:
         assert package(name) == name or path.name != "__init__.py", f"{name} is not in ORDER"
 
 
+def test_no_class_name_stands_twice() -> None:
+    """Two classes of one name are one thing written twice, or two that need two names."""
+    names = Counter(
+        node.name
+        for path in modules().values()
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
+        if isinstance(node, ast.ClassDef)
+    )
+    assert [name for name, count in names.items() if count > 1] == []
+
+
 def test_no_file_name_stands_twice() -> None:
     names = Counter(path.name for path in modules().values() if path.name != "__init__.py")
     assert [name for name, count in names.items() if count > 1] == []

@@ -20,7 +20,7 @@ from camwright.pipeline.cycle.cycle import solve_lengths
 from camwright.pipeline.cycle.length_history import (
     ContactLoads,
     FactorRange,
-    LineContact,
+    TurnOfLine,
     factor_range,
     held_couple,
     length_histories,
@@ -143,7 +143,7 @@ def test_a_chamfered_end_is_solved_down_to_vanishing_loads_under_the_heaviest_ti
 def test_without_an_end_nothing_is_signed():
     made = cycle()
     bare = replace(made.machine, cam=replace(made.machine.cam, end=None))
-    turn = LineContact(bare, made.contact, made.loads.normal_force, made.guides)
+    turn = TurnOfLine(bare, made.contact, made.loads.normal_force, made.guides)
     assert length_histories([turn]) == (None,)
 
 

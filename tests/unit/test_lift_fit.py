@@ -14,9 +14,11 @@ from camwright.geometry.lift_fit import (
     measured_lift,
     overshoot,
 )
-from camwright.geometry.motion_laws import Motion, Segment
+from camwright.geometry.motion_laws import Segment, SegmentMotion
 
-MOTION = Motion((Segment("polynomial_4567", np.pi, 0.01), Segment("polynomial_4567", np.pi, -0.01)))
+MOTION = SegmentMotion(
+    (Segment("polynomial_4567", np.pi, 0.01), Segment("polynomial_4567", np.pi, -0.01))
+)
 ROWS = np.arange(720) * 2 * np.pi / 720
 NOISE = 5e-6
 
@@ -86,7 +88,7 @@ def test_bad_tables_are_refused():
 def test_noise_is_estimated_from_the_differences(noise, law):
     """Within 20 %: three standard errors of the median of 360 correlated differences."""
     half = np.pi / 2
-    motion = Motion(
+    motion = SegmentMotion(
         (Segment(law, half, 0.01), Segment("dwell", half), Segment(law, half, -0.01),
          Segment("dwell", half))
     )  # fmt: skip

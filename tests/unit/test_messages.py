@@ -20,7 +20,7 @@ from camwright.geometry.errors import ContactError, InputError, MeshError
 from camwright.geometry.lift import Lift
 from camwright.geometry.pitch_curve import PitchCurve
 from camwright.meshes.body_mesh import cam_mesh
-from camwright.meshes.element_size import Sizing
+from camwright.meshes.element_size import ElementSize
 from camwright.pipeline.base.units import rounded
 from camwright.pipeline.case.case_file import case_of, parse_case, with_values
 from camwright.pipeline.case.case_values import replaced, text_of
@@ -180,7 +180,7 @@ def test_a_thin_wall_is_meshed_finely_where_it_is_thin() -> None:
 def test_a_mesh_too_large_to_solve_is_refused() -> None:
     cam = pair(1e-3, 8e-3)
     with pytest.raises(MeshError, match=r"^mesh = about 560000 triangles of 0\.15 mm, which"):
-        cam_mesh(cam.contour, cam.bore_radius, None, Sizing(far_size=0.15e-3))
+        cam_mesh(cam.contour, cam.bore_radius, None, ElementSize(far_size=0.15e-3))
 
 
 def test_an_undercut_is_called_so() -> None:

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from camwright.geometry.errors import InputError
-from camwright.geometry.motion_laws import LAWS, Motion, Segment
+from camwright.geometry.motion_laws import LAWS, Segment, SegmentMotion
 
 TURN = 2 * np.pi
 RISE, RETURN = Segment("cycloidal", TURN / 4, 0.01), Segment("cycloidal", TURN / 4, -0.01)
@@ -13,16 +13,16 @@ DWELL = Segment("dwell", TURN / 2)
 
 def test_segments_short_of_a_turn_are_refused():
     with pytest.raises(InputError, match=r"lift\.segment\.angle = 180 deg in all"):
-        Motion((RISE, RETURN))
+        SegmentMotion((RISE, RETURN))
 
 
 def test_segments_beyond_a_turn_are_refused():
     with pytest.raises(InputError, match="360 deg in all, the turn over"):
-        Motion((RISE, RETURN, DWELL, Segment("dwell", 1e-6)))
+        SegmentMotion((RISE, RETURN, DWELL, Segment("dwell", 1e-6)))
 
 
 def test_segments_fill_a_part_of_the_turn_when_repeated():
-    tripled = Motion(
+    tripled = SegmentMotion(
         (Segment("cycloidal", TURN / 6, 0.01), Segment("harmonic", TURN / 6, -0.01)), 3
     )
     assert tripled.period == pytest.approx(TURN / 3)
@@ -32,19 +32,19 @@ def test_segments_fill_a_part_of_the_turn_when_repeated():
 @pytest.mark.parametrize("repeat", [0, -1, 13])
 def test_repetition_has_bounds(repeat):
     with pytest.raises(InputError, match=r"lift\.repeat"):
-        Motion((RISE, RETURN, DWELL), repeat)
+        SegmentMotion((RISE, RETURN, DWELL), repeat)
 
 
 def test_lift_that_does_not_close_is_refused():
     with pytest.raises(InputError, match="must close"):
-        Motion((RISE, Segment("cycloidal", TURN / 4, -0.0099), DWELL))
+        SegmentMotion((RISE, Segment("cycloidal", TURN / 4, -0.0099), DWELL))
 
 
 def test_dwells_alone_are_no_motion():
     with pytest.raises(InputError, match="a rise and a return"):
-        Motion((Segment("dwell", TURN),))
+        SegmentMotion((Segment("dwell", TURN),))
     with pytest.raises(InputError, match="at least one"):
-        Motion(())
+        SegmentMotion(())
 
 
 @pytest.mark.parametrize(
@@ -67,7 +67,7 @@ def test_bad_segment_is_refused(law, angle, stroke, field):
 
 
 def test_motion_that_starts_with_a_return_still_lifts():
-    motion = Motion((RETURN, DWELL, RISE))
+    motion = SegmentMotion((RETURN, DWELL, RISE))
     assert motion(0.0) == 0.01
     assert motion(TURN / 2) == 0.0
 

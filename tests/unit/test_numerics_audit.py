@@ -17,7 +17,7 @@ from camwright.geometry.cutter_path import tool_interference
 from camwright.geometry.errors import InputError
 from camwright.geometry.lift import Lift
 from camwright.geometry.lift_fit import fitted_lift
-from camwright.geometry.motion_laws import Motion, Segment
+from camwright.geometry.motion_laws import Segment, SegmentMotion
 from camwright.geometry.pitch_curve import PitchCurve
 from camwright.pipeline.case import case_file
 from camwright.pipeline.case.given_lift import given_lift
@@ -113,7 +113,7 @@ def law(name: str, rise: float, step: float, shift: float = 0.0) -> np.ndarray:
     rest = 2.0 * np.pi - 2.0 * angle - dwell
     parts = ((name, angle, 0.01), ("dwell", dwell, 0.0), (name, angle, -0.01), ("dwell", rest, 0.0))
     theta = np.radians(np.arange(0.0, 360.0, step) + shift * step)
-    return Motion(tuple(Segment(*part) for part in parts))(theta)
+    return SegmentMotion(tuple(Segment(*part) for part in parts))(theta)
 
 
 def share(values: np.ndarray) -> float:
@@ -189,7 +189,7 @@ def test_a_smooth_table_at_5_deg_passes():
 def test_a_table_at_unequal_angles_is_judged_at_its_own_spacing():
     """The spline through a parabolic table at 4 and 6 deg in turn is smooth at 0.5 deg."""
     theta = np.radians(np.cumsum(np.tile([4.0, 6.0], 36)) - 4.0)
-    motion = Motion(
+    motion = SegmentMotion(
         (Segment("parabolic", np.pi, 0.01), Segment("parabolic", np.pi, -0.01)),
     )
     lift = Lift.from_samples(theta, motion(theta))
@@ -206,7 +206,7 @@ def test_a_lift_by_segments_is_judged_by_its_laws(rise):
     ):  # fmt: skip
         parts = ((name, angle, 0.01), ("dwell", dwell, 0.0), (name, angle, -0.01),
                  ("dwell", 2.0 * np.pi - 2.0 * angle - dwell, 0.0))  # fmt: skip
-        jump = Motion(tuple(Segment(*part) for part in parts)).lift().acceleration_jump
+        jump = SegmentMotion(tuple(Segment(*part) for part in parts)).lift().acceleration_jump
         assert low <= jump.size / jump.span <= high, name
 
 

@@ -88,7 +88,7 @@ def test_inputs_that_contradict_each_other_are_told() -> None:
     assert table.rows[0][-1].endswith("(differs)")
     assert verification_tables.consistency([record | {"flagged": False}])[1] is False
     assert verification_tables.consistency(None) == (
-        verification_tables.Table(table.label, table.head, [], 3),
+        verification_tables.ReportTable(table.label, table.head, [], 3),
         False,
     )
     bounded = verification_tables.consistency([record | {"difference_percent": None}])[0]

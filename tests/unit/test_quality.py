@@ -7,7 +7,7 @@ import pytest
 
 from camwright.geometry.errors import InputError, MeshError
 from camwright.meshes.body_mesh import BodyMesh, block_mesh
-from camwright.meshes.element_size import Sizing
+from camwright.meshes.element_size import ElementSize
 from camwright.meshes.mesh_quality import Quality, corner_angles, gate, quality, scaled_jacobians
 
 GOOD = Quality(30.0, 0.6, 8.0, 100, 250)
@@ -60,20 +60,20 @@ def test_quality_does_not_depend_on_position():
 
 @pytest.mark.parametrize("edges", [4, 8, 16])
 def test_edges_across_the_half_width_are_those_asked_for(edges):
-    sizing = Sizing.from_half_width(1e-3, 0.02, contact_point=(0, 0), edges=edges)
+    sizing = ElementSize.from_half_width(1e-3, 0.02, contact_point=(0, 0), edges=edges)
     found = quality(block_mesh(0.2, 0.2, sizing), (0, 0), 1e-3)
     assert found.edges_across_half_width == pytest.approx(edges, rel=1e-9)
 
 
 def test_edges_count_the_longest_facet_in_the_contact():
-    sizing = Sizing.from_half_width(1e-3, 0.02, contact_point=(0, 0))
+    sizing = ElementSize.from_half_width(1e-3, 0.02, contact_point=(0, 0))
     mesh = block_mesh(0.2, 0.2, sizing)
     # Four half-widths out the facets have grown beyond a/8.
     assert quality(mesh, (0, 0), 4e-3).edges_across_half_width < 4 * 8 * 0.7
 
 
 def test_edges_of_a_contact_smaller_than_a_facet_are_below_one():
-    mesh = block_mesh(0.2, 0.2, Sizing(far_size=0.02))
+    mesh = block_mesh(0.2, 0.2, ElementSize(far_size=0.02))
     found = quality(mesh, (0.001, 0), 1e-4).edges_across_half_width
     assert found == pytest.approx(1e-4 / 0.02, rel=1e-9)  # ten equal facets along the top
 

@@ -22,7 +22,7 @@ from camwright.pipeline.case.limits import CAM_RADIUS
 from camwright.pipeline.case.load_case_torque import engine_torques
 from camwright.pipeline.smoothing.problem_setup import problem_of, roller_problems
 from camwright.pipeline.studies.redesign import point_store, redesign_study
-from camwright.pipeline.studies.redesign.design_point import Point, Rough
+from camwright.pipeline.studies.redesign.design_point import DesignPoint, Rough
 from camwright.pipeline.studies.redesign.exclusions import exclusions
 from camwright.pipeline.studies.redesign.pareto_front import front, thinned
 from camwright.pipeline.studies.redesign.part_search import RUNG, RUNGS, Pruned, branch
@@ -279,7 +279,7 @@ def test_branch_ends_where_nothing_fits():
 
 
 def test_a_point_that_is_kept_is_not_solved_again(tmp_path):
-    task = point_store.Task("no case at all", "nor this", tmp_path, "v", "whole")
+    task = point_store.PointTask("no case at all", "nor this", tmp_path, "v", "whole")
     known = {"feasible": True, "ripple_left_Nm": 1.0}
     task.path.parent.mkdir()
     task.path.write_text(json_text(known))
@@ -376,7 +376,7 @@ def test_the_verdict_of_a_point_is_that_of_its_checks():
         ("ripple_before", "ripple_left", "cam_radius", "mass", "prime_radius", "preload",
          "spring_rate", "lift_max", "pressure_angle_max", "normal_force_max", "p0_max"), 1.0
     )  # fmt: skip
-    good = Point(feasible=True, shortfalls=(), open=(), binding=(), **figures)
+    good = DesignPoint(feasible=True, shortfalls=(), open=(), binding=(), **figures)
     assert good.verdict == good.as_record()["verdict"] == "pass"
     assert replace(good, open=("film",)).verdict == "incomplete"
     assert replace(good, open=("film",), shortfalls=(shortfall("jump"),)).verdict == "fail"

@@ -28,7 +28,7 @@ from camwright.pipeline.smoothing.required_lift import cam_lift
 from camwright.pipeline.solver import solve
 from camwright.reports import report_tables
 from camwright.reports.analysis_sheet import groups
-from camwright.reports.sheet_turn import Turn
+from camwright.reports.sheet_turn import SheetTurn
 
 FOLDER = Path(reports.__file__).parent
 CASES = Path(__file__).parents[2] / "cases"
@@ -136,7 +136,7 @@ def looked_up(trial: Trial, speed: Any) -> set[str]:
 
     torques, case = engine_torques(trial.case), tomllib.loads(trial.case.to_toml())
     cycle = noted(run_records.cycle_columns(trial.cycles[:1]))
-    turn = Turn(
+    turn = SheetTurn(
         cycle,
         (cycle,),
         noted(run_records.lift_columns(trial.case, trial.lift)),

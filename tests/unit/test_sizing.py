@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from camwright.geometry.errors import InputError
-from camwright.meshes.element_size import EDGES_PER_TURN, SizeField, Sizing
+from camwright.meshes.element_size import EDGES_PER_TURN, ElementSize, SizeField
 
 CONTACT = (0.03, -0.01)
 
@@ -16,7 +16,7 @@ def sizing(**changes):
         "contact_extent": 2e-4,
         "contact_point": CONTACT,
     }
-    return Sizing(**(values | changes))
+    return ElementSize(**(values | changes))
 
 
 def at_distance(distance):
@@ -33,19 +33,19 @@ def test_size_is_constant_then_grows_then_stops(distance, expected):
 
 
 def test_size_without_a_contact_is_uniform():
-    field = Sizing(far_size=2e-3).field()
+    field = ElementSize(far_size=2e-3).field()
     assert (field(np.array([[0.0, 1.0], [0.0, 5.0]])) == 2e-3).all()
 
 
 def test_from_half_width_puts_edges_across_it():
-    found = Sizing.from_half_width(1e-4, 3e-3, contact_point=CONTACT, edges=8, reach=2)
+    found = ElementSize.from_half_width(1e-4, 3e-3, contact_point=CONTACT, edges=8, reach=2)
     assert found.contact_size == pytest.approx(1.25e-5, rel=1e-15)
     assert found.contact_extent == pytest.approx(2e-4, rel=1e-15)
     assert found.steps == 16
 
 
 def test_from_half_width_is_never_coarser_than_far():
-    assert Sizing.from_half_width(1.0, 3e-3).contact_size == 3e-3
+    assert ElementSize.from_half_width(1.0, 3e-3).contact_size == 3e-3
 
 
 @pytest.mark.parametrize(

@@ -27,7 +27,7 @@ from camwright.pipeline.studies.batch.dataset import (
     table_of,
     values_of,
 )
-from camwright.pipeline.studies.batch.row_selection import Figures, states_in
+from camwright.pipeline.studies.batch.row_selection import RowFigures, states_in
 from camwright.pipeline.studies.batch.study_file import Objective
 from camwright.pipeline.studies.batch.study_folder import Shard, StudyFolder
 
@@ -251,7 +251,7 @@ def test_the_progress_line_counts_the_failures_of_its_stage(
     home, notes = StudyFolder(tmp_path, resume=True), []
     progress = SimpleNamespace(advance=lambda *_: None, note=notes.append)
     plan = SimpleNamespace(ids="abc")
-    run = SimpleNamespace(home=home, figures=Figures(()), progress=progress, plan=plan)
+    run = SimpleNamespace(home=home, figures=RowFigures(()), progress=progress, plan=plan)
     for name, screens in (("abc", ["fail", "error", "open"]), ("c", ["fail"])):
         table = table_of(rows(name, screen=screens), UNITS)
         home.write_shard(name, parquet_bytes(table), b"")
@@ -264,7 +264,7 @@ def test_the_progress_line_counts_the_failures_of_its_stage(
 
 def test_selection() -> None:
     goals = (Objective(column="headline.lift_max_mm"), Objective(column="mesh.nodes", goal="max"))
-    figures = Figures(goals)
+    figures = RowFigures(goals)
     table = table_of(
         rows(
             "abcde",
@@ -289,9 +289,9 @@ def test_selection() -> None:
     assert figures.best(2) == ["a"]
 
 
-def _solved(values: Mapping[str, tuple[float, float]], depth: str = "cycle") -> Figures:
+def _solved(values: Mapping[str, tuple[float, float]], depth: str = "cycle") -> RowFigures:
     goals = (Objective(column="headline.lift_max_mm"), Objective(column="mesh.nodes", goal="max"))
-    figures = Figures(goals)
+    figures = RowFigures(goals)
     lifts, nodes = zip(*values.values(), strict=True)
     count = len(values)
     columns = {"headline.lift_max_mm": list(lifts), "mesh.nodes": list(nodes)}
@@ -332,7 +332,7 @@ def test_every_design_kept_in_the_end_was_wanted_when_it_was_solved() -> None:
         values = {chr(97 + k): tuple(draw.integers(0, 8, 2).astype(float)) for k in range(26)}
         made, seen = set(), {}
         for name, (lift, nodes) in values.items():
-            wanted = _solved(seen).wanted(kind, count) if seen else Figures(()).wanted("best", 1)
+            wanted = _solved(seen).wanted(kind, count) if seen else RowFigures(()).wanted("best", 1)
             if wanted.takes("open", {"headline.lift_max_mm": lift, "mesh.nodes": nodes}):
                 made.add(name)
             seen[name] = (lift, nodes)

@@ -20,7 +20,7 @@ from camwright.pipeline.studies.batch.design_plan import SHARD_OF, Plan
 from camwright.pipeline.studies.batch.design_solver import DesignSolver
 from camwright.pipeline.studies.batch.design_task import Settings
 from camwright.pipeline.studies.batch.factor_axes import Axis, axis_of
-from camwright.pipeline.studies.batch.sampling import Designs, designs_of, unit_cube
+from camwright.pipeline.studies.batch.sampling import SampledDesigns, designs_of, unit_cube
 from camwright.pipeline.studies.batch.study_file import (
     Correlation,
     Factor,
@@ -206,7 +206,7 @@ def test_distributions_are_those_of_scipy() -> None:
 def test_the_same_seed_gives_the_same_designs(method: str) -> None:
     axes = [_axis(**RATE), _axis(**PRELOAD), _axis(key="cam.width", list=["5 mm", "6 mm"])]
 
-    def drawn(seed: int) -> Designs:
+    def drawn(seed: int) -> SampledDesigns:
         table = {"method": method, "count": 16, "seed": seed}
         return designs_of(axes, Sampling.model_validate(table))
 

@@ -5,7 +5,7 @@ import pytest
 
 from camwright.geometry.errors import ContactError
 from camwright.meshes.body_mesh import block_mesh, roller_mesh
-from camwright.meshes.element_size import Sizing
+from camwright.meshes.element_size import ElementSize
 from camwright.pipeline.contact.elasticity.pressure_distribution import PressureShapes
 from camwright.pipeline.contact.elasticity.surface_integrals import (
     ContactFrame,
@@ -18,13 +18,15 @@ UP = ContactFrame(np.zeros(2), np.array([0.0, 1.0]))
 
 def block(phase=0.0):
     return block_mesh(
-        4.0, 2.0, Sizing(far_size=0.5, contact_size=0.1, contact_extent=1.0,
+        4.0, 2.0, ElementSize(far_size=0.5, contact_size=0.1, contact_extent=1.0,
                          contact_point=np.zeros(2), phase=phase)
     )  # fmt: skip
 
 
 def roller(angle=-0.5 * np.pi):
-    return roller_mesh(3.0, 1.0, angle, Sizing(far_size=1.0, contact_size=0.1, contact_extent=1.0))
+    return roller_mesh(
+        3.0, 1.0, angle, ElementSize(far_size=1.0, contact_size=0.1, contact_extent=1.0)
+    )
 
 
 def test_frame_counts_to_the_right_and_up():

@@ -14,7 +14,7 @@ from camwright.pipeline.contact.elasticity.elastic_body import Elastic
 from camwright.pipeline.contact.elasticity.halfplane import point_force_displacement
 from camwright.pipeline.studies import two_cylinders
 from camwright.pipeline.studies.two_cylinders import TwoCylinders
-from camwright.pipeline.studies.two_cylinders_document import Options, solved
+from camwright.pipeline.studies.two_cylinders_document import ContactOptions, solved
 
 STEEL = Elastic(210e9, 0.3)
 BASE = {"r1": "10", "r2": "inf", "e1": "210000", "nu1": "0.3", "line_load": "100"}
@@ -269,7 +269,7 @@ def test_other_planes_are_told_where_they_shear_more():
 
 
 def test_asked_without_command_line():
-    options = Options("10", "20", "210 GPa", "70 GPa", 0.3, 0.33, line_load="0.1 kN/mm")
+    options = ContactOptions("10", "20", "210 GPa", "70 GPa", 0.3, 0.33, line_load="0.1 kN/mm")
     assert solved(options)["hertz"]["p0_MPa"] == pytest.approx(
         1e-6 * two_cylinders.closed_form(options.pair()).p0
     )

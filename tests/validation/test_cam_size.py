@@ -12,7 +12,7 @@ from camwright.geometry.errors import InputError
 from camwright.geometry.flat_face_contour import FacePath, FlatFaceContour
 from camwright.geometry.lift import Lift
 from camwright.geometry.lift_parts import LiftParts
-from camwright.geometry.motion_laws import LAWS, Motion, Segment
+from camwright.geometry.motion_laws import LAWS, Segment, SegmentMotion
 from camwright.geometry.pitch_curve import PitchCurve
 
 DEG = math.pi / 180.0
@@ -29,7 +29,7 @@ def double_rise(law: str) -> LiftParts:
     segments = []
     for stroke, angle in ((3, 90), (-3, 90), (2, 60), (-2, 60)):
         segments += [Segment(law, angle * DEG, float(stroke)), Segment("dwell", 15 * DEG)]
-    return LiftParts.of_motion(Motion(tuple(segments)))
+    return LiftParts.of_motion(SegmentMotion(tuple(segments)))
 
 
 def cycloid(stroke: float, angle: float, x: float) -> tuple[float, float, float, float]:
@@ -130,7 +130,7 @@ def test_flat_face_cams() -> None:
 
 
 def test_harmonic_cam_that_is_an_eccentric() -> None:
-    half = Motion((Segment("harmonic", math.pi, 2.0), Segment("harmonic", math.pi, -2.0)))
+    half = SegmentMotion((Segment("harmonic", math.pi, 2.0), Segment("harmonic", math.pi, -2.0)))
     angles = GivenLiftCam(LiftParts.of_motion(half)).extremes(2.0)
     # tan = sin/(3 - cos), greatest where cos = 1/3
     assert math.sin(angles.rise.value) == pytest.approx(1 / 3, abs=ROUND_OFF)
@@ -143,7 +143,7 @@ def test_size_keeps_its_limits_on_the_pitch_curve(law: str, offset: float) -> No
     """The spline of the lift at 60000 cam angles: another lift, and no root finding."""
     segments = (Segment(law, 100 * DEG, 3.0), Segment("dwell", 20 * DEG),
                 Segment(law, 150 * DEG, -3.0), Segment("dwell", 90 * DEG))  # fmt: skip
-    motion = Motion(segments)
+    motion = SegmentMotion(segments)
     limits = PitchLimits(28 * DEG, 28 * DEG, convex_radius=3.5, concave_radius=9.0)
     prime = GivenLiftCam(LiftParts.of_motion(motion)).least_prime_radius(limits, offset)
     theta = np.linspace(0.0, 2.0 * math.pi, 60001)
@@ -163,7 +163,7 @@ def test_size_keeps_its_limits_on_the_pitch_curve(law: str, offset: float) -> No
 def test_larger_cams_keep_the_curvature_too() -> None:
     """1/d - s''/d^2 has its greatest value at d = 2 s'', between two radii that keep the limit."""
     up = (Segment("cycloidal", 60 * DEG, 6.0), Segment("cycloidal", 300 * DEG, -6.0))
-    cam = GivenLiftCam(LiftParts.of_motion(Motion(up)))
+    cam = GivenLiftCam(LiftParts.of_motion(SegmentMotion(up)))
     for radius in (0.2, 1.0, 5.0):
         limits = PitchLimits(80 * DEG, 80 * DEG, convex_radius=radius)
         prime = cam.least_prime_radius(limits)
@@ -174,7 +174,7 @@ def test_larger_cams_keep_the_curvature_too() -> None:
 def test_best_offset_balances_rise_and_return() -> None:
     segments = (Segment("cycloidal", 80 * DEG, 3.0), Segment("dwell", 20 * DEG),
                 Segment("harmonic", 170 * DEG, -3.0), Segment("dwell", 90 * DEG))  # fmt: skip
-    cam = GivenLiftCam(LiftParts.of_motion(Motion(segments)))
+    cam = GivenLiftCam(LiftParts.of_motion(SegmentMotion(segments)))
     for limits in (THIRTY, PitchLimits(30 * DEG, 45 * DEG)):
         size = cam.smallest(limits)
         angles = cam.extremes(*size)

@@ -21,7 +21,7 @@ from camwright.geometry.lift import Lift
 from camwright.geometry.pitch_curve import PitchCurve
 from camwright.meshes.body_mesh import roller_mesh
 from camwright.meshes.calculix_deck import DeckBody, write_deck
-from camwright.meshes.element_size import Sizing
+from camwright.meshes.element_size import ElementSize
 from camwright.pipeline.base.tables import Table
 from camwright.pipeline.contact.certificate import SolvedPair, solve_pair
 from camwright.pipeline.contact.contact_pair import ContactPair
@@ -191,7 +191,7 @@ def equation_sums(text: str) -> list[dict[int, float]]:
 
 
 def test_what_no_deck_can_hold_is_refused(tmp_path: Path) -> None:
-    mesh = roller_mesh(0.008, 0.0025, 0.0, Sizing(far_size=0.002))
+    mesh = roller_mesh(0.008, 0.0025, 0.0, ElementSize(far_size=0.002))
     nothing = np.zeros((2, mesh.points.shape[1]))
     with pytest.raises(MeshError, match="letters"):
         write_deck(tmp_path / "a.inp", {"a\n*STEP": DeckBody(mesh, 1e11, 0.3, "hub", nothing)}, 1)

@@ -5,7 +5,7 @@ import pytest
 from small_machine import small_machine
 
 from camwright.geometry.arrays import uniform_turn
-from camwright.geometry.motion_laws import Motion, Segment
+from camwright.geometry.motion_laws import Segment, SegmentMotion
 from camwright.geometry.pitch_curve import PitchCurve
 from camwright.pipeline.case.case_file import read_case
 from camwright.pipeline.case.given_lift import given_lift
@@ -116,7 +116,7 @@ def test_force_on_the_cam_of_rothbart_by_hand(rothbart):
 
 def test_jump_of_a_3_4_5_rise():
     """10 mm in 90 deg at 10 rad/s: least force -6.470994 N at 71.006 deg, preload 16.470994 N."""
-    motion = Motion((
+    motion = SegmentMotion((
         Segment("polynomial_345", 0.5 * np.pi, 0.01), Segment("dwell", np.pi),
         Segment("polynomial_345", 0.5 * np.pi, -0.01),
     ))  # fmt: skip

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from camwright.meshes.body_mesh import BodyMesh, block_mesh, roller_mesh
-from camwright.meshes.element_size import Sizing
+from camwright.meshes.element_size import ElementSize
 from camwright.pipeline.contact import hertz
 from camwright.pipeline.contact.elasticity.elastic_body import ElasticBody
 from camwright.pipeline.contact.elasticity.surface_integrals import ContactFrame
@@ -28,7 +28,7 @@ def nafems(edges, swapped=False):
     """The case with `edges` across the half-width; the disc is held about its top."""
 
     def sizing(point):
-        return Sizing.from_half_width(HALF_WIDTH, 0.01, contact_point=point, edges=edges)
+        return ElementSize.from_half_width(HALF_WIDTH, 0.01, contact_point=point, edges=edges)
 
     block = block_mesh(BLOCK, BLOCK, sizing((0.0, 0.0)))
     disc = roller_mesh(RADIUS, 0.0, -0.5 * np.pi, sizing((0.0, -RADIUS)))

@@ -20,7 +20,7 @@ from camwright.pipeline.studies.papers.modelled_runs import (
     scattered,
     ten_runs,
 )
-from camwright.pipeline.studies.papers.paper_figure import Beside, Curve, beside
+from camwright.pipeline.studies.papers.paper_figure import Beside, PaperCurve, beside
 from camwright.pipeline.studies.papers.petrescu_2015 import SETS
 from camwright.pipeline.studies.papers.published_figures import targets
 from camwright.reports.papers.paper_chart import Chart
@@ -144,10 +144,10 @@ def test_differences_are_told_in_the_unit_and_of_ripples_in_percent():
 
 def test_a_curve_without_numbers_is_refused():
     with pytest.raises(InputError, match="lengths differ"):
-        Curve("a", [0.0, 1.0], [1.0]).record()
+        PaperCurve("a", [0.0, 1.0], [1.0]).record()
     with pytest.raises(InputError, match="one dimension"):
-        Curve("a", [0.0, 1.0], [np.nan, np.nan]).record()
-    assert Curve("a", [0.0, 1.0], [np.nan, 2.0]).record()["y"] == [None, 2.0]
+        PaperCurve("a", [0.0, 1.0], [np.nan, np.nan]).record()
+    assert PaperCurve("a", [0.0, 1.0], [np.nan, 2.0]).record()["y"] == [None, 2.0]
 
 
 # --- ten runs
@@ -515,8 +515,8 @@ def test_text_of_a_figure_is_escaped_and_told_aloud():
         "panels": [{
             "title": "<t>", "x": "x, m", "y": "y, N", "kind": "lines", "note": "", "rows": [],
             "window": [],
-            "curves": [Curve("one <", [0.0, 1.0], [2.0, 3.0]).record(),
-                       Curve("two", [0.0, 1.0], [np.nan, 4.0], 1).record()],
+            "curves": [PaperCurve("one <", [0.0, 1.0], [2.0, 3.0]).record(),
+                       PaperCurve("two", [0.0, 1.0], [np.nan, 4.0], 1).record()],
         }],
     }  # fmt: skip
     text = page({"papers": {"C24": {"citation": "A & B", "doi": None}}, "figures": [record]})

@@ -13,7 +13,7 @@ from camwright.pipeline.studies.papers.balancing_cam import FOLLOWER_2025, balan
 from camwright.pipeline.studies.papers.published_figures import (
     NOT_COMPUTED,
     Basis,
-    Outcome,
+    FigureOutcome,
     Target,
     Tolerance,
     count_lines,
@@ -329,10 +329,10 @@ def test_each_kind_of_tolerance(value, tolerance, obtained, angle, verdict, word
 
 
 def test_rows_tell_differences_of_numbers_alone():
-    assert row_record(TARGET, Outcome(2.5, "reproduced", "why"))["difference"] == 0.5
-    assert row_record(TARGET, Outcome("more", "reproduced", "why"))["difference"] is None
+    assert row_record(TARGET, FigureOutcome(2.5, "reproduced", "why"))["difference"] == 0.5
+    assert row_record(TARGET, FigureOutcome("more", "reproduced", "why"))["difference"] is None
     both = target([1.0, 2.0], of="unit")
-    assert row_record(both, Outcome([1.5, 2.0], "reproduced", ""))["difference"] == [0.5, 0.0]
+    assert row_record(both, FigureOutcome([1.5, 2.0], "reproduced", ""))["difference"] == [0.5, 0.0]
     missing = row_record(TARGET, None)
     assert (missing["verdict"], missing["reason"]) == ("not decidable", NOT_COMPUTED)
     assert (missing["basis"], missing["tolerance"]) == ("tuned", "10 % of the value")
@@ -347,7 +347,7 @@ def test_the_page_shows_every_row_and_escapes_text(document):
         assert f"<bdi>{basis}" in text
     assert text.count("data:image/png;base64,") == len(document["figures"])
     assert "C25, Figures 8 and 9. The reconstruction is" in text
-    rows = [row_record(TARGET, Outcome(2.5, "reproduced", "x < y"))]
+    rows = [row_record(TARGET, FigureOutcome(2.5, "reproduced", "x < y"))]
     small = {
         "papers": {"X": {"citation": "A & B", "doi": None}}, "counts": counts(rows), "rows": rows,
         "studies": {}, "figures": [],

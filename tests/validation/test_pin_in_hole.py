@@ -9,7 +9,7 @@ import pytest
 from pin_in_hole_elements import pin_in_hole_by_elements
 
 from camwright.geometry.errors import InputError
-from camwright.pipeline.contact.elasticity.radial_compliance import Bush, Pin
+from camwright.pipeline.contact.elasticity.radial_compliance import Bush, SolidBar
 from camwright.pipeline.contact.pin_in_hole import (
     peak_pressure,
     persson_clearance,
@@ -18,7 +18,7 @@ from camwright.pipeline.contact.pin_in_hole import (
     pin_in_hole,
 )
 
-STEEL, STEEL_HOLE = Pin(210e9, 0.3), Bush(210e9, 0.3)
+STEEL, STEEL_HOLE = SolidBar(210e9, 0.3), Bush(210e9, 0.3)
 NYLON_BUSH = Bush(2.8e9, 0.4, 0.5)
 E = STEEL.plane_strain_modulus
 
@@ -96,7 +96,7 @@ def test_finite_elements_agree(clearance, bush):
 
 def test_thin_compressible_bush_is_an_elastic_foundation():
     """p = E_c d cos(phi)/t at perfect fit, so p0 R/Q = 2/pi; a wall of 1 % spreads little."""
-    found = pin_in_hole(1.0, 1.0, 0.0, Pin(1e15, 0.3), Bush(1e9, 0.0, 0.01))
+    found = pin_in_hole(1.0, 1.0, 0.0, SolidBar(1e15, 0.3), Bush(1e9, 0.0, 0.01))
     assert found.peak_pressure == pytest.approx(2.0 / np.pi, rel=2e-3)
     assert np.degrees(found.contact_angle) == pytest.approx(90.0, abs=1.0)
 
@@ -143,7 +143,7 @@ def test_refuses_negative_loads_and_bad_bodies():
     with pytest.raises(InputError, match="wall"):
         Bush(1e9, 0.3, 0.0)
     with pytest.raises(InputError, match="poisson"):
-        Pin(1e9, 0.5)
+        SolidBar(1e9, 0.5)
     with pytest.raises(InputError, match="window"):
         pin_in_hole_by_elements(1.0, 0.0, STEEL, STEEL_HOLE, 2.0)
     with pytest.raises(InputError, match="press fit"):

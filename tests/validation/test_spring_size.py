@@ -7,7 +7,7 @@ import pytest
 
 from camwright.geometry.errors import InputError
 from camwright.geometry.lift_parts import LiftParts
-from camwright.geometry.motion_laws import LAWS, Motion, Segment
+from camwright.geometry.motion_laws import LAWS, Segment, SegmentMotion
 from camwright.pipeline.base.external_force import ExternalForce
 from camwright.pipeline.sizing.spring_size import (
     PRELOAD_SHARE,
@@ -24,7 +24,7 @@ def rise_and_return(law: str, stroke: float, angle: float) -> LiftParts:
     rest = 2.0 * math.pi - 2.0 * angle
     dwell = (Segment("dwell", rest),) if rest > 1e-9 else ()
     segments = (Segment(law, angle, stroke), Segment(law, angle, -stroke), *dwell)
-    return LiftParts.of_motion(Motion(segments))
+    return LiftParts.of_motion(SegmentMotion(segments))
 
 
 def test_jump_of_a_polynomial_cam() -> None:

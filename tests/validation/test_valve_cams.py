@@ -9,7 +9,7 @@ import pytest
 
 from camwright.geometry.contour import RollerContour
 from camwright.geometry.errors import ContactError, InputError
-from camwright.geometry.motion_laws import Motion, Segment
+from camwright.geometry.motion_laws import Segment, SegmentMotion
 from camwright.geometry.pitch_curve import PitchCurve
 from camwright.pipeline.follower.follower_forces import FollowerSystem, follower_loads
 from camwright.pipeline.follower.spring import Spring
@@ -34,7 +34,7 @@ PHI = np.linspace(0.01, 2 * np.pi - 0.01, 96)  # none of them a joint
 
 def harmonic(stroke, angle_deg):
     angle = np.radians(angle_deg)
-    return Motion(
+    return SegmentMotion(
         (Segment("harmonic", angle, stroke), Segment("harmonic", angle, -stroke),
          Segment("dwell", 2 * np.pi - 2 * angle))
     )  # fmt: skip

@@ -19,14 +19,14 @@ from camwright.geometry.contour import RollerContour
 from camwright.geometry.lift import Lift
 from camwright.geometry.pitch_curve import PitchCurve
 from camwright.meshes.body_mesh import cam_mesh
-from camwright.meshes.element_size import Sizing
+from camwright.meshes.element_size import ElementSize
 from camwright.pipeline.case.case_file import read_case
 from camwright.pipeline.case.machine import machines
 from camwright.pipeline.checks import camshaft_strength as shaft_checks
 from camwright.pipeline.checks import key_strength, part_data, part_strength
 from camwright.pipeline.checks.check import Declaration
-from camwright.pipeline.contact.cam_body import Key
 from camwright.pipeline.contact.cam_body import Keyway as CamKeyway
+from camwright.pipeline.contact.cam_body import ParallelKey
 from camwright.pipeline.contact.elasticity.elastic_body import (
     ElasticBody,
     Springs,
@@ -307,7 +307,7 @@ def root_stress(bore, wide, deep, fillet, outer, high):
     under a contact force against the shaft at the worst angle, over p and over F/(b h).
     """
     ring = RollerContour(PitchCurve(Lift(uniform_turn(72), np.zeros(72)), outer + 8e-3), 8e-3)
-    mesh = cam_mesh(ring, bore, Keyway(wide, deep, 0.0, fillet), Sizing(far_size=0.08 * outer))
+    mesh = cam_mesh(ring, bore, Keyway(wide, deep, 0.0, fillet), ElementSize(far_size=0.08 * outer))
     (x, y), edge = mesh.points, mesh.boundary_nodes("contour")
     ways = np.zeros((3, 2, x.size))  # soft springs: the loads are in equilibrium
     ways[0, 0, edge[0]] = ways[1, 1, edge[0]] = ways[2, 1, edge[edge.size // 2]] = 1.0
@@ -577,7 +577,7 @@ def lacking(field: str) -> Solution:
     return with_case(base.model_copy(update={"camshaft": shaft, "cam": cam}))
 
 
-PARTS = {"camshaft": Camshaft, "gear": CamshaftGear, "key": Key, "keyway": CamKeyway}
+PARTS = {"camshaft": Camshaft, "gear": CamshaftGear, "key": ParallelKey, "keyway": CamKeyway}
 DATA = [
     (f"{name}.{field.name}", field.name in part.defaults)
     for name, part in PARTS.items()

@@ -9,7 +9,7 @@ from camwright.geometry.contour import RollerContour
 from camwright.geometry.lift import Lift
 from camwright.geometry.pitch_curve import PitchCurve
 from camwright.meshes.body_mesh import roller_mesh
-from camwright.meshes.element_size import Sizing
+from camwright.meshes.element_size import ElementSize
 from camwright.pipeline.base import disk_cache
 from camwright.pipeline.contact.body_compliance import LoadedBody
 from camwright.pipeline.contact.certificate import solve_pair
@@ -147,7 +147,7 @@ def test_vanishing_load_is_told_by_the_round_off_of_its_gap():
 def test_superposed_field_is_that_of_the_load_itself():
     # Half-plane plus correction against the same mesh under the nodal loads of the pressure.
     radius, half_width, load = 0.01, 2e-4, 1e6
-    sizing = Sizing.from_half_width(half_width, radius / 6, edges=6)
+    sizing = ElementSize.from_half_width(half_width, radius / 6, edges=6)
     mesh = roller_mesh(radius, 0.4 * radius, 0.5 * np.pi, sizing)
     body = ElasticBody(mesh, STEEL.modulus, STEEL.poisson, "hub")
     at, normal = np.array([[0.0], [radius]]), np.array([[0.0], [1.0]])
@@ -169,7 +169,7 @@ def test_superposed_field_is_that_of_the_load_itself():
 def test_a_faster_solver_gives_the_same_answers(module, name, monkeypatch):
     pytest.importorskip(module, reason="optional back end", exc_type=ImportError)
     monkeypatch.setattr(sparse_factor, "back_end", lambda: name)
-    mesh = roller_mesh(1.0, 0.3, 0.0, Sizing(far_size=0.3))
+    mesh = roller_mesh(1.0, 0.3, 0.0, ElementSize(far_size=0.3))
     body = ElasticBody(mesh, 1.0, 0.3, "hub")
     matrix = body.stiffness[body.free_dofs][:, body.free_dofs]
     right = np.random.default_rng(0).normal(size=(matrix.shape[0], 4))

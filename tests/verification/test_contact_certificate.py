@@ -8,7 +8,7 @@ from skfem.models.elasticity import linear_elasticity
 
 from camwright.geometry.errors import ContactError, InputError, MeshError
 from camwright.meshes.body_mesh import BodyMesh, block_mesh, roller_mesh
-from camwright.meshes.element_size import Sizing
+from camwright.meshes.element_size import ElementSize
 from camwright.pipeline.contact import hertz
 from camwright.pipeline.contact.elasticity.elastic_body import Elastic, ElasticBody, lame_parameters
 from camwright.pipeline.contact.elasticity.mesh_convergence import converged
@@ -33,7 +33,7 @@ def held_opposite(mesh: BodyMesh, facing: float) -> BodyMesh:
 
 
 def disc(radius, facing, half_width, edges, phase):
-    sizing = Sizing.from_half_width(half_width, radius / 3, edges=edges, phase=phase)
+    sizing = ElementSize.from_half_width(half_width, radius / 3, edges=edges, phase=phase)
     mesh = held_opposite(roller_mesh(radius, 0.0, facing, sizing), facing)
     return mesh.transformed(0.0, (0.0, -radius * np.sin(facing)))
 
@@ -75,7 +75,7 @@ def test_non_matching_patch_test(angle):
     # Two blocks whose facets do not match, on rollers: uniform pressure passes exactly.
     width, p = 2.0, 3e6
     sizing = [
-        Sizing(far_size=0.5, contact_size=size, contact_extent=0.4, contact_point=np.zeros(2),
+        ElementSize(far_size=0.5, contact_size=size, contact_extent=0.4, contact_point=np.zeros(2),
                phase=phase)
         for size, phase in ((0.11, 0.0), (0.07, 0.4))
     ]  # fmt: skip
@@ -232,7 +232,7 @@ def test_subsurface_stress_of_half_planes(edges):
     modulus = hertz.contact_modulus(1.0, NU, 1.0, NU)
     radius = np.pi * modulus * a**2 / (4 * load)
     p0 = 2 * load / (np.pi * a)
-    sizing = Sizing.from_half_width(a, 400.0, contact_point=np.zeros(2), edges=edges)
+    sizing = ElementSize.from_half_width(a, 400.0, contact_point=np.zeros(2), edges=edges)
     block = block_mesh(3000.0, 1500.0, sizing)
     other = block.transformed(np.pi, (0.0, 0.0))
     sides = tuple(ContactSide(ElasticBody(m, 1.0, NU, "bottom"), "top") for m in (block, other))
@@ -286,14 +286,14 @@ def test_error_bar_of_flat_bodies_covers_what_discs_do(a_over_r):
 
 
 def test_stiffness_is_that_of_the_library_form():
-    mesh = roller_mesh(1.0, 0.3, 0.0, Sizing(far_size=0.3))
+    mesh = roller_mesh(1.0, 0.3, 0.0, ElementSize(far_size=0.3))
     body = ElasticBody(mesh, E, NU, "hub")
     expected = linear_elasticity(*lame_parameters(E, NU)).assemble(body.basis)
     assert abs(body.stiffness - expected).max() < 1e-14 * abs(expected).max()
 
 
 def test_condensed_body_moves_as_the_whole_one():
-    mesh = roller_mesh(1.0, 0.3, 0.0, Sizing(far_size=0.3))
+    mesh = roller_mesh(1.0, 0.3, 0.0, ElementSize(far_size=0.3))
     body = ElasticBody(mesh, E, NU, "hub")
     nodes = mesh.boundary_nodes("rim")[::3]
     rng = np.random.default_rng(5)
@@ -318,7 +318,7 @@ def test_condensed_body_moves_as_the_whole_one():
 
 
 def test_what_is_held_must_exist_and_have_components():
-    mesh = roller_mesh(1.0, 0.3, 0.0, Sizing(far_size=0.3))
+    mesh = roller_mesh(1.0, 0.3, 0.0, ElementSize(far_size=0.3))
     with pytest.raises(MeshError, match="bore"):
         _ = ElasticBody(mesh, E, NU, "bore").held_dofs
     with pytest.raises(InputError, match=r"held\.hub"):
@@ -326,7 +326,7 @@ def test_what_is_held_must_exist_and_have_components():
 
 
 def test_reaction_balances_the_load_whatever_is_held():
-    mesh = roller_mesh(1.0, 0.3, 0.0, Sizing(far_size=0.3))
+    mesh = roller_mesh(1.0, 0.3, 0.0, ElementSize(far_size=0.3))
     loads = np.zeros((2, mesh.points.shape[1], 1))
     loads[:, mesh.boundary_nodes("rim")[4], 0] = (2.0, -1.0)
     body = ElasticBody(mesh, E, NU, "hub")
@@ -337,7 +337,7 @@ def test_reaction_balances_the_load_whatever_is_held():
 
 @pytest.mark.parametrize(("load", "width"), [(0.0, 1e-4), (-1.0, 1e-4), (np.nan, 1e-4), (1.0, 0.0)])
 def test_bad_loads_are_refused(load, width):
-    mesh = block_mesh(1.0, 1.0, Sizing(far_size=0.5))
+    mesh = block_mesh(1.0, 1.0, ElementSize(far_size=0.5))
     side = ContactSide(ElasticBody(mesh, E, NU, "bottom"), "top")
     with pytest.raises(InputError):
         solve_contact((side, side), UP, np.zeros_like, load, width)

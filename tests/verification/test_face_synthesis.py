@@ -13,7 +13,7 @@ from synthesis_ratings import rated
 from camwright.geometry.arrays import uniform_turn
 from camwright.geometry.energy import spring_deflection, stored_energy
 from camwright.geometry.lift import Jet, Lift
-from camwright.geometry.motion_laws import Motion, Segment
+from camwright.geometry.motion_laws import Segment, SegmentMotion
 from camwright.pipeline.case.case_file import read_case
 from camwright.pipeline.case.case_values import replaced, value_of
 from camwright.pipeline.case.load_case_torque import engine_torques
@@ -197,7 +197,7 @@ def law_cam(problem, law, share, rise):
     ends = np.roll(ends, -first)
     angles = np.mod(np.diff(theta[ends], append=theta[ends[0]]), 2.0 * np.pi)
     strokes = share * np.diff(lift[ends], append=lift[ends[0]])
-    motion = Motion(
+    motion = SegmentMotion(
         tuple(Segment(law, float(a), float(s)) for a, s in zip(angles, strokes, strict=True))
     )
     turned = theta - theta[ends[0]]

@@ -19,7 +19,7 @@ from camwright.meshes.body_mesh import (
     half_disc_mesh,
     roller_mesh,
 )
-from camwright.meshes.element_size import Sizing
+from camwright.meshes.element_size import ElementSize
 from camwright.meshes.gmsh_mesher import session
 from camwright.meshes.mesh_quality import gate, quality
 
@@ -34,7 +34,7 @@ def contact(theta):
 
 @pytest.fixture(scope="module")
 def cam():
-    sizing = Sizing.from_half_width(HALF_WIDTH, 3e-3, contact_point=contact(2.0))
+    sizing = ElementSize.from_half_width(HALF_WIDTH, 3e-3, contact_point=contact(2.0))
     return cam_mesh(CONTOUR, 0.01, Keyway(6e-3, 3e-3, 0.3), sizing)
 
 
@@ -42,7 +42,10 @@ def test_disc_area_converges_with_the_fourth_order():
     """Middles on the circle leave a radial error of fourth order in the facet length."""
     sizes = np.array([1.2e-3, 6e-4, 3e-4, 1.5e-4])
     errors = [
-        abs(mesh_area(roller_mesh(0.008, 0.0, 0.0, Sizing(far_size=h))) / (np.pi * 0.008**2) - 1)
+        abs(
+            mesh_area(roller_mesh(0.008, 0.0, 0.0, ElementSize(far_size=h))) / (np.pi * 0.008**2)
+            - 1
+        )
         for h in sizes
     ]
     order = np.polyfit(np.log(sizes), np.log(errors), 1)[0]
@@ -80,10 +83,10 @@ def test_round_off_of_the_lift_does_not_change_the_triangles_of_a_cam(lift, half
     for change in (0.0, 1e-13, 1e-13, 1e-13):
         values = lift(THETA) * (1.0 + change * draw.uniform(-1.0, 1.0, THETA.size))
         contour = RollerContour(PitchCurve(Lift(THETA, values), 0.05, 0.004), 0.008)
-        sizing = Sizing(far_size=3e-3)
+        sizing = ElementSize(far_size=3e-3)
         if half_width is not None:
             point = contour.points(np.array([2.0]))[:, 0]
-            sizing = Sizing.from_half_width(half_width, 3e-3, contact_point=point)
+            sizing = ElementSize.from_half_width(half_width, 3e-3, contact_point=point)
         meshes.append(cam_mesh(contour, 0.01, Keyway(6e-3, 3e-3, 0.3), sizing))
     for mesh in meshes[1:]:
         assert np.array_equal(mesh.triangles, meshes[0].triangles)
@@ -103,7 +106,7 @@ def test_round_off_of_the_contact_does_not_change_the_triangles_of_a_follower(ma
     """A half-width known to 1e-13, the last digits of another processor, gives the same mesh."""
     draw = np.random.default_rng(2)
     sizes = HALF_WIDTH * (1.0 + np.append(0.0, 1e-13 * draw.uniform(-1.0, 1.0, 5)))
-    meshes = [made(Sizing.from_half_width(float(each), 1e-3)) for each in sizes]
+    meshes = [made(ElementSize.from_half_width(float(each), 1e-3)) for each in sizes]
     for mesh in meshes[1:]:
         assert np.array_equal(mesh.triangles, meshes[0].triangles)
         np.testing.assert_allclose(mesh.points, meshes[0].points, rtol=0.0, atol=1e-12)
@@ -176,7 +179,7 @@ def test_contour_nodes_lie_on_an_independent_interpolating_spline(cam):
 
 @pytest.mark.parametrize("theta", np.linspace(0.1, 2 * np.pi, 6, endpoint=False))
 def test_cam_meshes_pass_the_gate_at_any_contact(theta):
-    sizing = Sizing.from_half_width(HALF_WIDTH, 3e-3, contact_point=contact(theta))
+    sizing = ElementSize.from_half_width(HALF_WIDTH, 3e-3, contact_point=contact(theta))
     found = quality(cam_mesh(CONTOUR, 0.01, None, sizing), contact(theta), HALF_WIDTH)
     gate(found, angle_min_deg=27.0, scaled_jacobian_min=0.5, edges_min=8.0)
     assert found.nodes < 15_000
@@ -193,7 +196,7 @@ def test_cam_meshes_pass_the_gate_at_any_contact(theta):
     ids=["roller", "disc", "half disc", "block"],
 )
 def test_other_bodies_pass_the_gate(mesh):
-    sizing = Sizing.from_half_width(HALF_WIDTH, 0.05, contact_point=(0.0, 0.0))
+    sizing = ElementSize.from_half_width(HALF_WIDTH, 0.05, contact_point=(0.0, 0.0))
     body = mesh(sizing)
     place = (0.0, -0.008) if "rim" in body.boundaries else (0.0, 0.0)
     measured = quality(body, place, HALF_WIDTH)
@@ -206,7 +209,7 @@ def test_other_bodies_pass_the_gate(mesh):
 
 def test_a_block_two_thousand_half_widths_deep_stays_small():
     """Grading makes a half-plane nearly free: depth 2000 a at a/8 in about 16 000 unknowns."""
-    sizing = Sizing.from_half_width(1.0, 2000.0, contact_point=(0.0, 0.0), reach=1.8)
+    sizing = ElementSize.from_half_width(1.0, 2000.0, contact_point=(0.0, 0.0), reach=1.8)
     mesh = block_mesh(4000.0, 2000.0, sizing)
     assert 2 * mesh.points.shape[1] < 32_000
     assert quality(mesh, (0, 0), 1.0).min_angle_deg > 27
@@ -217,7 +220,9 @@ def test_elements_scale_with_the_sizing():
     counts = [
         half_disc_mesh(
             0.05,
-            Sizing(far_size=h * 20, contact_size=h, contact_extent=2e-3, growth=0.15 * h / 1e-4),
+            ElementSize(
+                far_size=h * 20, contact_size=h, contact_extent=2e-3, growth=0.15 * h / 1e-4
+            ),
         ).triangles.shape[1]
         for h in (1e-4, 5e-5)
     ]

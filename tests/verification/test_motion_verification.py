@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from camwright.geometry.arrays import uniform_turn
-from camwright.geometry.motion_laws import LAWS, Motion, Segment
+from camwright.geometry.motion_laws import LAWS, Segment, SegmentMotion
 
 STEP = 1e-30  # of the complex step: no difference is taken, so nothing cancels
 
@@ -86,7 +86,7 @@ def motions(draw):
     shares = np.array([draw(st.floats(0.2, 1.0)) for _ in range(4)])
     angles = shares / shares.sum() * 2 * np.pi / repeat
     stroke = draw(st.floats(1e-3, 0.02))
-    return Motion(
+    return SegmentMotion(
         (
             Segment(draw(laws), angles[0], stroke),
             Segment("dwell", angles[1]),
@@ -124,7 +124,7 @@ def test_motion_repeats_over_the_turn(motion):
 
 @pytest.mark.parametrize("order", [1, 2, 3])
 def test_motion_derivative_is_a_high_order_difference(order):
-    motion = Motion(
+    motion = SegmentMotion(
         (
             Segment("cycloidal", 2.0, 0.01),
             Segment("polynomial_4567", 2 * np.pi - 2.0, -0.01),
@@ -140,7 +140,9 @@ def test_motion_derivative_is_a_high_order_difference(order):
 
 
 def test_sampled_lift_follows_a_smooth_law():
-    motion = Motion((Segment("polynomial_4567", np.pi, 0.01), Segment("cycloidal", np.pi, -0.01)))
+    motion = SegmentMotion(
+        (Segment("polynomial_4567", np.pi, 0.01), Segment("cycloidal", np.pi, -0.01))
+    )
     theta = np.linspace(0, 2 * np.pi, 1001)
     np.testing.assert_allclose(motion.lift(1440)(theta), motion(theta), rtol=0, atol=1e-10)
     assert motion.lift(1440).stroke == pytest.approx(0.01, abs=1e-10)
@@ -148,7 +150,7 @@ def test_sampled_lift_follows_a_smooth_law():
 
 def test_jump_of_acceleration_does_not_ring():
     stroke, angle = 0.02, np.radians(60)
-    motion = Motion(
+    motion = SegmentMotion(
         (Segment("harmonic", angle, stroke), Segment("harmonic", angle, -stroke),
          Segment("dwell", 2 * np.pi - 2 * angle))
     )  # fmt: skip
@@ -162,7 +164,7 @@ def test_jump_of_acceleration_does_not_ring():
 
 
 def test_harmonic_without_a_dwell_is_met_exactly():
-    motion = Motion((Segment("harmonic", np.pi, 0.01), Segment("harmonic", np.pi, -0.01)))
+    motion = SegmentMotion((Segment("harmonic", np.pi, 0.01), Segment("harmonic", np.pi, -0.01)))
     assert not motion.jumps
     theta = np.linspace(0, 2 * np.pi, 500)
     np.testing.assert_allclose(motion.lift()(theta), 0.005 * (1 - np.cos(theta)), atol=1e-15)

@@ -19,7 +19,7 @@ from camwright.geometry.follower_path import FollowerPath, reciprocal
 from camwright.geometry.lift import Lift
 from camwright.geometry.measured_contour import inspected
 from camwright.meshes.body_mesh import cam_mesh
-from camwright.meshes.element_size import Sizing
+from camwright.meshes.element_size import ElementSize
 
 PIVOT, ARM, ROLLER, START = 0.09, 0.08, 0.008, np.radians(35.0)
 
@@ -186,7 +186,7 @@ def test_tools_for_contours_take_it():
     np.testing.assert_allclose(
         cutter_path(CAM, ROLLER, THETA).centre, CAM.pitch.points(THETA), atol=1e-12
     )
-    mesh = cam_mesh(CAM, 0.01, None, Sizing(far_size=4e-3))
+    mesh = cam_mesh(CAM, 0.01, None, ElementSize(far_size=4e-3))
     assert mesh_area(mesh) == pytest.approx(CAM.area() - np.pi * 0.01**2, rel=1e-6)
     turned = np.array([[np.cos(0.2), -np.sin(0.2)], [np.sin(0.2), np.cos(0.2)]])
     assert inspected(CAM, turned @ CAM.polygon(360)).phase == pytest.approx(0.2, abs=1e-9)

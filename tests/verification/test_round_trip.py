@@ -10,7 +10,7 @@ from camwright.geometry.errors import GeometryError, InputError
 from camwright.geometry.extrema import least
 from camwright.geometry.flat_face_contour import FacePath, FlatFaceContour
 from camwright.geometry.follower_height import face_height, roller_height
-from camwright.geometry.motion_laws import LAWS, Motion, Segment
+from camwright.geometry.motion_laws import LAWS, Segment, SegmentMotion
 from camwright.geometry.pitch_curve import PitchCurve
 
 # Of the stroke. The search knows the contour at 20 000 points only; the cubic through them misses
@@ -32,7 +32,7 @@ def lifts(draw):
     assume(shares[3] > 0.01)
     angles = shares * 2 * np.pi / repeat
     stroke = draw(st.floats(0.002, 0.008)) / repeat
-    return Motion(
+    return SegmentMotion(
         (
             Segment(draw(laws), angles[0], stroke),
             Segment("dwell", angles[1]),
@@ -66,8 +66,13 @@ def test_face_let_down_on_the_contour_moves_by_the_lift(lift, offset):
 
 
 def test_undercut_contour_cannot_give_its_lift_back():
-    lift = Motion((Segment("harmonic", np.pi / 8, 0.012), Segment("harmonic", np.pi / 8, -0.012),
-                   Segment("dwell", 7 * np.pi / 4))).lift()  # fmt: skip
+    lift = SegmentMotion(
+        (
+            Segment("harmonic", np.pi / 8, 0.012),
+            Segment("harmonic", np.pi / 8, -0.012),
+            Segment("dwell", 7 * np.pi / 4),
+        )
+    ).lift()
     contour = RollerContour(PitchCurve(lift, 0.015), 0.002)
     assert contour.undercut().present
     theta = np.linspace(0.3, 0.5, 101)

@@ -18,7 +18,7 @@ from camwright.pipeline.follower.follower_forces import (
     turn_integral,
 )
 from camwright.pipeline.follower.friction_coupling import (
-    Stroke,
+    MovingFollower,
     balanced,
     guided_loads,
     guided_strokes,
@@ -66,9 +66,9 @@ def solved_anew(loads, pair=PAIR):
 def test_strokes_solved_at_once_are_those_solved_alone():
     """Of other friction, offset, speed and number of positions; 1e-10 is the axial balance."""
     strokes = [
-        Stroke(PITCH, SYSTEM, SPEED, THETA),
-        Stroke(PitchCurve(PITCH.lift, 0.05, 0.012), ROUGH, 0.0, uniform_turn(36)),
-        Stroke(PITCH, replace(ROUGH, mass=0.3), 2.0 * SPEED, THETA),
+        MovingFollower(PITCH, SYSTEM, SPEED, THETA),
+        MovingFollower(PitchCurve(PITCH.lift, 0.05, 0.012), ROUGH, 0.0, uniform_turn(36)),
+        MovingFollower(PITCH, replace(ROUGH, mass=0.3), 2.0 * SPEED, THETA),
     ]
     for stroke, together in zip(strokes, guided_strokes(strokes, STEM, PAIR), strict=True):
         pitch, system, speed, theta = stroke

@@ -25,7 +25,7 @@ Candidate = TypeVar("Candidate")
 
 
 @dataclass(frozen=True)
-class Bush:
+class CatalogueBush:
     """A bush by its card: friction and its upper bound, limits of pressure, Pa, and PV, Pa m/s."""
 
     name: str
@@ -41,7 +41,7 @@ class Catalogue:
 
     rollers: Mapping[str, BearingCard]
     springs: Mapping[str, HelicalSpring]
-    bushes: Mapping[str, Bush]
+    bushes: Mapping[str, CatalogueBush]
 
 
 def catalogue_of(folder: Path | None) -> Catalogue:
@@ -71,7 +71,7 @@ def catalogue_of(folder: Path | None) -> Catalogue:
     )
 
 
-def _bush(name: str, entry: Tables) -> Bush:
+def _bush(name: str, entry: Tables) -> CatalogueBush:
     field, marks = f"cards.bushes.{name}", marks_of(Guide)
     for key in ("friction", "pressure_limit", "pv_limit", "material"):
         if key not in entry:
@@ -83,7 +83,7 @@ def _bush(name: str, entry: Tables) -> Bush:
         except InputError as error:
             raise InputError(f"{field}.{key}", error.value, error.limit) from None
 
-    return Bush(
+    return CatalogueBush(
         name,
         friction=read("friction"),
         friction_max=read("friction_max", "friction"),
@@ -119,7 +119,7 @@ def better_roller(one: BearingCard, other: BearingCard) -> bool:
     return same and ring and rated
 
 
-def better_bush(one: Bush, other: Bush) -> bool:
+def better_bush(one: CatalogueBush, other: CatalogueBush) -> bool:
     """Whether a bush has no higher friction and no lower limit."""
     low_friction = one.friction <= other.friction and one.friction_max <= other.friction_max
     return low_friction and one.pressure >= other.pressure and one.pv >= other.pv

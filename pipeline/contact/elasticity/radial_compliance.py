@@ -11,7 +11,7 @@ from camwright.geometry.errors import InputError
 
 
 @dataclass(frozen=True)
-class Pin:
+class SolidBar:
     """A solid round bar with its resultant on the axis: Young's modulus, Pa, Poisson ratio."""
 
     modulus: float
@@ -27,7 +27,7 @@ class Pin:
 
 
 @dataclass(frozen=True)
-class Bush(Pin):
+class Bush(SolidBar):
     """A hole, or a bush bonded into a rigid housing with a `wall` over its radius.
 
     wall None: the hole in an infinite body.
@@ -48,7 +48,7 @@ def _elastic(field: str, modulus: float, poisson: float) -> None:
         raise InputError(f"{field}.poisson", poisson, ">= 0 and < 0.5")
 
 
-def pin_compliance(count: int, pin: Pin) -> Array:
+def pin_compliance(count: int, pin: SolidBar) -> Array:
     """Inward radial displacement over pressure, both per unit cos(n phi), radius 1; (count,), 1/Pa.
 
     The first harmonic is 0: its radial displacement is a rigid translation.
@@ -104,6 +104,6 @@ def _bonded(n: Array, outer: float, kappa: float) -> Array:
     return np.asarray(np.sum(coefficients * np.array(radial).T, axis=1))
 
 
-def _constants(body: Pin) -> tuple[float, float]:
+def _constants(body: SolidBar) -> tuple[float, float]:
     """Shear modulus, Pa, and Kolosov's constant in plane strain."""
     return body.modulus / (2.0 * (1.0 + body.poisson)), 3.0 - 4.0 * body.poisson

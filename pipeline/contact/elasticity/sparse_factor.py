@@ -10,6 +10,7 @@ import importlib
 import os
 from collections.abc import Callable
 from contextlib import suppress
+from functools import partial
 
 import numpy as np
 import scipy
@@ -21,6 +22,7 @@ from camwright.geometry.errors import ContactError
 Index = NDArray[np.int64]
 
 _POSITIVE_DEFINITE = 2  # matrix type of Pardiso: real symmetric positive definite
+_AT_ONCE = 4  # right-hand sides of SuperLU that stay in the cache of the processor
 
 
 def back_end() -> str:
@@ -40,8 +42,7 @@ def factorised(matrix: scipy.sparse.sparray) -> Callable[[Array], Array]:
         return _by_cholmod(scipy.sparse.csc_array(matrix))
     if chosen == "pardiso":
         return _by_pardiso(matrix)
-    solve: Callable[[Array], Array] = _symmetric_lu(matrix, "MMD_AT_PLUS_A").solve
-    return solve
+    return partial(_solved, _symmetric_lu(matrix, "MMD_AT_PLUS_A"))
 
 
 def _symmetric_lu(matrix: scipy.sparse.sparray, ordering: str) -> scipy.sparse.linalg.SuperLU:
@@ -55,6 +56,15 @@ def _symmetric_lu(matrix: scipy.sparse.sparray, ordering: str) -> scipy.sparse.l
         diag_pivot_thresh=0.0,
         options={"SymmetricMode": True},
     )
+
+
+def _solved(factor: scipy.sparse.linalg.SuperLU, right: Array) -> Array:
+    """Solutions (n, k) for right-hand sides (n, k), a few at a time: many take thrice as long."""
+    solution = np.array(right, dtype=float, order="F")
+    for first in range(0, solution.shape[1], _AT_ONCE):
+        few = slice(first, first + _AT_ONCE)
+        solution[:, few] = factor.solve(solution[:, few])
+    return solution
 
 
 def _by_cholmod(matrix: scipy.sparse.csc_array) -> Callable[[Array], Array]:
@@ -133,7 +143,7 @@ class Condensed:
         """Values (n, m) of all unknowns under loads (n, m)."""
         loads = np.asarray(right, dtype=float)
         solution = np.empty_like(loads)
-        solution[self._order] = self._factor.solve(loads[self._order])
+        solution[self._order] = _solved(self._factor, loads[self._order])
         return solution
 
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 from camwright.geometry.arrays import Array
 from camwright.geometry.errors import ContactError
-from camwright.pipeline.base.worker_processes import ALONE, Crew, Task
+from camwright.pipeline.base.worker_processes import ALONE, Crew, PendingCall
 from camwright.pipeline.contact.finite_length import length_contact
 from camwright.pipeline.contact.finite_length.axial_drop import FinitePair
 from camwright.pipeline.contact.finite_length.brick_body import BrickGrid, QuarterCompliance
@@ -131,7 +131,7 @@ class BegunEnds:
     mean_length: float
     elements: float
     meshes: tuple[_Mesh, ...]
-    blocks: Mapping[object, Task]
+    blocks: Mapping[object, PendingCall]
     fresh: int
 
     def certificate(

@@ -15,7 +15,7 @@ from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.results.run_folder import versions
 from camwright.pipeline.studies.batch.design_task import Settings, Task
 from camwright.pipeline.studies.batch.factor_axes import Levels
-from camwright.pipeline.studies.batch.sampling import Designs
+from camwright.pipeline.studies.batch.sampling import SampledDesigns
 
 SHARD_OF: Mapping[Tier, int] = {
     Tier.SCREENING: 500, Tier.PREVIEW: 5, Tier.CYCLE: 5, Tier.CERTIFIED: 1,
@@ -36,20 +36,20 @@ class Plan:
     Parameters
     ----------
     cases : tuple        names, one block of designs each
-    designs : Designs    of each case; None: the cases are the designs
+    designs : SampledDesigns    of each case; None: the cases are the designs
     ids : tuple          of the unique designs, in order of their first number
     place : array (n,)   unique design of each number
     """
 
     cases: tuple[str, ...]
-    designs: Designs | None
+    designs: SampledDesigns | None
     ids: tuple[str, ...]
     place: NDArray[np.intp]
     settings: Settings
     _first: NDArray[np.intp]
 
     @classmethod
-    def of(cls, cases: Sequence[str], designs: Designs | None, settings: Settings) -> Plan:
+    def of(cls, cases: Sequence[str], designs: SampledDesigns | None, settings: Settings) -> Plan:
         """Plan of cases with their designs."""
         count = 1 if designs is None else designs.count
         columns = {} if designs is None else designs.si()
@@ -108,7 +108,7 @@ class Plan:
             rows = self._first[np.array(members, dtype=np.intp)] - block * self.designs.count
             taken = {key: _taken(column, rows) for key, column in self.designs.columns.items()}
             shown |= taken
-            values = Designs(self.designs.axes, taken, len(ids)).si()
+            values = SampledDesigns(self.designs.axes, taken, len(ids)).si()
         text = "\0".join((self.settings.sha256, tier.word, *units, *ids))
         name = hashlib.sha256(text.encode()).hexdigest()[:32]
         return Task(name, case, tier, ids, values, shown, units)

@@ -18,7 +18,7 @@ from camwright.pipeline.case.case import Case, includes
 from camwright.pipeline.case.case_values import quantity_of, steps_of, value_of
 from camwright.pipeline.studies.batch.study_file import (
     Factor,
-    Grid,
+    GridSampling,
     Normal,
     Range,
     Triangular,
@@ -112,7 +112,7 @@ def axis_of(factor: Factor, case: Case) -> Axis:
         return _of_levels(key, quantity, spread)
     if not isinstance(quantity, In):
         raise InputError(f"factor {key}", "no number", "a list of values")
-    if isinstance(spread, (Grid, Range)):
+    if isinstance(spread, (GridSampling, Range)):
         reading = _Reading(key, quantity, spread.low)
         low, high = reading.number(spread.low), reading.number(spread.high)
         if not low < high:

@@ -34,7 +34,7 @@ _MESSAGES_MOST = 50
 
 
 @dataclass
-class Figures:
+class RowFigures:
     """What the selection needs of the rows seen so far, by id of the design.
 
     A later row of a design, of a deeper stage, replaces the earlier one.
@@ -102,14 +102,14 @@ class Figures:
             return self.best(count)
         return self.front() if kind == "pareto" else self.failed() if kind == "failed" else []
 
-    def of(self, tier: Tier, ids: Collection[str] | None = None) -> Figures:
+    def of(self, tier: Tier, ids: Collection[str] | None = None) -> RowFigures:
         """Those of the rows of one depth, of all designs or of some."""
         rows = {
             name: row
             for name, row in self._rows.items()
             if row[0] == tier.word and (ids is None or name in ids)
         }
-        return Figures(self.objectives, rows)
+        return RowFigures(self.objectives, rows)
 
     def taken(self, ids: Iterable[str], wanted: Wanted) -> set[str]:
         """Those of some designs whose run may be kept."""

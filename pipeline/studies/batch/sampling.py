@@ -23,7 +23,7 @@ VALUES_MAX = 100_000_000
 
 
 @dataclass(frozen=True, eq=False)
-class Designs:
+class SampledDesigns:
     """Factor values of the designs of one case.
 
     Parameters
@@ -57,7 +57,7 @@ def _plain(axis: Axis, values: Array | Levels) -> Array | Levels:
 
 def designs_of(
     axes: Sequence[Axis], sampling: Sampling, correlations: Sequence[Correlation] = ()
-) -> Designs:
+) -> SampledDesigns:
     """Designs of a study; the same for the same seed.
 
     Raises
@@ -72,7 +72,7 @@ def designs_of(
             axis.key: _column(axis, [axis.levels[k] for k in places.tolist()])
             for axis, places in zip(axes, picked, strict=True)
         }
-        return Designs(tuple(axes), columns, len(picked[0]))
+        return SampledDesigns(tuple(axes), columns, len(picked[0]))
     count = (sampling.count or 0) * (len(axes) + 2 if sampling.method == "sobol_indices" else 1)
     _require_size(f"{count} designs of {len(axes)} factors", count, len(axes))
     shares = _correlated(unit_cube(len(axes), sampling), axes, correlations)
@@ -83,7 +83,7 @@ def designs_of(
             columns[axis.key] = _column(axis, [axis.levels[k] for k in places])
         else:
             columns[axis.key] = axis.at(np.clip(share, _EDGE, 1.0 - _EDGE))
-    return Designs(tuple(axes), columns, len(shares))
+    return SampledDesigns(tuple(axes), columns, len(shares))
 
 
 def unit_cube(dimensions: int, sampling: Sampling) -> Array:

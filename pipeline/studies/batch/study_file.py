@@ -48,7 +48,7 @@ Key = Annotated[str, Characters(1, 120)]
 DepthWord = Literal["screening", "preview", "cycle", "certified"]
 
 
-class Grid(Section):
+class GridSampling(Section):
     """Equally spaced levels, both ends included."""
 
     low: Value
@@ -104,19 +104,21 @@ class Factor(Section):
         tuple[Value, ...] | None,
         Field(alias="list", strict=False, min_length=1, max_length=100_000),
     ] = None
-    grid: Grid | None = None
+    grid: GridSampling | None = None
     range: Range | None = None
     normal: Normal | None = None
     uniform: Uniform | None = None
     triangular: Triangular | None = None
 
     @property
-    def spread(self) -> tuple[Value, ...] | Grid | Range | Normal | Uniform | Triangular:
+    def spread(self) -> tuple[Value, ...] | GridSampling | Range | Normal | Uniform | Triangular:
         """The one entry that is given."""
         return self._given[0]
 
     @property
-    def _given(self) -> list[tuple[Value, ...] | Grid | Range | Normal | Uniform | Triangular]:
+    def _given(
+        self,
+    ) -> list[tuple[Value, ...] | GridSampling | Range | Normal | Uniform | Triangular]:
         entries = (
             self.levels, self.grid, self.range, self.normal, self.uniform, self.triangular
         )  # fmt: skip
@@ -172,7 +174,7 @@ class Deeper(Section):
     count: Annotated[int, Field(ge=1, le=1_000_000)]
 
 
-class Stop(Section):
+class StageEnd(Section):
     """Ends the first stage: after a time, or at a width of the 95 % interval of the yield.
 
     The yield is that of the answers: designs without a result are left out. The designs before the
@@ -223,7 +225,7 @@ class Study(Section):
         tuple[Objective, ...], Field(alias="objective", strict=False, max_length=8)
     ] = ()
     deeper: Deeper | None = None
-    stop: Stop | None = None
+    stop: StageEnd | None = None
     keep: Annotated[str, Characters(0, 40)] = ""
     limits: Annotated[DesignLimits, Field(alias="design")] = DesignLimits()
 

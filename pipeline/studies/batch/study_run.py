@@ -35,9 +35,9 @@ from camwright.pipeline.studies.batch.dataset import (
 from camwright.pipeline.studies.batch.design_plan import Plan, study_versions
 from camwright.pipeline.studies.batch.design_task import Settings, Task, Wanted
 from camwright.pipeline.studies.batch.factor_axes import Axis, axis_of
-from camwright.pipeline.studies.batch.row_selection import Figures, states_in
-from camwright.pipeline.studies.batch.sampling import Designs, designs_of
-from camwright.pipeline.studies.batch.study_file import Stop, Study
+from camwright.pipeline.studies.batch.row_selection import RowFigures, states_in
+from camwright.pipeline.studies.batch.sampling import SampledDesigns, designs_of
+from camwright.pipeline.studies.batch.study_file import StageEnd, Study
 from camwright.pipeline.studies.batch.study_folder import Shard, StudyFolder
 from camwright.pipeline.studies.batch.task_scheduler import TaskScheduler
 from camwright.reports.report_tables import HEADLINES
@@ -136,7 +136,7 @@ def _settings(study: Study, templates: Sequence[Template]) -> Settings:
 def _plan(
     study: Study, templates: Sequence[Template], axes: Sequence[Axis], settings: Settings
 ) -> Plan:
-    designs: Designs | None = None
+    designs: SampledDesigns | None = None
     if study.sampling is not None:
         designs = designs_of(axes, study.sampling, study.correlations)
     return Plan.of([each.name for each in templates], designs, settings)
@@ -167,10 +167,10 @@ class _Run:
     progress: Progress
     stopped: str | None = None
     solved: int = 0
-    figures: Figures = field(init=False)
+    figures: RowFigures = field(init=False)
 
     def __post_init__(self) -> None:
-        self.figures = Figures(self.study.objectives)
+        self.figures = RowFigures(self.study.objectives)
 
     def finish(self) -> dict[str, Json]:
         """Solve both stages, write all files; the contents of ``study.json``."""
@@ -323,7 +323,7 @@ class _Watch:
     their ids, of the dataset wherever it stops; None without a rule: those of all rows.
     """
 
-    def __init__(self, run: _Run, count: int, rule: Stop | None) -> None:
+    def __init__(self, run: _Run, count: int, rule: StageEnd | None) -> None:
         self._run, self._count, self._rule = run, count, rule
         self._order: list[Shard] = []
         self.certain: set[str] | None = None if rule is None else set()

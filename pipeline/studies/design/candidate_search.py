@@ -30,7 +30,7 @@ from camwright.pipeline.studies.design.design_case import (
     case_text,
     oils_of,
 )
-from camwright.pipeline.studies.design.machine_frame import Frame, frame_of
+from camwright.pipeline.studies.design.machine_frame import MachineFrame, frame_of
 from camwright.pipeline.studies.design.torque_task import DesignTask
 from camwright.pipeline.studies.design.wound_springs import SpringPoint, of_catalogue, wound
 
@@ -194,7 +194,7 @@ def _alike(task: DesignTask, springs: Sequence[SpringPoint]) -> Iterator[list[Sp
 
 def _screened(
     task: DesignTask,
-    frame: Frame,
+    frame: MachineFrame,
     springs: list[SpringPoint],
     oils: Mapping[str, tuple[float, float]],
     folder: Path,
@@ -220,7 +220,7 @@ def _screened(
     return _judged(designs, columns)
 
 
-def _radii(task: DesignTask, frame: Frame, spring: SpringPoint) -> Array:
+def _radii(task: DesignTask, frame: MachineFrame, spring: SpringPoint) -> Array:
     """Prime radii from a steep to a flat pressure angle, not below the hub, within the space."""
     mean = 0.5 * (spring.preload + spring.greatest)
     slope = _share(task, spring) * task.ratio * task.demand.peak / mean

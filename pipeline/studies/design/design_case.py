@@ -18,7 +18,11 @@ from camwright.pipeline.case.limits import CHORD_SHARE
 from camwright.pipeline.case.toml_text import tables_of
 from camwright.pipeline.follower.bearing_life import rated_viscosity
 from camwright.pipeline.follower.spring import HelicalSpring
-from camwright.pipeline.studies.design.machine_frame import AXIAL_OFFSET, ROLLER_CHAMFER, Frame
+from camwright.pipeline.studies.design.machine_frame import (
+    AXIAL_OFFSET,
+    ROLLER_CHAMFER,
+    MachineFrame,
+)
 from camwright.pipeline.studies.design.torque_task import DesignTask
 from camwright.pipeline.studies.design.wound_springs import SpringPoint
 
@@ -49,7 +53,7 @@ class Machinery:
     """
 
     task: DesignTask = field(repr=False)
-    frame: Frame
+    frame: MachineFrame
     spring: SpringPoint
     prime_radius: float
     lift: float

@@ -27,8 +27,8 @@ from camwright.pipeline.studies.design.candidate_search import Candidate, candid
 from camwright.pipeline.studies.design.design_case import WRITTEN, case_text
 from camwright.pipeline.studies.design.relaxation_search import relaxations
 from camwright.pipeline.studies.design.synthesised_points import (
+    PointStudy,
     Solved,
-    Study,
     drafts,
     solved_front,
 )
@@ -106,7 +106,7 @@ def designed(task: DesignTask, out: Path, progress: Progress = SILENT) -> Record
         raise InputError("--out", out.name, "a file NAME.toml of letters, digits, '_', '-' or '.'")
     folder = points_folder(out).absolute()
     file, copied = _prepare(task, folder, out)
-    study = Study(task, folder, file, versions()["source"])
+    study = PointStudy(task, folder, file, versions()["source"])
     progress.stage("search rollers, springs and base circles")
     screened = candidates(task, folder, file, progress)
     with crew(None) as workers:
@@ -221,7 +221,7 @@ def _row(point: Solved) -> Record:
     }
 
 
-def _drawing(study: Study, point: Solved) -> Record:
+def _drawing(study: PointStudy, point: Solved) -> Record:
     """Contour, roller and torque left of a design, for its picture; its values to be confirmed."""
     trial = preview_case(parse_case(study.text(point.design), study.folder), corners=False)
     after, contour = trial.cycles[0].turn.torque_after, trial.contour
@@ -239,7 +239,7 @@ def _drawing(study: Study, point: Solved) -> Record:
     }
 
 
-def _write_points(study: Study, points: Sequence[Solved]) -> list[Record]:
+def _write_points(study: PointStudy, points: Sequence[Solved]) -> list[Record]:
     for old in study.folder.glob("point_*.toml"):
         old.unlink()
     rows = []
@@ -259,7 +259,7 @@ def _written(point: Solved, name: str, file: str, head: str) -> str:
     return case_text(point.design, name, file, head, positions=WRITTEN)
 
 
-def _summary(study: Study, best: Solved, points: Sequence[Solved]) -> str:
+def _summary(study: PointStudy, best: Solved, points: Sequence[Solved]) -> str:
     row, task = _row(best), study.task
     lines = [
         f"# Designed from {study.file}: {100 * row['removed']:.0f} % of the torque ripple removed"

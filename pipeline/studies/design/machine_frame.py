@@ -26,7 +26,7 @@ _OVERHANG = 2e-4  # m, of the roller beyond both ends of the cam at its offset
 
 
 @dataclass(frozen=True)
-class Frame:
+class MachineFrame:
     """Parts that follow from roller and cam torque; lengths in m.
 
     Parameters
@@ -163,7 +163,7 @@ def cam_width_under(card: BearingCard) -> float:
 
 def frame_of(
     name: str, card: BearingCard, torque: float, force: float, ratio: float, sizes: Sequence[Seat]
-) -> Frame | None:
+) -> MachineFrame | None:
     """Frame of a roller for a cam torque, N m, and a normal force, N; None: no seat is enough."""
     cam_width = cam_width_under(card)
     width = cam_width - 4e-4
@@ -182,7 +182,7 @@ def frame_of(
     # T on the gear; the pinion carries the same tooth force
     module = next((m for m in MODULES if _TOOTH * 1e-9 * m**3 * gear * 10 >= torque), MODULES[-1])
     least = next((m for m in MODULES if 0.5e-3 * m * gear > 0.8 * seat.bore), MODULES[-1])
-    return Frame(name, card, seat, 1e-3 * max(module, least), (gear, pinion))
+    return MachineFrame(name, card, seat, 1e-3 * max(module, least), (gear, pinion))
 
 
 def _teeth(ratio: float) -> tuple[int, int]:

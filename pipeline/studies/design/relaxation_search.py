@@ -16,12 +16,12 @@ from camwright.pipeline.base.worker_processes import Crew
 from camwright.pipeline.studies.design.candidate_search import Candidate, candidates
 from camwright.pipeline.studies.design.synthesised_points import (
     RESERVE,
+    PointStudy,
     Solved,
-    Study,
     lack,
     passing_draft,
 )
-from camwright.pipeline.studies.design.torque_task import DesignTask, Options
+from camwright.pipeline.studies.design.torque_task import DesignOptions, DesignTask
 from camwright.pipeline.studies.redesign.point_store import Record
 
 WIDTH = 0.02  # greatest difference of the changes that pass and fail
@@ -48,7 +48,7 @@ class Lever:
     name: str
     stated: float
     loosest: float
-    options: Callable[[float], Options]
+    options: Callable[[float], DesignOptions]
     shown: Callable[[float], str]
     reached: Callable[[Solved], float] | None = None
     order: Callable[[Candidate], float] = lack
@@ -102,7 +102,7 @@ class Bracket:
 class _Search:
     """Trials of changes; failing: greatest change known to fail, by option."""
 
-    study: Study
+    study: PointStudy
     workers: Crew
     progress: Progress
     failing: dict[str, float] = field(default_factory=dict)
@@ -140,7 +140,7 @@ class _Search:
 
 
 def relaxations(
-    study: Study, nearest: Solved | None, out: Path, workers: Crew, progress: Progress
+    study: PointStudy, nearest: Solved | None, out: Path, workers: Crew, progress: Progress
 ) -> list[Record]:
     """Relaxations of one option each, with the command line of each; the smallest first.
 
@@ -149,7 +149,7 @@ def relaxations(
 
     Parameters
     ----------
-    study : Study      with whose task no design passes
+    study : PointStudy      with whose task no design passes
     nearest : Solved   the design that fails by the least
     out : Path         case file of the command
     """
@@ -218,9 +218,9 @@ def _levers(task: DesignTask) -> Iterator[Lever]:
     )  # fmt: skip
 
 
-def _slower(task: DesignTask, share: float) -> Options:
+def _slower(task: DesignTask, share: float) -> DesignOptions:
     """Options of all speeds given, reduced alike."""
-    options: Options = {"speed": _text(share * task.speed, "rpm")}
+    options: DesignOptions = {"speed": _text(share * task.speed, "rpm")}
     if "speeds" in task.options:
         least, most = (_text(share * each, "rpm") for each in task.speeds)
         options["speeds"] = (least, most)

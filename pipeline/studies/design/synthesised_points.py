@@ -15,7 +15,7 @@ from camwright.pipeline.studies.design.candidate_search import FAR, OPTIMISTIC, 
 from camwright.pipeline.studies.design.design_case import SYNTHESIS, Machinery, case_text
 from camwright.pipeline.studies.design.torque_task import DesignTask
 from camwright.pipeline.studies.redesign.pareto_front import front, thinned
-from camwright.pipeline.studies.redesign.point_store import Record, Task, solved
+from camwright.pipeline.studies.redesign.point_store import PointTask, Record, solved
 
 _FRONT = 5  # of the front of the screening within the limits
 _NEAREST = 2  # of the front of those near to them
@@ -34,7 +34,7 @@ RESERVE = 0.01  # of the ripple allowed, for the corrections by finite elements
 
 
 @dataclass(frozen=True)
-class Study:
+class PointStudy:
     """A task with the folder of its points and the name of the torque table in it."""
 
     task: DesignTask
@@ -49,13 +49,13 @@ class Study:
     def solved(self, design: Machinery, smoothing: str = SYNTHESIS) -> Solved:
         """A design with its record, cached or solved, its checks judged at all tolerance ends."""
         text = self.text(design, smoothing)
-        record = solved(Task(text, "", self.folder, self.version, "corners"))
+        record = solved(PointTask(text, "", self.folder, self.version, "corners"))
         return Solved(design, record, smoothing)
 
     def drafted(self, design: Machinery, smoothing: str) -> Solved:
         """A design with the record of its synthesis on few cam angles, cached or solved."""
         text = self.text(design, smoothing)
-        rough = solved(Task(text, "", self.folder, self.version, "coarse"))
+        rough = solved(PointTask(text, "", self.folder, self.version, "coarse"))
         if "why" in rough:
             return Solved(design, rough, smoothing)
         failing = {"title": DECLARED[rough["limit"]].title, "check": rough["limit"],
@@ -175,7 +175,7 @@ def lack(candidate: Candidate) -> float:
     return candidate.ripple / candidate.design.task.ripple_allowed + _NEAR * candidate.excess
 
 
-def draft(study: Study, candidate: Candidate) -> Solved:
+def draft(study: PointStudy, candidate: Candidate) -> Solved:
     """A screened design with the prime radius and preload of least ripple within all limits.
 
     By the synthesis on few cam angles, both free about the values of the screening. The cam grows
@@ -191,7 +191,7 @@ def draft(study: Study, candidate: Candidate) -> Solved:
     return larger if larger.use < point.use else point
 
 
-def _free(study: Study, candidate: Candidate, growth: float) -> Solved:
+def _free(study: PointStudy, candidate: Candidate, growth: float) -> Solved:
     """Draft with the preload and, up to some growth, the prime radius free."""
     design = _rounded(candidate.design)
     high = growth * design.prime_radius
@@ -206,7 +206,7 @@ def _free(study: Study, candidate: Candidate, growth: float) -> Solved:
     return study.drafted(design, smoothing)
 
 
-def synthesised(study: Study, point: Solved) -> Solved:
+def synthesised(study: PointStudy, point: Solved) -> Solved:
     """A draft solved in full, with its prime radius and preload as a drawing states them.
 
     Where a check fails by little, both are first those of the full synthesis, with the corrections
@@ -219,7 +219,7 @@ def synthesised(study: Study, point: Solved) -> Solved:
     return settled(study, corrected) if corrected.has_cam and corrected.passes else drawn
 
 
-def settled(study: Study, point: Solved) -> Solved:
+def settled(study: PointStudy, point: Solved) -> Solved:
     """The design of a synthesis with its prime radius and preload as a drawing states them.
 
     The cam radius of the synthesis is that of the room and of the counterweight.
@@ -252,7 +252,7 @@ class Drafts(NamedTuple):
     replaced: list[Solved]
 
 
-def drafts(study: Study, screened: Sequence[Candidate], workers: Crew) -> Drafts:
+def drafts(study: PointStudy, screened: Sequence[Candidate], workers: Crew) -> Drafts:
     """Drafts of the designs of the screening that may be on the front.
 
     Without an offset; where the best of them is better with one, all others that may pass with its
@@ -263,7 +263,7 @@ def drafts(study: Study, screened: Sequence[Candidate], workers: Crew) -> Drafts
 
 
 def _with_offsets(
-    study: Study, chosen: Sequence[Candidate], points: list[Solved], workers: Crew
+    study: PointStudy, chosen: Sequence[Candidate], points: list[Solved], workers: Crew
 ) -> Drafts:
     near = [k for k, each in enumerate(points) if each.use <= _CURABLE]
     replaced: list[int] = []
@@ -280,13 +280,13 @@ def _with_offsets(
     return Drafts([each for each in kept + shifted if each.has_cam], [points[k] for k in replaced])
 
 
-def _drafted(study: Study, chosen: Sequence[Candidate], workers: Crew) -> list[Solved]:
+def _drafted(study: PointStudy, chosen: Sequence[Candidate], workers: Crew) -> list[Solved]:
     waiting = [workers.submit(draft, study, each) for each in chosen]
     return [each.result() for each in waiting]
 
 
 def solved_front(
-    study: Study, drafted: Drafts, workers: Crew, progress: Progress
+    study: PointStudy, drafted: Drafts, workers: Crew, progress: Progress
 ) -> tuple[list[Solved], list[Solved]]:
     """Designs of the front of the drafts that pass, and those that do not, the nearest first.
 
@@ -311,7 +311,7 @@ def solved_front(
 
 
 def passing_draft(
-    study: Study,
+    study: PointStudy,
     screened: Sequence[Candidate],
     workers: Crew,
     order: Callable[[Candidate], float] = lack,
@@ -331,7 +331,7 @@ def passing_draft(
     return _passing(study, _with_offsets(study, chosen, plain, workers).points)
 
 
-def _passing(study: Study, points: Sequence[Solved]) -> Solved | None:
+def _passing(study: PointStudy, points: Sequence[Solved]) -> Solved | None:
     """First of the drafts that passes in full."""
     for each in points:
         point = synthesised(study, each) if each.passes else each

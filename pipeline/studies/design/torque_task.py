@@ -31,7 +31,7 @@ NAMES = ("speeds", "overspeed", "cycle", "ratio", "space", "life", "ambient", "r
 _UNITS = {"cycle": "deg", "space": "mm", "life": "h", "ambient": "K"}
 
 
-class Options(TypedDict, total=False):
+class DesignOptions(TypedDict, total=False):
     """Options of a design, numbers in SI or text with a unit."""
 
     speed: Number
@@ -95,16 +95,16 @@ class DesignTask:
     life: float
     ambient: float
     remove: float
-    options: Options
+    options: DesignOptions
 
     @property
     def assumed(self) -> frozenset[str]:
         """Names of the options that were not given."""
         return frozenset(NAMES) - frozenset(self.options)
 
-    def relaxed(self, changes: Options) -> DesignTask:
+    def relaxed(self, changes: DesignOptions) -> DesignTask:
         """The task with other options beside those given."""
-        options: Options = {**self.options, **changes}
+        options: DesignOptions = {**self.options, **changes}
         return task_of(self.file, **options)
 
     def command(self, out: Path) -> str:
@@ -220,9 +220,11 @@ def task_of(
     )
 
 
-def _given(**options: str | float | tuple[Number, Number] | None) -> Options:
+def _given(**options: str | float | tuple[Number, Number] | None) -> DesignOptions:
     """The options that are not None."""
-    return cast(Options, {name: value for name, value in options.items() if value is not None})
+    return cast(
+        DesignOptions, {name: value for name, value in options.items() if value is not None}
+    )
 
 
 def _number(

@@ -17,7 +17,12 @@ from camwright.pipeline.studies.papers import validation_figures
 from camwright.pipeline.studies.papers.balancing_cam import PRIME_RADIUS, RATIO, designed_pitch
 from camwright.pipeline.studies.papers.paper_engines import ENGINE_800, FULL_LOAD_800, SLOW_IDLE
 from camwright.pipeline.studies.papers.paper_figure import records
-from camwright.pipeline.studies.papers.published_figures import Outcome, PaperResult, Target, judged
+from camwright.pipeline.studies.papers.published_figures import (
+    FigureOutcome,
+    PaperResult,
+    Target,
+    judged,
+)
 
 PRINTED_VALVE_SPRING = 588_000.0  # N/m, table 1
 # Table 2: k and P; guides and mass have no effect without losses.
@@ -62,13 +67,13 @@ def study(targets: Mapping[str, Target]) -> PaperResult:
     return PaperResult(outcomes, {"cam of the 800 rpm engine": rows}, records(drawn))
 
 
-def _expansion(target: Target, torque: Array) -> Outcome:
+def _expansion(target: Target, torque: Array) -> FigureOutcome:
     strokes = torque.reshape(4, -1).mean(axis=1)
     share = float(strokes[2] / np.abs(np.delete(strokes, 2)).mean())
     return judged(target, share, "mean torque of the strokes at full load, 98 kPa")
 
 
-def _magnitudes(target: Target) -> Outcome:
+def _magnitudes(target: Target) -> FigureOutcome:
     torque = torque_from_cylinder(ENGINE_800, SLOW_IDLE)
     parts = torque.components
     printed = torque_from_cylinder(
@@ -94,7 +99,7 @@ def _left(torque: Array, pitch: PitchCurve) -> Array:
 
 def _cam_rows(
     targets: Mapping[str, Target], torque: Array, pitch: PitchCurve
-) -> dict[str, Outcome]:
+) -> dict[str, FigureOutcome]:
     left = float(np.std(_left(torque, pitch)))
     radius = 1e3 * (PRIME_RADIUS + pitch.lift.highest.value)
     return {

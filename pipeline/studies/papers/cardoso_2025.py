@@ -36,7 +36,12 @@ from camwright.pipeline.studies.papers.paper_engines import (
     with_peak_torque,
 )
 from camwright.pipeline.studies.papers.paper_figure import PaperFigure, records
-from camwright.pipeline.studies.papers.published_figures import Outcome, PaperResult, Target, judged
+from camwright.pipeline.studies.papers.published_figures import (
+    FigureOutcome,
+    PaperResult,
+    Target,
+    judged,
+)
 from camwright.pipeline.torque.torque import Torque
 
 PRELOADS = (121.0, 242.0, 363.0)
@@ -106,13 +111,13 @@ def _cams(torque: Array, inertia: float) -> Cams:
 
 def _stock(
     targets: Mapping[str, Target], torque: Torque, motion: CrankMotion
-) -> dict[str, Outcome]:
+) -> dict[str, FigureOutcome]:
     """Values of the measured stock engine by the cylinder model."""
     ripple, speed = motion.statistics, motion.speed
     late = speed[int(450 / 720 * speed.size) :]
     model = "of the cylinder model"
 
-    def near(row: str, obtained: float, reason: str, angle: float | None = None) -> Outcome:
+    def near(row: str, obtained: float, reason: str, angle: float | None = None) -> FigureOutcome:
         return judged(
             targets[row],
             float(obtained),
@@ -136,7 +141,7 @@ def _stock(
     }  # fmt: skip
 
 
-def _pumping(target: Target, torque: Torque) -> Outcome:
+def _pumping(target: Target, torque: Torque) -> FigureOutcome:
     """Sign of the torque about 90 deg: pumping against the throttled intake."""
     at = np.degrees(torque.theta)
     pumping = float(torque.total[(at >= 40.0) & (at <= 140.0)].mean())
@@ -146,7 +151,7 @@ def _pumping(target: Target, torque: Torque) -> Outcome:
 
 def _fast_burn(
     targets: Mapping[str, Target], engine: CylinderEngine, torque: Torque, motion: CrankMotion
-) -> dict[str, Outcome]:
+) -> dict[str, FigureOutcome]:
     """Values of the engine simulation of the paper, by the model at its peak torque."""
     ripple = motion.statistics
     least, most = (
@@ -169,7 +174,7 @@ def _fast_burn(
 
 def _mounted(
     targets: Mapping[str, Target], stock: CrankMotion, mounted: CrankMotion
-) -> dict[str, Outcome]:
+) -> dict[str, FigureOutcome]:
     """Values with the mechanism mounted and disengaged: its inertia alone."""
     ripple = mounted.statistics
     why = f"{100 * MOUNTED:.2g} % more inertia"
@@ -193,7 +198,7 @@ ENGAGED = {
 
 def _engaged(
     targets: Mapping[str, Target], cams: Cams, windows: Sequence[Mapping[str, Any]]
-) -> dict[str, Outcome]:
+) -> dict[str, FigureOutcome]:
     """Values of the engaged mechanism; by power the cam torque is twice the crank torque."""
     figures = {key: cam.figures() for key, cam in cams.items()}
     outcomes = {
@@ -246,7 +251,7 @@ def _order(stds: Mapping[float, float]) -> str:
     return " < ".join(f"{preload:g}" for preload in sorted(stds, key=lambda p: stds[p]))
 
 
-def _arithmetic(targets: Mapping[str, Target]) -> dict[str, Outcome]:
+def _arithmetic(targets: Mapping[str, Target]) -> dict[str, FigureOutcome]:
     """Values that follow from other printed values, or are inputs."""
 
     def value(number: int) -> float:
@@ -256,7 +261,7 @@ def _arithmetic(targets: Mapping[str, Target]) -> dict[str, Outcome]:
     reductions = [round(100 * (1 - value(after) / value(before)), 1) for before, after in pairs]
     return {
         "C25-27": judged(targets["C25-27"], reductions, "one less the ratio of printed values"),
-        "C25-28": Outcome(None, "not decidable",
+        "C25-28": FigureOutcome(None, "not decidable",
                           "a property of the sensor; it enters as the noise of tooth times"),
         "C25-30": judged(targets["C25-30"], SPRING_RATE * 0.01, "k times 10 mm of compression"),
     }  # fmt: skip
@@ -264,7 +269,7 @@ def _arithmetic(targets: Mapping[str, Target]) -> dict[str, Outcome]:
 
 def _inertia(
     target: Target, rebuilt: speed_reconstruction.Reconstruction, idle: Torque, stock: CrankMotion
-) -> Outcome:
+) -> FigureOutcome:
     printed = sum(target.value)
     ripple = stock.statistics
     implied = implied_inertia(idle.total, ripple.mean, 3.74)

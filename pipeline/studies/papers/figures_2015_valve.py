@@ -14,9 +14,9 @@ from camwright.pipeline.studies.papers.figures_2025_cam import X, Y
 from camwright.pipeline.studies.papers.paper_figure import (
     MUTED,
     PUBLISHED,
-    Curve,
-    Panel,
+    PaperCurve,
     PaperFigure,
+    PaperPanel,
     beside,
     closed,
     closed_angle,
@@ -67,14 +67,14 @@ def _outlines() -> PaperFigure:
         word = "undercut" if cut else "not undercut"
         circle = cam_set.base_radius * np.stack([np.cos(theta), np.sin(theta)])
         panels.append(
-            Panel(
+            PaperPanel(
                 X, Y,
                 (
-                    Curve("cam", *outline(contour.points(theta)), 1 if cut else 0,
+                    PaperCurve("cam", *outline(contour.points(theta)), 1 if cut else 0,
                           "line" if cut else "fill"),
-                    Curve("path of the roller centre", *outline(pitch.points(theta)), MUTED,
+                    PaperCurve("path of the roller centre", *outline(pitch.points(theta)), MUTED,
                           "dashed"),
-                    Curve("base circle", *outline(circle), MUTED, "dotted"),
+                    PaperCurve("base circle", *outline(circle), MUTED, "dotted"),
                 ),
                 title=f"{name}: {_described(cam_set)}",
                 note=f"pitch radius from {least:.2f} mm: {word}",
@@ -92,7 +92,7 @@ def _outlines() -> PaperFigure:
     )  # fmt: skip
 
 
-def _nose(name: str) -> Panel:
+def _nose(name: str) -> PaperPanel:
     """The contour about the end of the rise, enlarged."""
     cam_set = SETS[name]
     pitch = PitchCurve(cam_set.motion.lift(OUTLINE_POINTS), cam_set.base_radius + ROLLER)
@@ -100,8 +100,13 @@ def _nose(name: str) -> Panel:
     x, y = 1e3 * contour.points(top + np.linspace(-NOSE_REACH, NOSE_REACH, RISE_POINTS))
     centre = 1e3 * contour.points(np.array([top]))[:, 0]
     window = [float(c) + side for c in centre for side in (-NOSE_VIEW, NOSE_VIEW)]
-    return Panel(
-        X, Y, (Curve("cam", x, y, 1),), title=f"{name}: nose", kind="outline", window=tuple(window)
+    return PaperPanel(
+        X,
+        Y,
+        (PaperCurve("cam", x, y, 1),),
+        title=f"{name}: nose",
+        kind="outline",
+        window=tuple(window),
     )
 
 
@@ -111,8 +116,8 @@ def _index(targets: Mapping[str, Target]) -> PaperFigure:
     for k, (name, cam_set) in enumerate(SETS.items()):
         cam, row = cam_set.cam, f"P15-{k + 1:02d}"
         phi = share * np.radians(cam_set.rise)
-        index.append(Curve(name, share, cam.shape_index(phi), k))
-        angle.append(Curve(name, share, np.degrees(cam.pressure_angle(phi)), k))
+        index.append(PaperCurve(name, share, cam.shape_index(phi), k))
+        angle.append(PaperCurve(name, share, np.degrees(cam.pressure_angle(phi)), k))
         printed.append(targets[row].value)
         values.append(beside(targets, row, float(cam.shape_index(cam.rise()).mean())))
     classical = ValveCam(CLASSICAL.motion, CLASSICAL.base_radius, module="C")
@@ -121,8 +126,8 @@ def _index(targets: Mapping[str, Target]) -> PaperFigure:
     axis = "share of the rise, -"
     highest = max(float(np.max(curve.y)) for curve in index)
     steepest = sorted(float(np.max(curve.y)) for curve in angle)
-    means = Curve("printed means", np.full(len(printed), 0.5), printed, PUBLISHED, "points")
-    limit = Curve(
+    means = PaperCurve("printed means", np.full(len(printed), 0.5), printed, PUBLISHED, "points")
+    limit = PaperCurve(
         f"{CRITICAL_ANGLE:g} deg, guided follower",
         [0.0, 1.0],
         [CRITICAL_ANGLE] * 2,
@@ -138,8 +143,8 @@ def _index(targets: Mapping[str, Target]) -> PaperFigure:
         f"transmits all power. The cams reach {steepest[0]:.0f} to {steepest[-1]:.0f} deg of "
         "pressure angle.",
         (
-            Panel(axis, "shape index, -", (*index, means)),
-            Panel(axis, "pressure angle, deg", (*angle, limit)),
+            PaperPanel(axis, "shape index, -", (*index, means)),
+            PaperPanel(axis, "pressure angle, deg", (*angle, limit)),
         ),
         (*values, beside(targets, "P15-05", flat)),
     )  # fmt: skip
@@ -166,11 +171,11 @@ def _dynamics() -> PaperFigure:
         preload = 1e-3 * cam_set.rate * cam_set.compression
         shown = angle <= 2.5 * cam_set.rise
         panels.append(
-            Panel(
+            PaperPanel(
                 CAM, ACCELERATION,
                 (
-                    Curve("constant speed", angle[shown], constant[shown], 0, "dashed"),
-                    Curve("uneven speed", angle[shown], uneven[shown], 1),
+                    PaperCurve("constant speed", angle[shown], constant[shown], 0, "dashed"),
+                    PaperCurve("uneven speed", angle[shown], uneven[shown], 1),
                 ),
                 title=f"{name}: {_described(cam_set)}",
                 note=f"{RPM[name]:g} rpm, preload {preload:g} kN",
@@ -193,8 +198,8 @@ def _classical() -> PaperFigure:
     speed, angle = shaft_speed(CRANK_RPM), closed_angle(COUNT, 360.0)
     constant, uneven = _accelerations(cam, speed)
     elastic = _elastic(cam, speed)
-    turning = Curve("", angle, closed(cam.speed(uniform_turn(COUNT), speed)), 1)
-    mean = Curve("", angle, np.full(angle.size, speed), MUTED, "dashed")
+    turning = PaperCurve("", angle, closed(cam.speed(uniform_turn(COUNT), speed)), 1)
+    mean = PaperCurve("", angle, np.full(angle.size, speed), MUTED, "dashed")
     return PaperFigure(
         "p15-classical", "P15", "2 and 4",
         "Classical cam with a flat follower: acceleration and speed",
@@ -202,12 +207,12 @@ def _classical() -> PaperFigure:
         f"over the lift (equation 14, reconstructed) with {1e-6 * TRAIN:g} N/µm of the valve "
         "train, assumed. Below: cam speed by the reduced inertia, and its mean.",
         (
-            Panel(CAM, ACCELERATION, (
-                Curve("constant speed", angle, constant, 0, "dashed"),
-                Curve("uneven speed", angle, uneven, 1),
-                Curve("uneven speed, elastic train", *elastic, 2),
+            PaperPanel(CAM, ACCELERATION, (
+                PaperCurve("constant speed", angle, constant, 0, "dashed"),
+                PaperCurve("uneven speed", angle, uneven, 1),
+                PaperCurve("uneven speed, elastic train", *elastic, 2),
             )),
-            Panel(CAM, "cam speed, rad/s", (turning, mean)),
+            PaperPanel(CAM, "cam speed, rad/s", (turning, mean)),
         ),
     )  # fmt: skip
 
@@ -243,9 +248,9 @@ def _classical_cam() -> PaperFigure:
         "Envelope of the flat face, base radius 13 mm. Its radius of curvature r + s + s'' is at "
         f"least {100 * factor:.0f} % of r + s: no undercut.",
         (
-            Panel(X, Y, (
-                Curve("cam", *outline(contour.points(theta)), 0, "fill"),
-                Curve("base circle", *outline(circle), MUTED, "dotted"),
+            PaperPanel(X, Y, (
+                PaperCurve("cam", *outline(contour.points(theta)), 0, "fill"),
+                PaperCurve("base circle", *outline(circle), MUTED, "dotted"),
             ), kind="outline"),
         ),
     )  # fmt: skip

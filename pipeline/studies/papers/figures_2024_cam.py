@@ -30,8 +30,8 @@ from camwright.pipeline.studies.papers.paper_figure import (
     MUTED,
     SPEED,
     TORQUE,
-    Panel,
     PaperFigure,
+    PaperPanel,
     beside,
 )
 from camwright.pipeline.studies.papers.published_figures import Target
@@ -70,15 +70,15 @@ def _torques(
         "spring has 5884 N/m (0.6 kgf/mm); the 588 000 N/m printed would give a hundred times "
         "the torque.",
         (
-            Panel(CRANK, TORQUE, (
+            PaperPanel(CRANK, TORQUE, (
                 on_cycle("gas, idle", parts["gas"]),
                 on_cycle("gas, full load", loaded.components["gas"], 1),
             )),
-            Panel(CRANK, TORQUE, tuple(
+            PaperPanel(CRANK, TORQUE, tuple(
                 on_cycle(COMPONENTS[name], parts[COMPONENTS[name]], k)
                 for k, name in enumerate(("inertia", "valve_train"), start=2)
             )),
-            Panel(CRANK, TORQUE, (on_cycle("idle, all torques about their mean", about),)),
+            PaperPanel(CRANK, TORQUE, (on_cycle("idle, all torques about their mean", about),)),
         ),
         (
             beside(targets, "C24-01", share),
@@ -96,7 +96,7 @@ def _outlines(targets: Mapping[str, Target], pitch: PitchCurve) -> PaperFigure:
         "8 mm; the 80 mm printed is larger than the cam. The radius grows from 50 mm: below it "
         f"the preload stores {PRELOAD_ENERGY:.2g} J, and the cycle of the engine needs "
         f"{stored:.3g} J.",
-        (Panel(X, Y, roller_outlines(pitch, ROLLER_RADIUS), kind="outline"),),
+        (PaperPanel(X, Y, roller_outlines(pitch, ROLLER_RADIUS), kind="outline"),),
         (beside(targets, "C24-04", 1e3 * radius, note="maximum"),),
     )  # fmt: skip
 
@@ -114,12 +114,12 @@ def _balance(targets: Mapping[str, Target], about: Array, pitch: PitchCurve) -> 
         f"does not close by {1e3 * printed_gap(about, pitch):.2f} mm. Speed with "
         f"{EFFECTIVE_INERTIA:g} kg m\u00b2, tuned to the engine at 1500 rpm; none is printed.",
         (
-            Panel(CRANK, TORQUE, (
+            PaperPanel(CRANK, TORQUE, (
                 on_cycle("engine without the cam", about, MUTED, "dashed"),
                 on_cycle("mechanism", delivered, 0),
                 on_cycle("engine with the cam", left, 1),
             )),
-            Panel(CRANK, SPEED, (
+            PaperPanel(CRANK, SPEED, (
                 on_cycle("engine without the cam", without, MUTED, "dashed"),
                 on_cycle("engine with the cam", with_cam, 1),
             )),

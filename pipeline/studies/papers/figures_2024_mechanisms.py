@@ -17,10 +17,10 @@ from camwright.pipeline.studies.papers.mechanism_sizes import OFFSET_SHARE, Work
 from camwright.pipeline.studies.papers.paper_figure import (
     PUBLISHED,
     Beside,
-    Curve,
     Look,
-    Panel,
+    PaperCurve,
     PaperFigure,
+    PaperPanel,
     beside,
     closed,
     closed_angle,
@@ -78,11 +78,11 @@ def figures(targets: Mapping[str, Target]) -> tuple[PaperFigure, ...]:
     )
 
 
-def _over_turn(label: str, values: Array, series: int, look: Look = "line") -> Curve:
-    return Curve(label, ANGLE, closed(values), series, look)
+def _over_turn(label: str, values: Array, series: int, look: Look = "line") -> PaperCurve:
+    return PaperCurve(label, ANGLE, closed(values), series, look)
 
 
-def _each(named: Mapping[str, Drive], of: Callable[[Drive], Array]) -> tuple[Curve, ...]:
+def _each(named: Mapping[str, Drive], of: Callable[[Drive], Array]) -> tuple[PaperCurve, ...]:
     looks: tuple[Look, ...] = ("dashed", "line", "line")
     return tuple(
         _over_turn(name, of(drive), k, look)
@@ -105,14 +105,14 @@ def _motion(rod: SliderCrankDrive, cams: Mapping[str, EccentricDrive]) -> PaperF
         "angular speed and acceleration of the rod and of the rollers, which turn against the "
         f"shaft and roll without slip. {SIZES}",
         (
-            Panel(PHI, "speed ratio, mm/rad",
+            PaperPanel(PHI, "speed ratio, mm/rad",
                   (_over_turn("all three", 1e3 * linkage.height_rate(phi), 0),)),
-            Panel(PHI, "acceleration, m/s²",
+            PaperPanel(PHI, "acceleration, m/s²",
                   (_over_turn("all three", SPEED**2 * linkage.height_rate_slope(phi), 0),)),
-            Panel(PHI, "angular speed, rad/s", tuple(
+            PaperPanel(PHI, "angular speed, rad/s", tuple(
                 _over_turn(name, SPEED * spin, k) for k, (name, (spin, _)) in
                 enumerate(spins.items()))),
-            Panel(PHI, "ang. acceleration, rad/s²", tuple(
+            PaperPanel(PHI, "ang. acceleration, rad/s²", tuple(
                 _over_turn(name, SPEED**2 * bend, k) for k, (name, (_, bend)) in
                 enumerate(spins.items()))),
         ),
@@ -140,11 +140,13 @@ def _forces(targets: Mapping[str, Target], named: Mapping[str, Drive]) -> PaperF
         f"over motor torque. {SIZES} The forces of the small roller come from a traction that "
         "rolling without slip needs and its contact cannot transmit.",
         (
-            Panel(PHI, "shaft O, N", _each(named, size("o"))),
-            Panel(PHI, "pair A, N", _each(named, size("a"))),
-            Panel(PHI, "pin B, N", _each(named, size("b"))),
-            Panel(PHI, "guide, N", _each(named, lambda d: np.abs(d.reactions(phi, SPEED).side))),
-            Panel(PHI, "force over torque, 1/m", _each(named, efficiency)),
+            PaperPanel(PHI, "shaft O, N", _each(named, size("o"))),
+            PaperPanel(PHI, "pair A, N", _each(named, size("a"))),
+            PaperPanel(PHI, "pin B, N", _each(named, size("b"))),
+            PaperPanel(
+                PHI, "guide, N", _each(named, lambda d: np.abs(d.reactions(phi, SPEED).side))
+            ),
+            PaperPanel(PHI, "force over torque, 1/m", _each(named, efficiency)),
         ),
         (
             beside(targets, "E24-08", means["big roller"]),
@@ -168,10 +170,10 @@ def _energy(
     for k, pair in enumerate(PAIRS):
         end = left + [getattr(losses, pair) for losses in rows.values()]
         label = pair.replace("_a", " A").replace("_b", " B")
-        curves.append(Curve(label, left, places, k, "bar", end))
+        curves.append(PaperCurve(label, left, places, k, "bar", end))
         left = end
     printed = [targets[f"E24-{k:02d}"].value for k in (1, 2, 3)]
-    curves.append(Curve("printed in the paper", printed, places[:3], PUBLISHED, "points"))
+    curves.append(PaperCurve("printed in the paper", printed, places[:3], PUBLISHED, "points"))
     crank, big, small = (
         rows[name].total for name in ("slider-crank", "big roller", "small roller")
     )
@@ -187,7 +189,7 @@ def _energy(
         f"{need:.1f} on average. Below, the rollers slip at the traction stated: at 0.2 the order "
         "is the measured one, with a small difference.",
         (
-            Panel("friction energy of a turn, J", "", tuple(curves), kind="bars",
+            PaperPanel("friction energy of a turn, J", "", tuple(curves), kind="bars",
                   rows=tuple(rows)),
         ),
         (
@@ -205,25 +207,25 @@ def _energy(
 MECHANISMS = {"slider_crank": "slider-crank", "big": "big roller", "small": "small roller"}
 
 
-def _range(space: Workspace, values: Array, label: str, series: int) -> list[Curve]:
+def _range(space: Workspace, values: Array, label: str, series: int) -> list[PaperCurve]:
     """Band of values (cranks, ratios) between their extremes over the ratios."""
     known = values[:, np.isfinite(values).all(axis=0)]
     cranks, low, high = 1e3 * space.cranks, known.min(axis=1), known.max(axis=1)
     return [
-        Curve(label, cranks, low, series, "band", high),
-        Curve("", cranks, low, series, "thin"),
-        Curve("", cranks, high, series, "thin"),
+        PaperCurve(label, cranks, low, series, "band", high),
+        PaperCurve("", cranks, low, series, "thin"),
+        PaperCurve("", cranks, high, series, "thin"),
     ]
 
 
 def _workspaces(space: Workspace) -> PaperFigure:
-    def panel(suffix: str, title: str) -> Panel:
+    def panel(suffix: str, title: str) -> PaperPanel:
         curves = [
             curve
             for k, (name, label) in enumerate(MECHANISMS.items())
             for curve in _range(space, getattr(space, name + suffix), label, k)
         ]
-        return Panel("crank l₁, mm", "energy of a turn, J", tuple(curves), title=title)
+        return PaperPanel("crank l₁, mm", "energy of a turn, J", tuple(curves), title=title)
 
     return PaperFigure(
         "e24-workspaces", "E24", "9", "Friction energy over the sizes of the mechanisms",
@@ -243,7 +245,7 @@ def _differences(targets: Mapping[str, Target], space: Workspace) -> PaperFigure
     }  # fmt: skip
     series = {"slider_crank": 0, "big_offset": 1, "small": 2}
 
-    def panel(names: tuple[str, ...], title: str) -> Panel:
+    def panel(names: tuple[str, ...], title: str) -> PaperPanel:
         curves = [
             curve
             for name in names
@@ -252,7 +254,7 @@ def _differences(targets: Mapping[str, Target], space: Workspace) -> PaperFigure
                 series.get(name, series.get(name.removesuffix("_offset"), 3)),
             )
         ]  # fmt: skip
-        return Panel("crank l₁, mm", "above the best, %", tuple(curves), title=title)
+        return PaperPanel("crank l₁, mm", "above the best, %", tuple(curves), title=title)
 
     rod, small = (100 * space.above_best(name) for name in ("slider_crank", "small"))
     best = f"{space.big_is_best} of {space.combinations}"
@@ -278,9 +280,9 @@ def _run_down(named: Mapping[str, Drive]) -> PaperFigure:
     time, down, fall = np.linspace(0.0, 2.5, 200), [], []
     for k, (name, drive) in enumerate(named.items()):
         rate = drive.losses(SPEED).total / (FULL_TURN * SPEED * SHAFT_INERTIA)  # 1/s
-        down.append(Curve(name, time, SPEED * np.exp(-rate * time), k))
+        down.append(PaperCurve(name, time, SPEED * np.exp(-rate * time), k))
         energy = np.array([drive.losses(float(speed)).total for speed in SPEEDS])
-        fall.append(Curve(name, SPEEDS, -2.0 * energy / SHAFT_INERTIA, k))
+        fall.append(PaperCurve(name, SPEEDS, -2.0 * energy / SHAFT_INERTIA, k))
     return PaperFigure(
         "e24-run-down", "E24", "13 and 15", "Run-down, and energy lost in each turn",
         f"Run-down from {SPEED:.4g} rad/s by viscous friction with {SHAFT_INERTIA:g} kg m² in "
@@ -289,8 +291,8 @@ def _run_down(named: Mapping[str, Drive]) -> PaperFigure:
         "rad/s with the small roller and at 37.5 with the others. Its characteristic is not "
         "printed.",
         (
-            Panel("time, s", "shaft speed, rad/s", tuple(down)),
-            Panel("shaft speed, rad/s", "change of ω², rad²/s²", tuple(fall)),
+            PaperPanel("time, s", "shaft speed, rad/s", tuple(down)),
+            PaperPanel("shaft speed, rad/s", "change of ω², rad²/s²", tuple(fall)),
         ),
     )  # fmt: skip
 
@@ -307,7 +309,11 @@ def _inertia(targets: Mapping[str, Target], named: Mapping[str, Drive]) -> Paper
         "e24-inertia", "E24", "14", "Inertia reduced to the shaft",
         f"Equations 49 and 50 with {SHAFT_INERTIA:g} kg m² in common. The masses are not printed: "
         "1 kg of slider, 0.6 kg of rod, and rollers and discs of solid steel 20 mm wide.",
-        (Panel(PHI, "reduced inertia, kg m²", _each(named, lambda d: d.reduced_inertia(phi))),),
+        (
+            PaperPanel(
+                PHI, "reduced inertia, kg m²", _each(named, lambda d: d.reduced_inertia(phi))
+            ),
+        ),
         (
             *(beside(targets, "E24-11", discs[name], place=k, note=name) for name, k in rows),
             *(
@@ -348,17 +354,17 @@ def _friction(targets: Mapping[str, Target]) -> PaperFigure:
         f"inertia assumed. The 95 % interval of one record is ± {half[0]:.1f} % of the pin and "
         f"± {half[1]:.1f} % of the shaft. The guide on the shaker (24.4 N s/m) is not identified.",
         (
-            Panel("time, s", "angle, rad", (
-                Curve("record", time, swings[0][0], 0, "points"),
-                Curve("fit", time, fitted(swings[0]), 1),
+            PaperPanel("time, s", "angle, rad", (
+                PaperCurve("record", time, swings[0][0], 0, "points"),
+                PaperCurve("fit", time, fitted(swings[0]), 1),
             )),
-            Panel("time, s", "residual, mrad", tuple(
-                Curve(name, time, 1e3 * identified.residual, k, "thin")
+            PaperPanel("time, s", "residual, mrad", tuple(
+                PaperCurve(name, time, 1e3 * identified.residual, k, "thin")
                 for k, (name, (_, identified)) in enumerate(zip(names, swings, strict=True))
             )),
-            Panel("time, s", "shaft speed, rad/s", (
-                Curve("record", seconds, downs[0][0], 0, "points"),
-                Curve("fit", seconds, fitted(downs[0]), 1),
+            PaperPanel("time, s", "shaft speed, rad/s", (
+                PaperCurve("record", seconds, downs[0][0], 0, "points"),
+                PaperCurve("fit", seconds, fitted(downs[0]), 1),
             )),
         ),
         (

@@ -34,10 +34,10 @@ from camwright.pipeline.studies.papers.paper_figure import (
     SPEED,
     TORQUE,
     Beside,
-    Curve,
     Look,
-    Panel,
+    PaperCurve,
     PaperFigure,
+    PaperPanel,
     beside,
     outline,
 )
@@ -102,7 +102,7 @@ def _smoothing(targets: Mapping[str, Target], torque: Array, inertia: float) -> 
         "The paper does not state the spacing of the values: 10 deg of the teeth, 5 deg of both "
         "edges or 1 deg of its simulation. 60 deg is taken in the other figures because it is the "
         "only one near the printed standard deviation of the compensated torque.",
-        (Panel(CRANK, TORQUE, tuple(curves)),),
+        (PaperPanel(CRANK, TORQUE, tuple(curves)),),
         tuple(values),
     )  # fmt: skip
 
@@ -112,7 +112,7 @@ def _outlines(cams: Cams) -> PaperFigure:
     for name, words in CUT_FOR.items():
         pitch = cams[name, DESIGN].pitch
         outlines = roller_outlines(pitch, ROLLER_RADIUS)
-        panels.append(Panel(X, Y, outlines, title=TITLES[name], kind="outline"))
+        panels.append(PaperPanel(X, Y, outlines, title=TITLES[name], kind="outline"))
         radius = np.hypot(*pitch.points(uniform_turn(POSITIONS)))
         values.append(
             Beside(f"minimum radius of the pitch curve, cam {words}", 50.0,
@@ -129,15 +129,15 @@ def _outlines(cams: Cams) -> PaperFigure:
     )  # fmt: skip
 
 
-def roller_outlines(pitch: PitchCurve, roller_radius: float) -> tuple[Curve, ...]:
+def roller_outlines(pitch: PitchCurve, roller_radius: float) -> tuple[PaperCurve, ...]:
     """Contour under a roller, pitch curve and base circle."""
     theta = uniform_turn(OUTLINE_POINTS)
     contour = RollerContour(pitch, roller_radius).points(theta)
     circle = pitch.radius_base * np.stack([np.cos(theta), np.sin(theta)])
     return (
-        Curve("cam with the roller", *outline(contour), 0, "fill"),
-        Curve("cam without a roller, as printed", *outline(pitch.points(theta)), 1),
-        Curve("circle of the minimum radius", *outline(circle), MUTED, "dotted"),
+        PaperCurve("cam with the roller", *outline(contour), 0, "fill"),
+        PaperCurve("cam without a roller, as printed", *outline(pitch.points(theta)), 1),
+        PaperCurve("circle of the minimum radius", *outline(circle), MUTED, "dotted"),
     )
 
 
@@ -146,7 +146,7 @@ def _faces(cam: Balanced) -> PaperFigure:
     contours = follower_contours(cam.pitch.lift, speed_reconstruction.SPEED_MEAN / RATIO)
     looks: tuple[Look, ...] = ("fill", "dashed", "line")
     curves = tuple(
-        Curve(contour.follower, *outline(contour.points), k, look)
+        PaperCurve(contour.follower, *outline(contour.points), k, look)
         for k, (contour, look) in enumerate(zip(contours, looks, strict=True))
     )
     return PaperFigure(
@@ -157,7 +157,7 @@ def _faces(cam: Balanced) -> PaperFigure:
         f"base radius with an undercut factor of {UNDERCUT_FACTOR.default:g} makes a much larger "
         f"cam, with more friction on the face (coefficient {FACE_FRICTION:g}, assumed) and less "
         "load on the guides.",
-        (Panel(X, Y, curves, kind="outline"),),
+        (PaperPanel(X, Y, curves, kind="outline"),),
         table=tuple(contour.row for contour in contours),
     )  # fmt: skip
 
@@ -175,7 +175,7 @@ def _mechanism(cam: Balanced) -> PaperFigure:
         "Constant speed, preload of 242 N, cam cut for the full engine torque smoothed over "
         "60 deg. Guide friction 0.04 and 0.2 and follower mass of 175 g as printed; the overhang "
         "of 30 mm at full lift is assumed, for the paper gives none.",
-        (Panel(CRANK, TORQUE, tuple(on_cycle(*part) for part in parts)),),
+        (PaperPanel(CRANK, TORQUE, tuple(on_cycle(*part) for part in parts)),),
     )  # fmt: skip
 
 
@@ -186,7 +186,7 @@ def _balance(targets: Mapping[str, Target], torque: Array, cam: Balanced) -> Pap
         "Constant speed, preload of 242 N, cam cut for the full torque. Engine torque about its "
         "mean, reconstructed from the printed statistics, which imposes its standard deviation.",
         (
-            Panel(CRANK, TORQUE, (
+            PaperPanel(CRANK, TORQUE, (
                 on_cycle("engine", about, 0),
                 on_cycle("mechanism", -cam.loads.cam_torque / RATIO, 3),
                 on_cycle("friction", -cam.friction_torque, 2),
@@ -216,10 +216,10 @@ def _preloads(targets: Mapping[str, Target], torque: Array, cams: Cams, name: st
         )
     ]
 
-    def panel(axis: str, without: Array | None, curves: list[Array]) -> Panel:
+    def panel(axis: str, without: Array | None, curves: list[Array]) -> PaperPanel:
         lines = [] if without is None else [on_cycle("without the cam", without, MUTED, "dashed")]
         lines += [on_cycle(w, c, k) for k, (w, c) in enumerate(zip(words, curves, strict=True))]
-        return Panel(CRANK, axis, tuple(lines))
+        return PaperPanel(CRANK, axis, tuple(lines))
 
     remark = (
         "The order of the preloads is the printed one, the ripple is far below it."
@@ -275,11 +275,11 @@ def _with_and_without(targets: Mapping[str, Target], torque: Array, cams: Cams) 
         "ratio, and cut the cam for half of the engine torque. Neither cam gives the printed "
         "torque and speed ripple together.",
         (
-            Panel(CRANK, TORQUE, tuple(
+            PaperPanel(CRANK, TORQUE, tuple(
                 on_cycle(label, values_, k - 1, look)
                 for k, (label, values_, look) in enumerate(zip(labels, torques, looks, strict=True))
             )),
-            Panel(CRANK, SPEED, tuple(
+            PaperPanel(CRANK, SPEED, tuple(
                 on_cycle(label, values_, k - 1, look)
                 for k, (label, values_, look) in enumerate(zip(labels, speeds, looks, strict=True))
             )),

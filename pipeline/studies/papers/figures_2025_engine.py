@@ -46,10 +46,10 @@ from camwright.pipeline.studies.papers.paper_figure import (
     SPEED,
     TORQUE,
     Beside,
-    Curve,
     Look,
-    Panel,
+    PaperCurve,
     PaperFigure,
+    PaperPanel,
     beside,
     closed,
     closed_angle,
@@ -82,15 +82,15 @@ def figures(targets: Mapping[str, Target]) -> tuple[PaperFigure, ...]:
     )
 
 
-def on_cycle(label: str, values: Array, series: int = 0, look: Look = "line") -> Curve:
+def on_cycle(label: str, values: Array, series: int = 0, look: Look = "line") -> PaperCurve:
     """A curve over the closed cycle of the engine."""
-    return Curve(label, CYCLE, closed(values), series, look)
+    return PaperCurve(label, CYCLE, closed(values), series, look)
 
 
-def points(pairs: Sequence[tuple[float, float]], label: str = "printed in the paper") -> Curve:
+def points(pairs: Sequence[tuple[float, float]], label: str = "printed in the paper") -> PaperCurve:
     """Published points."""
     x, y = np.array(pairs, dtype=float).T
-    return Curve(label, x, y, PUBLISHED, "points")
+    return PaperCurve(label, x, y, PUBLISHED, "points")
 
 
 def _engine(
@@ -116,12 +116,12 @@ def _engine(
         f"{EFFECTIVE_INERTIA:g} kg m\u00b2; the printed 0.0026 kg m\u00b2 contradicts the printed "
         "speeds.",
         (
-            Panel(CRANK, TORQUE, (
+            PaperPanel(CRANK, TORQUE, (
                 *(on_cycle(name, values, k) for k, (name, values) in
                   enumerate(zip(names, (torque, tuned.total, fast.total), strict=True))),
                 points(peaks),
             )),
-            Panel(CRANK, SPEED, (
+            PaperPanel(CRANK, SPEED, (
                 *(on_cycle(name, values, k) for k, (name, values) in enumerate(
                     zip(names, (speed, slow_motion.speed, fast_motion.speed), strict=True))),
                 points(STOCK_POINTS),
@@ -169,25 +169,30 @@ def _voltage(rig: TenRuns) -> PaperFigure:
     )  # fmt: skip
 
 
-def _voltage_panel(runs: TenRuns) -> Panel:
+def _voltage_panel(runs: TenRuns) -> PaperPanel:
     low, high = VOLTAGE_WINDOW
     inside = (runs.time >= low) & (runs.time <= high)
-    edges: list[Curve] = []
+    edges: list[PaperCurve] = []
     for label, edge in zip(("middle of a tooth", "between teeth"), runs.edges, strict=True):
         times = edge.times[(edge.times >= low) & (edge.times <= high)]
-        edges.append(Curve(label, 1e3 * times, np.zeros(times.size), 1 + len(edges), "points"))
-    signal = Curve("voltage", 1e3 * runs.time[inside], runs.voltage[inside])
-    return Panel("time, ms", "voltage, V", (signal, *edges))
+        edges.append(PaperCurve(label, 1e3 * times, np.zeros(times.size), 1 + len(edges), "points"))
+    signal = PaperCurve("voltage", 1e3 * runs.time[inside], runs.voltage[inside])
+    return PaperPanel("time, ms", "voltage, V", (signal, *edges))
 
 
 def _rig(targets: Mapping[str, Target], rig: TenRuns) -> PaperFigure:
     mean = rig.tooth_mean
     thin = [
-        Curve(f"{RUNS * CYCLES} cycles of {RUNS} runs" if k == 0 else "", rig.tooth_angle, cycle,
-              MUTED, "thin")
+        PaperCurve(
+            f"{RUNS * CYCLES} cycles of {RUNS} runs" if k == 0 else "",
+            rig.tooth_angle,
+            cycle,
+            MUTED,
+            "thin",
+        )
         for k, cycle in enumerate(rig.teeth)
-    ]  # fmt: skip
-    reference = Curve(
+    ]
+    reference = PaperCurve(
         "speed of the motor", rig.tooth_angle, np.full(mean.size, RIG_SPEED), PUBLISHED, "dashed"
     )
     return PaperFigure(
@@ -196,7 +201,9 @@ def _rig(targets: Mapping[str, Target], rig: TenRuns) -> PaperFigure:
         "every turn: errors of the wheel. Their size is imposed by the printed standard deviation "
         f"({np.degrees(pitch_errors().std()):.3f} deg of each tooth); the amplitude follows.",
         (
-            Panel(CRANK, SPEED, (*thin, Curve("mean", rig.tooth_angle, mean, 1), reference)),
+            PaperPanel(
+                CRANK, SPEED, (*thin, PaperCurve("mean", rig.tooth_angle, mean, 1), reference)
+            ),
         ),
         (
             *(
@@ -210,7 +217,7 @@ def _rig(targets: Mapping[str, Target], rig: TenRuns) -> PaperFigure:
 
 
 @dataclass(frozen=True, eq=False)
-class _State:
+class _Runs:
     """A group of ten runs: modelled speeds of the runs, and the speed of the cylinder model."""
 
     name: str
@@ -224,7 +231,7 @@ class _State:
     basis: Basis
 
 
-def _states(torque: Array, inertia: float) -> tuple[_State, ...]:
+def _states(torque: Array, inertia: float) -> tuple[_Runs, ...]:
     """The engine alone, with the mechanism disengaged, and with it engaged at 242 N."""
     mean = speed_reconstruction.SPEED_MEAN
     idle = balanced_torque(GX120, IDLE_SPEED).total
@@ -252,9 +259,9 @@ def _states(torque: Array, inertia: float) -> tuple[_State, ...]:
     def state(
         name: str, numbers: str, title: str, caption: str, rows: tuple[str, ...],
         speed: Callable[[Array, float], Array], total: float, basis: Basis,
-    ) -> _State:  # fmt: skip
+    ) -> _Runs:  # fmt: skip
         runs = [speed(driving - driving.mean(), inertia) for driving in scattered(torque)]
-        return _State(
+        return _Runs(
             name, numbers, title, caption, total * inertia, runs, speed(idle, EFFECTIVE_INERTIA),
             rows, basis,
         )  # fmt: skip
@@ -279,13 +286,13 @@ def _states(torque: Array, inertia: float) -> tuple[_State, ...]:
     )  # fmt: skip
 
 
-def _runs(targets: Mapping[str, Target], state: _State, rig: TenRuns) -> PaperFigure:
+def _runs(targets: Mapping[str, Target], state: _Runs, rig: TenRuns) -> PaperFigure:
     runs = ten_runs(state.speeds)
     trace = runs.trace
     mean, scatter, ripple = trace.mean, trace.scatter, trace.statistics
     floor = float(rig.tooth_mean.std())
     thin = [
-        Curve(
+        PaperCurve(
             f"{trace.count} cycles of {RUNS} runs" if k == 0 else "",
             CYCLE[::2],
             closed(cycle)[::2],
@@ -295,7 +302,7 @@ def _runs(targets: Mapping[str, Target], state: _State, rig: TenRuns) -> PaperFi
         for k, cycle in enumerate(trace.speeds)
     ]
     low, high = closed(mean - scatter), closed(mean + scatter)
-    band = Curve("one standard deviation of the runs", CYCLE, low, 1, "band", high)
+    band = PaperCurve("one standard deviation of the runs", CYCLE, low, 1, "band", high)
     stock = state.name == "stock"
     read = trace.torque(state.inertia)
     bar = trace.error_bar(state.inertia)
@@ -320,8 +327,8 @@ def _runs(targets: Mapping[str, Target], state: _State, rig: TenRuns) -> PaperFi
         ))),
         (
             _voltage_panel(runs),
-            Panel(CRANK, SPEED, (*thin, on_cycle("mean", mean, 1))),
-            Panel(
+            PaperPanel(CRANK, SPEED, (*thin, on_cycle("mean", mean, 1))),
+            PaperPanel(
                 CRANK, SPEED,
                 (band, on_cycle("mean of the runs", mean, 1),
                  on_cycle("cylinder model", state.model, 2, "dashed"),
@@ -330,8 +337,8 @@ def _runs(targets: Mapping[str, Target], state: _State, rig: TenRuns) -> PaperFi
                 f"{trace.noise_amplification(state.inertia) * floor:.1f} N m; bandwidth "
                 f"{trace.bandwidth:.0f} Hz, {trace.filter.harmonics} harmonics of the cycle",
             ),
-            Panel(CRANK, TORQUE, (
-                Curve("95 % error bar", CYCLE, closed(read.total - bar), 1, "band",
+            PaperPanel(CRANK, TORQUE, (
+                PaperCurve("95 % error bar", CYCLE, closed(read.total - bar), 1, "band",
                       closed(read.total + bar)),
                 on_cycle("of the mean speed", read.total, 1),
                 on_cycle("put in", put_in, 0, "dashed"),

@@ -19,9 +19,9 @@ from camwright.pipeline.cycle.crank_speed import study_of
 from camwright.pipeline.preview import preview_case
 from camwright.pipeline.results.trial import Trial
 from camwright.pipeline.studies.papers.paper_figure import (
-    Curve,
-    Panel,
+    PaperCurve,
     PaperFigure,
+    PaperPanel,
     closed,
     closed_angle,
     outline,
@@ -64,12 +64,12 @@ def _machine(trial: Trial) -> dict[str, Any]:
     angle = closed_angle(count, 360.0)
     speeds = _speeds(trial)
     panels = (
-        Panel(ANGLE, "torque about its mean, N m", (
-            Curve("without the cam", angle, closed(before)),
-            Curve("with the cam", angle, closed(after), 1),
+        PaperPanel(ANGLE, "torque about its mean, N m", (
+            PaperCurve("without the cam", angle, closed(before)),
+            PaperCurve("with the cam", angle, closed(after), 1),
         )),
         _outline(trial),
-        Panel(ANGLE, "lift, mm", (Curve("", angle, 1e3 * closed(lift(turn.theta))),)),
+        PaperPanel(ANGLE, "lift, mm", (PaperCurve("", angle, 1e3 * closed(lift(turn.theta))),)),
         *speeds,
     )  # fmt: skip
     judged = within_depth(trial.checks)
@@ -92,15 +92,17 @@ def _machine(trial: Trial) -> dict[str, Any]:
     }
 
 
-def _outline(trial: Trial) -> Panel:
+def _outline(trial: Trial) -> PaperPanel:
     """Contour about the axis of the cam, at the scale of its own."""
     x, y = outline(trial.contour.points(uniform_turn(720)))
     reach = 1.1 * float(np.hypot(x, y).max())
-    curve = Curve("", x, y, look="fill")
-    return Panel("x, mm", "y, mm", (curve,), kind="outline", window=(-reach, reach, -reach, reach))
+    curve = PaperCurve("", x, y, look="fill")
+    return PaperPanel(
+        "x, mm", "y, mm", (curve,), kind="outline", window=(-reach, reach, -reach, reach)
+    )
 
 
-def _speeds(trial: Trial) -> tuple[Panel, ...]:
+def _speeds(trial: Trial) -> tuple[PaperPanel, ...]:
     """Shaft speed without and with the cam; nothing without inertia or where the shaft stalls."""
     machine = trial.cycles[0].machine
     torque = engine_torques(trial.case)[machine.load_case]
@@ -111,12 +113,12 @@ def _speeds(trial: Trial) -> tuple[Panel, ...]:
     if study is None:
         return ()
 
-    def curve(label: str, speed: Array, series: int) -> Curve:
+    def curve(label: str, speed: Array, series: int) -> PaperCurve:
         rpm = closed(speed) * (60.0 / (2.0 * np.pi))
-        return Curve(label, closed_angle(speed.size, 360.0), rpm, series)
+        return PaperCurve(label, closed_angle(speed.size, 360.0), rpm, series)
 
     both = (
         curve("without the cam", study.before.speed, 0),
         curve("with the cam", study.after.speed, 1),
     )
-    return (Panel(ANGLE, "shaft speed, rpm", both),)
+    return (PaperPanel(ANGLE, "shaft speed, rpm", both),)

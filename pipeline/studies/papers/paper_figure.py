@@ -25,7 +25,7 @@ PUBLISHED = -2
 
 
 @dataclass(frozen=True, eq=False)
-class Curve:
+class PaperCurve:
     """One curve of a panel.
 
     Parameters
@@ -52,7 +52,7 @@ class Curve:
         return {"label": self.label, "series": self.series, "look": self.look, **numbers}
 
 
-def _numbers(curve: Curve, name: str, values: ArrayLike) -> list[float | None]:
+def _numbers(curve: PaperCurve, name: str, values: ArrayLike) -> list[float | None]:
     array = np.asarray(values, dtype=float)
     if array.ndim != 1 or not np.isfinite(array).any() or np.isinf(array).any():
         raise InputError(f"curve {curve.label}.{name}", array.shape, "one dimension with a value")
@@ -61,7 +61,7 @@ def _numbers(curve: Curve, name: str, values: ArrayLike) -> list[float | None]:
 
 
 @dataclass(frozen=True, eq=False)
-class Panel:
+class PaperPanel:
     """One pair of axes: quantities with units, curves, a note on the figure.
 
     `rows`: names of the bars of a panel of kind `bars`, from the top. `window`: limits of an
@@ -70,7 +70,7 @@ class Panel:
 
     x: str
     y: str
-    curves: tuple[Curve, ...]
+    curves: tuple[PaperCurve, ...]
     title: str = ""
     note: str = ""
     kind: Kind = "lines"
@@ -134,7 +134,7 @@ class PaperFigure:
     numbers: str
     title: str
     caption: str
-    panels: tuple[Panel, ...]
+    panels: tuple[PaperPanel, ...]
     values: tuple[Beside, ...] = ()
     columns: int = 1
     table: tuple[Mapping[str, float | str | None], ...] = ()

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from camwright.geometry.contour import RollerContour
-from camwright.geometry.motion_laws import Motion, Segment
+from camwright.geometry.motion_laws import Segment, SegmentMotion
 from camwright.geometry.pitch_curve import PitchCurve
 from camwright.pipeline.follower.follower_forces import FollowerSystem, follower_loads
 from camwright.pipeline.follower.spring import Spring
@@ -43,10 +43,10 @@ class CamSet:
     compression: float
 
     @property
-    def motion(self) -> Motion:
+    def motion(self) -> SegmentMotion:
         """Harmonic rise and return, then dwell."""
         angle = float(np.radians(self.rise))
-        return Motion(
+        return SegmentMotion(
             (
                 Segment("harmonic", angle, self.stroke),
                 Segment("harmonic", angle, -self.stroke),

@@ -81,7 +81,7 @@ class Target:
 
 
 @dataclass(frozen=True)
-class Outcome:
+class FigureOutcome:
     """Computed value of a target, verdict and reason."""
 
     obtained: Any
@@ -93,7 +93,7 @@ class Outcome:
 class PaperResult:
     """Outcomes of one paper by target id, further studies, and records of a figure a group."""
 
-    outcomes: Mapping[str, Outcome]
+    outcomes: Mapping[str, FigureOutcome]
     studies: Mapping[str, Any] = field(default_factory=dict)
     figures: Sequence[Mapping[str, Any]] = ()
 
@@ -105,7 +105,7 @@ def judged(
     *,
     published: Any = None,
     angle_deg: float | None = None,
-) -> Outcome:
+) -> FigureOutcome:
     """Outcome by the tolerance of a target; NaN is not reproduced.
 
     Parameters
@@ -135,7 +135,7 @@ def judged(
             near = near and bool(turn <= tolerance.angle_size_deg)
             words = f"{words[:-4]} and {turn:.0f} deg off"
     verdict: Verdict = "reproduced" if near else "not reproduced"
-    return Outcome(obtained, verdict, ": ".join(filter(None, (words, reason))))
+    return FigureOutcome(obtained, verdict, ": ".join(filter(None, (words, reason))))
 
 
 def _points(unit: str) -> str:
@@ -168,9 +168,9 @@ def citations() -> dict[str, Mapping[str, Any]]:
     return dict(_document()["papers"])
 
 
-def row_record(target: Target, outcome: Outcome | None) -> dict[str, Any]:
+def row_record(target: Target, outcome: FigureOutcome | None) -> dict[str, Any]:
     """One row of ``validation.json``."""
-    judgement = outcome or Outcome(None, "not decidable", NOT_COMPUTED)
+    judgement = outcome or FigureOutcome(None, "not decidable", NOT_COMPUTED)
     return {
         "id": target.id,
         "paper": target.paper,

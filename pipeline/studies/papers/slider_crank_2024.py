@@ -18,7 +18,7 @@ from camwright.pipeline.studies.papers import validation_figures
 from camwright.pipeline.studies.papers.mechanism_sizes import Workspace, workspace
 from camwright.pipeline.studies.papers.paper_figure import PaperFigure, records
 from camwright.pipeline.studies.papers.published_figures import (
-    Outcome,
+    FigureOutcome,
     PaperResult,
     Target,
     judged,
@@ -76,9 +76,11 @@ def study(targets: Mapping[str, Target]) -> PaperResult:
         **_contact(targets, rod, cams),
         **_inertia(targets, rod, cams),
         **_trends(targets, space),
-        "E24-10": Outcome(None, "not decidable", "the regression has no verified public statement"),
-        "E24-12": Outcome(None, "not decidable", "the motor's characteristic is not printed"),
-        "E24-19": Outcome(None, "not decidable", "bench results, inputs here"),
+        "E24-10": FigureOutcome(
+            None, "not decidable", "the regression has no verified public statement"
+        ),
+        "E24-12": FigureOutcome(None, "not decidable", "the motor's characteristic is not printed"),
+        "E24-19": FigureOutcome(None, "not decidable", "bench results, inputs here"),
     }
     drawn = (
         _energy_figure(targets, rod, cams),
@@ -90,7 +92,7 @@ def study(targets: Mapping[str, Target]) -> PaperResult:
 
 def _energies(
     targets: Mapping[str, Target], rod: SliderCrankDrive, cams: Mapping[str, EccentricDrive]
-) -> dict[str, Outcome]:
+) -> dict[str, FigureOutcome]:
     crank = rod.losses(SPEED).total
     big, small = (cams[name].losses(SPEED).total for name in RADII)
 
@@ -107,9 +109,9 @@ def _energies(
 
 def _contact(
     targets: Mapping[str, Target], rod: SliderCrankDrive, cams: Mapping[str, EccentricDrive]
-) -> dict[str, Outcome]:
+) -> dict[str, FigureOutcome]:
     phi = uniform_turn(720)
-    outcomes: dict[str, Outcome] = {}
+    outcomes: dict[str, FigureOutcome] = {}
     for name, slide, load in (("big", "E24-06", "E24-08"), ("small", "E24-07", "E24-09")):
         lost = cams[name].sliding_loss(SPEED, TRACTION[name], CREEP, PRINTED_LOAD[name])
         outcomes[slide] = judged(
@@ -133,7 +135,7 @@ def _contact(
 
 def _inertia(
     targets: Mapping[str, Target], rod: SliderCrankDrive, cams: Mapping[str, EccentricDrive]
-) -> dict[str, Outcome]:
+) -> dict[str, FigureOutcome]:
     inertias = [cams[name].masses.disc_inertia for name in ("small", "big")]
     phi = uniform_turn(720)
     rises = [
@@ -144,7 +146,7 @@ def _inertia(
         "E24-11": judged(
             targets["E24-11"], inertias, "solid steel discs, 20 mm wide, of the inferred radii"
         ),
-        "E24-13": Outcome(
+        "E24-13": FigureOutcome(
             rises,
             "not decidable",
             "masses are not printed; with assumed ones and 0.075 kg m2 in common",
@@ -179,7 +181,7 @@ def _force_figure(
     )
 
 
-def _trends(targets: Mapping[str, Target], space: Workspace) -> dict[str, Outcome]:
+def _trends(targets: Mapping[str, Target], space: Workspace) -> dict[str, FigureOutcome]:
     total = space.combinations
     rod, small = 100 * space.above_best("slider_crank"), 100 * space.above_best("small")
     worse = all(
@@ -191,7 +193,7 @@ def _trends(targets: Mapping[str, Target], space: Workspace) -> dict[str, Outcom
         )
     )
 
-    def trend(row: str, holds: bool, reason: str) -> Outcome:
+    def trend(row: str, holds: bool, reason: str) -> FigureOutcome:
         return judged(targets[row], targets[row].value if holds else "no", reason)
 
     corner = bool(small.max() == small[0, 0])

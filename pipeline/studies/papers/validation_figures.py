@@ -17,10 +17,10 @@ from camwright.pipeline.studies.papers.paper_figure import (
     PUBLISHED,
     SPEED,
     TORQUE,
-    Curve,
     Look,
-    Panel,
+    PaperCurve,
     PaperFigure,
+    PaperPanel,
     closed,
     closed_angle,
 )
@@ -36,7 +36,7 @@ Targets = Mapping[str, Target]
 
 
 def _figure(
-    targets: Targets, row: str, numbers: str, caption: str, *panels: Panel, columns: int = 1
+    targets: Targets, row: str, numbers: str, caption: str, *panels: PaperPanel, columns: int = 1
 ) -> PaperFigure:
     """Figure of the group of a row, beside the figures of the paper of these numbers."""
     target = targets[row]
@@ -46,25 +46,25 @@ def _figure(
 
 def _over(
     label: str, values: Array, series: int, look: Look = "line", turn: float = 720.0
-) -> Curve:
+) -> PaperCurve:
     """A curve over a closed cycle or turn, thinned."""
     thinned = values[:: max(values.size // SHOWN, 1)]
-    return Curve(label, closed_angle(thinned.size, turn), closed(thinned), series, look)
+    return PaperCurve(label, closed_angle(thinned.size, turn), closed(thinned), series, look)
 
 
-def _points(x: ArrayLike, y: ArrayLike) -> Curve:
+def _points(x: ArrayLike, y: ArrayLike) -> PaperCurve:
     """Published points."""
-    return Curve(PRINTED, x, y, PUBLISHED, "points")
+    return PaperCurve(PRINTED, x, y, PUBLISHED, "points")
 
 
-def _speeds(targets: Targets, rows: Sequence[str], others: Mapping[float, float]) -> Curve:
+def _speeds(targets: Targets, rows: Sequence[str], others: Mapping[float, float]) -> PaperCurve:
     """Published speeds at their crank angles, of rows and of further angles."""
     pairs = [(float(targets[row].tolerance.angle_deg or 0.0), targets[row].value) for row in rows]
     x, y = zip(*sorted([*pairs, *others.items()]), strict=True)
     return _points(x, y)
 
 
-def _at_peak(target: Target, torque: Array) -> Curve:
+def _at_peak(target: Target, torque: Array) -> PaperCurve:
     """A published peak, at the angle of the peak of a curve."""
     return _points([720.0 * int(torque.argmax()) / torque.size], [target.value])
 
@@ -78,9 +78,9 @@ def engine_simulation(targets: Targets, torque: Torque, motion: CrankMotion) -> 
         "Cylinder model with the printed peak torque and the effective inertia, beside the values "
         "that the paper prints of its own simulation. The swing of the speed is too large: the "
         "paper's torque is not that of an unloaded idle.",
-        Panel(CRANK, TORQUE, (_over("model", torque.total, 0),
+        PaperPanel(CRANK, TORQUE, (_over("model", torque.total, 0),
                               _at_peak(targets["C25-02"], torque.total))),
-        Panel(CRANK, SPEED, (_over("model", motion.speed, 0),
+        PaperPanel(CRANK, SPEED, (_over("model", motion.speed, 0),
                              _speeds(targets, ("C25-04", "C25-05"), {}))),
     )  # fmt: skip
 
@@ -105,12 +105,12 @@ def stock_engine(
         "The reconstruction is the smoothest speed with the printed statistics; its torque has "
         "them by the effective inertia. The cylinder model is tuned to the same idle: it has the "
         "swing, but its speed still rises at 450 deg, where the measured one has its maximum.",
-        Panel(CRANK, TORQUE, (
+        PaperPanel(CRANK, TORQUE, (
             _over("reconstruction", measured, 0),
             _over("cylinder model", torque.total, 1, "dashed"),
             _at_peak(targets["C25-03"], measured),
         )),
-        Panel(CRANK, SPEED, (
+        PaperPanel(CRANK, SPEED, (
             _over("reconstruction", rebuilt.speed_at(count), 0),
             _over("cylinder model", motion.speed, 1, "dashed"),
             _over("with the mechanism mounted", heavier, 2, "dotted"),
@@ -148,9 +148,9 @@ def engaged_mechanism(
         "ripple of the speed over the preload. The cam for the full torque has the printed order "
         "of the preloads, but a fraction of the measured ripple; the cam for half of it is 5 and "
         "15 % off at 121 and 242 N, but has another order. Neither reproduces the measurement.",
-        Panel(CRANK, TORQUE, (_over("engine", torque, 0, "thin"), *residual)),
-        Panel("preload, N", "speed std, rad/s", (
-            *(Curve(names[name], list(by), list(by.values()), k)
+        PaperPanel(CRANK, TORQUE, (_over("engine", torque, 0, "thin"), *residual)),
+        PaperPanel("preload, N", "speed std, rad/s", (
+            *(PaperCurve(names[name], list(by), list(by.values()), k)
               for k, (name, by) in enumerate(stds.items(), start=1)),
             _points(list(printed), list(printed.values())),
         )),
@@ -175,10 +175,10 @@ def engine_at_800(targets: Targets, torque: Torque, full: Array) -> PaperFigure:
         "4, 6, 8 and 15",
         "Above: torques at idle, 800 rpm, by component. Below: full load, with the mean of each "
         f"stroke; the point is the printed {ratio:g} times the mean magnitude of the other three.",
-        Panel(CRANK, TORQUE, tuple(
+        PaperPanel(CRANK, TORQUE, tuple(
             _over(words, torque.components[name], k)
             for k, (name, words) in enumerate(parts.items()))),
-        Panel(CRANK, TORQUE, (
+        PaperPanel(CRANK, TORQUE, (
             _over("full load", full, 0), _over("mean of the stroke", steps, 1, "dashed"),
             _points([450.0], [ratio * others]),
         )),
@@ -200,8 +200,8 @@ def cam_without_losses(targets: Targets, torque: Array, left: Array, radius: Arr
         "Above: engine torque about its mean, and what the cam without losses leaves. Below: "
         "radius of the pitch curve. The printed wish of at most 50 mm is the radius from which it "
         "has to grow.",
-        Panel(CRANK, TORQUE, (_over("engine", torque, 0), _over("with the cam", left, 1))),
-        Panel(CRANK, "radius, mm", (
+        PaperPanel(CRANK, TORQUE, (_over("engine", torque, 0), _over("with the cam", left, 1))),
+        PaperPanel(CRANK, "radius, mm", (
             _over("pitch curve", radius, 0), _over("printed maximum", np.full(
                 radius.size, float(targets["C24-04"].value)), PUBLISHED, "dashed"),
         )),
@@ -229,11 +229,11 @@ def yields(
         "Above: eq. 6.18 over the rise; no mean of it reaches a printed yield. Below: its mean, "
         "the printed yields of the sets B1 to B4, and the mean of the squared sine of the pressure "
         "angle, which is near them.",
-        Panel("share of the rise", "eq. 6.18", tuple(
-            Curve(name, (np.arange(index.size) + 0.5) / index.size, index, k)
+        PaperPanel("share of the rise", "eq. 6.18", tuple(
+            PaperCurve(name, (np.arange(index.size) + 0.5) / index.size, index, k)
             for k, (name, index) in enumerate(indices.items()))),
-        Panel("set", "yield", (
-            *(Curve(label, sets, [row[name] for row in rows], k, "points")
+        PaperPanel("set", "yield", (
+            *(PaperCurve(label, sets, [row[name] for row in rows], k, "points")
               for k, (label, name) in enumerate(columns)),
             _points(sets, printed),
         )),
@@ -254,7 +254,7 @@ def energies(targets: Targets, losses: Mapping[str, Losses]) -> PaperFigure:
     ends = np.cumsum([[getattr(one, pair) for one in losses.values()] for pair in PAIRS], axis=0)
     starts = np.vstack([np.zeros(len(losses)), ends[:-1]])
     bars = tuple(
-        Curve(label, start, places, k, "bar", end)
+        PaperCurve(label, start, places, k, "bar", end)
         for k, (label, start, end) in enumerate(zip(PAIRS.values(), starts, ends, strict=True))
     )
     printed = [float(targets[f"E24-{number:02d}"].value) for number in (1, 2, 3)]
@@ -264,7 +264,7 @@ def energies(targets: Targets, losses: Mapping[str, Losses]) -> PaperFigure:
         "8",
         "Friction energy of a turn with the five fitted dimensions, rolling without slip, beside "
         "the printed energies to which they were fitted.",
-        Panel("friction energy of a turn, J", "", (*bars, _points(printed, list(places))),
+        PaperPanel("friction energy of a turn, J", "", (*bars, _points(printed, list(places))),
               kind="bars", rows=tuple(losses)),
     )  # fmt: skip
 
@@ -290,10 +290,10 @@ def forces_and_inertia(
         "roller at 90 and the small one at 270 deg. Below: rise of the reduced inertia over its "
         "common part with assumed masses; the points are the printed means in the order of the "
         "legend.",
-        Panel(CRANK, "normal force, N", (
+        PaperPanel(CRANK, "normal force, N", (
             *(_over(f"{name} roller", force, k, turn=360.0)
               for k, (name, force) in enumerate(forces.items())), _points(middle, means))),
-        Panel(CRANK, "rise of inertia, %", (
+        PaperPanel(CRANK, "rise of inertia, %", (
             *(_over(name, rise, k, turn=360.0) for k, (name, rise) in enumerate(rises.items())),
             _points(at, printed))),
     )  # fmt: skip
@@ -302,9 +302,9 @@ def forces_and_inertia(
 def sizes(targets: Targets, space: Workspace) -> PaperFigure:
     """Friction energy above that of the big roller over the crank length."""
 
-    def above(name: str) -> tuple[Curve, ...]:
+    def above(name: str) -> tuple[PaperCurve, ...]:
         return tuple(
-            Curve(f"rod of {space.ratios[k]:g} cranks", 1e3 * space.cranks,
+            PaperCurve(f"rod of {space.ratios[k]:g} cranks", 1e3 * space.cranks,
                   100.0 * space.above_best(name)[:, k], series)
             for series, k in enumerate((0, 3, 8))
         )  # fmt: skip
@@ -316,7 +316,7 @@ def sizes(targets: Targets, space: Workspace) -> PaperFigure:
         "Friction energy of a turn above that of the big roller without offset, which is the best "
         f"in {space.big_is_best} of {space.combinations} combinations. Left: slider-crank; right: "
         "small roller. The differences are largest at small cranks and short rods, as printed.",
-        Panel("crank, mm", "above the best, %", above("slider_crank"), title="Slider-crank"),
-        Panel("crank, mm", "above the best, %", above("small"), title="Small roller"),
+        PaperPanel("crank, mm", "above the best, %", above("slider_crank"), title="Slider-crank"),
+        PaperPanel("crank, mm", "above the best, %", above("small"), title="Small roller"),
         columns=2,
     )

@@ -74,7 +74,7 @@ class Shortfall(TypedDict):
 
 
 @dataclass(frozen=True)
-class Point:
+class DesignPoint:
     """Result of a case by its preview, SI.
 
     ripple_before, ripple_left: standard deviation of the crank torque without and with the cam,
@@ -131,7 +131,7 @@ class Point:
         }
 
 
-def point_of(case: Case, *, corners: bool = False) -> Point:
+def point_of(case: Case, *, corners: bool = False) -> DesignPoint:
     """Point of a case by constrained synthesis and preview.
 
     Parameters
@@ -152,7 +152,7 @@ def point_of(case: Case, *, corners: bool = False) -> Point:
         raise InputError("engine", "missing", "specified: a redesign balances its torque")
     record = trial.synthesis or {"feasible": False, "prices": []}
     blocking = [check for check in in_order(within_depth(trial.checks)) if check.blocks]
-    return Point(
+    return DesignPoint(
         feasible=record["feasible"],
         ripple_before=float(np.std(torque)),
         ripple_left=float(np.std(rest)),

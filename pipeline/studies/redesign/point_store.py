@@ -24,7 +24,7 @@ SOLVED = "solved"
 
 
 @dataclass(frozen=True)
-class Task:
+class PointTask:
     """A case as text, to be solved by the synthesis alone, also on few cam angles, in full, in full
     at the worst tolerance corners, or for its conflict of limits.
 
@@ -45,7 +45,7 @@ class Task:
         return self.folder / SOLVED / f"{self.tier}_{digest[:24]}.json"
 
 
-def solved(task: Task) -> Record:
+def solved(task: PointTask) -> Record:
     """Record of a point, cached or solved; ``why`` states the reason of a missing cam."""
     known = _read(task.path)
     if known is not None:

@@ -25,7 +25,7 @@ from camwright.pipeline.studies.redesign.design_point import Rough
 from camwright.pipeline.studies.redesign.exclusions import exclusions
 from camwright.pipeline.studies.redesign.pareto_front import front, thinned
 from camwright.pipeline.studies.redesign.part_search import Branch, branches
-from camwright.pipeline.studies.redesign.point_store import SOLVED, Record, Task, solved
+from camwright.pipeline.studies.redesign.point_store import SOLVED, PointTask, Record, solved
 
 AGAINST = {"size": "cam_radius_mm", "mass": "mass_g"}
 RECORD = "redesign.json"
@@ -39,7 +39,7 @@ Tried = tuple[Choice, Record]
 
 
 @dataclass(frozen=True, eq=False)
-class Search:
+class RedesignTask:
     """A case to be redesigned: its folder, catalogue, output folder and source version."""
 
     case: Case
@@ -52,8 +52,8 @@ class Search:
         """Resolved text of the case with the parts of a choice."""
         return variant(self.case, self.parts, choice, self.folder).to_toml()
 
-    def task(self, text: str, tier: Literal["rough", "whole", "conflict"]) -> Task:
-        return Task(text, self.case.to_toml(), self.out, self.version, tier)
+    def task(self, text: str, tier: Literal["rough", "whole", "conflict"]) -> PointTask:
+        return PointTask(text, self.case.to_toml(), self.out, self.version, tier)
 
 
 def redesign(
@@ -81,7 +81,7 @@ def redesign(
     case, folder = read_case(case_file), case_file.resolve().parent
     if not case.balances:
         raise InputError("engine", "missing", "specified: a redesign balances its torque")
-    search = Search(case, folder, catalogue_of(folder), out.absolute(), versions()["source"])
+    search = RedesignTask(case, folder, catalogue_of(folder), out.absolute(), versions()["source"])
     problem = problem_of(case, engine_torques(case))
     running, pruned = branches(case, search.parts, problem, by_mass=against == "mass")
     _prepare(search)
@@ -112,7 +112,7 @@ def redesign(
     return document
 
 
-def _prepare(search: Search) -> None:
+def _prepare(search: RedesignTask) -> None:
     """Prepare the output folder; it may hold an earlier redesign of this case only."""
     out, case = search.out, search.case
     if out.exists():
@@ -130,7 +130,10 @@ def _prepare(search: Search) -> None:
 
 
 def _searched(
-    search: Search, running: Mapping[str, Branch], workers: ProcessPoolExecutor, progress: Progress
+    search: RedesignTask,
+    running: Mapping[str, Branch],
+    workers: ProcessPoolExecutor,
+    progress: Progress,
 ) -> list[Tried]:
     """All choices of the branches with their points of the synthesis alone, by choice."""
     tried: list[Tried] = []
@@ -180,7 +183,7 @@ def _chosen(tried: Sequence[Tried], against: str) -> list[Choice]:
 
 
 def _solved_whole(
-    search: Search, chosen: Sequence[Choice], workers: ProcessPoolExecutor, progress: Progress
+    search: RedesignTask, chosen: Sequence[Choice], workers: ProcessPoolExecutor, progress: Progress
 ) -> tuple[Record, list[Tried]]:
     """Original case and choices by synthesis and preview."""
     progress.stage(f"solve {len(chosen)} points of the front")
@@ -193,7 +196,9 @@ def _solved_whole(
     return records[0], list(zip(chosen, records[1:], strict=True))
 
 
-def _conflict_of(search: Search, workers: ProcessPoolExecutor) -> Callable[[Choice | None], Record]:
+def _conflict_of(
+    search: RedesignTask, workers: ProcessPoolExecutor
+) -> Callable[[Choice | None], Record]:
     """Record of the infeasibility of a choice, of the case as it is for None."""
 
     def conflict(choice: Choice | None) -> Record:
@@ -230,7 +235,7 @@ def _why(record: Record, front: str) -> str:
     return "dominated by another point"
 
 
-def _written(search: Search, kept: Sequence[Tried]) -> list[Record]:
+def _written(search: RedesignTask, kept: Sequence[Tried]) -> list[Record]:
     """Write the points as case files, replacing earlier ones; their records."""
     for old in search.out.glob("point_*.toml"):
         old.unlink()
