@@ -309,6 +309,7 @@ def easily_bound(points=240, **shares):
     shares: duty of its load cases.
     """
     problem = thinned(described(nominal(signed())), 24, points)
+    problem = replace(problem, ratings=rated(problem.ratings, gas_slope=0.03))
     problem = of_duty(problem, **shares) if shares else problem
     problem = replace(
         problem,
