@@ -28,7 +28,8 @@ _TRUST, _TRUST_LEAST = 0.3, 1e-7
 _PROOF = 0.03  # least trust region in which a foreseen gain proves convergence
 _ADDITIONS = 4
 _CORRECTED = 0.9  # of the foreseen gain: below, the step is corrected
-_STUCK = 0.005  # of the violation: greatest decrease in the linear models of a search that is stuck
+_SETTLING = 10  # steps in which most searches outside the limits converge; then they may be stuck
+_STUCK = 0.01  # of the violation: greatest decrease in the linear models of a search that is stuck
 _VIOLATED = 1e-6
 _PATIENCE = 4  # steps over which the gain of a draft is judged
 
@@ -58,10 +59,9 @@ def descended(
 ) -> Descent:
     """Local optimum of a search from its start.
 
-    Outside the limits the search ends, `stuck`, where a step foresees next to no gain and the least
-    violation of the linear models is that of the cam, or all wider steps from here were refused: a
-    greater penalty would gain nothing, and limits that jump at the reversals of the follower make
-    it creep.
+    Outside the limits the search ends after some steps, `stuck`, where a step foresees next to no
+    gain and the least violation of the linear models is that of the cam, or all wider steps from
+    here were refused: a greater penalty would gain nothing, and limits that jump make it creep.
 
     Parameters
     ----------
@@ -127,7 +127,7 @@ def descended(
             creeping = ripple_weight > 0.0 and predicted <= _CREEPING * penalty * state.violation
             # Beyond a limit, not beyond its reserve alone.
             beyond = any(value > 1.0 for value in state.utilisation.values())
-            if beyond and creeping and not tested:
+            if step > _SETTLING and beyond and creeping and not tested:
                 tested = True
                 if widest >= _PROOF > trust or _stuck(search, state, model):
                     return Descent(state, model, program, step, gain, penalty, stuck=True)

@@ -88,14 +88,14 @@ def programs(monkeypatch):
 def test_a_search_that_is_stuck_outside_the_limits_ends(variant, least, programs):
     """In place of 103, 142 and 131 programs; the violation is that of a search to its end."""
     state = approached(coarsened(problem(*variant)))
-    assert len(programs) < 60
-    assert state.violation == pytest.approx(least, rel=0.005)
+    assert len(programs) < 50
+    assert state.violation == pytest.approx(least, rel=0.01)
 
 
 def test_limits_that_conflict_are_not_sought_on_more_splines(programs):
     """The violation, summed over all limits, is within 1 % of the least known."""
     found = explored(problem(*OFFSET_PUMP), 1)
-    assert len(programs) < 100 and max(programs) == 64
+    assert len(programs) < 80 and max(programs) == 64
     assert found.design.stuck and not found.design.feasible
     assert found.design.violation == pytest.approx(0.3693, rel=0.01)
     assert found.design.ripple_gain is None

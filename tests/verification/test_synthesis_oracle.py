@@ -401,7 +401,7 @@ def violations(problem):
     near = oracle.solved()
     least = oracle.least_violation(near.coefficients, near.free)
     design, _, excess = judged(problem)
-    assert design.converged or design.stuck
+    assert design.converged
     assert design.steps <= STEPS_MAX
     assert not least.feasible
     assert not design.feasible
