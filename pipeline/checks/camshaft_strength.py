@@ -36,7 +36,7 @@ from camwright.pipeline.checks.check import (
     Kept,
     check,
 )
-from camwright.pipeline.checks.demands import TOOTH_TORQUE, FatiguePoint, tooth_torque
+from camwright.pipeline.checks.demands import TOOTH_TORQUE, FatiguePoint, PerLoad, tooth_torque
 from camwright.pipeline.checks.extremes import Extreme, greatest, over_duty, worst_case
 from camwright.pipeline.checks.missing_keys import lacking, lacking_of_card, unset
 from camwright.pipeline.contact.hertz import contact_modulus
@@ -486,8 +486,8 @@ def _tooth_bending(
         page="Camshaft",
     ).measured(
         "angles",
-        value=lambda worst, numbers: per_torque(numbers) * worst,
-        bound=lambda limit, numbers: limit / per_torque(numbers),
+        value=PerLoad(per_torque).value,
+        bound=PerLoad(per_torque).bound,
         allowed=allowed,
         remark=with_card,
         kept=Kept(group=TOOTH_TORQUE),

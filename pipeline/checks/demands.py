@@ -5,6 +5,7 @@ The synthesis differentiates them by complex steps. All arrays (...), SI.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
@@ -13,6 +14,7 @@ from camwright.geometry.arrays import Array, Value
 from camwright.geometry.pitch_curve import magnitude
 from camwright.pipeline.case.limits import CONTACT_FORCE_MARGIN
 from camwright.pipeline.cycle.loaded_cam import LoadedCam, not_negative
+from camwright.pipeline.cycle.numbers import Numbers
 
 CONTACT_FLOOR = 0.01
 """Least normal force over the least spring force in the quotients by the normal force."""
@@ -33,6 +35,20 @@ class FatiguePoint(NamedTuple):
     mean: float
     endurance: float
     strength: float
+
+
+class PerLoad(NamedTuple):
+    """Stress of a part per force, Pa/N, or torque, Pa/(N m), as a function of numbers."""
+
+    factor: Callable[[Numbers], float]
+
+    def value(self, worst: Value, numbers: Numbers) -> Value:
+        """Stress, Pa, under the greatest load, N or N m."""
+        return self.factor(numbers) * worst
+
+    def bound(self, limit: float, numbers: Numbers) -> float:
+        """Load, N or N m, at a stress, Pa."""
+        return limit / self.factor(numbers)
 
 
 def normal_force(cam: LoadedCam) -> Array:

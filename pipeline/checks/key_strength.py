@@ -23,7 +23,7 @@ from camwright.pipeline.case.limits import (
 )
 from camwright.pipeline.case.machine import Machine
 from camwright.pipeline.checks.check import Allowed, Declaration, Demand, Kept, check
-from camwright.pipeline.checks.demands import CAM_TORQUE, cam_torque, rating_over
+from camwright.pipeline.checks.demands import CAM_TORQUE, PerLoad, cam_torque, rating_over
 from camwright.pipeline.checks.extremes import least
 from camwright.pipeline.checks.missing_keys import lacking, lacking_of_card
 from camwright.pipeline.contact.cam_body import CamBody, ParallelKey
@@ -116,8 +116,8 @@ def _key_check(
         page="Camshaft",
     ).measured(
         "angles",
-        value=lambda worst, numbers: per_torque(numbers) * worst,
-        bound=lambda limit, numbers: limit / per_torque(numbers),
+        value=PerLoad(per_torque).value,
+        bound=PerLoad(per_torque).bound,
         allowed=allowed_in,
         remark=in_words,
         kept=Kept(group=CAM_TORQUE),

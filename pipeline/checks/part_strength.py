@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
-from typing import NamedTuple
 
 import numpy as np
 
@@ -25,7 +24,7 @@ from camwright.pipeline.case.limits import (
     Limit,
 )
 from camwright.pipeline.checks.check import NONE, Allowed, Demand, Kept, check, of_key
-from camwright.pipeline.checks.demands import NORMAL_FORCE, normal_force
+from camwright.pipeline.checks.demands import NORMAL_FORCE, PerLoad, normal_force
 from camwright.pipeline.checks.extremes import worst_case
 from camwright.pipeline.checks.missing_keys import lacking, lacking_of_card
 from camwright.pipeline.cycle.cam_balance import Balance, balance, rotor_unbalance
@@ -37,20 +36,6 @@ from camwright.pipeline.follower.bearing_ring import RingBending, goodman
 from camwright.pipeline.follower.camshaft_loads import Camshaft
 from camwright.pipeline.follower.roller import Roller
 from camwright.pipeline.follower.roller_parts import Fork, OuterRing, Pin
-
-
-class Stress(NamedTuple):
-    """Stress of a part per newton of normal force, Pa/N, as a function of numbers."""
-
-    per_newton: Callable[[Numbers], float]
-
-    def value(self, worst: Value, numbers: Numbers) -> Value:
-        """Stress, Pa, under a normal force, N."""
-        return self.per_newton(numbers) * worst
-
-    def bound(self, limit: float, numbers: Numbers) -> float:
-        """Normal force, N, at a stress, Pa."""
-        return limit / self.per_newton(numbers)
 
 
 def _pin_of(roller: Roller | None) -> tuple[Roller, Pin]:
@@ -85,7 +70,7 @@ def _pin_in_words(demand: Demand, solution: Solution) -> Demand:
     return replace(demand, figures=_sources(pin.material), method=method)
 
 
-_of_bending = Stress(_bending)
+_of_bending = PerLoad(_bending)
 roller_pin = check(
     PIN_SHARE,
     id="roller_pin",
@@ -180,7 +165,7 @@ def _shear_allowed(numbers: Numbers) -> Allowed:
     return Allowed(None if bending is None else bending / 3.0**0.5)
 
 
-_of_shear = Stress(_shear)
+_of_shear = PerLoad(_shear)
 roller_pin_shear = check(
     PIN_SHARE,
     id="roller_pin_shear",
@@ -220,7 +205,7 @@ def _share_of_tensile(row: Limit, cards: Sequence[Material], numbers: Numbers) -
     return Allowed(None, missing) if missing else Allowed(numbers.limit(row) * min(known))
 
 
-_of_seat = Stress(_seat)
+_of_seat = PerLoad(_seat)
 roller_pin_pressure = check(
     PIN_PRESSURE_SHARE,
     id="roller_pin_pressure",
@@ -289,7 +274,7 @@ def _cheek_in_words(demand: Demand, solution: Solution) -> Demand:
     return replace(demand, figures=_sources(fork.material, pin.material))
 
 
-_of_cheek = Stress(_cheek)
+_of_cheek = PerLoad(_cheek)
 cheek_pressure = check(
     PIN_PRESSURE_SHARE,
     id="cheek_pressure",
@@ -500,7 +485,7 @@ def _with_cards_of_bore(demand: Demand, solution: Solution) -> Demand:
     return replace(demand, figures=tuple(dict.fromkeys(_sources(*_bore_cards(solution.case)[0]))))
 
 
-_of_bore = Stress(_bore)
+_of_bore = PerLoad(_bore)
 bore_pressure = check(
     BORE_SHARE,
     id="bore_pressure",

@@ -112,13 +112,6 @@ class Bearing(Part):
     ring: OuterRing | None = None
     source: str = ""
 
-    @property
-    def ball_circle(self) -> float | None:
-        """Pitch diameter of the balls, m: of the bearing, else of its ring; None: not described."""
-        if self.pitch_diameter is None and self.ring is not None:
-            return self.ring.pitch_diameter
-        return self.pitch_diameter
-
 
 @dataclass(frozen=True, kw_only=True)
 class Pin(Part):

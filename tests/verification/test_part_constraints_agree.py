@@ -183,7 +183,7 @@ def in_check(case, checks, solved, name, use):
     if name == "bearing_lubrication":
         bearing = machine.roller.bearing
         speed = ratings_of(case).roller_spin_least * 30.0 / np.pi / use
-        return bearing.viscosity / rated_viscosity(speed, bearing.ball_circle), check.demand
+        return bearing.viscosity / rated_viscosity(speed, bearing.ring.pitch_diameter), check.demand
     if name == "grease_life":
         # the worst load case: log10 of the life falls by 2.5 per P/C, at no less than 0.05
         bearing, solved_lives = machine.roller.bearing, []
