@@ -359,6 +359,7 @@ def cam_mesh(
     keyway: KeywayLike | None,
     sizing: ElementSize,
     counter_hole: HoleLike | None = None,
+    refinement: float = 1.0,
 ) -> BodyMesh:
     """Mesh of the cam, refined at the contact point on its contour.
 
@@ -369,6 +370,7 @@ def cam_mesh(
     keyway : KeywayLike or None     slot into the bore: width, depth (m), angle (rad)
     sizing : ElementSize
     counter_hole : HoleLike or None   round hole, clear of bore and contour
+    refinement : float              divides the element size everywhere outside the contact zone
 
     Returns
     -------
@@ -394,4 +396,5 @@ def cam_mesh(
         x, y = counter_hole.centre.tolist()
         turn = 2 * np.pi
         loops.append([arc("counter_hole", counter_hole.radius, turn, 0.0, (x, y))])
+    size = size.refined(refinement)
     return _body(triangulate(_discretised(loops, size), size))

@@ -180,6 +180,15 @@ class SizeField:
         """Field of at most `size`, m."""
         return replace(self, far_size=min(self.far_size, size))
 
+    def refined(self, by: float) -> SizeField:
+        """Field of the sizes divided by a factor, everywhere."""
+        return replace(
+            self,
+            far_size=self.far_size / by,
+            growth=self.growth / by,
+            spots=tuple(replace(each, size=each.size / by) for each in self.spots),
+        )
+
     def below(self, points: Array, limits: Array, slack: float = 1.25) -> SizeField:
         """Field with spots added until it is below `slack * limits` (n,) at `points` (2, n), m.
 

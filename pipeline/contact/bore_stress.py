@@ -1,32 +1,39 @@
 """Stress at the bore and the keyway of the cam over the turn.
 
 The shaft is rigid and fills the bore: the bore is held. At the edges of the keyway in the bore,
-held and free surface meet; the exact stress is singular there and that of a mesh grows with
-refinement. These places are included and marked.
+held and free surface meet, and the corners of its floor are meshed without their fillet; the exact
+stress is singular at both and that of a mesh grows with refinement. These places are included and
+marked. The stress at the fillet of the floor is that of the check `keyway_root`.
 """
 
 from __future__ import annotations
 
 import sys
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.optimize import brentq
 
 from camwright.geometry.arrays import Array, freeze
+from camwright.meshes.body_mesh import BodyMesh
 from camwright.pipeline.contact.body_compliance import RECIPE, LoadedBody
 from camwright.pipeline.contact.elasticity import plane_stress_measures
 from camwright.pipeline.contact.elasticity.elastic_body import StressRecovery
 from camwright.pipeline.contact.elasticity.halfplane import point_force_stress
+
+_SHARP = np.deg2rad(45.0)
+"""Least turn of the boundary at a corner: the edges of a meshed fillet turn by half as much."""
 
 
 @dataclass(frozen=True, eq=False)
 class BoreStress:
     """Maximum von Mises stress (n,), Pa, on bore and keyway, and its place.
 
-    x, y (n,) m in the cam frame; at_edge (n,) 1 where the place is an edge of the keyway at the
-    bore, else 0; away_from_edges (n,) Pa, the maximum elsewhere; excluded m, the distance from an
-    edge up to which a place counts as at the edge, 0 without a keyway.
+    x, y (n,) m in the cam frame; at_edge (n,) 1 where the place is an edge of the keyway, in the
+    bore or at its floor, else 0; away_from_edges (n,) Pa, the maximum elsewhere; excluded m, the
+    distance from an edge up to which a place counts as at the edge, 0 without a keyway.
     """
 
     von_mises: Array
@@ -62,14 +69,13 @@ def bore_stress(
         (sys.modules[__name__], plane_stress_measures, *RECIPE),
         excluded,
     )
-    points = cam.body.mesh.points
     # Without load every place is the first one.
-    worst = kept["node"][np.where(line_load > 0, kept["worst"], 0)]
+    worst = np.where(line_load > 0, kept["worst"], 0)
     return BoreStress(
         von_mises=line_load * kept["von_mises"],
-        x=points[0, worst],
-        y=points[1, worst],
-        at_edge=np.isin(worst, kept["node"][kept["by_edge"]]).astype(float),
+        x=kept["place"][0, worst],
+        y=kept["place"][1, worst],
+        at_edge=kept["by_edge"][worst].astype(float),
         away_from_edges=line_load * kept["away_from_edges"],
         excluded=float(kept["excluded"]),
     )
@@ -78,15 +84,27 @@ def bore_stress(
 def _under_unit_load(
     cam: LoadedBody, contacts: Array, normals: Array, excluded: float | None
 ) -> dict[str, Array]:
-    """Values of `BoreStress` per unit line load, with the nodes (m,) and which are at an edge."""
-    nodes, by_edge, recovery, excluded = _holes(cam, excluded)
-    stress = recovery.operator(nodes).reshape(3 * nodes.size, -1)
+    """Values of `BoreStress` per unit line load, with the places (2, p) and which are at an edge.
+
+    Places are the nodes of bore and keyway and the rims of the excluded zones: there the stress
+    away from the edges is at its greatest, and no distance from a node is left to chance.
+    """
+    nodes, recovery = _held(cam)
+    mesh = cam.body.mesh
+    zones = _zones(mesh, nodes, excluded)
+    of_nodes = recovery.operator(nodes).reshape(3, nodes.size, -1)
+    rims = np.einsum("rk,ckd->crd", zones.rims, of_nodes)
+    operator = np.concatenate([of_nodes, rims], axis=1)
+    stress = operator.reshape(-1, operator.shape[2])
+    places = mesh.points[:, nodes]
+    places = np.concatenate([places, places @ zones.rims.T], axis=1)
+    by_edge = np.append(zones.by_edge, np.zeros(len(zones.rims), dtype=bool))
     seen = np.searchsorted(cam.condensed_nodes, recovery.nodes)
-    points, count = cam.body.mesh.points[:, nodes], contacts.shape[1]
+    count = contacts.shape[1]
     highest, regular, worst = np.empty(count), np.empty(count), np.empty(count, dtype=int)
     for part, displaced in cam.displacements(contacts, normals):
         own = stress @ displaced[:, seen].reshape(stress.shape[1], -1)
-        far = _half_plane(points, contacts[:, part], normals[:, part])
+        far = _half_plane(places, contacts[:, part], normals[:, part])
         mises = plane_stress_measures.von_mises(own.reshape(far.shape) + far, cam.body.poisson)
         worst[part], highest[part] = mises.argmax(axis=0), mises.max(axis=0)
         regular[part] = mises[~by_edge].max(axis=0)
@@ -94,36 +112,71 @@ def _under_unit_load(
         "von_mises": highest,
         "away_from_edges": regular,
         "worst": worst,
-        "node": nodes,
+        "place": places,
         "by_edge": by_edge,
-        "excluded": np.array(excluded),
+        "excluded": np.array(zones.radius),
     }
 
 
-def _holes(
-    cam: LoadedBody, excluded: float | None
-) -> tuple[NDArray[np.int64], NDArray[np.bool_], StressRecovery, float]:
-    """Nodes (m,) of bore and keyway, those at an edge (m,), stress recovery, edge distance in m."""
+class _Zones(NamedTuple):
+    """Excluded zones at the keyway edges: radius m, nodes within (m,), weights of rims (r, m)."""
+
+    radius: float
+    by_edge: NDArray[np.bool_]
+    rims: Array
+
+
+def _held(cam: LoadedBody) -> tuple[NDArray[np.int64], StressRecovery]:
+    """Nodes (m,) of bore and keyway and the stress recovery of the elements at them."""
     mesh = cam.body.mesh
-    bore = mesh.boundary_nodes("bore")
-    nodes, by_edge, near = bore, np.zeros(bore.size, dtype=bool), 0.0
-    if "keyway" in mesh.boundaries:
-        keyway = mesh.boundary_nodes("keyway")
-        nodes = np.union1d(bore, keyway)
-        edges = mesh.points[:, np.intersect1d(bore, keyway)]
-        start, end, _ = mesh.facet_triples("keyway")
-        length = float(np.hypot(*(mesh.points[:, end] - mesh.points[:, start])).max())
-        near = 1.5 * length if excluded is None else excluded
-        arm = mesh.points[:, nodes, None] - edges[:, None, :]
-        by_edge = (np.hypot(*arm) < near).any(axis=1)
+    names = [name for name in ("bore", "keyway") if name in mesh.boundaries]
+    nodes = np.unique(np.concatenate([mesh.boundary_nodes(name) for name in names]))
     held = np.zeros(mesh.points.shape[1], dtype=bool)
     held[nodes] = True
-    return (
-        nodes,
-        by_edge,
-        StressRecovery(cam.body, np.flatnonzero(held[mesh.triangles].any(axis=0))),
-        near,
-    )
+    return nodes, StressRecovery(cam.body, np.flatnonzero(held[mesh.triangles].any(axis=0)))
+
+
+def _zones(mesh: BodyMesh, nodes: NDArray[np.int64], excluded: float | None) -> _Zones:
+    """Zones about the keyway edges within the nodes (m,) of bore and keyway; none without one.
+
+    A rim lies on the boundary where its distance from the edge is the radius; the weights are
+    those of the quadratic shapes of its facet.
+    """
+    if "keyway" not in mesh.boundaries:
+        return _Zones(0.0, np.zeros(nodes.size, dtype=bool), np.zeros((0, nodes.size)))
+    facets = mesh.facet_triples("keyway")
+    ends = mesh.points[:, facets]
+    if excluded is None:
+        excluded = 1.5 * float(np.hypot(*(ends[:, 1] - ends[:, 0])).max())
+    facets = np.concatenate([mesh.facet_triples("bore"), facets], axis=1)
+    within = np.zeros(nodes.size, dtype=bool)
+    rims = []
+    for corner in mesh.points[:, _edges(mesh)].T:
+        away = np.hypot(*(mesh.points - corner[:, None])) - excluded
+        within |= away[nodes] < 0
+        for facet in facets[:, away[facets[0]] * away[facets[1]] < 0].T:
+            arm = mesh.points[:, facet] - corner[:, None]
+            at = brentq(lambda s, arm=arm: np.hypot(*(arm @ _shapes(s))) - excluded, 0.0, 1.0)
+            weights = np.zeros(nodes.size)
+            weights[np.searchsorted(nodes, facet)] = _shapes(at)
+            rims.append(weights)
+    return _Zones(excluded, within, np.array(rims).reshape(-1, nodes.size))
+
+
+def _edges(mesh: BodyMesh) -> NDArray[np.int64]:
+    """Nodes at the edges of the keyway in the bore and at the sharp corners of its floor."""
+    start, end, _ = mesh.facet_triples("keyway")
+    chord = mesh.points[:, end] - mesh.points[:, start]
+    chord /= np.hypot(*chord)
+    at, before, after = np.intersect1d(end, start, return_indices=True)
+    sharp = np.sum(chord[:, before] * chord[:, after], axis=0) < np.cos(_SHARP)
+    in_bore = np.intersect1d(mesh.boundary_nodes("bore"), mesh.boundary_nodes("keyway"))
+    return np.concatenate([in_bore, at[sharp]])
+
+
+def _shapes(s: float) -> Array:
+    """Quadratic shapes (3,) of start, end and mid-side node at s in 0 to 1 of a facet."""
+    return np.array([(1.0 - s) * (1.0 - 2.0 * s), s * (2.0 * s - 1.0), 4.0 * s * (1.0 - s)])
 
 
 def _half_plane(points: Array, contacts: Array, normals: Array) -> Array:

@@ -50,7 +50,7 @@ class CycleBodies:
 
 
 def loaded_cam(pair: ContactPair, refinement: float = 1.0) -> LoadedBody:
-    """Cam on a coarse mesh, of an element size divided by a refinement."""
+    """Cam on a coarse mesh, of element sizes divided by a refinement, everywhere."""
     outline = float(pair.contour.perimeter())
     depth = 0.0 if pair.keyway is None else pair.keyway.depth
     least = pair.contour.radius_min()
@@ -63,11 +63,12 @@ def loaded_cam(pair: ContactPair, refinement: float = 1.0) -> LoadedBody:
         )
         raise InputError("cam.bore_radius", shown(pair.bore_radius, "mm"), limit)
     edge = outline / _GRID_OF_CYCLE_MESH
-    sizing = ElementSize(far_size=min(edge, wall / EDGES_ACROSS_WALL) / refinement)
+    sizing = ElementSize(far_size=min(edge, wall / EDGES_ACROSS_WALL))
     if wall < edge:  # fine everywhere it would be a million triangles: fine where the wall is thin
-        edges = EDGES_ACROSS_WALL * refinement
-        sizing = ElementSize(far_size=edge / refinement, wall_edges=edges)
-    cam = cam_mesh(pair.contour, pair.bore_radius, pair.keyway, sizing, pair.counter_hole)
+        sizing = ElementSize(far_size=edge, wall_edges=EDGES_ACROSS_WALL)
+    cam = cam_mesh(
+        pair.contour, pair.bore_radius, pair.keyway, sizing, pair.counter_hole, refinement
+    )
     cut = tuple(name for name in ("keyway", "counter_hole") if name in cam.boundaries)
     return LoadedBody(elastic_body(cam, pair.cam, "bore"), "contour", cut)
 

@@ -1,6 +1,7 @@
 """Meshes against exact figures: areas, curves, constant strain and element counts."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -227,3 +228,17 @@ def test_elements_scale_with_the_sizing():
         for h in (1e-4, 5e-5)
     ]
     assert counts[1] / counts[0] == pytest.approx(4.0, rel=0.04)
+
+
+def test_a_refined_cam_is_finer_by_that_factor_at_each_boundary():
+    """An error bar by a finer mesh says nothing of a place that the mesh leaves as it was."""
+    hole = SimpleNamespace(centre=np.array([-0.022, 0.0]), radius=0.006)
+    meshes = [
+        cam_mesh(CONTOUR, 0.01, Keyway(6e-3, 3e-3, 0.3), ElementSize(far_size=6e-3), hole, by)
+        for by in (1.0, 2.0)
+    ]
+    for name, facets in meshes[0].boundaries.items():
+        finer = meshes[1].boundaries[name].shape[1]
+        assert finer / facets.shape[1] == pytest.approx(2.0, abs=0.15), name
+    triangles = [mesh.triangles.shape[1] for mesh in meshes]
+    assert triangles[1] / triangles[0] == pytest.approx(4.0, rel=0.1)
