@@ -14,7 +14,6 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import brentq
 
 from camwright.geometry.arrays import Array, freeze
 from camwright.meshes.body_mesh import BodyMesh
@@ -142,6 +141,8 @@ def _zones(mesh: BodyMesh, nodes: NDArray[np.int64], excluded: float | None) -> 
     A rim lies on the boundary where its distance from the edge is the radius; the weights are
     those of the quadratic shapes of its facet.
     """
+    from scipy.optimize import brentq
+
     if "keyway" not in mesh.boundaries:
         return _Zones(0.0, np.zeros(nodes.size, dtype=bool), np.zeros((0, nodes.size)))
     facets = mesh.facet_triples("keyway")
