@@ -206,11 +206,13 @@ def test_the_filters_of_the_checks_work_by_keyboard(desktop: Tab) -> None:
 @pytest.mark.parametrize(
     ("width", "scheme"),
     [
-        (400, "light"), (1300, "dark"),
-        pytest.param(400, "dark", marks=pytest.mark.slow),
-        pytest.param(1300, "light", marks=pytest.mark.slow),
+        (400, "light"),
+        *(
+            pytest.param(*each, marks=pytest.mark.slow)
+            for each in ((400, "dark"), (1300, "light"), (1300, "dark"))
+        ),
     ],
-)  # fmt: skip
+)
 def test_axe_finds_nothing(report: Path, tab: Tab, width: int, scheme: str) -> None:
     axe = pytest.importorskip("axe_playwright_python.sync_playwright").Axe()
     context = tab.page.context.browser.new_context(

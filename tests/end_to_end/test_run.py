@@ -93,6 +93,7 @@ def straight(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder / "out"
 
 
+@pytest.mark.slow
 def test_resumed_run_equals_a_straight_one_to_the_byte(
     finished: tuple[Case, Path, dict[str, Any]], straight: Path
 ) -> None:
@@ -367,6 +368,7 @@ def test_folder_of_another_case_is_refused(
     assert json.loads((out / "run.json").read_text()) == summary
 
 
+@pytest.mark.slow
 def test_undercut_is_a_verdict(tmp_path: Path) -> None:
     case = small(tmp_path, radius='"20 mm"', prime_radius='"34 mm"')
     text = (tmp_path / "case.toml").read_text().replace('kind = "moving_average"', 'kind = "none"')

@@ -399,6 +399,7 @@ def test_a_drafted_cam_grows_where_its_prime_radius_is_the_greatest(
     assert len(tried) == grown
 
 
+@pytest.mark.slow
 def test_a_pump_is_synthesised_with_free_radius_and_preload(tmp_path: Path) -> None:
     """One roller: free radius and preload leave no more ripple than those of the screening."""
     table_of_pump = write_table(tmp_path, "pump")

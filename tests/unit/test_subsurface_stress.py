@@ -93,6 +93,7 @@ def test_an_uneven_end_pressure_has_its_own_peak():
     assert stress.centre.von_mises == pytest.approx(even.centre.von_mises, rel=1e-2)
 
 
+@pytest.mark.slow
 def test_at_a_corner_the_peak_does_not_grow_with_the_mesh():
     """Pressure as the distance from the end to the power -0.4, on cells of 0.1 and of 0.0125."""
     x = np.linspace(0, 1.25, 21)

@@ -112,6 +112,7 @@ def test_flush_ends_need_no_crown():
     assert crown.ratio == pytest.approx(crown.straight.max())
 
 
+@pytest.mark.slow
 def test_an_impossible_ratio_names_the_least():
     made = problem(couple=0.3)
     with pytest.raises(InputError) as refused:
