@@ -86,6 +86,12 @@ def finished(tmp_path_factory: pytest.TempPathFactory) -> tuple[Case, Path, dict
 
 
 @pytest.fixture(scope="module")
+def out(finished: tuple[Case, Path, dict[str, Any]]) -> Path:
+    """Folder of the finished run."""
+    return finished[1]
+
+
+@pytest.fixture(scope="module")
 def straight(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The same run without interruption and without its page."""
     folder = tmp_path_factory.mktemp("straight")
@@ -216,25 +222,25 @@ def test_every_array_of_the_run_is_documented(finished: tuple[Case, Path, dict[s
 
 
 @pytest.mark.parametrize("name", RECOMPUTED)
-def test_demands_by_the_files_of_the_run(straight: Path, name: str) -> None:
+def test_demands_by_the_files_of_the_run(out: Path, name: str) -> None:
     """Each by a formulation of its own, see `run_recomputed`."""
     function, relative, absolute = RECOMPUTED[name]
-    run = RunFiles(straight)
+    run = RunFiles(out)
     demand = run.checks[name]["demand"]
     assert function(run) == pytest.approx(demand, rel=relative, abs=absolute)
 
 
-def test_certified_stresses_are_those_of_hertz(straight: Path) -> None:
+def test_certified_stresses_are_those_of_hertz(out: Path) -> None:
     """Peaks below a line contact on a half-plane of nu = 0.3; real bodies within 3 %."""
-    (point,) = RunFiles(straight).record["certificate"]
+    (point,) = RunFiles(out).record["certificate"]
     p0 = point["p0_hertz_MPa"]
     for name, share in (("p0", 1.0), ("tau_max", 0.300), ("von_mises", 0.558)):
         assert point[f"{name}_MPa"]["extrapolated"] == pytest.approx(share * p0, rel=0.03), name
 
 
-def test_benchmarks_by_quadrature(straight: Path) -> None:
+def test_benchmarks_by_quadrature(out: Path) -> None:
     """Contacts solved by elements against the singular integral equation of the half-plane."""
-    run, steel, soft = RunFiles(straight), 210e9, 70e9
+    run, steel, soft = RunFiles(out), 210e9, 70e9
     own = 1e-3 * run.value("roller.radius")
     for name, radius, side, moduli, load in (
         ("nafems", 0.05, 0.2, (soft, steel), 35e6),
