@@ -18,7 +18,7 @@ from camwright.pipeline.base.material import Material
 from camwright.pipeline.base.quantities import Count, In, Part
 from camwright.pipeline.base.units import shown
 from camwright.pipeline.case.case import Case
-from camwright.pipeline.case.limits import LIMITS
+from camwright.pipeline.case.limits import LIMITS, Limit
 from camwright.pipeline.case.section import Section, section_of
 from camwright.pipeline.case.toml_text import TomlValue
 
@@ -149,12 +149,10 @@ def _key(table: TableKeys, name: str, words: str, default: str, used: str) -> Ke
     path = f"{table.path}.{name}".lstrip(".")
     if table.path == "limits" and name in LIMITS:
         row = LIMITS[name]
-        if row.default is not None:
+        if isinstance(row, Limit):
             value = written(row.default, row.quantity.unit)
             return Key(path, table.header, words, default, row.title, row.source, value, used)
-        text = _text(table.path, name)
-        return Key(path, table.header, words, "", row.title, str(text["source"]),
-                   text["example"], used)  # fmt: skip
+        return Key(path, table.header, words, "", row.title, row.found, row.example, used)
     text = _text(table.path, name)
     field = table.section.model_fields.get(name)
     example: TomlValue

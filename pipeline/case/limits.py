@@ -8,7 +8,7 @@ shadow prices and conflicts, and the documentation. The demand of a limit is bou
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import KW_ONLY, dataclass
 from math import radians
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Annotated, Literal, overload
@@ -60,7 +60,11 @@ class Limit:
 
 @dataclass(frozen=True)
 class OpenLimit:
-    """A limit without a default: None unless the case sets it. Fields as of `Limit`."""
+    """A limit without a default: None unless the case sets it. Fields as of `Limit`.
+
+    found : str          where its value is found
+    example : str or float   a value, as in a case file
+    """
 
     id: str
     title: str
@@ -68,6 +72,9 @@ class OpenLimit:
     source: str
     sense: Sense = "at_most"
     slope: Slope = "whole"
+    _: KW_ONLY
+    found: str
+    example: str | float
 
     @property
     def default(self) -> None:
@@ -101,6 +108,7 @@ RETURN_PRESSURE_ANGLE = OpenLimit(  # friction cannot lock a follower that the s
     "return_pressure_angle", "pressure angle on the return", In("deg", above=0, below=90),
     "45 deg on the return, where the cam does not drive the follower, textbooks of mechanisms:"
     " verify; without it that of pressure_angle",
+    found="textbooks: the return may be steeper than the rise", example="45 deg",
 )  # fmt: skip
 CURVATURE_RATIO = Limit(
     "curvature_ratio", "convex pitch radius over roller radius", _RATIO, 1.5,
@@ -117,11 +125,13 @@ SECOND_CONTACT_DEPTH = Limit(  # below the form error of ground cams
 TOOL_RADIUS = OpenLimit(
     "tool_radius", "tool radius for concave flanks", _LENGTH,
     "concave radius at least 1.1 tool radii, Rothbart (2004) ch. 6", "at_least",
+    found="machine tool", example="25 mm",
 )  # fmt: skip
 CURVATURE_RATE = OpenLimit(
     "curvature_rate", "rate of change of curvature along the contour",
     In("1/mm^2", above=0, at_most=1e9),
     "limit of the case, for grinding and wear",
+    found="grinding machine", example="0.02 1/mm^2",
 )  # fmt: skip
 MINIMUM_WALL = Limit(  # outer over inner radius of the ring about the bore
     "minimum_wall", "contour radius over bore radius", _RATIO, 1.75,
@@ -149,6 +159,7 @@ JUMP = Limit(
 )  # fmt: skip
 OVERSPEED = OpenLimit(
     "overspeed", "overspeed", In("rpm", above=0, below=20_000), "overspeed of the case",
+    found="governor, or engine data sheet: 1.1 times the rated speed", example="3960 rpm",
 )  # fmt: skip
 JUMP_SPEED = Limit(
     "jump_speed", "jump speed over overspeed", _RATIO, 1.3,
@@ -158,9 +169,13 @@ GUIDE_GAP = Limit(
     "guide_gap", "gap at guide A", In("mm", above=0, at_most=1000), 0.001,
     "1 to 2 mm, shop practice: verify", "at_least",
 )  # fmt: skip
-CAM_RADIUS = OpenLimit("cam_radius", "cam radius", _LENGTH, "installation space of the case")
+CAM_RADIUS = OpenLimit(
+    "cam_radius", "cam radius", _LENGTH, "installation space of the case",
+    found="installation space", example="90 mm",
+)  # fmt: skip
 TARGET_LIFE = OpenLimit(
     "target_life", "target life", _LIFE, "log10 K = (B - log10 n)/A, Rothbart (2004) eq. 9.15",
+    found="requirement of the machine", example="1000 h",
 )  # fmt: skip
 END_MEAN_LENGTH = Limit(
     "end_mean_length", "length of the mean pressure at an end with a corner",
@@ -186,6 +201,7 @@ ROLLER_STATIC_SAFETY = Limit(
 )  # fmt: skip
 ROLLER_LIFE = OpenLimit(
     "roller_life", "rating life of the roller bearing", _LIFE, "ISO 281", "at_least",
+    found="requirement of the machine", example="1000 h",
 )  # fmt: skip
 ROLLER_RELIABILITY = Limit(
     "roller_reliability", "reliability of the rating life", In(at_least=0.9, at_most=0.9995), 0.9,
@@ -273,6 +289,7 @@ SHAFT_BEARING_STATIC_SAFETY = Limit(
 )  # fmt: skip
 SHAFT_BEARING_LIFE = OpenLimit(
     "shaft_bearing_life", "rating life of the camshaft bearings", _LIFE, "ISO 281", "at_least",
+    found="requirement of the machine", example="1000 h",
 )  # fmt: skip
 GEAR_BENDING_SAFETY = Limit(
     "gear_bending_safety", "safety of tooth root bending", _SAFETY, 1.4,
@@ -328,6 +345,7 @@ TORQUE_REDUCTION = Limit(
 SPEED_REDUCTION = OpenLimit(
     "speed_reduction", "speed ripple reduction", _INNER_SHARE,
     "requirement of the case", "at_least",
+    found="requirement of the machine", example=0.1,
 )  # fmt: skip
 CONTACT_TORQUE = Limit(
     "contact_torque", "cam torque from contact pressures", In(above=0, at_most=0.01), 1e-4,

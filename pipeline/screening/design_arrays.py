@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import copy
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import NamedTuple
 
@@ -135,6 +135,13 @@ class Designs:
     def whole(self) -> LoadedCam:
         """The unloaded cams at the samples of the lift."""
         return LoadedCam(Jet(*self.jets), self.numbers, self.highest[:, None])
+
+    def whole_to(self, order: int) -> LoadedCam:
+        """As `whole`, with the derivatives of the lift up to an order, 2 or 3."""
+        if order == 2:
+            return self.whole
+        jerk = np.broadcast_to(knot_derivatives(self.lift, order)[order], self.jets.shape[1:])
+        return replace(self.whole, jet=self.whole.jet._replace(jerk=jerk))
 
     @property
     def top(self) -> LoadedCam:

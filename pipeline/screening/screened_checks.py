@@ -81,7 +81,8 @@ def _known(measure: Measure, how: Measured, designs: Designs) -> Array:
     if how.reduce in ("case", "top"):
         return np.asarray(how.value(measure(designs.top), numbers))
     if how.reduce == "contour":
-        return np.asarray(how.value(extreme(measure(designs.whole))[:, None], numbers))
+        cams = designs.whole_to(how.order)
+        return np.asarray(how.value(extreme(measure(cams))[:, None], numbers))
     if how.reduce in BY_DUTY:
         return _by_duty(measure, how, designs)
 

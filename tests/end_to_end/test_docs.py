@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import ast
 import importlib.util
 import os
 import re
 import shutil
 import subprocess
 import sys
-import textwrap
 import tomllib
 from functools import cache
 from pathlib import Path
@@ -20,16 +18,9 @@ import pytest
 from small_machine import small_machine
 from trap_folder import Traps
 
-from camwright.geometry import motion_laws
-from camwright.pipeline.base.tables import table
-from camwright.pipeline.case import limits
 from camwright.pipeline.case.case_file import case_of, read_case
 from camwright.pipeline.case.renamed_keys import with_new_keys
-from camwright.pipeline.checks import cam_shape
 from camwright.pipeline.cli import app
-from camwright.pipeline.cycle import cycle
-from camwright.pipeline.preview import preview_case
-from camwright.pipeline.smoothing import constraints
 from camwright.pipeline.studies.batch.factor_axes import axis_of
 from camwright.pipeline.studies.batch.sampling import designs_of
 from camwright.pipeline.studies.batch.study_file import study_of
@@ -135,46 +126,6 @@ def test_python_snippets_run_in_their_order(page: str, folder: Path) -> None:
     )
     assert result.returncode == 0, result.stderr
     assert result.stdout.strip()
-
-
-def fragments(heading: str) -> list[str]:
-    """Code of a section of docs/contributing.md, each piece as it would stand in its module."""
-    section = PAGES["docs/contributing.md"].split(f"## {heading}\n")[1].split("\n## ")[0]
-    found = re.findall(r"^ *```py\n(.*?)^ *```$", section, re.MULTILINE | re.DOTALL)
-    return [textwrap.dedent(piece) for piece in found]
-
-
-def test_the_check_of_contributing_is_declared() -> None:
-    row, declared, entry = fragments("A check with a limit")
-    names = dict(vars(limits))
-    exec(row, names)
-    inside = {**vars(cam_shape), "LIFT_JERK": names["LIFT_JERK"]}
-    exec(declared, inside)
-    assert inside["lift_jerk"].id == "lift_jerk"
-    (kept,), loads = constraints.kept_at_rows([inside["lift_jerk"]], ())
-    assert kept.limit is names["LIFT_JERK"] and not loads
-    assert ast.parse(entry)
-
-
-def test_the_laws_of_contributing_are_laws() -> None:
-    polynomial, function = fragments("A motion law")
-    law = eval(polynomial, dict(vars(motion_laws)))
-    half = np.array([0.0, 0.5])
-    np.testing.assert_allclose(law(half, 0), [0.0, 0.5])
-    names = dict(vars(motion_laws))
-    exec(function, names)
-    own = motion_laws.LAWS["harmonic"](half, 1)
-    np.testing.assert_array_equal(names["_harmonic"](half, 1), own)
-
-
-def test_the_column_of_contributing_is_a_column() -> None:
-    (column,) = fragments("An output column")
-    case = case_of(tomllib.loads(small_machine("demo"))).with_positions(36)
-    turn = preview_case(case, corners=False).cycles[0].turn
-    made = eval(column, {**vars(cycle), "loads": turn.loads, "turn": turn})
-    np.testing.assert_allclose(
-        table(made)["cam_power_W"], turn.loads.cam_torque * turn.machine.cam_speed, rtol=1e-12
-    )
 
 
 def test_make_targets_exist() -> None:
