@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import casadi as ca
 import numpy as np
+from synthesis_ratings import named, rated
 
 LIMIT_NUMBERS = (
     "travel", "pressure_angle", "curvature_ratio", "undercut_factor", "hollow_radius",
@@ -14,7 +15,7 @@ LIMIT_NUMBERS = (
     "guide_pressure_a", "guide_pressure_b", "guide_pv_a", "guide_pv_b", "torque_reduction",
     "minimum_wall", "guide_slope_a", "guide_slope_b", "gas_slope", "guide_gap", "guide_edge_load_a",
     "guide_edge_load_b", "guide_power_a", "guide_power_b", "guide_wear_pv_a", "guide_wear_pv_b",
-    "friction", "waviness", "fastest", "cam_torque", "tooth_torque", "keyway_safety",
+    "friction", "waviness", "cam_torque", "tooth_torque", "keyway_safety",
     "grease_rating", "modified_rate", "roller_spin_least",
 )  # fmt: skip
 MACHINE_NUMBERS = (
@@ -45,61 +46,36 @@ CORRECTION = (
 )  # fmt: skip
 """Results of finite elements, surge and heat on the last cam, constants of a synthesis."""
 FREE = ("rate", "preload", "prime_radius")
-_PAIRS = (
-    "guide_pressure", "guide_pv", "guide_area", "guide_slope", "guide_edge_load", "guide_power",
-    "guide_wear_pv", "guide_length",
-)  # fmt: skip
 _PARTS = {
     "drag": ("inertia", "torque", "bearing_friction", "pin_radius"),
     "keyway": ("by_torque", "by_force", "held_radius", "thick", "per_stress"),
-    "grease": ("life", "rating", "diameter", "temperature"),
-    "modified": ("rating", "cleanliness_load", "viscosity", "circle"),
+    "grease": ("life", "diameter", "temperature"),
 }  # fmt: skip
 
 
 def numbers_of(problem):
     """Values of `NUMBERS` of a problem, SI; None: no such limit."""
     ratings, variables = problem.ratings, problem.variables
-    known = {row.id: value for row, value in ratings.limits.items()}
-    known |= dict.fromkeys(FACTORS, 1.0)
-    known |= {
-        f"{name}_{side}": getattr(ratings, name)[k]
-        for name in _PAIRS
-        for k, side in enumerate("ab")
-    }
+    known = vars(named(ratings)) | dict.fromkeys(FACTORS, 1.0)
     for part, names in _PARTS.items():
         known |= {f"{part}_{name}": getattr(getattr(ratings, part), name, None) for name in names}
-    known["wave_amplitude"], known["wave_length"] = ratings.waves or (None, None)
     known |= {name: getattr(variables, name) for name in FREE}
     known["gear_ratio"] = problem.gear_ratio
     known["torque_reduction"] = required_reduction(problem)
-    if (ratings.hollow_radius or 0.0) <= ratings.roller_radius:
+    if (known["hollow_radius"] or 0.0) <= known["roller_radius"]:
         known["hollow_radius"] = None  # the roller cannot roll in a smaller hollow
     if any(item.friction_worst is None for item in problem.scenarios):
         known["friction_worst_factor"] = None
-    return {
-        name: known[name] if name in known else getattr(ratings, name, None) for name in NUMBERS
-    }
+    return {name: known[name] for name in NUMBERS}
 
 
 def with_number(problem, name, value):
     """The problem with another value of a limit of `NUMBERS`."""
-    ratings = problem.ratings
     part, _, of_part = name.partition("_")
-    rows = {row.id: row for row in ratings.limits}
-    if name in rows:
-        return _rated(problem, limits={**ratings.limits, rows[name]: value})
-    if name[:-2] in _PAIRS:
-        pair = list(getattr(ratings, name[:-2]))
-        pair["ab".index(name[-1])] = value
-        return _rated(problem, **{name[:-2]: tuple(pair)})
+    changed = {name: value}
     if of_part in _PARTS.get(part, ()):
-        return _rated(problem, **{part: getattr(ratings, part)._replace(**{of_part: value})})
-    return _rated(problem, **{name: value})
-
-
-def _rated(problem, **changes):
-    return replace(problem, ratings=replace(problem.ratings, **changes))
+        changed = {part: getattr(problem.ratings, part)._replace(**{of_part: value})}
+    return replace(problem, ratings=rated(problem.ratings, **changed))
 
 
 def required_reduction(problem):

@@ -19,7 +19,7 @@ from camwright.pipeline.base.units import celsius, shown
 from camwright.pipeline.case.limits import GUIDE_LENGTH
 from camwright.pipeline.case.machine import Machine
 from camwright.pipeline.checks.check import NONE, Allowed, Declaration, Demand, Kept, check, of_key
-from camwright.pipeline.checks.demands import follower_speed, slope_over
+from camwright.pipeline.checks.demands import follower_speed, slope_at, slope_over
 from camwright.pipeline.checks.extremes import (
     NOWHERE,
     Extreme,
@@ -190,7 +190,7 @@ def _guide_pressure(side: Side) -> Declaration:
         allowed=of_key(f"{table_of(side)}.pressure_limit"),
         remark=at_its_temperature,
         deviation=0.1,
-        kept=Kept(),
+        kept=Kept(unit="MPa"),
     )
     def pressure(cam: LoadedCam) -> Array:
         """Mean pressure in a guide, Pa."""
@@ -278,7 +278,7 @@ def _guide_pv(side: Side) -> Declaration:
         allowed=partial(_pv_allowed, side),
         remark=in_words,
         deviation=0.03,
-        kept=Kept(),
+        kept=Kept(unit="MPa m/s"),
     )(PV[side])
 
 
@@ -404,7 +404,9 @@ def _guide_temperature(side: Side) -> Declaration:
         value=lambda power, numbers: celsius(_temperature(side, power, numbers)),
         allowed=allowed,
         remark=in_words,
-        kept=Kept(lambda cam, limit: None if cam.heat is None else HEAT[side](cam) / limit),
+        kept=Kept(
+            lambda cam, limit: None if cam.heat is None else HEAT[side](cam) / limit, unit="W"
+        ),
     )(HEAT[side])
 
 
@@ -443,7 +445,8 @@ def _guide_speed(side: Side) -> Declaration:
             demand, source=_maker(guide_of(solution.machine, side))
         ),
         deviation=0.002,
-        kept=Kept(slope_over),
+        bound=slope_at,
+        kept=Kept(slope_over, unit="mm", unloaded=True),
     )(follower_speed)
 
 

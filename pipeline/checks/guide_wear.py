@@ -11,7 +11,7 @@ from camwright.pipeline.base import levers
 from camwright.pipeline.base import value_groups as given
 from camwright.pipeline.base.material import ROOM, Material
 from camwright.pipeline.base.units import shown
-from camwright.pipeline.case.limits import TARGET_LIFE, WEAR_DEPTH, LimitValues
+from camwright.pipeline.case.limits import TARGET_LIFE, WEAR_DEPTH
 from camwright.pipeline.checks.check import Allowed, Declaration, Demand, Kept, check, of_row
 from camwright.pipeline.checks.guide_strength import (
     PV,
@@ -120,12 +120,6 @@ def greatest_temperatures(guide: Guide, stem: Material) -> dict[str, float]:
     return allowed
 
 
-def pv_of_wear(guide: Guide, limits: LimitValues) -> float | None:
-    """PV value of the greatest wear in the target life, Pa m/s; None without the data."""
-    rate, life = guide.wear_rate, limits[TARGET_LIFE]
-    return None if not rate or not life else limits[WEAR_DEPTH] / (rate * life)
-
-
 def _guide_wear(side: Side) -> Declaration:
     rate, life = f"{table_of(side)}.wear_rate", f"limits.{TARGET_LIFE.id}"
 
@@ -133,6 +127,11 @@ def _guide_wear(side: Side) -> Declaration:
         """Wear depth over the target life, m, of a mean PV value, Pa m/s."""
         per_pv, time = numbers.get(rate), numbers.get(life)
         return np.nan if per_pv is None or time is None else per_pv * worst * time
+
+    def pv_at(depth: float, numbers: Numbers) -> float | None:
+        """PV value, Pa m/s, of a wear depth, m, in the target life."""
+        per_pv, time = numbers.get(rate), numbers.get(life)
+        return depth / float(per_pv * time) if per_pv and time else None
 
     def allowed(numbers: Numbers) -> Allowed:
         lacks = tuple(key for key in (rate, life) if numbers.get(key) is None)
@@ -162,11 +161,12 @@ def _guide_wear(side: Side) -> Declaration:
     ).measured(
         "wear",
         value=depth,
+        bound=pv_at,
         allowed=allowed,
         remark=lambda demand, solution: replace(
             demand, figures=(guide_of(solution.machine, side).source,)
         ),
-        kept=Kept(lambda cam, limit: PV[side](cam) / limit),
+        kept=Kept(unit="MPa m/s"),
     )(PV[side])
 
 

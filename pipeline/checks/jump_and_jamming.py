@@ -233,7 +233,11 @@ def _at_no_load_case(demand: Demand, _: Solution) -> Demand:
     applies=lambda speed: ~np.isposinf(speed),
     remark=_at_no_load_case,
     deviation=0.003,
-    kept=Kept(lambda cam, limit: demands.unloading(cam.inertia_at(limit), cam.closing)),
+    kept=Kept(
+        lambda cam, limit: demands.unloading(cam.inertia_at(limit), cam.closing),
+        unit="rpm",
+        falls=-2.0,
+    ),
 )
 def jump_speed(cam: LoadedCam) -> Array:
     """Unloading at a cam speed of 1 rad/s; of the demand, the crank speed of an unloading of 1.

@@ -4,17 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
-from typing import Literal, NamedTuple
+from typing import Literal
 
 import numpy as np
 
 from camwright.geometry.arrays import FULL_TURN, Array, Value, readonly, uniform_turn
-from camwright.pipeline.base.units import in_unit
 from camwright.pipeline.case.case import Case
-from camwright.pipeline.case.limits import AnyLimit
+from camwright.pipeline.checks.flat_face_sliding import face_width
 from camwright.pipeline.checks.key_strength import KeywayRoot
 from camwright.pipeline.checks.roller_bearing import Grease
 from camwright.pipeline.contact.traction import Drag
+from camwright.pipeline.cycle.numbers import Numbers
 from camwright.pipeline.follower.spring_kinds import SpringShape
 
 
@@ -51,188 +51,54 @@ def redrawn(case: Case, variables: DesignVariables) -> Case:
     return case.model_copy(update={"spring": spring, "cam": cam})
 
 
-class ModifiedLife(NamedTuple):
-    """Roller bearing: C, N; e_C P_u, N; viscosity, m2/s; pitch diameter of the balls, m."""
-
-    rating: float
-    cleanliness_load: float
-    viscosity: float
-    circle: float
-
-
-class Face(NamedTuple):
-    """Flat face: width in the plane of motion, m; friction on the cam; limit of the PV value.
-
-    pv: Pa m/s; None: not kept.
-    """
-
-    width: float
-    friction: float = 0.0
-    pv: float | None = None
-
-
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Ratings:
-    """Limits and fixed dimensions of a synthesis, SI; a limit of None is not kept.
+    """Limits of a synthesis and the numbers of its machine, SI.
 
     Parameters
     ----------
-    roller_radius : float      m; 0 under a flat face
-    face : Face                None: a roller
-    limits : mapping           value by row of the table of limits; a row left out is not kept
-    travel : float             maximum lift allowed by the spring, m
-    hollow_radius : float      minimum concave radius of the contour, m
-    pressure : float           least of the limits on the contact pressure, Pa; pressure_by is the
-                               check it comes from
-    contact_width : float      m
-    contact_modulus : float    E*, Pa
-    overspeed : float          cam speed at which the contact force margin is kept, rad/s
-    fastest : float            cam speed up to which the contact force margin is kept with surge
-                               and elastic stem, rad/s
-    jump_speed : float         cam speed below which the follower does not jump, rad/s
-    normal_force : float       least of the limits on the normal force, N; normal_force_by is the
-                               check it comes from, force_safety its factor on the static rating
-    dynamic_rating : float     C of the roller bearing, N
-    life_force_cubed : float   limit of the mean of N^3 |n| over the turn, N^3 rad/s
-    roller_spin : float        rad/s
-    guide_pressure, guide_pv, guide_area : pairs   of guides A and B, Pa, Pa m/s, m^2; pressures as
-                               stated at 20 degC
-    guide_wear_pv : pair       PV value of the greatest wear depth in the target life, Pa m/s
-    guide_edge_load : pair     line load at the yield strength of the bush at 20 degC, N/m
-    guide_power : pair         mean friction power at the greatest temperature, W; guide_power_by is
-                               the check it comes from
-    guide_slope : pair         lift per cam angle at the greatest sliding speed, m/rad; gas_slope:
-                               at that of the gas spring
-    guide_length : pair        m
-    guide_gap : float          m; guide_mouth: end of guide A over the roller centre at maximum
-                               lift, m
-    held_radius : float        of bore and keyway, m; None: the prime radius is that of the case
-    friction : float           of the roller on the cam; drag: of the roller
-    waves : two floats         amplitude and length of the waves of the contour, m
-    cam_torque : float         least of the limits on the cam torque, N m; tooth_torque: with
-                               shaft_drag, N m; *_by is the check it comes from
+    numbers : Numbers      of the machine in no load case
+    bounds : mapping       limit by the key of its constraints, see `Declaration.kept_at`: a row of
+                           the table of limits, or the bound of a measure; one left out is not kept
+    by : mapping           check that sets the least limit of a group, by its key
+    drag : Drag            of the roller
     keyway : KeywayRoot
-    modified : ModifiedLife    modified_rate: limit of the mean of |n| / (a_ISO (C/P)^3), rad/s
-    grease : Grease            of the roller bearing
-    roller_spin_least : float  mean speed of the roller at the least viscosity ratio, rad/s
+    grease : Grease        of the roller bearing
     """
 
-    roller_radius: float
-    face: Face | None = None
-    offset: float = 0.0
-    limits: Mapping[AnyLimit, float] = field(default_factory=dict)
-    travel: float | None = None
-    hollow_radius: float | None = None
-    pressure: float | None = None
-    pressure_by: str = ""
-    contact_width: float = 1.0
-    contact_modulus: float = 1.0
-    overspeed: float | None = None
-    fastest: float | None = None
-    jump_speed: float | None = None
-    normal_force: float | None = None
-    normal_force_by: str = ""
-    force_safety: float = 1.0
-    dynamic_rating: float | None = None
-    life_force_cubed: float | None = None
-    roller_spin: float | None = None
-    guide_pressure: tuple[float | None, float | None] = (None, None)
-    guide_pv: tuple[float | None, float | None] = (None, None)
-    guide_wear_pv: tuple[float | None, float | None] = (None, None)
-    guide_area: tuple[float, float] = (1.0, 1.0)
-    guide_edge_load: tuple[float | None, float | None] = (None, None)
-    guide_power: tuple[float | None, float | None] = (None, None)
-    guide_power_by: tuple[str, str] = ("", "")
-    guide_slope: tuple[float | None, float | None] = (None, None)
-    gas_slope: float | None = None
-    guide_length: tuple[float, float] = (1.0, 1.0)
-    guide_gap: float | None = None
-    guide_mouth: float = 0.0
-    held_radius: float | None = None
-    friction: float | None = None
+    numbers: Numbers
+    bounds: Mapping[str, float] = field(default_factory=dict)
+    by: Mapping[str, str] = field(default_factory=dict)
     drag: Drag | None = None
-    waves: tuple[float, float] | None = None
-    cam_torque: float | None = None
-    cam_torque_by: str = ""
-    tooth_torque: float | None = None
-    tooth_torque_by: str = ""
-    shaft_drag: float = 0.0
     keyway: KeywayRoot | None = None
     grease: Grease | None = None
-    modified: ModifiedLife | None = None
-    modified_rate: float | None = None
-    roller_spin_least: float | None = None
+
+    def times(self, key: str, factor: float) -> Ratings:
+        """With a limit times a factor."""
+        return replace(self, bounds={**self.bounds, key: self.bounds[key] * factor})
+
+    def least(self, limits: Mapping[str, Mapping[str, float]]) -> Ratings:
+        """With the least of the limits of several checks, by key and check; none: not kept."""
+        by = {key: min(each, key=lambda name: each[name]) for key, each in limits.items() if each}
+        least = {key: float(limits[key][name]) for key, name in by.items()}
+        others = {key: value for key, value in self.bounds.items() if key not in limits}
+        return replace(self, bounds=others | least, by={**self.by, **by})
 
     @property
     def follower(self) -> Literal["roller", "face"]:
         """Kind of follower."""
-        return "roller" if self.face is None else "face"
+        return "roller" if self.numbers.get("follower.face.width") is None else "face"
+
+    @property
+    def offset(self) -> float:
+        """Offset of the follower, m."""
+        return float(self.numbers["cam.offset"])
 
     @property
     def slope_max(self) -> float | None:
         """Lift per radian at the edge of a face, m; None: a roller."""
-        return None if self.face is None else 0.5 * self.face.width - abs(self.offset)
-
-    @property
-    def follower_size(self) -> float:
-        """Roller radius, or half of the width of a face, m: scale of a gap."""
-        return self.roller_radius if self.face is None else 0.5 * self.face.width
-
-
-class Rating(NamedTuple):
-    """A limit that a part sets: where it stands in the ratings.
-
-    Parameters
-    ----------
-    name : str      field of `Ratings`
-    unit : str      in which it is shown
-    place : int or str   of a pair, or of a tuple of named values; None: the field itself
-    by : str        field of the check it comes from, where it is the least of several; "": its own
-    factor : str    field of the factor on it with which it is shown; "": 1
-    power : float   of it with which the utilisation falls; negative: it rises, and is not relaxed
-    """
-
-    name: str
-    unit: str
-    place: int | str | None = None
-    by: str = ""
-    factor: str = ""
-    power: float = 1.0
-
-    def of(self, ratings: Ratings) -> float | None:
-        """Limit, SI; None: none."""
-        held = getattr(ratings, self.name)
-        if held is None or self.place is None:
-            limit: float | None = held
-        elif isinstance(self.place, int):
-            limit = held[self.place]
-        else:
-            limit = getattr(held, self.place)
-        return limit
-
-    def times(self, ratings: Ratings, factor: float) -> Ratings:
-        """Ratings with the limit times a factor."""
-        held, value = getattr(ratings, self.name), self.of(ratings)
-        if value is None:
-            return ratings
-        changed: object = value * factor
-        if isinstance(self.place, int):
-            changed = tuple(changed if k == self.place else each for k, each in enumerate(held))
-        elif self.place is not None:
-            changed = held._replace(**{self.place: changed})
-        return replace(ratings, **{self.name: changed})  # type: ignore[arg-type]
-
-    def check_of(self, ratings: Ratings, own: str) -> str:
-        """Id of the check that sets it; own: of that of the constraint, where no other is named."""
-        if not self.by:
-            return own
-        by = getattr(ratings, self.by)
-        return (by[self.place] if isinstance(self.place, int) else by) or own
-
-    def shown(self, ratings: Ratings) -> float | None:
-        """Limit in its unit, by its factor."""
-        value, factor = self.of(ratings), getattr(ratings, self.factor) if self.factor else 1.0
-        return None if value is None else in_unit(value * factor, self.unit)
+        width = self.bounds.get(face_width.id)
+        return None if width is None else 0.5 * width - abs(self.offset)
 
 
 _FACTORS = (

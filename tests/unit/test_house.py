@@ -335,7 +335,7 @@ NAME_CHECKS = {
     "pipeline.follower.roller_parts", "pipeline.iteration", "pipeline.recomputation",
     "pipeline.results.model_limits", "pipeline.results.run_records",
     "pipeline.sizing.sizing", "pipeline.smoothing.allowables",
-    "pipeline.smoothing.part_constraints", "pipeline.smoothing.problem_setup",
+    "pipeline.smoothing.problem_setup",
     "pipeline.smoothing.shadow_prices",
     "pipeline.studies.design.candidate_search", "pipeline.studies.design.synthesised_points",
     "pipeline.studies.papers.figures_2015_valve", "pipeline.studies.papers.petrescu_2015",

@@ -139,7 +139,7 @@ def test_next_trial_starts_from_the_design_with_the_mean_of_two_cams_that_altern
     design = Design(energy, variables, 0.5, 0.0, {}, {}, {}, 3, 0.0)
     none = Correction.none(12)
     low, high = (replace(none, guide_a=np.full(12, level)) for level in (1.2, 1.4))
-    tighter = replace(ratings, guide_pressure=(0.9e4, None))
+    tighter = rated(ratings, guide_pressure=(0.9e4, None))
     after = corrected(
         problem,
         design,

@@ -152,7 +152,7 @@ def test_conflict_is_named_and_a_relaxation_makes_room(idle):
     report = infeasibility(given)
     assert set(report.conflict) == {"roller_static", "torque_reduction"}
     roller = next(item for item in report.relaxations if item.unit == "N")
-    ratings = replace(given.ratings, normal_force=roller.after)
+    ratings = rated(given.ratings, normal_force=roller.after)
     assert synthesise(replace(given, ratings=ratings)).feasible
     less = next(item for item in report.relaxations if item.what.startswith("torque"))
     assert synthesise(less.change(given, less.factor)).feasible

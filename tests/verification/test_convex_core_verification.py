@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from scipy.optimize import NonlinearConstraint, minimize
-from synthesis_ratings import rated
+from synthesis_ratings import named, rated
 
 from camwright.geometry.arrays import uniform_turn
 from camwright.pipeline.case.limits import PRESSURE_ANGLE
@@ -55,12 +55,14 @@ def room(given, c):
     square = PRELOAD**2 + 2 * RATE * np.maximum(LEVEL @ c, -1.0)
     lift = (np.sqrt(square) - PRELOAD) / RATE
     slope = SLOPE @ c
-    found = [LEVEL @ c, (ratings.travel * held - lift) / ratings.travel]
-    if PRESSURE_ANGLE in ratings.limits:
-        steepest = np.tan(ratings.limits[PRESSURE_ANGLE] * held) * np.sqrt(square) * (BASE + lift)
+    found = [LEVEL @ c, (named(ratings).travel * held - lift) / named(ratings).travel]
+    if PRESSURE_ANGLE.id in ratings.bounds:
+        steepest = (
+            np.tan(ratings.bounds[PRESSURE_ANGLE.id] * held) * np.sqrt(square) * (BASE + lift)
+        )
         found += [(steepest - slope) / 10.0, (steepest + slope) / 10.0]
-    if ratings.normal_force is not None:
-        top = (ratings.normal_force * held) ** 2
+    if named(ratings).normal_force is not None:
+        top = (named(ratings).normal_force * held) ** 2
         found.append(1.0 - (square + (slope / BASE) ** 2) / top)
     return np.concatenate(found)
 

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from synthesis_ratings import rated
+from synthesis_ratings import named, rated
 
 from camwright.geometry.arrays import uniform_turn
 from camwright.pipeline.case.case_file import read_case, with_values
@@ -41,8 +41,8 @@ def kept(problem):
 
 def test_smallest_conflict_and_every_way_out():
     given = small(normal_force=330.0, travel=0.05)
-    larger = replace(given, ratings=replace(given.ratings, normal_force=2000.0))
-    tiny = replace(given, ratings=replace(given.ratings, normal_force=340.0))
+    larger = replace(given, ratings=rated(given.ratings, normal_force=2000.0))
+    tiny = replace(given, ratings=rated(given.ratings, normal_force=340.0))
     report = infeasibility(given, [("tiny", tiny), ("large", larger)])
     assert set(report.conflict) == {"roller_static", "torque_reduction"}
     for name in report.conflict:  # without any one of them there is a cam
@@ -125,7 +125,7 @@ def test_published_engine_behind_the_published_roller():
             {"contact_pressure", "guide_pv_A", "guide_pressure_A", "profile_waviness"}
         ),
     )
-    assert given.ratings.normal_force == 380.0
+    assert named(given.ratings).normal_force == 380.0
     assert given.variables.preload == 242.0
     rollers = (
         (name, replace(other, left_out=given.left_out))
