@@ -20,6 +20,7 @@ import numpy as np
 from oracle_model import periodic_basis
 from scipy.optimize import brentq
 from synthesis_ratings import named
+from synthesis_scenarios import figures
 
 MEANS = {"guide_pv_A", "guide_pv_B", "guide_wear_A", "guide_wear_B", "guide_temperature_A",
          "guide_temperature_B"}  # fmt: skip
@@ -76,6 +77,7 @@ def cam_at(problem, coefficients, free, theta, place):
 def follower_at(problem, cam, item, fix):
     """Forces on the follower of a scenario, N, with friction of guides and face."""
     mu = named(problem.ratings).face_friction
+    item = figures(item)
     free, spacing = cam.free, item.guide_spacing
     reach = item.overhang + cam.highest - cam.s
     spring = free["preload"] * item.preload_factor + free["rate"] * item.rate_factor * cam.s
@@ -94,8 +96,7 @@ def follower_at(problem, cam, item, fix):
 
     rising = np.sign(np.real(cam.s1))
     jam = item.friction_a * load(0, fix.rubbing_a) + item.friction_b * load(1, fix.rubbing_b)
-    worst_a, worst_b = item.friction_worst
-    jam_worst = (worst_a * size(on_a) + worst_b * size(on_b)) * fix.jam
+    jam_worst = (item.worst_a * size(on_a) + item.worst_b * size(on_b)) * fix.jam
     share = 1 - rising * jam
     axial = unrubbed / share
     least = free["preload"] * item.preload_factor
@@ -112,7 +113,7 @@ def follower_at(problem, cam, item, fix):
 def utilisations(problem, cam, item):
     """Utilisations (n,) of every limit in a scenario, by check; of `MEANS` the terms."""
     p, free, fix = named(problem.ratings), cam.free, item.correction.at(cam.theta)
-    limit = problem.ratings.bounds
+    limit, item = problem.ratings.bounds, figures(item)
     at = follower_at(problem, cam, item, fix)
     force, radius, arms = at.axial, cam.radius, size(cam.arm)
     line = force / p.contact_width
@@ -122,7 +123,7 @@ def utilisations(problem, cam, item):
     hot = [
         mu * at.load(k, ratio) * at.axial_worst
         for k, (mu, ratio) in enumerate(
-            zip(item.friction_worst, (fix.hot_a, fix.hot_b), strict=True)
+            zip((item.worst_a, item.worst_b), (fix.hot_a, fix.hot_b), strict=True)
         )
     ]
 

@@ -7,6 +7,7 @@ from dataclasses import replace
 import casadi as ca
 import numpy as np
 from synthesis_ratings import named, rated
+from synthesis_scenarios import figures
 
 LIMIT_NUMBERS = (
     "travel", "pressure_angle", "curvature_ratio", "undercut_factor", "hollow_radius",
@@ -64,7 +65,7 @@ def numbers_of(problem):
     known["torque_reduction"] = required_reduction(problem)
     if (known["hollow_radius"] or 0.0) <= known["roller_radius"]:
         known["hollow_radius"] = None  # the roller cannot roll in a smaller hollow
-    if any(item.friction_worst is None for item in problem.scenarios):
+    if any(figures(item).worst_a is None for item in problem.scenarios):
         known["friction_worst_factor"] = None
     return {name: known[name] for name in NUMBERS}
 
@@ -92,10 +93,11 @@ def vector(numbers):
 
 def scenario_numbers(item, theta):
     """Values of `SCENARIO`; corrections at cam angles theta (n,), (len(CORRECTION), n)."""
-    worst = item.friction_worst or (0.0, 0.0)
+    own = vars(figures(item))
     in_operation = 1.0 if item.duty is None else float(item.duty > 0.0)
-    known = {"worst_a": worst[0], "worst_b": worst[1], "in_operation": in_operation}
-    numbers = [float(known.get(name, getattr(item, name, None))) for name in SCENARIO]
+    own |= {name: own[name] or 0.0 for name in ("worst_a", "worst_b")}
+    own["in_operation"] = in_operation
+    numbers = [float(own[name]) for name in SCENARIO]
     turn = np.linspace(0, 2 * np.pi, item.correction.contact.size, endpoint=False)
     fix = np.stack([
         np.interp(theta, turn, getattr(item.correction, name), period=2 * np.pi)

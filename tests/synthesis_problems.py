@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 from synthesis_ratings import named, rated
+from synthesis_scenarios import changed, figures, loaded_with
 
 from camwright.geometry.arrays import uniform_turn
 from camwright.pipeline.case.case_file import read_case
@@ -13,7 +14,7 @@ from camwright.pipeline.checks.roller_bearing import Grease
 from camwright.pipeline.smoothing.constraints import CONSTRAINTS
 from camwright.pipeline.smoothing.objective import TORQUE, Weighted
 from camwright.pipeline.smoothing.problem_setup import problem_of
-from camwright.pipeline.smoothing.scenario import Correction, DesignVariables, Scenario
+from camwright.pipeline.smoothing.scenario import Correction, DesignVariables
 from camwright.pipeline.smoothing.synthesis_problem import Problem
 
 ROOT = Path(__file__).parents[1]
@@ -82,7 +83,7 @@ def measured(name):
     scenarios = []
     for each, speed in about["speeds"].items():
         values = torques[each].without_mean().resampled(720).total
-        scenarios.append(Scenario(
+        scenarios.append(loaded_with(
             each, speed * np.pi / 60, values - values.mean(), weight=about["weights"][each],
             torque_reduction=about["torque_reduction"] if about["weights"][each] else None,
             **FOLLOWER,
@@ -144,7 +145,7 @@ def with_corrections(problem, seed):
         **{name: np.full(turn.size, value) for name, value in single.items()},
     )
     scenarios = tuple(
-        replace(item, correction=correction, viscous_damping=3.0) for item in problem.scenarios
+        changed(item, correction=correction, viscous_damping=3.0) for item in problem.scenarios
     )
     return of_duty(replace(problem, scenarios=scenarios), idle=0.3, governed=0.7)
 
@@ -208,7 +209,7 @@ def variant(problem, seed):
         ),
         jerk_weight=problem.jerk_weight * float(10 ** random.uniform(-5, 0)),
         scenarios=requiring(
-            [replace(s, cam_speed=s.cam_speed * speed) for s in problem.scenarios],
+            [changed(s, cam_speed=figures(s).cam_speed * speed) for s in problem.scenarios],
             float(random.uniform(0.3, 0.6)),
         ),
     )

@@ -113,7 +113,7 @@ class ScenarioCam(LoadedCam):
         rolling, path = self.fix.rolling[..., :1], roller_of(self.motion)  # one value
         prime = path.prime_radius[..., :1]
         share = np.where(rolling > 0.0, rolling, rolling_share(prime, path.size))
-        return np.asarray(self.scenario.cam_speed * share)
+        return np.asarray(self.speed * share)
 
     @property
     def direction(self) -> Array:
@@ -168,20 +168,14 @@ def loaded(
     jet: Jet, highest: float, variables: DesignVariables, ratings: Ratings, scenario: Scenario
 ) -> ScenarioCam:
     """Cam of a lift in one scenario, or in stacked ones; highest: maximum lift, m."""
-    worst = scenario.friction_worst
-    numbers = _numbers(variables, ratings) | {
-        "spring.preload": variables.preload * scenario.preload_factor,
-        "spring.rate": variables.rate * scenario.rate_factor,
-        "cam.speed": scenario.cam_speed,
-        "follower.mass": scenario.mass,
-        "follower.viscous_damping": scenario.viscous_damping,
-        "follower.overhang_at_max_lift": scenario.overhang,
-        "guides.spacing": scenario.guide_spacing,
-        "guides.a.friction": scenario.friction_a,
-        "guides.b.friction": scenario.friction_b,
-        "guides.a.friction_greatest": None if worst is None else worst[0],
-        "guides.b.friction_greatest": None if worst is None else worst[1],
-    }
+    numbers = (
+        _numbers(variables, ratings)
+        | scenario.numbers.changed
+        | {
+            "spring.preload": variables.preload * scenario.preload_factor,
+            "spring.rate": variables.rate * scenario.rate_factor,
+        }
+    )
     return ScenarioCam(
         jet,
         numbers,

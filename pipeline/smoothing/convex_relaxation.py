@@ -37,6 +37,8 @@ from camwright.pipeline.smoothing.synthesis_problem import (
     triangle,
 )
 
+_LIGHT = {"follower.mass": 0.0, "guides.a.friction": 0.0, "guides.b.friction": 0.0}
+
 
 @dataclass(frozen=True, eq=False)
 class Core:
@@ -72,7 +74,7 @@ def convex_start(problem: Problem) -> Core | None:
         return None
     points = problem.coarse_points
     turns = tuple(
-        replace(item, torque=thinned(item.torque, points), mass=0.0, friction_a=0.0, friction_b=0.0)
+        replace(item.at(_LIGHT), torque=thinned(item.torque, points))
         for item in problem.scenarios
         if item.weight > 0
     )

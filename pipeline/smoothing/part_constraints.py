@@ -60,8 +60,8 @@ def _swept_force(at: ScenarioCam, limit: float) -> Array | None:
     fix = scenario.correction
     speed = np.where(fix.swept_speed > 0.0, fix.swept_speed, fastest)
     push = at.closing + fix.swept_surge
-    push = push + (scenario.mass - scenario.spring_mass) * speed**2 * at.jet.bend
-    push = push + scenario.viscous_damping * speed * at.jet.slope
+    push = push + (at.numbers["follower.mass"] - scenario.spring_mass) * speed**2 * at.jet.bend
+    push = push + at.numbers["follower.viscous_damping"] * speed * at.jet.slope
     normal = push / at.share * at.motion.gain
     return where_applies(scenario.swept, 1.0 + limit - normal / at.least_spring)
 
@@ -73,7 +73,7 @@ def _elastic_contact(at: ScenarioCam, limit: float) -> Array | None:
         return None
     fix = scenario.correction
     speed = np.where(fix.elastic_speed > 0.0, fix.elastic_speed, fastest)
-    inertia = (scenario.mass - scenario.spring_mass) * speed**2 * at.jet.bend
+    inertia = (at.numbers["follower.mass"] - scenario.spring_mass) * speed**2 * at.jet.bend
     push = demands.force_left(at.closing + fix.elastic, inertia, at.least_spring)
     return where_applies(scenario.swept, 1.0 + limit - push)
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
 from typing import Literal
 
@@ -162,27 +162,22 @@ class Correction:
         """A correction greater by a margin, of the corrected loads; surge and speeds are kept."""
         return replace(self, **{name: getattr(self, name) * (1.0 + margin) for name in _FACTORS})
 
+    def each(self, of: Callable[[Sequence[Array]], Array], *others: Correction) -> Correction:
+        """A function of the values of every field here and in others."""
+        every, names = (self, *others), [each.name for each in fields(self)]
+        return Correction(*(of([getattr(one, name) for one in every]) for name in names))
+
     def towards(self, other: Correction, share: float) -> Correction:
         """Linear interpolation to another correction, at the angles of that one."""
         if share == 1.0:
             return other
         own = self.at(uniform_turn(other.contact.size))
-        return Correction(
-            *(
-                (1.0 - share) * getattr(own, each.name) + share * getattr(other, each.name)
-                for each in fields(self)
-            )
-        )
+        return own.each(lambda both: (1.0 - share) * both[0] + share * both[1], other)
 
     def at(self, theta: Array) -> Correction:
         """Corrections at cam angles theta (m,), rad, interpolated linearly."""
         own = np.arange(self.contact.size) * (FULL_TURN / self.contact.size)
-        return Correction(
-            *(
-                np.interp(theta, own, getattr(self, each.name), period=FULL_TURN)
-                for each in fields(self)
-            )
-        )
+        return self.each(lambda one: np.interp(theta, own, one[0], period=FULL_TURN))
 
 
 @dataclass(frozen=True, eq=False)
@@ -191,17 +186,14 @@ class Scenario:
 
     Parameters
     ----------
-    cam_speed : float        rad/s
     torque : array (n,)      engine torque at n equal cam angles, of zero mean, crank N m
     weight : float           of its ripple in the objective; 0: limits only
     torque_reduction : float   required of its torque ripple; None: none is required
     duty : float             share of the operating time; None: not known
     corner : int             number of its tolerance corner; 0: none. Lives and wear add over the
                              load cases at a corner
-    mass, viscous_damping, guide_spacing, overhang : float   of the follower, SI; spring_mass: of
-                             the mass, that of the spring
-    friction_a, friction_b : float
-    friction_worst : two floats   maximum friction of guides A and B; None: not known
+    numbers : Numbers        of the machine in its load case, see `numbers_in`
+    spring_mass : float      of the spring in the moving mass, kg
     rate_factor, preload_factor : float   spring of the scenario over the nominal spring
     gravity : float          component of g along the axis towards the cam, m/s2
     external : array (n,)    external force at n equal cam angles, N, towards the cam; one value:
@@ -215,14 +207,8 @@ class Scenario:
     """
 
     name: str
-    cam_speed: Value
     torque: Array
-    mass: Value
-    guide_spacing: Value
-    overhang: Value
-    friction_a: Value
-    friction_b: Value
-    viscous_damping: Value = 0.0
+    numbers: Numbers
     rate_factor: Value = 1.0
     preload_factor: Value = 1.0
     gravity: float = 0.0
@@ -231,12 +217,15 @@ class Scenario:
     torque_reduction: float | None = None
     duty: Value | None = None
     corner: Value = 0
-    friction_worst: tuple[Value, Value] | None = None
     spring_mass: Value = 0.0
     nominal: Value = True
     swept: Value = True
     correction: Correction = field(default_factory=lambda: Correction.none(8))
     cell: Value = 0.0
+
+    def at(self, numbers: Mapping[str, Value]) -> Scenario:
+        """With other numbers."""
+        return replace(self, numbers=self.numbers | numbers)
 
     def torque_at(self, phase: float) -> tuple[Array, Array]:
         """Engine torque, N m, and its derivative, N m/rad, advanced by `phase`, rad of cam."""
@@ -248,88 +237,66 @@ class Scenario:
         return np.fft.irfft(turned, n=count), np.fft.irfft(order * turned, n=count)
 
 
-_NUMBERS = (
-    "cam_speed", "mass", "guide_spacing", "overhang", "friction_a", "friction_b",
-    "viscous_damping", "rate_factor", "preload_factor", "spring_mass", "nominal", "swept",
-    "corner",
-)  # fmt: skip
-"""Numbers of a scenario that differ between stacked ones."""
+_NUMBERS = ("rate_factor", "preload_factor", "spring_mass", "nominal", "swept", "corner")
+"""Fields of a scenario that differ between stacked ones, besides its numbers."""
 
 
 def stacked(scenarios: Sequence[Scenario], theta: Array, cell: Value = 0.0) -> Scenario:
     """Scenarios at once: numbers (s, 1), corrections (s, n) at cam angles theta (n,), rad.
 
-    cell: cam angle, rad, for which each stands, one or (n,).
-
-    All have the same external force.
-
-    The maximum friction is known in all of them, or left out.
+    cell: cam angle, rad, for which each stands, one or (n,). All have the same external force, and
+    the same numbers: one that is not known in all of them, such as a maximum friction, is left out.
     """
     # The corners of a load case share its correction.
     around = np.arange(scenarios[0].external.size) * (FULL_TURN / scenarios[0].external.size)
     external = np.interp(theta, around, scenarios[0].external, period=FULL_TURN)
     different = {id(each.correction): each.correction for each in scenarios}
     different = {key: each.at(theta) for key, each in different.items()}
-    corrections = [different[id(each.correction)] for each in scenarios]
-    worst = [each.friction_worst for each in scenarios if each.friction_worst is not None]
-    duties = [each.duty for each in scenarios]
-    greatest = None
-    if len(worst) == len(scenarios):
-        greatest = (_column(a for a, _ in worst), _column(b for _, b in worst))
-    numbers = {name: _column(getattr(each, name) for each in scenarios) for name in _NUMBERS}
+    first, *others = (different[id(each.correction)] for each in scenarios)
+    changed = {
+        key: _column([each.numbers.get(key) for each in scenarios])
+        for key in scenarios[0].numbers.changed
+    }
     return replace(
         scenarios[0],
-        **numbers,  # type: ignore[arg-type]
+        **{name: _column([getattr(each, name) for each in scenarios]) for name in _NUMBERS},  # type: ignore[arg-type]
+        numbers=Numbers(changed),
         external=np.broadcast_to(external, (len(scenarios), external.size)),
         cell=np.broadcast_to(cell, (len(scenarios), external.size)),
-        duty=None if None in duties else _column(each for each in duties if each is not None),
-        friction_worst=greatest,
-        correction=Correction(
-            *(
-                np.stack([getattr(each, item.name) for each in corrections])
-                for item in fields(Correction)
-            )
-        ),
+        duty=_column([each.duty for each in scenarios]),
+        correction=first.each(np.stack, *others),
     )
 
 
 def joined(one: Scenario, other: Scenario) -> Scenario:
     """Stacked scenarios at the cam angles of two stacks of the same scenarios."""
 
-    def of(first: Value, second: Value) -> Array:
-        return np.concatenate([np.asarray(first), np.asarray(second)], axis=1)
+    def of(both: Sequence[Value]) -> Array:
+        return np.concatenate([np.asarray(each) for each in both], axis=1)
 
     return replace(
         one,
-        external=of(one.external, other.external),
-        cell=of(one.cell, other.cell),
-        correction=Correction(
-            *(
-                of(getattr(one.correction, item.name), getattr(other.correction, item.name))
-                for item in fields(Correction)
-            )
-        ),
+        external=of([one.external, other.external]),
+        cell=of([one.cell, other.cell]),
+        correction=one.correction.each(of, other.correction),
     )
 
 
 def taken(stack: Scenario, take: Callable[[Array], Array]) -> Scenario:
     """Some of the stacked scenarios, or some of their angles: `take` of each number, correction."""
 
-    def of(value: Value) -> Array:
-        return take(np.asarray(value))
+    def of(value: Value | None) -> Array | None:
+        return None if value is None else take(np.asarray(value))
 
-    numbers = {name: of(getattr(stack, name)) for name in (*_NUMBERS, "external", "cell")}
-    worst = stack.friction_worst
     return replace(
         stack,
-        **numbers,  # type: ignore[arg-type]
-        duty=None if stack.duty is None else of(stack.duty),
-        friction_worst=None if worst is None else (of(worst[0]), of(worst[1])),
-        correction=Correction(
-            *(of(getattr(stack.correction, item.name)) for item in fields(Correction))
-        ),
+        **{name: of(getattr(stack, name)) for name in (*_NUMBERS, "external", "cell", "duty")},  # type: ignore[arg-type]
+        numbers=Numbers({key: of(value) for key, value in stack.numbers.changed.items()}),
+        correction=stack.correction.each(lambda one: take(one[0])),
     )
 
 
-def _column(values: Iterable[Value]) -> Array:
-    return np.array([[float(value)] for value in values])
+def _column(values: Sequence[Value | None]) -> Array | None:
+    """Values (s, 1); None where one is not known."""
+    known = [float(each) for each in values if each is not None]
+    return np.array(known)[:, None] if len(known) == len(values) else None

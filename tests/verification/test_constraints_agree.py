@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from synthesis_problems import OF_ROLLER, REFINED
 from synthesis_ratings import named, rated
+from synthesis_scenarios import changed, loaded_with
 
 from camwright.geometry.arrays import uniform_turn
 from camwright.geometry.contour import RollerContour
@@ -52,7 +53,7 @@ from camwright.pipeline.smoothing.sampled_problem import (
     LEAST_ENERGY,
     Search,
 )
-from camwright.pipeline.smoothing.scenario import DesignVariables, Scenario
+from camwright.pipeline.smoothing.scenario import DesignVariables
 from camwright.pipeline.smoothing.synthesis_problem import Problem
 
 DATA = Path(__file__).parents[1] / "data"
@@ -277,7 +278,7 @@ EVERY = rated(
 def scenario(count=180):
     theta = uniform_turn(count)
     torque = 12.0 * np.sin(2 * theta) + 6.0 * np.cos(3 * theta + 0.4) + 3.0 * np.sin(5 * theta)
-    return Scenario(
+    return loaded_with(
         "one", 80.0, torque, 0.175, 0.08, 0.03, 0.15, 0.12,
         viscous_damping=5.0, friction_worst=(0.2, 0.2),
     )  # fmt: skip
@@ -294,7 +295,7 @@ def sharing(scenarios, duty):
 @pytest.mark.parametrize("duty", [None, (0.3, 0.7)])
 @pytest.mark.parametrize("free", [(), tuple(RANGES)])
 def test_gradients_match_differences(free, duty):
-    both = scenario(), replace(scenario(), rate_factor=1.1, cam_speed=150.0, weight=0.0)
+    both = scenario(), changed(scenario(), rate_factor=1.1, cam_speed=150.0, weight=0.0)
     given = Problem(
         sharing(both, duty),
         EVERY,
@@ -396,7 +397,7 @@ def test_second_derivatives_of_the_lagrangian_match_its_differences(free, duty, 
 
     The second derivative of the maximum lift is left out: the differences take it as linear.
     """
-    fast = replace(scenario(), rate_factor=1.1, cam_speed=150.0, weight=0.7)
+    fast = changed(scenario(), rate_factor=1.1, cam_speed=150.0, weight=0.7)
     both = replace(scenario(), torque_reduction=0.5), replace(fast, torque_reduction=0.4)
     given = Problem(
         sharing(both, duty),

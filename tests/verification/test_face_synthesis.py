@@ -9,6 +9,7 @@ import pytest
 from oracle_model import DEGREE
 from synthesis_problems import REFINED, with_corrections
 from synthesis_ratings import rated
+from synthesis_scenarios import changed, loaded_with
 
 from camwright.geometry.arrays import uniform_turn
 from camwright.geometry.energy import spring_deflection, stored_energy
@@ -49,7 +50,6 @@ from camwright.pipeline.smoothing.sampled_problem import SHAPE_LIMITS, Search
 from camwright.pipeline.smoothing.scenario import (
     Correction,
     DesignVariables,
-    Scenario,
     redrawn,
 )
 from camwright.pipeline.smoothing.shadow_prices import prices
@@ -74,7 +74,7 @@ EVERY = rated(
 
 def scenario(torque, speed=80.0):
     """Load case of a torque (n,), N m, at a cam speed, rad/s."""
-    return Scenario(
+    return loaded_with(
         "idle", speed, torque - torque.mean(), 0.3, 0.09, 0.03, 0.08, 0.06, viscous_damping=5.0,
         friction_worst=(0.12, 0.1), spring_mass=0.05,
     )  # fmt: skip
@@ -284,7 +284,7 @@ def test_convex_start_is_the_optimum_where_width_force_and_travel_limit_alone():
     """Without friction, mass and curvature limits the problem is convex: no cam is better."""
     theta = uniform_turn(240)
     torque = 6.0 * np.sin(2 * theta) + 3.0 * np.cos(3 * theta + 0.4)
-    item = replace(
+    item = changed(
         scenario(torque), mass=0.0, spring_mass=0.0, friction_a=0.0, friction_b=0.0,
         viscous_damping=0.0, friction_worst=None,
     )  # fmt: skip

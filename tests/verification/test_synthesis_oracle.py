@@ -26,6 +26,7 @@ from synthesis_problems import (
     with_corrections,
 )
 from synthesis_ratings import named
+from synthesis_scenarios import changed
 
 from camwright.pipeline.smoothing.constrained_synthesis import synthesise
 from camwright.pipeline.smoothing.sampled_problem import Search
@@ -324,7 +325,7 @@ def isolated(problem, name):
     """The problem without what hides a limit behind another."""
     scenarios = problem.scenarios
     if name == "jam_index":
-        scenarios = tuple(replace(item, friction_worst=None) for item in scenarios)
+        scenarios = tuple(changed(item, friction_worst=None) for item in scenarios)
     if name == "elastic_contact":
         bent = tuple(
             replace(item.correction, elastic=item.correction.elastic - STEM) for item in scenarios
