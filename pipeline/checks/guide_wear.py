@@ -104,20 +104,17 @@ def closures(
     return free, held
 
 
-def greatest_temperatures(guide: Guide, stem: Material) -> dict[str, float]:
-    """Greatest temperature of a guide, K, that each of its checks allows, by its name."""
-    bush, allowed = guide.material, {}
-    if bush.temperature_limit is not None:
-        allowed["guide_temperature"] = bush.temperature_limit
-    of_bush, of_stem, moisture = bush.expansion, stem.expansion, bush.moisture_growth
+def seizure_temperature(guide: Guide, stem: Material) -> float | None:
+    """Temperature of a guide at which the stem binds in it, K; None: not known, or at none."""
+    of_bush, moisture = guide.material.expansion, guide.material.moisture_growth
+    of_stem = stem.expansion
     if guide.wall is None or of_bush is None or of_stem is None or moisture is None:
-        return allowed
+        return None
     cold, warm = (
         max(closures(guide, of_bush, of_stem, moisture, ROOM + rise)) for rise in (0.0, 1.0)
     )
-    if warm > cold:  # linear in the temperature
-        allowed["guide_expansion"] = ROOM + (guide.clearance - cold) / (warm - cold)
-    return allowed
+    # linear in the temperature
+    return ROOM + (guide.clearance - cold) / (warm - cold) if warm > cold else None
 
 
 def _guide_wear(side: Side) -> Declaration:

@@ -202,6 +202,11 @@ def _jump_speed_allowed(numbers: Numbers) -> Allowed:
     return Allowed(numbers[f"limits.{JUMP_SPEED.id}"] * fastest)
 
 
+def cam_speed_without_jump(numbers: Numbers) -> float:
+    """Least cam speed of the jump, rad/s; without an overspeed by that of the fastest load case."""
+    return float(numbers.limit(JUMP_SPEED) * numbers["cam.fastest"])
+
+
 def _at_no_load_case(demand: Demand, _: Solution) -> Demand:
     """At its cam angle alone: the speed is that of no load case."""
     return replace(demand, at=demand.at and demand.at._replace(load_case=""))
@@ -229,6 +234,7 @@ def _at_no_load_case(demand: Demand, _: Solution) -> Demand:
     "forces",
     value=_speed_of_jump,
     error=0.5,
+    bound=lambda _, numbers: cam_speed_without_jump(numbers),
     allowed=_jump_speed_allowed,
     applies=lambda speed: ~np.isposinf(speed),
     remark=_at_no_load_case,

@@ -12,7 +12,7 @@ from camwright.geometry.arrays import Array, Value
 from camwright.geometry.lift import Jet
 from camwright.pipeline.base.material import ROOM
 from camwright.pipeline.case.case import Case
-from camwright.pipeline.case.limits import JUMP_SPEED, KEYWAY_SAFETY, PRESSURE_ANGLE
+from camwright.pipeline.case.limits import KEYWAY_SAFETY, PRESSURE_ANGLE
 from camwright.pipeline.case.machine import Machine, machines
 from camwright.pipeline.checks.cam_shape import lift, spring_travel
 from camwright.pipeline.checks.check import Declaration, Measured
@@ -23,8 +23,9 @@ from camwright.pipeline.checks.contact_strength import (
     pressure_allowables,
 )
 from camwright.pipeline.checks.demands import NORMAL_FORCE, PRESSURE
-from camwright.pipeline.checks.guide_wear import greatest_temperatures
-from camwright.pipeline.checks.jump_and_jamming import jump_speed
+from camwright.pipeline.checks.guide_strength import power_at
+from camwright.pipeline.checks.guide_wear import seizure_temperature
+from camwright.pipeline.checks.jump_and_jamming import cam_speed_without_jump, jump_speed
 from camwright.pipeline.checks.key_strength import keyway_root, keyway_root_of
 from camwright.pipeline.checks.registry import CHECKS
 from camwright.pipeline.checks.roller_bearing import grease_life, grease_of
@@ -33,7 +34,6 @@ from camwright.pipeline.cycle.numbers import Numbers
 from camwright.pipeline.cycle.part_loads import edge_pressure_of
 from camwright.pipeline.cycle.solution import Solution
 from camwright.pipeline.cycle.solved_cam import ContourCam, numbers_of
-from camwright.pipeline.follower.guide_friction import thermal_resistance
 from camwright.pipeline.follower.guide_reactions import Guide
 from camwright.pipeline.follower.spring import SpringWork
 from camwright.pipeline.smoothing.scenario import Ratings
@@ -74,36 +74,21 @@ def limits_of(case: Case) -> dict[str, dict[str, float]]:
             limits.setdefault(each.kept_at, {})[each.id] = float(limit)
     limits[PRESSURE] |= pressure_allowables(machine, greatest_cycles(case))
     limits[spring_travel.id] = _travel_limit(case)
-    # Without a stated over-speed the contact is kept at the fastest load case.
-    fastest = float(numbers.limit(JUMP_SPEED) * numbers["cam.fastest"])
-    limits[jump_speed.id] = {jump_speed.id: fastest}
+    limits[jump_speed.id] = {jump_speed.id: cam_speed_without_jump(numbers)}
     limits[KEYWAY_SAFETY.id] = {keyway_root.id: machine.limits[KEYWAY_SAFETY]}
     if case.scope.covers("guides"):
         for side, guide in machine.guides.both:
-            limits[f"guide_temperature_{side}"] = power_limits(side, guide, case, machine)
-            edge = edge_load(machine, guide, ROOM)
-            if edge is not None:
-                limits[f"guide_edge_pressure_{side}"] = {f"guide_edge_pressure_{side}": edge}
+            seizure = seizure_temperature(guide, case.follower.stem_material)
+            for name, key, limit in (
+                ("guide_expansion", "guide_temperature", power_at(side, seizure, numbers)),
+                ("guide_edge_pressure", "guide_edge_pressure", edge_load(machine, guide, ROOM)),
+            ):
+                if limit is not None:
+                    limits.setdefault(f"{key}_{side}", {})[f"{name}_{side}"] = limit
     grease = grease_of(machine)
     if grease is not None:
         limits[grease_life.id] = {grease_life.id: grease.rating}
     return limits
-
-
-def power_limits(side: str, guide: Guide, case: Case, machine: Machine) -> dict[str, float]:
-    """Greatest mean friction power of a guide allowed by each of its checks, W, by its id.
-
-    Without those that no lift can pass, below the ambient temperature.
-    """
-    resistance, ambient = thermal_resistance(guide), machine.guides.ambient_temperature
-    if resistance is None or ambient is None:
-        return {}
-    allowed = greatest_temperatures(guide, case.follower.stem_material)
-    return {
-        f"{name}_{side}": (temperature - ambient) / resistance
-        for name, temperature in allowed.items()
-        if temperature > ambient
-    }
 
 
 def edge_load(machine: Machine, guide: Guide, temperature: float) -> float | None:

@@ -18,7 +18,6 @@ from camwright.geometry.motion_laws import Segment, SegmentMotion
 from camwright.pipeline.case.case_file import read_case
 from camwright.pipeline.case.case_values import replaced, value_of
 from camwright.pipeline.case.load_case_torque import engine_torques
-from camwright.pipeline.case.machine import machines
 from camwright.pipeline.checks.check import depends_on_lift, within_depth
 from camwright.pipeline.checks.demands import CAM_TORQUE, NORMAL_FORCE, PRESSURE, TOOTH_TORQUE
 from camwright.pipeline.checks.key_strength import KeywayRoot
@@ -27,7 +26,6 @@ from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.solution import solution
 from camwright.pipeline.smoothing.allowables import (
     limits_of,
-    power_limits,
     ratings_of,
 )
 from camwright.pipeline.smoothing.bounds import bounds_of
@@ -343,8 +341,7 @@ def strain(check, ambient):
 
 def own_limits(case):
     """Ratings with the limit of one check alone where the synthesis keeps the least of several."""
-    machine = machines(case)[0]
-    powers = [power_limits(side, guide, case, machine) for side, guide in machine.guides.both]
+    names = [f"guide_temperature_{side}" for side in "AB"]
     return rated(
         ratings_of(case),
         held_radius=case.cam.held_radius,
@@ -352,9 +349,7 @@ def own_limits(case):
         pressure=limits_of(case)[PRESSURE]["contact_pressure"],
         cam_torque=limits_of(case)[CAM_TORQUE]["key_pressure"],
         tooth_torque=limits_of(case)[TOOTH_TORQUE]["gear_bending"],
-        guide_power=tuple(
-            each[f"guide_temperature_{side}"] for each, side in zip(powers, "AB", strict=True)
-        ),
+        guide_power=tuple(limits_of(case)[name][name] for name in names),
     )
 
 

@@ -27,7 +27,6 @@ from camwright.pipeline.smoothing.allowables import (
     corrected_ratings,
     edge_load,
     limits_of,
-    power_limits,
     ratings_of,
     scaled_limits,
     surge_of,
@@ -155,9 +154,9 @@ def own(case, machine, name):
             ratings, tooth_torque=limits_of(case)[demands.TOOTH_TORQUE][name]
         )
     side = name[-1]
-    guides = dict(machine.guides.both)
     if name in HEAT:
-        both = [power_limits(s, g, case, machine)[name[:-1] + s] for s, g in guides.items()]
+        limits = limits_of(case)
+        both = [limits[f"guide_temperature_{each}"][name[:-1] + each] for each in "AB"]
         return f"guide_temperature_{side}", rated(ratings, guide_power=tuple(both))
     return name, rated(ratings, held_radius=case.cam.held_radius)
 
@@ -201,7 +200,7 @@ def in_check(case, checks, solved, name, use):
     if name in HEAT:
         ambient, side = machine.guides.ambient_temperature - KELVIN, name[-1]
         guide = dict(machine.guides.both)[side]
-        allowed = power_limits(side, guide, case, machine)[name]
+        allowed = limits_of(case)[f"guide_temperature_{side}"][name]
         resistance = (checks[f"guide_temperature_{side}"].demand - ambient) / use / allowed
         if name.startswith("guide_temperature"):
             return ambient + use * (check.limit - ambient), check.demand
