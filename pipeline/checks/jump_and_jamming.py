@@ -258,12 +258,6 @@ def _force_at(cam: LoadedCam, speed: Value) -> Array:
     return demands.force_left(cam.closing, cam.inertia_at(speed), cam.least_spring)
 
 
-def _kept_at_overspeed(cam: LoadedCam, limit: float) -> Array | None:
-    """No constraint where no greatest speed is known."""
-    fastest = cam.numbers.get("cam.fastest")
-    return None if fastest is None else 1.0 + limit - _force_at(cam, fastest)
-
-
 @check(
     CONTACT_FORCE_MARGIN,
     id="contact_at_overspeed",
@@ -287,7 +281,7 @@ def _kept_at_overspeed(cam: LoadedCam, limit: float) -> Array | None:
     needed=(f"limits.{OVERSPEED.id}",),
     remark=_at_no_load_case,
     deviation=0.02,
-    kept=Kept(_kept_at_overspeed),
+    kept=Kept(),
 )
 def contact_at_overspeed(cam: LoadedCam) -> Array:
     """Contact force at the overspeed over the least spring force, without friction."""

@@ -52,12 +52,9 @@ def _edge_use(side: Side, at: ScenarioCam, limit: float) -> Array:
     return magnitude(at.edge["AB".index(side)]) / (at.numbers[f"{table_of(side)}.length"] * limit)
 
 
-def _swept_force(at: ScenarioCam, limit: float) -> Array | None:
+def _swept_force(at: ScenarioCam, limit: float) -> Array:
     """At the speed with the least force of the solved cam, with its surge; first the fastest."""
-    fastest, scenario = at.numbers.get("cam.fastest"), at.scenario
-    if fastest is None:
-        return None
-    fix = scenario.correction
+    fastest, fix, scenario = at.numbers["cam.fastest"], at.fix, at.scenario
     speed = np.where(fix.swept_speed > 0.0, fix.swept_speed, fastest)
     push = at.closing + fix.swept_surge
     push = push + (at.numbers["follower.mass"] - scenario.spring_mass) * speed**2 * at.jet.bend
@@ -66,12 +63,9 @@ def _swept_force(at: ScenarioCam, limit: float) -> Array | None:
     return where_applies(scenario.swept, 1.0 + limit - normal / at.least_spring)
 
 
-def _elastic_contact(at: ScenarioCam, limit: float) -> Array | None:
+def _elastic_contact(at: ScenarioCam, limit: float) -> Array:
     """As `_swept_force`, without friction, with the change by the elastic stem."""
-    fastest, scenario = at.numbers.get("cam.fastest"), at.scenario
-    if fastest is None:
-        return None
-    fix = scenario.correction
+    fastest, fix, scenario = at.numbers["cam.fastest"], at.fix, at.scenario
     speed = np.where(fix.elastic_speed > 0.0, fix.elastic_speed, fastest)
     inertia = (at.numbers["follower.mass"] - scenario.spring_mass) * speed**2 * at.jet.bend
     push = demands.force_left(at.closing + fix.elastic, inertia, at.least_spring)

@@ -26,7 +26,7 @@ from camwright.pipeline.smoothing.synthesis_problem import RESERVE, Problem
 CASES = Path(__file__).parents[2] / "cases"
 RATINGS = rated(
     roller_radius=0.008, travel=0.045, pressure_angle=np.pi / 6, jam_index=0.5,
-    curvature_ratio=1.5, undercut_factor=0.3, contact_force_margin=0.2, jump=1.0,
+    curvature_ratio=1.5, undercut_factor=0.3, contact_force_margin=0.2, overspeed=0.0, jump=1.0,
 )  # fmt: skip
 
 
