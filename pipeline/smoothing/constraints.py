@@ -38,25 +38,13 @@ def shape_utilisations(
     return _utilisations(SHAPE, unloaded(jet, variables, ratings), ratings, names)
 
 
-def load_utilisations(
-    jet: Jet,
-    highest: float,
-    variables: DesignVariables,
-    ratings: Ratings,
-    scenario: Scenario,
-    names: Container[str] | None = None,
+def utilisations_of(
+    loads: ScenarioCam, names: Container[str] | None = None
 ) -> Mapping[str, Array | Mean]:
     """Utilisations of the limits on the loads, or of those named; each (..., n), or a `Mean`.
 
     Leading axes are those of stacked scenarios.
     """
-    return utilisations_of(loaded(jet, highest, variables, ratings, scenario), names)
-
-
-def utilisations_of(
-    loads: ScenarioCam, names: Container[str] | None = None
-) -> Mapping[str, Array | Mean]:
-    """As `load_utilisations`, of a loaded cam."""
     return _utilisations(LOADS, loads, loads.ratings, names)
 
 

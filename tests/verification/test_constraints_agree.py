@@ -35,11 +35,11 @@ from camwright.pipeline.smoothing.allowables import (
     scaled_limits,
     travel_limits,
 )
-from camwright.pipeline.smoothing.cam_state import Mean
+from camwright.pipeline.smoothing.cam_state import Mean, loaded
 from camwright.pipeline.smoothing.cone_program import ConeSolution
 from camwright.pipeline.smoothing.constraints import (
-    load_utilisations,
     shape_utilisations,
+    utilisations_of,
 )
 from camwright.pipeline.smoothing.energy_spline import Grid
 from camwright.pipeline.smoothing.fe_correction import corrections_of
@@ -135,7 +135,7 @@ def worst_loads(case, judged, ratings, theta=None):
     for state in problem.scenarios:
         corrected = corrections[state.name]
         scenario = replace(state, correction=corrected if grid else corrected.at(theta))
-        loads = load_utilisations(moving, top, variables, ratings, scenario)
+        loads = utilisations_of(loaded(moving, top, variables, ratings, scenario))
         for name, value in loads.items():
             use = float(np.max(value.value if isinstance(value, Mean) else value))
             worst[name] = max(worst.get(name, -np.inf), use)
@@ -238,12 +238,14 @@ def test_pressure_limit_is_that_of_each_check(case, judged):
     for name, limit in (limits | along).items():
         ratings, most = rated(ratings_of(case), pressure=limit), 0.0
         for scenario in problem.scenarios:
-            use = load_utilisations(
-                jet(contour, theta),
-                top,
-                variables_of(case),
-                ratings,
-                replace(scenario, correction=corrections[scenario.name]),
+            use = utilisations_of(
+                loaded(
+                    jet(contour, theta),
+                    top,
+                    variables_of(case),
+                    ratings,
+                    replace(scenario, correction=corrections[scenario.name]),
+                )
             )["contact_pressure"]
             # r kappa + N/F = r kappa + (1 - r kappa) (p0/p)^2
             most = max(most, float(np.max((use - bend) / (1 - bend))))

@@ -29,12 +29,12 @@ from camwright.pipeline.smoothing.allowables import (
     ratings_of,
 )
 from camwright.pipeline.smoothing.bounds import bounds_of
-from camwright.pipeline.smoothing.cam_state import Mean, unloaded
+from camwright.pipeline.smoothing.cam_state import Mean, loaded, unloaded
 from camwright.pipeline.smoothing.constrained_synthesis import synthesise
 from camwright.pipeline.smoothing.constraints import (
     CONSTRAINTS,
-    load_utilisations,
     shape_utilisations,
+    utilisations_of,
 )
 from camwright.pipeline.smoothing.convex_relaxation import convex_start
 from camwright.pipeline.smoothing.energy_spline import basis_matrix
@@ -374,9 +374,12 @@ def test_each_constraint_is_its_check_on_a_solved_cam(drawn):
         uses = dict(shape_utilisations(jet, variables, ratings, {name}))
         if not shaped and name not in uses:
             made = [
-                load_utilisations(
-                    jet, top, variables, ratings,
-                    replace(item, correction=corrections[item.name].at(angles)), {name},
+                utilisations_of(
+                    loaded(
+                        jet, top, variables, ratings,
+                        replace(item, correction=corrections[item.name].at(angles)),
+                    ),
+                    {name},
                 )[name]
                 for item in problem.scenarios
             ]  # fmt: skip

@@ -37,8 +37,8 @@ from camwright.pipeline.smoothing.cam_state import Mean, ScenarioCam, loaded, un
 from camwright.pipeline.smoothing.constraints import (
     CONSTRAINTS,
     SHAPE,
-    load_utilisations,
     shape_utilisations,
+    utilisations_of,
 )
 from camwright.pipeline.smoothing.fe_correction import SETTLED, corrections_of
 from camwright.pipeline.smoothing.problem_setup import problem_of
@@ -133,7 +133,7 @@ def uses(solved, problem, corrections, ratings, theta):
     }
     for state in problem.scenarios:
         scenario = replace(state, correction=corrections[state.name].at(theta))
-        loads = load_utilisations(jet, top, variables, ratings, scenario)
+        loads = utilisations_of(loaded(jet, top, variables, ratings, scenario))
         for name, value in loads.items():
             use = float(np.max(value.value if isinstance(value, Mean) else value))
             worst[name] = max(worst.get(name, -np.inf), use)
@@ -253,7 +253,7 @@ def test_a_life_by_the_duty_is_that_of_its_check(sharing, name):
     jet, top = Jet(*pitch.lift.derivatives(theta, 3)), pitch.lift.highest.value
     variables = DesignVariables(case.spring.rate, case.spring.preload, case.cam.prime_radius)
     stack = stacked(scenarios, theta)
-    use, *others = load_utilisations(jet, top, variables, ratings_of(case), stack)[name].value
+    use, *others = utilisations_of(loaded(jet, top, variables, ratings_of(case), stack))[name].value
     if name == "grease_life":
         # the factor on the rating at which the shares of the life add to 1
         bearing, lives, heavy = solved.machine.roller.bearing, [], []
