@@ -10,11 +10,11 @@ The limits are those of the checks that are declared as kept, and of those of `p
 
 from __future__ import annotations
 
-from collections.abc import Container, Mapping
+from collections.abc import Container, Iterable, Mapping
 
 from camwright.geometry.arrays import Array
 from camwright.geometry.lift import Jet
-from camwright.pipeline.checks.check import Declaration, Measured
+from camwright.pipeline.checks.check import Declaration
 from camwright.pipeline.checks.registry import CHECKS
 from camwright.pipeline.cycle.loaded_cam import LoadedCam
 from camwright.pipeline.smoothing.cam_state import (
@@ -72,37 +72,32 @@ def _utilisations(
     return uses
 
 
-def _is_of_shape(how: Measured) -> bool:
-    """Whether a kept limit is one on the shape of the cam."""
-    return (
-        how.kept is not None
-        and not how.kept.once
-        and (how.kept.unloaded or how.reduce in ("contour", "top"))
-    )
+def constraints_of(
+    checks: Iterable[Declaration],
+) -> tuple[tuple[Constraint[LoadedCam], ...], tuple[Constraint[ScenarioCam], ...]]:
+    """Constraints on shape and loads of the checks that are declared as kept, in their order.
 
-
-def is_constraint(declared: Declaration) -> bool:
-    """Whether a check is a constraint of its own; of a group one is with each kind of follower.
-
-    Of those at maximum lift that of the spring travel is, which `travel_limits` bounds.
+    Of a group one with each kind of follower; of the checks at maximum lift that of the spring
+    travel, which `travel_limits` bounds.
     """
-    kept = None if declared.measured is None else declared.measured.kept
-    if kept is None or declared.measured is None:
-        return False
-    if kept.group:
-        return declared.id == kept.group or bool(kept.needs)
-    return bool(kept.unit) or declared.measured.reduce != "top"
+    shape, loads = [], []
+    for each in checks:
+        how = each.measured
+        if how is None or how.kept is None:
+            continue
+        own, at_top = how.kept, how.reduce == "top"
+        if (own.group not in ("", each.id) and not own.needs) or (at_top and not own.unit):
+            continue
+        if at_top or own.unloaded or (how.reduce == "contour" and not own.once):
+            shape.append(kept(each))
+        else:
+            loads.append(kept_loads(each))
+    return tuple(shape), tuple(loads)
 
 
-_KEPT = tuple(filter(is_constraint, CHECKS))
-SHAPE: tuple[Constraint[LoadedCam], ...] = tuple(
-    kept(each) for each in _KEPT if each.measured and _is_of_shape(each.measured)
-)
+SHAPE, _MEASURED = constraints_of(CHECKS)
 """Limits on the shape of the cam."""
-LOADS: tuple[Constraint[ScenarioCam], ...] = (
-    *(kept_loads(each) for each in _KEPT if each.measured and not _is_of_shape(each.measured)),
-    *PARTS,
-)
+LOADS: tuple[Constraint[ScenarioCam], ...] = (*_MEASURED, *PARTS)
 """Limits on the loads of the cam in one scenario."""
 
 CONSTRAINTS: tuple[Constraint[LoadedCam] | Constraint[ScenarioCam], ...] = (*SHAPE, *LOADS)

@@ -151,8 +151,8 @@ def test_the_check_of_contributing_is_declared() -> None:
     inside = {**vars(cam_shape), "LIFT_JERK": names["LIFT_JERK"]}
     exec(declared, inside)
     assert inside["lift_jerk"].id == "lift_jerk"
-    (kept,), loads = constraints.kept_at_rows([inside["lift_jerk"]], ())
-    assert kept.limit is names["LIFT_JERK"] and not loads
+    (kept,), loads = constraints.constraints_of([inside["lift_jerk"]])
+    assert kept.row is names["LIFT_JERK"] and not loads
     assert ast.parse(entry)
 
 
