@@ -19,6 +19,8 @@ from types import SimpleNamespace
 import numpy as np
 from oracle_model import periodic_basis
 from scipy.optimize import brentq
+from synthesis_ratings import named
+from synthesis_scenarios import figures
 
 MEANS = {"guide_pv_A", "guide_pv_B", "guide_wear_A", "guide_wear_B", "guide_temperature_A",
          "guide_temperature_B"}  # fmt: skip
@@ -74,7 +76,8 @@ def cam_at(problem, coefficients, free, theta, place):
 
 def follower_at(problem, cam, item, fix):
     """Forces on the follower of a scenario, N, with friction of guides and face."""
-    mu = problem.ratings.face.friction
+    mu = named(problem.ratings).face_friction
+    item = figures(item)
     free, spacing = cam.free, item.guide_spacing
     reach = item.overhang + cam.highest - cam.s
     spring = free["preload"] * item.preload_factor + free["rate"] * item.rate_factor * cam.s
@@ -93,8 +96,7 @@ def follower_at(problem, cam, item, fix):
 
     rising = np.sign(np.real(cam.s1))
     jam = item.friction_a * load(0, fix.rubbing_a) + item.friction_b * load(1, fix.rubbing_b)
-    worst_a, worst_b = item.friction_worst
-    jam_worst = (worst_a * size(on_a) + worst_b * size(on_b)) * fix.jam
+    jam_worst = (item.worst_a * size(on_a) + item.worst_b * size(on_b)) * fix.jam
     share = 1 - rising * jam
     axial = unrubbed / share
     least = free["preload"] * item.preload_factor
@@ -110,8 +112,8 @@ def follower_at(problem, cam, item, fix):
 
 def utilisations(problem, cam, item):
     """Utilisations (n,) of every limit in a scenario, by check; of `MEANS` the terms."""
-    p, free, fix = problem.ratings, cam.free, item.correction.at(cam.theta)
-    limit = {row.id: value for row, value in p.limits.items()}
+    p, free, fix = named(problem.ratings), cam.free, item.correction.at(cam.theta)
+    limit, item = problem.ratings.bounds, figures(item)
     at = follower_at(problem, cam, item, fix)
     force, radius, arms = at.axial, cam.radius, size(cam.arm)
     line = force / p.contact_width
@@ -121,7 +123,7 @@ def utilisations(problem, cam, item):
     hot = [
         mu * at.load(k, ratio) * at.axial_worst
         for k, (mu, ratio) in enumerate(
-            zip(item.friction_worst, (fix.hot_a, fix.hot_b), strict=True)
+            zip((item.worst_a, item.worst_b), (fix.hot_a, fix.hot_b), strict=True)
         )
     ]
 
@@ -137,7 +139,7 @@ def utilisations(problem, cam, item):
     # An undercut cam exceeds a limit of its own.
     convex = np.where(np.real(line * radius) > 0, line * radius, 0.0)
     half = np.sqrt(4 * convex / (np.pi * p.contact_modulus)) / fix.contact
-    amplitude, length = p.waves
+    amplitude, length = p.wave_amplitude, p.wave_length
     waves = item.mass * amplitude * (2 * np.pi * item.cam_speed * radius / length) ** 2
     moving = item.mass - item.spring_mass
     rigid = at.spring + fix.swept_surge + moving * fix.swept_speed**2 * cam.s2
@@ -155,8 +157,8 @@ def utilisations(problem, cam, item):
         "cam_radius": cam.outside / limit["cam_radius"],
         "minimum_wall": limit["minimum_wall"] * p.held_radius / cam.outside,
         "contact_pressure": pressed(p.pressure),
-        "face_pv": pressed(p.face.pv / (np.pi / 4 * item.cam_speed * cam.height)),
-        "face_width": 2 * (arms + half) / p.face.width,
+        "face_pv": pressed(p.face_pv / (np.pi / 4 * item.cam_speed * cam.height)),
+        "face_width": 2 * (arms + half) / p.face_width,
         "bore_pressure": force / p.normal_force,
         "contact_force_margin": kept(force, at.least),
         "contact_at_overspeed": kept(
@@ -173,7 +175,7 @@ def utilisations(problem, cam, item):
         "gear_bending": size(at.torque + p.shaft_drag) / p.tooth_torque,
         "keyway_root": stress * p.keyway.per_stress * limit["keyway_safety"],
         "gas_speed": size(cam.s1) / p.gas_slope,
-        "guide_gap": 1 + (p.guide_gap - (mouth - cam.outside)) / (0.5 * p.face.width),
+        "guide_gap": 1 + (p.guide_gap - (mouth - cam.outside)) / (0.5 * p.face_width),
     }  # fmt: skip
     for k, side in enumerate("AB"):
         speed = size(at.velocity)

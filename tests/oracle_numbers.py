@@ -6,6 +6,8 @@ from dataclasses import replace
 
 import casadi as ca
 import numpy as np
+from synthesis_ratings import named, rated
+from synthesis_scenarios import figures
 
 LIMIT_NUMBERS = (
     "travel", "pressure_angle", "curvature_ratio", "undercut_factor", "hollow_radius",
@@ -14,7 +16,7 @@ LIMIT_NUMBERS = (
     "guide_pressure_a", "guide_pressure_b", "guide_pv_a", "guide_pv_b", "torque_reduction",
     "minimum_wall", "guide_slope_a", "guide_slope_b", "gas_slope", "guide_gap", "guide_edge_load_a",
     "guide_edge_load_b", "guide_power_a", "guide_power_b", "guide_wear_pv_a", "guide_wear_pv_b",
-    "friction", "waviness", "fastest", "cam_torque", "tooth_torque", "keyway_safety",
+    "friction", "waviness", "cam_torque", "tooth_torque", "keyway_safety",
     "grease_rating", "modified_rate", "roller_spin_least",
 )  # fmt: skip
 MACHINE_NUMBERS = (
@@ -45,61 +47,36 @@ CORRECTION = (
 )  # fmt: skip
 """Results of finite elements, surge and heat on the last cam, constants of a synthesis."""
 FREE = ("rate", "preload", "prime_radius")
-_PAIRS = (
-    "guide_pressure", "guide_pv", "guide_area", "guide_slope", "guide_edge_load", "guide_power",
-    "guide_wear_pv", "guide_length",
-)  # fmt: skip
 _PARTS = {
     "drag": ("inertia", "torque", "bearing_friction", "pin_radius"),
     "keyway": ("by_torque", "by_force", "held_radius", "thick", "per_stress"),
-    "grease": ("life", "rating", "diameter", "temperature"),
-    "modified": ("rating", "cleanliness_load", "viscosity", "circle"),
+    "grease": ("life", "diameter", "temperature"),
 }  # fmt: skip
 
 
 def numbers_of(problem):
     """Values of `NUMBERS` of a problem, SI; None: no such limit."""
     ratings, variables = problem.ratings, problem.variables
-    known = {row.id: value for row, value in ratings.limits.items()}
-    known |= dict.fromkeys(FACTORS, 1.0)
-    known |= {
-        f"{name}_{side}": getattr(ratings, name)[k]
-        for name in _PAIRS
-        for k, side in enumerate("ab")
-    }
+    known = vars(named(ratings)) | dict.fromkeys(FACTORS, 1.0)
     for part, names in _PARTS.items():
         known |= {f"{part}_{name}": getattr(getattr(ratings, part), name, None) for name in names}
-    known["wave_amplitude"], known["wave_length"] = ratings.waves or (None, None)
     known |= {name: getattr(variables, name) for name in FREE}
     known["gear_ratio"] = problem.gear_ratio
     known["torque_reduction"] = required_reduction(problem)
-    if (ratings.hollow_radius or 0.0) <= ratings.roller_radius:
+    if (known["hollow_radius"] or 0.0) <= known["roller_radius"]:
         known["hollow_radius"] = None  # the roller cannot roll in a smaller hollow
-    if any(item.friction_worst is None for item in problem.scenarios):
+    if any(figures(item).worst_a is None for item in problem.scenarios):
         known["friction_worst_factor"] = None
-    return {
-        name: known[name] if name in known else getattr(ratings, name, None) for name in NUMBERS
-    }
+    return {name: known[name] for name in NUMBERS}
 
 
 def with_number(problem, name, value):
     """The problem with another value of a limit of `NUMBERS`."""
-    ratings = problem.ratings
     part, _, of_part = name.partition("_")
-    rows = {row.id: row for row in ratings.limits}
-    if name in rows:
-        return _rated(problem, limits={**ratings.limits, rows[name]: value})
-    if name[:-2] in _PAIRS:
-        pair = list(getattr(ratings, name[:-2]))
-        pair["ab".index(name[-1])] = value
-        return _rated(problem, **{name[:-2]: tuple(pair)})
+    changed = {name: value}
     if of_part in _PARTS.get(part, ()):
-        return _rated(problem, **{part: getattr(ratings, part)._replace(**{of_part: value})})
-    return _rated(problem, **{name: value})
-
-
-def _rated(problem, **changes):
-    return replace(problem, ratings=replace(problem.ratings, **changes))
+        changed = {part: getattr(problem.ratings, part)._replace(**{of_part: value})}
+    return replace(problem, ratings=rated(problem.ratings, **changed))
 
 
 def required_reduction(problem):
@@ -116,10 +93,11 @@ def vector(numbers):
 
 def scenario_numbers(item, theta):
     """Values of `SCENARIO`; corrections at cam angles theta (n,), (len(CORRECTION), n)."""
-    worst = item.friction_worst or (0.0, 0.0)
+    own = vars(figures(item))
     in_operation = 1.0 if item.duty is None else float(item.duty > 0.0)
-    known = {"worst_a": worst[0], "worst_b": worst[1], "in_operation": in_operation}
-    numbers = [float(known.get(name, getattr(item, name, None))) for name in SCENARIO]
+    own |= {name: own[name] or 0.0 for name in ("worst_a", "worst_b")}
+    own["in_operation"] = in_operation
+    numbers = [float(own[name]) for name in SCENARIO]
     turn = np.linspace(0, 2 * np.pi, item.correction.contact.size, endpoint=False)
     fix = np.stack([
         np.interp(theta, turn, getattr(item.correction, name), period=2 * np.pi)

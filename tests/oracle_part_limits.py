@@ -109,7 +109,7 @@ def profile_waviness(at):
 
 
 def contact_over_speed(at):
-    speed = ca.if_else(at.fix.swept_speed > 0, at.fix.swept_speed, at.p.fastest)
+    speed = ca.if_else(at.fix.swept_speed > 0, at.fix.swept_speed, at.p.overspeed)
     carried = at.mass - at.scenario.spring_mass
     push = at.spring + at.fix.swept_surge + carried * speed**2 * at.bend
     push += at.scenario.viscous_damping * speed * at.slope
@@ -118,7 +118,7 @@ def contact_over_speed(at):
 
 
 def elastic_contact(at):
-    speed = ca.if_else(at.fix.elastic_speed > 0, at.fix.elastic_speed, at.p.fastest)
+    speed = ca.if_else(at.fix.elastic_speed > 0, at.fix.elastic_speed, at.p.overspeed)
     carried = at.mass - at.scenario.spring_mass
     left = at.spring + at.fix.elastic + carried * speed**2 * at.bend
     return _where(at.scenario.swept, 1 + at.p.contact_force_margin - left / at.least_spring)
@@ -232,9 +232,9 @@ PART_LIMITS: tuple[OracleLimit, ...] = (
                 "Rothbart eq. 10.7"),
     OracleLimit("profile_waviness", "loads", "waviness wave_amplitude", profile_waviness,
                 "Rothbart sec. 10.4"),
-    OracleLimit("contact_over_speed", "loads", "fastest contact_force_margin",
+    OracleLimit("contact_over_speed", "loads", "overspeed contact_force_margin",
                 contact_over_speed, SURGE),
-    OracleLimit("elastic_contact", "loads", "fastest contact_force_margin", elastic_contact,
+    OracleLimit("elastic_contact", "loads", "overspeed contact_force_margin", elastic_contact,
                 SURGE),
     OracleLimit("key_pressure", "loads", "cam_torque", key_pressure, "DIN 6892; slip torque"),
     OracleLimit("gear_bending", "loads", "tooth_torque", gear_bending, "Lewis"),

@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 from synthesis_ratings import rated
+from synthesis_scenarios import loaded_with
 
 from camwright.geometry.arrays import Array, uniform_turn
 from camwright.geometry.contour import Contour, RollerContour
@@ -18,7 +19,7 @@ from camwright.pipeline.contact.contact_pair import ContactPair
 from camwright.pipeline.contact.elasticity.elastic_body import Elastic
 from camwright.pipeline.contact.follower_body import FaceBody, RollerBody
 from camwright.pipeline.smoothing.constrained_synthesis import synthesise
-from camwright.pipeline.smoothing.scenario import DesignVariables, Scenario
+from camwright.pipeline.smoothing.scenario import DesignVariables
 from camwright.pipeline.smoothing.smoothers import Smoother, smoothed
 from camwright.pipeline.smoothing.synthesis_problem import Problem
 
@@ -112,7 +113,7 @@ def _from_torque(family: str, random: np.random.Generator) -> tuple[float, Lift]
         roller_radius=0.012, travel=0.045, pressure_angle=np.pi / 6, curvature_ratio=1.5,
         undercut_factor=0.3, contact_force_margin=0.2, normal_force=4000.0, overspeed=150.0,
     )  # fmt: skip
-    load = Scenario("one", 78.0, torque, 0.175, 0.08, 0.03, 0.15, 0.12)
+    load = loaded_with("one", 78.0, torque, 0.175, 0.08, 0.03, 0.15, 0.12)
     design = DesignVariables(rate, preload, base)
     problem = Problem((load,), limits, design, coefficients=24, points=points, jerk_weight=1e-7)
     return base, synthesise(problem).lift()

@@ -4,7 +4,8 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
-from synthesis_ratings import rated
+from synthesis_ratings import named, rated
+from synthesis_scenarios import changed, figures, loaded_with
 
 from camwright.geometry.arrays import uniform_turn
 from camwright.pipeline.case.case_file import read_case
@@ -13,7 +14,7 @@ from camwright.pipeline.checks.roller_bearing import Grease
 from camwright.pipeline.smoothing.constraints import CONSTRAINTS
 from camwright.pipeline.smoothing.objective import TORQUE, Weighted
 from camwright.pipeline.smoothing.problem_setup import problem_of
-from camwright.pipeline.smoothing.scenario import Correction, DesignVariables, Scenario
+from camwright.pipeline.smoothing.scenario import Correction, DesignVariables
 from camwright.pipeline.smoothing.synthesis_problem import Problem
 
 ROOT = Path(__file__).parents[1]
@@ -82,7 +83,7 @@ def measured(name):
     scenarios = []
     for each, speed in about["speeds"].items():
         values = torques[each].without_mean().resampled(720).total
-        scenarios.append(Scenario(
+        scenarios.append(loaded_with(
             each, speed * np.pi / 60, values - values.mean(), weight=about["weights"][each],
             torque_reduction=about["torque_reduction"] if about["weights"][each] else None,
             **FOLLOWER,
@@ -115,7 +116,8 @@ def described(problem):
 
     The grease has three times the rating of the bearing, as its estimate ends at P/C = 0.2.
     """
-    rating, diameter = 3.0 * problem.ratings.dynamic_rating, 2.0 * problem.ratings.roller_radius
+    given = named(problem.ratings)
+    rating, diameter = 3.0 * given.dynamic_rating, 2.0 * given.roller_radius
     grease = Grease(9000.0 * 3600.0, rating, diameter, 343.15)
     held = problem.ratings.keyway.held_radius
     ratings = rated(problem.ratings, grease=grease, held_radius=held, curvature_rate=9e3)
@@ -143,7 +145,7 @@ def with_corrections(problem, seed):
         **{name: np.full(turn.size, value) for name, value in single.items()},
     )
     scenarios = tuple(
-        replace(item, correction=correction, viscous_damping=3.0) for item in problem.scenarios
+        changed(item, correction=correction, viscous_damping=3.0) for item in problem.scenarios
     )
     return of_duty(replace(problem, scenarios=scenarios), idle=0.3, governed=0.7)
 
@@ -184,23 +186,20 @@ def variant(problem, seed):
     def factor(spread):
         return float(np.exp(random.uniform(-spread, spread)))
 
-    ratings, spring, speed = problem.ratings, problem.variables, factor(0.15)
-    limits = {
-        row: value * (factor(0.12) if row.id in ("pressure_angle", "cam_radius") else 1.0)
-        for row, value in ratings.limits.items()
-    }
-    ratings = replace(
-        ratings,
-        limits=limits,
-        life_force_cubed=ratings.life_force_cubed * factor(0.5),
-        pressure=ratings.pressure * factor(0.25),
-        normal_force=ratings.normal_force * factor(0.5),
-        roller_spin=ratings.roller_spin * factor(0.4),
-        guide_pv=tuple(each * factor(0.8) for each in ratings.guide_pv),
-        overspeed=ratings.overspeed * speed,
-        jump_speed=ratings.jump_speed * speed * factor(0.3),
-        roller_radius=ratings.roller_radius * factor(0.08),
-        travel=ratings.travel * factor(0.15),
+    spring, speed, given = problem.variables, factor(0.15), named(problem.ratings)
+    ratings = rated(
+        problem.ratings,
+        pressure_angle=given.pressure_angle * factor(0.12),
+        cam_radius=given.cam_radius * factor(0.12),
+        life_force_cubed=given.life_force_cubed * factor(0.5),
+        pressure=given.pressure * factor(0.25),
+        normal_force=given.normal_force * factor(0.5),
+        roller_spin=given.roller_spin * factor(0.4),
+        guide_pv=tuple(each * factor(0.8) for each in given.guide_pv),
+        overspeed=given.overspeed * speed,
+        jump_speed=given.jump_speed * speed * factor(0.3),
+        roller_radius=given.roller_radius * factor(0.08),
+        travel=given.travel * factor(0.15),
     )
     return replace(
         problem,
@@ -210,7 +209,7 @@ def variant(problem, seed):
         ),
         jerk_weight=problem.jerk_weight * float(10 ** random.uniform(-5, 0)),
         scenarios=requiring(
-            [replace(s, cam_speed=s.cam_speed * speed) for s in problem.scenarios],
+            [changed(s, cam_speed=figures(s).cam_speed * speed) for s in problem.scenarios],
             float(random.uniform(0.3, 0.6)),
         ),
     )

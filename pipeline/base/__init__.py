@@ -12,6 +12,7 @@ In the order of use:
 | `external_force`   | force over the cam angle, linear between samples         | F_e, N           |
 | `files`            | files read, written in one step, hashed; JSON records    | SHA-256          |
 | `extras`           | libraries that are not installed with the package        |                  |
+| `kept_results`     | properties kept in a field that other owners take over   |                  |
 | `columns`          | data frame and figure of columns, for a notebook         |                  |
 | `fits`             | sizes with limit deviations: bores and keyways           | m                |
 | `tables`           | columns with unit and meaning; CSV files                 |                  |

@@ -293,7 +293,7 @@ def second_contact(solution: Solution) -> Demand:
     allowed=_tool_allowed,
     applies=lambda radius: ~(np.asarray(radius) >= 1.0 / _TINY),
     deviation=1e-4,
-    kept=Kept(_in_hollow),
+    kept=Kept(_in_hollow, unit="mm"),
 )
 def concave_radius(cam: LoadedCam) -> Array:
     """Curvature of the pitch curve, 1/m; of the demand, least concave radius of the contour, m."""
@@ -397,4 +397,4 @@ spring_travel = check(
     values=("spring.travel_max",),
     levers=(*levers.SPRING, *levers.GENTLER),
     page="Spring",
-).measured("top", allowed=of_key("spring.travel_max"), deviation=1e-4, kept=Kept())(lift)
+).measured("top", allowed=of_key("spring.travel_max"), deviation=1e-4, kept=Kept(unit="mm"))(lift)

@@ -490,7 +490,7 @@ def _tooth_bending(
         bound=PerLoad(per_torque).bound,
         allowed=allowed,
         remark=with_card,
-        kept=Kept(group=TOOTH_TORQUE),
+        kept=Kept(group=TOOTH_TORQUE, unit="N m"),
     )(tooth_torque)
 
 

@@ -154,6 +154,13 @@ class Kept(NamedTuple):
     power : float        of a mean, wear or life over the turn that is the utilisation
     once : bool          the same in the load cases of a preload and at tolerance corners
     group : str          checks of one measure that are one constraint, at the least of their limits
+    unit : str           in which a limit of a part, or the least of a group, is shown; "": the
+                         limit is the row of the check, or another check of the group has the unit
+    falls : float        power of a limit with a unit with which the utilisation falls; negative: it
+                         rises, and the limit is not relaxed
+    unloaded : bool      the utilisation is that of the shape of the cam, of a measure of its loads
+    needs : str          kind of follower with which it is the constraint of its group; "": the
+                         check that names the group is
     """
 
     use: Callable[[LoadedCam, float], Array | None] | None = None
@@ -162,6 +169,10 @@ class Kept(NamedTuple):
     power: float = 1.0
     once: bool = False
     group: str = ""
+    unit: str = ""
+    falls: float = 1.0
+    unloaded: bool = False
+    needs: Literal["", "roller", "face"] = ""
 
 
 class Stroke(NamedTuple):
@@ -336,6 +347,13 @@ class Declaration:
     def is_bound(self, tier: Tier) -> bool:
         """Whether its utilisation at a tier is a lower bound, by which it can only fail."""
         return self.fails_from <= tier < self.tier
+
+    @property
+    def kept_at(self) -> str:
+        """Key of its limit in a synthesis: the group, the row of the limit, or its own id."""
+        kept = None if self.measured is None else self.measured.kept
+        group, of_part = ("", "") if kept is None else (kept.group, kept.unit)
+        return group or (self.id if of_part or self.limit is None else self.limit.id)
 
     def deeper(self, solution: Solution) -> Check | None:
         """The check, not evaluated, of a solution below its tier; None at or above it."""

@@ -378,7 +378,7 @@ contact_pressure = check(
     remark=_pressure_in_words,
     deviation=0.001,
     bounded="crown",
-    kept=Kept(line_pressure, group=PRESSURE),
+    kept=Kept(line_pressure, group=PRESSURE, unit="MPa"),
 )(contact_p0)
 
 

@@ -72,6 +72,11 @@ def follower_speed(cam: LoadedCam) -> Array:
     return magnitude(cam.velocity)
 
 
+def slope_at(speed: float, numbers: Numbers) -> float:
+    """Lift per radian, m, at a speed of the follower, m/s, in the fastest load case."""
+    return speed / float(numbers["cam.fastest"])
+
+
 def slope_over(cam: LoadedCam, limit: float) -> Array:
     """Lift per radian over that at the greatest speed, m/rad, of the fastest load case."""
     return magnitude(cam.jet.slope) / limit

@@ -32,7 +32,7 @@ from camwright.pipeline.follower.flat_face_motion import MEAN_SHARE
     reason="beyond the face the contact runs on its edge",
     levers=(levers.one("follower.face.width"), *levers.GENTLER),
     page="Flat face",
-).measured("angles", allowed=of_key("follower.face.width"), deviation=0.001, kept=Kept())
+).measured("angles", allowed=of_key("follower.face.width"), deviation=0.001, kept=Kept(unit="mm"))
 def face_width(cam: LoadedCam) -> Array:
     """Required width of the face, contact half-width included, m."""
     return 2.0 * (magnitude(face_of(cam.motion).arm) + cam.half_width)
@@ -68,7 +68,7 @@ def _sliding(cam: LoadedCam) -> Array:
     allowed=of_key("follower.face.pv_limit"),
     remark=_of_its_source,
     deviation=0.001,
-    kept=Kept(lambda cam, limit: line_pressure(cam, limit / _sliding(cam))),
+    kept=Kept(lambda cam, limit: line_pressure(cam, limit / _sliding(cam)), unit="MPa m/s"),
 )
 def face_pv(cam: LoadedCam) -> Array:
     """Mean contact pressure times sliding speed, Pa m/s."""

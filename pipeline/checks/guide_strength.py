@@ -19,7 +19,7 @@ from camwright.pipeline.base.units import celsius, shown
 from camwright.pipeline.case.limits import GUIDE_LENGTH
 from camwright.pipeline.case.machine import Machine
 from camwright.pipeline.checks.check import NONE, Allowed, Declaration, Demand, Kept, check, of_key
-from camwright.pipeline.checks.demands import follower_speed, slope_over
+from camwright.pipeline.checks.demands import follower_speed, slope_at, slope_over
 from camwright.pipeline.checks.extremes import (
     NOWHERE,
     Extreme,
@@ -82,11 +82,27 @@ def _heat_in(side: Side) -> Measure:
 HEAT: Mapping[Side, Measure] = {side: _heat_in(side) for side in GUIDES}
 
 
-def _temperature(side: Side, power: Value, numbers: Numbers) -> Value:
-    """Steady temperature of a guide, K, by its mean friction power, W."""
+def _heat_path(side: Side, numbers: Numbers) -> tuple[float | None, Value | None]:
+    """Thermal resistance of a guide, K/W, and ambient temperature, K; None: not known."""
     case = numbers.case
     resistance = None if case is None else thermal_resistance(dict(case.guides.both)[side])
-    return bush_temperature(power, resistance, numbers.get("guides.ambient_temperature"))
+    return resistance, numbers.get("guides.ambient_temperature")
+
+
+def _temperature(side: Side, power: Value, numbers: Numbers) -> Value:
+    """Steady temperature of a guide, K, by its mean friction power, W."""
+    return bush_temperature(power, *_heat_path(side, numbers))
+
+
+def power_at(side: Side, temperature: float | None, numbers: Numbers) -> float | None:
+    """Mean friction power of a guide, W, at a steady temperature, K.
+
+    None where it is not known, and below the ambient temperature: no lift has it.
+    """
+    resistance, ambient = _heat_path(side, numbers)
+    if temperature is None or resistance is None or ambient is None or temperature <= ambient:
+        return None
+    return (temperature - float(ambient)) / resistance
 
 
 def hottest(solution: Solution, side: Side) -> Extreme:
@@ -190,7 +206,7 @@ def _guide_pressure(side: Side) -> Declaration:
         allowed=of_key(f"{table_of(side)}.pressure_limit"),
         remark=at_its_temperature,
         deviation=0.1,
-        kept=Kept(),
+        kept=Kept(unit="MPa"),
     )
     def pressure(cam: LoadedCam) -> Array:
         """Mean pressure in a guide, Pa."""
@@ -278,7 +294,7 @@ def _guide_pv(side: Side) -> Declaration:
         allowed=partial(_pv_allowed, side),
         remark=in_words,
         deviation=0.03,
-        kept=Kept(),
+        kept=Kept(unit="MPa m/s"),
     )(PV[side])
 
 
@@ -363,9 +379,12 @@ def _edge(parts: PartLoads, side: Side) -> Array:
 
 
 def _guide_temperature(side: Side) -> Declaration:
-    def allowed(numbers: Numbers) -> Allowed:
+    def of_card(numbers: Numbers) -> float | None:
         case = numbers.case
-        stated = None if case is None else dict(case.guides.both)[side].material.temperature_limit
+        return None if case is None else dict(case.guides.both)[side].material.temperature_limit
+
+    def allowed(numbers: Numbers) -> Allowed:
+        stated = of_card(numbers)
         return Allowed(None if stated is None else celsius(stated))
 
     def in_words(demand: Demand, solution: Solution) -> Demand:
@@ -402,9 +421,14 @@ def _guide_temperature(side: Side) -> Declaration:
     ).measured(
         "mean",
         value=lambda power, numbers: celsius(_temperature(side, power, numbers)),
+        bound=lambda _, numbers: power_at(side, of_card(numbers), numbers),
         allowed=allowed,
         remark=in_words,
-        kept=Kept(lambda cam, limit: None if cam.heat is None else HEAT[side](cam) / limit),
+        kept=Kept(
+            lambda cam, limit: None if cam.heat is None else HEAT[side](cam) / limit,
+            group=f"guide_temperature_{side}",
+            unit="W",
+        ),
     )(HEAT[side])
 
 
@@ -443,7 +467,8 @@ def _guide_speed(side: Side) -> Declaration:
             demand, source=_maker(guide_of(solution.machine, side))
         ),
         deviation=0.002,
-        kept=Kept(slope_over),
+        bound=slope_at,
+        kept=Kept(slope_over, unit="mm", unloaded=True),
     )(follower_speed)
 
 

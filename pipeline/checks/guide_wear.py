@@ -11,7 +11,7 @@ from camwright.pipeline.base import levers
 from camwright.pipeline.base import value_groups as given
 from camwright.pipeline.base.material import ROOM, Material
 from camwright.pipeline.base.units import shown
-from camwright.pipeline.case.limits import TARGET_LIFE, WEAR_DEPTH, LimitValues
+from camwright.pipeline.case.limits import TARGET_LIFE, WEAR_DEPTH
 from camwright.pipeline.checks.check import Allowed, Declaration, Demand, Kept, check, of_row
 from camwright.pipeline.checks.guide_strength import (
     PV,
@@ -104,26 +104,17 @@ def closures(
     return free, held
 
 
-def greatest_temperatures(guide: Guide, stem: Material) -> dict[str, float]:
-    """Greatest temperature of a guide, K, that each of its checks allows, by its name."""
-    bush, allowed = guide.material, {}
-    if bush.temperature_limit is not None:
-        allowed["guide_temperature"] = bush.temperature_limit
-    of_bush, of_stem, moisture = bush.expansion, stem.expansion, bush.moisture_growth
+def seizure_temperature(guide: Guide, stem: Material) -> float | None:
+    """Temperature of a guide at which the stem binds in it, K; None: not known, or at none."""
+    of_bush, moisture = guide.material.expansion, guide.material.moisture_growth
+    of_stem = stem.expansion
     if guide.wall is None or of_bush is None or of_stem is None or moisture is None:
-        return allowed
+        return None
     cold, warm = (
         max(closures(guide, of_bush, of_stem, moisture, ROOM + rise)) for rise in (0.0, 1.0)
     )
-    if warm > cold:  # linear in the temperature
-        allowed["guide_expansion"] = ROOM + (guide.clearance - cold) / (warm - cold)
-    return allowed
-
-
-def pv_of_wear(guide: Guide, limits: LimitValues) -> float | None:
-    """PV value of the greatest wear in the target life, Pa m/s; None without the data."""
-    rate, life = guide.wear_rate, limits[TARGET_LIFE]
-    return None if not rate or not life else limits[WEAR_DEPTH] / (rate * life)
+    # linear in the temperature
+    return ROOM + (guide.clearance - cold) / (warm - cold) if warm > cold else None
 
 
 def _guide_wear(side: Side) -> Declaration:
@@ -133,6 +124,11 @@ def _guide_wear(side: Side) -> Declaration:
         """Wear depth over the target life, m, of a mean PV value, Pa m/s."""
         per_pv, time = numbers.get(rate), numbers.get(life)
         return np.nan if per_pv is None or time is None else per_pv * worst * time
+
+    def pv_at(depth: float, numbers: Numbers) -> float | None:
+        """PV value, Pa m/s, of a wear depth, m, in the target life."""
+        per_pv, time = numbers.get(rate), numbers.get(life)
+        return depth / float(per_pv * time) if per_pv and time else None
 
     def allowed(numbers: Numbers) -> Allowed:
         lacks = tuple(key for key in (rate, life) if numbers.get(key) is None)
@@ -162,11 +158,12 @@ def _guide_wear(side: Side) -> Declaration:
     ).measured(
         "wear",
         value=depth,
+        bound=pv_at,
         allowed=allowed,
         remark=lambda demand, solution: replace(
             demand, figures=(guide_of(solution.machine, side).source,)
         ),
-        kept=Kept(lambda cam, limit: PV[side](cam) / limit),
+        kept=Kept(unit="MPa m/s"),
     )(PV[side])
 
 

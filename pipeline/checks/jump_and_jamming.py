@@ -202,6 +202,11 @@ def _jump_speed_allowed(numbers: Numbers) -> Allowed:
     return Allowed(numbers[f"limits.{JUMP_SPEED.id}"] * fastest)
 
 
+def cam_speed_without_jump(numbers: Numbers) -> float:
+    """Least cam speed of the jump, rad/s; without an overspeed by that of the fastest load case."""
+    return float(numbers.limit(JUMP_SPEED) * numbers["cam.fastest"])
+
+
 def _at_no_load_case(demand: Demand, _: Solution) -> Demand:
     """At its cam angle alone: the speed is that of no load case."""
     return replace(demand, at=demand.at and demand.at._replace(load_case=""))
@@ -229,11 +234,16 @@ def _at_no_load_case(demand: Demand, _: Solution) -> Demand:
     "forces",
     value=_speed_of_jump,
     error=0.5,
+    bound=lambda _, numbers: cam_speed_without_jump(numbers),
     allowed=_jump_speed_allowed,
     applies=lambda speed: ~np.isposinf(speed),
     remark=_at_no_load_case,
     deviation=0.003,
-    kept=Kept(lambda cam, limit: demands.unloading(cam.inertia_at(limit), cam.closing)),
+    kept=Kept(
+        lambda cam, limit: demands.unloading(cam.inertia_at(limit), cam.closing),
+        unit="rpm",
+        falls=-2.0,
+    ),
 )
 def jump_speed(cam: LoadedCam) -> Array:
     """Unloading at a cam speed of 1 rad/s; of the demand, the crank speed of an unloading of 1.
@@ -246,12 +256,6 @@ def jump_speed(cam: LoadedCam) -> Array:
 def _force_at(cam: LoadedCam, speed: Value) -> Array:
     """Closing and inertia force at a cam speed, rad/s, over the least spring force."""
     return demands.force_left(cam.closing, cam.inertia_at(speed), cam.least_spring)
-
-
-def _kept_at_overspeed(cam: LoadedCam, limit: float) -> Array | None:
-    """No constraint where no greatest speed is known."""
-    fastest = cam.numbers.get("cam.fastest")
-    return None if fastest is None else 1.0 + limit - _force_at(cam, fastest)
 
 
 @check(
@@ -277,7 +281,7 @@ def _kept_at_overspeed(cam: LoadedCam, limit: float) -> Array | None:
     needed=(f"limits.{OVERSPEED.id}",),
     remark=_at_no_load_case,
     deviation=0.02,
-    kept=Kept(_kept_at_overspeed),
+    kept=Kept(),
 )
 def contact_at_overspeed(cam: LoadedCam) -> Array:
     """Contact force at the overspeed over the least spring force, without friction."""

@@ -120,7 +120,7 @@ def _key_check(
         bound=PerLoad(per_torque).bound,
         allowed=allowed_in,
         remark=in_words,
-        kept=Kept(group=CAM_TORQUE),
+        kept=Kept(group=CAM_TORQUE, unit="N m"),
     )(cam_torque)
 
 

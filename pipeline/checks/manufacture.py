@@ -59,7 +59,7 @@ def _gap_left(cam: LoadedCam, limit: float) -> Array:
         demand, at=None, note="the positions of spring and frame are not in the case"
     ),
     deviation=1e-4,
-    kept=Kept(_gap_left, once=True),
+    kept=Kept(_gap_left, once=True, unit="mm"),
 )
 def guide_gap(cam: LoadedCam) -> Array:
     """Height of the contour over the reference point of the follower at maximum lift, m.

@@ -510,7 +510,7 @@ bore_pressure = check(
     bound=_of_bore.bound,
     allowed=_bore_allowed,
     remark=_with_cards_of_bore,
-    kept=Kept(group=NORMAL_FORCE),
+    kept=Kept(group=NORMAL_FORCE, unit="N", needs="face"),
 )(normal_force)
 
 

@@ -146,22 +146,9 @@ def _used(cam: LoadedCam, kappa: Array) -> Array:
     """|n| (P/C)^3/a_ISO (...), rad/s, at a viscosity ratio; zero of a roller at rest."""
     numbers, surged = cam.numbers, not_negative(cam.surged)
     force = np.where(np.real(surged) < _LEAST_FORCE, _LEAST_FORCE, surged)
-    rating, clean = float(numbers[_RATING]), cleanliness_load(numbers)
+    rating, clean = (float(numbers[key]) for key in (_RATING, "roller.bearing.cleanliness_load"))
     used = bearing_life.life_used(force, rating, clean, kappa) * magnitude(cam.spin)
     return np.where(np.real(cam.spin_mean) < STANDSTILL, 0.0, used)
-
-
-def cleanliness_load(numbers: Numbers) -> float:
-    """e_C P_u, N."""
-    stated = numbers.get("roller.bearing.cleanliness_load")
-    if stated is not None:
-        return float(stated)
-    roller = numbers.known_case.roller_given
-    cleanliness = None if roller is None else roller.bearing.contamination
-    if cleanliness is None:
-        raise InputError("roller.bearing.contamination", "missing", "given")
-    share = bearing_life.contamination_factor(cleanliness, float(numbers[_CIRCLE]))
-    return share * float(numbers["roller.bearing.fatigue_load_limit"])
 
 
 def _with_modified_damage(demand: Demand, solution: Solution) -> Demand:
@@ -234,7 +221,7 @@ roller_static = check(
     needed=(_STATIC,),
     remark=_with_card,
     deviation=0.005,
-    kept=Kept(group=NORMAL_FORCE),
+    kept=Kept(group=NORMAL_FORCE, unit="N"),
 )(normal_force)
 
 
@@ -297,7 +284,7 @@ roller_life = check(
     needed=(_RATING,),
     remark=_with_damage,
     deviation=0.03,
-    kept=Kept(power=1.0 / BALL_LIFE_EXPONENT),
+    kept=Kept(power=1.0 / BALL_LIFE_EXPONENT, unit="N"),
 )(_damage)
 
 
@@ -343,7 +330,7 @@ roller_modified_life = check(
         _CIRCLE,
     ),
     remark=_with_modified_damage,
-    kept=Kept(_modified_kept, power=1.0 / BALL_LIFE_EXPONENT),
+    kept=Kept(_modified_kept, power=1.0 / BALL_LIFE_EXPONENT, unit="N"),
 )(_modified_damage)
 
 
@@ -374,7 +361,7 @@ roller_modified_life = check(
     allowed=of_key("roller.bearing.speed_limit", ROLLER_SPEED_SHARE),
     remark=lambda demand, solution: replace(demand, figures=(bearing_of(solution).source,)),
     deviation=0.0002,
-    kept=Kept(),
+    kept=Kept(unit="rpm"),
 )
 def roller_speed(cam: LoadedCam) -> Array:
     """Speed of the roller on its pin, rad/s."""
@@ -453,7 +440,7 @@ roller_static_radial = _outer_ring(
     remark=lambda demand, solution: replace(
         demand, figures=(bearing_life.SOURCE, bearing_of(solution).source)
     ),
-    kept=Kept(_film_kept, power=-1.0),
+    kept=Kept(_film_kept, power=-1.0, unit="rpm", falls=-1.0),
 )
 def bearing_lubrication(cam: LoadedCam) -> Array:
     """Speed of the roller on its pin, rad/s; of the demand, viscosity ratio at its mean."""

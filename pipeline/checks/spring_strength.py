@@ -31,7 +31,7 @@ from camwright.pipeline.checks.check import (
     check,
     of_key,
 )
-from camwright.pipeline.checks.demands import FatiguePoint, follower_speed, slope_over
+from camwright.pipeline.checks.demands import FatiguePoint, follower_speed, slope_at, slope_over
 from camwright.pipeline.checks.extremes import Extreme, Measure
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.loaded_cam import LoadedCam, wire_of
@@ -521,7 +521,8 @@ gas_speed = _gas_check(
     allowed=of_key("spring.gas.speed_limit"),
     remark=_of_gas,
     deviation=2e-3,
-    kept=Kept(slope_over),
+    bound=slope_at,
+    kept=Kept(slope_over, unit="mm", unloaded=True),
 )(follower_speed)
 gas_temperature = _gas_check(
     "gas_temperature",

@@ -87,7 +87,7 @@ traction_demand = check(
 ).measured(
     "angles",
     allowed=of_key("roller.friction"),
-    kept=Kept(_traction_kept),
+    kept=Kept(_traction_kept, unit="-"),
 )(_traction)
 
 

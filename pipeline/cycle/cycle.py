@@ -12,6 +12,7 @@ import numpy as np
 
 from camwright.geometry.arrays import FULL_TURN, Array, uniform_turn
 from camwright.geometry.contour import Contour
+from camwright.pipeline.base.kept_results import KeptResult
 from camwright.pipeline.base.tables import (
     CAM_ANGLE,
     CRANK_ANGLE,
@@ -49,7 +50,6 @@ _ALONG = (
     *("spring_force", "applied_force", "inertia_force", "viscous_force"),
     *("normal_force", "lift_slope", "jam_index"),
 )
-_COMPUTED = ("length", "surface", "rolling", "parts", "shaft", "elastic")  # of loads and contact
 
 
 def least_spring_force(spring: Spring, contour: Contour) -> float:
@@ -66,7 +66,8 @@ class Cycle(Tabled):
     half-planes, and for a contour that encloses no body, where it is unknown. None inside rolling
     and part loads means that the machine has no such part. error_bars: demands have those of their
     sampling; without where ratios of demands alone count. ends: finite elements over half-spaces
-    of the pressure along the line of contact; None: half-spaces alone.
+    of the pressure along the line of contact; None: half-spaces alone. results: by name,
+    computed from loads and contact.
     """
 
     turn: Turn
@@ -76,6 +77,7 @@ class Cycle(Tabled):
     contact: ContactHistory
     error_bars: bool = field(default=True, kw_only=True)
     ends: EndCorrection | None = field(default=None, kw_only=True)
+    results: dict[str, object] = field(default_factory=dict, init=False)
 
     def with_ends(self, correction: EndCorrection | None) -> Cycle:
         """The cycle with the pressure along the line of contact corrected by finite elements.
@@ -86,13 +88,12 @@ class Cycle(Tabled):
             return self
         cycle = replace(self, ends=correction)
         kept = ("parts", "shaft", "elastic", *(() if self.machine.is_crowned else ("rolling",)))
-        known = {name: value for name, value in vars(self).items() if name in kept}
-        vars(cycle).update(known)
+        cycle.results.update({k: value for k, value in self.results.items() if k in kept})
         return cycle
 
     def adopt(self, other: Cycle) -> None:
         """Take over what another cycle of the same loads and contact has computed from them."""
-        vars(self).update({name: vars(other)[name] for name in _COMPUTED if name in vars(other)})
+        self.results.update(other.results)
 
     @property
     def facts(self) -> Mapping[str, object]:
@@ -179,7 +180,7 @@ class Cycle(Tabled):
         """Mean cam speed, rad/s."""
         return self.turn.machine.cam_speed
 
-    @cached_property
+    @KeptResult
     def length(self) -> LengthHistory | None:
         """Pressure along the line of contact; None where the case lacks an end, or without body."""
         return None if self.contact.tier is None else _lengths([self])[0]
@@ -190,31 +191,31 @@ class Cycle(Tabled):
         factor = np.full(self.theta.size, np.nan) if self.length is None else self.length.factor
         return factor * self.contact.p0
 
-    @cached_property
+    @KeptResult
     def surface(self) -> ContactHistory:
         """Contact in the middle of the line of contact; the plane contact of straight bodies."""
         if self.length is None or not self.machine.is_crowned:
             return self.contact
         return self.length.in_the_middle(self.contact)
 
-    @cached_property
+    @KeptResult
     def rolling(self) -> RollingHistory:
         """Traction, creep, film, fatigue and bore stress; NaN if the contour is no body."""
         if self.contact.tier is None:
             return RollingHistory.unknown(self.theta.size)
         return rolling_history(self.machine, self.pair, self.bodies, self.loads, self.surface)
 
-    @cached_property
+    @KeptResult
     def parts(self) -> PartLoads:
         """Loads of guides, stem, spring, pin, key and shaft over the turn."""
         return part_loads(self.turn, self.contour, self.pair.width, self.shaft)
 
-    @cached_property
+    @KeptResult
     def shaft(self) -> ShaftLoads | None:
         """Loads of the camshaft; None where the case does not describe one."""
         return shaft_of(self.turn, self.contour)
 
-    @cached_property
+    @KeptResult
     def elastic(self) -> ElasticHistory:
         """Response of the elastic follower.
 
@@ -418,9 +419,11 @@ def solve_lengths(cycles: Iterable[Cycle]) -> None:
     CamError
         If that of one cannot be solved.
     """
-    left = [each for each in cycles if each.contact.tier is not None and "length" not in vars(each)]
+    left = [
+        each for each in cycles if each.contact.tier is not None and "length" not in each.results
+    ]
     for cycle, length in zip(left, _lengths(left), strict=True):
-        vars(cycle)["length"] = length
+        cycle.results["length"] = length
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -430,23 +433,23 @@ class _ThinnedCycle(Cycle):
     whole: Cycle
     step: int
 
-    @cached_property
+    @KeptResult
     def length(self) -> LengthHistory | None:
         return _at_every(self.whole.length, self.whole.theta.size, self.step)
 
-    @cached_property
+    @KeptResult
     def rolling(self) -> RollingHistory:
         return _at_every(self.whole.rolling, self.whole.theta.size, self.step)
 
-    @cached_property
+    @KeptResult
     def parts(self) -> PartLoads:
         return _at_every(self.whole.parts, self.whole.theta.size, self.step)
 
-    @cached_property
+    @KeptResult
     def shaft(self) -> ShaftLoads | None:
         return _at_every(self.whole.shaft, self.whole.theta.size, self.step)
 
-    @cached_property
+    @KeptResult
     def elastic(self) -> ElasticHistory:
         return _at_every(self.whole.elastic, self.whole.theta.size, self.step)
 

@@ -11,6 +11,7 @@ from camwright.geometry.errors import InputError
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_values import value_of
 from camwright.pipeline.case.limits import AnyLimit
+from camwright.pipeline.follower.bearing_life import contamination_factor
 from camwright.pipeline.follower.guide_friction import friction_limits
 
 
@@ -116,6 +117,18 @@ def _ball_circle(numbers: Numbers) -> Value | None:
     return numbers.get("roller.bearing.ring.pitch_diameter") if own is None else own
 
 
+def _cleanliness_load(numbers: Numbers) -> Value | None:
+    """e_C P_u of the roller bearing, N."""
+    roller = None if numbers.case is None else numbers.case.roller_given
+    cleanliness = None if roller is None else roller.bearing.contamination
+    limit = numbers.get("roller.bearing.fatigue_load_limit")
+    if cleanliness is None or limit is None:
+        return None
+    return limit * contamination_factor(
+        cleanliness, float(numbers["roller.bearing.pitch_diameter"])
+    )
+
+
 DERIVED: Mapping[str, Callable[[Numbers], Value | None]] = {
     "guides.a.friction_greatest": partial(_greatest_friction, "guides.a"),
     "guides.b.friction_greatest": partial(_greatest_friction, "guides.b"),
@@ -125,5 +138,6 @@ DERIVED: Mapping[str, Callable[[Numbers], Value | None]] = {
     "follower.extent": _extent,
     "follower.size": _size,
     "roller.bearing.pitch_diameter": _ball_circle,
+    "roller.bearing.cleanliness_load": _cleanliness_load,
 }
 """Numbers that follow from others, unless they are stated themselves."""

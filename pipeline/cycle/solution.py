@@ -15,6 +15,7 @@ from camwright.geometry.errors import CamError
 from camwright.geometry.extrema import TIE, first_greatest
 from camwright.meshes.body_mesh import BodyMesh
 from camwright.meshes.mesh_quality import Quality, gate, quality
+from camwright.pipeline.base.kept_results import KeptResult
 from camwright.pipeline.base.progress import SILENT, Progress
 from camwright.pipeline.base.worker_processes import Crew
 from camwright.pipeline.case.case import Case
@@ -94,6 +95,7 @@ class Solution(Displayed):
     synthesis_gain : float       of its lift: what another step of the synthesis would gain, of the
                                  engine's ripple; None: not a synthesis, or one without a cam
                                  within all limits
+    results : dict               sweeps over the speed by name, computed on first use
     """
 
     case: Case
@@ -110,6 +112,7 @@ class Solution(Displayed):
     bore_error: float | None = None
     coarse: bool = False
     synthesis_gain: float | None = None
+    results: dict[str, object] = field(default_factory=dict, init=False, repr=False)
 
     @property
     def machine(self) -> Machine:
@@ -135,10 +138,9 @@ class Solution(Displayed):
         """Take over what another solution of the same loads has computed; not the crank speed."""
         for cycle, same in zip(self.cycles, other.cycles, strict=True):
             cycle.adopt(same)
-        sweeps = ("speed_sweeps", "hardest_spring")
-        vars(self).update({name: vars(other)[name] for name in sweeps if name in vars(other)})
+        self.results.update(other.results)
 
-    @cached_property
+    @KeptResult
     def speed_sweeps(self) -> tuple[SpeedSweep, ...]:
         """Sweeps from standstill to over-speed, one for each preload of the load cases."""
         first = {cycle.machine.spring.preload: cycle for cycle in reversed(self.cycles)}
@@ -147,7 +149,7 @@ class Solution(Displayed):
             for each in first.values()
         )
 
-    @cached_property
+    @KeptResult
     def hardest_spring(self) -> SpringSweep | None:
         """Forces in the hardest spring in tolerance over the speed; None without its design."""
         design = self.machine.spring.design

@@ -28,6 +28,8 @@ def numbers_of(case: Case, machines: Sequence[Machine]) -> Numbers:
     """
     shared = {
         "cam.held_radius": machines[0].cam.held_radius,
+        "contact.width": machines[0].contact_width,
+        "contact.modulus": machines[0].contact_modulus,
         "cam.fastest": highest_speed(machines) / machines[0].gear_ratio,
         "spring.preload_greatest": max(each.spring.preload for each in machines),
     }
@@ -36,11 +38,15 @@ def numbers_of(case: Case, machines: Sequence[Machine]) -> Numbers:
 
 def in_load_case(numbers: Numbers, machine: Machine) -> Numbers:
     """With those of the machine in its load case."""
+    spring = {"spring.preload": machine.spring.preload, "spring.rate": machine.spring.rate}
+    return numbers | numbers_in(machine) | spring
+
+
+def numbers_in(machine: Machine) -> dict[str, float | None]:
+    """Numbers of a machine in its load case, without those of the spring."""
     nominal, greatest = machine.friction.nominal, machine.friction.greatest
-    return numbers | {
+    return {
         "cam.speed": machine.cam_speed,
-        "spring.preload": machine.spring.preload,
-        "spring.rate": machine.spring.rate,
         "follower.mass": machine.mass,
         "follower.viscous_damping": machine.viscous_damping,
         "follower.overhang_at_max_lift": machine.overhang_at_max_lift,
@@ -49,8 +55,6 @@ def in_load_case(numbers: Numbers, machine: Machine) -> Numbers:
         "guides.b.friction": nominal[1],
         "guides.a.friction_greatest": greatest[0],
         "guides.b.friction_greatest": greatest[1],
-        "contact.width": machine.contact_width,
-        "contact.modulus": machine.contact_modulus,
     }
 
 

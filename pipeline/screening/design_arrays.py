@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import copy
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
-from functools import cached_property
+from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -17,6 +15,7 @@ from camwright.geometry.extrema import sampled_greatest, sampled_least
 from camwright.geometry.follower_path import Motion
 from camwright.geometry.lift import Jet
 from camwright.geometry.periodic_spline import knot_derivatives, knot_integrals
+from camwright.pipeline.base.kept_results import KeptResult
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_values import value_of
 from camwright.pipeline.case.limits import OVERSPEED, TORQUE_REDUCTION, AnyLimit
@@ -61,6 +60,7 @@ class Designs:
     torques : mapping    engine torque by number of the load case, less its mean, (m or 1, N)
     count : int          designs m
     step : int           every `step`-th sample of the lift is a cam angle of the loads
+    results : dict       by name, computed on first use
     """
 
     case: Case
@@ -69,6 +69,7 @@ class Designs:
     torques: Mapping[int, Array]
     count: int
     step: int
+    results: dict[str, object] = field(default_factory=dict, init=False)
 
     def value(self, key: str) -> Array:
         """Values of a key (m, 1), SI; NaN where the case leaves it out."""
@@ -81,7 +82,7 @@ class Designs:
         """Values (m, 1), SI, of the key of a roller or of that of a flat face."""
         return self.value(roller if self.case.follower.face is None else face)
 
-    @cached_property
+    @KeptResult
     def numbers(self) -> Numbers:
         """Numbers of the designs, those of no load case."""
         cam = self.case.cam
@@ -97,12 +98,12 @@ class Designs:
         """Values of a limit (m,), SI; NaN where there is none."""
         return self.value(f"limits.{row.id}")[:, 0]
 
-    @cached_property
+    @KeptResult
     def machine(self) -> Machine:
         """Machine of the shared values in the design load case."""
         return machine(self.case, self.case.load_cases[0])
 
-    @cached_property
+    @KeptResult
     def lift(self) -> Array:
         """Lift at equal cam angles (m or 1, N), m."""
         source = self.source
@@ -120,18 +121,18 @@ class Designs:
             energy = share * np.maximum(stored, 0.0)
         return stored_lift(energy, rate, preload, self.case.spring.shape)
 
-    @cached_property
+    @KeptResult
     def jets(self) -> Array:
         """Lift and two derivatives (3, m, N), m/rad^k."""
         jets = knot_derivatives(self.lift, 2)
         return np.broadcast_to(jets, (3, self.count, jets.shape[-1]))
 
-    @cached_property
+    @KeptResult
     def highest(self) -> Array:
         """Maximum lift (m,), m."""
         return sampled_greatest(self.jets[0])
 
-    @cached_property
+    @KeptResult
     def whole(self) -> LoadedCam:
         """The unloaded cams at the samples of the lift."""
         return LoadedCam(Jet(*self.jets), self.numbers, self.highest[:, None])
@@ -151,7 +152,7 @@ class Designs:
         numbers = self.numbers | {"spring.preload_greatest": preload}
         return LoadedCam(Jet(lift, np.zeros_like(lift), np.zeros_like(lift)), numbers, lift)
 
-    @cached_property
+    @KeptResult
     def least_factor(self) -> Array:
         """Minimum undercut factor (m,)."""
         return 1.0 - sampled_greatest(self.whole.motion.sharpness)
@@ -161,7 +162,7 @@ class Designs:
         """Minimum convex radius of the path of the reference point (m,), m."""
         return np.asarray(1.0 / sampled_greatest(self.whole.motion.path_curvature))
 
-    @cached_property
+    @KeptResult
     def theta(self) -> Array:
         """Cam angles of the loads (n,), rad."""
         return uniform_turn(self.jets.shape[-1] // self.step)
@@ -170,7 +171,7 @@ class Designs:
         """Values (m, N) at the cam angles of the loads (m, n)."""
         return values[..., :: self.step]
 
-    @cached_property
+    @KeptResult
     def motion(self) -> Motion:
         """Motion of the unloaded cams at the cam angles of the loads."""
         return motion_of(self.whole.jet.at(self.at_loads), self.numbers)
@@ -181,12 +182,12 @@ class Designs:
         arm = self.whole.motion.arm
         return np.asarray(2.0 * np.maximum(sampled_greatest(arm), -sampled_least(arm)))
 
-    @cached_property
+    @KeptResult
     def stroke(self) -> Array:
         """Maximum less minimum lift (m, 1), m."""
         return (self.highest - sampled_least(self.jets[0]))[:, None]
 
-    @cached_property
+    @KeptResult
     def states(self) -> tuple[ScreenedState, ...]:
         """Load cases of the designs, then standstill and over-speed at each preload."""
         base, stated = self.value("spring.preload"), self.case.load_cases
@@ -221,12 +222,12 @@ class Designs:
 
     def in_load_cases(self, kept: Sequence[bool]) -> Designs:
         """The designs in some of their load cases; figures without loads are not computed again."""
-        part = copy.copy(self)
+        part = replace(self)
         chosen = tuple(cam for cam, keep in zip(self.cams, kept, strict=True) if keep)
-        part.__dict__["cams"] = chosen  # as the cached property would
+        part.results.update(self.results | {"cams": chosen})
         return part
 
-    @cached_property
+    @KeptResult
     def cams(self) -> tuple[ScreenedCam, ...]:
         """Loaded cams in each load case."""
         return tuple(self._loaded(state) for state in self.states)
@@ -248,7 +249,7 @@ class Designs:
             crank_speed=crank,
         )
 
-    @cached_property
+    @KeptResult
     def supports(self) -> SupportOfMany:
         """Guides of the designs."""
         motion, known = self.motion, self.machine
@@ -257,7 +258,7 @@ class Designs:
         push = Push(motion.side, motion.arm, self.value("guides.spacing"))
         return SupportOfMany.of(known.stem, known.guides, push, np.asarray(overhang))
 
-    @cached_property
+    @KeptResult
     def contact_width(self) -> Array:
         """Width of the line contact (m, 1), m: the overlap of the flats of cam and follower."""
         cam = self.value("cam.width") - 2.0 * np.nan_to_num(self.value("cam.end.size"))
@@ -267,13 +268,13 @@ class Designs:
         offset = np.nan_to_num(self.value("roller.axial_offset"))
         return np.asarray(np.minimum(np.minimum(cam, other), 0.5 * (cam + other) - offset))
 
-    @cached_property
+    @KeptResult
     def relative_radius(self) -> Array:
         """Relative radius R of cam and follower (m, n), m; NaN if undercut."""
         radius = self.motion.size * (1.0 - self.motion.sharpness)
         return np.where(self.least_factor[:, None] > 0.0, radius, np.nan)
 
-    @cached_property
+    @KeptResult
     def fastest(self) -> Array:
         """Crank speed (m,) of over-speed, at least of the fastest load case, rad/s."""
         speeds = np.stack([np.maximum(each.speed, CREEP)[:, 0] for each in self.states])

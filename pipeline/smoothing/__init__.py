@@ -10,7 +10,7 @@ In the order of the calculation:
 | `smoothing_feedback`    | smoother of the next trial                   | strength                |
 | `scenario`              | design variables, ratings, load cases        | k, N/m; P, N; r0, m     |
 | `cam_state`             | loaded cam of a scenario, lift of an energy  | s, m; F, N              |
-| `part_constraints`      | limits of the parts by cam angle             | utilisation             |
+| `part_constraints`      | limits of checks that have no measure        | utilisation             |
 | `constraints`           | all limits of a synthesis by cam angle       | utilisation             |
 | `objective`             | terms of the objective over their references | loss, force; ratio      |
 | `gradients`             | derivatives by complex steps                 | d/dE, d/dk, d/dP, d/dr0 |

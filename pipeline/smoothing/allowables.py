@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, replace
-from typing import Literal, NamedTuple, TypedDict
+from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 import scipy
@@ -13,16 +12,9 @@ from camwright.geometry.arrays import Array, Value
 from camwright.geometry.lift import Jet
 from camwright.pipeline.base.material import ROOM
 from camwright.pipeline.case.case import Case
-from camwright.pipeline.case.limits import (
-    GUIDE_GAP,
-    JAM_INDEX,
-    JUMP_SPEED,
-    PRESSURE_ANGLE,
-    ROLLER_STATIC_SAFETY,
-)
+from camwright.pipeline.case.limits import KEYWAY_SAFETY, PRESSURE_ANGLE
 from camwright.pipeline.case.machine import Machine, machines
-from camwright.pipeline.checks import roller_bearing
-from camwright.pipeline.checks.cam_shape import least_concave_radius, lift
+from camwright.pipeline.checks.cam_shape import lift, spring_travel
 from camwright.pipeline.checks.check import Declaration, Measured
 from camwright.pipeline.checks.contact_strength import (
     FACE_PASSES,
@@ -30,201 +22,73 @@ from camwright.pipeline.checks.contact_strength import (
     life_turns,
     pressure_allowables,
 )
-from camwright.pipeline.checks.demands import CAM_TORQUE, NORMAL_FORCE, PRESSURE, TOOTH_TORQUE
-from camwright.pipeline.checks.guide_strength import pv_limit
-from camwright.pipeline.checks.guide_wear import greatest_temperatures, pv_of_wear
-from camwright.pipeline.checks.key_strength import keyway_root_of
+from camwright.pipeline.checks.demands import NORMAL_FORCE, PRESSURE
+from camwright.pipeline.checks.guide_strength import power_at
+from camwright.pipeline.checks.guide_wear import seizure_temperature
+from camwright.pipeline.checks.jump_and_jamming import cam_speed_without_jump, jump_speed
+from camwright.pipeline.checks.key_strength import keyway_root, keyway_root_of
 from camwright.pipeline.checks.registry import CHECKS
-from camwright.pipeline.checks.roller_bearing import Grease, grease_of
-from camwright.pipeline.contact.traction import Drag
+from camwright.pipeline.checks.roller_bearing import grease_life, grease_of
 from camwright.pipeline.cycle.loaded_cam import LoadedCam
 from camwright.pipeline.cycle.numbers import Numbers
 from camwright.pipeline.cycle.part_loads import edge_pressure_of
 from camwright.pipeline.cycle.solution import Solution
 from camwright.pipeline.cycle.solved_cam import ContourCam, numbers_of
-from camwright.pipeline.cycle.speed_sweep import highest_speed
-from camwright.pipeline.follower.guide_friction import thermal_resistance
 from camwright.pipeline.follower.guide_reactions import Guide
-from camwright.pipeline.follower.roller import Roller
 from camwright.pipeline.follower.spring import SpringWork
-from camwright.pipeline.follower.spring_kinds import GasSpring
-from camwright.pipeline.smoothing.constraints import rows_kept
-from camwright.pipeline.smoothing.scenario import Face, ModifiedLife, Ratings
+from camwright.pipeline.smoothing.scenario import Ratings
 
 _TRAVEL_LEAST, _TRAVEL_MOST = 1e-6, 1.0  # m, of any spring
 _LINE_LOADS = (1.0, 1e9)  # N/m, of any guide
 
 
 def ratings_of(case: Case) -> Ratings:
-    """Ratings of a case."""
+    """Ratings of a case; the wall over the bore counts where the prime radius is free."""
     states = machines(case)
-    machine, covers, numbers = states[0], case.scope.covers, numbers_of(case, states)
-    limits, guides = machine.limits, machine.guides
-    roller, face = machine.roller, machine.face
-    # Without a stated over-speed the contact is kept at the fastest load case.
-    over = highest_speed(states) / machine.gear_ratio
-    follower: Literal["roller", "face"] = "face" if roller is None else "roller"
-    kept = [row for row in rows_kept(follower) if row is not JAM_INDEX or covers("guides")]
-    gas = machine.spring.gas if covers("gas_spring") else None
-    by_guide: _GuideRatings = {}
-    if covers("guides"):
-        by_guide = _of_guides(case, machine, fastest=over)
-    torque, torque_by = _least(part_limits(case, CAM_TORQUE))
-    tooth, tooth_by = _least(part_limits(case, TOOTH_TORQUE))
-    shaft, cam = machine.camshaft, machine.cam
-    band = cam.profile_tolerance
-    by_roller: _RollerRatings = {}
-    if roller is not None:
-        by_roller = _of_roller(machine, roller)
-    if roller is not None and covers("roller_bearing"):
-        by_roller |= _of_bearing(numbers)
+    numbers, machine = numbers_of(case, states), states[0]
+    held = machine.cam.held_radius if "prime_radius" in case.smoothing.free else None
     ratings = Ratings(
-        roller_radius=machine.follower.contact_radius or 0.0,
-        face=None if face is None else Face(face.width, face.side_friction, face.pv_limit),
-        offset=machine.cam.offset,
-        limits={row: value for row in kept if (value := limits[row]) is not None},
-        travel=_least(travel_limits(case))[0],
-        hollow_radius=least_concave_radius(case),
-        contact_width=machine.contact_width,
-        contact_modulus=machine.contact_modulus,
-        overspeed=over,
-        fastest=over,
-        jump_speed=limits[JUMP_SPEED] * over,
-        guide_gap=limits[GUIDE_GAP],
-        guide_mouth=machine.overhang_at_max_lift - 0.5 * guides.a.length,
-        held_radius=cam.held_radius if "prime_radius" in case.smoothing.free else None,
-        waves=None if band is None else (0.5 * band, cam.waviness_length),
-        cam_torque=torque,
-        cam_torque_by=torque_by,
-        tooth_torque=tooth,
-        tooth_torque_by=tooth_by,
-        shaft_drag=0.0 if shaft is None else shaft.drag,
+        numbers | {"cam.held_radius": held, "guides.a.mouth": numbers["guides.a.mouth"]},
+        drag=None if machine.roller is None else machine.roller.drag,
         keyway=keyway_root_of(machine),
-        gas_slope=None if gas is None else _slope_limit(gas, over),
-        **by_roller,
-        **by_guide,
+        grease=grease_of(machine),
     )
-    return _with_contact(ratings, case, {}, {})
+    return ratings.least(limits_of(case))
 
 
-def _with_contact(
-    ratings: Ratings, case: Case, forces: Mapping[str, float], pressures: Mapping[str, float]
-) -> Ratings:
-    """Ratings with the least limits of contact pressure and normal force.
+def limits_of(case: Case) -> dict[str, dict[str, float]]:
+    """Limits by the key of their constraint and by check, SI; without those outside the scope.
 
-    forces, pressures: further limits, N and Pa, by their checks
+    Of a row its value, else of the measure of the check.
     """
-    estimated = pressure_allowables(machines(case)[0], greatest_cycles(case))
-    pressure, pressure_by = _least({**part_limits(case, PRESSURE), **estimated, **pressures})
-    force, force_by = _least({**part_limits(case, NORMAL_FORCE), **forces})
-    by_rating = force_by == roller_bearing.roller_static.id
-    return replace(
-        ratings,
-        pressure=pressure,
-        pressure_by=pressure_by,
-        normal_force=force,
-        normal_force_by=force_by,
-        force_safety=case.limits[ROLLER_STATIC_SAFETY] if by_rating else 1.0,
-    )
-
-
-class _RollerRatings(TypedDict, total=False):
-    friction: float | None
-    drag: Drag
-    grease: Grease | None
-    dynamic_rating: float | None
-    life_force_cubed: float | None
-    roller_spin: float | None
-    modified: ModifiedLife
-    modified_rate: float
-    roller_spin_least: float | None
-
-
-def _of_roller(machine: Machine, roller: Roller) -> _RollerRatings:
-    """Ratings of the roller besides those of its bearing by speed, film and cleanliness."""
-    return {
-        "friction": roller.friction,
-        "drag": roller.drag,
-        "grease": grease_of(machine),
-        "dynamic_rating": roller.bearing.C,
-    }
-
-
-def _of_bearing(numbers: Numbers) -> _RollerRatings:
-    """Ratings of the roller bearing by life, speed, film and cleanliness."""
-    life = limit_of(roller_bearing.roller_life, numbers)
-    rated: _RollerRatings = {
-        "roller_spin": limit_of(roller_bearing.roller_speed, numbers),
-        "life_force_cubed": life,
-        "roller_spin_least": limit_of(roller_bearing.bearing_lubrication, numbers),
-    }
-    rate = limit_of(roller_bearing.roller_modified_life, numbers)
-    if rate is not None:
-        rated["modified"] = ModifiedLife(
-            float(numbers["roller.bearing.C"]),
-            roller_bearing.cleanliness_load(numbers),
-            float(numbers["roller.bearing.viscosity"]),
-            float(numbers["roller.bearing.pitch_diameter"]),
-        )
-        rated["modified_rate"] = rate
-    return rated
-
-
-def limit_of(declared: Declaration, numbers: Numbers) -> float | None:
-    """Limit of a check in terms of its measure, SI; None where it is not known or not kept."""
-    return None if declared.measured is None else declared.measured.limit_of_measure(numbers)
-
-
-class _GuideRatings(TypedDict, total=False):
-    guide_pressure: tuple[float | None, float | None]
-    guide_pv: tuple[float | None, float | None]
-    guide_wear_pv: tuple[float | None, float | None]
-    guide_area: tuple[float, float]
-    guide_edge_load: tuple[float | None, float | None]
-    guide_power: tuple[float | None, float | None]
-    guide_power_by: tuple[str, str]
-    guide_slope: tuple[float | None, float | None]
-    guide_length: tuple[float, float]
-
-
-def _of_guides(case: Case, machine: Machine, fastest: float) -> _GuideRatings:
-    """Ratings of guides A and B; fastest: greatest cam speed of the load cases, rad/s."""
-    both = machine.guides.both
-    powers = [_least(power_limits(side, guide, case, machine)) for side, guide in both]
-    edges = [edge_load(machine, guide, ROOM) for _, guide in both]
-    (a, b) = (guide for _, guide in both)
-    return {
-        "guide_pressure": (a.pressure_limit, b.pressure_limit),
-        "guide_pv": (pv_limit(a), pv_limit(b)),
-        "guide_wear_pv": (pv_of_wear(a, machine.limits), pv_of_wear(b, machine.limits)),
-        "guide_area": (a.projected_area, b.projected_area),
-        "guide_edge_load": (edges[0], edges[1]),
-        "guide_power": (powers[0][0], powers[1][0]),
-        "guide_power_by": (powers[0][1], powers[1][1]),
-        "guide_slope": (_slope_limit(a, fastest), _slope_limit(b, fastest)),
-        "guide_length": (a.length, b.length),
-    }
-
-
-def _slope_limit(part: Guide | GasSpring, fastest: float) -> float | None:
-    """Greatest lift per cam angle by the speed limit of a part, m/rad."""
-    return None if part.speed_limit is None else part.speed_limit / fastest
-
-
-def power_limits(side: str, guide: Guide, case: Case, machine: Machine) -> dict[str, float]:
-    """Greatest mean friction power of a guide allowed by each of its checks, W, by its id.
-
-    Without those that no lift can pass, below the ambient temperature.
-    """
-    resistance, ambient = thermal_resistance(guide), machine.guides.ambient_temperature
-    if resistance is None or ambient is None:
-        return {}
-    allowed = greatest_temperatures(guide, case.follower.stem_material)
-    return {
-        f"{name}_{side}": (temperature - ambient) / resistance
-        for name, temperature in allowed.items()
-        if temperature > ambient
-    }
+    states = machines(case)
+    numbers, machine = numbers_of(case, states), states[0]
+    limits: dict[str, dict[str, float]] = {PRESSURE: {}, NORMAL_FORCE: {}}
+    for each in CHECKS:
+        how = each.measured
+        if how is None or how.kept is None or how.reduce == "top" or not each.concerns(machine):
+            continue
+        of_part = how.kept.unit or how.kept.group
+        limit = how.limit_of_measure(numbers) if of_part else how.allowed(numbers).value
+        if limit is not None:
+            limits.setdefault(each.kept_at, {})[each.id] = float(limit)
+    limits[PRESSURE] |= pressure_allowables(machine, greatest_cycles(case))
+    limits[spring_travel.id] = _travel_limit(case)
+    limits[jump_speed.id] = {jump_speed.id: cam_speed_without_jump(numbers)}
+    limits[KEYWAY_SAFETY.id] = {keyway_root.id: machine.limits[KEYWAY_SAFETY]}
+    if case.scope.covers("guides"):
+        for side, guide in machine.guides.both:
+            seizure = seizure_temperature(guide, case.follower.stem_material)
+            for name, key, limit in (
+                ("guide_expansion", "guide_temperature", power_at(side, seizure, numbers)),
+                ("guide_edge_pressure", "guide_edge_pressure", edge_load(machine, guide, ROOM)),
+            ):
+                if limit is not None:
+                    limits.setdefault(f"{key}_{side}", {})[f"{name}_{side}"] = limit
+    grease = grease_of(machine)
+    if grease is not None:
+        limits[grease_life.id] = {grease_life.id: grease.rating}
+    return limits
 
 
 def edge_load(machine: Machine, guide: Guide, temperature: float) -> float | None:
@@ -263,7 +127,7 @@ def greatest_cycles(case: Case) -> LoadCycles:
     roller = case.roller_given
     if roller is None:
         return LoadCycles(turns, FACE_PASSES * turns)
-    travel = _least(travel_limits(case))[0]
+    travel = min(travel_limits(case).values(), default=None)
     prime = max(case.cam.prime_radius, *(smoothing.prime_radius_range or ()), 0.0)
     radius = prime + (prime if travel is None else travel)
     path = radius / np.cos(case.limits[PRESSURE_ANGLE])
@@ -348,9 +212,19 @@ def scaled_limits(solved: Solution) -> tuple[dict[str, float], dict[str, float]]
 def corrected_ratings(ratings: Ratings, solved: Solution) -> Ratings:
     """Ratings with the limits that follow from a solved cam; see `surge_of`, `scaled_limits`."""
     case = solved.case
-    forces, pressures = scaled_limits(solved)
-    travel, _ = _least(travel_limits(case, surge_of(solved)))
-    return _with_contact(replace(ratings, travel=travel), case, forces, pressures)
+    (forces, pressures), known = scaled_limits(solved), limits_of(case)
+    corrected = {
+        spring_travel.id: _travel_limit(case, surge_of(solved)),
+        NORMAL_FORCE: known[NORMAL_FORCE] | forces,
+        PRESSURE: known[PRESSURE] | pressures,
+    }
+    return ratings.least(corrected)
+
+
+def _travel_limit(case: Case, surge: Surge | None = None) -> dict[str, float]:
+    """Least of `travel_limits`, m, as one of the spring travel."""
+    limits = travel_limits(case, surge)
+    return {spring_travel.id: min(limits.values())} if limits else {}
 
 
 def travel_limits(case: Case, surge: Surge | None = None) -> dict[str, float]:
@@ -394,28 +268,3 @@ def _travel(one: Declaration, how: Measured, numbers: Numbers, last: Surge) -> f
     if not excess(least) < 0.0 < excess(most):
         return None
     return float(scipy.optimize.brentq(excess, least, most, xtol=1e-12))
-
-
-def part_limits(case: Case, group: str) -> dict[str, float]:
-    """Greatest force, torque or pressure, SI, allowed by each check of a group, by its id.
-
-    Without those outside the scope.
-    """
-    states, limits = machines(case), {}
-    numbers = numbers_of(case, states)
-    for each in CHECKS:
-        how = each.measured
-        if how is None or how.kept is None or how.kept.group != group:
-            continue
-        limit = how.limit_of_measure(numbers) if each.concerns(states[0]) else None
-        if limit is not None:
-            limits[each.id] = limit
-    return limits
-
-
-def _least(limits: dict[str, float]) -> tuple[float | None, str]:
-    """Least limit and its name."""
-    if not limits:
-        return None, ""
-    name = min(limits, key=lambda each: limits[each])
-    return float(limits[name]), name

@@ -4,15 +4,27 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
+from functools import partial
 
 from camwright.pipeline.base.units import in_unit
-from camwright.pipeline.case.limits import GUIDE_GAP, AnyLimit, utilisation_slope
-from camwright.pipeline.checks.cam_shape import TOOL_ALLOWANCE
-from camwright.pipeline.checks.check import FACTOR_MAX, Declaration
+from camwright.pipeline.case.limits import ROLLER_STATIC_SAFETY, AnyLimit, utilisation_slope
+from camwright.pipeline.checks.cam_shape import TOOL_ALLOWANCE, concave_radius
+from camwright.pipeline.checks.check import FACTOR_MAX
+from camwright.pipeline.checks.demands import NORMAL_FORCE
+from camwright.pipeline.checks.manufacture import guide_gap
 from camwright.pipeline.checks.registry import DECLARED
+from camwright.pipeline.checks.roller_bearing import (
+    roller_life,
+    roller_modified_life,
+    roller_static,
+)
+from camwright.pipeline.cycle.loaded_cam import LoadedCam
+from camwright.pipeline.follower.roller_motion import BALL_LIFE_EXPONENT
+from camwright.pipeline.smoothing.cam_state import Constraint, ScenarioCam
 from camwright.pipeline.smoothing.constraints import CONSTRAINTS
-from camwright.pipeline.smoothing.scenario import Rating, Ratings
+from camwright.pipeline.smoothing.scenario import Ratings
 
+AnyConstraint = Constraint[LoadedCam] | Constraint[ScenarioCam]
 Change = Callable[[Ratings, float], Ratings]
 
 
@@ -47,83 +59,80 @@ def bounds_of(ratings: Ratings) -> dict[str, Bound]:
     """
     bounds = {}
     for each in CONSTRAINTS:
-        value, limit = each.value(ratings), each.limit
+        value = each.value(ratings)
         if value is None:
             continue
-        if not isinstance(limit, Rating):
-            bounds[each.check] = _of_row(limit, value, each.factor_max, each.value_max)
-            continue
-        words = _words(DECLARED[limit.check_of(ratings, each.check)])
-        bound = _OF_RATING.get(limit.name, _of_rating)(ratings, words, limit)
+        of = _OF_PART.get(each.key, _of_part) if each.row is None else partial(_of_row, each.row)
+        bound = of(ratings, each, value)
         if bound is not None:
             bounds[each.check] = bound
     return bounds
 
 
-def _words(declared: Declaration) -> str:
-    """What the synthesis bounds for a check: of its part, else of its row."""
-    row = declared.limit
-    return declared.kept_as or (declared.title if row is None else row.title)
+def _times(key: str, ratings: Ratings, factor: float) -> Ratings:
+    return ratings.times(key, factor)
 
 
-def _of_row(row: AnyLimit, value: float, factor_max: float, value_max: float) -> Bound:
+def _of_row(row: AnyLimit, _: Ratings, one: AnyConstraint, value: float) -> Bound:
     unit = row.quantity.unit or "-"
-    shown, factor = in_unit(value, unit), min(factor_max, value_max / value)
-    relaxed = _with_limit(row) if factor else None
+    shown, factor = in_unit(value, unit), min(one.kept.factor_max, one.kept.value_max / value)
+    relaxed = partial(_times, one.key) if factor else None
     return Bound(row.title, shown, unit, utilisation_slope(row, shown), relaxed, factor)
 
 
-def _of_rating(ratings: Ratings, words: str, rating: Rating) -> Bound | None:
-    shown = rating.shown(ratings)
-    if shown is None:
-        return None
-    relaxed = rating.times if rating.power > 0.0 else None
-    return Bound(words, shown, rating.unit, rating.power / shown, relaxed)
+def _of_part(ratings: Ratings, one: AnyConstraint, value: float) -> Bound:
+    """What the synthesis bounds for the check that sets the limit: of its part, else of its row."""
+    declared, kept = DECLARED[ratings.by.get(one.key, one.check)], one.kept
+    row, shown = declared.limit, in_unit(value, kept.unit)
+    words = declared.kept_as or (declared.title if row is None else row.title)
+    relaxed = partial(_times, one.key) if kept.falls > 0.0 else None
+    return Bound(words, shown, kept.unit, kept.falls / shown, relaxed)
 
 
-def _guide_gap(ratings: Ratings, words: str, gap: Rating) -> Bound | None:
+def _normal_force(ratings: Ratings, one: AnyConstraint, value: float) -> Bound:
+    """Of the static rating the rating itself, N."""
+    by_rating = ratings.by.get(one.key, one.check) == roller_static.id
+    safety = ratings.numbers.get(f"limits.{ROLLER_STATIC_SAFETY.id}") if by_rating else None
+    return _of_part(ratings, one, value if safety is None else value * float(safety))
+
+
+def _guide_gap(ratings: Ratings, one: AnyConstraint, value: float) -> Bound:
     """Utilisation by the gap over the size of the follower."""
-    bound, slope = _of_rating(ratings, words, gap), -1.0 / in_unit(ratings.follower_size, gap.unit)
-    return bound and replace(bound, slope=slope)
+    size = in_unit(float(ratings.numbers["follower.size"]), one.kept.unit)
+    return replace(_of_part(ratings, one, value), slope=-1.0 / size)
 
 
-def _modified_life(ratings: Ratings, words: str, _: Rating) -> Bound | None:
-    """Modified life grows with the cube of the rating, at the same fatigue load limit."""
-    return _of_rating(ratings, words, Rating("modified", "N", "rating"))
-
-
-def _roller_life(ratings: Ratings, words: str, cubed: Rating) -> Bound | None:
-    """Life grows with the cube of the rating."""
-    dynamic = Rating("dynamic_rating", "N")
-
-    def with_rating(each: Ratings, factor: float) -> Ratings:
-        return dynamic.times(cubed.times(each, factor**3), factor)
-
-    bound = _of_rating(ratings, words, dynamic)
-    return bound and replace(bound, relaxed=with_rating)
-
-
-def _concave_radius(ratings: Ratings, words: str, hollow: Rating) -> Bound | None:
-    """Utilisation -kappa (a R_tool - r): it grows with the tool radius."""
-    radius = hollow.of(ratings)
-    if radius is None or radius <= ratings.roller_radius:
+def _bearing_life(ratings: Ratings, one: AnyConstraint, _: float) -> Bound | None:
+    """Life grows with the cube of the rating, at the same fatigue load limit."""
+    rating = ratings.numbers.get(_RATING)
+    if rating is None:
         return None
-    shown = in_unit(radius / TOOL_ALLOWANCE, hollow.unit)
-    slope = -TOOL_ALLOWANCE / in_unit(radius - ratings.roller_radius, hollow.unit)
-    return Bound(words, shown, hollow.unit, slope, hollow.times)
+    return replace(_of_part(ratings, one, float(rating)), relaxed=_with_rating)
 
 
-_OF_RATING: Mapping[str, Callable[[Ratings, str, Rating], Bound | None]] = {
-    GUIDE_GAP.id: _guide_gap,
-    "modified_rate": _modified_life,
-    "life_force_cubed": _roller_life,
-    "hollow_radius": _concave_radius,
+def _with_rating(ratings: Ratings, factor: float) -> Ratings:
+    """With a dynamic rating of the roller bearing times a factor."""
+    rated = ratings.numbers | {_RATING: ratings.numbers[_RATING] * factor}
+    with_life = roller_life.id in ratings.bounds
+    life = ratings.times(roller_life.id, factor**BALL_LIFE_EXPONENT) if with_life else ratings
+    return replace(life, numbers=rated)
+
+
+def _concave_radius(ratings: Ratings, one: AnyConstraint, value: float) -> Bound | None:
+    """Utilisation -kappa (a R_tool - r): it grows with the tool radius."""
+    room = value - float(ratings.numbers["roller.radius"])
+    if room <= 0.0:
+        return None
+    slope = -TOOL_ALLOWANCE / in_unit(room, one.kept.unit)
+    return replace(_of_part(ratings, one, value / TOOL_ALLOWANCE), slope=slope)
+
+
+_RATING = "roller.bearing.C"
+_OF_PART: Mapping[str, Callable[[Ratings, AnyConstraint, float], Bound | None]] = {
+    NORMAL_FORCE: _normal_force,
+    guide_gap.id: _guide_gap,
+    roller_life.id: _bearing_life,
+    roller_modified_life.id: _bearing_life,
+    concave_radius.id: _concave_radius,
 }
-"""Bounds by the field of the ratings, where the utilisation is no power of the rating."""
-
-
-def _with_limit(row: AnyLimit) -> Change:
-    def change(ratings: Ratings, factor: float) -> Ratings:
-        return replace(ratings, limits={**ratings.limits, row: ratings.limits[row] * factor})
-
-    return change
+"""Bounds by key, where another number is shown, or the utilisation is no power of it."""

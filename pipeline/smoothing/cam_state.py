@@ -8,7 +8,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cached_property, partial
-from math import inf
 from typing import Generic, Literal, NamedTuple, TypeVar
 
 import numpy as np
@@ -19,7 +18,7 @@ from camwright.geometry.errors import InputError
 from camwright.geometry.lift import Jet
 from camwright.geometry.pitch_curve import magnitude, rolling_share
 from camwright.pipeline.case.limits import CONTACT_FORCE_MARGIN, AnyLimit
-from camwright.pipeline.checks.check import Declaration
+from camwright.pipeline.checks.check import Declaration, Kept
 from camwright.pipeline.checks.extremes import BY_DUTY
 from camwright.pipeline.contact.traction import Drag
 from camwright.pipeline.cycle.loaded_cam import (
@@ -33,7 +32,6 @@ from camwright.pipeline.follower.spring_kinds import SpringShape, rise, shaped_d
 from camwright.pipeline.smoothing.scenario import (
     Correction,
     DesignVariables,
-    Rating,
     Ratings,
     Scenario,
 )
@@ -72,45 +70,16 @@ def _shaped_jet(energy: tuple[Array, ...], variables: DesignVariables, shape: Sp
     return Jet(lift=lift, slope=slope, bend=bend, jerk=jerk)
 
 
-def _fixed(variables: DesignVariables, ratings: Ratings) -> dict[str, Value | None]:
-    """Numbers of the machine that no scenario changes."""
-    waves = ratings.waves
-    modified = ratings.modified
-    fixed: dict[str, Value | None] = {
-        "cam.prime_radius": variables.prime_radius,
-        "cam.offset": ratings.offset,
-        "roller.radius": ratings.roller_radius,
-        "contact.width": ratings.contact_width,
-        "contact.modulus": ratings.contact_modulus,
-        "cam.held_radius": ratings.held_radius,
-        "camshaft.drag": ratings.shaft_drag,
-        "cam.fastest": ratings.overspeed,
-        "cam.profile_tolerance": None if waves is None else 2.0 * waves[0],
-        "cam.waviness_length": None if waves is None else waves[1],
-        "guides.a.area": ratings.guide_area[0],
-        "guides.b.area": ratings.guide_area[1],
-        "guides.a.mouth": ratings.guide_mouth,
-        "follower.size": ratings.follower_size,
-        f"limits.{CONTACT_FORCE_MARGIN.id}": ratings.limits.get(CONTACT_FORCE_MARGIN),
-    }
-    if modified is not None:
-        fixed |= {
-            "roller.bearing.C": modified.rating,
-            "roller.bearing.cleanliness_load": modified.cleanliness_load,
-            "roller.bearing.viscosity": modified.viscosity,
-            "roller.bearing.pitch_diameter": modified.circle,
-        }
-    if ratings.face is not None:
-        fixed |= {
-            "follower.face.width": ratings.face.width,
-            "follower.face.friction": ratings.face.friction,
-        }
-    return fixed
+def _numbers(variables: DesignVariables, ratings: Ratings) -> Numbers:
+    """Numbers of the machine with those that a search changes, and the margin that it keeps."""
+    margin = f"limits.{CONTACT_FORCE_MARGIN.id}"
+    kept = ratings.bounds.get(CONTACT_FORCE_MARGIN.id)
+    return ratings.numbers | {"cam.prime_radius": variables.prime_radius, margin: kept}
 
 
 def unloaded(jet: Jet, variables: DesignVariables, ratings: Ratings) -> LoadedCam:
     """Cam of a lift without loads."""
-    return LoadedCam(jet, Numbers(_fixed(variables, ratings)))
+    return LoadedCam(jet, _numbers(variables, ratings))
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -144,7 +113,7 @@ class ScenarioCam(LoadedCam):
         rolling, path = self.fix.rolling[..., :1], roller_of(self.motion)  # one value
         prime = path.prime_radius[..., :1]
         share = np.where(rolling > 0.0, rolling, rolling_share(prime, path.size))
-        return np.asarray(self.scenario.cam_speed * share)
+        return np.asarray(self.speed * share)
 
     @property
     def direction(self) -> Array:
@@ -199,23 +168,17 @@ def loaded(
     jet: Jet, highest: float, variables: DesignVariables, ratings: Ratings, scenario: Scenario
 ) -> ScenarioCam:
     """Cam of a lift in one scenario, or in stacked ones; highest: maximum lift, m."""
-    worst = scenario.friction_worst
-    numbers = _fixed(variables, ratings) | {
-        "spring.preload": variables.preload * scenario.preload_factor,
-        "spring.rate": variables.rate * scenario.rate_factor,
-        "cam.speed": scenario.cam_speed,
-        "follower.mass": scenario.mass,
-        "follower.viscous_damping": scenario.viscous_damping,
-        "follower.overhang_at_max_lift": scenario.overhang,
-        "guides.spacing": scenario.guide_spacing,
-        "guides.a.friction": scenario.friction_a,
-        "guides.b.friction": scenario.friction_b,
-        "guides.a.friction_greatest": None if worst is None else worst[0],
-        "guides.b.friction_greatest": None if worst is None else worst[1],
-    }
+    numbers = (
+        _numbers(variables, ratings)
+        | scenario.numbers.changed
+        | {
+            "spring.preload": variables.preload * scenario.preload_factor,
+            "spring.rate": variables.rate * scenario.rate_factor,
+        }
+    )
     return ScenarioCam(
         jet,
-        Numbers(numbers),
+        numbers,
         highest,
         scenario.correction.least_lift,
         scenario.external,
@@ -335,33 +298,23 @@ class Constraint(Generic[State]):
     Parameters
     ----------
     check : str              id of the check of the same demand
-    limit : Limit or Rating  row of the table of limits, or the rating of a part. A value of None:
-                             not constrained
+    key : str                of its limit in the ratings
     utilisation : callable   cam, limit -> (n,), or a `Mean` of the turn; None: does not apply
-    factor_max : float       maximum factor on a row's limit where limits conflict; 0: fixed
-    value_max : float        maximum value of a row's limit where limits conflict, SI
+    row : Limit              row of the table of limits; None: a part sets the limit
+    kept : Kept              unit and slope of a limit of a part, how far that of a row is relaxed
     needs : str              kind of follower; "": any
     """
 
     check: str
-    limit: AnyLimit | Rating
+    key: str
     utilisation: Callable[[State, float], Array | Mean | None] = field(repr=False)
-    factor_max: float = 0.0
-    value_max: float = inf
+    row: AnyLimit | None = None
+    kept: Kept = field(default=Kept(), repr=False)
     needs: Literal["", "roller", "face"] = ""
-
-    @property
-    def row(self) -> AnyLimit | None:
-        """Row of the table of limits; None: a part sets the limit."""
-        return None if isinstance(self.limit, Rating) else self.limit
 
     def value(self, ratings: Ratings) -> float | None:
         """Limit, SI; None: not constrained."""
-        if self.needs not in ("", ratings.follower):
-            return None
-        if isinstance(self.limit, Rating):
-            return self.limit.of(ratings)
-        return ratings.limits.get(self.limit)
+        return ratings.bounds.get(self.key) if self.needs in ("", ratings.follower) else None
 
 
 def where_applies(applies: Value, use: Array) -> Array:
@@ -369,16 +322,18 @@ def where_applies(applies: Value, use: Array) -> Array:
     return np.where(np.asarray(applies) != 0.0, use, _FAR + 0.0 * use)
 
 
-def kept(declared: Declaration, limit: Rating | None = None) -> Constraint[LoadedCam]:
+def kept(declared: Declaration) -> Constraint[LoadedCam]:
     """Constraint of a check that is declared by a measure.
 
-    limit: of a part, of the measure; None: the row of the check
+    Raises
+    ------
+    InputError
+        If it is not declared as kept.
     """
-    how, measure, row = declared.measured, declared.measure, declared.limit
-    of_part = row if limit is None else limit
-    if how is None or measure is None or how.kept is None or of_part is None:
+    how, measure = declared.measured, declared.measure
+    if how is None or measure is None or how.kept is None:
         raise InputError(declared.id, "not declared", "kept by the synthesis, see `Measured`")
-    use = partial(how.use, measure)
+    use, row = partial(how.use, measure), None if how.kept.unit else declared.limit
 
     def of_row(cam: LoadedCam, stated: float) -> Array | None:
         bound = how.bound(stated, cam.numbers)
@@ -386,41 +341,26 @@ def kept(declared: Declaration, limit: Rating | None = None) -> Constraint[Loade
 
     return Constraint(
         declared.id,
-        of_part,
-        of_row if limit is None and how.kept.use is None else use,
-        factor_max=how.kept.factor_max,
-        value_max=how.kept.value_max,
-        needs=declared.needs,
+        declared.kept_at,
+        use if row is None or how.kept.use is not None else of_row,
+        row,
+        how.kept,
+        how.kept.needs or declared.needs,
     )
 
 
-def kept_loads(
-    declared: Declaration,
-    limit: Rating | None = None,
-    *,
-    needs: Literal["", "roller", "face"] = "",
-) -> Constraint[ScenarioCam]:
-    """As `kept`, of a check on the loads: over the turn and the load cases where it is reduced.
-
-    needs: kind of follower of the constraint of a group; "": that of the check
-    """
-    of_cam, how = kept(declared, limit), declared.measured
+def kept_loads(declared: Declaration) -> Constraint[ScenarioCam]:
+    """As `kept`, of a check on the loads: over the turn and the load cases where it is reduced."""
+    of_cam, how = kept(declared), declared.measured
 
     def utilisation(cam: ScenarioCam, limit: float) -> Array | Mean | None:
         use = of_cam.utilisation(cam, limit)
-        if how is None or how.kept is None or use is None or isinstance(use, Mean):
+        if how is None or use is None or isinstance(use, Mean):
             return use
-        if how.kept.once:
+        if of_cam.kept.once:
             return where_applies(np.multiply(cam.scenario.swept, cam.scenario.nominal), use)
         if how.reduce == "mean":
-            return Mean(use, how.kept.power)
-        return by_duty(use, cam.scenario, how.kept.power) if how.reduce in BY_DUTY else use
+            return Mean(use, of_cam.kept.power)
+        return by_duty(use, cam.scenario, of_cam.kept.power) if how.reduce in BY_DUTY else use
 
-    return Constraint(
-        of_cam.check,
-        of_cam.limit,
-        utilisation,
-        of_cam.factor_max,
-        of_cam.value_max,
-        needs or of_cam.needs,
-    )
+    return Constraint(of_cam.check, of_cam.key, utilisation, of_cam.row, of_cam.kept, of_cam.needs)

@@ -23,6 +23,8 @@ import scipy
 
 from camwright.geometry.arrays import Array, readonly, uniform_turn
 from camwright.pipeline.case.limits import PRESSURE_ANGLE
+from camwright.pipeline.checks.cam_shape import spring_travel
+from camwright.pipeline.checks.demands import NORMAL_FORCE
 from camwright.pipeline.follower.spring import spring_energy
 from camwright.pipeline.smoothing.cone_program import Cones
 from camwright.pipeline.smoothing.energy_spline import basis_matrix
@@ -34,6 +36,8 @@ from camwright.pipeline.smoothing.synthesis_problem import (
     thinned,
     triangle,
 )
+
+_LIGHT = {"follower.mass": 0.0, "guides.a.friction": 0.0, "guides.b.friction": 0.0}
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,7 +74,7 @@ def convex_start(problem: Problem) -> Core | None:
         return None
     points = problem.coarse_points
     turns = tuple(
-        replace(item, torque=thinned(item.torque, points), mass=0.0, friction_a=0.0, friction_b=0.0)
+        replace(item.at(_LIGHT), torque=thinned(item.torque, points))
         for item in problem.scenarios
         if item.weight > 0
     )
@@ -98,13 +102,13 @@ def _program(search: Search) -> Cones:
     if np.isfinite(problem.energy[1]):
         k = int(np.argmin(search.turn.energy(search.exact)[0]))
         program.at_most(energy[[k]], problem.energy[1])
-    if ratings.travel is not None:
-        top = ratings.travel * (1.0 - RESERVE)
+    if (travel := ratings.bounds.get(spring_travel.id)) is not None:
+        top = travel * (1.0 - RESERVE)
         program.at_most(energy, spring_energy(variables.closing, variables.rate, top))
     # q / P^2 = 1 + growth, and sigma / P is the unknown
     growth = (2.0 * variables.rate / variables.closing**2) * energy
     sigma = program.columns(scipy.sparse.csr_array(np.eye(points)), count + 1)
-    steepest = ratings.limits.get(PRESSURE_ANGLE)
+    steepest = ratings.bounds.get(PRESSURE_ANGLE.id)
     if ratings.slope_max is not None:
         wide = ratings.slope_max * (1.0 - RESERVE) * variables.closing
         for side in (1.0, -1.0):
@@ -117,10 +121,10 @@ def _program(search: Search) -> Cones:
         for side in (1.0, -1.0):
             program.at_most(side * torque - room, steep * variables.closing / variables.rate)
         program.square_at_most(sigma, growth, 1.0)
-    if ratings.normal_force is not None:
-        share = (ratings.normal_force * (1.0 - RESERVE) / variables.closing) ** 2
+    if (force := ratings.bounds.get(NORMAL_FORCE)) is not None:
+        share = (force * (1.0 - RESERVE) / variables.closing) ** 2
         sideways = torque / (variables.prime_radius * variables.closing)
-        if ratings.face is not None:
+        if ratings.follower == "face":
             sideways = 0.0 * sideways
         program.square_at_most(sideways, -growth, share - 1.0)
     return program

@@ -11,6 +11,7 @@ import numpy as np
 from camwright.pipeline.base.units import in_unit
 from camwright.pipeline.case.limits import TORQUE_REDUCTION
 from camwright.pipeline.checks.check import FACTOR_MAX
+from camwright.pipeline.checks.demands import NORMAL_FORCE
 from camwright.pipeline.smoothing import bounds
 from camwright.pipeline.smoothing.bounds import bounds_of
 from camwright.pipeline.smoothing.constrained_synthesis import synthesise
@@ -261,7 +262,7 @@ def _from_catalogue(
     Rollers rated far below the necessary force are skipped. The threshold is below that force,
     as a larger roller lowers the pressure angle.
     """
-    force = problem.ratings.normal_force
+    force = problem.ratings.bounds.get(NORMAL_FORCE)
     if force is None:
         return []
     needed = max(
@@ -269,7 +270,7 @@ def _from_catalogue(
         default=force,
     )
     for name, other in rollers:
-        rated = other.ratings.normal_force
+        rated = other.ratings.bounds.get(NORMAL_FORCE)
         if rated is not None and rated >= needed and _feasible(coarsened(other)):
             what = f"roller {name} of the catalogue, normal force"
             return [Relaxation(what, force, rated, "N", rated / force, _replaced_by(other))]

@@ -146,7 +146,7 @@ def _loss(at: Turning) -> Mean:
     """Work of the friction of guides, and of roller bearing or face, over a turn."""
     cam = at.loads
     guides = (cam.axial - cam.closing - cam.inertia) * cam.jet.slope
-    drag = 0.0 if cam.ratings.drag is None else cam.ratings.drag.bearing_torque(cam.normal)
+    drag = 0.0 if cam.drag is None else cam.drag.bearing_torque(cam.normal)
     contact = drag * magnitude(np.asarray(cam.motion.rolling)) + cam.axial * cam.motion.sliding
     return Mean(FULL_TURN / at.scale.energy * (guides + contact))
 

@@ -1,4 +1,4 @@
-"""Constraints of the parts: guides, roller bearing, spring over its speeds, cam seat, gear.
+"""Constraints of checks without a measure: guide edges, force over the speeds, keyway, grease.
 
 As in `constraints`. What finite elements, the surge or the heat of a solved cam add is in the
 `Correction` of its scenario, held while the search runs.
@@ -6,84 +6,68 @@ As in `constraints`. What finite elements, the surge or the heat of a solved cam
 
 from __future__ import annotations
 
-from typing import Literal
+from collections.abc import Callable
+from functools import partial
 
 import numpy as np
 
 from camwright.geometry.arrays import Array
 from camwright.geometry.pitch_curve import magnitude
-from camwright.pipeline.case.limits import (
-    CONTACT_FORCE_MARGIN,
-    KEYWAY_SAFETY,
-)
 from camwright.pipeline.checks import (
-    camshaft_strength,
     demands,
-    flat_face_sliding,
     guide_strength,
-    guide_wear,
+    jump_and_jamming,
     key_strength,
-    manufacture,
     roller_bearing,
-    spring_strength,
-    surface_durability,
 )
+from camwright.pipeline.checks.check import Declaration, Kept
+from camwright.pipeline.checks.guide_strength import Side, table_of
 from camwright.pipeline.checks.roller_bearing import STANDSTILL
-from camwright.pipeline.cycle.loaded_cam import LoadedCam, not_negative
+from camwright.pipeline.cycle.loaded_cam import not_negative
 from camwright.pipeline.follower import bearing_life
-from camwright.pipeline.follower.roller_motion import (
-    BALL_LIFE_EXPONENT,
-    wear,
-)
+from camwright.pipeline.follower.roller_motion import BALL_LIFE_EXPONENT, wear
 from camwright.pipeline.smoothing.cam_state import (
     Constraint,
     Mean,
     ScenarioCam,
     Total,
     duty_shares,
-    kept,
-    kept_loads,
     where_applies,
 )
-from camwright.pipeline.smoothing.scenario import Rating
-
-Side = Literal["A", "B"]
 
 
-def _guide_edge_pressure(side: Side) -> Constraint[ScenarioCam]:
+def _of(
+    declared: Declaration,
+    utilisation: Callable[[ScenarioCam, float], Array | Mean | None],
+    unit: str = "",
+) -> Constraint[ScenarioCam]:
+    """Constraint of a check without a measure, at its row; unit: of a limit that a part sets."""
+    row, kept = None if unit else declared.limit, Kept(unit=unit)
+    key = declared.id if row is None else row.id
+    return Constraint(declared.id, key, utilisation, row, kept, declared.needs)
+
+
+def _edge_use(side: Side, at: ScenarioCam, limit: float) -> Array:
     """Line load over that at the yield strength of the bush at its temperature."""
-    place = "AB".index(side)
-
-    def utilisation(at: ScenarioCam, limit: float) -> Array:
-        return magnitude(at.edge[place]) / (at.ratings.guide_length[place] * limit)
-
-    return Constraint(
-        f"guide_edge_pressure_{side}", Rating("guide_edge_load", "N/mm", place), utilisation
-    )
+    return magnitude(at.edge["AB".index(side)]) / (at.numbers[f"{table_of(side)}.length"] * limit)
 
 
-def _swept_force(at: ScenarioCam, limit: float) -> Array | None:
+def _swept_force(at: ScenarioCam, limit: float) -> Array:
     """At the speed with the least force of the solved cam, with its surge; first the fastest."""
-    fastest, scenario = at.ratings.fastest, at.scenario
-    if fastest is None:
-        return None
-    fix = scenario.correction
+    fastest, fix, scenario = at.numbers["cam.fastest"], at.fix, at.scenario
     speed = np.where(fix.swept_speed > 0.0, fix.swept_speed, fastest)
     push = at.closing + fix.swept_surge
-    push = push + (scenario.mass - scenario.spring_mass) * speed**2 * at.jet.bend
-    push = push + scenario.viscous_damping * speed * at.jet.slope
+    push = push + (at.numbers["follower.mass"] - scenario.spring_mass) * speed**2 * at.jet.bend
+    push = push + at.numbers["follower.viscous_damping"] * speed * at.jet.slope
     normal = push / at.share * at.motion.gain
     return where_applies(scenario.swept, 1.0 + limit - normal / at.least_spring)
 
 
-def _elastic_contact(at: ScenarioCam, limit: float) -> Array | None:
+def _elastic_contact(at: ScenarioCam, limit: float) -> Array:
     """As `_swept_force`, without friction, with the change by the elastic stem."""
-    fastest, scenario = at.ratings.fastest, at.scenario
-    if fastest is None:
-        return None
-    fix = scenario.correction
+    fastest, fix, scenario = at.numbers["cam.fastest"], at.fix, at.scenario
     speed = np.where(fix.elastic_speed > 0.0, fix.elastic_speed, fastest)
-    inertia = (scenario.mass - scenario.spring_mass) * speed**2 * at.jet.bend
+    inertia = (at.numbers["follower.mass"] - scenario.spring_mass) * speed**2 * at.jet.bend
     push = demands.force_left(at.closing + fix.elastic, inertia, at.least_spring)
     return where_applies(scenario.swept, 1.0 + limit - push)
 
@@ -132,41 +116,12 @@ def _grease_life(at: ScenarioCam, limit: float) -> Mean | None:
     return Mean(terms, total=Total(of, members))
 
 
-PART_SHAPE: tuple[Constraint[LoadedCam], ...] = (
-    kept(guide_strength.guide_speed_a, Rating("guide_slope", "mm", 0)),
-    kept(guide_strength.guide_speed_b, Rating("guide_slope", "mm", 1)),
-    kept(spring_strength.gas_speed, Rating("gas_slope", "mm")),
-)
-"""Limits of the parts on the shape of the cam."""
-
 PARTS: tuple[Constraint[ScenarioCam], ...] = (
-    kept_loads(manufacture.guide_gap, Rating("guide_gap", "mm")),
-    _guide_edge_pressure("A"),
-    _guide_edge_pressure("B"),
-    kept_loads(
-        guide_strength.guide_temperature_a, Rating("guide_power", "W", 0, by="guide_power_by")
-    ),
-    kept_loads(
-        guide_strength.guide_temperature_b, Rating("guide_power", "W", 1, by="guide_power_by")
-    ),
-    kept_loads(guide_wear.guide_wear_a, Rating("guide_wear_pv", "MPa m/s", 0)),
-    kept_loads(guide_wear.guide_wear_b, Rating("guide_wear_pv", "MPa m/s", 1)),
-    kept_loads(surface_durability.traction_demand, Rating("friction", "-")),
-    kept_loads(manufacture.profile_waviness),
-    Constraint("contact_over_speed", CONTACT_FORCE_MARGIN, _swept_force),
-    Constraint("elastic_contact", CONTACT_FORCE_MARGIN, _elastic_contact),
-    kept_loads(key_strength.key_pressure, Rating("cam_torque", "N m", by="cam_torque_by")),
-    kept_loads(camshaft_strength.gear_bending, Rating("tooth_torque", "N m", by="tooth_torque_by")),
-    Constraint("keyway_root", KEYWAY_SAFETY, _keyway_root),
-    Constraint(
-        "grease_life",
-        Rating("grease", "N", "rating"),
-        _grease_life,
-        needs="roller",
-    ),
-    kept_loads(roller_bearing.roller_modified_life, Rating("modified_rate", "rad/s")),
-    kept_loads(roller_bearing.bearing_lubrication, Rating("roller_spin_least", "rpm", power=-1.0)),
-    kept_loads(flat_face_sliding.face_width, Rating("face", "mm", "width")),
-    kept_loads(flat_face_sliding.face_pv, Rating("face", "MPa m/s", "pv")),
+    _of(guide_strength.guide_edge_pressure_a, partial(_edge_use, "A"), "N/mm"),
+    _of(guide_strength.guide_edge_pressure_b, partial(_edge_use, "B"), "N/mm"),
+    _of(jump_and_jamming.contact_over_speed, _swept_force),
+    _of(jump_and_jamming.elastic_contact, _elastic_contact),
+    _of(key_strength.keyway_root, _keyway_root),
+    _of(roller_bearing.grease_life, _grease_life, "N"),
 )
 """Limits of the parts on the loads of the cam in one scenario."""

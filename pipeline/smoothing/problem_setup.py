@@ -19,6 +19,8 @@ from camwright.pipeline.case.limits import OVERSPEED
 from camwright.pipeline.case.load_case_torque import engine_torque, require_ripple
 from camwright.pipeline.case.machine import Machine, machines
 from camwright.pipeline.case.requirements_section import LoadCase
+from camwright.pipeline.cycle.numbers import Numbers
+from camwright.pipeline.cycle.solved_cam import numbers_in
 from camwright.pipeline.engine.cylinder import CylinderEngine
 from camwright.pipeline.follower.guide_friction import FrictionRange
 from camwright.pipeline.smoothing.allowables import ratings_of
@@ -148,30 +150,22 @@ def _scenarios(case: Case, machine: Machine, torque: Torque | None) -> list[Scen
     values = np.zeros(points)  # at rest the engine has no torque
     if torque is not None:
         values = torque.without_mean().resampled(points).total
-    friction = machine.friction
     nominal = Scenario(
         name=machine.load_case,
-        cam_speed=machine.cam_speed,
         torque=values - values.mean(),
-        mass=machine.mass,
+        numbers=Numbers(numbers_in(machine)),
         spring_mass=machine.spring_mass,
-        guide_spacing=machine.guides.spacing,
-        overhang=machine.overhang_at_max_lift,
-        friction_a=friction.nominal[0],
-        friction_b=friction.nominal[1],
-        viscous_damping=machine.viscous_damping,
         preload_factor=machine.spring.preload / case.spring.preload,
         gravity=machine.gravity_along_axis,
         external=machine.external.at(uniform_turn(points if machine.external.varies else 1)),
         weight=0.0 if torque is None else machine.ripple_weight,
         torque_reduction=None if torque is None else machine.torque_reduction,
         duty=machine.duty,
-        friction_worst=friction.greatest,
         correction=Correction.none(points),
     )
     if not case.smoothing.corners:
         return [nominal]
-    return [nominal, *_corners(case, nominal, friction)]
+    return [nominal, *_corners(case, nominal, machine.friction)]
 
 
 def _robust(case: Case, state: LoadCase, nominal: Scenario) -> list[Scenario]:
@@ -193,9 +187,8 @@ def _robust(case: Case, state: LoadCase, nominal: Scenario) -> list[Scenario]:
         values = factor * torque.without_mean().resampled(_points(case)).total
         scenarios.append(
             replace(
-                nominal,
+                nominal.at({"cam.speed": speed / case.mechanism.gear_ratio}),
                 name=f"{nominal.name}, n x {rate:g}, load x {load:g}",
-                cam_speed=speed / case.mechanism.gear_ratio,
                 torque=values - values.mean(),
                 weight=nominal.weight * smoothing.robust_weight,
                 torque_reduction=None,
@@ -215,19 +208,20 @@ def _corners(case: Case, nominal: Scenario, friction: FrictionRange) -> list[Sce
     ends = list(product(_ends(spring.rate_tolerance), _ends(spring.preload_tolerance), frictions))
     corners = [
         replace(
-            nominal,
+            nominal.at({"guides.a.friction": mu[0], "guides.b.friction": mu[1]}),
             corner=number,
             name=f"{nominal.name}, k x {rate:g}, P x {preload:g}, mu {mu[0]:g} and {mu[1]:g}",
             rate_factor=rate,
             preload_factor=preload * nominal.preload_factor,
-            friction_a=mu[0],
-            friction_b=mu[1],
         )
         for number, (rate, preload, mu) in enumerate(ends, 1)
-        if (rate, preload, mu) != (1.0, 1.0, (nominal.friction_a, nominal.friction_b))
+        if (rate, preload, mu) != (1.0, 1.0, friction.nominal)
     ]
     single = [
-        replace(nominal, name=f"{nominal.name}, m x {share:g}", mass=share * nominal.mass)
+        replace(
+            nominal.at({"follower.mass": share * nominal.numbers["follower.mass"]}),
+            name=f"{nominal.name}, m x {share:g}",
+        )
         for share in _ends(tolerances.mass)
     ]
     late = tolerances.phase / case.mechanism.gear_ratio

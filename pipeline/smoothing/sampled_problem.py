@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from camwright.geometry.arrays import Array, uniform_turn
 from camwright.geometry.lift import Jet
 from camwright.pipeline.case.limits import PRESSURE_ANGLE, TORQUE_REDUCTION
+from camwright.pipeline.checks.cam_shape import spring_travel
 from camwright.pipeline.follower.spring import spring_energy
 from camwright.pipeline.smoothing.cam_state import Mean, ScenarioCam, lift_jet, loaded
 from camwright.pipeline.smoothing.cone_program import Linear, Norm
@@ -140,7 +141,7 @@ class Search:
         first = max(problem.scenarios, key=lambda item: item.weight)
         torque = problem.gear_ratio * first.torque
         ratings = problem.ratings
-        travel = np.inf if ratings.travel is None else ratings.travel * (1.0 - RESERVE)
+        travel = ratings.bounds.get(spring_travel.id, np.inf) * (1.0 - RESERVE)
         exact = exact_start(
             torque - torque.mean(),
             problem.coefficients,
@@ -149,7 +150,7 @@ class Search:
             shape=variables.shape,
             prime_radius=variables.prime_radius,
             lobes=problem.lobes,
-            pressure_angle=ratings.limits.get(PRESSURE_ANGLE, np.pi / 3),
+            pressure_angle=ratings.bounds.get(PRESSURE_ANGLE.id, np.pi / 3),
             slope_max=ratings.slope_max,
             energy_max=float(
                 spring_energy(variables.closing, variables.rate, travel, variables.shape)

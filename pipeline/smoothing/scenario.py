@@ -2,19 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
-from typing import Literal, NamedTuple
+from typing import Literal
 
 import numpy as np
 
 from camwright.geometry.arrays import FULL_TURN, Array, Value, readonly, uniform_turn
-from camwright.pipeline.base.units import in_unit
 from camwright.pipeline.case.case import Case
-from camwright.pipeline.case.limits import AnyLimit
+from camwright.pipeline.checks.flat_face_sliding import face_width
 from camwright.pipeline.checks.key_strength import KeywayRoot
 from camwright.pipeline.checks.roller_bearing import Grease
 from camwright.pipeline.contact.traction import Drag
+from camwright.pipeline.cycle.numbers import Numbers
 from camwright.pipeline.follower.spring_kinds import SpringShape
 
 
@@ -51,188 +51,54 @@ def redrawn(case: Case, variables: DesignVariables) -> Case:
     return case.model_copy(update={"spring": spring, "cam": cam})
 
 
-class ModifiedLife(NamedTuple):
-    """Roller bearing: C, N; e_C P_u, N; viscosity, m2/s; pitch diameter of the balls, m."""
-
-    rating: float
-    cleanliness_load: float
-    viscosity: float
-    circle: float
-
-
-class Face(NamedTuple):
-    """Flat face: width in the plane of motion, m; friction on the cam; limit of the PV value.
-
-    pv: Pa m/s; None: not kept.
-    """
-
-    width: float
-    friction: float = 0.0
-    pv: float | None = None
-
-
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Ratings:
-    """Limits and fixed dimensions of a synthesis, SI; a limit of None is not kept.
+    """Limits of a synthesis and the numbers of its machine, SI.
 
     Parameters
     ----------
-    roller_radius : float      m; 0 under a flat face
-    face : Face                None: a roller
-    limits : mapping           value by row of the table of limits; a row left out is not kept
-    travel : float             maximum lift allowed by the spring, m
-    hollow_radius : float      minimum concave radius of the contour, m
-    pressure : float           least of the limits on the contact pressure, Pa; pressure_by is the
-                               check it comes from
-    contact_width : float      m
-    contact_modulus : float    E*, Pa
-    overspeed : float          cam speed at which the contact force margin is kept, rad/s
-    fastest : float            cam speed up to which the contact force margin is kept with surge
-                               and elastic stem, rad/s
-    jump_speed : float         cam speed below which the follower does not jump, rad/s
-    normal_force : float       least of the limits on the normal force, N; normal_force_by is the
-                               check it comes from, force_safety its factor on the static rating
-    dynamic_rating : float     C of the roller bearing, N
-    life_force_cubed : float   limit of the mean of N^3 |n| over the turn, N^3 rad/s
-    roller_spin : float        rad/s
-    guide_pressure, guide_pv, guide_area : pairs   of guides A and B, Pa, Pa m/s, m^2; pressures as
-                               stated at 20 degC
-    guide_wear_pv : pair       PV value of the greatest wear depth in the target life, Pa m/s
-    guide_edge_load : pair     line load at the yield strength of the bush at 20 degC, N/m
-    guide_power : pair         mean friction power at the greatest temperature, W; guide_power_by is
-                               the check it comes from
-    guide_slope : pair         lift per cam angle at the greatest sliding speed, m/rad; gas_slope:
-                               at that of the gas spring
-    guide_length : pair        m
-    guide_gap : float          m; guide_mouth: end of guide A over the roller centre at maximum
-                               lift, m
-    held_radius : float        of bore and keyway, m; None: the prime radius is that of the case
-    friction : float           of the roller on the cam; drag: of the roller
-    waves : two floats         amplitude and length of the waves of the contour, m
-    cam_torque : float         least of the limits on the cam torque, N m; tooth_torque: with
-                               shaft_drag, N m; *_by is the check it comes from
+    numbers : Numbers      of the machine in no load case
+    bounds : mapping       limit by the key of its constraints, see `Declaration.kept_at`: a row of
+                           the table of limits, or the bound of a measure; one left out is not kept
+    by : mapping           check that sets the least limit of a group, by its key
+    drag : Drag            of the roller
     keyway : KeywayRoot
-    modified : ModifiedLife    modified_rate: limit of the mean of |n| / (a_ISO (C/P)^3), rad/s
-    grease : Grease            of the roller bearing
-    roller_spin_least : float  mean speed of the roller at the least viscosity ratio, rad/s
+    grease : Grease        of the roller bearing
     """
 
-    roller_radius: float
-    face: Face | None = None
-    offset: float = 0.0
-    limits: Mapping[AnyLimit, float] = field(default_factory=dict)
-    travel: float | None = None
-    hollow_radius: float | None = None
-    pressure: float | None = None
-    pressure_by: str = ""
-    contact_width: float = 1.0
-    contact_modulus: float = 1.0
-    overspeed: float | None = None
-    fastest: float | None = None
-    jump_speed: float | None = None
-    normal_force: float | None = None
-    normal_force_by: str = ""
-    force_safety: float = 1.0
-    dynamic_rating: float | None = None
-    life_force_cubed: float | None = None
-    roller_spin: float | None = None
-    guide_pressure: tuple[float | None, float | None] = (None, None)
-    guide_pv: tuple[float | None, float | None] = (None, None)
-    guide_wear_pv: tuple[float | None, float | None] = (None, None)
-    guide_area: tuple[float, float] = (1.0, 1.0)
-    guide_edge_load: tuple[float | None, float | None] = (None, None)
-    guide_power: tuple[float | None, float | None] = (None, None)
-    guide_power_by: tuple[str, str] = ("", "")
-    guide_slope: tuple[float | None, float | None] = (None, None)
-    gas_slope: float | None = None
-    guide_length: tuple[float, float] = (1.0, 1.0)
-    guide_gap: float | None = None
-    guide_mouth: float = 0.0
-    held_radius: float | None = None
-    friction: float | None = None
+    numbers: Numbers
+    bounds: Mapping[str, float] = field(default_factory=dict)
+    by: Mapping[str, str] = field(default_factory=dict)
     drag: Drag | None = None
-    waves: tuple[float, float] | None = None
-    cam_torque: float | None = None
-    cam_torque_by: str = ""
-    tooth_torque: float | None = None
-    tooth_torque_by: str = ""
-    shaft_drag: float = 0.0
     keyway: KeywayRoot | None = None
     grease: Grease | None = None
-    modified: ModifiedLife | None = None
-    modified_rate: float | None = None
-    roller_spin_least: float | None = None
+
+    def times(self, key: str, factor: float) -> Ratings:
+        """With a limit times a factor."""
+        return replace(self, bounds={**self.bounds, key: self.bounds[key] * factor})
+
+    def least(self, limits: Mapping[str, Mapping[str, float]]) -> Ratings:
+        """With the least of the limits of several checks, by key and check; none: not kept."""
+        by = {key: min(each, key=lambda name: each[name]) for key, each in limits.items() if each}
+        least = {key: float(limits[key][name]) for key, name in by.items()}
+        others = {key: value for key, value in self.bounds.items() if key not in limits}
+        return replace(self, bounds=others | least, by={**self.by, **by})
 
     @property
     def follower(self) -> Literal["roller", "face"]:
         """Kind of follower."""
-        return "roller" if self.face is None else "face"
+        return "roller" if self.numbers.get("follower.face.width") is None else "face"
+
+    @property
+    def offset(self) -> float:
+        """Offset of the follower, m."""
+        return float(self.numbers["cam.offset"])
 
     @property
     def slope_max(self) -> float | None:
         """Lift per radian at the edge of a face, m; None: a roller."""
-        return None if self.face is None else 0.5 * self.face.width - abs(self.offset)
-
-    @property
-    def follower_size(self) -> float:
-        """Roller radius, or half of the width of a face, m: scale of a gap."""
-        return self.roller_radius if self.face is None else 0.5 * self.face.width
-
-
-class Rating(NamedTuple):
-    """A limit that a part sets: where it stands in the ratings.
-
-    Parameters
-    ----------
-    name : str      field of `Ratings`
-    unit : str      in which it is shown
-    place : int or str   of a pair, or of a tuple of named values; None: the field itself
-    by : str        field of the check it comes from, where it is the least of several; "": its own
-    factor : str    field of the factor on it with which it is shown; "": 1
-    power : float   of it with which the utilisation falls; negative: it rises, and is not relaxed
-    """
-
-    name: str
-    unit: str
-    place: int | str | None = None
-    by: str = ""
-    factor: str = ""
-    power: float = 1.0
-
-    def of(self, ratings: Ratings) -> float | None:
-        """Limit, SI; None: none."""
-        held = getattr(ratings, self.name)
-        if held is None or self.place is None:
-            limit: float | None = held
-        elif isinstance(self.place, int):
-            limit = held[self.place]
-        else:
-            limit = getattr(held, self.place)
-        return limit
-
-    def times(self, ratings: Ratings, factor: float) -> Ratings:
-        """Ratings with the limit times a factor."""
-        held, value = getattr(ratings, self.name), self.of(ratings)
-        if value is None:
-            return ratings
-        changed: object = value * factor
-        if isinstance(self.place, int):
-            changed = tuple(changed if k == self.place else each for k, each in enumerate(held))
-        elif self.place is not None:
-            changed = held._replace(**{self.place: changed})
-        return replace(ratings, **{self.name: changed})  # type: ignore[arg-type]
-
-    def check_of(self, ratings: Ratings, own: str) -> str:
-        """Id of the check that sets it; own: of that of the constraint, where no other is named."""
-        if not self.by:
-            return own
-        by = getattr(ratings, self.by)
-        return (by[self.place] if isinstance(self.place, int) else by) or own
-
-    def shown(self, ratings: Ratings) -> float | None:
-        """Limit in its unit, by its factor."""
-        value, factor = self.of(ratings), getattr(ratings, self.factor) if self.factor else 1.0
-        return None if value is None else in_unit(value * factor, self.unit)
+        width = self.bounds.get(face_width.id)
+        return None if width is None else 0.5 * width - abs(self.offset)
 
 
 _FACTORS = (
@@ -296,27 +162,22 @@ class Correction:
         """A correction greater by a margin, of the corrected loads; surge and speeds are kept."""
         return replace(self, **{name: getattr(self, name) * (1.0 + margin) for name in _FACTORS})
 
+    def each(self, of: Callable[[Sequence[Array]], Array], *others: Correction) -> Correction:
+        """A function of the values of every field here and in others."""
+        every, names = (self, *others), [each.name for each in fields(self)]
+        return Correction(*(of([getattr(one, name) for one in every]) for name in names))
+
     def towards(self, other: Correction, share: float) -> Correction:
         """Linear interpolation to another correction, at the angles of that one."""
         if share == 1.0:
             return other
         own = self.at(uniform_turn(other.contact.size))
-        return Correction(
-            *(
-                (1.0 - share) * getattr(own, each.name) + share * getattr(other, each.name)
-                for each in fields(self)
-            )
-        )
+        return own.each(lambda both: (1.0 - share) * both[0] + share * both[1], other)
 
     def at(self, theta: Array) -> Correction:
         """Corrections at cam angles theta (m,), rad, interpolated linearly."""
         own = np.arange(self.contact.size) * (FULL_TURN / self.contact.size)
-        return Correction(
-            *(
-                np.interp(theta, own, getattr(self, each.name), period=FULL_TURN)
-                for each in fields(self)
-            )
-        )
+        return self.each(lambda one: np.interp(theta, own, one[0], period=FULL_TURN))
 
 
 @dataclass(frozen=True, eq=False)
@@ -325,17 +186,14 @@ class Scenario:
 
     Parameters
     ----------
-    cam_speed : float        rad/s
     torque : array (n,)      engine torque at n equal cam angles, of zero mean, crank N m
     weight : float           of its ripple in the objective; 0: limits only
     torque_reduction : float   required of its torque ripple; None: none is required
     duty : float             share of the operating time; None: not known
     corner : int             number of its tolerance corner; 0: none. Lives and wear add over the
                              load cases at a corner
-    mass, viscous_damping, guide_spacing, overhang : float   of the follower, SI; spring_mass: of
-                             the mass, that of the spring
-    friction_a, friction_b : float
-    friction_worst : two floats   maximum friction of guides A and B; None: not known
+    numbers : Numbers        of the machine in its load case, see `numbers_in`
+    spring_mass : float      of the spring in the moving mass, kg
     rate_factor, preload_factor : float   spring of the scenario over the nominal spring
     gravity : float          component of g along the axis towards the cam, m/s2
     external : array (n,)    external force at n equal cam angles, N, towards the cam; one value:
@@ -349,14 +207,8 @@ class Scenario:
     """
 
     name: str
-    cam_speed: Value
     torque: Array
-    mass: Value
-    guide_spacing: Value
-    overhang: Value
-    friction_a: Value
-    friction_b: Value
-    viscous_damping: Value = 0.0
+    numbers: Numbers
     rate_factor: Value = 1.0
     preload_factor: Value = 1.0
     gravity: float = 0.0
@@ -365,12 +217,15 @@ class Scenario:
     torque_reduction: float | None = None
     duty: Value | None = None
     corner: Value = 0
-    friction_worst: tuple[Value, Value] | None = None
     spring_mass: Value = 0.0
     nominal: Value = True
     swept: Value = True
     correction: Correction = field(default_factory=lambda: Correction.none(8))
     cell: Value = 0.0
+
+    def at(self, numbers: Mapping[str, Value]) -> Scenario:
+        """With other numbers."""
+        return replace(self, numbers=self.numbers | numbers)
 
     def torque_at(self, phase: float) -> tuple[Array, Array]:
         """Engine torque, N m, and its derivative, N m/rad, advanced by `phase`, rad of cam."""
@@ -382,88 +237,66 @@ class Scenario:
         return np.fft.irfft(turned, n=count), np.fft.irfft(order * turned, n=count)
 
 
-_NUMBERS = (
-    "cam_speed", "mass", "guide_spacing", "overhang", "friction_a", "friction_b",
-    "viscous_damping", "rate_factor", "preload_factor", "spring_mass", "nominal", "swept",
-    "corner",
-)  # fmt: skip
-"""Numbers of a scenario that differ between stacked ones."""
+_NUMBERS = ("rate_factor", "preload_factor", "spring_mass", "nominal", "swept", "corner")
+"""Fields of a scenario that differ between stacked ones, besides its numbers."""
 
 
 def stacked(scenarios: Sequence[Scenario], theta: Array, cell: Value = 0.0) -> Scenario:
     """Scenarios at once: numbers (s, 1), corrections (s, n) at cam angles theta (n,), rad.
 
-    cell: cam angle, rad, for which each stands, one or (n,).
-
-    All have the same external force.
-
-    The maximum friction is known in all of them, or left out.
+    cell: cam angle, rad, for which each stands, one or (n,). All have the same external force, and
+    the same numbers: one that is not known in all of them, such as a maximum friction, is left out.
     """
     # The corners of a load case share its correction.
     around = np.arange(scenarios[0].external.size) * (FULL_TURN / scenarios[0].external.size)
     external = np.interp(theta, around, scenarios[0].external, period=FULL_TURN)
     different = {id(each.correction): each.correction for each in scenarios}
     different = {key: each.at(theta) for key, each in different.items()}
-    corrections = [different[id(each.correction)] for each in scenarios]
-    worst = [each.friction_worst for each in scenarios if each.friction_worst is not None]
-    duties = [each.duty for each in scenarios]
-    greatest = None
-    if len(worst) == len(scenarios):
-        greatest = (_column(a for a, _ in worst), _column(b for _, b in worst))
-    numbers = {name: _column(getattr(each, name) for each in scenarios) for name in _NUMBERS}
+    first, *others = (different[id(each.correction)] for each in scenarios)
+    changed = {
+        key: _column([each.numbers.get(key) for each in scenarios])
+        for key in scenarios[0].numbers.changed
+    }
     return replace(
         scenarios[0],
-        **numbers,  # type: ignore[arg-type]
+        **{name: _column([getattr(each, name) for each in scenarios]) for name in _NUMBERS},  # type: ignore[arg-type]
+        numbers=Numbers(changed),
         external=np.broadcast_to(external, (len(scenarios), external.size)),
         cell=np.broadcast_to(cell, (len(scenarios), external.size)),
-        duty=None if None in duties else _column(each for each in duties if each is not None),
-        friction_worst=greatest,
-        correction=Correction(
-            *(
-                np.stack([getattr(each, item.name) for each in corrections])
-                for item in fields(Correction)
-            )
-        ),
+        duty=_column([each.duty for each in scenarios]),
+        correction=first.each(np.stack, *others),
     )
 
 
 def joined(one: Scenario, other: Scenario) -> Scenario:
     """Stacked scenarios at the cam angles of two stacks of the same scenarios."""
 
-    def of(first: Value, second: Value) -> Array:
-        return np.concatenate([np.asarray(first), np.asarray(second)], axis=1)
+    def of(both: Sequence[Value]) -> Array:
+        return np.concatenate([np.asarray(each) for each in both], axis=1)
 
     return replace(
         one,
-        external=of(one.external, other.external),
-        cell=of(one.cell, other.cell),
-        correction=Correction(
-            *(
-                of(getattr(one.correction, item.name), getattr(other.correction, item.name))
-                for item in fields(Correction)
-            )
-        ),
+        external=of([one.external, other.external]),
+        cell=of([one.cell, other.cell]),
+        correction=one.correction.each(of, other.correction),
     )
 
 
 def taken(stack: Scenario, take: Callable[[Array], Array]) -> Scenario:
     """Some of the stacked scenarios, or some of their angles: `take` of each number, correction."""
 
-    def of(value: Value) -> Array:
-        return take(np.asarray(value))
+    def of(value: Value | None) -> Array | None:
+        return None if value is None else take(np.asarray(value))
 
-    numbers = {name: of(getattr(stack, name)) for name in (*_NUMBERS, "external", "cell")}
-    worst = stack.friction_worst
     return replace(
         stack,
-        **numbers,  # type: ignore[arg-type]
-        duty=None if stack.duty is None else of(stack.duty),
-        friction_worst=None if worst is None else (of(worst[0]), of(worst[1])),
-        correction=Correction(
-            *(of(getattr(stack.correction, item.name)) for item in fields(Correction))
-        ),
+        **{name: of(getattr(stack, name)) for name in (*_NUMBERS, "external", "cell", "duty")},  # type: ignore[arg-type]
+        numbers=Numbers({key: of(value) for key, value in stack.numbers.changed.items()}),
+        correction=stack.correction.each(lambda one: take(one[0])),
     )
 
 
-def _column(values: Iterable[Value]) -> Array:
-    return np.array([[float(value)] for value in values])
+def _column(values: Sequence[Value | None]) -> Array | None:
+    """Values (s, 1); None where one is not known."""
+    known = [float(each) for each in values if each is not None]
+    return np.array(known)[:, None] if len(known) == len(values) else None

@@ -222,13 +222,9 @@ def _changed(number: MachineNumber, case: Case) -> tuple[Case, float]:
 
 def _with_solved_limits(ratings: Ratings, stated: Ratings, solved: Ratings) -> Ratings:
     """Ratings with the limits that a solved cam has changed from those stated in its case."""
-    if solved.travel != stated.travel:
-        ratings = replace(ratings, travel=solved.travel)
-    if solved.pressure != stated.pressure:
-        ratings = replace(ratings, pressure=solved.pressure)
-    if solved.normal_force != stated.normal_force:
-        ratings = replace(ratings, normal_force=solved.normal_force)
-    return ratings
+    known = solved.bounds.items()
+    changed = {key: value for key, value in known if value != stated.bounds.get(key)}
+    return replace(ratings, bounds={**ratings.bounds, **changed})
 
 
 def problem_like(problem: Problem, case: Case, torques: Mapping[str, Torque]) -> Problem:

@@ -182,8 +182,7 @@ RESULTS = ("length", "rolling", "parts", "elastic")
 
 def with_results(cycle: Cycle, **results: Any) -> Cycle:
     """The cycle with these for those of `RESULTS`."""
-    # A cycle computes them when they are first read and keeps them here: it takes no made-up ones.
-    vars(cycle).update(results)
+    cycle.results.update(results)
     return cycle
 
 

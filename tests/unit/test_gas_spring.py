@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 import scipy
 from small_machine import small_machine
+from synthesis_ratings import named
 
 from camwright.geometry.arrays import uniform_turn
 from camwright.geometry.errors import InputError
@@ -315,10 +316,10 @@ def test_the_synthesis_keeps_the_speed_of_the_seal_whatever_the_guides():
     scope = limited.scope.model_copy(update={"not_covered": ("guides",)})
     for case in (limited, limited.model_copy(update={"scope": scope})):
         ratings = ratings_of(case)
-        assert ratings.gas_slope == pytest.approx(1.0 / fastest, rel=1e-12)
+        assert named(ratings).gas_slope == pytest.approx(1.0 / fastest, rel=1e-12)
         bound = bounds_of(ratings)["gas_speed"]
         assert (bound.value, bound.unit) == (pytest.approx(1e3 / fastest), "mm")
-    assert ratings_of(gas_case()).gas_slope is None
+    assert named(ratings_of(gas_case())).gas_slope is None
 
 
 def test_screening_judges_the_limits_of_the_maker():

@@ -220,6 +220,39 @@ def test_installing_puts_one_name_into_an_environment() -> None:
         assert not any((Path(place) / folder / "__init__.py").is_file() for place in elsewhere)
 
 
+def _written_past_the_fields(node: ast.AST) -> bool:
+    """Whether `__dict__` is read, or ``vars(value)`` written."""
+    if isinstance(node, ast.Attribute):
+        return node.attr == "__dict__" or (
+            _is_vars(node.value) and node.attr in ("update", "setdefault", "pop", "clear")
+        )
+    if isinstance(node, ast.Subscript):
+        return _is_vars(node.value) and not isinstance(node.ctx, ast.Load)
+    return False
+
+
+def _is_vars(node: ast.AST) -> bool:
+    return isinstance(node, ast.Call) and getattr(node.func, "id", "") == "vars"
+
+
+@pytest.mark.parametrize("text", [
+    'part.__dict__["cams"] = chosen', "vars(self).update(known)", 'vars(cycle)["length"] = length',
+])  # fmt: skip
+def test_a_write_past_the_fields_is_seen(text: str) -> None:
+    assert any(map(_written_past_the_fields, ast.walk(ast.parse(text))))
+
+
+def test_no_value_is_written_past_its_fields() -> None:
+    """A frozen value keeps what it computes in a field, see `pipeline.base.kept_results`."""
+    wrong = [
+        f"{name}, line {node.lineno}"  # type: ignore[attr-defined]
+        for name, path in modules().items()
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
+        if _written_past_the_fields(node)
+    ]
+    assert wrong == []
+
+
 INSIDE = (
     "geometry", "meshes", "pipeline.torque", "pipeline.engine", "pipeline.contact",
     "pipeline.follower", "pipeline.cycle", "pipeline.checks", "pipeline.smoothing", "pipeline",
@@ -302,7 +335,7 @@ NAME_CHECKS = {
     "pipeline.follower.roller_parts", "pipeline.iteration", "pipeline.recomputation",
     "pipeline.results.model_limits", "pipeline.results.run_records",
     "pipeline.sizing.sizing", "pipeline.smoothing.allowables",
-    "pipeline.smoothing.part_constraints", "pipeline.smoothing.problem_setup",
+    "pipeline.smoothing.problem_setup",
     "pipeline.smoothing.shadow_prices",
     "pipeline.studies.design.candidate_search", "pipeline.studies.design.synthesised_points",
     "pipeline.studies.papers.figures_2015_valve", "pipeline.studies.papers.petrescu_2015",

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -19,6 +20,7 @@ from test_torsion_spring import case as torsion_case
 
 from camwright.geometry.arrays import FULL_TURN, Array
 from camwright.geometry.lift import Jet
+from camwright.pipeline.base.units import in_unit
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_file import read_case
 from camwright.pipeline.case.machine import machines
@@ -27,8 +29,7 @@ from camwright.pipeline.checks.registry import CHECKS, DECLARED
 from camwright.pipeline.cycle.loaded_cam import LoadedCam
 from camwright.pipeline.cycle.solved_cam import numbers_of
 from camwright.pipeline.smoothing.allowables import travel_limits
-from camwright.pipeline.smoothing.constraints import CONSTRAINTS, kept_at_rows
-from camwright.pipeline.smoothing.scenario import Rating
+from camwright.pipeline.smoothing.constraints import CONSTRAINTS
 
 CASES = Path(__file__).parents[2] / "cases"
 POINTS = 180
@@ -155,7 +156,7 @@ def test_a_check_at_maximum_lift_is_at_its_limit_at_the_greatest_lift_allowed(na
 
 def test_what_the_synthesis_bounds_has_words() -> None:
     """Of a rating the check that sets it says what is bounded; of a row the row does."""
-    rated = {each.check for each in CONSTRAINTS if isinstance(each.limit, Rating)}
+    rated = {each.check for each in CONSTRAINTS if each.row is None}
     grouped = {one.id for one in CHECKS
                if one.scales_with or (one.measured and one.measured.kept
                                       and one.measured.kept.group)}  # fmt: skip
@@ -168,15 +169,26 @@ def test_what_the_synthesis_bounds_has_words() -> None:
 
 
 def test_a_check_that_is_declared_as_kept_is_a_constraint() -> None:
-    """By its row without a line elsewhere; by a rating, a group or the maximum lift."""
-    of_groups = {one.measured.kept.group for one in CHECKS
-                 if one.measured and one.measured.kept}  # fmt: skip
+    """By its row or the limit of a part; of a group one, at maximum lift that of the travel."""
+    groups = {one.measured.kept.group for one in CHECKS
+              if one.measured and one.measured.kept}  # fmt: skip
     listed = {each.check for each in CONSTRAINTS}
-    assert of_groups - {""} <= listed
+    assert groups - {""} <= listed
     for one in CHECKS:
         how = one.measured
         if how is not None and how.kept is not None:
             assert how.kept.group or how.reduce == "top" or one.id in listed, one.id
-    rows = {each.check for each in CONSTRAINTS if each.row is not None}
-    assert {each.check for kind in kept_at_rows(CHECKS, listed - rows) for each in kind} == rows - {
-        "contact_over_speed", "elastic_contact", "keyway_root"}  # fmt: skip
+            assert not how.kept.unit or how.kept.unit == "-" or in_unit(1.0, how.kept.unit), one.id
+
+
+def test_constraints_of_one_limit_show_it_alike() -> None:
+    """By one key in the ratings, at a row or in one unit; with each follower once a group."""
+    of_key: dict[str, list[Any]] = {}
+    for each in CONSTRAINTS:
+        of_key.setdefault(each.key, []).append(each)
+    for key, own in of_key.items():
+        assert len({each.row and each.row.id for each in own}) == 1, key
+        if own[0].row is None:
+            assert len({(each.kept.unit, each.kept.falls) for each in own}) == 1, key
+            assert len({each.needs for each in own}) == len(own), key
+    assert len({each.check for each in CONSTRAINTS}) == len(CONSTRAINTS)

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from synthesis_ratings import named
 
 from camwright.geometry.errors import InputError
 from camwright.pipeline.base.files import json_text
@@ -184,13 +185,13 @@ def test_rollers_for_a_case_without_an_answer(case):
     loose = parse_case(case.to_toml())  # lies in no folder
     found = list(roller_problems(loose, torques, problem_of(case, torques)))
     assert len(found) >= 5
-    radii = [problem.ratings.roller_radius for _, problem in found]
+    radii = [named(problem.ratings).roller_radius for _, problem in found]
     assert radii == sorted(radii)
     circle = case.cam.prime_radius - case.roller.radius
     for _, problem in found:
-        base = problem.variables.prime_radius - problem.ratings.roller_radius
+        base = problem.variables.prime_radius - named(problem.ratings).roller_radius
         assert base == pytest.approx(circle, rel=1e-9)
-    forces = {name: problem.ratings.normal_force for name, problem in found}
+    forces = {name: named(problem.ratings).normal_force for name, problem in found}
     safe = 5100.0 / case.limits.roller_static_safety
     assert forces["track_roller_35x16"] == safe  # of its balls; its ring bears 3.6 kN
 

@@ -8,6 +8,7 @@ import pytest
 import scipy
 from made_check import made_check
 from synthesis_ratings import rated
+from synthesis_scenarios import loaded_with
 from trial_variants import with_benchmark, with_certificate
 
 from camwright.geometry.arrays import uniform_turn
@@ -21,7 +22,7 @@ from camwright.pipeline.results.run_records import certificate_record
 from camwright.pipeline.smoothing import trust_region
 from camwright.pipeline.smoothing.constrained_synthesis import synthesise
 from camwright.pipeline.smoothing.sampled_problem import Search
-from camwright.pipeline.smoothing.scenario import DesignVariables, Scenario
+from camwright.pipeline.smoothing.scenario import DesignVariables
 from camwright.pipeline.smoothing.synthesis_problem import Problem
 from camwright.reports import verification_tables
 
@@ -175,7 +176,7 @@ def test_another_method_gains_what_the_check_tells(monkeypatch, steps, status):
     monkeypatch.setattr(trust_region, "_STEPS_MAX", steps)
     theta = uniform_turn(90)
     torque = 12.0 * np.sin(2 * theta) + 6.0 * np.cos(3 * theta + 0.4) + 3.0 * np.sin(5 * theta)
-    load = Scenario("one", 78.0, torque, 0.175, 0.08, 0.03, 0.15, 0.12)
+    load = loaded_with("one", 78.0, torque, 0.175, 0.08, 0.03, 0.15, 0.12)
     ratings = rated(roller_radius=0.008, travel=0.045, pressure_angle=0.5, normal_force=1000.0)
     given = Problem(
         (load,), ratings, DesignVariables(24.2e3, 242.0, 0.05), coefficients=24, points=90,

@@ -7,6 +7,7 @@ import pytest
 from made_check import made_check
 from synthesis_problems import measured
 from synthesis_ratings import rated
+from synthesis_scenarios import loaded_with
 
 from camwright.pipeline.checks.check import Check
 from camwright.pipeline.smoothing.fe_correction import (
@@ -21,7 +22,7 @@ from camwright.pipeline.smoothing.fe_correction import (
 )
 from camwright.pipeline.smoothing.linear_model import Linear
 from camwright.pipeline.smoothing.sampled_problem import Search
-from camwright.pipeline.smoothing.scenario import Correction, DesignVariables, Scenario
+from camwright.pipeline.smoothing.scenario import Correction, DesignVariables
 from camwright.pipeline.smoothing.synthesis_problem import RESERVE, Design, Problem
 
 
@@ -132,14 +133,14 @@ def test_the_best_trial_passes_with_the_least_ripple_else_violates_least():
 def test_next_trial_starts_from_the_design_with_the_mean_of_two_cams_that_alternate():
     """Bearing loads of 1.2 and 1.4 times the closed form, each the correction of the other cam."""
     variables = DesignVariables(1e4, 1e2, 0.05)
-    running = Scenario("idle", 78.5, np.sin(np.arange(12.0)), 0.2, 0.08, 0.038, 0.06, 0.06)
+    running = loaded_with("idle", 78.5, np.sin(np.arange(12.0)), 0.2, 0.08, 0.038, 0.06, 0.06)
     ratings = rated(roller_radius=0.016, guide_pressure=(1e4, None), guide_area=(4e-4, 4e-4))
     problem = Problem((running,), ratings, variables, coefficients=12, points=12)
     energy = 0.3 + 0.2 * np.cos(2 * np.pi * np.arange(12) / 12)
     design = Design(energy, variables, 0.5, 0.0, {}, {}, {}, 3, 0.0)
     none = Correction.none(12)
     low, high = (replace(none, guide_a=np.full(12, level)) for level in (1.2, 1.4))
-    tighter = replace(ratings, guide_pressure=(0.9e4, None))
+    tighter = rated(ratings, guide_pressure=(0.9e4, None))
     after = corrected(
         problem,
         design,

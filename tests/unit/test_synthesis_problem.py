@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from synthesis_scenarios import figures
 
 from camwright.geometry.errors import InputError
 from camwright.pipeline.case.case_file import parse_case, read_case
@@ -39,7 +40,7 @@ def test_every_load_case_is_a_scenario(case, torques):
     assert (idle.name, over.name) == ("idle", "overspeed")
     assert (still.name, most.name) == ("standstill", "over-speed")
     assert (idle.weight, over.weight, still.weight, most.weight) == (1.0, 0.0, 0.0, 0.0)
-    assert over.cam_speed == pytest.approx(3600 * np.pi / 30 / 2)
+    assert figures(over).cam_speed == pytest.approx(3600 * np.pi / 30 / 2)
     assert abs(idle.torque.mean()) < 1e-12 and idle.torque.size == 720
 
 
@@ -117,11 +118,12 @@ def test_corners_are_all_of_spring_and_friction_and_each_of_mass_and_phase(case,
     nominal, corners = found[0], found[1:]
     assert len(corners) == 8 + 2 + 2
     assert {item.weight for item in corners} == {nominal.weight}
-    ends = {(item.friction_a, item.friction_b) for item in corners[:8]}
+    ends = {(figures(item).friction_a, figures(item).friction_b) for item in corners[:8]}
     assert sorted(ends) == [(0.05, pytest.approx(0.08)), (0.15, pytest.approx(0.12))]
     assert {item.rate_factor for item in corners[:8]} == {0.95, 1.05}
     assert {item.preload_factor for item in corners[:8]} == {0.9, 1.1}
-    assert [item.mass / nominal.mass for item in corners[8:10]] == pytest.approx([0.9, 1.1])
+    shares = [figures(item).mass / figures(nominal).mass for item in corners[8:10]]
+    assert shares == pytest.approx([0.9, 1.1])
     # 4 deg of crank are 2 deg of cam: 4 of 720 points
     late, early = corners[10:]
     np.testing.assert_allclose(late.torque, np.roll(nominal.torque, 4), atol=1e-9)
@@ -154,7 +156,7 @@ def test_ripple_counts_at_the_ends_of_a_range_of_speed_and_load(case, torques):
     scenarios = problem_of(section(case, smoothing=smoothing), torques).scenarios
     assert [item.name for item in scenarios[: len(plain)]] == [item.name for item in plain]
     idle, ends = scenarios[0], scenarios[len(plain) :]
-    speeds = [item.cam_speed / idle.cam_speed for item in ends]
+    speeds = [figures(item).cam_speed / figures(idle).cam_speed for item in ends]
     assert speeds == pytest.approx([0.8, 0.8, 1.2, 1.2])
     assert {(item.weight, item.torque_reduction) for item in ends} == {(0.5, None)}
     # more air, more gas torque; the inertia torque grows with the speed
@@ -168,7 +170,7 @@ def test_ripple_counts_at_the_ends_of_a_range_of_speed_and_load(case, torques):
     over = section(case.limits, overspeed=1.1 * case.load_cases[0].speed)
     kept = section(case, smoothing=smoothing, limits=over, load_cases=case.load_cases[:1])
     fastest = problem_of(kept, torques).scenarios[-1]
-    assert fastest.cam_speed == pytest.approx(1.1 * idle.cam_speed)
+    assert figures(fastest).cam_speed == pytest.approx(1.1 * figures(idle).cam_speed)
 
 
 def test_load_of_a_measured_torque_scales_it(tmp_path):

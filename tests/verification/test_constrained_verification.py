@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 from synthesis_ratings import rated
+from synthesis_scenarios import changed, loaded_with
 
 from camwright.geometry.arrays import uniform_turn
 from camwright.geometry.energy import lift_from_torque, spring_deflection, stored_energy
@@ -17,7 +18,7 @@ from camwright.pipeline.case.machine import machines
 from camwright.pipeline.follower.follower_forces import follower_loads
 from camwright.pipeline.smoothing.constrained_synthesis import synthesise
 from camwright.pipeline.smoothing.infeasibility import infeasibility
-from camwright.pipeline.smoothing.scenario import DesignVariables, Scenario
+from camwright.pipeline.smoothing.scenario import DesignVariables
 from camwright.pipeline.smoothing.shadow_prices import prices
 from camwright.pipeline.smoothing.smoothers import Smoother, smoothed
 from camwright.pipeline.smoothing.synthesis_problem import RESERVE, Problem
@@ -25,7 +26,7 @@ from camwright.pipeline.smoothing.synthesis_problem import RESERVE, Problem
 CASES = Path(__file__).parents[2] / "cases"
 RATINGS = rated(
     roller_radius=0.008, travel=0.045, pressure_angle=np.pi / 6, jam_index=0.5,
-    curvature_ratio=1.5, undercut_factor=0.3, contact_force_margin=0.2, jump=1.0,
+    curvature_ratio=1.5, undercut_factor=0.3, contact_force_margin=0.2, overspeed=0.0, jump=1.0,
 )  # fmt: skip
 
 
@@ -39,7 +40,7 @@ def published():
 def idle(published):
     case, torques = published
     values = torques["idle"].without_mean().resampled(720).total
-    return Scenario(
+    return loaded_with(
         "idle", case.load_cases[0].speed / 2, values - values.mean(), case.follower.mass,
         case.guides.spacing, case.follower.overhang_at_max_lift,
         case.guides.a.friction, case.guides.b.friction,
@@ -121,7 +122,7 @@ def test_leaves_less_than_any_moving_average_within_angle_and_force(published, i
 
 def test_lift_closes_and_scales_with_the_spring(idle):
     """k and P and the torque twice as large leave the same cam, friction and mass aside."""
-    light = replace(idle, mass=0.0)
+    light = changed(idle, mass=0.0)
     heavy = replace(light, torque=2 * light.torque)
     lifts = [
         synthesise(replace(problem(item), variables=DesignVariables(k * 24.2e3, k * 242.0, 0.05),
@@ -133,7 +134,7 @@ def test_lift_closes_and_scales_with_the_spring(idle):
 
 
 def test_energy_without_limits_is_the_exact_one(idle):
-    light = replace(idle, mass=0.0, friction_a=0.0, friction_b=0.0)
+    light = changed(idle, mass=0.0, friction_a=0.0, friction_b=0.0)
     design = synthesise(replace(problem(light), ratings=rated(roller_radius=0.008)))
     energy, _ = stored_energy(uniform_turn(720), 2 * idle.torque)
     lift = spring_deflection(energy, 24.2e3, 242.0)
@@ -152,7 +153,7 @@ def test_conflict_is_named_and_a_relaxation_makes_room(idle):
     report = infeasibility(given)
     assert set(report.conflict) == {"roller_static", "torque_reduction"}
     roller = next(item for item in report.relaxations if item.unit == "N")
-    ratings = replace(given.ratings, normal_force=roller.after)
+    ratings = rated(given.ratings, normal_force=roller.after)
     assert synthesise(replace(given, ratings=ratings)).feasible
     less = next(item for item in report.relaxations if item.what.startswith("torque"))
     assert synthesise(less.change(given, less.factor)).feasible

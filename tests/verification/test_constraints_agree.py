@@ -6,7 +6,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 from synthesis_problems import OF_ROLLER, REFINED
-from synthesis_ratings import rated
+from synthesis_ratings import named, rated
+from synthesis_scenarios import changed, loaded_with
 
 from camwright.geometry.arrays import uniform_turn
 from camwright.geometry.contour import RollerContour
@@ -29,16 +30,16 @@ from camwright.pipeline.contact.traction import Drag
 from camwright.pipeline.cycle.solution import Solution, solution
 from camwright.pipeline.follower.roller_parts import Fork
 from camwright.pipeline.smoothing.allowables import (
-    part_limits,
+    limits_of,
     ratings_of,
     scaled_limits,
     travel_limits,
 )
-from camwright.pipeline.smoothing.cam_state import Mean
+from camwright.pipeline.smoothing.cam_state import Mean, loaded
 from camwright.pipeline.smoothing.cone_program import ConeSolution
 from camwright.pipeline.smoothing.constraints import (
-    load_utilisations,
     shape_utilisations,
+    utilisations_of,
 )
 from camwright.pipeline.smoothing.energy_spline import Grid
 from camwright.pipeline.smoothing.fe_correction import corrections_of
@@ -52,7 +53,7 @@ from camwright.pipeline.smoothing.sampled_problem import (
     LEAST_ENERGY,
     Search,
 )
-from camwright.pipeline.smoothing.scenario import DesignVariables, ModifiedLife, Scenario
+from camwright.pipeline.smoothing.scenario import DesignVariables
 from camwright.pipeline.smoothing.synthesis_problem import Problem
 
 DATA = Path(__file__).parents[1] / "data"
@@ -134,7 +135,7 @@ def worst_loads(case, judged, ratings, theta=None):
     for state in problem.scenarios:
         corrected = corrections[state.name]
         scenario = replace(state, correction=corrected if grid else corrected.at(theta))
-        loads = load_utilisations(moving, top, variables, ratings, scenario)
+        loads = utilisations_of(loaded(moving, top, variables, ratings, scenario))
         for name, value in loads.items():
             use = float(np.max(value.value if isinstance(value, Mean) else value))
             worst[name] = max(worst.get(name, -np.inf), use)
@@ -161,7 +162,7 @@ def strain(check, roller_radius):
 def test_shape_limit_is_that_of_its_check(case, judged, name):
     contour, check = judged[0].contour, judged[1][name]
     place = np.array([check.cam_angle])
-    ratings = replace(ratings_of(case), travel=travel_limits(case)["spring_travel"])
+    ratings = rated(ratings_of(case), travel=travel_limits(case)["spring_travel"])
     shape = shape_utilisations(jet(contour, place), variables_of(case), ratings)
     assert shape[name][0] == pytest.approx(strain(check, contour.roller_radius), rel=1e-9)
 
@@ -188,7 +189,7 @@ def test_travel_of_each_check_of_the_spring_brings_it_to_its_limit(case, judged,
             tolerance = lowest / solved.machines[0].spring.preload
     (check,) = checks_of(solved, declared)
     assert check.utilisation == pytest.approx(1.0, rel=tolerance)
-    assert ratings_of(case).travel == min(limits.values())
+    assert named(ratings_of(case)).travel == min(limits.values())
 
 
 def test_hollow_is_that_of_its_check(case):
@@ -204,17 +205,17 @@ def test_hollow_is_that_of_its_check(case):
 
 @pytest.mark.parametrize("name", LOAD)
 def test_load_limit_is_that_of_its_check(case, judged, name):
-    ratings, forces = ratings_of(case), part_limits(case, NORMAL_FORCE)
-    assert ratings.normal_force == min(forces.values())
-    assert forces[ratings.normal_force_by] == ratings.normal_force
-    ratings = replace(ratings, normal_force=forces.get(name, ratings.normal_force))
+    ratings, forces = ratings_of(case), limits_of(case)[NORMAL_FORCE]
+    assert named(ratings).normal_force == min(forces.values())
+    assert forces[ratings.by[NORMAL_FORCE]] == named(ratings).normal_force
+    ratings = rated(ratings, normal_force=forces.get(name, named(ratings).normal_force))
     own = "roller_static" if name in forces else name
     check, refined = judged[1][name], name in REFINED
     theta = np.array([check.cam_angle]) if refined else None
     worst = worst_loads(case, judged, ratings, theta)
     # A refined check is a parabola through angles an eighth apart, with friction linear between.
     tolerance = 1e-5 if refined else 1e-9
-    assert worst[own] == pytest.approx(strain(check, ratings.roller_radius), rel=tolerance)
+    assert worst[own] == pytest.approx(strain(check, named(ratings).roller_radius), rel=tolerance)
 
 
 def test_pressure_limit_is_that_of_each_check(case, judged):
@@ -222,27 +223,29 @@ def test_pressure_limit_is_that_of_each_check(case, judged):
     contour, theta = solved.contour, uniform_turn(POSITIONS)
     top = contour.pitch.lift.highest.value
     estimated = pressure_allowables(solved.machine, load_cycles(solved.machines, contour))
-    limits = part_limits(case, PRESSURE) | estimated
+    limits = limits_of(case)[PRESSURE] | estimated
     assert set(limits) == {
         "contact_pressure", "shakedown", "edge_pressure", "shakedown_traction", "edge_shakedown",
         "contact_pressure_at_life",
     }  # fmt: skip
-    assert ratings_of(case).pressure == min(limits.values())
-    assert limits[ratings_of(case).pressure_by] == min(limits.values())
+    assert named(ratings_of(case)).pressure == min(limits.values())
+    assert limits[ratings_of(case).by[PRESSURE]] == min(limits.values())
     bend = contour.roller_radius * contour.pitch.curvature(theta)
     corrections = corrections_of(solved)
     # Where ends and tilt count, the limit follows from the solved cam.
     along = {name: value for name, value in scaled_limits(solved)[1].items() if name in limits}
     assert set(along) == {"edge_pressure", "edge_shakedown", "contact_pressure_at_life"}
     for name, limit in (limits | along).items():
-        ratings, most = replace(ratings_of(case), pressure=limit), 0.0
+        ratings, most = rated(ratings_of(case), pressure=limit), 0.0
         for scenario in problem.scenarios:
-            use = load_utilisations(
-                jet(contour, theta),
-                top,
-                variables_of(case),
-                ratings,
-                replace(scenario, correction=corrections[scenario.name]),
+            use = utilisations_of(
+                loaded(
+                    jet(contour, theta),
+                    top,
+                    variables_of(case),
+                    ratings,
+                    replace(scenario, correction=corrections[scenario.name]),
+                )
             )["contact_pressure"]
             # r kappa + N/F = r kappa + (1 - r kappa) (p0/p)^2
             most = max(most, float(np.max((use - bend) / (1 - bend))))
@@ -265,11 +268,11 @@ EVERY = rated(
     life_force_cubed=1e9, roller_spin=600.0, guide_pressure=(5e6, 5e6), guide_pv=(1e6, 1e6),
     guide_area=(2e-4, 2e-4), guide_edge_load=(5e4, 5e4), guide_power=(20.0, 20.0),
     guide_wear_pv=(9e5, 9e5), guide_slope=(0.02, 0.02), gas_slope=0.025, guide_length=(0.02, 0.02),
-    guide_gap=1e-3, guide_mouth=0.02, held_radius=0.02, minimum_wall=1.75, fastest=210.0,
+    guide_gap=1e-3, guide_mouth=0.02, held_radius=0.02, minimum_wall=1.75,
     friction=0.1, drag=Drag(1e-5, 0.1, 1e-3, 2e-3, 5e-3),
     waves=(2e-6, 5e-3), waviness=0.2, cam_torque=20.0, tooth_torque=25.0, shaft_drag=0.5,
     keyway_safety=1.5, keyway=KeywayRoot(4e6, 2e4, 0.012, 2e-4, 0.048, 4e-9),
-    modified=ModifiedLife(3000.0, 60.0, 1.2e-5, 0.0105), modified_rate=1e3, roller_spin_least=50.0,
+    modified=(3000.0, 60.0, 1.2e-5, 0.0105), modified_rate=1e3, roller_spin_least=50.0,
     grease=Grease(7.2e6, 3000.0, 0.03, 343.15),
 )  # fmt: skip
 
@@ -277,7 +280,7 @@ EVERY = rated(
 def scenario(count=180):
     theta = uniform_turn(count)
     torque = 12.0 * np.sin(2 * theta) + 6.0 * np.cos(3 * theta + 0.4) + 3.0 * np.sin(5 * theta)
-    return Scenario(
+    return loaded_with(
         "one", 80.0, torque, 0.175, 0.08, 0.03, 0.15, 0.12,
         viscous_damping=5.0, friction_worst=(0.2, 0.2),
     )  # fmt: skip
@@ -294,7 +297,7 @@ def sharing(scenarios, duty):
 @pytest.mark.parametrize("duty", [None, (0.3, 0.7)])
 @pytest.mark.parametrize("free", [(), tuple(RANGES)])
 def test_gradients_match_differences(free, duty):
-    both = scenario(), replace(scenario(), rate_factor=1.1, cam_speed=150.0, weight=0.0)
+    both = scenario(), changed(scenario(), rate_factor=1.1, cam_speed=150.0, weight=0.0)
     given = Problem(
         sharing(both, duty),
         EVERY,
@@ -396,7 +399,7 @@ def test_second_derivatives_of_the_lagrangian_match_its_differences(free, duty, 
 
     The second derivative of the maximum lift is left out: the differences take it as linear.
     """
-    fast = replace(scenario(), rate_factor=1.1, cam_speed=150.0, weight=0.7)
+    fast = changed(scenario(), rate_factor=1.1, cam_speed=150.0, weight=0.7)
     both = replace(scenario(), torque_reduction=0.5), replace(fast, torque_reduction=0.4)
     given = Problem(
         sharing(both, duty),

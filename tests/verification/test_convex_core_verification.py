@@ -5,7 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from scipy.optimize import NonlinearConstraint, minimize
-from synthesis_ratings import rated
+from synthesis_ratings import named, rated
+from synthesis_scenarios import changed, loaded_with
 
 from camwright.geometry.arrays import uniform_turn
 from camwright.pipeline.case.limits import PRESSURE_ANGLE
@@ -13,7 +14,7 @@ from camwright.pipeline.smoothing.constrained_synthesis import started
 from camwright.pipeline.smoothing.convex_relaxation import convex_start
 from camwright.pipeline.smoothing.energy_spline import basis_matrix
 from camwright.pipeline.smoothing.sampled_problem import Search
-from camwright.pipeline.smoothing.scenario import DesignVariables, Scenario
+from camwright.pipeline.smoothing.scenario import DesignVariables
 from camwright.pipeline.smoothing.synthesis_problem import RESERVE, Problem
 from camwright.pipeline.smoothing.trust_region import descended
 
@@ -32,7 +33,7 @@ LIMITS = {
 
 def problem(**ratings):
     torque = 14.0 * np.sin(2 * THETA) + 6.0 * np.cos(3 * THETA)
-    still = Scenario("still", 0.0, torque, 0.0, 0.08, 0.03, 0.0, 0.0)
+    still = loaded_with("still", 0.0, torque, 0.0, 0.08, 0.03, 0.0, 0.0)
     return Problem(
         (still,), rated(roller_radius=0.008, **ratings), DesignVariables(RATE, PRELOAD, BASE),
         coefficients=COUNT, points=POINTS, jerk_weight=0.0,
@@ -55,12 +56,14 @@ def room(given, c):
     square = PRELOAD**2 + 2 * RATE * np.maximum(LEVEL @ c, -1.0)
     lift = (np.sqrt(square) - PRELOAD) / RATE
     slope = SLOPE @ c
-    found = [LEVEL @ c, (ratings.travel * held - lift) / ratings.travel]
-    if PRESSURE_ANGLE in ratings.limits:
-        steepest = np.tan(ratings.limits[PRESSURE_ANGLE] * held) * np.sqrt(square) * (BASE + lift)
+    found = [LEVEL @ c, (named(ratings).travel * held - lift) / named(ratings).travel]
+    if PRESSURE_ANGLE.id in ratings.bounds:
+        steepest = (
+            np.tan(ratings.bounds[PRESSURE_ANGLE.id] * held) * np.sqrt(square) * (BASE + lift)
+        )
         found += [(steepest - slope) / 10.0, (steepest + slope) / 10.0]
-    if ratings.normal_force is not None:
-        top = (ratings.normal_force * held) ** 2
+    if named(ratings).normal_force is not None:
+        top = (named(ratings).normal_force * held) ** 2
         found.append(1.0 - (square + (slope / BASE) ** 2) / top)
     return np.concatenate(found)
 
@@ -105,7 +108,7 @@ def test_descent_from_the_exact_energy_ends_at_the_global_optimum(name):
 
 def test_real_synthesis_starts_from_the_convex_part():
     given = problem(**LIMITS["angle"])
-    rubbing = replace(given.scenarios[0], cam_speed=78.0, mass=0.2, friction_a=0.15, friction_b=0.1)
+    rubbing = changed(given.scenarios[0], cam_speed=78.0, mass=0.2, friction_a=0.15, friction_b=0.1)
     real = replace(given, scenarios=(rubbing,))
     np.testing.assert_array_equal(started(real).start, convex_start(real).coefficients)
     seed = np.full(COUNT, 2.0)

@@ -9,6 +9,7 @@ import pytest
 from oracle_model import DEGREE
 from synthesis_problems import REFINED, with_corrections
 from synthesis_ratings import rated
+from synthesis_scenarios import changed, loaded_with
 
 from camwright.geometry.arrays import uniform_turn
 from camwright.geometry.energy import spring_deflection, stored_energy
@@ -17,7 +18,6 @@ from camwright.geometry.motion_laws import Segment, SegmentMotion
 from camwright.pipeline.case.case_file import read_case
 from camwright.pipeline.case.case_values import replaced, value_of
 from camwright.pipeline.case.load_case_torque import engine_torques
-from camwright.pipeline.case.machine import machines
 from camwright.pipeline.checks.check import depends_on_lift, within_depth
 from camwright.pipeline.checks.demands import CAM_TORQUE, NORMAL_FORCE, PRESSURE, TOOTH_TORQUE
 from camwright.pipeline.checks.key_strength import KeywayRoot
@@ -25,17 +25,16 @@ from camwright.pipeline.checks.registry import checks_of
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.solution import solution
 from camwright.pipeline.smoothing.allowables import (
-    part_limits,
-    power_limits,
+    limits_of,
     ratings_of,
 )
 from camwright.pipeline.smoothing.bounds import bounds_of
-from camwright.pipeline.smoothing.cam_state import Mean, unloaded
+from camwright.pipeline.smoothing.cam_state import Mean, loaded, unloaded
 from camwright.pipeline.smoothing.constrained_synthesis import synthesise
 from camwright.pipeline.smoothing.constraints import (
     CONSTRAINTS,
-    load_utilisations,
     shape_utilisations,
+    utilisations_of,
 )
 from camwright.pipeline.smoothing.convex_relaxation import convex_start
 from camwright.pipeline.smoothing.energy_spline import basis_matrix
@@ -49,8 +48,6 @@ from camwright.pipeline.smoothing.sampled_problem import SHAPE_LIMITS, Search
 from camwright.pipeline.smoothing.scenario import (
     Correction,
     DesignVariables,
-    Face,
-    Scenario,
     redrawn,
 )
 from camwright.pipeline.smoothing.shadow_prices import prices
@@ -60,10 +57,10 @@ CASES = Path(__file__).parents[2] / "cases"
 OF_FACE = frozenset(each.check for each in CONSTRAINTS if each.needs != "roller")
 FREED = {"rate": (1e4, 2e5), "preload": (100.0, 900.0), "prime_radius": (0.03, 0.07)}
 EVERY = rated(
-    roller_radius=0.0, face=Face(0.05, 0.06, 2e9), offset=0.002, travel=0.03, undercut_factor=0.3,
+    roller_radius=0.0, face=(0.05, 0.06, 2e9), offset=0.002, travel=0.03, undercut_factor=0.3,
     curvature_rate=9e3, cam_radius=0.08, held_radius=0.02, minimum_wall=1.75, pressure=9e8,
     contact_width=0.012, contact_modulus=1.15e11, contact_force_margin=0.2, overspeed=120.0,
-    fastest=120.0, jump=1.0, jump_speed=130.0, jam_index=0.5, normal_force=2e3,
+    jump=1.0, jump_speed=130.0, jam_index=0.5, normal_force=2e3,
     guide_pressure=(5e6, 6e6), guide_pv=(1e6, 1.2e6), guide_area=(3e-4, 2e-4),
     guide_edge_load=(5e4, 4e4), guide_power=(20.0, 15.0), guide_wear_pv=(9e5, 8e5),
     guide_slope=(0.03, 0.04), gas_slope=0.035, guide_length=(0.02, 0.015), guide_gap=1e-3,
@@ -75,7 +72,7 @@ EVERY = rated(
 
 def scenario(torque, speed=80.0):
     """Load case of a torque (n,), N m, at a cam speed, rad/s."""
-    return Scenario(
+    return loaded_with(
         "idle", speed, torque - torque.mean(), 0.3, 0.09, 0.03, 0.08, 0.06, viscous_damping=5.0,
         friction_worst=(0.12, 0.1), spring_mass=0.05,
     )  # fmt: skip
@@ -167,15 +164,15 @@ def seeded(seed):
     )
     torque = torque * about(6.0) / np.std(torque)
     ratings = rated(
-        EVERY, face=Face(about(0.023), about(0.05, 0.4), about(1.7e9)), offset=0.0,
+        EVERY, face=(about(0.023), about(0.05, 0.4), about(1.7e9)), offset=0.0,
         travel=about(0.016), cam_radius=about(0.075, 0.05), pressure=about(6e8),
         normal_force=about(4e3), curvature_rate=1e5, guide_pv=(about(2e6), about(2e6)),
         guide_wear_pv=(2e6, 2e6), guide_power=(about(60.0), about(60.0)),
         guide_pressure=(about(8e6), about(8e6)), guide_edge_load=(2e5, 2e5), waves=(1e-6, 5e-3),
-        cam_torque=60.0, tooth_torque=60.0, overspeed=about(100.0), fastest=100.0,
+        cam_torque=60.0, tooth_torque=60.0, overspeed=about(100.0),
         jump_speed=about(110.0), keyway=KeywayRoot(4e6, 2e4, 0.012, 2e-4, 0.048, 1e-9),
     )  # fmt: skip
-    swept = np.full(8, ratings.fastest)
+    swept = np.full(8, 100.0)
     correction = replace(Correction.none(8), swept_speed=swept, elastic_speed=swept)
     item = replace(scenario(torque, about(70.0)), correction=correction)
     variables = DesignVariables(about(8e4), about(800.0), about(0.045, 0.1))
@@ -267,31 +264,30 @@ def test_optimum_is_better_than_the_cams_of_motion_laws(seed):
 def test_price_of_the_face_foresees_a_wider_and_a_better_one(name):
     """First order over 0.1 % of the bound; the PV value enters by its square."""
     problem = seeded(0)
-    design, face = synthesise(problem), problem.ratings.face
+    design, bound = synthesise(problem), problem.ratings.bounds[name]
     record = next(each for each in prices(design, problem) if each["limit"] == name)
-    step, field = 1e-3, name.removeprefix("face_")
-    better = face._replace(**{field: (1.0 + step) * getattr(face, field)})
-    other = synthesise(replace(problem, ratings=replace(problem.ratings, face=better)))
+    step = 1e-3
+    better = rated(problem.ratings, **{name: (1.0 + step) * bound})
+    other = synthesise(replace(problem, ratings=better))
     gained = (design.ripple - other.ripple) * np.std(problem.scenarios[0].torque)
     assert gained > 0.0
     assert step * record["value"] * record["ripple_per_unit_Nm"] == pytest.approx(gained, rel=2e-2)
     relaxed = bounds_of(problem.ratings)[name].relaxed(problem.ratings, 1.0 + step)
-    assert relaxed.face == better
-    assert record["value"] * (1e-3 if field == "width" else 1e6) == pytest.approx(
-        getattr(face, field), rel=1e-12
-    )
+    assert relaxed.bounds == better.bounds
+    unit = 1e-3 if name == "face_width" else 1e6
+    assert record["value"] * unit == pytest.approx(bound, rel=1e-12)
 
 
 def test_convex_start_is_the_optimum_where_width_force_and_travel_limit_alone():
     """Without friction, mass and curvature limits the problem is convex: no cam is better."""
     theta = uniform_turn(240)
     torque = 6.0 * np.sin(2 * theta) + 3.0 * np.cos(3 * theta + 0.4)
-    item = replace(
+    item = changed(
         scenario(torque), mass=0.0, spring_mass=0.0, friction_a=0.0, friction_b=0.0,
         viscous_damping=0.0, friction_worst=None,
     )  # fmt: skip
     rigid = rated(  # no half-width of the contact
-        roller_radius=0.0, face=Face(0.026, 0.0), travel=0.012, normal_force=1050.0,
+        roller_radius=0.0, face=(0.026, 0.0, None), travel=0.012, normal_force=1050.0,
         contact_modulus=1e20,
     )  # fmt: skip
     given = Problem(
@@ -345,18 +341,15 @@ def strain(check, ambient):
 
 def own_limits(case):
     """Ratings with the limit of one check alone where the synthesis keeps the least of several."""
-    machine = machines(case)[0]
-    powers = [power_limits(side, guide, case, machine) for side, guide in machine.guides.both]
-    return replace(
+    names = [f"guide_temperature_{side}" for side in "AB"]
+    return rated(
         ratings_of(case),
         held_radius=case.cam.held_radius,
-        normal_force=part_limits(case, NORMAL_FORCE)["bore_pressure"],
-        pressure=part_limits(case, PRESSURE)["contact_pressure"],
-        cam_torque=part_limits(case, CAM_TORQUE)["key_pressure"],
-        tooth_torque=part_limits(case, TOOTH_TORQUE)["gear_bending"],
-        guide_power=tuple(
-            each[f"guide_temperature_{side}"] for each, side in zip(powers, "AB", strict=True)
-        ),
+        normal_force=limits_of(case)[NORMAL_FORCE]["bore_pressure"],
+        pressure=limits_of(case)[PRESSURE]["contact_pressure"],
+        cam_torque=limits_of(case)[CAM_TORQUE]["key_pressure"],
+        tooth_torque=limits_of(case)[TOOTH_TORQUE]["gear_bending"],
+        guide_power=tuple(limits_of(case)[name][name] for name in names),
     )
 
 
@@ -381,9 +374,12 @@ def test_each_constraint_is_its_check_on_a_solved_cam(drawn):
         uses = dict(shape_utilisations(jet, variables, ratings, {name}))
         if not shaped and name not in uses:
             made = [
-                load_utilisations(
-                    jet, top, variables, ratings,
-                    replace(item, correction=corrections[item.name].at(angles)), {name},
+                utilisations_of(
+                    loaded(
+                        jet, top, variables, ratings,
+                        replace(item, correction=corrections[item.name].at(angles)),
+                    ),
+                    {name},
                 )[name]
                 for item in problem.scenarios
             ]  # fmt: skip

@@ -5,7 +5,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from synthesis_ratings import rated
+from synthesis_ratings import named, rated
+from synthesis_scenarios import loaded_with
 
 from camwright.geometry.arrays import uniform_turn
 from camwright.pipeline.case.case_file import read_case, with_values
@@ -16,7 +17,7 @@ from camwright.pipeline.smoothing.constrained_synthesis import synthesise
 from camwright.pipeline.smoothing.fe_correction import rank, solved_ripple
 from camwright.pipeline.smoothing.infeasibility import infeasibility
 from camwright.pipeline.smoothing.problem_setup import problem_of, roller_problems
-from camwright.pipeline.smoothing.scenario import Correction, DesignVariables, Scenario
+from camwright.pipeline.smoothing.scenario import Correction, DesignVariables
 from camwright.pipeline.smoothing.synthesis_problem import Problem
 
 CASES = Path(__file__).parents[2] / "cases"
@@ -26,7 +27,7 @@ def small(**ratings):
     """A torque of two waves on a coarse turn, half of it to be taken away."""
     theta = uniform_turn(120)
     torque = 8.0 * np.sin(2 * theta) + 4.0 * np.cos(3 * theta)
-    running = Scenario(
+    running = loaded_with(
         "idle", 78.5, torque, 0.2, 0.08, 0.038, 0.06, 0.06, torque_reduction=0.5
     )  # fmt: skip
     limits = rated(roller_radius=0.008, pressure_angle=np.pi / 6, **ratings)
@@ -41,8 +42,8 @@ def kept(problem):
 
 def test_smallest_conflict_and_every_way_out():
     given = small(normal_force=330.0, travel=0.05)
-    larger = replace(given, ratings=replace(given.ratings, normal_force=2000.0))
-    tiny = replace(given, ratings=replace(given.ratings, normal_force=340.0))
+    larger = replace(given, ratings=rated(given.ratings, normal_force=2000.0))
+    tiny = replace(given, ratings=rated(given.ratings, normal_force=340.0))
     report = infeasibility(given, [("tiny", tiny), ("large", larger)])
     assert set(report.conflict) == {"roller_static", "torque_reduction"}
     for name in report.conflict:  # without any one of them there is a cam
@@ -125,7 +126,7 @@ def test_published_engine_behind_the_published_roller():
             {"contact_pressure", "guide_pv_A", "guide_pressure_A", "profile_waviness"}
         ),
     )
-    assert given.ratings.normal_force == 380.0
+    assert named(given.ratings).normal_force == 380.0
     assert given.variables.preload == 242.0
     rollers = (
         (name, replace(other, left_out=given.left_out))

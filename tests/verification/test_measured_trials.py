@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from synthesis_problems import KEPT, measured
+from synthesis_ratings import named
 
 from camwright.pipeline import iteration
 from camwright.pipeline.case.case_file import read_case
@@ -69,9 +70,9 @@ def test_trials_of_v10_end_on_the_best_of_six(monkeypatch):
     for cycle in result.final.solution.cycles:
         for net, area, limit in zip(
             (cycle.guides.reaction_a, cycle.guides.reaction_b),
-            ratings.guide_area,
-            ratings.guide_pressure,
+            named(ratings).guide_area,
+            named(ratings).guide_pressure,
             strict=True,
         ):
             assert limit is None or np.max(np.abs(net)) / area <= limit
-    assert ratings.guide_pressure[0] is not None
+    assert named(ratings).guide_pressure[0] is not None

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 import scipy
 from synthesis_ratings import rated
+from synthesis_scenarios import changed, loaded_with
 
 from camwright.geometry.arrays import FULL_TURN, uniform_turn
 from camwright.geometry.contour import RollerContour
@@ -39,7 +40,7 @@ from camwright.pipeline.smoothing.objective import (
 )
 from camwright.pipeline.smoothing.problem_setup import problem_of
 from camwright.pipeline.smoothing.sampled_problem import Search
-from camwright.pipeline.smoothing.scenario import Correction, DesignVariables, Scenario
+from camwright.pipeline.smoothing.scenario import Correction, DesignVariables
 from camwright.pipeline.smoothing.synthesis_problem import RESERVE, Problem, coarsened
 from camwright.pipeline.studies.batch.dataset import HEADLINE
 from camwright.pipeline.studies.batch.factor_axes import axis_of
@@ -125,7 +126,7 @@ def peak_force(case):
 def test_slope_of_the_residuals_matches_differences(count):
     random = np.random.default_rng(count)
     torque, left = random.normal(size=(2, count))
-    item = Scenario("made", 80.0, torque, 0.2, 0.05, 0.03, 0.1, 0.1)
+    item = loaded_with("made", 80.0, torque, 0.2, 0.05, 0.03, 0.1, 0.1)
     objective = objective_of({"torque": 0.7, "speed": 1.3, "harmonic": 0.4}, (1, 3))
     step = 1e-6
     ends = [
@@ -202,7 +203,7 @@ def small(friction, weights, **changes):
     """A torque of two waves on a coarse turn."""
     theta = uniform_turn(120)
     torque = 8.0 * np.sin(2 * theta) + 4.0 * np.cos(3 * theta)
-    running = Scenario(
+    running = loaded_with(
         "idle", 78.5, torque, 0.2, 0.08, 0.038, friction, friction, viscous_damping=3.0 * friction,
     )  # fmt: skip
     limits = rated(
@@ -276,7 +277,7 @@ def test_friction_is_no_free_damping():
     coarse, figures = coarsened(problem_of(signed, engine_torques(signed))), {}
     for friction in (0.0, 0.12):
         guides = {"friction_a": friction, "friction_b": friction}
-        scenarios = tuple(replace(item, **guides) for item in coarse.scenarios)
+        scenarios = tuple(changed(item, **guides) for item in coarse.scenarios)
         problem = replace(coarse, scenarios=scenarios)
         design = synthesise(problem)
         assert design.feasible

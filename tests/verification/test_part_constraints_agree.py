@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 from synthesis_problems import OF_ROLLER, REFINED
-from synthesis_ratings import rated
+from synthesis_ratings import named, rated
 
 from camwright.geometry.arrays import uniform_turn
 from camwright.geometry.contour import RollerContour
@@ -26,8 +26,7 @@ from camwright.pipeline.preview import preview_case
 from camwright.pipeline.smoothing.allowables import (
     corrected_ratings,
     edge_load,
-    part_limits,
-    power_limits,
+    limits_of,
     ratings_of,
     scaled_limits,
     surge_of,
@@ -38,8 +37,8 @@ from camwright.pipeline.smoothing.cam_state import Mean, ScenarioCam, loaded, un
 from camwright.pipeline.smoothing.constraints import (
     CONSTRAINTS,
     SHAPE,
-    load_utilisations,
     shape_utilisations,
+    utilisations_of,
 )
 from camwright.pipeline.smoothing.fe_correction import SETTLED, corrections_of
 from camwright.pipeline.smoothing.problem_setup import problem_of
@@ -134,7 +133,7 @@ def uses(solved, problem, corrections, ratings, theta):
     }
     for state in problem.scenarios:
         scenario = replace(state, correction=corrections[state.name].at(theta))
-        loads = load_utilisations(jet, top, variables, ratings, scenario)
+        loads = utilisations_of(loaded(jet, top, variables, ratings, scenario))
         for name, value in loads.items():
             use = float(np.max(value.value if isinstance(value, Mean) else value))
             worst[name] = max(worst.get(name, -np.inf), use)
@@ -145,23 +144,21 @@ def own(case, machine, name):
     """Constraint that keeps a check, and ratings with the limit of that check alone."""
     ratings = ratings_of(case)
     if name in NORMAL_FORCE:
-        return "roller_static", replace(
-            ratings, normal_force=part_limits(case, demands.NORMAL_FORCE)[name]
+        return "roller_static", rated(
+            ratings, normal_force=limits_of(case)[demands.NORMAL_FORCE][name]
         )
     if name in TORQUE:
-        return "key_pressure", replace(
-            ratings, cam_torque=part_limits(case, demands.CAM_TORQUE)[name]
-        )
+        return "key_pressure", rated(ratings, cam_torque=limits_of(case)[demands.CAM_TORQUE][name])
     if name in TOOTH:
-        return "gear_bending", replace(
-            ratings, tooth_torque=part_limits(case, demands.TOOTH_TORQUE)[name]
+        return "gear_bending", rated(
+            ratings, tooth_torque=limits_of(case)[demands.TOOTH_TORQUE][name]
         )
     side = name[-1]
-    guides = dict(machine.guides.both)
     if name in HEAT:
-        both = [power_limits(s, g, case, machine)[name[:-1] + s] for s, g in guides.items()]
-        return f"guide_temperature_{side}", replace(ratings, guide_power=tuple(both))
-    return name, replace(ratings, held_radius=case.cam.held_radius)
+        limits = limits_of(case)
+        both = [limits[f"guide_temperature_{each}"][name[:-1] + each] for each in "AB"]
+        return f"guide_temperature_{side}", rated(ratings, guide_power=tuple(both))
+    return name, rated(ratings, held_radius=case.cam.held_radius)
 
 
 def in_check(case, checks, solved, name, use):
@@ -182,7 +179,7 @@ def in_check(case, checks, solved, name, use):
         return use**0.5, check.utilisation
     if name == "bearing_lubrication":
         bearing = machine.roller.bearing
-        speed = ratings_of(case).roller_spin_least * 30.0 / np.pi / use
+        speed = named(ratings_of(case)).roller_spin_least * 30.0 / np.pi / use
         return bearing.viscosity / rated_viscosity(speed, bearing.ring.pitch_diameter), check.demand
     if name == "grease_life":
         # the worst load case: log10 of the life falls by 2.5 per P/C, at no less than 0.05
@@ -203,7 +200,7 @@ def in_check(case, checks, solved, name, use):
     if name in HEAT:
         ambient, side = machine.guides.ambient_temperature - KELVIN, name[-1]
         guide = dict(machine.guides.both)[side]
-        allowed = power_limits(side, guide, case, machine)[name]
+        allowed = limits_of(case)[f"guide_temperature_{side}"][name]
         resistance = (checks[f"guide_temperature_{side}"].demand - ambient) / use / allowed
         if name.startswith("guide_temperature"):
             return ambient + use * (check.limit - ambient), check.demand
@@ -219,7 +216,7 @@ def in_check(case, checks, solved, name, use):
     if name == "roller_ring_fatigue":
         ring, roller = machine.roller.bearing.ring, machine.roller
         bending = roller.ring(machine.contact_width, machine.spring.preload).bending
-        force = use * part_limits(case, demands.NORMAL_FORCE)[name]
+        force = use * limits_of(case)[demands.NORMAL_FORCE][name]
         mean = bending.stress_mean * force / ring.tensile_strength
         return bending.stress_amplitude * force / (1.0 - mean), check.demand
     return use, check.utilisation
@@ -256,7 +253,7 @@ def test_a_life_by_the_duty_is_that_of_its_check(sharing, name):
     jet, top = Jet(*pitch.lift.derivatives(theta, 3)), pitch.lift.highest.value
     variables = DesignVariables(case.spring.rate, case.spring.preload, case.cam.prime_radius)
     stack = stacked(scenarios, theta)
-    use, *others = load_utilisations(jet, top, variables, ratings_of(case), stack)[name].value
+    use, *others = utilisations_of(loaded(jet, top, variables, ratings_of(case), stack))[name].value
     if name == "grease_life":
         # the factor on the rating at which the shares of the life add to 1
         bearing, lives, heavy = solved.machine.roller.bearing, [], []
@@ -409,11 +406,11 @@ def test_limits_scaled_from_a_solved_cam_are_those_of_its_checks(case, solved, c
     peak = max(float(cycle.surface.p0.max()) for cycle in solved.cycles)
     assert peak / pressures["hardened_case"] == pytest.approx(checks["hardened_case"].utilisation)
     corrected = corrected_ratings(ratings_of(case), solved)
-    assert corrected.normal_force == min(
-        (part_limits(case, demands.NORMAL_FORCE) | forces).values()
+    assert named(corrected).normal_force == min(
+        (limits_of(case)[demands.NORMAL_FORCE] | forces).values()
     )
     weak = rated(ratings_of(case), normal_force=1.0)
-    assert corrected_ratings(weak, solved).normal_force == corrected.normal_force
+    assert named(corrected_ratings(weak, solved)).normal_force == named(corrected).normal_force
 
 
 def greatest(each, states, ratings):
@@ -443,7 +440,7 @@ def test_the_slope_of_a_bound_is_that_of_the_utilisation_where_it_binds(
     pitch = solved.contour.pitch
     jet, top = Jet(*pitch.lift.derivatives(theta, 3)), pitch.lift.highest.value
     variables = DesignVariables(case.spring.rate, case.spring.preload, case.cam.prime_radius)
-    ratings = replace(ratings_of(case), held_radius=case.cam.held_radius, gas_slope=0.03)
+    ratings = rated(ratings_of(case), held_radius=case.cam.held_radius, gas_slope=0.03)
     states = [unloaded(jet, variables, ratings)]
     if each not in SHAPE:
         states = [
@@ -455,10 +452,7 @@ def test_the_slope_of_a_bound_is_that_of_the_utilisation_where_it_binds(
     def with_bound(factor):
         if bound.relaxed is not None:
             return bound.relaxed(ratings, factor)
-        if each.row is not None:
-            return replace(ratings, limits={**ratings.limits, each.row: bound_si * factor})
-        return replace(ratings, **{each.check.replace("bearing_lubrication", "roller_spin_least"):
-                                   bound_si * factor})  # fmt: skip
+        return ratings.times(each.key, factor)
 
     bound_si = each.value(ratings)
 

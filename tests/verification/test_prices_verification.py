@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from synthesis_ratings import rated
+from synthesis_scenarios import loaded_with
 
 from camwright.geometry.arrays import uniform_turn
 from camwright.geometry.contour import RollerContour
@@ -20,7 +21,7 @@ from camwright.pipeline.smoothing.constraints import shape_utilisations
 from camwright.pipeline.smoothing.objective import objective_of
 from camwright.pipeline.smoothing.problem_setup import problem_of
 from camwright.pipeline.smoothing.sampled_problem import Search
-from camwright.pipeline.smoothing.scenario import DesignVariables, Scenario
+from camwright.pipeline.smoothing.scenario import DesignVariables
 from camwright.pipeline.smoothing.shadow_prices import (
     FLOOR,
     NUMBERS,
@@ -55,7 +56,7 @@ LIFE = 8e10  # N^3 rad/s
 
 
 def asked(**ratings):
-    running = Scenario("idle", 78.5, TORQUE, 0.2, 0.08, 0.038, 0.06, 0.06)
+    running = loaded_with("idle", 78.5, TORQUE, 0.2, 0.08, 0.038, 0.06, 0.06)
     return Problem(
         (running,), rated(RATINGS, **ratings), DesignVariables(24.2e3, 242.0, 0.056),
         coefficients=36, points=240,

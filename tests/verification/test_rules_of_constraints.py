@@ -16,11 +16,11 @@ from synthesis_problems import constrained, described, with_corrections
 
 from camwright.geometry.arrays import Array
 from camwright.geometry.lift import Jet
-from camwright.pipeline.smoothing.cam_state import Mean, lift_jet
+from camwright.pipeline.smoothing.cam_state import Mean, lift_jet, loaded
 from camwright.pipeline.smoothing.constraints import (
     CONSTRAINTS,
-    load_utilisations,
     shape_utilisations,
+    utilisations_of,
 )
 from camwright.pipeline.smoothing.sampled_problem import Search
 from camwright.pipeline.smoothing.scenario import Scenario, taken
@@ -46,7 +46,7 @@ class State(NamedTuple):
     def uses(self, jet: Jet, stack: Scenario) -> Mapping[str, Array | Mean]:
         variables, ratings = self.problem.variables, self.problem.ratings
         shape = shape_utilisations(jet, variables, ratings)
-        return {**shape, **load_utilisations(jet, self.highest, variables, ratings, stack)}
+        return {**shape, **utilisations_of(loaded(jet, self.highest, variables, ratings, stack))}
 
 
 @cache

@@ -25,6 +25,8 @@ from synthesis_problems import (
     variant,
     with_corrections,
 )
+from synthesis_ratings import named
+from synthesis_scenarios import changed
 
 from camwright.pipeline.smoothing.constrained_synthesis import synthesise
 from camwright.pipeline.smoothing.sampled_problem import Search
@@ -165,7 +167,7 @@ def test_small_problem_ends_at_the_optimum_of_the_nonlinear_program(of_a_duty):
     problem = thinned(measured("v10"), 24, 240)
     if of_a_duty:
         problem = of_duty(problem, idle=0.6, overspeed=0.4)
-        least = 0.25 * problem.ratings.life_force_cubed
+        least = 0.25 * named(problem.ratings).life_force_cubed
         problem = with_number(problem, "life_force_cubed", least)
     optimum = Oracle(problem).solved()
     design, unmet = missed(problem, optimum)
@@ -216,11 +218,11 @@ def prices_of(problem, optimum, names):
     ratings = problem.ratings
     before = max(float(np.std(item.torque)) for item in problem.scenarios if item.weight > 0)
     spent = {name: -slope * before for name, slope in optimum.slopes.items()}
-    cubed = 3.0 * ratings.life_force_cubed / ratings.dynamic_rating
+    cubed = 3.0 * named(ratings).life_force_cubed / named(ratings).dynamic_rating
     expected = {
         "pressure_angle": spent["pressure_angle"] * np.pi / 180,  # deg
         "jump_speed": spent["jump_speed"] * np.pi / 30,  # rpm
-        "roller_static": spent["normal_force"] / ratings.force_safety,  # N of the rating
+        "roller_static": spent["normal_force"] / named(ratings).force_safety,  # N of the rating
         "roller_speed": spent["roller_spin"] * np.pi / 30,
         "roller_life": spent["life_force_cubed"] * cubed,  # N of the rating
         "guide_pv_A": spent["guide_pv_a"] * 1e6,  # MPa m/s
@@ -323,7 +325,7 @@ def isolated(problem, name):
     """The problem without what hides a limit behind another."""
     scenarios = problem.scenarios
     if name == "jam_index":
-        scenarios = tuple(replace(item, friction_worst=None) for item in scenarios)
+        scenarios = tuple(changed(item, friction_worst=None) for item in scenarios)
     if name == "elastic_contact":
         bent = tuple(
             replace(item.correction, elastic=item.correction.elastic - STEM) for item in scenarios
@@ -420,8 +422,8 @@ def test_variant_without_a_cam_ends_at_the_least_violation(seed):
 def test_two_violated_limits_are_weighed_alike():
     """A life of the roller that no cam reaches, not even one without a lift, against the ripple."""
     problem = small(1)
-    cubed = 0.02 * problem.ratings.life_force_cubed
-    ratings = replace(problem.ratings, life_force_cubed=cubed)
+    cubed = 0.02 * named(problem.ratings).life_force_cubed
+    ratings = rated(problem.ratings, life_force_cubed=cubed)
     own, least = violations(replace(problem, ratings=ratings))
     assert sum(own.values()) == pytest.approx(sum(least.values()), rel=AGREE_VIOLATION)
     assert min(least[name] for name in ("roller_life", "torque_reduction")) > 0.1

@@ -9,6 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 from synthesis_ratings import rated
+from synthesis_scenarios import changed, loaded_with
 
 from camwright.geometry.arrays import uniform_turn
 from camwright.geometry.energy import lift_from_torque
@@ -22,7 +23,7 @@ from camwright.pipeline.smoothing.multistart import explored
 from camwright.pipeline.smoothing.objective import objective_of
 from camwright.pipeline.smoothing.problem_setup import problem_of
 from camwright.pipeline.smoothing.sampled_problem import Search
-from camwright.pipeline.smoothing.scenario import DesignVariables, Scenario
+from camwright.pipeline.smoothing.scenario import DesignVariables
 from camwright.pipeline.smoothing.smoothers import KINDS, Smoother, smoothed
 from camwright.pipeline.smoothing.synthesis_problem import Problem, coarsened
 
@@ -46,7 +47,7 @@ def engine(seed, waves=9):
 
 
 def problem(torque, reduction=None, **changes):
-    load = Scenario(
+    load = loaded_with(
         "one", 78.0, torque, 0.175, 0.08, 0.03, 0.15, 0.12, torque_reduction=reduction
     )  # fmt: skip
     plain = {"coefficients": COUNT, "points": POINTS, "jerk_weight": 1e-7}
@@ -182,7 +183,7 @@ def test_worst_corner_keeps_what_the_nominal_does_not():
     nominal = problem(asked)
     one = nominal.scenarios[0]
     corners = tuple(
-        replace(one, name=str((rate, mu)), rate_factor=rate, friction_a=mu, friction_b=mu)
+        changed(one, name=str((rate, mu)), rate_factor=rate, friction_a=mu, friction_b=mu)
         for rate in (0.95, 1.05)
         for mu in (0.05, 0.2)
     )

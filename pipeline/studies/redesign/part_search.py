@@ -171,7 +171,7 @@ class _Least:
         """Bounds by spring for a roller load limit (N)."""
         case, problem, design = self.case, self.problem, self.design
         bound = ripple_bounds.RippleBound(design.torque, problem.gear_ratio)
-        relief = ripple_bounds.relief_of(problem.scenarios, problem.ratings.limits.get(JUMP))
+        relief = ripple_bounds.relief_of(problem.scenarios, problem.ratings.bounds.get(JUMP.id))
         preload, bounds = case.spring.preload, {}
         for name, (spring, travel) in self.springs.items():
             held = float(spring_energy(preload, spring.rate, travel))

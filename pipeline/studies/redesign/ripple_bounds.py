@@ -86,7 +86,7 @@ def relief_of(scenarios: tuple[Scenario, ...], jump: float | None) -> float:
 
     The limit of jump holds in the fastest; inertia is proportional to the square of the speed.
     """
-    speeds = [float(item.cam_speed) for item in scenarios]
+    speeds = [float(item.numbers["cam.speed"]) for item in scenarios]
     fastest = max(speeds)
     share = 1.0 if jump is None else jump
     return min(0.9, share * (min(speeds) / fastest) ** 2) if fastest > 0 else 0.0
