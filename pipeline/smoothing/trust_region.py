@@ -59,9 +59,10 @@ def descended(
 ) -> Descent:
     """Local optimum of a search from its start.
 
-    Outside the limits the search ends after some steps, `stuck`, where a step foresees next to no
-    gain and the least violation of the linear models is that of the cam, or all wider steps from
-    here were refused: a greater penalty would gain nothing, and limits that jump make it creep.
+    Outside the limits the search ends, `stuck`, where a step foresees next to no gain and the least
+    violation of the linear models is that of the cam, or wider steps were refused: a greater
+    penalty would gain nothing, and limits that jump make it creep. A search without a seed has
+    some steps before.
 
     Parameters
     ----------
@@ -101,7 +102,7 @@ def descended(
         if before is not None and priced is not None:
             bend = lagrangian_curvature(search, state, model, before, priced)
             model = model._replace(curvature=_convex(model.curvature + bend))
-        proven, gain, tested, widest = False, np.inf, False, trust
+        proven, gain, tested = False, np.inf, False
         while True:
             program, there, model = _program(search, state, model, trust, penalty, ripple_weight)
             if program is None:
@@ -127,9 +128,11 @@ def descended(
             creeping = ripple_weight > 0.0 and predicted <= _CREEPING * penalty * state.violation
             # Beyond a limit, not beyond its reserve alone.
             beyond = any(value > 1.0 for value in state.utilisation.values())
-            if step > _SETTLING and beyond and creeping and not tested:
+            # A search from the end of another has no long way to go.
+            settled = step > _SETTLING or search.problem.seed is not None
+            if settled and beyond and creeping and not tested:
                 tested = True
-                if widest >= _PROOF > trust or _stuck(search, state, model):
+                if trust < _PROOF or _stuck(search, state, model):
                     return Descent(state, model, program, step, gain, penalty, stuck=True)
             actual = now - there.merit(penalty, ripple_weight)
             if predicted > least and actual < _CORRECTED * predicted:
