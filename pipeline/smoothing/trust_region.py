@@ -102,7 +102,7 @@ def descended(
         if before is not None and priced is not None:
             bend = lagrangian_curvature(search, state, model, before, priced)
             model = model._replace(curvature=_convex(model.curvature + bend))
-        proven, gain, tested = False, np.inf, False
+        proven, gain, tested, widest = False, np.inf, False, trust
         while True:
             program, there, model = _program(search, state, model, trust, penalty, ripple_weight)
             if program is None:
@@ -149,13 +149,14 @@ def descended(
                     if gain > actual:
                         (_, there, _), actual = other, gain
                     gain /= scale
-            if predicted <= least:
+            # Narrower steps than the first were refused before those that prove convergence.
+            if predicted <= least or (proven and trust < min(widest, _PROOF)):
                 if trust < _PROOF and not proven:
                     trust, proven = _PROOF, True
                     continue
                 if raised:
                     penalty *= _RISE
-                    trust = max(trust, 0.1)
+                    trust, widest = max(trust, 0.1), 0.0
                     model = model._replace(curvature=_RISE * model.curvature)  # as the multipliers
                     continue
                 end = there if actual > 0 else state
