@@ -207,15 +207,16 @@ class _Pairs:
 def _double_integral(across: _Pairs, along: _Pairs) -> Array:
     """Integral of 1/r over pairs of cells, (p across, p along), m3."""
     primitive = _fourth_primitive(across.edges[:, None], along.edges)
-    near = along.integrated(across.integrated(primitive).T).T
-    x, y = across.centres[:, None], along.centres
-    x_squares, y_squares = across.squares[:, None], along.squares
-    square = x**2 + y**2
-    is_far = square > _FAR**2 * 12.0 * np.maximum(x_squares, y_squares)
-    r2 = np.where(is_far, square, 1.0)
-    bend = x_squares * (3.0 * x**2 - r2) + y_squares * (3.0 * y**2 - r2)
-    far = across.areas[:, None] * along.areas / np.sqrt(r2) * (1.0 + 0.5 * bend / r2**2)
-    return np.asarray(np.where(is_far, far, near))
+    values = along.integrated(across.integrated(primitive).T).T
+    square = across.centres[:, None] ** 2 + along.centres**2
+    size = np.maximum(across.squares[:, None], along.squares)
+    i, j = np.nonzero(square > _FAR**2 * 12.0 * size)
+    x_squares, y_squares, r2 = across.squares[i], along.squares[j], square[i, j]
+    bend = x_squares * (3.0 * across.centres[i] ** 2 - r2)
+    bend += y_squares * (3.0 * along.centres[j] ** 2 - r2)
+    areas = across.areas[i] * along.areas[j]
+    values[i, j] = areas / np.sqrt(r2) * (1.0 + 0.5 * bend / r2**2)
+    return values
 
 
 def _fourth_primitive(x: Array, y: Array) -> Array:
