@@ -26,6 +26,8 @@ _RAISED = 1e-4  # foreseen gain at `PENALTY`, outside a limit, at which the pena
 _STEPS_MAX = 60
 _TRUST, _TRUST_LEAST = 0.3, 1e-7
 _PROOF = 0.03  # least trust region in which a foreseen gain proves convergence
+_SMALLER, _SMALLEST = 0.35, 0.1  # of the trust region of a refused step
+_REFUSALS = 2  # of a step; after more the functions are rough
 _ADDITIONS = 4
 _CORRECTED = 0.9  # of the foreseen gain: below, the step is corrected
 _SETTLING = 10  # steps in which most searches outside the limits converge; then they may be stuck
@@ -102,7 +104,7 @@ def descended(
         if before is not None and priced is not None:
             bend = lagrangian_curvature(search, state, model, before, priced)
             model = model._replace(curvature=_convex(model.curvature + bend))
-        proven, gain, tested, widest = False, np.inf, False, trust
+        proven, gain, tested, widest, refused = False, np.inf, False, trust, 0
         while True:
             program, there, model = _program(search, state, model, trust, penalty, ripple_weight)
             if program is None:
@@ -166,10 +168,11 @@ def descended(
                 state = there
                 trust = min(trust * (2.0 if share > 0.7 else 1.0 if share > 0.25 else 0.5), 1.0)
                 break
-            trust *= 0.35
+            refused += 1
+            trust *= _SMALLER if refused <= _REFUSALS else _SMALLEST
             # A trust region that does not limit the step gives the same again.
             while trust > size:
-                trust *= 0.35
+                trust *= _SMALLER
             if trust < _TRUST_LEAST:
                 return Descent(state, model, program, step, gain, penalty)
     return Descent(state, model, program, _STEPS_MAX, gain, penalty)
