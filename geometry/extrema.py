@@ -40,7 +40,8 @@ def first_greatest(values: ArrayLike) -> int:
     where there is one.
     """
     array = np.asarray(values, dtype=float)
-    return int(first_greatest_of_rows(array[None, :])[0])
+    # A value of the turn as a whole has no other beside it.
+    return 0 if array.size == 1 else int(first_greatest_of_rows(array[None, :])[0])
 
 
 def first_least(values: ArrayLike) -> int:

@@ -174,8 +174,9 @@ def _extreme(
     extreme, at = NOWHERE, None
     for cycle in cycles:
         values = np.asarray(measure(cycle), dtype=float)
-        worst = first_greatest(sign * values)  # the first NaN, where there is one
-        value = sign * float(np.max(sign * values))
+        signed = sign * values
+        worst = first_greatest(signed)  # the first NaN, where there is one
+        value = sign * float(signed.max())
         if extreme.load_case and not (np.isnan(value) or _beyond(value, extreme.value, sign)):
             continue
         theta = FULL_TURN * worst / values.size if error is None else None

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
 
 from camwright.geometry.arrays import Array, freeze
@@ -157,7 +158,9 @@ def _zones(mesh: BodyMesh, nodes: NDArray[np.int64], excluded: float | None) -> 
         within |= away[nodes] < 0
         for facet in facets[:, away[facets[0]] * away[facets[1]] < 0].T:
             arm = mesh.points[:, facet] - corner[:, None]
-            at = brentq(lambda s, arm=arm: np.hypot(*(arm @ _shapes(s))) - excluded, 0.0, 1.0)
+            at = scipy.optimize.brentq(
+                lambda s, arm=arm: np.hypot(*(arm @ _shapes(s))) - excluded, 0.0, 1.0
+            )
             weights = np.zeros(nodes.size)
             weights[np.searchsorted(nodes, facet)] = _shapes(at)
             rims.append(weights)

@@ -26,6 +26,8 @@ _RAISED = 1e-4  # foreseen gain at `PENALTY`, outside a limit, at which the pena
 _STEPS_MAX = 60
 _TRUST, _TRUST_LEAST = 0.3, 1e-7
 _PROOF = 0.03  # least trust region in which a foreseen gain proves convergence
+_SMALLER, _SMALLEST = 0.35, 0.1  # of the trust region of a refused step
+_REFUSALS = 2  # of a step; after more the functions are rough
 _ADDITIONS = 4
 _CORRECTED = 0.9  # of the foreseen gain: below, the step is corrected
 _SETTLING = 10  # steps in which most searches outside the limits converge; then they may be stuck
@@ -59,9 +61,10 @@ def descended(
 ) -> Descent:
     """Local optimum of a search from its start.
 
-    Outside the limits the search ends after some steps, `stuck`, where a step foresees next to no
-    gain and the least violation of the linear models is that of the cam, or all wider steps from
-    here were refused: a greater penalty would gain nothing, and limits that jump make it creep.
+    Outside the limits the search ends, `stuck`, where a step foresees next to no gain and the least
+    violation of the linear models is that of the cam, or wider steps were refused: a greater
+    penalty would gain nothing, and limits that jump make it creep. A search without a seed has
+    some steps before.
 
     Parameters
     ----------
@@ -101,7 +104,7 @@ def descended(
         if before is not None and priced is not None:
             bend = lagrangian_curvature(search, state, model, before, priced)
             model = model._replace(curvature=_convex(model.curvature + bend))
-        proven, gain, tested, widest = False, np.inf, False, trust
+        proven, gain, tested, widest, refused = False, np.inf, False, trust, 0
         while True:
             program, there, model = _program(search, state, model, trust, penalty, ripple_weight)
             if program is None:
@@ -127,9 +130,11 @@ def descended(
             creeping = ripple_weight > 0.0 and predicted <= _CREEPING * penalty * state.violation
             # Beyond a limit, not beyond its reserve alone.
             beyond = any(value > 1.0 for value in state.utilisation.values())
-            if step > _SETTLING and beyond and creeping and not tested:
+            # A search from the end of another has no long way to go.
+            settled = step > _SETTLING or search.problem.seed is not None
+            if settled and beyond and creeping and not tested:
                 tested = True
-                if widest >= _PROOF > trust or _stuck(search, state, model):
+                if trust < _PROOF or _stuck(search, state, model):
                     return Descent(state, model, program, step, gain, penalty, stuck=True)
             actual = now - there.merit(penalty, ripple_weight)
             if predicted > least and actual < _CORRECTED * predicted:
@@ -146,13 +151,14 @@ def descended(
                     if gain > actual:
                         (_, there, _), actual = other, gain
                     gain /= scale
-            if predicted <= least:
+            # Narrower steps than the first were refused before those that prove convergence.
+            if predicted <= least or (proven and trust < min(widest, _PROOF)):
                 if trust < _PROOF and not proven:
                     trust, proven = _PROOF, True
                     continue
                 if raised:
                     penalty *= _RISE
-                    trust = max(trust, 0.1)
+                    trust, widest = max(trust, 0.1), 0.0
                     model = model._replace(curvature=_RISE * model.curvature)  # as the multipliers
                     continue
                 end = there if actual > 0 else state
@@ -162,10 +168,11 @@ def descended(
                 state = there
                 trust = min(trust * (2.0 if share > 0.7 else 1.0 if share > 0.25 else 0.5), 1.0)
                 break
-            trust *= 0.35
+            refused += 1
+            trust *= _SMALLER if refused <= _REFUSALS else _SMALLEST
             # A trust region that does not limit the step gives the same again.
             while trust > size:
-                trust *= 0.35
+                trust *= _SMALLER
             if trust < _TRUST_LEAST:
                 return Descent(state, model, program, step, gain, penalty)
     return Descent(state, model, program, _STEPS_MAX, gain, penalty)

@@ -49,7 +49,7 @@ _HEAVY: Array = np.array([0.265, 0.29, 0.315, 0.34, 0.36, 0.38, 0.40, 0.415, 0.4
 _MOMENTS = np.concatenate([_LIGHT, _HEAVY])
 _SIGNED: Array = np.concatenate([-_MOMENTS[:0:-1], _MOMENTS])
 _ZERO = _MOMENTS.size - 1
-_OWN_CELLS, _SAME_CELLS = (1, 4, 6, 9, 14, 20), (9, 20)
+_OWN_CELLS, _SAME_CELLS = (1, 4, 6, 9, 14, 20), (1, 9, 20)
 _FEW = 3000  # rows of an interpolation: those of a turn, untilted and tilted to both sides
 
 # Places along the line at which the drop of a crown decides the tables kept.

@@ -9,6 +9,7 @@ the end; the remainder, of the other end, is smooth.
 from __future__ import annotations
 
 from functools import lru_cache
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -66,53 +67,74 @@ def half_space_compliance(cells: PressureCells, bodies: tuple[FiniteBody, Finite
     return total
 
 
+class _Image(NamedTuple):
+    """Influence of the loads mirrored at one end.
+
+    Parameters
+    ----------
+    mean, bend : array (m, m)   of distant cells along the line: over the areas of both mean, 1/m,
+                                plus bend, 1/m3, times their second moments across; 0 of the near
+    first : int                 number of the first cell along the line that is near the end
+    near : array (n, k, n, k)   influence of the n cells near it, m3
+    """
+
+    mean: Array
+    bend: Array
+    first: int
+    near: Array
+
+    @property
+    def mirrored(self) -> _Image:
+        """That of the other end of symmetric cells."""
+        first = len(self.mean) - self.first - len(self.near)
+        return _Image(self.mean[::-1, ::-1], self.bend[::-1, ::-1], first, self.near[::-1, :, ::-1])
+
+
 def _free_ends(cells: PressureCells, length: float, poisson: float) -> Array:
     """What both ends of a length add to the influence, m3."""
-    half, along, count = 0.5 * length, cells.centres_along, cells.shape
-    whole = _image(cells, length, poisson)
-    if np.allclose(cells.y, -cells.y[::-1], rtol=0.0, atol=_SYMMETRIC * length):
-        whole = whole + whole[::-1, :, ::-1]
-    else:
-        whole = whole + _image(cells, -length, poisson)
-    place = along / half
+    half, (m, k), end = 0.5 * length, cells.shape, _image(cells, length, poisson)
+    is_even = np.allclose(cells.y, -cells.y[::-1], rtol=0.0, atol=_SYMMETRIC * length)
+    other = end.mirrored if is_even else _image(cells, -length, poisson)
+    place = cells.centres_along / half
     squares = np.add.outer(place**2, place**2)
     smooth = (_SQUARES + _ODD * np.outer(place, place)) * squares * (2.0 / half)
-    areas = cells.areas.reshape(count)
-    whole += np.einsum("ij,ik,jl->ikjl", smooth, areas, areas)
-    return np.asarray(whole.reshape(cells.areas.size, -1))
+    x_squares = 0.25 * (cells.x[1:] + cells.x[:-1]) ** 2 + np.diff(cells.x) ** 2 / 12.0
+    along, across = (np.outer(size, size) for size in (np.diff(cells.y), np.diff(cells.x)))
+    mean, bend = end.mean + other.mean + smooth, end.bend + other.bend
+    by_length = np.stack([mean * along, bend * along])
+    by_width = np.stack([across, np.add.outer(x_squares, x_squares) * across])
+    products = by_length.reshape(2, -1).T @ by_width.reshape(2, -1)
+    whole = products.reshape(m, m, k, k).transpose(0, 2, 1, 3).copy()
+    for each in (end, other):
+        near = slice(each.first, each.first + len(each.near))
+        whole[near, :, near] += each.near
+    return whole.reshape(m * k, m * k)
 
 
-def _image(cells: PressureCells, shift: float, poisson: float) -> Array:
-    """Influence of the loads mirrored at y = shift/2, times their factor, (m, k, m, k), m3."""
-    # Cells of a rounded end may reach beyond the end of the other body.
-    apart = np.abs(0.5 * shift) - np.sign(shift) * cells.centres_along
-    apart = np.maximum(apart, 0.5 * np.diff(cells.y))
-    likeness = 4.0 * np.outer(apart, apart) / np.add.outer(apart, apart) ** 2
-    near = np.flatnonzero(apart < _FAR_IMAGE * cells.x[-1])
-    if near.size == apart.size:
-        image = influence(cells, shift, mirrored=True).reshape(*cells.shape, *cells.shape)
-    else:
-        image = _far_image(cells, shift)
-        if near.size:
-            edges = cells.y[near[0] : near[-1] + 2]
-            beside = PressureCells(cells.x, edges)
-            block = influence(beside, shift, mirrored=True).reshape(*beside.shape, *beside.shape)
-            image[near[0] : near[-1] + 1, :, near[0] : near[-1] + 1] = block
-    return np.asarray(image * mirror_factor(poisson, likeness)[:, None, :, None])
+def _image(cells: PressureCells, shift: float, poisson: float) -> _Image:
+    """Influence of the loads mirrored at y = shift/2, times their factor.
 
-
-def _far_image(cells: PressureCells, shift: float) -> Array:
-    """Influence of mirrored loads whose distance is large to the width, (m, k, m, k), m3.
-
-    By the mean and the second moments of the cells.
+    Loads whose distance is large to the width by the mean and the second moments of the cells.
     """
-    along, across = cells.centres_along, 0.5 * (cells.x[1:] + cells.x[:-1])
-    distance = np.abs(np.add.outer(along, along) - shift)
-    x_squares, y_squares = across**2 + np.diff(cells.x) ** 2 / 12.0, np.diff(cells.y) ** 2 / 12.0
-    inverse = 2.0 / distance + 2.0 * np.add.outer(y_squares, y_squares) / distance**3
-    bend = np.add.outer(x_squares, x_squares)[None, :, None, :] / distance[:, None, :, None] ** 3
-    areas = cells.areas.reshape(cells.shape)
-    return np.asarray((inverse[:, None, :, None] - bend) * areas[:, :, None, None] * areas)
+    along = cells.centres_along
+    # Cells of a rounded end may reach beyond the end of the other body.
+    apart = np.abs(0.5 * shift) - np.sign(shift) * along
+    apart = np.maximum(apart, 0.5 * np.diff(cells.y))
+    factor = mirror_factor(poisson, 4.0 * np.outer(apart, apart) / np.add.outer(apart, apart) ** 2)
+    distance, y_squares = np.abs(np.add.outer(along, along) - shift), np.diff(cells.y) ** 2 / 12.0
+    mean = 2.0 / distance + 2.0 * np.add.outer(y_squares, y_squares) / distance**3
+    bend = -1.0 / distance**3
+    beside = np.flatnonzero(apart < _FAR_IMAGE * cells.x[-1])
+    if not beside.size:
+        width = cells.x.size - 1
+        return _Image(mean * factor, bend * factor, 0, np.zeros((0, width, 0, width)))
+    near = np.s_[beside[0] : beside[-1] + 1]
+    block = PressureCells(cells.x, cells.y[beside[0] : beside[-1] + 2])
+    values = influence(block, shift, mirrored=True).reshape(*block.shape, *block.shape)
+    mean[near, near] = bend[near, near] = 0.0
+    return _Image(
+        mean * factor, bend * factor, int(beside[0]), values * factor[near, None, near, None]
+    )
 
 
 def shared_compliance(cells: PressureCells, bodies: tuple[FiniteBody, FiniteBody]) -> Array:
@@ -138,33 +160,35 @@ def influence(cells: PressureCells, shift: float, *, mirrored: bool) -> Array:
     along = _Pairs(cells.y, -1.0 if mirrored else 1.0, shift)
     right, left = (_Pairs(cells.x, sign) for sign in (1.0, -1.0))
     values = _double_integral(right, along) + _double_integral(left, along)
-    (k, across), (m, lengthwise) = (_places(edges.size - 1) for edges in (cells.x, cells.y))
-    full = values[np.ix_(across.ravel(), lengthwise.ravel())].reshape(k, k, m, m)
-    return np.asarray(full.transpose(2, 0, 3, 1).reshape(k * m, k * m))
+    across, lengthwise = (_places(edges.size - 1) for edges in (cells.x, cells.y))
+    full = values[across].transpose(2, 0, 1)[lengthwise]
+    return np.asarray(full.transpose(0, 2, 1, 3).reshape(cells.areas.size, -1))
 
 
-def _places(count: int) -> tuple[int, NDArray[np.intp]]:
-    """A count, and the places (count, count) of pairs in any order among those in rising order."""
+def _places(count: int) -> NDArray[np.intp]:
+    """Places (count, count) of pairs in any order among those in rising order."""
     first, second = np.triu_indices(count)
     places = np.empty((count, count), dtype=np.intp)
     places[first, second] = places[second, first] = np.arange(first.size)
-    return count, places
+    return places
 
 
 class _Pairs:
     """Pairs of cells along one axis in rising order, the second mirrored by its sign and shifted.
 
-    Two cells that change places have the same distance, so that half of the pairs is enough.
+    Two cells that change places have the same distance, so that half of the pairs is enough; those
+    of equal cells, or on both sides of the middle, have distances in common.
 
-    Attributes: distances of the edges (e,), of the centres (p,), m; squares (p,), m2, the second
-    moments of both cells over their lengths; areas (p,), m2, products of the lengths.
+    Attributes: distances of the edges (e,), each once, of the centres (p,), m; squares (p,), m2,
+    the second moments of both cells over their lengths; areas (p,), m2, products of the lengths.
     """
 
     def __init__(self, edges: Array, sign: float, shift: float = 0.0) -> None:
         first, second = np.triu_indices(edges.size)
-        self.edges = np.abs(edges[first] - sign * edges[second] - shift)
+        apart = np.abs(edges[first] - sign * edges[second] - shift)
+        self.edges, among = np.unique(apart, return_inverse=True)
         self._sign = sign
-        self._corners = _places(edges.size)[1]
+        self._corners = among[_places(edges.size)]
         self._cells = first, second = np.triu_indices(edges.size - 1)
         steps, centres = np.diff(edges), 0.5 * (edges[1:] + edges[:-1])
         self.centres = centres[first] - sign * centres[second] - shift
@@ -183,15 +207,16 @@ class _Pairs:
 def _double_integral(across: _Pairs, along: _Pairs) -> Array:
     """Integral of 1/r over pairs of cells, (p across, p along), m3."""
     primitive = _fourth_primitive(across.edges[:, None], along.edges)
-    near = along.integrated(across.integrated(primitive).T).T
-    x, y = across.centres[:, None], along.centres
-    x_squares, y_squares = across.squares[:, None], along.squares
-    square = x**2 + y**2
-    is_far = square > _FAR**2 * 12.0 * np.maximum(x_squares, y_squares)
-    r2 = np.where(is_far, square, 1.0)
-    bend = x_squares * (3.0 * x**2 - r2) + y_squares * (3.0 * y**2 - r2)
-    far = across.areas[:, None] * along.areas / np.sqrt(r2) * (1.0 + 0.5 * bend / r2**2)
-    return np.asarray(np.where(is_far, far, near))
+    values = along.integrated(across.integrated(primitive).T).T
+    square = across.centres[:, None] ** 2 + along.centres**2
+    size = np.maximum(across.squares[:, None], along.squares)
+    i, j = np.nonzero(square > _FAR**2 * 12.0 * size)
+    x_squares, y_squares, r2 = across.squares[i], along.squares[j], square[i, j]
+    bend = x_squares * (3.0 * across.centres[i] ** 2 - r2)
+    bend += y_squares * (3.0 * along.centres[j] ** 2 - r2)
+    areas = across.areas[i] * along.areas[j]
+    values[i, j] = areas / np.sqrt(r2) * (1.0 + 0.5 * bend / r2**2)
+    return values
 
 
 def _fourth_primitive(x: Array, y: Array) -> Array:
