@@ -142,8 +142,6 @@ def _zones(mesh: BodyMesh, nodes: NDArray[np.int64], excluded: float | None) -> 
     A rim lies on the boundary where its distance from the edge is the radius; the weights are
     those of the quadratic shapes of its facet.
     """
-    from scipy.optimize import brentq
-
     if "keyway" not in mesh.boundaries:
         return _Zones(0.0, np.zeros(nodes.size, dtype=bool), np.zeros((0, nodes.size)))
     facets = mesh.facet_triples("keyway")
