@@ -246,7 +246,12 @@ class Measured(NamedTuple):
         return self.bound(float(limit), numbers)
 
     def use(self, measure: Measure, cam: LoadedCam, limit: float) -> Array | None:
-        """Utilisation (..., n) of a limit of the measure in a synthesis, see `Kept`."""
+        """Utilisation (..., n) of a limit of the measure in a synthesis, see `Kept`.
+
+        Where each stroke has a limit, that of the first; the others are constraints of their own.
+        """
+        if self.limits_of_strokes(cam.numbers):
+            measure = self.strokes[0].measure
         if self.kept is not None and self.kept.use is not None:
             return self.kept.use(cam, limit)
         return measure(cam) / limit if self.worst == "greatest" else 1.0 + limit - measure(cam)

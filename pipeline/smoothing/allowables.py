@@ -12,7 +12,11 @@ from camwright.geometry.arrays import Array, Value
 from camwright.geometry.lift import Jet
 from camwright.pipeline.base.material import ROOM
 from camwright.pipeline.case.case import Case
-from camwright.pipeline.case.limits import KEYWAY_SAFETY, PRESSURE_ANGLE
+from camwright.pipeline.case.limits import (
+    KEYWAY_SAFETY,
+    PRESSURE_ANGLE,
+    RETURN_PRESSURE_ANGLE,
+)
 from camwright.pipeline.case.machine import Machine, machines
 from camwright.pipeline.checks.cam_shape import lift, spring_travel
 from camwright.pipeline.checks.check import Declaration, Measured
@@ -72,6 +76,8 @@ def limits_of(case: Case) -> dict[str, dict[str, float]]:
         limit = how.limit_of_measure(numbers) if of_part else how.allowed(numbers).value
         if limit is not None:
             limits.setdefault(each.kept_at, {})[each.id] = float(limit)
+        for stroke, own in zip(how.strokes[1:], how.limits_of_strokes(numbers)[1:], strict=False):
+            limits[stroke.limit.id] = {each.id: float(own)}
     limits[PRESSURE] |= pressure_allowables(machine, greatest_cycles(case))
     limits[spring_travel.id] = _travel_limit(case)
     limits[jump_speed.id] = {jump_speed.id: cam_speed_without_jump(numbers)}
@@ -130,7 +136,8 @@ def greatest_cycles(case: Case) -> LoadCycles:
     travel = min(travel_limits(case).values(), default=None)
     prime = max(case.cam.prime_radius, *(smoothing.prime_radius_range or ()), 0.0)
     radius = prime + (prime if travel is None else travel)
-    path = radius / np.cos(case.limits[PRESSURE_ANGLE])
+    angles = case.limits[PRESSURE_ANGLE], case.limits[RETURN_PRESSURE_ANGLE] or 0.0
+    path = radius / np.cos(max(angles))
     return LoadCycles(turns, turns * max(path / roller.radius - 1.0, 1.0))
 
 

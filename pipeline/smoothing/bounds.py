@@ -65,7 +65,7 @@ def bounds_of(ratings: Ratings) -> dict[str, Bound]:
         of = _OF_PART.get(each.key, _of_part) if each.row is None else partial(_of_row, each.row)
         bound = of(ratings, each, value)
         if bound is not None:
-            bounds[each.check] = bound
+            bounds[each.name] = bound
     return bounds
 
 

@@ -6,7 +6,7 @@ All functions take complex numbers: a complex step gives their derivative to rou
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
 from typing import Generic, Literal, NamedTuple, TypeVar
 
@@ -17,8 +17,13 @@ from camwright.geometry.arrays import Array, Value
 from camwright.geometry.errors import InputError
 from camwright.geometry.lift import Jet
 from camwright.geometry.pitch_curve import magnitude, rolling_share
-from camwright.pipeline.case.limits import CONTACT_FORCE_MARGIN, AnyLimit
-from camwright.pipeline.checks.check import Declaration, Kept
+from camwright.pipeline.case.limits import (
+    CONTACT_FORCE_MARGIN,
+    PRESSURE_ANGLE,
+    RETURN_PRESSURE_ANGLE,
+    AnyLimit,
+)
+from camwright.pipeline.checks.check import Declaration, Kept, Stroke
 from camwright.pipeline.checks.extremes import BY_DUTY
 from camwright.pipeline.contact.traction import Drag
 from camwright.pipeline.cycle.loaded_cam import (
@@ -71,10 +76,12 @@ def _shaped_jet(energy: tuple[Array, ...], variables: DesignVariables, shape: Sp
 
 
 def _numbers(variables: DesignVariables, ratings: Ratings) -> Numbers:
-    """Numbers of the machine with those that a search changes, and the margin that it keeps."""
-    margin = f"limits.{CONTACT_FORCE_MARGIN.id}"
-    kept = ratings.bounds.get(CONTACT_FORCE_MARGIN.id)
-    return ratings.numbers | {"cam.prime_radius": variables.prime_radius, margin: kept}
+    """Numbers of the machine with those that a search changes, and limits that measures read."""
+    read = {f"limits.{each.id}": ratings.bounds.get(each.id) for each in _READ}
+    return ratings.numbers | {"cam.prime_radius": variables.prime_radius, **read}
+
+
+_READ = (CONTACT_FORCE_MARGIN, PRESSURE_ANGLE, RETURN_PRESSURE_ANGLE)
 
 
 def unloaded(jet: Jet, variables: DesignVariables, ratings: Ratings) -> LoadedCam:
@@ -303,6 +310,7 @@ class Constraint(Generic[State]):
     row : Limit              row of the table of limits; None: a part sets the limit
     kept : Kept              unit and slope of a limit of a part, how far that of a row is relaxed
     needs : str              kind of follower; "": any
+    stroke : str             key of the limit of one stroke of the follower; "": of the whole turn
     """
 
     check: str
@@ -311,6 +319,12 @@ class Constraint(Generic[State]):
     row: AnyLimit | None = None
     kept: Kept = field(default=Kept(), repr=False)
     needs: Literal["", "roller", "face"] = ""
+    stroke: str = ""
+
+    @property
+    def name(self) -> str:
+        """Name of its utilisation: id of the check, or limit of a stroke."""
+        return self.stroke or self.check
 
     def value(self, ratings: Ratings) -> float | None:
         """Limit, SI; None: not constrained."""
@@ -347,6 +361,20 @@ def kept(declared: Declaration) -> Constraint[LoadedCam]:
         how.kept,
         how.kept.needs or declared.needs,
     )
+
+
+def kept_strokes(declared: Declaration) -> tuple[Constraint[LoadedCam], ...]:
+    """Constraints of the strokes of a check with limits of their own, after the first."""
+    whole, strokes = kept(declared), () if declared.measured is None else declared.measured.strokes
+
+    def of_stroke(stroke: Stroke) -> Constraint[LoadedCam]:
+        key, measure = stroke.limit.id, stroke.measure
+        return replace(
+            whole, key=key, utilisation=lambda cam, limit: measure(cam) / limit,
+            row=stroke.limit, stroke=key,
+        )  # fmt: skip
+
+    return tuple(of_stroke(each) for each in strokes[1:])
 
 
 def kept_loads(declared: Declaration) -> Constraint[ScenarioCam]:

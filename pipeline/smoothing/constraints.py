@@ -24,6 +24,7 @@ from camwright.pipeline.smoothing.cam_state import (
     State,
     kept,
     kept_loads,
+    kept_strokes,
     loaded,
     unloaded,
 )
@@ -63,12 +64,12 @@ def _utilisations(
 ) -> Mapping[str, Array | Mean]:
     uses: dict[str, Array | Mean] = {}
     for each in constraints:
-        if names is not None and each.check not in names:
+        if names is not None and each.name not in names:
             continue
         limit = each.value(ratings)
         use = None if limit is None else each.utilisation(state, limit)
         if use is not None:
-            uses[each.check] = use
+            uses[each.name] = use
     return uses
 
 
@@ -80,7 +81,8 @@ def constraints_of(
     Of a group one with each kind of follower; of the checks at maximum lift that of the spring
     travel, which `travel_limits` bounds.
     """
-    shape, loads = [], []
+    shape: list[Constraint[LoadedCam]] = []
+    loads: list[Constraint[ScenarioCam]] = []
     for each in checks:
         how = each.measured
         if how is None or how.kept is None:
@@ -89,7 +91,7 @@ def constraints_of(
         if (own.group not in ("", each.id) and not own.needs) or (at_top and not own.unit):
             continue
         if at_top or own.unloaded or (how.reduce == "contour" and not own.once):
-            shape.append(kept(each))
+            shape += kept(each), *kept_strokes(each)
         else:
             loads.append(kept_loads(each))
     return tuple(shape), tuple(loads)
@@ -101,3 +103,8 @@ LOADS: tuple[Constraint[ScenarioCam], ...] = (*_MEASURED, *PARTS)
 """Limits on the loads of the cam in one scenario."""
 
 CONSTRAINTS: tuple[Constraint[LoadedCam] | Constraint[ScenarioCam], ...] = (*SHAPE, *LOADS)
+
+
+def check_of(name: str) -> str:
+    """Id of the check of a limit, by the name of its utilisation in a synthesis."""
+    return next((each.check for each in CONSTRAINTS if each.name == name), name)

@@ -22,7 +22,7 @@ import numpy as np
 import scipy
 
 from camwright.geometry.arrays import Array, readonly, uniform_turn
-from camwright.pipeline.case.limits import PRESSURE_ANGLE
+from camwright.pipeline.case.limits import PRESSURE_ANGLE, RETURN_PRESSURE_ANGLE
 from camwright.pipeline.checks.cam_shape import spring_travel
 from camwright.pipeline.checks.demands import NORMAL_FORCE
 from camwright.pipeline.follower.spring import spring_energy
@@ -115,11 +115,12 @@ def _program(search: Search) -> Cones:
             program.at_most(side * torque - wide * sigma, 0.0)
         program.square_at_most(sigma, growth, 1.0)
     elif steepest is not None:
-        steep = np.tan(steepest * (1.0 - RESERVE)) * variables.closing
-        by_root = variables.prime_radius - variables.closing / variables.rate
-        room = steep * (by_root * sigma + (variables.closing / variables.rate) * growth)
-        for side in (1.0, -1.0):
-            program.at_most(side * torque - room, steep * variables.closing / variables.rate)
+        back = ratings.bounds.get(RETURN_PRESSURE_ANGLE.id, steepest)
+        stretch = variables.closing / variables.rate
+        height = (variables.prime_radius - stretch) * sigma + stretch * growth
+        for side, angle in ((1.0, steepest), (-1.0, back)):
+            steep = np.tan(angle * (1.0 - RESERVE)) * variables.closing
+            program.at_most(side * torque - steep * height, steep * stretch)
         program.square_at_most(sigma, growth, 1.0)
     if (force := ratings.bounds.get(NORMAL_FORCE)) is not None:
         share = (force * (1.0 - RESERVE) / variables.closing) ** 2

@@ -57,7 +57,7 @@ INITIAL_ENERGY = "initial_energy"
 LEAST_ENERGY = "least_energy"
 HIGHEST_PEAK = "highest_peak"
 KEPT_SIDE = "kept_side"
-SHAPE_LIMITS = frozenset(each.check for each in SHAPE)
+SHAPE_LIMITS = frozenset(each.name for each in SHAPE)
 # Distance from a limit within which a row is in the model; from another scenario at that angle.
 _NEAR, _BEHIND = 0.05, 0.01
 _RIPPLE_BEHIND = 0.005  # of the engine's ripple: the same for the ripples of the scenarios

@@ -191,4 +191,4 @@ def test_constraints_of_one_limit_show_it_alike() -> None:
         if own[0].row is None:
             assert len({(each.kept.unit, each.kept.falls) for each in own}) == 1, key
             assert len({each.needs for each in own}) == len(own), key
-    assert len({each.check for each in CONSTRAINTS}) == len(CONSTRAINTS)
+    assert len({each.name for each in CONSTRAINTS}) == len(CONSTRAINTS)

@@ -427,11 +427,11 @@ def greatest(each, states, ratings):
     return most
 
 
-PRICED = [each for each in OF_ROLLER if each.check not in ("contact_pressure", "concave_radius")]
+PRICED = [each for each in OF_ROLLER if each.name not in ("contact_pressure", "concave_radius")]
 """Two whose slope depends on the cam: `shadow_prices` and `test_prices_verification`."""
 
 
-@pytest.mark.parametrize("each", PRICED, ids=lambda each: each.check)
+@pytest.mark.parametrize("each", PRICED, ids=lambda each: each.name)
 def test_the_slope_of_a_bound_is_that_of_the_utilisation_where_it_binds(
     case, solved, problem, corrections, each
 ):
@@ -440,14 +440,17 @@ def test_the_slope_of_a_bound_is_that_of_the_utilisation_where_it_binds(
     pitch = solved.contour.pitch
     jet, top = Jet(*pitch.lift.derivatives(theta, 3)), pitch.lift.highest.value
     variables = DesignVariables(case.spring.rate, case.spring.preload, case.cam.prime_radius)
-    ratings = rated(ratings_of(case), held_radius=case.cam.held_radius, gas_slope=0.03)
+    ratings = rated(
+        ratings_of(case), held_radius=case.cam.held_radius, gas_slope=0.03,
+        return_pressure_angle=np.radians(20.0),
+    )  # fmt: skip
     states = [unloaded(jet, variables, ratings)]
     if each not in SHAPE:
         states = [
             loaded(jet, top, variables, ratings, replace(one, correction=corrections[one.name]))
             for one in problem.scenarios
         ]
-    bound = bounds_of(ratings)[each.check]
+    bound = bounds_of(ratings)[each.name]
 
     def with_bound(factor):
         if bound.relaxed is not None:
@@ -464,5 +467,5 @@ def test_the_slope_of_a_bound_is_that_of_the_utilisation_where_it_binds(
     step = 1e-6
     ends = [greatest(each, states, with_bound(at * (1.0 + side * step))) for side in (1, -1)]
     fall = (ends[1] - ends[0]) / (2.0 * step * at * bound.value)
-    slope = bounds_of(with_bound(at))[each.check].slope
+    slope = bounds_of(with_bound(at))[each.name].slope
     assert slope == pytest.approx(fall, rel=1e-4)

@@ -68,6 +68,15 @@ def asked(**ratings):
     [
         ("roller_static", {"normal_force": 700.0, "force_safety": 1.5}, 1.0 / 1.5),
         ("pressure_angle", {"pressure_angle": np.radians(20.0), "travel": 0.03}, np.radians(1.0)),
+        (
+            "return_pressure_angle",
+            {
+                "return_pressure_angle": np.radians(20.0),
+                "pressure_angle": np.radians(25.0),
+                "travel": 0.03,
+            },
+            np.radians(1.0),
+        ),
         ("contact_pressure", {"pressure": 400e6}, 1e6),
         ("spring_travel", {"travel": 0.018}, 1e-3),
         ("concave_radius", {"hollow_radius": 0.15, "travel": 0.03}, 1.1e-3),

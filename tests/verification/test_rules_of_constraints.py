@@ -7,12 +7,14 @@ mean over the rows of the pairs, or a magnitude that drops the imaginary part, r
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from functools import cache
 from typing import NamedTuple
 
 import numpy as np
 import pytest
 from synthesis_problems import constrained, described, with_corrections
+from synthesis_ratings import rated
 
 from camwright.geometry.arrays import Array
 from camwright.geometry.lift import Jet
@@ -28,7 +30,7 @@ from camwright.pipeline.smoothing.synthesis_problem import Problem
 
 PATHS = {"roller": "cases/gx120-redesign.toml", "face": "cases/gx120-flat-face.toml"}
 NAMES = [
-    (follower, each.check)
+    (follower, each.name)
     for follower in PATHS
     for each in CONSTRAINTS
     if each.needs in ("", follower)
@@ -54,6 +56,8 @@ def state(follower: str) -> State:
     problem = constrained(PATHS[follower])
     if follower == "roller":
         problem = described(problem)
+        ratings = rated(problem.ratings, return_pressure_angle=np.radians(20.0))
+        problem = replace(problem, ratings=ratings)
     problem = with_corrections(problem, 3)
     search = Search(problem)
     variables = problem.variables

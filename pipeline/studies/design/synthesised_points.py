@@ -11,6 +11,7 @@ from typing import NamedTuple
 from camwright.pipeline.base.progress import Progress
 from camwright.pipeline.base.worker_processes import Crew
 from camwright.pipeline.checks.registry import DECLARED
+from camwright.pipeline.smoothing.constraints import check_of
 from camwright.pipeline.studies.design.candidate_search import FAR, OPTIMISTIC, Candidate
 from camwright.pipeline.studies.design.design_case import SYNTHESIS, Machinery, case_text
 from camwright.pipeline.studies.design.torque_task import DesignTask
@@ -58,8 +59,9 @@ class PointStudy:
         rough = solved(PointTask(text, "", self.folder, self.version, "coarse"))
         if "why" in rough:
             return Solved(design, rough, smoothing)
-        failing = {"title": DECLARED[rough["limit"]].title, "check": rough["limit"],
-                   "utilisation": rough["utilisation"]} if rough["limit"] else None  # fmt: skip
+        check = check_of(rough["limit"])
+        failing = {"title": DECLARED[check].title, "check": check,
+                   "utilisation": rough["utilisation"]} if check else None  # fmt: skip
         record = {
             "verdict": "fail" if failing else "pass",
             "ripple_left_Nm": rough["ripple"] * self.task.demand.ripple,
