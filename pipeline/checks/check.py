@@ -30,7 +30,7 @@ Status = Literal["pass", "fail", "not_evaluated", "waived"]
 Verdict = Literal["pass", "incomplete", "fail"]
 Screen = Literal["open", "fail"]
 Error = Literal["sampling", "contact", "ends", "guides", "guide_edges", "bore", "unknown"]
-Bounded = Literal["", "crown", "line"]
+Bounded = Literal["", "crown", "line", "surge"]
 RestsOn = Literal["", "contact", "loads"]
 Page = Literal[
     "",
@@ -207,8 +207,9 @@ class Measured(NamedTuple):
     pointwise : bool     the demand bends over the measure: made at each angle, so that its error
                          bar is that of the demand
     smooth : bool        the screening refines the measure between samples; False: it has poles
-    bounded : str        the screened demand is a lower bound where the lines of contact are too
-                         many to be solved: "crown", of crowned bodies; "line", of any; "": never
+    bounded : str        the screened utilisation is a lower bound where the lines of contact are
+                         too many to be solved: "crown", of crowned bodies; "line", of any; without
+                         the surge of a wound spring: "surge"; "": never
     strokes : tuple      measures with limits of their own, where the case sets each of them: that
                          of the greatest utilisation governs
     kept : Kept          None: the synthesis does not keep it

@@ -284,6 +284,7 @@ roller_life = check(
     needed=(_RATING,),
     remark=_with_damage,
     deviation=0.03,
+    bounded="surge",
     kept=Kept(power=1.0 / BALL_LIFE_EXPONENT, unit="N"),
 )(_damage)
 

@@ -46,6 +46,7 @@ _BOUNDED: Mapping[Bounded, Callable[[Designs], bool]] = {
     "": lambda _: False,
     "crown": lambda designs: designs.machine.is_crowned and has_many_shapes(designs),
     "line": has_many_shapes,
+    "surge": lambda designs: designs.case.spring.design is not None,
 }
 
 

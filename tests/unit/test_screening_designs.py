@@ -14,6 +14,7 @@ from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_file import read_case, with_values
 from camwright.pipeline.case.case_values import quantity_of, replaced, value_of
 from camwright.pipeline.case.load_case_torque import engine_torques
+from camwright.pipeline.case.toml_text import TomlValue
 from camwright.pipeline.checks.check import Check
 from camwright.pipeline.checks.registry import CHECKS
 from camwright.pipeline.contact.tiers import Tier
@@ -112,14 +113,16 @@ def test_designs_of_other_structure_are_grouped() -> None:
             np.testing.assert_allclose(columns[name][row], alone[name][0], rtol=1e-12)
 
 
+WINDING = {
+    "spring.design.wire_diameter": "3.6 mm", "spring.design.mean_diameter": "24 mm",
+    "spring.design.coils": 5.0, "spring.design.free_length": "60 mm",
+    "spring.design.shear_modulus": 77.2e9, "spring.design.density": 7850.0,
+    "spring.design.strength_at_1mm": 1.97e9, "spring.design.strength_exponent": 0.108,
+}  # fmt: skip
+
+
 def test_wound_springs_are_solved_at_once_and_refused_by_name() -> None:
-    winding = {
-        "spring.design.wire_diameter": "3.6 mm", "spring.design.mean_diameter": "24 mm",
-        "spring.design.coils": 5.0, "spring.design.free_length": "60 mm",
-        "spring.design.shear_modulus": 77.2e9, "spring.design.density": 7850.0,
-        "spring.design.strength_at_1mm": 1.97e9, "spring.design.strength_exponent": 0.108,
-    }  # fmt: skip
-    wound = with_values(case(), winding)
+    wound = with_values(case(), WINDING)
     factors = {
         "spring.design.wire_diameter": ["3.6 mm", "4 mm", "9 mm", "3.6 mm", 0.0066],
         "spring.design.mean_diameter": [0.024, 0.026, 0.024, 0.024, 0.1],
@@ -274,3 +277,15 @@ def test_the_roller_lives_by_the_duty_as_in_the_preview() -> None:
     slower = base.model_copy(update={"limits": limits})  # as the follower leaves the cam above
     worst = screen_designs(slower, {"spring.rate": [own.spring.rate]})["roller_life.demand"][0]
     assert columns["roller_life.demand"][0] > 1.1 * worst
+
+
+@pytest.mark.parametrize(("spring", "long_enough"), [({}, "pass"), (WINDING, "not_evaluated")])
+def test_a_life_without_the_surge_of_the_spring_can_only_fail(
+    spring: dict[str, TomlValue], long_enough: str
+) -> None:
+    """The surge of a wound spring, which screening leaves out, shortens the life."""
+    base = with_values(case(), spring)
+    slower = base.limits.model_copy(update={"overspeed": None})  # the follower leaves the cam there
+    base = base.model_copy(update={"limits": slower})
+    columns = screen_designs(base, {"limits.roller_life": ["1 h", "1e6 h"]})
+    assert list(columns["roller_life.status"]) == [long_enough, "fail"]
