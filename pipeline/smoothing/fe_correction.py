@@ -37,7 +37,7 @@ from camwright.pipeline.smoothing.synthesis_problem import RESERVE, Design, Prob
 SETTLED = 5e-3  # of a limit: maximum change of a utilisation at convergence
 SETTLED_RIPPLE = 2e-3  # of the residual ripple: maximum change by a further trial at convergence
 _LOADED = 0.05  # of the maximum: least load of a meaningful ratio
-_RUBBING = 1e-6  # the same for friction, which also acts at low guide loads
+_GUIDED = 1e-6  # the same for loads of the guides, of which little is needed to rub and to tilt
 _USED = 0.5  # utilisation below which a limit does not count
 _JUDGED_MOST = 3.0  # utilisation at a tolerance corner over that of the synthesis
 _LATEST = 0.25  # least share of the latest corrections in those of the next trial
@@ -359,13 +359,13 @@ def _of_cycle(cycle: Cycle, swept: Correction, left: Sequence[tuple[float, float
         contact=_ratio(contact.p0, contact.p0_hertz),
         guide_a=of_guides.correction(0, guides.bearing_load_a / left[0][0]),
         guide_b=of_guides.correction(1, guides.bearing_load_b / left[1][0]),
-        rubbing_a=of_guides.correction(0, guides.rubbing_load_a, _RUBBING),
-        rubbing_b=of_guides.correction(1, guides.rubbing_load_b, _RUBBING),
+        rubbing_a=of_guides.correction(0, guides.rubbing_load_a),
+        rubbing_b=of_guides.correction(1, guides.rubbing_load_b),
         jam=_ratio(worst.jam_index, worst.jam_index_statics),
         edge_a=of_guides.correction(0, line_a * machine.guides.a.length / left[0][1]),
         edge_b=of_guides.correction(1, line_b * machine.guides.b.length / left[1][1]),
-        hot_a=hot.correction(0, _over(worst.friction_force_a, friction[0]), _RUBBING),
-        hot_b=hot.correction(1, _over(worst.friction_force_b, friction[1]), _RUBBING),
+        hot_a=hot.correction(0, _over(worst.friction_force_a, friction[0])),
+        hot_b=hot.correction(1, _over(worst.friction_force_b, friction[1])),
         surge=np.zeros(cycle.theta.size) if surge is None else surge,
         rolling=np.full(cycle.theta.size, _mean_rolling(cycle)),
         least_lift=np.full(cycle.theta.size, cycle.contour.pitch.lift.lowest.value),
@@ -386,10 +386,10 @@ class _Statics(NamedTuple):
         on_a, on_b = (np.abs(each) for each in both)
         return cls((on_a, on_b), (side * lever_a + couple, side * lever_b + couple))
 
-    def correction(self, place: int, solved: Array, least: float = _LOADED) -> Array:
+    def correction(self, place: int, solved: Array) -> Array:
         """Correction (n,) with which `Reaction` is the solved load; 1 where unloaded."""
         whole = self.whole[place]
-        return _ratio(np.abs(solved) + whole - self.both[place], whole, least)
+        return _ratio(np.abs(solved) + whole - self.both[place], whole, _GUIDED)
 
 
 def _over(force: Array, friction: float) -> Array:
