@@ -133,6 +133,11 @@ class Designs:
         return sampled_greatest(self.jets[0])
 
     @KeptResult
+    def lowest(self) -> Array:
+        """Minimum lift (m,), m."""
+        return sampled_least(self.jets[0])
+
+    @KeptResult
     def whole(self) -> LoadedCam:
         """The unloaded cams at the samples of the lift."""
         return LoadedCam(Jet(*self.jets), self.numbers, self.highest[:, None])
@@ -185,7 +190,7 @@ class Designs:
     @KeptResult
     def stroke(self) -> Array:
         """Maximum less minimum lift (m, 1), m."""
-        return (self.highest - sampled_least(self.jets[0]))[:, None]
+        return (self.highest - self.lowest)[:, None]
 
     @KeptResult
     def states(self) -> tuple[ScreenedState, ...]:
@@ -242,6 +247,7 @@ class Designs:
             self.motion.jet,
             self.numbers | own,
             self.highest[:, None],
+            self.lowest[:, None],
             external=self.machine.external.at(self.theta),
             gravity=self.machine.gravity_along_axis,
             block=self,

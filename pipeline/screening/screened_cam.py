@@ -9,7 +9,6 @@ from typing import NamedTuple, Protocol
 import numpy as np
 
 from camwright.geometry.arrays import FULL_TURN, Array
-from camwright.geometry.extrema import sampled_least
 from camwright.geometry.follower_path import Motion
 from camwright.pipeline.contact.hertz import half_width_square, peak_pressure_square
 from camwright.pipeline.cycle.length_history import FactorRange
@@ -73,11 +72,6 @@ class ScreenedCam(LoadedCam):
     def spin_mean(self) -> Array:
         """Mean speed of the roller over the turn (m, 1), rad/s."""
         return np.mean(np.abs(self.spin), axis=-1, keepdims=True)
-
-    @cached_property
-    def least_spring(self) -> Array:
-        """Spring force at minimum lift of the cam angles of the loads (m, 1), N."""
-        return sampled_least(self.spring_force)[:, None]
 
     @cached_property
     def _free(self) -> Array:
