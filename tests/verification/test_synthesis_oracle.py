@@ -300,7 +300,8 @@ EXCESS = {
 }  # fmt: skip
 """Excess of the optimum over a limit that is tightened, where it is not `USUAL`."""
 USUAL = 0.1
-STEM = 150.0  # N, lost by an elastic stem
+LOST = 400.0  # N, of an elastic stem or by the surge
+LESSENED = {"elastic_contact": "elastic", "contact_over_speed": "swept_surge"}
 FIXED = "guide_gap"  # at maximum lift it is that of the case, whatever the lift
 
 
@@ -326,12 +327,13 @@ def isolated(problem, name):
     scenarios = problem.scenarios
     if name == "jam_index":
         scenarios = tuple(changed(item, friction_worst=None) for item in scenarios)
-    if name == "elastic_contact":
-        bent = tuple(
-            replace(item.correction, elastic=item.correction.elastic - STEM) for item in scenarios
+    if field := LESSENED.get(name):  # at the over-speed two others keep the same margin
+        lessened = tuple(
+            replace(item.correction, **{field: getattr(item.correction, field) - LOST})
+            for item in scenarios
         )
         scenarios = tuple(
-            replace(item, correction=each) for item, each in zip(scenarios, bent, strict=True)
+            replace(item, correction=each) for item, each in zip(scenarios, lessened, strict=True)
         )
     return replace(problem, scenarios=scenarios)
 
