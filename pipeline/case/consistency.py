@@ -16,6 +16,7 @@ from camwright.pipeline.base.quantities import In
 from camwright.pipeline.base.units import shown
 from camwright.pipeline.case.case_values import quantity_of, text_of, value_of, wound_spring
 from camwright.pipeline.case.lift_section import LiftSegments, motion_of
+from camwright.pipeline.case.limits import SPEED_REDUCTION, TORQUE_REDUCTION
 from camwright.pipeline.case.requirements_section import OVER_SPEED, STANDSTILL, Tolerances
 from camwright.pipeline.case.value_sources import require_known
 from camwright.pipeline.contact.cam_body import CamBody
@@ -186,7 +187,7 @@ def _start(case: Case) -> Iterator[Rule]:
     if case.balances:
         limit = "> 0 rpm, as its torque is that of the cam design"
         yield _more("load_case[0].speed", _fixed(0.0), limit)
-    freed = {"spring_rate", "preload"} & set(case.smoothing.free)
+    freed = case.smoothing.of_spring
     if freed and case.spring.shape is not None:
         limit = f'left out with spring.kind = "{case.spring.kind}"'
         raise InputError("smoothing.free", min(freed), limit)
@@ -201,7 +202,7 @@ def _start(case: Case) -> Iterator[Rule]:
         if case.spring.shape is not None:
             limit = f'left out with spring.kind = "{case.spring.kind}"'
             yield _left_out(f"load_case[{k}].preload", limit)
-        for name in ("torque", "torque_reduction", "speed_reduction"):
+        for name in ("torque", TORQUE_REDUCTION.id, SPEED_REDUCTION.id):
             if not case.balances and getattr(load_case, name) is not None:
                 yield Rule(f"load_case[{k}].{name}", _fixed(True), "left out with a lift")
         modelled = isinstance(case.engine, CylinderEngine) and load_case.torque is None

@@ -127,14 +127,14 @@ def pressure_allowables(machine: Machine, cycles: LoadCycles) -> dict[str, float
     endurance = _least_endurance(machine)
     allowed = {}
     if ends is not None:
-        allowed["edge_pressure"] = _times(endurance, 1.0 / ends)
+        allowed[edge_pressure.id] = _times(endurance, 1.0 / ends)
     if follower.friction is not None:
         factor = float(shakedown_factors(follower.friction, least_poisson(machine))[1][-1])
-        allowed["shakedown_traction"] = _times(shear, factor)
+        allowed[shakedown_traction.id] = _times(shear, factor)
         if ends is not None:
-            allowed["edge_shakedown"] = _times(shear, factor / ends)
+            allowed[edge_shakedown.id] = _times(shear, factor / ends)
     if limits[TARGET_LIFE] is not None and ends is not None:
-        allowed["contact_pressure_at_life"] = _times(_life_limit(machine, cycles), 1.0 / ends)
+        allowed[contact_pressure_at_life.id] = _times(_life_limit(machine, cycles), 1.0 / ends)
     return {name: each.value for name, each in allowed.items() if each.value is not None}
 
 
@@ -468,7 +468,7 @@ shakedown = check(
     levers=(levers.CROWNED, levers.NARROWER, *levers.ENDURANCE),
     page="Contact",
     certified_by="p0",
-    scales_with=("contact_pressure", 1.0),
+    scales_with=(PRESSURE, 1.0),
 )
 def contact_pressure_at_life(solution: Solution) -> Demand:
     """Maximum contact pressure, Pa, against the endurance at the target life."""
@@ -536,7 +536,7 @@ _SIGNED = (
     levers=(levers.CROWNED, levers.NARROWER, *levers.ENDURANCE),
     page="Contact",
     certified_by="p0",
-    scales_with=("contact_pressure", 1.0),
+    scales_with=(PRESSURE, 1.0),
 ).measured(
     "angles",
     allowed=_endurance_allowed,
@@ -570,7 +570,7 @@ def edge_pressure(cam: LoadedCam) -> Array:
     levers=(levers.CROWNED, levers.NARROWER, *levers.YIELD),
     page="Contact",
     certified_by="p0",
-    scales_with=("contact_pressure", 1.0),
+    scales_with=(PRESSURE, 1.0),
 )
 def edge_shakedown(solution: Solution) -> Demand:
     """Equivalent signed pressure, Pa, against shakedown."""

@@ -130,7 +130,7 @@ def _with_card_of_pin(demand: Demand, solution: Solution) -> Demand:
     ),
     levers=(levers.one("roller.pin.diameter", most=2.0), *levers.LOAD),
     page="Roller",
-    scales_with=("normal_force", 1.0),
+    scales_with=(NORMAL_FORCE, 1.0),
 )
 def roller_pin_fatigue(solution: Solution) -> Demand:
     """Fatigue safety factor of the roller pin."""

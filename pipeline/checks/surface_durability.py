@@ -228,7 +228,7 @@ def dang_van(solution: Solution) -> Demand:
     levers=levers.CASE,
     page="Cam",
     certified_by="von_mises",
-    scales_with=("contact_pressure", 1.0),
+    scales_with=(demands.PRESSURE, 1.0),
 )
 def hardened_case(solution: Solution) -> Demand | None:
     """Maximum von Mises stress over the yield strength at its depth; None if not hardened."""
@@ -267,7 +267,7 @@ def hardened_case(solution: Solution) -> Demand | None:
     levers=levers.CASE,
     page="Cam",
     certified_by="tau_max",
-    scales_with=("contact_pressure", 1.0),
+    scales_with=(demands.PRESSURE, 1.0),
 )
 def case_shear(solution: Solution) -> Demand | None:
     """Maximum shear amplitude over the fatigue limit at its depth; None if not hardened."""
@@ -356,7 +356,7 @@ def _signed_depth(cycle: Cycle) -> Array:
     values=(*given.LENGTH, "cam.material.case_depth"),
     levers=levers.CASE,
     page="Cam",
-    scales_with=("normal_force", 0.5),
+    scales_with=(demands.NORMAL_FORCE, 0.5),
 )
 def case_depth(solution: Solution) -> Demand | None:
     """Effective case depth over the greatest depth of maximum shear; None if not hardened."""
