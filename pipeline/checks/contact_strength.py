@@ -18,7 +18,6 @@ import numpy as np
 from camwright.geometry.arrays import FULL_TURN, Array, Value, uniform_turn
 from camwright.geometry.contour import Contour
 from camwright.geometry.extrema import first_least
-from camwright.geometry.pitch_curve import rolling_share
 from camwright.pipeline.base import disk_cache, levers
 from camwright.pipeline.base import value_groups as given
 from camwright.pipeline.base.material import Endurance, Material
@@ -236,11 +235,14 @@ def life_turns(machines: tuple[Machine, ...]) -> float:
 
 def load_cycles(machines: tuple[Machine, ...], contour: Contour) -> LoadCycles:
     """Load cycles in the target life: one per turn of the cam, and one per turn of the roller."""
-    turns, roller = life_turns(machines), machines[0].roller
-    if roller is None:
-        return LoadCycles(turns, FACE_PASSES * turns)
-    speed, _ = contour.pitch.speed_and_curvature(uniform_turn(_STATIONS))
-    return LoadCycles(turns, turns * float(np.mean(np.abs(rolling_share(speed, roller.radius)))))
+    turns, pitch = life_turns(machines), contour.pitch
+    path, _ = pitch.speed_and_curvature(uniform_turn(_STATIONS))
+    return LoadCycles(turns, turns * passes(machines[0].follower, path))
+
+
+def passes(follower: FollowerKind, path: Array | float) -> float:
+    """Load cycles of the follower per cam turn, see `FollowerKind.turns`."""
+    return FACE_PASSES if follower.slides else follower.turns(path)
 
 
 def contact_p0(cam: LoadedCam) -> Array:
@@ -626,12 +628,10 @@ def shakedown_traction(solution: Solution) -> Demand:
     values=("roller.axial_offset",),
     page="Roller",
 )
-def roller_overlap(solution: Solution) -> Demand | None:
-    """Axial offset of the roller from the middle of the cam, m; None under a flat face."""
+def roller_overlap(solution: Solution) -> Demand:
+    """Axial offset of the roller from the middle of the cam, m."""
     machine = solution.machine
     roller = machine.roller
-    if roller is None:
-        return None
     spare, offset = 0.5 * abs(machine.cam.line_width - roller.line_width), roller.axial_offset
     if offset is None:
         return Demand(None, spare, missing=lacking(roller.table, roller, "axial_offset"))

@@ -30,7 +30,7 @@ def _data(
     described_by: tables or keys by which the case describes the part; applies: whether a case can
     have it.
     """
-    words: str = "flat face" if name == "face" else name
+    words: str = name.replace("face", "flat face")
     coverable: PartName | None = None
     for part, text in PART_WORDS.items():
         if part == name:

@@ -23,6 +23,7 @@ from camwright.geometry.extrema import least_argument
 from camwright.geometry.lift_parts import LiftParts
 from camwright.pipeline.base.units import shown
 from camwright.pipeline.case.case import Case
+from camwright.pipeline.case.case_values import value_of
 from camwright.pipeline.case.lift_section import LiftEccentric, LiftSegments, motion_of
 from camwright.pipeline.case.limits import (
     CURVATURE_RATIO,
@@ -234,8 +235,7 @@ class FaceShapes:
             if wall > base:
                 base, governs = wall, "wall around the bore"
         offset = rounded(self.cam.best_offset) if OFFSET in self.gaps else case.cam.offset
-        face = case.follower.face
-        width = self.cam.face_width(offset) if FACE in self.gaps or face is None else face.width
+        width = self.cam.face_width(offset) if FACE in self.gaps else value_of(case, FACE)
         return Shape(base, offset, 0.0, width, governs, NARROWEST)
 
     def enlarged(self, shape: Shape, prime: float, governs: str) -> Shape:

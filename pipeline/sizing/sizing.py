@@ -17,7 +17,7 @@ from camwright.pipeline.base.progress import SILENT, Progress
 from camwright.pipeline.base.quantities import In
 from camwright.pipeline.base.units import in_unit, shown
 from camwright.pipeline.case.case import Case
-from camwright.pipeline.case.case_values import quantity_of, refused_as_written, replaced
+from camwright.pipeline.case.case_values import quantity_of, refused_as_written, replaced, value_of
 from camwright.pipeline.case.given_lift import given_lift
 from camwright.pipeline.case.load_case_torque import engine_torques
 from camwright.pipeline.checks.cam_shape import (
@@ -389,8 +389,7 @@ class _SizeSearch:
 
     @property
     def _roller_by(self) -> str:
-        roller = self.opened.case.roller_given
-        ring = roller is not None and roller.bearing.ring is not None
+        ring = value_of(self.opened.case, "roller.bearing.ring")
         return "outer ring of its bearing" if ring else "least contact pressure within curvature"
 
     def _lift(self, case: Case) -> Lift:

@@ -17,9 +17,9 @@ from camwright.pipeline.case.machine import Machine, machines
 from camwright.pipeline.checks.cam_shape import lift, spring_travel
 from camwright.pipeline.checks.check import Declaration, Measured
 from camwright.pipeline.checks.contact_strength import (
-    FACE_PASSES,
     LoadCycles,
     life_turns,
+    passes,
     pressure_allowables,
 )
 from camwright.pipeline.checks.demands import NORMAL_FORCE, PRESSURE
@@ -49,7 +49,7 @@ def ratings_of(case: Case) -> Ratings:
     held = machine.cam.held_radius if "prime_radius" in case.smoothing.free else None
     ratings = Ratings(
         numbers | {"cam.held_radius": held, "guides.a.mouth": numbers["guides.a.mouth"]},
-        drag=None if machine.roller is None else machine.roller.drag,
+        drag=machine.follower.drag,
         keyway=keyway_root_of(machine),
         grease=grease_of(machine),
     )
@@ -124,14 +124,11 @@ def greatest_cycles(case: Case) -> LoadCycles:
     pressure angle per cam angle.
     """
     turns, smoothing = life_turns(machines(case)), case.smoothing
-    roller = case.roller_given
-    if roller is None:
-        return LoadCycles(turns, FACE_PASSES * turns)
     travel = min(travel_limits(case).values(), default=None)
     prime = max(case.cam.prime_radius, *(smoothing.prime_radius_range or ()), 0.0)
     radius = prime + (prime if travel is None else travel)
     path = radius / np.cos(case.limits[PRESSURE_ANGLE])
-    return LoadCycles(turns, turns * max(path / roller.radius - 1.0, 1.0))
+    return LoadCycles(turns, turns * max(passes(case.facing, path), 1.0))
 
 
 class Surge(NamedTuple):
