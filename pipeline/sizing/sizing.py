@@ -67,7 +67,6 @@ from camwright.pipeline.sizing.open_case import (
     read_open_case,
 )
 from camwright.pipeline.sizing.shapes import (
-    FaceShapes,
     RollerShapes,
     Shape,
     Shapes,
@@ -318,12 +317,7 @@ class _SizeSearch:
         return PRELOAD in self.opened.gaps or self._rate_is_open
 
     def _spring(self, shape: Shape, stiff: ChosenSpring | None = None) -> ChosenSpring:
-        parts = (
-            self.shapes.cam.lift
-            if isinstance(self.shapes, FaceShapes)
-            else self.shapes.cam.parts(shape.prime_radius, shape.offset)
-        )
-        return spring_of(self.opened.case, self.opened.gaps, parts, stiff)
+        return spring_of(self.opened.case, self.opened.gaps, self.shapes.parts(shape), stiff)
 
     def _stiffened(self, exact: Shape, first: _Tried) -> _Tried:
         """The first of stiffer springs whose winding passes; the given one if none does."""
