@@ -149,14 +149,14 @@ def film_ratio(solution: Solution) -> Demand:
 def _torsion_demand(solution: Solution, measure: Callable[[Envelope], float]) -> Demand:
     """Equivalent fatigue stress against the fatigue limit in torsion of the cam, Pa."""
     card = solution.machine.cam.material
-    torsion, safety = card.fatigue_torsion, solution.machine.limits[FATIGUE_SAFETY]
-    known = torsion is not None and card.fatigue_bending is not None
+    endured, safety = card.fatigue_torsion, solution.machine.limits[FATIGUE_SAFETY]
+    known = endured is not None and card.fatigue_bending is not None
     worst = worst_case(
         solution.cycles, lambda cycle: measure(cycle.rolling.swept.governing) if known else math.nan
     )
     return Demand(
         worst.value,
-        torsion / safety if known and torsion else None,
+        endured / safety if known and endured else None,
         worst,
         lacking_of_card(card, "fatigue_torsion", "fatigue_bending"),
         figures=(f"{card.name}: {card.source}",),

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
-from typing import Literal, NamedTuple, Protocol, Self
+from dataclasses import Field, dataclass
+from typing import ClassVar, Literal, NamedTuple, Protocol, Self
 
 from camwright.geometry.arrays import Array
 from camwright.geometry.contour import Contour
@@ -69,6 +69,8 @@ class FollowerKind(Protocol):
     there, None: not described; `drag`: against rolling, None without it; `pin_stress_per_newton`:
     in bending, Pa/N, None without a pin.
     """
+
+    __dataclass_fields__: ClassVar[dict[str, Field[object]]]
 
     @property
     def word(self) -> str: ...

@@ -10,6 +10,7 @@ from collections import Counter
 from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
+from typing import NamedTuple
 
 import pytest
 
@@ -373,3 +374,97 @@ def test_the_facts_of_a_check_stand_in_its_declaration() -> None:
         if isinstance(node, ast.Constant) and home.get(node.value, name) != name
     }
     assert naming == set(NAME_CHECKS)
+
+
+class Kinds(NamedTuple):
+    """Kinds of a part: their classes, their words in a case, attributes that are None of others."""
+
+    classes: frozenset[str]
+    words: frozenset[str]
+    attributes: frozenset[str]
+
+    def branches(self, node: ast.AST) -> bool:
+        """Whether a node asks for the kind."""
+        if isinstance(node, ast.Call) and _name(node.func) == "isinstance":
+            return bool(self.classes & {_name(each) for each in ast.walk(node.args[1])})
+        if isinstance(node, ast.MatchClass):
+            return _name(node.cls) in self.classes
+        if isinstance(node, ast.Compare):
+            sides = [node.left, *node.comparators]
+            values = {each.value for each in sides if isinstance(each, ast.Constant)}
+            return bool(self.words & values) or (None in values and any(map(self._is_of, sides)))
+        if isinstance(node, ast.BoolOp):
+            return any(map(self._is_of, node.values))
+        return isinstance(node, ast.If | ast.IfExp) and self._is_of(node.test)
+
+    def _is_of(self, node: ast.AST) -> bool:
+        return _name(node) in self.attributes
+
+
+def _name(node: ast.AST) -> str:
+    return str(getattr(node, "attr", getattr(node, "id", "")))
+
+
+FOLLOWERS = Kinds(
+    classes=frozenset({
+        "Roller", "FlatFace", "RollerMotion", "FaceMotion", "RollerContour", "FlatFaceContour",
+        "PitchCurve", "FacePath", "RollerBody", "RingBody", "FaceBody", "RollerShapes",
+        "FaceShapes",
+    }),
+    words=frozenset({"roller", "face", "flat"}),
+    attributes=frozenset({"roller", "roller_given", "face"}),
+)  # fmt: skip
+SPRINGS = Kinds(
+    classes=frozenset({"HelicalSpring", "GasSpring", "TorsionSpring", "Coil"}),
+    words=frozenset({"coil", "gas", "torsion"}),
+    attributes=frozenset({"gas", "torsion"}),
+)
+_READS, _DRAWS = "reads the tables of a case", "draws the parts of a run on disk"
+ASK_FOR_A_KIND = {
+    FOLLOWERS: {
+        "pipeline.case.added_tables": _READS,
+        "pipeline.case.case": _READS,
+        "pipeline.case.case_file": "refuses a face too narrow for the lift of its case",
+        "pipeline.case.consistency": _READS,
+        "pipeline.case.given_lift": "lift of an eccentric, which the follower decides",
+        "pipeline.case.machine": "narrows the follower to the kind that a check needs",
+        "pipeline.case.parts_section": _READS,
+        "pipeline.cycle.loaded_cam": "narrows the motion to the kind that a measure needs",
+        "pipeline.screening.design_screening": "refuses designs with too narrow a face",
+        "pipeline.sizing.open_case": _READS,
+        "pipeline.sizing.shapes": "chooses the shapes of the kind",
+        "pipeline.sizing.size_chart": "chooses the panels of the kind",
+        "pipeline.sizing.sizing": "narrows the shapes to those with an open roller",
+        "pipeline.smoothing.scenario": "numbers of a problem have no follower of their own",
+        "reports.arrangement_data": _DRAWS,
+        "reports.drawing.arrangement": _DRAWS,
+    },
+    SPRINGS: {
+        "pipeline.follower.spring": "has a table for each kind",
+        "pipeline.checks.spring_strength": "narrows the spring to the kind that a measure needs",
+        "reports.arrangement_data": _DRAWS,
+        "reports.drawing.arrangement": _DRAWS,
+        "reports.part_figures": _DRAWS,
+    },
+}
+"""Modules that branch on a kind of follower or spring outside its own modules, and why."""
+
+
+@pytest.mark.parametrize("text", [
+    "isinstance(part, Roller | None)", "x = part.face is None", 'case.kind == "flat"',
+    "a if machine.roller else b", "machine.face or other", "match part:\n    case Roller(): pass",
+])  # fmt: skip
+def test_a_branch_on_a_kind_is_seen(text: str) -> None:
+    assert any(map(FOLLOWERS.branches, ast.walk(ast.parse(text))))
+
+
+@pytest.mark.parametrize("kinds", ASK_FOR_A_KIND, ids=["follower", "spring"])
+def test_a_part_is_asked_for_its_members_and_not_for_its_kind(kinds: Kinds) -> None:
+    """A new branch is a member of the kinds; a module that loses its last leaves the list."""
+    asking = {
+        name
+        for name, path in modules().items()
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
+        if kinds.branches(node)
+    }
+    assert asking == set(ASK_FOR_A_KIND[kinds])
