@@ -34,7 +34,6 @@ class FlatFace(Part):
     word: ClassVar[str] = "face"
     width_key: ClassVar[str] = "follower.face.depth"
     slides: ClassVar[bool] = True
-    may_turn: ClassVar[bool] = True
     axial_offset: ClassVar[None] = None
     parts: ClassVar[Mapping[str, Part | None]] = {}
     drag: ClassVar[None] = None

@@ -63,11 +63,10 @@ class FollowerKind(Protocol):
     `word`: its name in files and texts; `table`: in the case file; `width_key`: key of its width
     along the line of contact; `line_width`: maximum width of the line contact, m; `friction`:
     coefficient of sliding on the cam; `roughness`: rms, m; `slides`: whether its surface slides on
-    the cam, not rolls; `may_turn`: whether it may turn about the stem; `end`: of its surface, None
-    where it is not stated; `crown`: None for a straight one; `axial_offset`: of its middle from
-    that of the cam, m, None where it is not stated; `parts`: those of the scope by their names
-    there, None: not described; `drag`: against rolling, None without it; `pin_stress_per_newton`:
-    in bending, Pa/N, None without a pin.
+    the cam, not rolls; `end`: of its surface, None where it is not stated; `crown`: None for a
+    straight one; `axial_offset`: of its middle from that of the cam, m, None where it is not
+    stated; `parts`: those of the scope by their names there, None: not described; `drag`: against
+    rolling, None without it; `pin_stress_per_newton`: in bending, Pa/N, None without a pin.
     """
 
     __dataclass_fields__: ClassVar[dict[str, Field[object]]]
@@ -88,8 +87,6 @@ class FollowerKind(Protocol):
     def roughness(self) -> float | None: ...
     @property
     def slides(self) -> bool: ...
-    @property
-    def may_turn(self) -> bool: ...
     @property
     def end(self) -> BodyEnd | None: ...
     @property
