@@ -259,13 +259,13 @@ def _pressure_angle(turn: SheetTurn) -> Figure | None:
 
 
 def _radii(turn: SheetTurn) -> Figure | None:
-    roller = turn.length("roller", "radius")
+    radius = turn.length("roller", "radius")
     limits: tuple[LimitLine, ...] = ()
-    if roller is not None:
-        limits = (LimitLine(roller, "roller radius"),)
+    if radius is not None:
+        limits = (LimitLine(radius, "roller radius"),)
     ratio = turn.bound("curvature_ratio")
-    if roller and ratio:
-        limits += (LimitLine(ratio * roller, "minimum pitch radius"),)
+    if radius and ratio:
+        limits += (LimitLine(ratio * radius, "minimum pitch radius"),)
     curves = []
     wanted = [
         ("pitch_radius_of_curvature_mm", "pitch curve"),

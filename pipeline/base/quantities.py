@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from functools import cache
 from math import inf, isfinite
 from types import MappingProxyType, UnionType
@@ -270,6 +270,21 @@ class Part:
     def with_derived(self) -> Self:
         """The part with those fields as the others have them."""
         return self
+
+    def with_values(self, values: Mapping[str, float], table: str = "") -> Self:
+        """The part with those of some values, SI, by their keys in a case, that it has.
+
+        table: key of the part, where it is one of another; "": its own.
+        """
+        known = {f"{table or self.table}.{each.name}": each.name for each in fields(self)}  # type: ignore[arg-type]
+        own = {name: getattr(self, name) for name in known.values()}
+        changed = {
+            name: own[name].with_values(values, key)
+            if isinstance(own[name], Part)
+            else values.get(key, own[name])
+            for key, name in known.items()
+        }
+        return replace(self, **changed)  # type: ignore[type-var]
 
     @property
     def lacking(self) -> tuple[str, ...]:

@@ -261,13 +261,12 @@ class Case(Displayed, Section):
     @property
     def base_circle(self) -> float:
         """Radius of the base circle, m: of the cam surface at zero lift."""
-        inset = 0.0 if self.roller_given is None else self.roller_given.radius
-        return self.cam.prime_radius - inset
+        return self.cam.prime_radius - (self.facing.contact_radius or 0.0)
 
     @property
     def contact_radius(self) -> float:
         """Radius of the roller, m; under a flat face that of the base circle."""
-        return self.base_circle if self.roller_given is None else self.roller_given.radius
+        return self.facing.contact_radius or self.base_circle
 
     @property
     def largest_tool(self) -> float | None:

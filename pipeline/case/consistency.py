@@ -16,12 +16,14 @@ from camwright.pipeline.base.quantities import In
 from camwright.pipeline.base.units import shown
 from camwright.pipeline.case.case_values import quantity_of, text_of, value_of, wound_spring
 from camwright.pipeline.case.lift_section import LiftSegments, motion_of
+from camwright.pipeline.case.limits import SPEED_REDUCTION, TORQUE_REDUCTION
 from camwright.pipeline.case.requirements_section import OVER_SPEED, STANDSTILL, Tolerances
 from camwright.pipeline.case.value_sources import require_known
 from camwright.pipeline.contact.cam_body import CamBody
 from camwright.pipeline.engine.cylinder import CylinderEngine
 from camwright.pipeline.engine.pickup_voltage import VoltageTable
 from camwright.pipeline.engine.speed_file import SpeedTable
+from camwright.pipeline.follower.follower_kind import FollowerKind
 from camwright.pipeline.follower.guide_friction import friction_limits
 from camwright.pipeline.follower.spring import Spring
 from camwright.pipeline.torque.machine_torque import require_marks
@@ -186,7 +188,7 @@ def _start(case: Case) -> Iterator[Rule]:
     if case.balances:
         limit = "> 0 rpm, as its torque is that of the cam design"
         yield _more("load_case[0].speed", _fixed(0.0), limit)
-    freed = {"spring_rate", "preload"} & set(case.smoothing.free)
+    freed = case.smoothing.of_spring
     if freed and case.spring.shape is not None:
         limit = f'left out with spring.kind = "{case.spring.kind}"'
         raise InputError("smoothing.free", min(freed), limit)
@@ -201,7 +203,7 @@ def _start(case: Case) -> Iterator[Rule]:
         if case.spring.shape is not None:
             limit = f'left out with spring.kind = "{case.spring.kind}"'
             yield _left_out(f"load_case[{k}].preload", limit)
-        for name in ("torque", "torque_reduction", "speed_reduction"):
+        for name in ("torque", TORQUE_REDUCTION.id, SPEED_REDUCTION.id):
             if not case.balances and getattr(load_case, name) is not None:
                 yield Rule(f"load_case[{k}].{name}", _fixed(True), "left out with a lift")
         modelled = isinstance(case.engine, CylinderEngine) and load_case.torque is None
@@ -323,8 +325,7 @@ def _geometry(case: Case) -> Iterator[Rule]:
     for side in "ab":
         limit = ">= {follower.stem_diameter}"
         yield _at_least(f"guides.{side}.diameter", lambda at: at("follower.stem_diameter"), limit)
-    part = "roller" if case.follower.face is None else "face"
-    limit = f">= {{}}, half of {{guides.a.length}}, or the {part} enters guide A"
+    limit = f">= {{}}, half of {{guides.a.length}}, or the {case.facing.word} enters guide A"
     key = "follower.overhang_at_max_lift"
     yield _at_least(key, _half("guides.a.length"), limit)
 
@@ -333,27 +334,22 @@ def _half(key: str) -> Callable[[At], Any]:
     return lambda at: 0.5 * at(key)
 
 
-def _width_of(table: str) -> str:
-    """Key of the width of a body along the line of contact."""
-    return f"{table}.{'depth' if table == 'follower.face' else 'width'}"
-
-
-def _flat(table: str, at: At) -> Any:
+def _flat(body: CamBody | FollowerKind, at: At) -> Any:
     """Width of a body without its ends, m."""
-    return at(_width_of(table)) - 2.0 * _or_zero(at(f"{table}.end.size"))
+    return at(body.width_key) - 2.0 * _or_zero(at(f"{body.table}.end.size"))
 
 
 def _ends(case: Case) -> Iterator[Rule]:
     """Each body keeps a flat between its ends, and each crown fits the contact."""
     for part in (case.cam, case.facing):
-        width = _width_of(part.table)
         if part.end is not None:
-            limit = f"< {{}}, half of {{{width}}}"
-            yield _less(f"{part.table}.end.size", _half(width), limit)
+            limit = f"< {{}}, half of {{{part.width_key}}}"
+            yield _less(f"{part.table}.end.size", _half(part.width_key), limit)
         crowned = case.cam.crown is not None or case.facing.crown is not None
+        of_roller = part.crown is not None and part.crown.kind == "iso16281"
         if crowned and part.end is None:
             raise InputError(f"{part.table}.end", "missing", "given with a crown")
-        if part.crown is not None and part.crown.kind == "iso16281" and case.roller_given is None:
+        if of_roller and case.facing.contact_radius is None:
             raise InputError(f"{part.table}.crown.kind", "iso16281", "that of a cam with a roller")
 
 
@@ -402,9 +398,8 @@ def _roller(case: Case) -> Iterator[Rule]:
     yield _less("roller.radius", lambda at: at("cam.prime_radius"), "< {cam.prime_radius}")
     yield _less("roller.hub_radius", lambda at: at("roller.radius"), "< {roller.radius}")
     limit = "< {}, beyond which the roller runs beside the cam"
-    yield _less(
-        "roller.axial_offset", lambda at: 0.5 * (_flat("cam", at) + _flat("roller", at)), limit
-    )
+    cam, roller = case.cam, case.roller
+    yield _less("roller.axial_offset", lambda at: 0.5 * (_flat(cam, at) + _flat(roller, at)), limit)
     # A ring is stated to a micrometre; a tyre on it may be larger.
     ring = "roller.bearing.ring.outer_diameter"
     limit = f">= {{}}, half of {{{ring}}}"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -43,10 +44,7 @@ from camwright.pipeline.follower.flat_face import FlatFace
 from camwright.pipeline.follower.follower_forces import FollowerSystem
 from camwright.pipeline.follower.follower_kind import FollowerKind
 from camwright.pipeline.follower.follower_stiffness import (
-    bearing_compliance,
-    fork_compliance,
     in_series,
-    pin_compliance,
     shaft_compliance,
     stem_compliance_along,
 )
@@ -163,32 +161,46 @@ class Machine(Displayed):
         return self.crank_speed / self.gear_ratio
 
     @property
-    def roller(self) -> Roller | None:
-        """The roller; None under a flat face."""
-        return self.follower if isinstance(self.follower, Roller) else None
+    def roller(self) -> Roller:
+        """The follower of checks that need a roller.
+
+        Raises
+        ------
+        InputError
+            If it is another.
+        """
+        if isinstance(self.follower, Roller):
+            return self.follower
+        raise InputError("roller", "missing", "given for its checks")
 
     @property
-    def face(self) -> FlatFace | None:
-        """The flat face; None for a roller."""
-        return self.follower if isinstance(self.follower, FlatFace) else None
+    def face(self) -> FlatFace:
+        """The follower of checks that need a flat face.
+
+        Raises
+        ------
+        InputError
+            If it is another.
+        """
+        if isinstance(self.follower, FlatFace):
+            return self.follower
+        raise InputError("follower.face", "missing", "given for its checks")
 
     def describes(self, part: PartName) -> bool:
         """Whether the case describes a part of the machine."""
-        roller, shaft = self.roller, self.camshaft
-        return {
-            "roller_bearing": roller is not None,
-            "pin": roller is not None and roller.pin is not None,
-            "fork": roller is not None and roller.fork is not None,
-            "spring": self.spring.design is not None,
-            "gas_spring": self.spring.gas is not None,
-            "torsion_spring": self.spring.torsion is not None,
-            "guides": True,
-            "camshaft": shaft is not None,
-            "camshaft_bearings": shaft is not None
-            and (shaft.bearing_rating is not None or shaft.bearing_static_rating is not None),
-            "key": self.cam.keyway is not None,
-            "gear": shaft is not None and shaft.gear is not None,
-        }[part]
+        shaft = self.camshaft
+        described: Mapping[str, object] = {
+            **self.follower.parts,
+            "spring": self.spring.design,
+            "gas_spring": self.spring.gas,
+            "torsion_spring": self.spring.torsion,
+            "guides": self.guides,
+            "camshaft": shaft,
+            "camshaft_bearings": shaft and (shaft.bearing_rating or shaft.bearing_static_rating),
+            "key": self.cam.keyway,
+            "gear": shaft and shaft.gear,
+        }
+        return described.get(part) is not None
 
     @property
     def contact_width(self) -> float:
@@ -315,24 +327,10 @@ class Machine(Displayed):
 
         The stem counts to its far guide; the line contact and the cam are taken as rigid.
         """
-        roller, reach = self.roller, self.overhang_at_max_lift + self.guides.spacing
-        pin = None if roller is None else roller.pin
-        fork = None if roller is None else roller.fork
-        ring = None if roller is None else roller.bearing.ring
-        held = None if fork is None or pin is None else fork_compliance(fork, pin)
-        if fork is not None and fork.cheek_length is not None and held is not None:
-            reach -= fork.cheek_length
-        solved = None
-        if roller is not None:
-            solved = roller.ring(self.contact_width, self.spring.preload)
+        parts, held = self.follower.elastic(self.contact_width, self.spring.preload)
+        reach = self.overhang_at_max_lift + self.guides.spacing - held
         members = {
-            "bearing": bearing_compliance(solved, ring, self.spring.preload)
-            if solved is not None and ring is not None
-            else None,
-            "pin": pin_compliance(pin, roller.width)
-            if roller is not None and pin is not None
-            else None,
-            "fork": held,
+            **parts,
             "stem": stem_compliance_along(self.stem, reach),
             "camshaft": None if self.camshaft is None else shaft_compliance(self.camshaft),
         }

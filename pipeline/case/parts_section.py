@@ -83,8 +83,3 @@ class Follower(Section):
         if self.gravity_angle is None:
             return 0.0
         return STANDARD_GRAVITY * cos(self.gravity_angle)
-
-    @property
-    def face_friction(self) -> float:
-        """Friction coefficient of a flat face on the cam; 0 if not given, and for a roller."""
-        return 0.0 if self.face is None else self.face.friction or 0.0

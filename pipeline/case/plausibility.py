@@ -152,7 +152,7 @@ def _motor_findings(case: Case, torques: Mapping[str, Torque]) -> Iterator[Impli
 def _spring_findings(case: Case, torques: Mapping[str, Torque]) -> Iterator[Implied]:
     """The spring against the energy swing, unless the synthesis chooses it: one finding."""
     torque, smoothing, spring = torques.get(case.load_cases[0].name), case.smoothing, case.spring
-    chosen = smoothing.kind == "constrained" and {"spring_rate", "preload"} & {*smoothing.free}
+    chosen = smoothing.kind == "constrained" and smoothing.of_spring
     if torque is None or chosen:
         return
     swing = case.mechanism.compensation * float(np.ptp(energy_swing(torque.total, torque.span)))

@@ -100,6 +100,11 @@ class Smoothing(Section):
     corners: bool = False
     source: Text = ""
 
+    @property
+    def of_spring(self) -> set[str]:
+        """Free variables that change the spring."""
+        return {"spring_rate", "preload"} & {*self.free}
+
     @model_validator(mode="after")
     def _has_its_ranges(self) -> Self:
         for name in self.free:

@@ -126,7 +126,7 @@ def _angle(cam: LoadedCam, slope: Array) -> Array:
 
 
 def _method_of_undercut(demand: Demand, solution: Solution) -> Demand:
-    if solution.machine.face is None:
+    if solution.machine.follower.contact_radius is not None:
         return demand
     return replace(demand, method="least (r + s + s'')/(r + s), refined between samples")
 

@@ -36,7 +36,13 @@ from camwright.pipeline.checks.check import (
     Kept,
     check,
 )
-from camwright.pipeline.checks.demands import TOOTH_TORQUE, FatiguePoint, PerLoad, tooth_torque
+from camwright.pipeline.checks.demands import (
+    NORMAL_FORCE,
+    TOOTH_TORQUE,
+    FatiguePoint,
+    PerLoad,
+    tooth_torque,
+)
 from camwright.pipeline.checks.extremes import Extreme, greatest, over_duty, worst_case
 from camwright.pipeline.checks.missing_keys import lacking, lacking_of_card, unset
 from camwright.pipeline.contact.hertz import contact_modulus
@@ -139,7 +145,7 @@ def _place(section: ShaftSection) -> str:
     ),
     levers=(levers.one("camshaft.diameter", most=2.0), *levers.LOAD),
     page="Camshaft",
-    scales_with=("normal_force", 1.0),
+    scales_with=(NORMAL_FORCE, 1.0),
 )
 def shaft_fatigue(solution: Solution) -> Demand:
     """Least fatigue safety of the sections of the camshaft in bending and torsion."""
@@ -247,7 +253,7 @@ def shaft_fatigue_points(solution: Solution) -> list[FatiguePoint]:
     values=(*given.SHAFT, "camshaft.material.*yield_strength", "camshaft.*notch_*"),
     levers=(levers.one("camshaft.diameter", most=2.0), *levers.LOAD),
     page="Camshaft",
-    scales_with=("normal_force", 1.0),
+    scales_with=(NORMAL_FORCE, 1.0),
 )
 def shaft_yield(solution: Solution) -> Demand:
     """Greatest von Mises stress of the sections of the camshaft, Pa."""
@@ -291,7 +297,7 @@ def shaft_yield(solution: Solution) -> Demand:
     values=(*given.SHAFT, "camshaft.material.E"),
     levers=(levers.one("camshaft.diameter", most=2.0), *levers.LOAD),
     page="Camshaft",
-    scales_with=("normal_force", 1.0),
+    scales_with=(NORMAL_FORCE, 1.0),
 )
 def shaft_deflection(solution: Solution) -> Demand:
     """Greatest deflection of the camshaft at the cam over the bearing spacing."""
@@ -322,7 +328,7 @@ def shaft_deflection(solution: Solution) -> Demand:
     values=(*given.SHAFT, "camshaft.material.E"),
     levers=(levers.one("camshaft.diameter", most=2.0), *levers.LOAD),
     page="Camshaft",
-    scales_with=("normal_force", 1.0),
+    scales_with=(NORMAL_FORCE, 1.0),
 )
 def shaft_slope(solution: Solution) -> Demand:
     """Greatest slope of the camshaft at its bearings, rad."""
@@ -352,7 +358,7 @@ def shaft_slope(solution: Solution) -> Demand:
     values=(*given.SHAFT, "camshaft.bearing_static_rating"),
     levers=(levers.one("camshaft.bearing_static_rating"), *levers.LOAD),
     page="Camshaft",
-    scales_with=("normal_force", 1.0),
+    scales_with=(NORMAL_FORCE, 1.0),
 )
 def shaft_bearing_static(solution: Solution) -> Demand:
     """Static safety factor s0 of the camshaft bearing with the greater load."""
@@ -388,7 +394,7 @@ def shaft_bearing_static(solution: Solution) -> Demand:
     values=(*given.SHAFT, "camshaft.bearing_rating"),
     levers=(levers.one("camshaft.bearing_rating"), *levers.LOAD),
     page="Camshaft",
-    scales_with=("normal_force", 3.0),
+    scales_with=(NORMAL_FORCE, 3.0),
 )
 def shaft_bearing_life(solution: Solution) -> Demand:
     """Rating life of the camshaft bearing with the greater load, s."""

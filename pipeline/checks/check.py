@@ -45,7 +45,6 @@ Page = Literal[
     "Camshaft",
 ]
 """Parts of the mechanism in the order of the flow of force; "": of evidence."""
-Scaling = tuple[Literal["normal_force", "contact_pressure"], float]
 Record = dict[str, str | float | bool | list[str] | None]
 EVERY = "all, standstill and over-speed included"
 BY_DUTY = (
@@ -296,8 +295,9 @@ class Declaration:
     kept_as : str              what the synthesis bounds where a part sets the limit, in words
     certified_by : str         certified quantity of its error on the contact; "": that of the
                                greatest error
-    scales_with : tuple        "normal_force" or "contact_pressure", and the power of its greatest
-                               value with which the utilisation grows, about; (): neither
+    scales_with : tuple        group of the measure, `NORMAL_FORCE` or `PRESSURE`, and the power of
+                               its greatest value with which the utilisation grows, about; ():
+                               neither
     demand : callable          solution -> demand; None where the check does not apply
     measured : Measured        how the demand follows from a measure of the loaded cam; None: it is
                                a demand of the whole solution
@@ -330,7 +330,7 @@ class Declaration:
     page: Page
     kept_as: str
     certified_by: str
-    scales_with: Scaling | tuple[()]
+    scales_with: tuple[str, float] | tuple[()]
     demand: Callable[[Solution], Demand | None] = field(repr=False)
     measured: Measured | None = field(default=None, repr=False)
     measure: Measure | None = field(default=None, repr=False)
@@ -429,7 +429,7 @@ def check(
     page: Page = "",
     kept_as: str = "",
     certified_by: str = "",
-    scales_with: Scaling | tuple[()] = (),
+    scales_with: tuple[str, float] | tuple[()] = (),
 ) -> Declaring:
     """Declare a check of the demand that the decorated function returns; see `Declaration`.
 

@@ -18,7 +18,6 @@ import numpy as np
 from camwright.geometry.arrays import FULL_TURN, Array, Value, uniform_turn
 from camwright.geometry.contour import Contour
 from camwright.geometry.extrema import first_least
-from camwright.geometry.pitch_curve import rolling_share
 from camwright.pipeline.base import disk_cache, levers
 from camwright.pipeline.base import value_groups as given
 from camwright.pipeline.base.material import Endurance, Material
@@ -127,14 +126,14 @@ def pressure_allowables(machine: Machine, cycles: LoadCycles) -> dict[str, float
     endurance = _least_endurance(machine)
     allowed = {}
     if ends is not None:
-        allowed["edge_pressure"] = _times(endurance, 1.0 / ends)
+        allowed[edge_pressure.id] = _times(endurance, 1.0 / ends)
     if follower.friction is not None:
         factor = float(shakedown_factors(follower.friction, least_poisson(machine))[1][-1])
-        allowed["shakedown_traction"] = _times(shear, factor)
+        allowed[shakedown_traction.id] = _times(shear, factor)
         if ends is not None:
-            allowed["edge_shakedown"] = _times(shear, factor / ends)
+            allowed[edge_shakedown.id] = _times(shear, factor / ends)
     if limits[TARGET_LIFE] is not None and ends is not None:
-        allowed["contact_pressure_at_life"] = _times(_life_limit(machine, cycles), 1.0 / ends)
+        allowed[contact_pressure_at_life.id] = _times(_life_limit(machine, cycles), 1.0 / ends)
     return {name: each.value for name, each in allowed.items() if each.value is not None}
 
 
@@ -236,11 +235,14 @@ def life_turns(machines: tuple[Machine, ...]) -> float:
 
 def load_cycles(machines: tuple[Machine, ...], contour: Contour) -> LoadCycles:
     """Load cycles in the target life: one per turn of the cam, and one per turn of the roller."""
-    turns, roller = life_turns(machines), machines[0].roller
-    if roller is None:
-        return LoadCycles(turns, FACE_PASSES * turns)
-    speed, _ = contour.pitch.speed_and_curvature(uniform_turn(_STATIONS))
-    return LoadCycles(turns, turns * float(np.mean(np.abs(rolling_share(speed, roller.radius)))))
+    turns, pitch = life_turns(machines), contour.pitch
+    path, _ = pitch.speed_and_curvature(uniform_turn(_STATIONS))
+    return LoadCycles(turns, turns * passes(machines[0].follower, path))
+
+
+def passes(follower: FollowerKind, path: Array | float) -> float:
+    """Load cycles of the follower per cam turn, see `FollowerKind.turns`."""
+    return FACE_PASSES if follower.slides else follower.turns(path)
 
 
 def contact_p0(cam: LoadedCam) -> Array:
@@ -468,7 +470,7 @@ shakedown = check(
     levers=(levers.CROWNED, levers.NARROWER, *levers.ENDURANCE),
     page="Contact",
     certified_by="p0",
-    scales_with=("contact_pressure", 1.0),
+    scales_with=(PRESSURE, 1.0),
 )
 def contact_pressure_at_life(solution: Solution) -> Demand:
     """Maximum contact pressure, Pa, against the endurance at the target life."""
@@ -536,7 +538,7 @@ _SIGNED = (
     levers=(levers.CROWNED, levers.NARROWER, *levers.ENDURANCE),
     page="Contact",
     certified_by="p0",
-    scales_with=("contact_pressure", 1.0),
+    scales_with=(PRESSURE, 1.0),
 ).measured(
     "angles",
     allowed=_endurance_allowed,
@@ -570,7 +572,7 @@ def edge_pressure(cam: LoadedCam) -> Array:
     levers=(levers.CROWNED, levers.NARROWER, *levers.YIELD),
     page="Contact",
     certified_by="p0",
-    scales_with=("contact_pressure", 1.0),
+    scales_with=(PRESSURE, 1.0),
 )
 def edge_shakedown(solution: Solution) -> Demand:
     """Equivalent signed pressure, Pa, against shakedown."""
@@ -626,12 +628,10 @@ def shakedown_traction(solution: Solution) -> Demand:
     values=("roller.axial_offset",),
     page="Roller",
 )
-def roller_overlap(solution: Solution) -> Demand | None:
-    """Axial offset of the roller from the middle of the cam, m; None under a flat face."""
+def roller_overlap(solution: Solution) -> Demand:
+    """Axial offset of the roller from the middle of the cam, m."""
     machine = solution.machine
     roller = machine.roller
-    if roller is None:
-        return None
     spare, offset = 0.5 * abs(machine.cam.line_width - roller.line_width), roller.axial_offset
     if offset is None:
         return Demand(None, spare, missing=lacking(roller.table, roller, "axial_offset"))

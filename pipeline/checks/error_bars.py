@@ -9,9 +9,9 @@ import numpy as np
 
 from camwright.geometry.extrema import TIE, first_greatest
 from camwright.pipeline.checks.check import ROUNDING, Check, Error
+from camwright.pipeline.checks.solution_verification import mesh_reaction
 from camwright.pipeline.cycle.solution import Solution
 
-GUIDE_ERROR = "mesh_reaction"
 GUIDE_EDGE_ERROR = 0.06
 """Relative error of loaded length and greatest line load of a guide of 25 knots.
 
@@ -31,7 +31,7 @@ def with_error_bars(solution: Solution, checks: Iterable[Check]) -> tuple[Check,
     known.
     """
     checks = tuple(checks)
-    beam = [each.demand for each in checks if each.id == GUIDE_ERROR]
+    beam = [each.demand for each in checks if each.id == mesh_reaction.id]
     centre = centre_error(solution) if solution.certificate else 0.0
     guides = None if beam in ([], [None]) else float(beam[0] or 0.0)
 

@@ -39,8 +39,7 @@ def face_width(cam: LoadedCam) -> Array:
 
 
 def _of_its_source(demand: Demand, solution: Solution) -> Demand:
-    face = solution.machine.face
-    return demand if face is None else replace(demand, source=face.source)
+    return replace(demand, source=solution.machine.face.source)
 
 
 def _sliding(cam: LoadedCam) -> Array:

@@ -528,6 +528,6 @@ def anti_rotation(solution: Solution) -> Demand:
     means = solution.case.follower.anti_rotation
     if means is None:
         return Demand(None, 0.0, missing=("follower.anti_rotation",))
-    free = means == "not_needed" and solution.machine.face is None
+    free = means == "not_needed" and solution.machine.follower.contact_radius is not None
     note = "a roller needs a means against rotation" if free else means.replace("_", " ")
     return Demand(float(free), 0.0, note=note)

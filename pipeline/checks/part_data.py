@@ -21,16 +21,16 @@ def _data(
     tables: Callable[[Case], Tables],
     needs: Literal["", "roller", "face"] = "",
     described_by: tuple[str, ...] = (),
-    applies: Callable[[Case], bool] = lambda _: True,
+    spring: Literal["", "coil", "gas", "torsion"] = "",
     *,
     page: Page,
 ) -> Declaration:
     """Check that a part is described and lacks no datum; None if the scope leaves it out.
 
-    described_by: tables or keys by which the case describes the part; applies: whether a case can
-    have it.
+    described_by: tables or keys by which the case describes the part; spring: kind of spring
+    with which a case can have it; "": any.
     """
-    words: str = "flat face" if name == "face" else name
+    words: str = name.replace("face", "flat face")
     coverable: PartName | None = None
     for part, text in PART_WORDS.items():
         if part == name:
@@ -51,7 +51,7 @@ def _data(
     )
     def data(solution: Solution) -> Demand | None:
         machine = solution.machine
-        if not applies(solution.case):
+        if spring not in ("", solution.case.spring.kind or "coil"):
             return None
         if coverable is not None:
             if not machine.scope.covers(coverable):
@@ -113,21 +113,21 @@ data_spring = _data(
     "spring",
     _spring,
     described_by=("spring.design",),
-    applies=lambda case: case.spring.shape is None,
+    spring="coil",
     page="Spring",
 )
 data_gas_spring = _data(
     "gas_spring",
     _gas_spring,
     described_by=("spring.gas",),
-    applies=lambda case: case.spring.gas is not None,
+    spring="gas",
     page="Spring",
 )
 data_torsion_spring = _data(
     "torsion_spring",
     lambda case: {"spring": case.spring, "spring.torsion": case.spring.torsion},
     described_by=("spring.torsion",),
-    applies=lambda case: case.spring.torsion is not None,
+    spring="torsion",
     page="Spring",
 )
 data_guides = _data("guides", _guides, page="Guides")

@@ -26,7 +26,7 @@ from camwright.pipeline.case.limits import (
 from camwright.pipeline.checks.check import NONE, Allowed, Demand, Kept, check, of_key
 from camwright.pipeline.checks.demands import NORMAL_FORCE, PerLoad, normal_force
 from camwright.pipeline.checks.extremes import worst_case
-from camwright.pipeline.checks.missing_keys import lacking, lacking_of_card
+from camwright.pipeline.checks.missing_keys import lacking_of_card
 from camwright.pipeline.cycle.cam_balance import Balance, balance, rotor_unbalance
 from camwright.pipeline.cycle.cycle import Cycle
 from camwright.pipeline.cycle.numbers import Numbers
@@ -38,7 +38,7 @@ from camwright.pipeline.follower.roller import Roller
 from camwright.pipeline.follower.roller_parts import Fork, OuterRing, Pin
 
 
-def _pin_of(roller: Roller | None) -> tuple[Roller, Pin]:
+def _pin_of(roller: Roller) -> tuple[Roller, Pin]:
     """Roller and its pin.
 
     Raises
@@ -46,13 +46,13 @@ def _pin_of(roller: Roller | None) -> tuple[Roller, Pin]:
     InputError
         If the case describes none.
     """
-    if roller is None or roller.pin is None:
+    if roller.pin is None:
         raise InputError("roller.pin", "missing", "given for its checks")
     return roller, roller.pin
 
 
 def _described(numbers: Numbers) -> tuple[Roller, Pin]:
-    return _pin_of(numbers.known_case.roller_given)
+    return _pin_of(numbers.known_case.roller)
 
 
 def _bending(numbers: Numbers) -> float:
@@ -130,7 +130,7 @@ def _with_card_of_pin(demand: Demand, solution: Solution) -> Demand:
     ),
     levers=(levers.one("roller.pin.diameter", most=2.0), *levers.LOAD),
     page="Roller",
-    scales_with=("normal_force", 1.0),
+    scales_with=(NORMAL_FORCE, 1.0),
 )
 def roller_pin_fatigue(solution: Solution) -> Demand:
     """Fatigue safety factor of the roller pin."""
@@ -239,15 +239,15 @@ roller_pin_pressure = check(
 )(normal_force)
 
 
-def _fork_and_pin(roller: Roller | None) -> tuple[Fork, Pin] | None:
+def _fork_and_pin(roller: Roller) -> tuple[Fork, Pin] | None:
     """Fork and the pin in it; None where one is not described."""
-    if roller is None or roller.fork is None or roller.pin is None:
+    if roller.fork is None or roller.pin is None:
         return None
     return roller.fork, roller.pin
 
 
 def _cheek(numbers: Numbers) -> float:
-    both = _fork_and_pin(numbers.known_case.roller_given)
+    both = _fork_and_pin(numbers.known_case.roller)
     if both is None:
         return np.nan
     fork, pin = both
@@ -255,7 +255,7 @@ def _cheek(numbers: Numbers) -> float:
 
 
 def _cheek_allowed(numbers: Numbers) -> Allowed:
-    both = _fork_and_pin(numbers.known_case.roller_given)
+    both = _fork_and_pin(numbers.known_case.roller)
     if both is None:
         return Allowed(None)
     fork, pin = both
@@ -342,42 +342,24 @@ def follower_mass(solution: Solution) -> Demand:
     return Demand(None if missing else total, allowed, missing=missing, note=note)
 
 
-_FORK_LENGTHS = "cheek_height", "cheek_length", "bridge_length"
-
-
 def moving_masses(solution: Solution) -> tuple[dict[str, float], tuple[str, ...]]:
     """Masses of the parts that move with the follower, kg, by name, and the keys that are missing.
 
     A stem without a length counts up to its far guide. A part outside the scope is left out.
     """
     machine, follower = solution.machine, solution.case.follower
-    roller, face, design = machine.roller, machine.face, machine.spring.design
-    masses: dict[str, float] = {}
-    missing: list[str] = []
-    shorter = 0.0
-    if face is not None:
-        masses["face"] = face.material.density * face.width * face.depth * face.thickness
-        shorter = face.thickness
-    if roller is not None:
-        pin, fork = roller.pin, roller.fork
-        masses["roller"] = roller.drawn_mass
-        if pin is not None:
-            masses["pin"] = pin.mass(0.0 if fork is None else fork.cheek_width)
-        elif machine.scope.covers("pin"):
-            missing.append(Pin.table)
-        held = None if fork is None or pin is None else fork.mass(pin)
-        if held is not None:
-            masses["fork"] = held
-        elif machine.scope.covers("fork"):
-            missing += [Fork.table] if fork is None else lacking(fork.table, fork, *_FORK_LENGTHS)
-        if fork is not None:
-            shorter = (fork.cheek_length or 0.0) + (fork.bridge_length or 0.0)
+    parts, design = machine.follower.moving, machine.spring.design
+    masses = {name: mass for name, mass in parts.masses.items() if mass is not None}
+    missing = [
+        key for part, keys in parts.missing.items() if machine.scope.covers(part) for key in keys
+    ]
     length = follower.stem_length
     if length is None:
         length = follower.overhang_at_max_lift + machine.guides.spacing
         missing.append("follower.stem_length")
     section = 0.25 * np.pi * follower.stem_diameter**2
-    masses["stem"] = float(follower.stem_material.density * section * max(length - shorter, 0.0))
+    below = max(length - parts.inset, 0.0)
+    masses["stem"] = float(follower.stem_material.density * section * below)
     if design is not None:
         masses["spring"] = follower.spring_share * design.mass
     elif machine.spring.shape is None and machine.scope.covers("spring"):
@@ -390,9 +372,8 @@ _TENSILE = "roller.bearing.ring.tensile_strength"
 
 def _groove(numbers: Numbers) -> RingBending | None:
     """Stress at the groove of the outer ring per newton; None of a solid roller."""
-    roller = numbers.known_case.roller_given
-    preload = float(numbers["spring.preload"])
-    solved = None if roller is None else roller.ring(float(numbers["contact.width"]), preload)
+    width, preload = float(numbers["contact.width"]), float(numbers["spring.preload"])
+    solved = numbers.known_case.roller.ring(width, preload)
     return None if solved is None else solved.bending
 
 
@@ -417,10 +398,9 @@ def _ring_force(limit: float, numbers: Numbers) -> float | None:
 def _ring_in_words(demand: Demand, solution: Solution) -> Demand:
     """Not judged of a roller that is modelled as solid."""
     roller = solution.machine.roller
-    ring = None if roller is None else roller.bearing.ring
-    if roller is None or ring is None or roller.solid_reason:
-        reason = "there is no roller" if roller is None else roller.solid_reason
-        note = f"{reason}: the roller is modelled as solid on its hub"
+    ring = roller.bearing.ring
+    if ring is None or roller.solid_reason:
+        note = f"{roller.solid_reason}: the roller is modelled as solid on its hub"
         undescribed = (OuterRing.table,) if ring is None else ()
         return Demand(None, None, missing=undescribed, note=note, must_have=ring is None)
     return replace(demand, figures=(ring.source,))

@@ -14,7 +14,6 @@ import numpy as np
 import scipy
 
 from camwright.geometry.arrays import FULL_TURN, Array, Value, Values
-from camwright.geometry.errors import InputError
 from camwright.geometry.pitch_curve import magnitude
 from camwright.pipeline.base import levers
 from camwright.pipeline.base import value_groups as given
@@ -74,22 +73,8 @@ _RATING, _STATIC = "roller.bearing.C", "roller.bearing.C0"
 _VISCOSITY, _CIRCLE = "roller.bearing.viscosity", "roller.bearing.pitch_diameter"
 
 
-def bearing_of(solution: Solution) -> Bearing:
-    """Bearing of the roller.
-
-    Raises
-    ------
-    InputError
-        If the follower has a flat face.
-    """
-    roller = solution.machine.roller
-    if roller is None:
-        raise InputError("roller", "missing", "given for the checks of its bearing")
-    return roller.bearing
-
-
 def _with_card(demand: Demand, solution: Solution) -> Demand:
-    return replace(demand, figures=_card(bearing_of(solution)))
+    return replace(demand, figures=_card(solution.machine.roller.bearing))
 
 
 def _card(bearing: Bearing) -> tuple[str]:
@@ -157,7 +142,7 @@ def _with_modified_damage(demand: Demand, solution: Solution) -> Demand:
         notes.append("not known for a viscosity ratio below 0.1: outside of ISO 281")
     elif demand.value is not None:
         notes = _damage_note(solution, _modified_damage, _modified_life)
-    reliability, card = limits.source(ROLLER_RELIABILITY), _card(bearing_of(solution))
+    reliability, card = limits.source(ROLLER_RELIABILITY), _card(solution.machine.roller.bearing)
     figures = reliability, bearing_life.SOURCE, *card
     return replace(demand, note="; ".join(notes), figures=figures)
 
@@ -360,7 +345,9 @@ roller_modified_life = check(
 ).measured(
     "angles",
     allowed=of_key("roller.bearing.speed_limit", ROLLER_SPEED_SHARE),
-    remark=lambda demand, solution: replace(demand, figures=(bearing_of(solution).source,)),
+    remark=lambda demand, solution: replace(
+        demand, figures=(solution.machine.roller.bearing.source,)
+    ),
     deviation=0.0002,
     kept=Kept(unit="rpm"),
 )
@@ -439,7 +426,7 @@ roller_static_radial = _outer_ring(
     ),
     needed=(_VISCOSITY, _CIRCLE),
     remark=lambda demand, solution: replace(
-        demand, figures=(bearing_life.SOURCE, bearing_of(solution).source)
+        demand, figures=(bearing_life.SOURCE, solution.machine.roller.bearing.source)
     ),
     kept=Kept(_film_kept, power=-1.0, unit="rpm", falls=-1.0),
 )
@@ -501,7 +488,7 @@ def least_speed(viscosity: float, circle: float, ratio: float) -> float | None:
 )
 def grease_life(solution: Solution) -> Demand | None:
     """Life of the grease, s; None with oil."""
-    bearing = bearing_of(solution)
+    bearing = solution.machine.roller.bearing
     if bearing.lubrication == "oil":
         return None
     if bearing.lubrication is None:
@@ -526,8 +513,9 @@ def grease_life(solution: Solution) -> Demand | None:
 
 def _grease_life(cycle: Cycle, solution: Solution) -> float:
     """Estimated life of the grease in a load case, s; NaN without its data or out of its range."""
-    bearing, roller, cam = bearing_of(solution), solution.machine.roller, cam_of(solution, cycle)
-    if not bearing.C or bearing.temperature is None or roller is None:
+    roller, cam = solution.machine.roller, cam_of(solution, cycle)
+    bearing = roller.bearing
+    if not bearing.C or bearing.temperature is None:
         return np.nan
     if not np.isfinite(cam.normal).all():
         return np.nan
@@ -561,9 +549,9 @@ class Grease(NamedTuple):
 
 def grease_of(machine: Machine) -> Grease | None:
     """Grease whose life is estimated; None where it is stated, without grease or its data."""
-    roller = machine.roller
-    if roller is None or not machine.scope.covers("roller_bearing"):
+    if not grease_life.concerns(machine):
         return None
+    roller = machine.roller
     bearing = roller.bearing
     target, rating, temperature = _grease_target(machine, bearing), bearing.C, bearing.temperature
     if bearing.lubrication in (None, "oil") or bearing.grease_life is not None:

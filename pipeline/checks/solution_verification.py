@@ -14,7 +14,7 @@ from camwright.meshes.mesh_quality import (
     LEAST_SCALED_JACOBIAN,
     Quality,
 )
-from camwright.pipeline.case.limits import COMPLEMENTARITY, EQUILIBRIUM, MESH_UNCERTAINTY
+from camwright.pipeline.case.limits import COMPLEMENTARITY, EQUILIBRIUM, MESH_UNCERTAINTY, Limit
 from camwright.pipeline.checks.check import Declaration, Demand, check
 from camwright.pipeline.checks.extremes import Extreme, greatest
 from camwright.pipeline.contact.contact_history import QUANTITIES, CertificatePoint
@@ -41,18 +41,19 @@ NO_CERTIFICATE = "this trial has no certificate"
 def _residual(
     name: str,
     measure: Callable[[Cycle], Array],
+    row: Limit | None = None,
     *,
     title: str,
     method: str,
     formula: str,
-    allowed: Callable[[Solution], float],
-    limit: bool = True,
 ) -> Declaration:
-    """Check of a relative residual; of one within its limit no place: it is that of round-off."""
-    row = {"guide_equilibrium_force": EQUILIBRIUM, "guide_equilibrium_moment": EQUILIBRIUM}
+    """Check of a relative residual; of one within its limit no place: it is that of round-off.
+
+    Without a row of the table its limit is `CONTACT_EQUILIBRIUM`.
+    """
 
     @check(
-        row.get(name, COMPLEMENTARITY) if limit else None,
+        row,
         id=name,
         title=title,
         unit="-",
@@ -64,7 +65,8 @@ def _residual(
         tier=Tier.CYCLE,
     )
     def residual(solution: Solution) -> Demand:
-        worst, limit = greatest(solution.cycles, measure), allowed(solution)
+        worst = greatest(solution.cycles, measure)
+        limit = CONTACT_EQUILIBRIUM if row is None else solution.machine.limits[row]
         return Demand(worst.value, limit, Extreme(worst.value) if worst.value <= limit else worst)
 
     return residual
@@ -73,21 +75,21 @@ def _residual(
 guide_equilibrium_force = _residual(
     "guide_equilibrium_force",
     lambda cycle: np.maximum(np.abs(cycle.guides.force_residual), cycle.turn.friction_residual),
+    EQUILIBRIUM,
     title="Force equilibrium residual of the guides",
     formula="max |sum F| / sum |F| <= c; F: guide and side forces across the stem, c:"
     " limits.equilibrium; likewise the forces along the stem over the axial force",
     method="greatest sum of guide and side forces over the sum of their magnitudes, beam on elastic"
     " supports; or of cam, spring, inertia and friction forces over the cam force",
-    allowed=lambda solution: solution.machine.limits[EQUILIBRIUM],
 )
 guide_equilibrium_moment = _residual(
     "guide_equilibrium_moment",
     lambda cycle: np.abs(cycle.guides.moment_residual),
+    EQUILIBRIUM,
     title="Moment equilibrium residual of the guides",
     formula="max |sum M| / sum |M| <= c; M: moments on the stem about the roller, c:"
     " limits.equilibrium",
     method="greatest sum of moments over the sum of their magnitudes, beam on elastic supports",
-    allowed=lambda solution: solution.machine.limits[EQUILIBRIUM],
 )
 contact_equilibrium = _residual(
     "contact_equilibrium",
@@ -95,17 +97,15 @@ contact_equilibrium = _residual(
     title="Force equilibrium residual of the contact",
     formula="max |integral of p - P| / P <= 1e-6; p: contact pressure, P: line load",
     method="greatest relative difference of the integrated pressure from the load",
-    allowed=lambda _: CONTACT_EQUILIBRIUM,
-    limit=False,
 )
 contact_complementarity = _residual(
     "contact_complementarity",
     lambda cycle: np.abs(cycle.contact.residual_complementarity),
+    COMPLEMENTARITY,
     title="Complementarity residual of the contact",
     formula="max of -p/p0, -g/d and p g/(p0 d) <= c; p: pressure, g: gap, p0, d: peak pressure"
     " and approach, c: limits.complementarity",
     method="greatest relative tension, penetration or gap under pressure",
-    allowed=lambda solution: solution.machine.limits[COMPLEMENTARITY],
 )
 
 RESIDUALS = tuple(

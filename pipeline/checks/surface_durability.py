@@ -149,14 +149,14 @@ def film_ratio(solution: Solution) -> Demand:
 def _torsion_demand(solution: Solution, measure: Callable[[Envelope], float]) -> Demand:
     """Equivalent fatigue stress against the fatigue limit in torsion of the cam, Pa."""
     card = solution.machine.cam.material
-    torsion, safety = card.fatigue_torsion, solution.machine.limits[FATIGUE_SAFETY]
-    known = torsion is not None and card.fatigue_bending is not None
+    endured, safety = card.fatigue_torsion, solution.machine.limits[FATIGUE_SAFETY]
+    known = endured is not None and card.fatigue_bending is not None
     worst = worst_case(
         solution.cycles, lambda cycle: measure(cycle.rolling.swept.governing) if known else math.nan
     )
     return Demand(
         worst.value,
-        torsion / safety if known and torsion else None,
+        endured / safety if known and endured else None,
         worst,
         lacking_of_card(card, "fatigue_torsion", "fatigue_bending"),
         figures=(f"{card.name}: {card.source}",),
@@ -228,7 +228,7 @@ def dang_van(solution: Solution) -> Demand:
     levers=levers.CASE,
     page="Cam",
     certified_by="von_mises",
-    scales_with=("contact_pressure", 1.0),
+    scales_with=(demands.PRESSURE, 1.0),
 )
 def hardened_case(solution: Solution) -> Demand | None:
     """Maximum von Mises stress over the yield strength at its depth; None if not hardened."""
@@ -267,7 +267,7 @@ def hardened_case(solution: Solution) -> Demand | None:
     levers=levers.CASE,
     page="Cam",
     certified_by="tau_max",
-    scales_with=("contact_pressure", 1.0),
+    scales_with=(demands.PRESSURE, 1.0),
 )
 def case_shear(solution: Solution) -> Demand | None:
     """Maximum shear amplitude over the fatigue limit at its depth; None if not hardened."""
@@ -356,7 +356,7 @@ def _signed_depth(cycle: Cycle) -> Array:
     values=(*given.LENGTH, "cam.material.case_depth"),
     levers=levers.CASE,
     page="Cam",
-    scales_with=("normal_force", 0.5),
+    scales_with=(demands.NORMAL_FORCE, 0.5),
 )
 def case_depth(solution: Solution) -> Demand | None:
     """Effective case depth over the greatest depth of maximum shear; None if not hardened."""

@@ -115,6 +115,7 @@ class CamBody(Part):
     """
 
     table: ClassVar[str] = "cam"
+    width_key: ClassVar[str] = "cam.width"
     defaults: ClassVar[Mapping[str, str]] = {
         "roughness": "unknown: the film ratio, which is advisory, is not evaluated",
     }

@@ -135,8 +135,7 @@ class LoadedCam:
     def drag(self) -> Drag | None:
         """Inertia and drag of the roller; None without one."""
         case = self.numbers.case
-        roller = None if case is None else case.roller_given
-        return None if roller is None else roller.drag
+        return None if case is None else case.facing.drag
 
     @property
     def speed(self) -> Value:

@@ -119,8 +119,8 @@ def _ball_circle(numbers: Numbers) -> Value | None:
 
 def _cleanliness_load(numbers: Numbers) -> Value | None:
     """e_C P_u of the roller bearing, N."""
-    roller = None if numbers.case is None else numbers.case.roller_given
-    cleanliness = None if roller is None else roller.bearing.contamination
+    case = numbers.case
+    cleanliness = None if case is None else value_of(case, "roller.bearing.contamination")
     limit = numbers.get("roller.bearing.fatigue_load_limit")
     if cleanliness is None or limit is None:
         return None

@@ -29,7 +29,6 @@ from camwright.pipeline.follower.guide_friction import (
     friction_power,
 )
 from camwright.pipeline.follower.guide_reactions import Guide
-from camwright.pipeline.follower.roller_motion import RollingRoller, roller_motion
 from camwright.pipeline.follower.spring import natural_frequency, surge_force
 
 
@@ -144,9 +143,10 @@ def part_loads(
     friction = turn.friction
     spring = machine.spring.design
     amplitude, mean, correction = _ring(machine, contour, loads, contact_width)
-    motion, pair = _roller_motion(machine, contour, loads), machine.guides
+    motion = machine.follower.rolling(contour, loads.theta, machine.cam_speed)
+    pair = machine.guides
     nominal, worst = machine.friction.nominal, friction.greatest
-    pin = None if machine.roller is None else machine.roller.pin_stress_per_newton
+    pin = machine.follower.pin_stress_per_newton
     return PartLoads(
         guide_edge_pressure_a=edge_pressure_of(machine, pair.a)(guides.line_pressure_max_a),
         guide_edge_pressure_b=edge_pressure_of(machine, pair.b)(guides.line_pressure_max_b),
@@ -221,24 +221,15 @@ def shaft_of(turn: Turn, contour: Contour) -> ShaftLoads | None:
     return camshaft_loads(turn.loads, shaft, cam, contour, machine.cam_speed)
 
 
-def _roller_motion(machine: Machine, contour: Contour, loads: Loads) -> RollingRoller | None:
-    """Motion of a roller that does not slip; None under a flat face."""
-    if machine.roller is None:
-        return None
-    pitch = contour.require_roller().pitch
-    return roller_motion(pitch, machine.roller.radius, machine.cam_speed, loads.theta)
-
-
 def _ring(
     machine: Machine, contour: Contour, loads: Loads, contact_width: float
 ) -> tuple[Array | None, Array | None, Array | None]:
     """Stress amplitude and mean of the outer ring, and its change of p0 between balls."""
-    roller = machine.roller
-    ring = None if roller is None else roller.ring(contact_width, machine.spring.preload)
-    if roller is None or ring is None:
+    ring = machine.follower.ring(contact_width, machine.spring.preload)
+    if ring is None:
         return None, None, None
     force, curvature = loads.normal_force, contour.curvature(loads.theta)
-    radius = 1.0 / (1.0 / roller.radius + curvature)
+    radius = 1.0 / (1.0 / machine.roller.radius + curvature)
     bending = ring.bending
     return (
         bending.stress_amplitude * force,

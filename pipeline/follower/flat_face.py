@@ -18,7 +18,7 @@ from camwright.pipeline.contact.contact_history import ContactHistory
 from camwright.pipeline.contact.elasticity.elastic_body import Elastic
 from camwright.pipeline.contact.follower_body import FaceBody
 from camwright.pipeline.follower.flat_face_motion import FaceSliding, face_motion
-from camwright.pipeline.follower.follower_kind import SurfaceMotion
+from camwright.pipeline.follower.follower_kind import ElasticParts, MovingParts, SurfaceMotion
 from camwright.pipeline.follower.stem_beam import Stem
 
 
@@ -32,8 +32,12 @@ class FlatFace(Part):
 
     table: ClassVar[str] = "follower.face"
     word: ClassVar[str] = "face"
+    width_key: ClassVar[str] = "follower.face.depth"
     slides: ClassVar[bool] = True
     axial_offset: ClassVar[None] = None
+    parts: ClassVar[Mapping[str, Part | None]] = {}
+    drag: ClassVar[None] = None
+    pin_stress_per_newton: ClassVar[None] = None
     defaults: ClassVar[Mapping[str, str]] = {
         "roughness": "unknown: the film ratio, which is advisory, is not evaluated",
     }
@@ -83,6 +87,26 @@ class FlatFace(Part):
     def body_model(self) -> str:
         """Empty: the block is modelled without simplification."""
         return ""
+
+    @property
+    def moving(self) -> MovingParts:
+        """Block of the face; see `FollowerKind`."""
+        mass = self.material.density * self.width * self.depth * self.thickness
+        return MovingParts({"face": mass}, self.thickness, {})
+
+    def ring(self, width: float, preload: float) -> None:
+        """None: the face has no bearing."""
+
+    def elastic(self, width: float, preload: float) -> ElasticParts:  # noqa: ARG002
+        """None: the block is rigid; see `FollowerKind`."""
+        return ElasticParts({}, 0.0)
+
+    def turns(self, path: Array | float) -> float:  # noqa: ARG002
+        """Zero: the face does not turn with the cam."""
+        return 0.0
+
+    def rolling(self, contour: Contour, theta: Array, speed: float) -> None:
+        """None: the face slides."""
 
     def contour(self, lift: Lift, cam: CamBody) -> Contour:
         """Cam contour under the face; see `FollowerKind`."""

@@ -2,19 +2,23 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Protocol
+from collections.abc import Mapping
+from dataclasses import Field, dataclass
+from typing import ClassVar, Literal, NamedTuple, Protocol, Self
 
 from camwright.geometry.arrays import Array
 from camwright.geometry.contour import Contour
 from camwright.geometry.lift import Lift
 from camwright.pipeline.base.material import Material
+from camwright.pipeline.base.quantities import Part
 from camwright.pipeline.contact.axial_shape import AxialCrown, BodyEnd
 from camwright.pipeline.contact.cam_body import CamBody
 from camwright.pipeline.contact.contact_history import ContactHistory
 from camwright.pipeline.contact.follower_body import FollowerBody
-from camwright.pipeline.contact.traction import RollingContact
+from camwright.pipeline.contact.traction import Drag, RollingContact
 from camwright.pipeline.follower.flat_face_motion import FaceSliding
+from camwright.pipeline.follower.ring_on_balls import RingOnBalls
+from camwright.pipeline.follower.roller_motion import RollingRoller
 from camwright.pipeline.follower.stem_beam import Stem
 
 
@@ -34,20 +38,45 @@ class SurfaceMotion:
     sliding: FaceSliding | None = None
 
 
+class MovingParts(NamedTuple):
+    """Parts that move below the stem.
+
+    masses: by name, kg, None: not known; inset: length of the stem that they replace, m; missing:
+    keys that the case lacks for the mass of a part of the scope.
+    """
+
+    masses: Mapping[str, float | None]
+    inset: float
+    missing: Mapping[Literal["pin", "fork"], tuple[str, ...]]
+
+
+class ElasticParts(NamedTuple):
+    """Compliances of the parts below the stem by name, m/N, None: not known; held: its end, m."""
+
+    compliances: Mapping[str, float | None]
+    held: float
+
+
 class FollowerKind(Protocol):
     """Part of the follower in contact with the cam.
 
-    `word`: its name in files and texts; `table`: in the case file; `line_width`: maximum width of
-    the line contact, m; `friction`: coefficient of sliding on the cam; `roughness`: rms, m;
-    `slides`: whether its surface slides on the cam, not rolls; `end`: of its surface, None where it
-    is not stated; `crown`: None for a straight one; `axial_offset`: of its middle from that of the
-    cam, m, None where it is not stated.
+    `word`: its name in files and texts; `table`: in the case file; `width_key`: key of its width
+    along the line of contact; `line_width`: maximum width of the line contact, m; `friction`:
+    coefficient of sliding on the cam; `roughness`: rms, m; `slides`: whether its surface slides on
+    the cam, not rolls; `end`: of its surface, None where it is not stated; `crown`: None for a
+    straight one; `axial_offset`: of its middle from that of the cam, m, None where it is not
+    stated; `parts`: those of the scope by their names there, None: not described; `drag`: against
+    rolling, None without it; `pin_stress_per_newton`: in bending, Pa/N, None without a pin.
     """
+
+    __dataclass_fields__: ClassVar[dict[str, Field[object]]]
 
     @property
     def word(self) -> str: ...
     @property
     def table(self) -> str: ...
+    @property
+    def width_key(self) -> str: ...
     @property
     def material(self) -> Material: ...
     @property
@@ -64,6 +93,15 @@ class FollowerKind(Protocol):
     def crown(self) -> AxialCrown | None: ...
     @property
     def axial_offset(self) -> float | None: ...
+    @property
+    def parts(self) -> Mapping[str, Part | None]: ...
+    @property
+    def drag(self) -> Drag | None: ...
+    @property
+    def pin_stress_per_newton(self) -> float | None: ...
+    @property
+    def moving(self) -> MovingParts: ...
+    def with_values(self, values: Mapping[str, float]) -> Self: ...
 
     @property
     def side_friction(self) -> float:
@@ -93,6 +131,22 @@ class FollowerKind(Protocol):
     @property
     def body_model(self) -> str:
         """Simplifications of its body model, in words; "" without any."""
+        ...
+
+    def ring(self, width: float, preload: float) -> RingOnBalls | None:
+        """Outer ring on balls; None without one. Arguments: see `body`."""
+        ...
+
+    def elastic(self, width: float, preload: float) -> ElasticParts:
+        """Compliances of its parts. Arguments: see `body`."""
+        ...
+
+    def turns(self, path: Array | float) -> float:
+        """Mean turns per cam turn, by the path of its reference point per cam angle, m/rad."""
+        ...
+
+    def rolling(self, contour: Contour, theta: Array, speed: float) -> RollingRoller | None:
+        """Motion without slip; None without rolling. Arguments: see `motion`."""
         ...
 
     def contour(self, lift: Lift, cam: CamBody) -> Contour:

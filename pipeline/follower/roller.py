@@ -11,7 +11,7 @@ import numpy as np
 from camwright.geometry.arrays import FULL_TURN, Array
 from camwright.geometry.contour import Contour, RollerContour
 from camwright.geometry.lift import Lift
-from camwright.geometry.pitch_curve import PitchCurve
+from camwright.geometry.pitch_curve import PitchCurve, rolling_share
 from camwright.pipeline.base.material import Material
 from camwright.pipeline.base.quantities import In, Length, Mass, Part
 from camwright.pipeline.contact.axial_shape import AxialCrown, BodyEnd, flat_width
@@ -21,7 +21,12 @@ from camwright.pipeline.contact.elasticity.elastic_body import Elastic
 from camwright.pipeline.contact.follower_body import FollowerBody, RollerBody
 from camwright.pipeline.contact.oil_film import entrainment_speed
 from camwright.pipeline.contact.traction import Drag, RollingContact, ring_inertia, rolling_contact
-from camwright.pipeline.follower.follower_kind import SurfaceMotion
+from camwright.pipeline.follower.follower_kind import ElasticParts, MovingParts, SurfaceMotion
+from camwright.pipeline.follower.follower_stiffness import (
+    bearing_compliance,
+    fork_compliance,
+    pin_compliance,
+)
 from camwright.pipeline.follower.pin_strength import pin_bending_stress
 from camwright.pipeline.follower.ring_on_balls import RingOnBalls, ring_on_balls, solid_reason
 from camwright.pipeline.follower.roller_motion import RollingRoller, roller_motion
@@ -42,6 +47,7 @@ class Roller(Part):
 
     table: ClassVar[str] = "roller"
     word: ClassVar[str] = "roller"
+    width_key: ClassVar[str] = "roller.width"
     slides: ClassVar[bool] = False
     defaults: ClassVar[Mapping[str, str]] = {
         "inertia": "that of a solid ring from hub to surface, an upper bound",
@@ -127,6 +133,27 @@ class Roller(Part):
         return float(self.material.density * self.width * area)
 
     @property
+    def parts(self) -> Mapping[str, Part | None]:
+        """Bearing, pin and fork; see `FollowerKind`."""
+        return {"roller_bearing": self.bearing, "pin": self.pin, "fork": self.fork}
+
+    @property
+    def moving(self) -> MovingParts:
+        """Roller, pin and fork; see `FollowerKind`."""
+        pin, fork = self.pin, self.fork
+        of_pin = None if pin is None else pin.mass(0.0 if fork is None else fork.cheek_width)
+        of_fork = None if pin is None or fork is None else fork.mass(pin)
+        without = ("",) if fork is None else tuple(f".{name}" for name in fork.lacking)
+        return MovingParts(
+            {"roller": self.drawn_mass, "pin": of_pin, "fork": of_fork},
+            0.0 if fork is None else (fork.cheek_length or 0.0) + (fork.bridge_length or 0.0),
+            {
+                "pin": (Pin.table,) if pin is None else (),
+                "fork": tuple(Fork.table + key for key in without),
+            },
+        )
+
+    @property
     def pin_stress_per_newton(self) -> float | None:
         """Bending stress of the pin per newton of contact force, Pa/N; None without a pin."""
         pin = self.pin
@@ -151,6 +178,28 @@ class Roller(Part):
         load = self.bearing.C0 or preload
         return ring_on_balls(ring, steel, self.radius, self.width, width, load)
 
+    def elastic(self, width: float, preload: float) -> ElasticParts:
+        """Bearing, pin and fork; see `FollowerKind`."""
+        pin, fork, ring, solved = self.pin, self.fork, self.bearing.ring, self.ring(width, preload)
+        cheeks = None if fork is None or pin is None else fork_compliance(fork, pin)
+        compliances = {
+            "bearing": None
+            if ring is None or solved is None
+            else bearing_compliance(solved, ring, preload),
+            "pin": None if pin is None else pin_compliance(pin, self.width),
+            "fork": cheeks,
+        }
+        held = None if fork is None or cheeks is None else fork.cheek_length
+        return ElasticParts(compliances, held or 0.0)
+
+    def turns(self, path: Array | float) -> float:
+        """See `FollowerKind`."""
+        return float(np.mean(np.abs(rolling_share(np.asarray(path), self.radius))))
+
+    def rolling(self, contour: Contour, theta: Array, speed: float) -> RollingRoller:
+        """Rolling without slip; see `FollowerKind`."""
+        return roller_motion(contour.require_roller().pitch, self.radius, speed, theta)
+
     def body(self, width: float, stem: Stem, preload: float) -> FollowerBody:  # noqa: ARG002
         """Roller on its hub, or outer ring of the bearing on balls; see `FollowerKind`."""
         ring = self.ring(width, preload)
@@ -162,7 +211,7 @@ class Roller(Part):
         self, contour: Contour, contact: ContactHistory, force: Array, theta: Array, speed: float
     ) -> SurfaceMotion:
         """Rolling with creep; without a friction coefficient without slip. See `FollowerKind`."""
-        motion = roller_motion(contour.require_roller().pitch, self.radius, speed, theta)
+        motion = self.rolling(contour, theta, speed)
         driven = self._driven(motion, contact, force, speed)
         loaded = force > 0
         demand = np.abs(driven.demand) / np.where(loaded, force, np.nan)

@@ -138,7 +138,7 @@ class Workbench:
             return bool(self.crowns(lever))
         if isinstance(lever, Catalogued):
             if lever.key == BEARING:
-                return case.roller_given is not None and case.scope.covers("roller_bearing")
+                return "roller_bearing" in case.facing.parts and case.scope.covers("roller_bearing")
             return True
         drawn = case.balances and case.smoothing.kind in lever.smoothers
         if lever.smoothers and not drawn:

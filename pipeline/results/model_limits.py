@@ -4,6 +4,16 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from camwright.pipeline.checks.camshaft_strength import shaft_deflection
+from camwright.pipeline.checks.contact_strength import (
+    edge_pressure,
+    shakedown,
+    shakedown_traction,
+)
+from camwright.pipeline.checks.jump_and_jamming import contact_over_speed
+from camwright.pipeline.checks.plane_strain_validity import excluded_zone, held_distance
+from camwright.pipeline.checks.roller_bearing import roller_radial
+
 
 @dataclass(frozen=True)
 class ModelLimit:
@@ -27,25 +37,25 @@ MODEL_LIMITS = (
         " ends, crown and tilt, is a factor on it by half-spaces with mirrored ends, 5 % of the"
         " mean at a corner and 2 % elsewhere from finite elements; the stem has no bending in the"
         " plane of stem and cam axis.",
-        "edge_pressure",
+        edge_pressure.id,
     ),
     ModelLimit(
         "Both bodies are linear elastic. Above first yield the stresses are those before shakedown,"
         " and no plastic strain is solved.",
-        "shakedown",
+        shakedown.id,
     ),
     ModelLimit(
         "The contact is solved without traction. Creep, film thickness, mixed friction and traction"
         " stress are closed-form results for the lubricant, roughness and friction of the case,"
         " without effect on the contact pressure. The friction of a flat face loads the follower.",
-        "shakedown_traction",
+        shakedown_traction.id,
     ),
     ModelLimit(
         "The roller is solid on its hub unless the case states outer ring and balls; the ring then"
         " has one thickness, its balls no clearance, and the contact is over a ball. Bearing"
         " ratings are those of the manufacturer; its load is radial, the normal force. Without"
         " load_case.duty the worst load case counts as if it ran for the whole life.",
-        "roller_radial",
+        roller_radial.id,
     ),
     ModelLimit(
         "The cam speed is constant in each load case. The speed ripple of the shaft acts on the"
@@ -54,7 +64,7 @@ MODEL_LIMITS = (
     ModelLimit(
         "Camshaft, camshaft bearings and the drive of the cam are rigid, without backlash."
         " The deflection of the camshaft is checked apart, without effect on the contact.",
-        "shaft_deflection",
+        shaft_deflection.id,
     ),
     ModelLimit(
         "The loads are those of a rigid follower on a spring without mass. The surge of a coil"
@@ -64,7 +74,7 @@ MODEL_LIMITS = (
         " friction of its seal or pin is left out. One mass on bearing, pin, fork, stem and"
         " camshaft in series, as far as the case describes them, with impacts after loss of"
         " contact, is solved in addition.",
-        "contact_over_speed",
+        contact_over_speed.id,
     ),
     ModelLimit(
         "Guide friction is Coulomb friction with constant coefficients, and viscous drag where the"
@@ -80,19 +90,19 @@ MODEL_LIMITS = (
         "The keyway corners are meshed sharp. Stress there and at the edge of the bore has no bound"
         " as the mesh is refined and is excluded from all checks; the root of the keyway is checked"
         " apart by its fillet.",
-        "excluded_zone",
+        excluded_zone.id,
         singular=True,
     ),
     ModelLimit(
         "Stress where the bodies are held is excluded; the contact must lie ten half-widths away"
         " from there.",
-        "held_distance",
+        held_distance.id,
         singular=True,
     ),
     ModelLimit(
         "The pressure at a corner that ends the line of contact has no bound: a mean over a stated"
         " length, limits.end_mean_length, is signed there.",
-        "edge_pressure",
+        edge_pressure.id,
         singular=True,
     ),
 )

@@ -78,10 +78,6 @@ class Designs:
         stated = value_of(self.case, key)
         return np.full((self.count, 1), np.nan if stated is None else float(stated))
 
-    def of_kind(self, roller: str, face: str) -> Array:
-        """Values (m, 1), SI, of the key of a roller or of that of a flat face."""
-        return self.value(roller if self.case.follower.face is None else face)
-
     @KeptResult
     def numbers(self) -> Numbers:
         """Numbers of the designs, those of no load case."""
@@ -268,9 +264,9 @@ class Designs:
     def contact_width(self) -> Array:
         """Width of the line contact (m, 1), m: the overlap of the flats of cam and follower."""
         cam = self.value("cam.width") - 2.0 * np.nan_to_num(self.value("cam.end.size"))
-        part = self.machine.follower.table
-        width = self.of_kind("roller.width", "follower.face.depth")
-        other = width - 2.0 * np.nan_to_num(self.value(f"{part}.end.size"))
+        part = self.machine.follower
+        width = self.value(part.width_key)
+        other = width - 2.0 * np.nan_to_num(self.value(f"{part.table}.end.size"))
         offset = np.nan_to_num(self.value("roller.axial_offset"))
         return np.asarray(np.minimum(np.minimum(cam, other), 0.5 * (cam + other) - offset))
 

@@ -192,8 +192,8 @@ def refusals(
             own = replaced(case, numbers)
             check_numbers(own)
             _require_guided(own, float(highest[row]))
-            if travel is not None and own.follower.face is not None:
-                require_face_width(own.follower.face.width, float(travel[row]))
+            if travel is not None:
+                require_face_width(value_of(own, "follower.face.width"), float(travel[row]))
         except CamError as error:
             words[row] = str(error)
     return words

@@ -12,7 +12,6 @@ from numpy.typing import NDArray
 from camwright.geometry.arrays import Array
 from camwright.pipeline.case.limits import END_MEAN_LENGTH
 from camwright.pipeline.case.machine import Machine
-from camwright.pipeline.contact.axial_shape import AxialCrown
 from camwright.pipeline.cycle.length_history import (
     ContactLoads,
     FactorRange,
@@ -101,29 +100,8 @@ def _shapes(designs: DesignValues) -> tuple[list[str], Array, NDArray[np.intp]]:
 
 def _of_shape(machine: Machine, values: Mapping[str, float]) -> Machine:
     """The machine with some values of cam, roller and face, by their keys."""
-    cam, roller, face = machine.cam, machine.roller, machine.face
-    cam = replace(
-        cam,
-        prime_radius=values.get("cam.prime_radius", cam.prime_radius),
-        width=values.get("cam.width", cam.width),
-        crown=_crown(cam.crown, values.get("cam.crown.radius")),
-    )
-    if face is not None:
-        depth = values.get("follower.face.depth", face.depth)
-        return replace(machine, cam=cam, follower=replace(face, depth=depth))
-    if roller is None:
-        return replace(machine, cam=cam)
-    roller = replace(
-        roller,
-        radius=values.get("roller.radius", roller.radius),
-        width=values.get("roller.width", roller.width),
-        crown=_crown(roller.crown, values.get("roller.crown.radius")),
-    )
-    return replace(machine, cam=cam, follower=roller)
-
-
-def _crown(crown: AxialCrown | None, radius: float | None) -> AxialCrown | None:
-    return crown if crown is None or radius is None else replace(crown, radius=radius)
+    cam, follower = machine.cam.with_values(values), machine.follower.with_values(values)
+    return replace(machine, cam=cam, follower=follower)
 
 
 def _tilt(designs: DesignValues) -> Array:

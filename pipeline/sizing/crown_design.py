@@ -34,9 +34,6 @@ from camwright.pipeline.contact.finite_length.axial_drop import (
 )
 from camwright.pipeline.cycle.cycle import Cycle
 from camwright.pipeline.cycle.length_history import held_couple
-from camwright.pipeline.follower.flat_face import FlatFace
-from camwright.pipeline.follower.follower_kind import FollowerKind
-from camwright.pipeline.follower.roller import Roller
 from camwright.pipeline.preview import preview_case
 from camwright.pipeline.sizing.least_crown import (
     KINDS,
@@ -368,7 +365,7 @@ def _crowned(machine: Machine, on: str | None, shape: Crown) -> tuple[FinitePair
         bare = replace(machine, cam=replace(machine.cam, crown=None))
         middle -= offset
     else:
-        bare = replace(machine, follower=_uncrowned(machine.follower))
+        bare = replace(machine, follower=replace(machine.follower, crown=None))
     pairs = bare.finite_pairs
     sides = (-1, 1) if len(pairs) > 1 else (1,)
     if isinstance(shape, Straight):
@@ -377,12 +374,6 @@ def _crowned(machine: Machine, on: str | None, shape: Crown) -> tuple[FinitePair
         replace(pair, crown=SummedCrown(((pair.crown, 0.0), (shape, float(middle))), side))
         for pair, side in zip(pairs, sides, strict=True)
     )
-
-
-def _uncrowned(follower: FollowerKind) -> FollowerKind:
-    if isinstance(follower, Roller | FlatFace):
-        return replace(follower, crown=None)
-    return follower
 
 
 def _states(cycles: Sequence[Cycle]) -> tuple[ContactStates, Array]:

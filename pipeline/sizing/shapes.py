@@ -21,8 +21,10 @@ from camwright.geometry.cam_size import (
 from camwright.geometry.errors import InputError
 from camwright.geometry.extrema import least_argument
 from camwright.geometry.lift_parts import LiftParts
-from camwright.pipeline.base.units import shown
+from camwright.pipeline.base.files import Json
+from camwright.pipeline.base.units import in_unit, shown
 from camwright.pipeline.case.case import Case
+from camwright.pipeline.case.case_values import value_of
 from camwright.pipeline.case.lift_section import LiftEccentric, LiftSegments, motion_of
 from camwright.pipeline.case.limits import (
     CURVATURE_RATIO,
@@ -177,6 +179,38 @@ class RollerShapes:
         offset = self._offset(prime)
         return Shape(prime, offset, shape.roller_radius, shape.face_width, governs, BALANCE)
 
+    def parts(self, shape: Shape) -> LiftParts:
+        """Lift of a shape."""
+        return self.cam.parts(shape.prime_radius, shape.offset)
+
+    def words(self, shape: Shape) -> str:
+        """Extremes of a shape, and the range of an open roller, in words."""
+        pitch = self.cam.extremes(shape.prime_radius, shape.offset)
+        words = (
+            f"pressure angle {shown(pitch.rise.value, 'deg')} on the rise,"
+            f" {shown(pitch.back.value, 'deg')} on the return; convex pitch radius"
+            f" {shown(pitch.convex_radius.value, 'mm')}"
+        )
+        if ROLLER not in self.gaps:
+            return words
+        low, high = self.roller_range(shape)
+        return f"{words}; roller {shown(low, 'mm')} to {shown(high, 'mm')}"
+
+    def record(self, shape: Shape) -> dict[str, Json]:
+        """Lengths of a shape with its extremes on the exact lift."""
+        pitch = self.cam.extremes(shape.prime_radius, shape.offset)
+        concave = pitch.concave_radius.value
+        return {
+            "prime_radius_mm": in_unit(shape.prime_radius, "mm"),
+            "roller_radius_mm": in_unit(shape.roller_radius, "mm"),
+            "pressure_angle_rise_deg": in_unit(pitch.rise.value, "deg"),
+            "pressure_angle_rise_at_deg": in_unit(pitch.rise.theta, "deg"),
+            "pressure_angle_return_deg": in_unit(pitch.back.value, "deg"),
+            "pressure_angle_return_at_deg": in_unit(pitch.back.theta, "deg"),
+            "convex_pitch_radius_min_mm": in_unit(pitch.convex_radius.value, "mm"),
+            "concave_pitch_radius_min_mm": in_unit(concave, "mm") if np.isfinite(concave) else None,
+        }
+
     def roller_range(self, shape: Shape) -> tuple[float, float]:
         """Least and greatest roller radius of a shape by bearing, curvature, tool and wall, m."""
         small = shape.prime_radius - allowance(self.case)
@@ -234,9 +268,31 @@ class FaceShapes:
             if wall > base:
                 base, governs = wall, "wall around the bore"
         offset = rounded(self.cam.best_offset) if OFFSET in self.gaps else case.cam.offset
-        face = case.follower.face
-        width = self.cam.face_width(offset) if FACE in self.gaps or face is None else face.width
+        width = self.cam.face_width(offset) if FACE in self.gaps else value_of(case, FACE)
         return Shape(base, offset, 0.0, width, governs, NARROWEST)
+
+    def parts(self, _: Shape) -> LiftParts:
+        """Lift of any shape."""
+        return self.cam.lift
+
+    def words(self, shape: Shape) -> str:
+        """Extremes of a shape in words."""
+        least = self.cam.least_radius(shape.prime_radius)
+        return (
+            f"least radius of curvature {shown(least.value, 'mm')}, undercut factor"
+            f" {self.cam.undercut_factor(shape.prime_radius):.4g}, face at least"
+            f" {shown(self.cam.face_width(shape.offset), 'mm')} wide"
+        )
+
+    def record(self, shape: Shape) -> dict[str, Json]:
+        """Lengths of a shape with its extremes on the exact lift."""
+        return {
+            "face_width_mm": in_unit(shape.face_width, "mm"),
+            "radius_of_curvature_min_mm": in_unit(
+                self.cam.least_radius(shape.prime_radius).value, "mm"
+            ),
+            "undercut_factor_min": self.cam.undercut_factor(shape.prime_radius),
+        }
 
     def enlarged(self, shape: Shape, prime: float, governs: str) -> Shape:
         """A shape with a larger base radius, m."""

@@ -4,14 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-import numpy as np
-
 from camwright.pipeline.base.files import Json
 from camwright.pipeline.base.units import in_unit, shown
 from camwright.pipeline.case.limits import SPRING_SURGE
 from camwright.pipeline.checks.check import Check
-from camwright.pipeline.sizing.open_case import GAPS, PRELOAD, RATE, ROLLER
-from camwright.pipeline.sizing.shapes import FaceShapes, Shape, Shapes
+from camwright.pipeline.sizing.open_case import GAPS, PRELOAD, RATE
+from camwright.pipeline.sizing.shapes import Shape, Shapes
 from camwright.pipeline.sizing.sizing import Sizing, unit_of
 from camwright.pipeline.sizing.spring_choice import greatest_coil_mass
 
@@ -25,7 +23,7 @@ def size_record(sizing: Sizing) -> dict[str, Json]:
     exact cam at the geometric limits, nominal, and ``drawn``: that of the complete case; spring,
     checks that the open keys decide, ids of others that fail, and the chart.
     """
-    case, spring, stroke = sizing.case, sizing.spring, _stroke(sizing)
+    case, spring, stroke = sizing.case, sizing.spring, sizing.shapes.parts(sizing.shape).stroke
     return {
         "case": case.name,
         "follower": case.follower.kind,
@@ -65,7 +63,7 @@ def size_lines(sizing: Sizing) -> Iterator[str]:
             f"base radius {shown(exact.base_radius, _MM, 7)} at the limit of the geometry,"
             f" {shown(drawn.base_radius, _MM, 6)} as drawn"
         )
-    yield _cam_line(sizing)
+    yield f"cam: {sizing.shapes.words(sizing.shape)}"
     if {RATE, PRELOAD} & set(sizing.opened.gaps):
         yield _spring_line(sizing)
     for each in sizing.checks:
@@ -78,30 +76,10 @@ def size_lines(sizing: Sizing) -> Iterator[str]:
     yield f"{sizing.verdict.upper()} in the preview: {len(sizing.checks)} checks of the open keys"
 
 
-def _cam_line(sizing: Sizing) -> str:
-    shapes, shape = sizing.shapes, sizing.shape
-    if isinstance(shapes, FaceShapes):
-        least = shapes.cam.least_radius(shape.prime_radius)
-        return (
-            f"cam: least radius of curvature {shown(least.value, _MM)}, undercut factor"
-            f" {shapes.cam.undercut_factor(shape.prime_radius):.4g}, face at least"
-            f" {shown(shapes.cam.face_width(shape.offset), _MM)} wide"
-        )
-    pitch = shapes.cam.extremes(shape.prime_radius, shape.offset)
-    words = (
-        f"cam: pressure angle {shown(pitch.rise.value, _DEG)} on the rise,"
-        f" {shown(pitch.back.value, _DEG)} on the return; convex pitch radius"
-        f" {shown(pitch.convex_radius.value, _MM)}"
-    )
-    if ROLLER not in sizing.opened.gaps:
-        return words
-    low, high = shapes.roller_range(shape)
-    return f"{words}; roller {shown(low, _MM)} to {shown(high, _MM)}"
-
-
 def _spring_line(sizing: Sizing) -> str:
     spring, case = sizing.spring, sizing.case
-    words = f"spring: {shown(spring.size.force(_stroke(sizing)), 'N')} at full lift"
+    stroke = sizing.shapes.parts(sizing.shape).stroke
+    words = f"spring: {shown(spring.size.force(stroke), 'N')} at full lift"
     if case.spring.design is not None:
         return words
     mass = greatest_coil_mass(case, spring.rate)
@@ -119,36 +97,11 @@ def _check_words(check: Check) -> str:
     return str(check)
 
 
-def _stroke(sizing: Sizing) -> float:
-    shapes, shape = sizing.shapes, sizing.shape
-    if isinstance(shapes, FaceShapes):
-        return shapes.cam.lift.stroke
-    return shapes.cam.parts(shape.prime_radius, shape.offset).stroke
-
-
 def _shape_record(shapes: Shapes, shape: Shape) -> dict[str, Json]:
     """Lengths of a shape with its extremes on the exact lift."""
-    record: dict[str, Json] = {
+    return {
         "base_radius_mm": in_unit(shape.base_radius, _MM),
         "offset_mm": in_unit(shape.offset, _MM),
         "governs": shape.governs,
-    }
-    if isinstance(shapes, FaceShapes):
-        least = shapes.cam.least_radius(shape.prime_radius)
-        return record | {
-            "face_width_mm": in_unit(shape.face_width, _MM),
-            "radius_of_curvature_min_mm": in_unit(least.value, _MM),
-            "undercut_factor_min": shapes.cam.undercut_factor(shape.prime_radius),
-        }
-    pitch = shapes.cam.extremes(shape.prime_radius, shape.offset)
-    concave = pitch.concave_radius.value
-    return record | {
-        "prime_radius_mm": in_unit(shape.prime_radius, _MM),
-        "roller_radius_mm": in_unit(shape.roller_radius, _MM),
-        "pressure_angle_rise_deg": in_unit(pitch.rise.value, _DEG),
-        "pressure_angle_rise_at_deg": in_unit(pitch.rise.theta, _DEG),
-        "pressure_angle_return_deg": in_unit(pitch.back.value, _DEG),
-        "pressure_angle_return_at_deg": in_unit(pitch.back.theta, _DEG),
-        "convex_pitch_radius_min_mm": in_unit(pitch.convex_radius.value, _MM),
-        "concave_pitch_radius_min_mm": in_unit(concave, _MM) if np.isfinite(concave) else None,
+        **shapes.record(shape),
     }

@@ -17,10 +17,43 @@ from camwright.pipeline.base.progress import SILENT, Progress
 from camwright.pipeline.base.quantities import In
 from camwright.pipeline.base.units import in_unit, shown
 from camwright.pipeline.case.case import Case
-from camwright.pipeline.case.case_values import quantity_of, refused_as_written, replaced
+from camwright.pipeline.case.case_values import quantity_of, refused_as_written, replaced, value_of
 from camwright.pipeline.case.given_lift import given_lift
 from camwright.pipeline.case.load_case_torque import engine_torques
-from camwright.pipeline.checks.check import Check, Verdict, verdict, within_depth
+from camwright.pipeline.checks.cam_shape import (
+    concave_radius,
+    curvature_ratio,
+    minimum_wall,
+    pressure_angle,
+    second_contact,
+    self_intersection,
+    spring_travel,
+    undercut,
+)
+from camwright.pipeline.checks.check import Check, Declaration, Verdict, verdict, within_depth
+from camwright.pipeline.checks.contact_strength import (
+    contact_pressure,
+    contact_pressure_at_life,
+    edge_pressure,
+    shakedown,
+)
+from camwright.pipeline.checks.flat_face_sliding import face_width
+from camwright.pipeline.checks.jump_and_jamming import (
+    contact_at_overspeed,
+    contact_force_margin,
+    contact_over_speed,
+    elastic_contact,
+    jam_index,
+    jump,
+    jump_speed,
+)
+from camwright.pipeline.checks.manufacture import cam_radius
+from camwright.pipeline.checks.spring_strength import (
+    spring_coil_gap,
+    spring_rate,
+    spring_solid,
+    spring_surge,
+)
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.results.trial import Trial
 from camwright.pipeline.sizing.open_case import (
@@ -34,7 +67,6 @@ from camwright.pipeline.sizing.open_case import (
     read_open_case,
 )
 from camwright.pipeline.sizing.shapes import (
-    FaceShapes,
     RollerShapes,
     Shape,
     Shapes,
@@ -53,26 +85,22 @@ if TYPE_CHECKING:
     import pandas as pd
     from matplotlib.axes import Axes
 
-_SHAPE = ("pressure_angle", "curvature_ratio", "undercut", "concave_radius", "minimum_wall",
-          "cam_radius", "self_intersection", "second_contact", "contact_pressure",
-          "contact_pressure_at_life", "edge_pressure", "shakedown", "jam_index")  # fmt: skip
-_SPRING = ("contact_force_margin", "jump", "jump_speed", "contact_at_overspeed",
-           "contact_over_speed", "elastic_contact", "spring_travel", "spring_solid",
-           "spring_surge", "spring_rate", "spring_coil_gap")  # fmt: skip
-JUDGED: Mapping[str, tuple[str, ...]] = {
-    PRIME: _SHAPE, OFFSET: _SHAPE, ROLLER: _SHAPE, FACE: ("face_width",),
+_GROWTH = (pressure_angle, curvature_ratio, undercut, concave_radius, minimum_wall,
+           contact_pressure, contact_pressure_at_life, edge_pressure, shakedown,
+           jam_index)  # fmt: skip
+"""Checks that a larger cam can pass."""
+_HELD = (contact_force_margin, jump, jump_speed, contact_at_overspeed, contact_over_speed,
+         elastic_contact)  # fmt: skip
+"""Checks that a greater preload can pass."""
+_WOUND = (spring_surge, spring_solid, spring_coil_gap)
+"""Checks that the winding of a stiffer spring can pass."""
+_SHAPE = (*_GROWTH, cam_radius, self_intersection, second_contact)
+_SPRING = (*_HELD, *_WOUND, spring_travel, spring_rate)
+JUDGED: Mapping[str, tuple[Declaration, ...]] = {
+    PRIME: _SHAPE, OFFSET: _SHAPE, ROLLER: _SHAPE, FACE: (face_width,),
     RATE: _SPRING, PRELOAD: _SPRING,
 }  # fmt: skip
 """Checks that an open key decides."""
-_GROWTH = ("pressure_angle", "curvature_ratio", "undercut", "concave_radius", "minimum_wall",
-           "contact_pressure", "contact_pressure_at_life", "edge_pressure", "shakedown",
-           "jam_index")  # fmt: skip
-"""Checks that a larger cam can pass."""
-_HELD = ("contact_force_margin", "jump", "jump_speed", "contact_at_overspeed",
-         "contact_over_speed", "elastic_contact")  # fmt: skip
-"""Checks that a greater preload can pass."""
-_WOUND = ("spring_surge", "spring_solid", "spring_coil_gap")
-"""Checks that the winding of a stiffer spring can pass."""
 
 _HALF_WIDTHS = 1.25
 """Half-widths of the contact that a face has beside it: the tolerances press more than nominal."""
@@ -167,7 +195,7 @@ class Sizing(Displayed):
     @property
     def no_size(self) -> bool:
         """Whether checks fail that a larger cam could pass, and none tried does."""
-        failing = any(each.status == "fail" and each.id in _GROWTH for each in self.checks)
+        failing = any(each.status == "fail" and each.declaration in _GROWTH for each in self.checks)
         return failing and PRIME in self.opened.gaps
 
     @property
@@ -262,7 +290,7 @@ class _SizeSearch:
             else:
                 break
             text, case, trial = self._judged(shape, spring)
-        ids = {name for gap in self.opened.gaps for name in JUDGED[gap]}
+        ids = {one.id for gap in self.opened.gaps for one in JUDGED[gap]}
         made = [each for each in within_depth(trial.checks) if each.must_have]
         return Sizing(
             opened=self.opened,
@@ -289,12 +317,7 @@ class _SizeSearch:
         return PRELOAD in self.opened.gaps or self._rate_is_open
 
     def _spring(self, shape: Shape, stiff: ChosenSpring | None = None) -> ChosenSpring:
-        parts = (
-            self.shapes.cam.lift
-            if isinstance(self.shapes, FaceShapes)
-            else self.shapes.cam.parts(shape.prime_radius, shape.offset)
-        )
-        return spring_of(self.opened.case, self.opened.gaps, parts, stiff)
+        return spring_of(self.opened.case, self.opened.gaps, self.shapes.parts(shape), stiff)
 
     def _stiffened(self, exact: Shape, first: _Tried) -> _Tried:
         """The first of stiffer springs whose winding passes; the given one if none does."""
@@ -360,8 +383,7 @@ class _SizeSearch:
 
     @property
     def _roller_by(self) -> str:
-        roller = self.opened.case.roller_given
-        ring = roller is not None and roller.bearing.ring is not None
+        ring = value_of(self.opened.case, "roller.bearing.ring")
         return "outer ring of its bearing" if ring else "least contact pressure within curvature"
 
     def _lift(self, case: Case) -> Lift:
@@ -456,7 +478,7 @@ class _SizeSearch:
 
 
 def _failing(
-    trial: Trial, ids: tuple[str, ...], raised: Mapping[str, float] = _NOT_RAISED
+    trial: Trial, ones: tuple[Declaration, ...], raised: Mapping[str, float] = _NOT_RAISED
 ) -> tuple[Check, ...]:
     """Must-have checks that fail, or would at a utilisation raised by a factor."""
 
@@ -466,7 +488,9 @@ def _failing(
             factor > 1.0 and (check.utilisation or 0.0) * factor > 1.0
         )
 
-    return tuple(each for each in trial.checks if each.id in ids and each.must_have and fails(each))
+    return tuple(
+        each for each in trial.checks if each.declaration in ones and each.must_have and fails(each)
+    )
 
 
 def _raised(failing: tuple[Check, ...], screened: Trial) -> dict[str, float]:

@@ -21,9 +21,9 @@ from camwright.pipeline.case.machine import Machine, machines
 from camwright.pipeline.checks.cam_shape import lift, spring_travel
 from camwright.pipeline.checks.check import Declaration, Measured
 from camwright.pipeline.checks.contact_strength import (
-    FACE_PASSES,
     LoadCycles,
     life_turns,
+    passes,
     pressure_allowables,
 )
 from camwright.pipeline.checks.demands import NORMAL_FORCE, PRESSURE
@@ -53,7 +53,7 @@ def ratings_of(case: Case) -> Ratings:
     held = machine.cam.held_radius if "prime_radius" in case.smoothing.free else None
     ratings = Ratings(
         numbers | {"cam.held_radius": held, "guides.a.mouth": numbers["guides.a.mouth"]},
-        drag=None if machine.roller is None else machine.roller.drag,
+        drag=machine.follower.drag,
         keyway=keyway_root_of(machine),
         grease=grease_of(machine),
     )
@@ -130,15 +130,12 @@ def greatest_cycles(case: Case) -> LoadCycles:
     pressure angle per cam angle.
     """
     turns, smoothing = life_turns(machines(case)), case.smoothing
-    roller = case.roller_given
-    if roller is None:
-        return LoadCycles(turns, FACE_PASSES * turns)
     travel = min(travel_limits(case).values(), default=None)
     prime = max(case.cam.prime_radius, *(smoothing.prime_radius_range or ()), 0.0)
     radius = prime + (prime if travel is None else travel)
     angles = case.limits[PRESSURE_ANGLE], case.limits[RETURN_PRESSURE_ANGLE] or 0.0
     path = radius / np.cos(max(angles))
-    return LoadCycles(turns, turns * max(path / roller.radius - 1.0, 1.0))
+    return LoadCycles(turns, turns * max(passes(case.facing, path), 1.0))
 
 
 class Surge(NamedTuple):
@@ -195,7 +192,7 @@ class TopCam(LoadedCam):
         )
 
 
-def scaled_limits(solved: Solution) -> tuple[dict[str, float], dict[str, float]]:
+def scaled_limits(solved: Solution) -> dict[str, dict[str, float]]:
     """Normal force, N, and contact pressure, Pa, at the limit of further checks, by their ids.
 
     From their utilisation on a solved cam: they depend on the whole turn, on the unbalance or on
@@ -203,29 +200,25 @@ def scaled_limits(solved: Solution) -> tuple[dict[str, float], dict[str, float]]
     """
     force = max(float(cycle.loads.normal_force.max()) for cycle in solved.cycles)
     pressure = max(float(cycle.surface.p0.max()) for cycle in solved.cycles)
-    greatest = {"normal_force": force, "contact_pressure": pressure}
+    greatest = {NORMAL_FORCE: force, PRESSURE: pressure}
     limits: dict[str, dict[str, float]] = {name: {} for name in greatest}
     for declared in CHECKS:
         if not declared.scales_with:
             continue
-        measure, power = declared.scales_with
-        made, value = declared(solved), greatest[measure]
+        group, power = declared.scales_with
+        made, value = declared(solved), greatest[group]
         use = None if made is None else made.utilisation
         if use is not None and 0.0 < use < np.inf and value > 0.0:
-            limits[measure][declared.id] = value / use ** (1.0 / power)
-    return limits["normal_force"], limits["contact_pressure"]
+            limits[group][declared.id] = value / use ** (1.0 / power)
+    return limits
 
 
 def corrected_ratings(ratings: Ratings, solved: Solution) -> Ratings:
     """Ratings with the limits that follow from a solved cam; see `surge_of`, `scaled_limits`."""
     case = solved.case
-    (forces, pressures), known = scaled_limits(solved), limits_of(case)
-    corrected = {
-        spring_travel.id: _travel_limit(case, surge_of(solved)),
-        NORMAL_FORCE: known[NORMAL_FORCE] | forces,
-        PRESSURE: known[PRESSURE] | pressures,
-    }
-    return ratings.least(corrected)
+    known = limits_of(case)
+    scaled = {group: known[group] | own for group, own in scaled_limits(solved).items()}
+    return ratings.least({spring_travel.id: _travel_limit(case, surge_of(solved))} | scaled)
 
 
 def _travel_limit(case: Case, surge: Surge | None = None) -> dict[str, float]:
@@ -243,7 +236,7 @@ def travel_limits(case: Case, surge: Surge | None = None) -> dict[str, float]:
     """
     states = machines(case)
     numbers, last = numbers_of(case, states), surge or Surge(1.0, 0.0, 0.0, 0.0)
-    is_open = bool({"spring_rate", "preload"} & set(case.smoothing.free))
+    is_open = bool(case.smoothing.of_spring)
     allowed = {}
     for one in CHECKS:
         how = one.measured

@@ -124,9 +124,7 @@ def _program(search: Search) -> Cones:
         program.square_at_most(sigma, growth, 1.0)
     if (force := ratings.bounds.get(NORMAL_FORCE)) is not None:
         share = (force * (1.0 - RESERVE) / variables.closing) ** 2
-        sideways = torque / (variables.prime_radius * variables.closing)
-        if ratings.follower == "face":
-            sideways = 0.0 * sideways
+        sideways = ratings.tilting * torque / (variables.prime_radius * variables.closing)
         program.square_at_most(sideways, -growth, share - 1.0)
     return program
 

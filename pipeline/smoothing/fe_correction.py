@@ -10,7 +10,6 @@ import numpy as np
 import scipy
 
 from camwright.geometry.arrays import Array
-from camwright.geometry.pitch_curve import rolling_share
 from camwright.pipeline.base.material import ROOM
 from camwright.pipeline.base.units import in_unit
 from camwright.pipeline.case.limits import TORQUE_REDUCTION
@@ -354,6 +353,7 @@ def _of_cycle(cycle: Cycle, swept: Correction, left: Sequence[tuple[float, float
     surge, spacing = cycle.parts.surge_force, machine.guides.spacing
     of_guides = _Statics.of(cycle.loads, spacing, (guides.statics_a, guides.statics_b))
     hot = _Statics.of(worst, spacing, (worst.reaction_a, worst.reaction_b))
+    path, _ = cycle.contour.pitch.speed_and_curvature(cycle.theta)
     return replace(
         swept,
         contact=_ratio(contact.p0, contact.p0_hertz),
@@ -367,7 +367,7 @@ def _of_cycle(cycle: Cycle, swept: Correction, left: Sequence[tuple[float, float
         hot_a=hot.correction(0, _over(worst.friction_force_a, friction[0])),
         hot_b=hot.correction(1, _over(worst.friction_force_b, friction[1])),
         surge=np.zeros(cycle.theta.size) if surge is None else surge,
-        rolling=np.full(cycle.theta.size, _mean_rolling(cycle)),
+        rolling=np.full(cycle.theta.size, machine.follower.turns(path)),
         least_lift=np.full(cycle.theta.size, cycle.contour.pitch.lift.lowest.value),
     )
 
@@ -395,15 +395,6 @@ class _Statics(NamedTuple):
 def _over(force: Array, friction: float) -> Array:
     """Normal load of a friction force (n,), N; 0 without friction."""
     return force / friction if friction > 0.0 else np.zeros_like(force)
-
-
-def _mean_rolling(cycle: Cycle) -> float:
-    """Mean turn of the roller over that of the cam; 0 under a flat face."""
-    roller = cycle.machine.roller
-    if roller is None:
-        return 0.0
-    path_speed, _ = cycle.contour.pitch.speed_and_curvature(cycle.theta)
-    return float(np.mean(np.abs(rolling_share(path_speed, roller.radius))))
 
 
 def _ratio(solved: Array, closed: Array, least: float = _LOADED) -> Array:

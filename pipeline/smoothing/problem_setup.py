@@ -121,7 +121,7 @@ def roller_problems(
     InputError
         If cards in the folder of the case cannot be read.
     """
-    if case.roller_given is None:
+    if not case.facing.parts:
         return
     folder = _folder(case)
     rollers = catalogue_of(folder).rollers

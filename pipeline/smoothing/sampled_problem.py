@@ -102,7 +102,7 @@ class Search:
             problem.grid(np.concatenate([theta, self.extra])) if self.extra.size else self.turn
         )
         self.every = np.arange(problem.points, dtype=np.intp)
-        self._jumps = problem.ratings.offset != 0.0 and problem.ratings.follower == "roller"
+        self._jumps = problem.ratings.tilting * problem.ratings.offset != 0.0
         self.weighted = [
             k
             for k, item in enumerate(problem.scenarios)

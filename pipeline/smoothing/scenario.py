@@ -90,6 +90,11 @@ class Ratings:
         return "roller" if self.numbers.get("follower.face.width") is None else "face"
 
     @property
+    def tilting(self) -> float:
+        """Slope of the normal over that of the lift: 1 of a roller, 0 of a flat face."""
+        return float(self.follower == "roller")
+
+    @property
     def offset(self) -> float:
         """Offset of the follower, m."""
         return float(self.numbers["cam.offset"])

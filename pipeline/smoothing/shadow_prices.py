@@ -14,6 +14,8 @@ from camwright.geometry.errors import InputError
 from camwright.pipeline.base.units import in_unit
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_values import replaced, value_of
+from camwright.pipeline.checks.demands import PRESSURE
+from camwright.pipeline.checks.flat_face_sliding import face_pv
 from camwright.pipeline.smoothing.bounds import Bound, bounds_of
 from camwright.pipeline.smoothing.cam_state import lift_jet, unloaded
 from camwright.pipeline.smoothing.problem_setup import problem_of
@@ -25,7 +27,7 @@ from camwright.pipeline.torque.torque import Torque
 BINDING = 2e-3  # of a limit: a constraint this near to its reserve is active
 FLOOR = 1e-4  # of the engine's ripple, by 1 % of a value: the optima are converged to 1e-6
 _STEP = 1e-4  # of a number of the machine, for its difference quotient
-_BY_SQUARE = ("contact_pressure", "face_pv")
+_BY_SQUARE = (PRESSURE, face_pv.id)
 _WEIGHTED = 1e-3  # of the ripple: least other terms of an objective that is no ripple alone
 
 

@@ -49,13 +49,13 @@ def valve_cam(case: Case) -> ValveCam | None:
     train, lift = case.valve_train, case.lift
     if train is None or not isinstance(lift, LiftSegments):
         return None
-    roller = case.roller_given
+    radius = case.facing.contact_radius
     return ValveCam(
         motion_of(lift),
         case.base_circle,
-        0.0 if roller is None else roller.radius,
+        radius or 0.0,
         case.cam.offset,
-        "C" if roller is None else "B",
+        "B" if radius else "C",
         train.cam_mass,
         case.follower.mass,
     )

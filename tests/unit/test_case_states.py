@@ -101,7 +101,7 @@ def test_the_machine_of_a_case_by_hand():
     assert found.axial_stiffness == pytest.approx(1.0 / series, rel=1e-12)
     assert found.system.spring is found.spring
     assert found.system.face_friction == 0.0
-    assert (found.roller, found.face) == (case.roller, None)
+    assert found.follower is found.roller is case.roller
 
 
 def test_bounds_of_the_friction_are_those_solved_at_once(torques):

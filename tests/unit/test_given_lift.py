@@ -153,7 +153,7 @@ material = "hardened_steel"
 def test_flat_face_takes_the_place_of_the_roller():
     found = parse_case(flat(with_lift(ECCENTRIC)))
     assert found.facing is found.follower.face
-    assert found.follower.face_friction == 0.08
+    assert found.facing.side_friction == 0.08
     with pytest.raises(
         InputError, match=r'follower\.kind = flat, must be "roller" for a value of the roller'
     ):

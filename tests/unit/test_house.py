@@ -10,6 +10,7 @@ from collections import Counter
 from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
+from typing import NamedTuple
 
 import pytest
 
@@ -324,36 +325,146 @@ def test_prose_is_in_the_terms_of_the_field() -> None:
     assert wrong == []
 
 
-# Modules that name a check by its id besides its declaration: tables of screening and synthesis,
-# and texts, records or columns of the same name.
+_FREE, _COLUMN = "free variable of the synthesis", "column of the cycle"
+_DRAWN = "limits in the figures of a run on disk, by the ids of its records"
 NAME_CHECKS = {
-    "geometry.cam_size", "pipeline.base.missing_kinds", "pipeline.case.cards.substitution",
-    "pipeline.case.consistency", "pipeline.case.limits", "pipeline.case.plausibility",
-    "pipeline.case.requirements_section", "pipeline.cycle.cycle", "pipeline.cycle.guide_pressure",
-    "pipeline.cycle.part_loads", "pipeline.cycle.rolling_history",
-    "pipeline.follower.elastic_follower", "pipeline.follower.flat_face_motion",
-    "pipeline.follower.roller_parts", "pipeline.iteration", "pipeline.recomputation",
-    "pipeline.results.model_limits", "pipeline.results.run_records",
-    "pipeline.sizing.sizing", "pipeline.smoothing.allowables",
-    "pipeline.smoothing.problem_setup",
-    "pipeline.smoothing.shadow_prices",
-    "pipeline.studies.design.candidate_search", "pipeline.studies.design.synthesised_points",
-    "pipeline.studies.papers.figures_2015_valve", "pipeline.studies.papers.petrescu_2015",
-    "pipeline.studies.redesign.design_point", "pipeline.studies.redesign.redesign_study",
-    "pipeline.studies.valve_cam", "reports.analysis_sheet", "reports.comparisons.redesign_page",
-    "reports.part_figures", "reports.picture_list", "reports.report_content",
-}  # fmt: skip
+    "geometry.cam_size": "limit of a pitch curve",
+    "pipeline.base.missing_kinds": "kind of a motion",
+    "pipeline.case.cards.substitution": _FREE,
+    "pipeline.case.limits": "row of the table of limits",
+    "pipeline.case.requirements_section": _FREE,
+    "pipeline.checks.demands": "group of checks, by the id of the one that is its constraint",
+    "pipeline.cycle.cycle": _COLUMN,
+    "pipeline.cycle.guide_pressure": "array of the guides",
+    "pipeline.cycle.part_loads": _COLUMN,
+    "pipeline.cycle.rolling_history": _COLUMN,
+    "pipeline.follower.elastic_follower": "number of an elastic follower",
+    "pipeline.follower.flat_face_motion": _COLUMN,
+    "pipeline.follower.roller_parts": "key of a bearing",
+    "pipeline.iteration": "fact of a design in a notebook",
+    "pipeline.recomputation": _FREE,
+    "pipeline.results.run_records": "figure of the record of a trial",
+    "pipeline.smoothing.problem_setup": _FREE,
+    "pipeline.studies.design.synthesised_points": "figure of the record of a point",
+    "pipeline.studies.papers.figures_2015_valve": "word of a title",
+    "pipeline.studies.papers.petrescu_2015": "figure of the record of a paper",
+    "pipeline.studies.redesign.design_point": "figure of the record of a point",
+    "pipeline.studies.redesign.redesign_study": "figure of the record of a point",
+    "pipeline.studies.valve_cam": "number of a valve train",
+    "reports.analysis_sheet": _DRAWN,
+    "reports.comparisons.redesign_page": "figure of the record of a point",
+    "reports.part_figures": _DRAWN,
+    "reports.picture_list": _DRAWN,
+    "reports.report_content": "figure of the record of a trial",
+}
+"""Modules in which the id of a check is a string besides its declaration, and what it names."""
 
 
 def test_the_facts_of_a_check_stand_in_its_declaration() -> None:
     """No other module gains a table by the ids of checks; one that loses it leaves the list."""
-    from camwright.pipeline.checks.registry import DECLARED
+    from camwright.pipeline.checks import registry
+    from camwright.pipeline.checks.check import Declaration
 
+    home = {each.id: _own(module.__name__) for module in (registry, *registry.MODULES)
+            for each in vars(module).values() if isinstance(each, Declaration)}  # fmt: skip
     naming = {
-        _own(name)
+        name
         for name, path in modules().items()
-        if not _own(name).startswith("pipeline.checks.")
         for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
-        if isinstance(node, ast.Constant) and node.value in DECLARED
+        if isinstance(node, ast.Constant) and home.get(node.value, name) != name
     }
-    assert naming == NAME_CHECKS
+    assert naming == set(NAME_CHECKS)
+
+
+class Kinds(NamedTuple):
+    """Kinds of a part: their classes, their words in a case, attributes that are None of others."""
+
+    classes: frozenset[str]
+    words: frozenset[str]
+    attributes: frozenset[str]
+
+    def branches(self, node: ast.AST) -> bool:
+        """Whether a node asks for the kind."""
+        if isinstance(node, ast.Call) and _name(node.func) == "isinstance":
+            return bool(self.classes & {_name(each) for each in ast.walk(node.args[1])})
+        if isinstance(node, ast.MatchClass):
+            return _name(node.cls) in self.classes
+        if isinstance(node, ast.Compare):
+            sides = [node.left, *node.comparators]
+            values = {each.value for each in sides if isinstance(each, ast.Constant)}
+            return bool(self.words & values) or (None in values and any(map(self._is_of, sides)))
+        if isinstance(node, ast.BoolOp):
+            return any(map(self._is_of, node.values))
+        return isinstance(node, ast.If | ast.IfExp) and self._is_of(node.test)
+
+    def _is_of(self, node: ast.AST) -> bool:
+        return _name(node) in self.attributes
+
+
+def _name(node: ast.AST) -> str:
+    return str(getattr(node, "attr", getattr(node, "id", "")))
+
+
+FOLLOWERS = Kinds(
+    classes=frozenset({
+        "Roller", "FlatFace", "RollerMotion", "FaceMotion", "RollerContour", "FlatFaceContour",
+        "PitchCurve", "FacePath", "RollerBody", "RingBody", "FaceBody", "RollerShapes",
+        "FaceShapes",
+    }),
+    words=frozenset({"roller", "face", "flat"}),
+    attributes=frozenset({"roller", "roller_given", "face"}),
+)  # fmt: skip
+SPRINGS = Kinds(
+    classes=frozenset({"HelicalSpring", "GasSpring", "TorsionSpring", "Coil"}),
+    words=frozenset({"coil", "gas", "torsion"}),
+    attributes=frozenset({"gas", "torsion"}),
+)
+_READS, _DRAWS = "reads the tables of a case", "draws the parts of a run on disk"
+ASK_FOR_A_KIND = {
+    FOLLOWERS: {
+        "pipeline.case.added_tables": _READS,
+        "pipeline.case.case": _READS,
+        "pipeline.case.case_file": "refuses a face too narrow for the lift of its case",
+        "pipeline.case.consistency": _READS,
+        "pipeline.case.given_lift": "lift of an eccentric, which the follower decides",
+        "pipeline.case.machine": "narrows the follower to the kind that a check needs",
+        "pipeline.case.parts_section": _READS,
+        "pipeline.cycle.loaded_cam": "narrows the motion to the kind that a measure needs",
+        "pipeline.screening.design_screening": "refuses designs with too narrow a face",
+        "pipeline.sizing.open_case": _READS,
+        "pipeline.sizing.shapes": "chooses the shapes of the kind",
+        "pipeline.sizing.size_chart": "chooses the panels of the kind",
+        "pipeline.sizing.sizing": "narrows the shapes to those with an open roller",
+        "pipeline.smoothing.scenario": "numbers of a problem have no follower of their own",
+        "reports.arrangement_data": _DRAWS,
+        "reports.drawing.arrangement": _DRAWS,
+    },
+    SPRINGS: {
+        "pipeline.follower.spring": "has a table for each kind",
+        "pipeline.checks.spring_strength": "narrows the spring to the kind that a measure needs",
+        "reports.arrangement_data": _DRAWS,
+        "reports.drawing.arrangement": _DRAWS,
+        "reports.part_figures": _DRAWS,
+    },
+}
+"""Modules that branch on a kind of follower or spring outside its own modules, and why."""
+
+
+@pytest.mark.parametrize("text", [
+    "isinstance(part, Roller | None)", "x = part.face is None", 'case.kind == "flat"',
+    "a if machine.roller else b", "machine.face or other", "match part:\n    case Roller(): pass",
+])  # fmt: skip
+def test_a_branch_on_a_kind_is_seen(text: str) -> None:
+    assert any(map(FOLLOWERS.branches, ast.walk(ast.parse(text))))
+
+
+@pytest.mark.parametrize("kinds", ASK_FOR_A_KIND, ids=["follower", "spring"])
+def test_a_part_is_asked_for_its_members_and_not_for_its_kind(kinds: Kinds) -> None:
+    """A new branch is a member of the kinds; a module that loses its last leaves the list."""
+    asking = {
+        name
+        for name, path in modules().items()
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
+        if kinds.branches(node)
+    }
+    assert asking == set(ASK_FOR_A_KIND[kinds])

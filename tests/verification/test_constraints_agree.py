@@ -233,7 +233,9 @@ def test_pressure_limit_is_that_of_each_check(case, judged):
     bend = contour.roller_radius * contour.pitch.curvature(theta)
     corrections = corrections_of(solved)
     # Where ends and tilt count, the limit follows from the solved cam.
-    along = {name: value for name, value in scaled_limits(solved)[1].items() if name in limits}
+    along = {
+        name: value for name, value in scaled_limits(solved)[PRESSURE].items() if name in limits
+    }
     assert set(along) == {"edge_pressure", "edge_shakedown", "contact_pressure_at_life"}
     for name, limit in (limits | along).items():
         ratings, most = rated(ratings_of(case), pressure=limit), 0.0

@@ -28,7 +28,7 @@ from camwright.pipeline.case.machine import machines
 from camwright.pipeline.case.toml_text import tables_of
 from camwright.pipeline.checks import guide_strength, guide_wear, jump_and_jamming
 from camwright.pipeline.checks.check import Check, Declaration
-from camwright.pipeline.checks.error_bars import GUIDE_EDGE_ERROR, GUIDE_ERROR, with_error_bars
+from camwright.pipeline.checks.error_bars import GUIDE_EDGE_ERROR, with_error_bars
 from camwright.pipeline.checks.registry import CHECKS, checks_of
 from camwright.pipeline.checks.solution_verification import mesh_reaction
 from camwright.pipeline.cycle.cycle import Cycle
@@ -610,7 +610,7 @@ def test_error_of_loaded_length_and_line_load_is_within_its_bar() -> None:
 def test_error_bar_of_an_edge_includes_that_of_its_mesh(solved) -> None:
     made = [declared(solved) for declared in (guide_strength.guide_pressure_a,
                                               guide_strength.guide_pv_a)]  # fmt: skip
-    mesh = replace(made[1], demand=0.01, declaration=replace(made[1].declaration, id=GUIDE_ERROR))
+    mesh = replace(made[1], demand=0.01, declaration=mesh_reaction)
     pressure, pv, _ = with_error_bars(solved, [*made, mesh])
     assert pv.error_share == pytest.approx(0.01 + made[1].error_share, rel=1e-6)
     sampled = made[0].error_share

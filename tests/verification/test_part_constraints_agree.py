@@ -395,7 +395,8 @@ def test_surge_shortens_the_lift_to_the_limit_of_the_spring(case, solved):
 
 
 def test_limits_scaled_from_a_solved_cam_are_those_of_its_checks(case, solved, checks):
-    forces, pressures = scaled_limits(solved)
+    scaled = scaled_limits(solved)
+    forces, pressures = scaled[demands.NORMAL_FORCE], scaled[demands.PRESSURE]
     most = max(float(cycle.loads.normal_force.max()) for cycle in solved.cycles)
     assert set(forces) >= {"roller_pin_fatigue", "shaft_fatigue", "shaft_bearing_life"}
     assert most / forces["shaft_fatigue"] == pytest.approx(checks["shaft_fatigue"].utilisation)

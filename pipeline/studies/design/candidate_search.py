@@ -21,6 +21,7 @@ from camwright.pipeline.case.cards.provenance import without_provenance
 from camwright.pipeline.case.cards.shaft_seats import seats
 from camwright.pipeline.case.case_file import parse_case
 from camwright.pipeline.case.toml_text import Tables
+from camwright.pipeline.checks.manufacture import cam_radius, profile_waviness
 from camwright.pipeline.follower.spring import HelicalSpring
 from camwright.pipeline.screening.design_screening import Column, screen_designs
 from camwright.pipeline.studies.design.design_case import (
@@ -52,7 +53,6 @@ _REMOVED_MORE = 0.05  # of the ripple, above the requirement
 _PEAK = 1.25  # cam torque over that of the balanced ripple
 _FREE_ROOM = 5.0  # m, of a cam whose space is not limited
 _SMOOTHER = 'kind = "harmonic"\nharmonics = 12.0\n'
-_WAVINESS = "profile_waviness"
 _WAVY = 0.75  # utilisation above which the contour is ground finely: the preload is free
 POSITIONS = 60
 
@@ -264,13 +264,13 @@ def _judged(designs: list[Machinery], columns: Mapping[str, Column]) -> list[Can
         if name.endswith(".utilisation")
     ])  # fmt: skip
     names = [name.split(".")[0] for name in columns if name.endswith(".utilisation")]
-    wavy = names.index(_WAVINESS)  # proportional to the tolerance of the contour
+    wavy = names.index(profile_waviness.id)  # proportional to the tolerance of the contour
     finely = used[wavy] > _WAVY
     used[wavy, finely] *= PROFILES[1] / PROFILES[0]
     excess = np.maximum(used - 1.0, 0.0).sum(axis=0)
     worst = used.argmax(axis=0)
     ripple = np.asarray(columns["headline.torque_std_after_Nm"], dtype=float)
-    radius = np.asarray(columns["cam_radius.demand"], dtype=float)
+    radius = np.asarray(columns[f"{cam_radius.id}.demand"], dtype=float)
     good: NDArray[np.bool_] = np.isfinite(ripple) & np.isfinite(radius)
     good &= np.asarray(columns["screen"] != "error")
     return [
