@@ -26,7 +26,7 @@ from camwright.pipeline.preview import preview_case
 ROOT = Path(__file__).resolve().parents[2]
 PAGE = (ROOT / "docs" / "contributing.md").read_text(encoding="utf-8")
 LIMITS, SHAPE = ROOT / "pipeline" / "case" / "limits.py", ROOT / "pipeline/checks/cam_shape.py"
-LIMIT = 60.0  # mm/rad^3; the cam of the small machine has 190 without it
+LIMIT = 120.0  # mm/rad^3; the cam of the small machine has 190 without it
 
 
 def fragments(heading: str) -> list[str]:
@@ -88,9 +88,9 @@ def command(*words):
         assert end.code in (0, 1, 3), said.getvalue()
     return said.getvalue()
 
-command("run", "case.toml", "--out", "run", "--depth", "preview")
+command("run", "case.toml", "--out", "run", "--depth", "screening")
 (check,) = [each for each in read_run(Path("run")).final.checks if each["id"] == "lift_jerk"]
-limits = {"limits.lift_jerk": ["50 mm/rad^3", "70 mm/rad^3"]}
+limits = {"limits.lift_jerk": ["110 mm/rad^3", "130 mm/rad^3"]}
 screened = screen_designs(read_case(Path("case.toml")), limits)
 explained = command("explain", "lift_jerk"), command("explain", "limits.lift_jerk")
 columns = {name: list(screened[f"lift_jerk.{name}"]) for name in ("demand", "limit", "status")}
@@ -130,7 +130,8 @@ def test_the_check_of_the_page_is_judged_and_kept_by_the_synthesis(used: Any) ->
 
 
 def test_the_check_of_the_page_is_screened(used: Any) -> None:
-    np.testing.assert_allclose(used.screened["demand"], used.check["demand"], rtol=1e-3)
+    (deviation,) = re.findall(r"deviation=([\d.]+)", fragments("A check with a limit")[1])
+    np.testing.assert_allclose(used.screened["demand"], used.check["demand"], rtol=float(deviation))
     assert used.screened["status"] == ["fail", "pass"]
 
 
