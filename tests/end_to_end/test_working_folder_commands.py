@@ -27,7 +27,7 @@ COMMANDS = {
     "report run": 0,
     "check rig.toml --remedies": 3,
     "deck run --angle 10 --out deck.inp": 0,
-    "inspect run measured.csv --jobs 2": 3,
+    "inspect run measured.csv --jobs 2": 0,
     "crown rig.toml --out crown": 0,
     "gallery table.toml --out gallery": 0,
     "papers p15-cams --out papers": 0,
