@@ -86,8 +86,8 @@ def _under_unit_load(
 ) -> dict[str, Array]:
     """Values of `BoreStress` per unit line load, with the places (2, p) and which are at an edge.
 
-    Places are the nodes of bore and keyway and the rims of the excluded zones: there the stress
-    away from the edges is at its greatest, and no distance from a node is left to chance.
+    Places are the nodes of bore and keyway and the rims of the excluded zones: towards an edge the
+    stress rises, so that its maximum outside would follow the distance of the next node.
     """
     nodes, recovery = _held(cam)
     mesh = cam.body.mesh
