@@ -384,7 +384,7 @@ class Kinds(NamedTuple):
     attributes: frozenset[str]
 
     def branches(self, node: ast.AST) -> bool:
-        """Whether a node asks for the kind."""
+        """Whether a node of the syntax tree branches on the kind."""
         if isinstance(node, ast.Call) and _name(node.func) == "isinstance":
             return bool(self.classes & {_name(each) for each in ast.walk(node.args[1])})
         if isinstance(node, ast.MatchClass):
