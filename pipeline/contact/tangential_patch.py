@@ -16,18 +16,12 @@ from numpy.typing import NDArray
 
 from camwright.geometry.arrays import Array, freeze
 from camwright.pipeline.base import disk_cache
-from camwright.pipeline.contact import contact_patch, traction
-from camwright.pipeline.contact.elasticity import plane_stress_measures
+from camwright.pipeline.contact import contact_patch
 from camwright.pipeline.contact.elasticity.halfplane import point_force_displacement
-from camwright.pipeline.contact.elasticity.plane_stress_measures import (
-    PeakFinder,
-    shear_in_plane,
-    von_mises,
-)
+from camwright.pipeline.contact.elasticity.plane_stress_measures import PeakFinder
 from camwright.pipeline.contact.elasticity.pressure_distribution import PressureShapes
 from camwright.pipeline.contact.elasticity.surface_integrals import normal_loads
 
-_SHARES = 21
 # With traction the maximum is near the surface, where the stress varies strongly.
 _PEAK_REACH = 0.25
 
@@ -65,65 +59,19 @@ def tangential_patch(poisson: float, elements_per_half_width: int = 16) -> Tange
     return TangentialPatch(poisson, **arrays)
 
 
-def rolling_increase(poisson: float, friction: float, ratio: Array) -> tuple[Array, Array]:
-    """Increase of maximum in-plane shear and von Mises stress by the traction of Carter.
-
-    Parameters
-    ----------
-    poisson : float
-    friction : float      coefficient, > 0
-    ratio : array (...)   tangential force over friction times normal force, in [0, 1]
-
-    Returns
-    -------
-    shear, mises : array (...)   maxima over those without traction
-    """
-    known = _increase(float(poisson), float(friction))
-    shear, mises = (np.interp(ratio, known["shares"], known[name]) for name in ("shear", "mises"))
-    return shear, mises
-
-
-@lru_cache(maxsize=16)
-def _increase(poisson: float, friction: float) -> disk_cache.Arrays:
-    """Increase of the maxima by share of the friction; cached on disk."""
-    modules = sys.modules[__name__], *contact_patch.RECIPE, plane_stress_measures, traction
-    inputs = poisson, friction
-    return disk_cache.kept("increase", inputs, lambda: _increased(*inputs), modules)
-
-
-def _increased(poisson: float, friction: float) -> dict[str, Array]:
-    normal = contact_patch.contact_patch(poisson)
-    centres = normal.shapes.centres
-    shares = np.linspace(0.0, 1.0, _SHARES)
-    pressure = np.sqrt(np.maximum(1 - centres**2, 0.0))
-    sideways = np.stack([traction.rolling_traction(centres, share) for share in shares], axis=1)
-    inside = np.where(np.abs(centres)[:, None] < 1, sideways, 0.0)
-    points, stress = _solved(poisson, contact_patch.ELEMENTS_PER_HALF_WIDTH, inside)
-    along = TangentialPatch(poisson, points, stress)
-    field = (normal.stress @ pressure)[:, :, None] + friction * along.stress
-    shear, _ = along.peaks(shear_in_plane(field))
-    mises, _ = along.peaks(von_mises(field, poisson))
-    return {"shares": shares, "shear": shear / shear[0], "mises": mises / mises[0]}
-
-
 def _computed(poisson: float, elements_per_half_width: int) -> dict[str, Array]:
-    _, _, shapes = contact_patch.patch_body(poisson, elements_per_half_width)
-    points, stress = _solved(poisson, elements_per_half_width, np.eye(shapes.centres.size))
-    return {"points": points, "stress": stress}
-
-
-def _solved(poisson: float, elements_per_half_width: int, tractions: Array) -> tuple[Array, Array]:
-    """Points (2, m) and stress (3, m, k) of a template under tractions (n, k) at the knots."""
+    """Points and stress by their names in `TangentialPatch`."""
     body, frame, shapes = contact_patch.patch_body(poisson, elements_per_half_width)
-    along = normal_loads(body.mesh, "top", frame, shapes)[1] @ tractions
+    along = normal_loads(body.mesh, "top", frame, shapes)[1]
     loads = np.stack([along, np.zeros_like(along)])
     arc = body.mesh.boundary_nodes("arc")
-    held = _arc_displacement(body.mesh.points, arc, shapes, poisson) @ tractions
+    held = _arc_displacement(body.mesh.points, arc, shapes, poisson)
     recovery = contact_patch.stress_near(body)
     nodal = recovery(body.displacement(loads, held))
     # Depth is counted into the body, opposite to y: the shear changes sign.
     nodal[2] *= -1
-    return body.mesh.points[:, recovery.nodes] * np.array([[1.0], [-1.0]]), nodal
+    points = body.mesh.points[:, recovery.nodes] * np.array([[1.0], [-1.0]])
+    return {"points": points, "stress": nodal}
 
 
 def _arc_displacement(

@@ -7,14 +7,23 @@ tractions are over friction coefficient times peak pressure.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from camwright.geometry.arrays import Array, Value, Values, finite, freeze, positive
+from camwright.geometry.arrays import Array, Value, Values, finite, freeze, positive, readonly
 from camwright.geometry.errors import InputError
+from camwright.pipeline.contact import hertz
+from camwright.pipeline.contact.elasticity.plane_stress_measures import shear_in_plane, von_mises
 
+_SHARES = 21
+_LEAST_STICK = 1e-9
+# Places of the greatest stress: reach beside and below the contact in half-widths, cells to the
+# reach and, of each zoom, to a cell.
+_REACH, _CELLS, _NEARBY, _ZOOMS = 1.25, 25, 5, 4
 _TURNS_MAX = 50
 _SETTLED = 1e-9
 
@@ -43,6 +52,65 @@ def rolling_traction(x: ArrayLike, ratio: float) -> Array:
         return np.asarray(full)
     in_stick = np.sqrt(np.maximum(1 - ((at - (stick - 1)) / stick) ** 2, 0.0))
     return np.asarray(full - stick * in_stick)
+
+
+def rolling_increase(poisson: float, friction: float, ratio: Array) -> tuple[Array, Array]:
+    """Increase of maximum in-plane shear and von Mises stress by the traction of Carter.
+
+    Parameters
+    ----------
+    poisson : float
+    friction : float      coefficient, > 0
+    ratio : array (...)   tangential force over friction times normal force, in [0, 1]
+
+    Returns
+    -------
+    shear, mises : array (...)   maxima over those without traction
+
+    References
+    ----------
+    The traction is an ellipse less a smaller one: `hertz.subsurface_stress` of both.
+    """
+    shares, shear, mises = _increase(float(poisson), float(friction))
+    return np.interp(ratio, shares, shear), np.interp(ratio, shares, mises)
+
+
+@lru_cache(maxsize=16)
+def _increase(poisson: float, friction: float) -> tuple[Array, Array, Array]:
+    """Shares of the friction, and the increases of the maxima at them."""
+    shares = np.linspace(0.0, 1.0, _SHARES)
+    stick = np.maximum(stick_half_width(shares), _LEAST_STICK)[:, None]
+
+    def stress(x: Array, depth: Array) -> Array:
+        small = _sliding_stress((x - (stick - 1.0)) / stick, depth / stick)
+        along = _sliding_stress(x, depth) - stick * small
+        return hertz.subsurface_stress(x, depth) + friction * along
+
+    shear = _greatest(lambda *place: shear_in_plane(stress(*place)))
+    mises = _greatest(lambda *place: von_mises(stress(*place), poisson))
+    return readonly(shares), readonly(shear / shear[0]), readonly(mises / mises[0])
+
+
+def _sliding_stress(x: Array, depth: Array) -> Array:
+    """Stress (3, ...) under a traction of the shape of the pressure of Hertz, over its peak."""
+    return hertz.subsurface_stress(x, depth, 1.0) - hertz.subsurface_stress(x, depth)
+
+
+def _greatest(measure: Callable[[Array, Array], Array]) -> Array:
+    """Maxima (m,) under a contact of a measure (m, n) at places x and depth (m, n), half-widths."""
+    half = _REACH / _CELLS
+    sides = np.linspace(-_REACH, _REACH, 2 * _CELLS + 1)
+    x, depth = (each.ravel()[None] for each in np.meshgrid(sides, sides[_CELLS:]))
+    nearby = np.meshgrid(*[np.linspace(-1.0, 1.0, 2 * _NEARBY + 1)] * 2)
+    for zoom in range(_ZOOMS):
+        values = measure(x, depth)
+        worst = values.argmax(axis=1)[:, None]
+        x, depth = (np.take_along_axis(np.broadcast_to(each, values.shape), worst, axis=1)
+                    for each in (x, depth))  # fmt: skip
+        step = half / _NEARBY**zoom
+        x, depth = (at + step * each.ravel() for at, each in zip((x, depth), nearby, strict=True))
+        depth = np.maximum(depth, 0.0)
+    return np.asarray(measure(x, depth).max(axis=1))
 
 
 def creepage(

@@ -24,8 +24,7 @@ from camwright.pipeline.contact.rolling_envelope import (
     rolling_pass,
     swept,
 )
-from camwright.pipeline.contact.tangential_patch import rolling_increase
-from camwright.pipeline.contact.traction import RollingContact
+from camwright.pipeline.contact.traction import RollingContact, rolling_increase
 from camwright.pipeline.contact.two_scale import CycleBodies
 from camwright.pipeline.cycle.oil_film_history import FilmHistory, film_history
 from camwright.pipeline.follower.flat_face_motion import FaceSliding
