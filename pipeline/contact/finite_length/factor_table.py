@@ -42,14 +42,7 @@ Index = NDArray[np.intp]
 # nodes of ladder index 0.
 _WIDTH_RATIO, _CROWNED_WIDTH_RATIO, _LOAD_RATIO = 2.0, 3.0, 2.5
 _WIDTH, _LOAD = 1e-4, 1e5  # m, N/m
-# Moments over force and length: of light tilts, and up to a force near the end of the contact; how
-# many are computed at a time, where each has cells of its own and where all have the same.
-_LIGHT: Array = np.linspace(0.0, 0.24, 9)
-_HEAVY: Array = np.array([0.265, 0.29, 0.315, 0.34, 0.36, 0.38, 0.40, 0.415, 0.43, 0.44, 0.45])
-_MOMENTS = np.concatenate([_LIGHT, _HEAVY])
-_SIGNED: Array = np.concatenate([-_MOMENTS[:0:-1], _MOMENTS])
-_ZERO = _MOMENTS.size - 1
-_OWN_CELLS, _SAME_CELLS = (1, 4, 6, 9, 14, 20), (1, 9, 20)
+_LIGHT = 0.24  # greatest light moment over force and length
 _FEW = 3000  # rows of an interpolation: those of a turn, untilted and tilted to both sides
 
 # Places along the line at which the drop of a crown decides the tables kept.
@@ -59,8 +52,31 @@ _WIDER, _WIDENINGS = 2.0, 3
 # Errors of the interpolation, verified by tests.
 _ERROR, _LOADED_ERROR = 2e-3, 5e-3
 
-GREATEST_MOMENT = float(_MOMENTS[-1])
+GREATEST_MOMENT = 0.45
 """Greatest moment over force and length of contact: the force acts near the end."""
+_HEAVY = (0.265, 0.29, 0.315, 0.34, 0.36, 0.38, 0.40, 0.415, 0.43, 0.44, GREATEST_MOMENT)
+
+
+class _Ladder:
+    """Moments over force and length of the rows of a node: of light tilts, up to `_HEAVY`.
+
+    Parameters
+    ----------
+    light : int     number of light moments
+    batches : int   numbers of moments from zero that are computed together
+
+    Attributes: moments (n,), >= 0; signed (2 n - 1,), all; zero: number of the row of no moment.
+    """
+
+    def __init__(self, light: int, *batches: int) -> None:
+        self.moments = np.concatenate([np.linspace(0.0, _LIGHT, light), _HEAVY])
+        self.signed: Array = np.concatenate([-self.moments[:0:-1], self.moments])
+        self.zero = self.moments.size - 1
+        self.batches = *batches, self.moments.size
+
+
+# Where all moments have the same cells, one more costs next to nothing.
+_SAME_CELLS, _OWN_CELLS = _Ladder(9, 1, 9), _Ladder(5, 1, 3, 5, 8, 12)
 
 
 @dataclass(frozen=True, eq=False)
@@ -116,12 +132,13 @@ class FactorTable:
             worst = int(np.argmax(np.abs(share)))
             most = GREATEST_MOMENT * load[worst] * self.pair.contact_length
             raise InputError("moment", float(couple[worst]), f"within {most:.4g} N m, near an end")
-        first, weights = _moment_stencil(share)
-        outermost = np.maximum(_ZERO - first, first + weights.shape[1] - 1 - _ZERO)
+        signed, zero = self._ladder.signed, self._ladder.zero
+        first, weights = _moment_stencil(signed, share)
+        outermost = np.maximum(zero - first, first + weights.shape[1] - 1 - zero)
         place = self._place(kappa, load, np.where(share == 0, 1, outermost + 1))
         nodes, columns, values = place
         # Rows of the table: every node has one row per moment.
-        columns = columns[:, :, None] * _SIGNED.size + (first[:, None] + np.arange(4))[:, None]
+        columns = columns[:, :, None] * signed.size + (first[:, None] + np.arange(4))[:, None]
         values = values[:, :, None] * weights[:, None]
         flat = (load.size, -1)
         lines = _lines(tuple(nodes))
@@ -149,23 +166,23 @@ class FactorTable:
             return np.zeros(load.size)
         half_width, _ = self._hertz(kappa, load)
         target = angle * self.pair.contact_length / (kappa * half_width**2)
-        batches, rows = [count for count in self._batches if count > 1], np.arange(load.size)
+        ladder, rows = self._ladder, np.arange(load.size)
+        batches = [count for count in ladder.batches if count > 1]
         count = np.full(load.size, batches[0])
         for more in [*batches[1:], 0]:
             nodes, columns, values = self._place(kappa, load, count)
             turns = _weighted(columns, values, np.array([node.turn for node in nodes]))
             # A target between the last two moments takes one more.
-            inner = turns[rows, _ZERO + 2 - count], turns[rows, _ZERO - 2 + count]
+            inner = turns[rows, ladder.zero + 2 - count], turns[rows, ladder.zero - 2 + count]
             beyond = (target < inner[0]) | (target > inner[1])
-            beyond &= _MOMENTS[count - 2] * length < limit
+            beyond &= ladder.moments[count - 2] * length < limit
             if not more or not beyond.any():
                 break
             count = np.where(beyond, more, count)
-        return np.clip(_inverse(turns, target) * length, -limit, limit)
+        return np.clip(_inverse(ladder.signed, turns, target) * length, -limit, limit)
 
     @cached_property
-    def _batches(self) -> tuple[int, ...]:
-        """Numbers of moments from zero that are computed together."""
+    def _ladder(self) -> _Ladder:
         return _SAME_CELLS if isinstance(self.pair.crown, Straight) else _OWN_CELLS
 
     @property
@@ -216,9 +233,9 @@ class FactorTable:
     def _node(self, key: tuple[int, int], count: int) -> _Node:
         """Node with `count` moments from zero at least."""
         before = self._nodes[key].count if key in self._nodes else 0
-        for after in self._batches:
+        for after in self._ladder.batches:
             if before < min(count, after):
-                computed = self._computed(key, _MOMENTS[before:after])
+                computed = self._computed(key, self._ladder.moments[before:after])
                 known = self._nodes.get(key)
                 self._nodes[key] = computed if known is None else known.joined(computed)
                 before = after
@@ -255,7 +272,7 @@ class FactorTable:
             pressure_cells,
         )
         kept = disk_cache.kept("factors", inputs, compute, modules)
-        return _Node.of(moments, kept["edges"], kept["line"], kept["turn"])
+        return _Node.of(self._ladder, moments, kept["edges"], kept["line"], kept["turn"])
 
 
 def _solved(pair: FinitePair, force: float, couples: Array) -> tuple[Array, Array, Array]:
@@ -316,13 +333,13 @@ class _Node:
     turn: Array
 
     @classmethod
-    def of(cls, moments: Array, edges: Array, line: Array, turn: Array) -> _Node:
+    def of(cls, ladder: _Ladder, moments: Array, edges: Array, line: Array, turn: Array) -> _Node:
         """Rows of all moments from those computed; those below zero by symmetry where left out."""
-        ends, lines = (np.zeros((_SIGNED.size, each.shape[1])) for each in (edges, line))
-        turns = np.full(_SIGNED.size, np.nan)
+        ends, lines = (np.zeros((ladder.signed.size, each.shape[1])) for each in (edges, line))
+        turns = np.full(ladder.signed.size, np.nan)
         signs = (1,) if (moments < 0).any() else (-1, 1)
         for sign in signs:
-            rows = np.searchsorted(_SIGNED, sign * moments - 1e-9)
+            rows = np.searchsorted(ladder.signed, sign * moments - 1e-9)
             ends[rows], lines[rows] = sign * edges[:, ::sign], line[:, ::sign]
             turns[rows] = sign * turn
         return cls(ends, lines, turns)
@@ -339,7 +356,7 @@ class _Node:
     @cached_property
     def count(self) -> int:
         """Number of moments from zero that are computed."""
-        return int(np.isfinite(self.turn[_ZERO:]).sum())
+        return int(np.isfinite(self.turn[self.turn.size // 2 :]).sum())
 
 
 def factor_table(pair: FinitePair, mean_length: float) -> FactorTable:
@@ -382,11 +399,11 @@ def _uniform_stencil(position: Array) -> tuple[Index, Array]:
     )
 
 
-def _moment_stencil(share: Array) -> tuple[Index, Array]:
+def _moment_stencil(signed: Array, share: Array) -> tuple[Index, Array]:
     """First row (count,) of four moments and their Lagrange weights (count, 4)."""
-    after = np.searchsorted(_SIGNED, share, side="right")
-    first = np.clip(after - 2, 0, _SIGNED.size - 4).astype(np.intp)
-    return first, _lagrange(share, _SIGNED[first[:, None] + np.arange(4)])
+    after = np.searchsorted(signed, share, side="right")
+    first = np.clip(after - 2, 0, signed.size - 4).astype(np.intp)
+    return first, _lagrange(share, signed[first[:, None] + np.arange(4)])
 
 
 def _lagrange(place: Array, nodes: Array) -> Array:
@@ -422,9 +439,9 @@ def _weighted(columns: Index, weights: Array, table: Array) -> Array:
     return sums
 
 
-def _inverse(turns: Array, target: Array) -> Array:
+def _inverse(signed: Array, turns: Array, target: Array) -> Array:
     """Moments (count,) over force and length at turns `target` of ascending rows (count, k)."""
-    known = np.where(np.isfinite(turns), turns, np.where(_SIGNED < 0, -np.inf, np.inf))
+    known = np.where(np.isfinite(turns), turns, np.where(signed < 0, -np.inf, np.inf))
     after = (known <= target[:, None]).sum(axis=1)
     low = np.argmax(np.isfinite(turns), axis=1)
     high = turns.shape[1] - 1 - np.argmax(np.isfinite(turns[:, ::-1]), axis=1)
@@ -434,5 +451,5 @@ def _inverse(turns: Array, target: Array) -> Array:
     knots = first[:, None] + np.arange(4)
     place = np.clip(target, known[rows, low], known[rows, high])
     weights = _lagrange(place, turns[rows[:, None], knots])
-    moments = (weights * _SIGNED[knots]).sum(axis=1)
-    return np.asarray(np.clip(moments, _SIGNED[clipped - 1], _SIGNED[clipped]))
+    moments = (weights * signed[knots]).sum(axis=1)
+    return np.asarray(np.clip(moments, signed[clipped - 1], signed[clipped]))
