@@ -86,12 +86,13 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def made_small(folder: Path) -> None:
-    """Cases with one trial, one starting point of the synthesis and no tolerances drawn at random.
+    """Cases of 36 positions, one trial, one starting point of the synthesis, no random tolerances.
 
     They are certified at one angle, their ends by half-spaces. All this has tests of its own.
     """
+    solver = {"positions": 36, "max_trials": 1, "certificate_positions": 1, "end_elements": 0}
     small = {
-        "[solver]": {"max_trials": 1, "certificate_positions": 1, "end_elements": 0},
+        "[solver]": solver,
         "[tolerances]": {"samples": 0},
         'kind = "constrained"': {"starts": 1},
     }
