@@ -34,6 +34,7 @@ verdict; a failed trial is smoothed again. `results` writes the run folder, `rep
 | `studies.design`     | from a torque to a case with all parts               | E, J; k, N/m; m    |
 | `studies.papers`     | published values, recomputed                         |                    |
 | `reports.drawing`    | drawing of cam, follower, guides, spring, forces     | mm                 |
+| `reports.painting`   | pixels of a field by VTK                             |                    |
 | `reports`            | report and pictures from a run folder                |                    |
 | `reports.study`      | page of a study                                      |                    |
 | `reports.papers`     | pages of the papers: figures, verdicts               |                    |

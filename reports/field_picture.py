@@ -1,19 +1,15 @@
 """Pictures of the stress field, rendered off screen by VTK.
 
 Without an OpenGL device some drivers abort the process. Rendering therefore runs in a child process
-(this module as a script); if it fails, matplotlib draws the field and the picture says so. The
-child renders the raster only; axes, colour bar and scale bar are added afterwards.
+(`field_painter`); if it fails, matplotlib draws the field and the picture says so. The child
+renders the raster only; axes, colour bar and scale bar are added afterwards.
 """
 
 from __future__ import annotations
 
-import json
-import os
-import subprocess
-import sys
 import tempfile
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass, field
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -22,14 +18,12 @@ from numpy.typing import NDArray
 
 from camwright.geometry.arrays import Array
 from camwright.geometry.errors import ResultError
-from camwright.pipeline.base.worker_processes import module_command
+from camwright.pipeline.base.files import npz_bytes
 from camwright.pipeline.results.field_file import ZONE, FieldStep, read_series
 from camwright.reports import field_raster
-from camwright.reports.figure_svg import import_matplotlib
-from camwright.reports.report_tables import Record
+from camwright.reports.painting import field_painter
 
 WINDOWS = ("vtkEGLRenderWindow", "vtkOSOpenGLRenderWindow")
-PATIENCE_S = 120
 COLOUR_MAP = "viridis"
 CONTACT_REACH = 4.0
 ISO_SHARE = (0.2, 0.4, 0.6, 0.8, 0.95)
@@ -214,24 +208,28 @@ def frame_body(raster: Raster) -> bytes:
     )  # fmt: skip
 
 
-def render(path: Path, views: Sequence[View]) -> list[Raster]:
+def render(field: Field, views: Sequence[View]) -> list[Raster]:
     """Rasters of the views by the first OpenGL window that works, else by matplotlib."""
     for window in WINDOWS:
         with tempfile.TemporaryDirectory() as name:
             out = Path(name)
-            (out / "views.json").write_text(json.dumps([asdict(view) for view in views]))
-            try:
-                child = subprocess.run(  # noqa: S603 - our own interpreter and module
-                    module_command(__name__, str(path.resolve()), str(out)),
-                    env=os.environ | {"VTK_DEFAULT_OPENGL_WINDOW": window}, check=False,
-                    capture_output=True, timeout=PATIENCE_S,
-                )  # fmt: skip
-            except (OSError, subprocess.TimeoutExpired):
-                continue
-            if child.returncode == 0:
+            for number, view in enumerate(views):
+                arrays = npz_bytes(_painted(field, view), compressed=False)
+                (out / f"{number}.npz").write_bytes(arrays)
+            if field_painter.painted(out, len(views), window):
                 pixels = [np.load(out / f"{number}.npy") for number in range(len(views))]
                 return [Raster(view, image) for view, image in zip(views, pixels, strict=True)]
-    return [flat(read_field(path), view) for view in views]
+    return [flat(field, view) for view in views]
+
+
+def _painted(field: Field, view: View) -> dict[str, NDArray[Any]]:
+    """What the child paints of a view; see `field_painter.paint`."""
+    return {
+        "points": view.placed(deformed(field, view)), "triangles": field.triangles,
+        "values": np.clip(field.von_mises, *view.clim), "lines": field.outline,
+        "window": np.array(view.window), "size": np.array(view.size), "clim": np.array(view.clim),
+        "log": np.array(view.log), "levels": np.array(view.iso), "colour_map": np.array(COLOUR_MAP),
+    }  # fmt: skip
 
 
 def flat(field: Field, view: View) -> Raster:
@@ -254,54 +252,3 @@ def deformed(field: Field, view: View) -> Array:
     away = np.hypot(*(field.points - np.array(view.anchor)[:, None]))
     held = field.displacement[:, int(np.argmin(away))]
     return field.points + field.displacement - held[:, None]
-
-
-def _paint(field: Field, view: View) -> Array:
-    """Render one view, in the child process."""
-    import_matplotlib()  # as pyvista does
-    import pyvista
-
-    xy = view.placed(deformed(field, view))
-    points = np.column_stack([*xy, np.zeros(xy.shape[1])])
-    surface = pyvista.PolyData.from_regular_faces(points, field.triangles.T.astype(int))
-    surface.point_data[FIELD] = np.clip(field.von_mises, *view.clim)
-    xmin, xmax, ymin, ymax = view.window
-    width, height = view.size
-    plotter: Any = pyvista.Plotter(off_screen=True, window_size=[width, height], lighting="none")
-    plotter.set_background("white")
-    plotter.add_mesh(
-        surface, scalars=FIELD, cmap=COLOUR_MAP, clim=view.clim, log_scale=view.log, n_colors=256,
-        lighting=False, show_scalar_bar=False, interpolate_before_map=True,
-    )  # fmt: skip
-    lines = np.column_stack([np.full(field.outline.shape[1], 2), field.outline.T])
-    edges = pyvista.PolyData(points, lines=lines)
-    plotter.add_mesh(edges, color="black", line_width=2.0, lighting=False)
-    if view.iso:
-        levels = surface.contour(list(view.iso), scalars=FIELD)
-        if levels.n_points:
-            plotter.add_mesh(levels, color="black", line_width=1.2, lighting=False, opacity=0.5)
-    plotter.enable_anti_aliasing("ssaa")
-    plotter.enable_parallel_projection()
-    middle = ((xmin + xmax) / 2, (ymin + ymax) / 2)
-    plotter.camera.position = (*middle, 100.0)
-    plotter.camera.focal_point = (*middle, 0.0)
-    plotter.camera.up = (0.0, 1.0, 0.0)
-    plotter.camera.parallel_scale = (ymax - ymin) / 2
-    plotter.camera.clipping_range = (1.0, 200.0)
-    image = plotter.screenshot(return_img=True)
-    plotter.close()
-    return np.asarray(image)[..., :3]
-
-
-def main(arguments: Sequence[str]) -> int:
-    """Child process: render the views of OUT/views.json into OUT/0.npy, OUT/1.npy ..."""
-    path, out = Path(arguments[0]), Path(arguments[1])
-    field = read_field(path)
-    for number, record in enumerate(json.loads((out / "views.json").read_text())):
-        values: Record = {k: tuple(v) if isinstance(v, list) else v for k, v in record.items()}
-        np.save(out / f"{number}.npy", _paint(field, View(**values)))
-    return 0
-
-
-if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))

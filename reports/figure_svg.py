@@ -11,9 +11,8 @@ import hashlib
 import io
 import pickle
 import re
-import sys
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import chdir, contextmanager, suppress
+from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
@@ -41,6 +40,7 @@ from camwright.reports.figures import (
     placed_limits,
     vertical_span,
 )
+from camwright.reports.painting.matplotlib_import import TEMPLATES, import_matplotlib
 from camwright.reports.report_data import FIGURES, ReportMaterial
 
 if TYPE_CHECKING:
@@ -48,8 +48,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure as Canvas
     from matplotlib.typing import RcKeyType
 
-_TEMPLATES = Path(__file__).parent / "templates"  # with an empty matplotlibrc
-_CSS = (_TEMPLATES / "report.css").read_text(encoding="utf-8")
+_CSS = (TEMPLATES / "report.css").read_text(encoding="utf-8")
 COLOURS = dict(re.findall(r"--([\w-]+): (#[0-9a-f]{6});", _CSS[: _CSS.index("}")]))
 """Colours of the page's light theme by name."""
 STYLE: dict[RcKeyType, str | float] = {
@@ -148,20 +147,6 @@ def shipped(settings: Mapping[RcKeyType, str | float] = MappingProxyType({})) ->
         yield
 
 
-def import_matplotlib() -> None:
-    """Import matplotlib for the first time, also where it cannot read a matplotlibrc.
-
-    matplotlib reads that file when it is imported, first in the working folder, and fails if it is
-    not text.
-    """
-    if "matplotlib" in sys.modules:
-        return
-    with chdir(_TEMPLATES):
-        import matplotlib as mpl
-    with suppress(ValueError, OSError, RuntimeError):  # for other figures of this process
-        mpl.rcParams.update(mpl.rc_params())
-
-
 @contextmanager
 def style(salt: str) -> Iterator[None]:
     """Settings of the drawings; `salt` makes the ids in the SVG unique on a page."""
@@ -196,8 +181,9 @@ def png(canvas: Canvas, dpi: int = 150) -> bytes:
 
     stream, small = io.BytesIO(), io.BytesIO()
     canvas.savefig(
-        stream, format="png", dpi=dpi, facecolor=COLOURS["card"], metadata={"Software": None}
-    )
+        stream, format="png", dpi=dpi, facecolor=COLOURS["card"], metadata={"Software": None},
+        pil_kwargs={"compress_level": 0},
+    )  # fmt: skip
     with Image.open(stream) as picture:
         few = picture.convert("RGB").quantize(256, dither=Image.Dither.NONE)
     few.save(small, format="png", optimize=True, dpi=(dpi, dpi))

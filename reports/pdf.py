@@ -16,7 +16,8 @@ from camwright.geometry.errors import ResultError
 from camwright.pipeline.base.files import Json
 from camwright.reports.drawing import drawing_svg
 from camwright.reports.drawing.drawing_shapes import Drawing
-from camwright.reports.figure_svg import COLOURS, Drawn, import_matplotlib
+from camwright.reports.figure_svg import COLOURS, Drawn
+from camwright.reports.painting.matplotlib_import import import_matplotlib
 from camwright.reports.picture_list import Picture
 from camwright.reports.report_tables import isolated, plain
 

@@ -64,7 +64,7 @@ def stress_pictures(material: ReportMaterial) -> Sequence[Picture]:
             field_picture.contact_view(field, half_width, point, normal),
             field_picture.body_view(field),
         ]
-        rasters = field_picture.render(path, views)
+        rasters = field_picture.render(field, views)
     except ResultError as error:
         return (Picture("Stress field", note=f"The stress field is not available: {error}."),)
     angle = report_tables.number(cam_angle)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import os
 import signal
 import sys
@@ -12,6 +13,9 @@ import pytest
 
 for _variable in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
     os.environ[_variable] = "1"  # before numpy is imported
+
+# As the command does: arrays go by their counts of references; the search for cycles costs 10 %.
+gc.set_threshold(50_000)
 
 # Tests signal this process and its children; what runs in the background ignores both signals.
 signal.signal(signal.SIGINT, signal.default_int_handler)
@@ -49,6 +53,10 @@ def command(
         return int(leaving.value.code or 0), captured.out, captured.err
 
     return call
+
+
+def pytest_collection_finish() -> None:
+    gc.freeze()  # ten thousand tests, which no later search for cycles goes through
 
 
 DIED = 70

@@ -16,3 +16,8 @@ def schema_errors(name: str, document: object) -> list[str]:
     """Place and message of each violation."""
     errors = validator(name).iter_errors(document)
     return [f"{error.json_path}: {error.message}" for error in errors]
+
+
+def keeps_schema(name: str, document: object) -> bool:
+    """Whether there is no violation; the search ends at the first one."""
+    return validator(name).is_valid(document)

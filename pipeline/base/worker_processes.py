@@ -7,13 +7,14 @@ script: a file there may be named as a library is.
 from __future__ import annotations
 
 import copyreg
+import gc
 import os
 import signal
 import subprocess
 import sys
 import threading
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass, field
 from functools import partial
@@ -128,7 +129,10 @@ def pool(workers: int) -> Iterator[ProcessPoolExecutor]:
     from concurrent.futures import BrokenExecutor, ProcessPoolExecutor
 
     workers_pool = ProcessPoolExecutor(
-        workers, mp_context=_Context(), initializer=as_worker, initargs=(os.getpid(),)
+        workers,
+        mp_context=_Context(),
+        initializer=as_worker,
+        initargs=(os.getpid(), gc.get_threshold()),
     )
     try:
         yield workers_pool
@@ -230,8 +234,15 @@ def crew(jobs: int | None) -> Iterator[Crew]:
         yield Crew(workers_for(jobs, _JOBS_MOST if jobs is None else jobs), stack)
 
 
-def as_worker(parent: int) -> None:
-    """Make this process a worker: it ignores the interrupt, and ends after its parent."""
+def as_worker(parent: int, collect_after: Sequence[int] = ()) -> None:
+    """Make this process a worker: it ignores the interrupt, and ends after its parent.
+
+    Parameters
+    ----------
+    collect_after : sequence   thresholds of the search for cycles of objects; (): as they are
+    """
+    if collect_after:
+        gc.set_threshold(*collect_after)
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     threading.Thread(target=_leave_with, args=(parent,), daemon=True).start()
 

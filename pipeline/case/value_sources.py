@@ -19,6 +19,7 @@ UNSTATED = "stated without a source: verify"
 OF_A_CHECK = "checks."
 """Prefix of a value that the program holds: the limit that a check declares."""
 _OPEN = re.compile(r"\b(recalled|verify|assum\w*|estimat\w*)\b", re.IGNORECASE)
+_WILD = re.compile(r"[*?[]")
 _WORDS = ("source", "sources", "name", "condition")
 _NO_VALUES = (
     "schema_version",
@@ -66,10 +67,12 @@ def values_at(tables: Tables, path: str) -> tuple[str, ...]:
         if not isinstance(inner, dict):
             return ()
         table = inner
+    if _WILD.search(last) is None:
+        keys = [last] if last in table else []
+    else:
+        keys = [key for key in table if fnmatchcase(key, last)]
     return tuple(
-        f"{name}.{key}"
-        for key, entry in table.items()
-        if key not in _WORDS and not isinstance(entry, dict) and fnmatchcase(key, last)
+        f"{name}.{key}" for key in keys if key not in _WORDS and not isinstance(table[key], dict)
     )
 
 

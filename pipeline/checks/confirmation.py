@@ -6,14 +6,14 @@ tighter than its default by such an entry alone.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Iterator
+from collections.abc import Callable, Collection, Iterable, Iterator
 from dataclasses import replace
+from functools import cache
 
 from camwright.geometry.errors import InputError
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.consistency import tightened_tolerances
 from camwright.pipeline.case.section import suggestion
-from camwright.pipeline.case.toml_text import Tables
 from camwright.pipeline.case.value_sources import OF_A_CHECK, confirms, source_of, values_at
 from camwright.pipeline.checks.check import Check
 
@@ -43,12 +43,21 @@ def with_values_to_confirm(
             names = [f"{OF_A_CHECK}{name}" for name in known]
             limit = f"the source of a known check{suggestion(value, names)}"
             raise InputError("confirmed.value", value, limit)
+
+    @cache
+    def open_at(path: str) -> tuple[str, ...]:
+        return tuple(
+            value
+            for value in values_at(tables, path)
+            if value in tight or not confirms(source_of(tables, value))
+        )
+
     return tuple(
         replace(
             one,
             unconfirmed=tuple(
                 value
-                for value in dict.fromkeys(_open_values(one, tables, tight))
+                for value in dict.fromkeys(_open_values(one, open_at, tight))
                 if value not in confirmed
             ),
         )
@@ -56,8 +65,16 @@ def with_values_to_confirm(
     )
 
 
-def _open_values(one: Check, tables: Tables, tight: tuple[str, ...]) -> Iterator[str]:
-    """Values on which a check rests and whose source does not confirm them."""
+def _open_values(
+    one: Check, open_at: Callable[[str], tuple[str, ...]], tight: tuple[str, ...]
+) -> Iterator[str]:
+    """Values on which a check rests and whose source does not confirm them.
+
+    Parameters
+    ----------
+    open_at : function   such values of the case at a path
+    tight : tuple        tolerances that are tighter than their defaults
+    """
     if not one.evaluated or one.evidence:
         return
     declared, limit = one.declaration.source, one.declaration.limit
@@ -65,8 +82,6 @@ def _open_values(one: Check, tables: Tables, tight: tuple[str, ...]) -> Iterator
         yield f"{OF_A_CHECK}{one.id}"
     own = () if limit is None else (f"limits.{limit.id}",)
     for path in (*own, *one.declaration.values):
-        for value in values_at(tables, path):
-            if value in tight or not confirms(source_of(tables, value)):
-                yield value
+        yield from open_at(path)
     if one.declaration.moved_by_tolerance:
         yield from tight

@@ -67,6 +67,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("docs")
     for name in ("cases", "studies"):
         shutil.copytree(ROOT / name, folder / name)
+    made_small(folder)
     marks = tmp_path_factory.mktemp("marks")
     traps = [Traps.set_in(place, marks) for place in (folder, folder / "cases")]
     lines = [
@@ -78,22 +79,32 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
         assert traps[0].sprung() == [], line
         assert result.returncode in allowed, f"{line}: {result.stderr}"
         if line.startswith("camwright init"):
-            with_a_small_certificate(folder)
+            made_small(folder)
     for each in traps:
         each.remove()
     return folder
 
 
-def with_a_small_certificate(folder: Path) -> None:
-    """New cases certified at one angle, their ends by half-spaces: both have their own tests."""
-    for path in folder.glob("*.toml"):
+def made_small(folder: Path) -> None:
+    """Cases of 36 positions, one trial, one starting point of the synthesis, no random tolerances.
+
+    They are certified at one angle, their ends by half-spaces. All this has tests of its own.
+    """
+    solver = {"positions": 36, "max_trials": 1, "certificate_positions": 1, "end_elements": 0}
+    small = {
+        "[solver]": solver,
+        "[tolerances]": {"samples": 0},
+        'kind = "constrained"': {"starts": 1},
+    }
+    for path in (*folder.glob("*.toml"), folder / "cases" / "gx120.toml"):
         text = path.read_text(encoding="utf-8")
-        if "end_elements" not in text:
-            assert text.count("\n[solver]\n") == 1, path
-            assert "certificate_positions" not in text, path
-            keys = "certificate_positions = 1\nend_elements = 0"
-            text = text.replace("\n[solver]\n", f"\n[solver]\n{keys}\n")
-            path.write_text(text, encoding="utf-8")
+        for above, keys in small.items():
+            for key in keys:
+                text = re.sub(rf"(?m)^{key} = .*\n", "", text)
+            added = "".join(f"{key} = {value}\n" for key, value in keys.items())
+            text, count = re.subn(rf"(?m)^{re.escape(above)}.*\n", rf"\g<0>{added}", text)
+            assert count == 1 or (above.startswith("kind") and not count), (path, above)
+        path.write_text(text, encoding="utf-8")
 
 
 def test_commands_of_other_pages_are_in_readme_or_tutorial() -> None:

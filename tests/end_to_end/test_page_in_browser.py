@@ -145,16 +145,22 @@ def test_the_first_screen_has_verdict_drawing_chart_and_remedy(desktop: Tab) -> 
         assert box["y"] >= 0 and box["y"] + box["height"] <= floor, part
 
 
-def test_nothing_overflows_and_titles_of_checks_stay_readable(report: Path, tab: Tab) -> None:
-    """On a page opened at 400 px and widened."""
-    open_and_draw(tab, report, 400, 900)
+@pytest.mark.parametrize(
+    "widths", [(400, 835, 1440), pytest.param((721, 950, 961, 1300), marks=pytest.mark.slow)]
+)
+def test_nothing_overflows_and_titles_of_checks_stay_readable(
+    telephone: Tab, widths: tuple[int, ...]
+) -> None:
+    """On a page opened at 390 px and widened."""
+    tab = telephone
     narrowest = (
         "Math.min(...[...document.querySelectorAll('#checks tbody th')].map(e => e.offsetWidth))"
     )
-    for width in (400, 721, 835, 950, 961, 1300, 1440):
+    for width in widths:
         resize(tab, width)
         assert tab.evaluate("document.documentElement.scrollWidth") <= width
         assert tab.evaluate(narrowest) >= 240, width
+    resize(tab, 390)
 
 
 def test_the_slider_turns_the_cam_by_keyboard(desktop: Tab) -> None:
@@ -255,8 +261,8 @@ def test_figures_survive_a_change_of_colour_scheme_and_size_together(
     assert tab.errors == []
 
 
-def test_print_shows_the_still_drawings(report: Path, tab: Tab) -> None:
-    open_and_draw(tab, report, 800, 1100)
+def test_print_shows_the_still_drawings(desktop: Tab) -> None:
+    tab = desktop
     tab.page.emulate_media(media="print")
     shown = "[...document.querySelectorAll('{}')].filter(e => e.offsetParent !== null).length"
     stills = tab.evaluate(shown.format(".still"))

@@ -20,6 +20,7 @@ from browser_fixture import chromium
 from camwright.geometry.errors import ResultError
 from camwright.pipeline.results.field_file import MeshBlock, field_file
 from camwright.reports import field_picture, picture_list, sections
+from camwright.reports.painting import field_painter
 
 
 @pytest.fixture(scope="module")
@@ -45,11 +46,11 @@ def contact(folder):
 
 
 @pytest.fixture(scope="module")
-def rendered(folder, contact):
+def rendered(contact):
     """Contact and whole bodies, rendered."""
     field, point, normal, half_width = contact
     view = field_picture.contact_view(field, half_width, point, normal)
-    return field_picture.render(folder / picture_list.FIELD, [view, field_picture.body_view(field)])
+    return field_picture.render(field, [view, field_picture.body_view(field)])
 
 
 def test_contact_is_that_stated_in_the_file(contact):
@@ -104,16 +105,16 @@ def test_the_rendered_and_the_flat_picture_agree(contact, rendered):
     assert np.median(np.abs(sampled(flat) - sampled(pixels))) < 6.0
 
 
-def test_without_opengl_the_page_says_so_and_still_shows_the_field(folder, contact, monkeypatch):
+def test_without_opengl_the_page_says_so_and_still_shows_the_field(contact, monkeypatch):
     monkeypatch.setattr(field_picture, "WINDOWS", ("vtkNoSuchRenderWindow",))
     real = subprocess.run
     monkeypatch.setattr(
-        field_picture.subprocess, "run",
+        field_painter.subprocess, "run",
         lambda command, **more: real([sys.executable, "-c", "raise SystemExit(139)"], **more),
     )  # fmt: skip
     field, point, normal, half_width = contact
     view = field_picture.contact_view(field, half_width, point, normal)
-    raster = field_picture.render(folder / picture_list.FIELD, [view])[0]
+    raster = field_picture.render(field, [view])[0]
     assert "No OpenGL device" in raster.note
     middle = raster.pixels[raster.pixels.shape[0] // 2 + 80, raster.pixels.shape[1] // 2]
     assert np.ptp(middle.astype(float)) > 60  # a colour, not paper
