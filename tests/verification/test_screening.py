@@ -198,7 +198,9 @@ def exceeded(worst: Mapping[str, float]) -> dict[str, tuple[float, float]]:
     return {key: (value, most[key]) for key, value in worst.items() if not value <= most[key]}
 
 
-@pytest.mark.parametrize(("name", "count"), [("gx120", 2), ("papers/petrescu_c", 8)])
+@pytest.mark.parametrize(
+    ("name", "count"), [("gx120", 2), ("machines/two-stroke", 2), ("papers/petrescu_c", 8)]
+)
 def test_a_few_designs_agree_with_their_previews(name: str, count: int) -> None:
     worst = deviations(name, count, without=("guides.spacing",))
     assert {"p0", "force", "contact_pressure"} <= set(worst)
