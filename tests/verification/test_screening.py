@@ -259,6 +259,9 @@ def test_a_single_case_has_the_statuses_of_its_row(name: str) -> None:
         status, check = statuses.get(each.check, ""), known.get(each.check)
         used = None if check is None else check.utilisation
         near = used is not None and abs(1.0 - used) <= each.deviation
+        how = DECLARED[each.check].measured
+        if how and how.bounded == "surge" and status == "not_evaluated":
+            continue  # the row leaves out the surge, which the case has
         assert near or status == ("" if check is None else check.status), each.check
     assert row["screen"][0] == trial.screen
 
