@@ -291,7 +291,7 @@ def second_contact(solution: Solution) -> Demand:
     worst="least",
     value=lambda worst, numbers: numbers["roller.radius"] - 1.0 / np.minimum(worst, -_TINY),
     allowed=_tool_allowed,
-    applies=lambda radius: ~(np.asarray(radius) >= 1.0 / _TINY),
+    applies=lambda radius, _: ~(np.asarray(radius) >= 1.0 / _TINY),
     deviation=1e-4,
     kept=Kept(_in_hollow, unit="mm"),
 )

@@ -46,6 +46,7 @@ from camwright.pipeline.checks.demands import (
 from camwright.pipeline.checks.extremes import Extreme, greatest, over_duty, worst_case
 from camwright.pipeline.checks.missing_keys import lacking, lacking_of_card, unset
 from camwright.pipeline.contact.hertz import contact_modulus
+from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.cycle import Cycle
 from camwright.pipeline.cycle.numbers import Numbers
 from camwright.pipeline.cycle.solution import Solution
@@ -477,6 +478,7 @@ def _tooth_bending(
         unit="MPa",
         method="F K/(b m pi y) at the greatest torque, load on the tip of one tooth",
         lift_can_help=True,
+        tier=Tier.SCREENING,
         part="gear",
         kept_as=kept_as,
         formula=formula,
@@ -496,6 +498,7 @@ def _tooth_bending(
         bound=PerLoad(per_torque).bound,
         allowed=allowed,
         remark=with_card,
+        deviation=0.003,
         kept=Kept(group=TOOTH_TORQUE, unit="N m"),
     )(tooth_torque)
 
@@ -559,6 +562,7 @@ gear_contact = check(
     unit="MPa",
     method="Z_H Z_E sqrt(F K (u + 1)/(b d u)) at the pitch point, at the greatest torque",
     lift_can_help=True,
+    tier=Tier.SCREENING,
     part="gear",
     kept_as="torque at the maximum flank pressure of the driving gear",
     formula="Z_H Z_E sqrt(F K_A (u + 1)/(b d u)) <= s_H / S; d, u: pitch diameter of the smaller"
@@ -581,6 +585,7 @@ gear_contact = check(
     bound=lambda limit, numbers: (limit / _flank(numbers)) ** 2,
     allowed=_flank_allowed,
     remark=_with_card_of_gear,
+    deviation=0.003,
     pointwise=True,
     kept=Kept(group=TOOTH_TORQUE),
 )(tooth_torque)

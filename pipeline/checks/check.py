@@ -191,11 +191,13 @@ class Measured(NamedTuple):
     worst : str          whether its greatest or its least value governs
     value : callable     worst measure, numbers -> demand: monotone
     error : float        error share of the demand over that of the measure: power of `value`
+    known : callable     loaded cams of the load cases -> numbers that demand and limit need besides
+                         those of the machine; None: no others
     bound : callable     limit of the demand, numbers -> limit of the measure: its inverse, if
                          `kept`; None: every value of the measure is within the limit
     allowed : callable   numbers -> limit
     needed : tuple       dotted keys without which there is no demand
-    applies : callable   demand -> whether the check applies to the cam
+    applies : callable   demand, numbers -> whether the check applies to the cam
     remark : callable    demand, solution -> demand, with what it has in words; None where the check
                          does not apply
     solved : callable    solution above the screening -> demand, of which that by the measure is a
@@ -221,7 +223,8 @@ class Measured(NamedTuple):
     bound: Callable[[float, Numbers], float | None]
     allowed: Callable[[Numbers], Allowed]
     needed: tuple[str, ...]
-    applies: Callable[[Value], NDArray[np.bool_]]
+    applies: Callable[[Value, Numbers], NDArray[np.bool_]]
+    known: Callable[[Iterable[LoadedCam]], Mapping[str, Value]] | None
     remark: Callable[[Demand, Solution], Demand | None]
     solved: Callable[[Solution], Demand] | None
     order: int
@@ -514,7 +517,8 @@ class Declaring:
         bound: Callable[[float, Numbers], float | None] = lambda limit, _: limit,
         allowed: Callable[[Numbers], Allowed] | None = None,
         needed: tuple[str, ...] = (),
-        applies: Callable[[Value], NDArray[np.bool_]] = lambda _: np.array(True),
+        applies: Callable[[Value, Numbers], NDArray[np.bool_]] = lambda *_: np.array(True),
+        known: Callable[[Iterable[LoadedCam]], Mapping[str, Value]] | None = None,
         remark: Callable[[Demand, Solution], Demand | None] = lambda demand, _: demand,
         solved: Callable[[Solution], Demand] | None = None,
         order: int = 2,
@@ -536,6 +540,7 @@ class Declaring:
             allowed=limit,
             needed=needed,
             applies=applies,
+            known=known,
             remark=remark,
             solved=solved,
             order=order,
@@ -558,9 +563,13 @@ def _demand(measure: Measure, how: Measured, solution: Solution) -> Demand | Non
     if how.solved is not None and solution.tier > Tier.SCREENING:
         return how.solved(solution)
     numbers = solution.numbers
+    if how.known is not None:
+        numbers = numbers | how.known(solution.cams.values())
     limit = how.allowed(numbers)
     allowed = None if limit.value is None else float(limit.value)
     lacks = tuple(key for key in how.needed if numbers.get(key) is None)
+    if not how.applies(np.nan, numbers):
+        return None
     if lacks:
         return how.remark(Demand(None, allowed, missing=(*lacks, *limit.missing)), solution)
 
@@ -586,7 +595,7 @@ def _demand(measure: Measure, how: Measured, solution: Solution) -> Demand | Non
         source = solution.machine.limits.source(stroke.limit)
         return Demand(worst.value, float(of_strokes[most]), worst, note=stroke.words, source=source)
     worst = worst_of(measure)
-    if not how.applies(worst.value):
+    if not how.applies(worst.value, numbers):
         return None
     if limit.if_exceeded and not (allowed is not None and worst.value > allowed):
         allowed = None

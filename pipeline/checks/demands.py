@@ -40,7 +40,7 @@ class FatiguePoint(NamedTuple):
 class PerLoad(NamedTuple):
     """Stress of a part per force, Pa/N, or torque, Pa/(N m), as a function of numbers."""
 
-    factor: Callable[[Numbers], float]
+    factor: Callable[[Numbers], Value]
 
     def value(self, worst: Value, numbers: Numbers) -> Value:
         """Stress, Pa, under the greatest load, N or N m."""
@@ -48,7 +48,7 @@ class PerLoad(NamedTuple):
 
     def bound(self, limit: float, numbers: Numbers) -> float:
         """Load, N or N m, at a stress, Pa."""
-        return limit / self.factor(numbers)
+        return float(limit / self.factor(numbers))
 
 
 def normal_force(cam: LoadedCam) -> Array:

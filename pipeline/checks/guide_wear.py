@@ -22,6 +22,7 @@ from camwright.pipeline.checks.guide_strength import (
     table_of,
 )
 from camwright.pipeline.checks.missing_keys import lacking, lacking_of_card
+from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.numbers import Numbers
 from camwright.pipeline.cycle.solution import Solution
 from camwright.pipeline.follower.guide_friction import bore_closure
@@ -142,6 +143,7 @@ def _guide_wear(side: Side) -> Declaration:
         method="wear rate times mean pressure times sliding distance, over the load cases by their"
         " duty; without a duty all of the life in the worst load case",
         lift_can_help=True,
+        tier=Tier.SCREENING,
         part="guides",
         kept_as=f"PV of guide {side} at its wear depth",
         formula="K t sum q_i PV_i <= h; K: guides.*.wear_rate, volume per load and distance, PV_i:"
@@ -163,6 +165,7 @@ def _guide_wear(side: Side) -> Declaration:
         remark=lambda demand, solution: replace(
             demand, figures=(guide_of(solution.machine, side).source,)
         ),
+        deviation=0.03,
         kept=Kept(unit="MPa m/s"),
     )(PV[side])
 

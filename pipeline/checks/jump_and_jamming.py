@@ -236,7 +236,7 @@ def _at_no_load_case(demand: Demand, _: Solution) -> Demand:
     error=0.5,
     bound=lambda _, numbers: cam_speed_without_jump(numbers),
     allowed=_jump_speed_allowed,
-    applies=lambda speed: ~np.isposinf(speed),
+    applies=lambda speed, _: ~np.isposinf(speed),
     remark=_at_no_load_case,
     deviation=0.003,
     kept=Kept(

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
-from camwright.geometry.arrays import Array, Values
+from camwright.geometry.arrays import Array, Value, Values
+from camwright.geometry.pitch_curve import magnitude
 from camwright.pipeline.base import levers
 from camwright.pipeline.base import value_groups as given
 from camwright.pipeline.base.material import Material
@@ -21,13 +23,12 @@ from camwright.pipeline.case.limits import (
     KEYWAY_SAFETY,
     SHAFT_RELIABILITY,
 )
-from camwright.pipeline.case.machine import Machine
 from camwright.pipeline.checks.check import Allowed, Declaration, Demand, Kept, check
 from camwright.pipeline.checks.demands import CAM_TORQUE, PerLoad, cam_torque, rating_over
-from camwright.pipeline.checks.extremes import least
 from camwright.pipeline.checks.missing_keys import lacking, lacking_of_card
 from camwright.pipeline.contact.cam_body import CamBody, ParallelKey
-from camwright.pipeline.cycle.cycle import Cycle
+from camwright.pipeline.contact.tiers import Tier
+from camwright.pipeline.cycle.loaded_cam import LoadedCam
 from camwright.pipeline.cycle.numbers import Numbers
 from camwright.pipeline.cycle.solution import Solution
 from camwright.pipeline.follower.camshaft_loads import KeyStress, key_stress
@@ -47,6 +48,27 @@ WALLS = 0.75, 4.0
 """Least and greatest wall over the radius of the keyway floor for which the stress is known."""
 TINY = 1e-12
 """Utilisation of an unloaded root: its safety is finite."""
+
+
+_BORE = "cam.bore_radius", "cam.width"
+_REVERSES = "cam.torque_reverses"
+
+
+def _cam_of(numbers: Numbers) -> CamBody:
+    """The cam with its bore and width."""
+    bore, width = (float(numbers[key]) for key in _BORE)
+    return replace(numbers.known_case.cam, bore_radius=bore, width=width)
+
+
+def _reversal(cams: Iterable[LoadedCam]) -> dict[str, Value]:
+    """1 where the torque through the key reverses in a load case, else 0."""
+    return {_REVERSES: np.any([cam.reverses for cam in cams], axis=0).astype(float)[()]}
+
+
+def _reverses(numbers: Numbers) -> NDArray[np.bool_]:
+    """Whether the torque through the key reverses, or is not known."""
+    known = numbers.get(_REVERSES)
+    return np.array(True) if known is None else np.asarray(known != 0.0)
 
 
 class _Mate(NamedTuple):
@@ -71,33 +93,33 @@ def _key_check(
     factor: allowed stress over the allowed normal stress
     """
 
-    def per_torque(numbers: Numbers) -> float:
-        cam = numbers.known_case.cam
+    def stress(numbers: Numbers) -> tuple[float]:
+        cam = _cam_of(numbers)
         key, flanks = cam.key or ParallelKey(), cam.key_flanks
         if flanks is None:
-            return np.nan
-        return float(of(key_stress(key.application_factor, 2.0 * cam.bore_radius, flanks)))
+            return (np.nan,)
+        return (float(of(key_stress(key.application_factor, 2.0 * cam.bore_radius, flanks))),)
 
-    def allowed_in(numbers: Numbers, *, reverses: bool = True) -> Allowed:
+    def per_torque(numbers: Numbers) -> Value:
+        return numbers.each(stress, _BORE)[0]
+
+    def allowed_in(numbers: Numbers) -> Allowed:
         case = numbers.known_case
         mate, key = mate_of(case), case.cam.key or ParallelKey()
         if mate is None:
             return Allowed(None)
         missing = (*mate.missing, *_no_key_data(case.cam), *lacking(key.table, key, "material"))
-        share = numbers.limit(KEY_SHARE) * (numbers.limit(KEY_REVERSAL) if reverses else 1.0)
+        reversal = np.where(_reverses(numbers), numbers.limit(KEY_REVERSAL), 1.0)[()]
+        share = numbers.limit(KEY_SHARE) * reversal
         yields = [card.core_yield_strength or card.yield_strength for card in _cards(key, mate)]
         return Allowed(None, missing) if missing else Allowed(factor * (share * min(yields)))
 
-    def in_words(demand: Demand, solution: Solution) -> Demand | None:
-        case, reverses = solution.case, _reverses(solution)
-        mate = mate_of(case)
-        if mate is None:
-            return None
+    def in_words(demand: Demand, solution: Solution) -> Demand:
+        case, mate = solution.case, mate_of(solution.case) or _Mate(None)
         figures = tuple(f"{card.name}: {card.source}" for card in _cards(case.cam.key, mate))
-        if reverses:
+        if any(cam.reverses for cam in solution.cams.values()):
             figures = (solution.machine.limits.source(KEY_REVERSAL), *figures)
-        known = allowed_in(solution.numbers, reverses=reverses).value
-        judged = replace(demand, allowed=None if known is None else float(known), figures=figures)
+        judged = replace(demand, figures=figures)
         return judged if case.cam.key_flanks else replace(judged, value=None, at=None)
 
     return check(
@@ -107,6 +129,7 @@ def _key_check(
         unit="MPa",
         method=METHOD,
         lift_can_help=True,
+        tier=Tier.SCREENING,
         part="key",
         kept_as=kept_as,
         formula=formula,
@@ -119,7 +142,10 @@ def _key_check(
         value=PerLoad(per_torque).value,
         bound=PerLoad(per_torque).bound,
         allowed=allowed_in,
+        applies=lambda _, numbers: np.array(mate_of(numbers.known_case) is not None),
+        known=_reversal,
         remark=in_words,
+        deviation=0.003,
         kept=Kept(group=CAM_TORQUE, unit="N m"),
     )(cam_torque)
 
@@ -182,10 +208,9 @@ def _slip_at(limit: float, numbers: Numbers) -> float | None:
     return slip / (limit * _application(numbers)) if slip else None
 
 
-def _slip_in_words(demand: Demand, solution: Solution) -> Demand | None:
-    """None if the torque does not reverse."""
+def _slip_in_words(demand: Demand, solution: Solution) -> Demand:
     sliding = demand.value is not None and solution.numbers[_SLIP] == 0.0
-    return replace(demand, note="sliding fit" if sliding else "") if _reverses(solution) else None
+    return replace(demand, note="sliding fit" if sliding else "")
 
 
 cam_slip = check(
@@ -194,6 +219,7 @@ cam_slip = check(
     title="Slip torque of the cam seat over the greatest cam torque",
     method="slip torque of the seat over K_A T; evaluated where the torque reverses",
     lift_can_help=True,
+    tier=Tier.SCREENING,
     part="camshaft",
     kept_as="cam torque at the slip of the cam's seat",
     formula="T_slip/(K_A T) >= limits.cam_slip; T_slip: camshaft.slip_torque of the press or"
@@ -209,9 +235,30 @@ cam_slip = check(
     value=lambda worst, numbers: rating_over(numbers[_SLIP], _application(numbers) * worst, np.inf),
     bound=_slip_at,
     needed=(_SLIP,),
+    applies=lambda _, numbers: _reverses(numbers),
+    known=_reversal,
     remark=_slip_in_words,
+    deviation=0.003,
     kept=Kept(group=CAM_TORQUE),
 )(cam_torque)
+
+
+def _root_in_words(demand: Demand, solution: Solution) -> Demand:
+    """None without data, and of a wall for which the stress is not known."""
+    cam, limit, root = solution.machine.cam, demand.allowed, keyway_root_of(solution.numbers)
+    card = cam.material
+    if np.isnan(root.per_stress):
+        missing = *_no_key_data(cam), *lacking_of_card(card, "fatigue_bending", "tensile_strength")
+        missing += () if cam.keyway_root_radius is not None else ("cam.keyway.root_radius",)
+        return Demand(None, limit, missing=missing)
+    wall = float(solution.contour.radius_min().value - root.held_radius)
+    thin, fillet = float(root.thin), float(root.root_radius)
+    if not wall >= thin:
+        note = f"wall of {shown(wall, 'mm')}, the stress is known from {shown(thin, 'mm')}"
+        return Demand(None, limit, note=note)
+    note = f"root radius {shown(fillet, 'mm')}, wall {shown(wall, 'mm')}"
+    reliability = solution.machine.limits.source(SHAFT_RELIABILITY)
+    return replace(demand, note=note, figures=(reliability, f"{card.name}: {card.source}"))
 
 
 @check(
@@ -221,6 +268,7 @@ cam_slip = check(
     method="elements of rings with DIN 6885-1 keyways: greatest principal stress at the fillet by"
     " key pressure and contact force, pulsating from zero; Goodman line, machined surface",
     lift_can_help=True,
+    tier=Tier.SCREENING,
     part="key",
     formula="1/(s/(2 S_e) + s/(2 R_m)) >= limits.keyway_safety; s = (0.70 p + 4.1 F_n/(b h))"
     " (t2/r)^0.4555: greatest over the turn, p: key_pressure, F_n: normal force, b: cam width, h:"
@@ -237,33 +285,15 @@ cam_slip = check(
     ),
     levers=(levers.one("cam.keyway.root_radius"), levers.one("cam.width"), *levers.GENTLER),
     page="Cam",
-)
-def keyway_root(solution: Solution) -> Demand:
-    """Fatigue safety factor of the keyway's root in the cam."""
-    machine = solution.machine
-    cam, limit, card = machine.cam, machine.limits[KEYWAY_SAFETY], machine.cam.material
-    root = keyway_root_of(machine)
-    if root is None:
-        missing = *_no_key_data(cam), *lacking_of_card(card, "fatigue_bending", "tensile_strength")
-        missing += () if cam.keyway_root_radius is not None else ("cam.keyway.root_radius",)
-        return Demand(None, limit, missing=missing)
-    wall = float(solution.contour.radius_min().value) - cam.held_radius
-    thin, thick = (share * cam.held_radius for share in WALLS)
-    if not wall >= thin:
-        note = f"wall of {shown(wall, 'mm')}, the stress is known from {shown(thin, 'mm')}"
-        return Demand(None, limit, note=note)
-
-    def safety(cycle: Cycle) -> Array:
-        loads = cycle.loads
-        if not np.isfinite([loads.cam_torque, loads.normal_force]).all():
-            return np.full(cycle.theta.size, np.nan)
-        used = root.used_by(np.abs(loads.cam_torque), np.abs(loads.normal_force), min(wall, thick))
-        return np.asarray(1.0 / np.maximum(used, TINY))
-
-    worst = least(solution.cycles, safety)
-    note = f"root radius {shown(root.root_radius, 'mm')}, wall {shown(wall, 'mm')}"
-    figures = (machine.limits.source(SHAFT_RELIABILITY), f"{card.name}: {card.source}")
-    return Demand(worst.value, limit, worst, note=note, figures=figures)
+).measured("angles", worst="least", remark=_root_in_words, deviation=0.003)
+def keyway_root(cam: LoadedCam) -> Array:
+    """Fatigue safety factor of the keyway's root in the cam; NaN of a wall below `WALLS`."""
+    root = keyway_root_of(cam.numbers)
+    wall = np.asarray(cam.least_radius - root.held_radius)
+    counted = np.where(np.real(wall) < root.thick, wall, root.thick)
+    used: Array = root.used_by(magnitude(cam.torque), magnitude(cam.normal), counted)
+    known = (np.real(wall) >= root.thin) & np.isfinite(used)
+    return np.where(known, 1.0 / np.where(np.real(used) > TINY, used, TINY), np.nan)
 
 
 def _no_key_data(cam: CamBody) -> tuple[str, ...]:
@@ -277,15 +307,20 @@ class KeywayRoot(NamedTuple):
     """Stress at the root of the keyway in the cam: Pa per N m and, of a thick wall, per N.
 
     held_radius: of the floor of the keyway, root_radius: of its corner, thick: greatest wall that
-    counts, m; per_stress: use of the fatigue strength, 1/Pa.
+    counts, m; per_stress: use of the fatigue strength, 1/Pa. Of designs arrays (m, 1).
     """
 
-    by_torque: float
-    by_force: float
-    held_radius: float
-    root_radius: float
-    thick: float
-    per_stress: float
+    by_torque: Value
+    by_force: Value
+    held_radius: Value
+    root_radius: Value
+    thick: Value
+    per_stress: Value
+
+    @property
+    def thin(self) -> Value:
+        """Least wall for which the stress is known, m."""
+        return WALLS[0] * self.held_radius
 
     def used_by(self, torque: Values, force: Values, wall: float | Values) -> Values:
         """Stress over strength (...) by torque, N m, and force, N, at a wall of at most `thick`."""
@@ -293,17 +328,22 @@ class KeywayRoot(NamedTuple):
         return stress * self.per_stress
 
 
-def keyway_root_of(machine: Machine) -> KeywayRoot | None:
-    """Root of the keyway in the cam; None without its data, or outside the scope."""
-    cam, card = machine.cam, machine.cam.material
+def keyway_root_of(numbers: Numbers) -> KeywayRoot:
+    """Root of the keyway in the cam; NaN without its data, or outside the scope."""
+    return KeywayRoot(*numbers.each(_root_of, (*_BORE, f"limits.{SHAFT_RELIABILITY.id}")))
+
+
+def _root_of(numbers: Numbers) -> KeywayRoot:
+    cam, card = _cam_of(numbers), numbers.known_case.cam.material
     keyway, key, flanks, radius = cam.keyway, cam.key, cam.key_flanks, cam.keyway_root_radius
     endurance, tensile = card.fatigue_bending, card.tensile_strength
+    unknown = KeywayRoot(*(6 * [np.nan]))
     if keyway is None or key is None or flanks is None or radius is None:
-        return None
-    if endurance is None or tensile is None or not machine.scope.covers("key"):
-        return None
+        return unknown
+    if endurance is None or tensile is None or not numbers.known_case.scope.covers("key"):
+        return unknown
     strength = surface_factor("machined", tensile) * endurance
-    strength *= reliability_factor(machine.limits[SHAFT_RELIABILITY])
+    strength *= reliability_factor(float(numbers.limit(SHAFT_RELIABILITY)))
     pressure = key_stress(key.application_factor, 2.0 * cam.bore_radius, flanks).hub
     thick = WALLS[1] * cam.held_radius
     shape = cam.width, thick, keyway.depth, radius
@@ -315,9 +355,3 @@ def keyway_root_of(machine: Machine) -> KeywayRoot | None:
         thick=thick,
         per_stress=0.5 * (1.0 / strength + 1.0 / tensile),
     )
-
-
-def _reverses(solution: Solution) -> bool:
-    """Whether the torque through the key changes sign in a load case, or is unknown."""
-    torques = [cycle.loads.cam_torque for cycle in solution.cycles]
-    return any(not (torque >= 0.0).all() and not (torque <= 0.0).all() for torque in torques)

@@ -27,12 +27,13 @@ from camwright.pipeline.checks.check import NONE, Allowed, Demand, Kept, check, 
 from camwright.pipeline.checks.demands import NORMAL_FORCE, PerLoad, normal_force
 from camwright.pipeline.checks.extremes import worst_case
 from camwright.pipeline.checks.missing_keys import lacking_of_card
+from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.cam_balance import Balance, balance, rotor_unbalance
 from camwright.pipeline.cycle.cycle import Cycle
 from camwright.pipeline.cycle.numbers import Numbers
 from camwright.pipeline.cycle.solution import Solution
 from camwright.pipeline.follower import pin_strength
-from camwright.pipeline.follower.bearing_ring import RingBending, goodman
+from camwright.pipeline.follower.bearing_ring import goodman
 from camwright.pipeline.follower.camshaft_loads import Camshaft
 from camwright.pipeline.follower.roller import Roller
 from camwright.pipeline.follower.roller_parts import Fork, OuterRing, Pin
@@ -55,8 +56,13 @@ def _described(numbers: Numbers) -> tuple[Roller, Pin]:
     return _pin_of(numbers.known_case.roller)
 
 
-def _bending(numbers: Numbers) -> float:
-    return _described(numbers)[0].pin_stress_per_newton or 0.0
+def _bending(numbers: Numbers) -> Value:
+    return numbers.each(_bent, ("roller.width",))[0]
+
+
+def _bent(numbers: Numbers) -> tuple[float]:
+    pin, width = _described(numbers)[1], float(numbers["roller.width"])
+    return (pin_strength.pin_bending_stress(1.0, pin.diameter, width, pin.span, pin.overhung),)
 
 
 def _bending_allowed(numbers: Numbers) -> Allowed:
@@ -78,6 +84,7 @@ roller_pin = check(
     unit="MPa",
     method="32 M/(pi d^3), load uniform over the bearing width",
     lift_can_help=True,
+    tier=Tier.SCREENING,
     needs="roller",
     part="pin",
     kept_as="normal force at the maximum stress of the roller pin",
@@ -94,6 +101,7 @@ roller_pin = check(
     bound=_of_bending.bound,
     allowed=_bending_allowed,
     remark=_pin_in_words,
+    deviation=0.005,
     kept=Kept(group=NORMAL_FORCE),
 )(normal_force)
 
@@ -173,6 +181,7 @@ roller_pin_shear = check(
     unit="MPa",
     method="4/3 of the mean shear stress over the section beside the bearing",
     lift_can_help=True,
+    tier=Tier.SCREENING,
     needs="roller",
     part="pin",
     kept_as="normal force at the maximum shear stress of the roller pin",
@@ -189,13 +198,13 @@ roller_pin_shear = check(
     bound=_of_shear.bound,
     allowed=_shear_allowed,
     remark=_with_card_of_pin,
+    deviation=0.005,
     kept=Kept(group=NORMAL_FORCE),
 )(normal_force)
 
 
-def _seat(numbers: Numbers) -> float:
-    roller, pin = _described(numbers)
-    return 1.0 / (pin.diameter * roller.width)
+def _seat(numbers: Numbers) -> Value:
+    return 1.0 / (_described(numbers)[1].diameter * numbers["roller.width"])
 
 
 def _share_of_tensile(row: Limit, cards: Sequence[Material], numbers: Numbers) -> Allowed:
@@ -213,6 +222,7 @@ roller_pin_pressure = check(
     unit="MPa",
     method="normal force over the projected area of the seat",
     lift_can_help=True,
+    tier=Tier.SCREENING,
     needs="roller",
     part="pin",
     kept_as="normal force at the maximum pressure in the bearing's bore",
@@ -235,6 +245,7 @@ roller_pin_pressure = check(
         PIN_PRESSURE_SHARE, (_described(numbers)[1].material,), numbers
     ),
     remark=_with_card_of_pin,
+    deviation=0.005,
     kept=Kept(group=NORMAL_FORCE),
 )(normal_force)
 
@@ -282,6 +293,7 @@ cheek_pressure = check(
     unit="MPa",
     method="force and moment of the pin over the projected area of a cheek",
     lift_can_help=True,
+    tier=Tier.SCREENING,
     needs="roller",
     part="fork",
     kept_as="normal force at the maximum pressure of the pin in its fork",
@@ -305,6 +317,7 @@ cheek_pressure = check(
     allowed=_cheek_allowed,
     needed=(Pin.table,),
     remark=_cheek_in_words,
+    deviation=0.005,
     kept=Kept(group=NORMAL_FORCE),
 )(normal_force)
 
@@ -370,29 +383,42 @@ def moving_masses(solution: Solution) -> tuple[dict[str, float], tuple[str, ...]
 _TENSILE = "roller.bearing.ring.tensile_strength"
 
 
-def _groove(numbers: Numbers) -> RingBending | None:
-    """Stress at the groove of the outer ring per newton; None of a solid roller."""
-    width, preload = float(numbers["contact.width"]), float(numbers["spring.preload"])
-    solved = numbers.known_case.roller.ring(width, preload)
-    return None if solved is None else solved.bending
+_RINGS = 16
+"""Different rings up to which the bending of each is solved for many designs."""
+_RATING = "roller.bearing.C0"
+_RING_KEYS = "roller.radius", "roller.width", _RATING
+
+
+def _groove(numbers: Numbers) -> tuple[Value, Value]:
+    """Amplitude and mean of the stress at the groove per newton, Pa/N; NaN of a solid roller."""
+    load = () if numbers.get(_RATING) is not None else ("spring.preload",)
+    amplitude, mean = numbers.each(_ring_bending, (*_RING_KEYS, *load), _RINGS)
+    return amplitude, mean
+
+
+def _ring_bending(numbers: Numbers) -> tuple[float, float]:
+    roller = numbers.known_case.roller
+    stated = {key: numbers.get(key) for key in _RING_KEYS}
+    roller = roller.with_values({key: float(each) for key, each in stated.items() if each})
+    # the bending does not depend on the width of the contact, nor with a rating on the preload
+    solved = roller.ring(roller.line_width, float(np.ravel(numbers["spring.preload"])[0]))
+    if solved is None:
+        return np.nan, np.nan
+    return solved.bending.stress_amplitude, solved.bending.stress_mean
 
 
 def _ring_amplitude(worst: Value, numbers: Numbers) -> Value:
     """Amplitude at zero mean stress by the Goodman line, Pa, under a normal force, N."""
-    bending, force = _groove(numbers), np.asarray(worst)
-    if bending is None:
-        return np.full(force.shape, np.nan)
-    mean = bending.stress_mean * force
-    return goodman(bending.stress_amplitude * force, mean, float(numbers[_TENSILE]))
+    (amplitude, mean), force = _groove(numbers), np.asarray(worst)
+    return goodman(amplitude * force, mean * force, float(numbers[_TENSILE]))
 
 
 def _ring_force(limit: float, numbers: Numbers) -> float | None:
     """Normal force at an amplitude, N: a N/(1 - m N/R_m) = s_W."""
-    bending = _groove(numbers)
-    if bending is None:
+    amplitude, mean = (float(each) for each in _groove(numbers))
+    if np.isnan(amplitude):
         return None
-    mean = limit * bending.stress_mean / float(numbers[_TENSILE])
-    return limit / (bending.stress_amplitude + mean)
+    return limit / (amplitude + limit * mean / float(numbers[_TENSILE]))
 
 
 def _ring_in_words(demand: Demand, solution: Solution) -> Demand:
@@ -414,6 +440,7 @@ roller_ring_fatigue = check(
     method="stress at the groove of the turning ring, finite elements on balls without tension, all"
     " ball positions; amplitude reduced to zero mean stress by the Goodman line",
     lift_can_help=True,
+    tier=Tier.SCREENING,
     needs="roller",
     part="roller_bearing",
     kept_as="normal force at the bending fatigue of the roller's outer ring",
@@ -438,12 +465,13 @@ roller_ring_fatigue = check(
     needed=(_TENSILE,),
     remark=_ring_in_words,
     pointwise=True,
+    deviation=0.005,
     kept=Kept(group=NORMAL_FORCE),
 )(normal_force)
 
 
-def _bore(numbers: Numbers) -> float:
-    return 1.0 / float(2.0 * numbers["cam.bore_radius"] * numbers["cam.width"])
+def _bore(numbers: Numbers) -> Value:
+    return 1.0 / (2.0 * numbers["cam.bore_radius"] * numbers["cam.width"])
 
 
 def _bore_cards(case: Case) -> tuple[list[Material], tuple[str, ...]]:
@@ -473,6 +501,7 @@ bore_pressure = check(
     unit="MPa",
     method="greatest normal force over bore diameter and cam width",
     lift_can_help=True,
+    tier=Tier.SCREENING,
     kept_as="normal force at the maximum pressure of the cam's bore",
     formula="F_n/(d b) <= limits.bore_share R_m; F_n: greatest normal force over all load cases and"
     " angles, d: bore diameter, b: cam width, R_m: lower tensile strength of cam and camshaft",
@@ -490,6 +519,7 @@ bore_pressure = check(
     bound=_of_bore.bound,
     allowed=_bore_allowed,
     remark=_with_cards_of_bore,
+    deviation=0.005,
     kept=Kept(group=NORMAL_FORCE, unit="N", needs="face"),
 )(normal_force)
 

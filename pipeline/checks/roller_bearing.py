@@ -17,7 +17,7 @@ from camwright.geometry.arrays import FULL_TURN, Array, Value, Values
 from camwright.geometry.pitch_curve import magnitude
 from camwright.pipeline.base import levers
 from camwright.pipeline.base import value_groups as given
-from camwright.pipeline.base.units import factor, in_unit
+from camwright.pipeline.base.units import factor
 from camwright.pipeline.case.limits import (
     ROLLER_LIFE,
     ROLLER_LOAD_SHARE,
@@ -54,7 +54,6 @@ from camwright.pipeline.cycle.loaded_cam import LoadedCam, not_negative
 from camwright.pipeline.cycle.numbers import Numbers
 from camwright.pipeline.cycle.solution import Solution
 from camwright.pipeline.follower import bearing_life
-from camwright.pipeline.follower.roller import Roller
 from camwright.pipeline.follower.roller_motion import (
     BALL_LIFE_EXPONENT,
     RATED_REVOLUTIONS,
@@ -106,10 +105,14 @@ def _modified_life(worst: Value, numbers: Numbers) -> Value:
     return rating_over(_reliable(numbers), worst, np.inf)
 
 
-def _reliable(numbers: Numbers) -> float:
+def _reliable(numbers: Numbers) -> Value:
     """a1 million turns, rad."""
-    reliability = float(numbers.limit(ROLLER_RELIABILITY))
-    return bearing_life.reliability_factor(reliability) * MILLION_TURNS
+    return numbers.each(_reliability, (f"limits.{ROLLER_RELIABILITY.id}",))[0] * MILLION_TURNS
+
+
+def _reliability(numbers: Numbers) -> tuple[float]:
+    """a1"""
+    return (bearing_life.reliability_factor(float(numbers.limit(ROLLER_RELIABILITY))),)
 
 
 def _modified_damage(cam: LoadedCam) -> Array:
@@ -131,7 +134,7 @@ def _used(cam: LoadedCam, kappa: Array) -> Array:
     """|n| (P/C)^3/a_ISO (...), rad/s, at a viscosity ratio; zero of a roller at rest."""
     numbers, surged = cam.numbers, not_negative(cam.surged)
     force = np.where(np.real(surged) < _LEAST_FORCE, _LEAST_FORCE, surged)
-    rating, clean = (float(numbers[key]) for key in (_RATING, "roller.bearing.cleanliness_load"))
+    rating, clean = numbers[_RATING], numbers["roller.bearing.cleanliness_load"]
     used = bearing_life.life_used(force, rating, clean, kappa) * magnitude(cam.spin)
     return np.where(np.real(cam.spin_mean) < STANDSTILL, 0.0, used)
 
@@ -281,6 +284,7 @@ roller_modified_life = check(
     method="a1 a_ISO (C / P)^3 million revolutions, the damage of the positions of a turn added;"
     " infinite at rest",
     lift_can_help=True,
+    tier=Tier.SCREENING,
     needs="roller",
     part="roller_bearing",
     kept_as="dynamic load rating of the roller at its modified life",
@@ -307,7 +311,7 @@ roller_modified_life = check(
 ).measured(
     "life",
     value=_modified_life,
-    bound=lambda limit, numbers: _reliable(numbers) / limit,
+    bound=lambda limit, numbers: float(_reliable(numbers)) / limit,
     needed=(
         _RATING,
         "roller.bearing.fatigue_load_limit",
@@ -316,6 +320,8 @@ roller_modified_life = check(
         _CIRCLE,
     ),
     remark=_with_modified_damage,
+    deviation=0.03,
+    bounded="surge",
     kept=Kept(_modified_kept, power=1.0 / BALL_LIFE_EXPONENT, unit="N"),
 )(_modified_damage)
 
@@ -408,6 +414,7 @@ roller_static_radial = _outer_ring(
     id="bearing_lubrication",
     title="Viscosity ratio (kappa) of the roller bearing",
     method="viscosity over v1 at the mean speed of the roller; infinite at rest",
+    tier=Tier.SCREENING,
     needs="roller",
     part="roller_bearing",
     kept_as="mean speed of the roller at the least viscosity ratio",
@@ -428,6 +435,7 @@ roller_static_radial = _outer_ring(
     remark=lambda demand, solution: replace(
         demand, figures=(bearing_life.SOURCE, solution.machine.roller.bearing.source)
     ),
+    deviation=0.0001,
     kept=Kept(_film_kept, power=-1.0, unit="rpm", falls=-1.0),
 )
 def bearing_lubrication(cam: LoadedCam) -> Array:
@@ -464,6 +472,7 @@ def least_speed(viscosity: float, circle: float, ratio: float) -> float | None:
     " does: recalled, verify",
     method="of n D, P/C and temperature; the manufacturer's where it is given",
     lift_can_help=True,
+    tier=Tier.SCREENING,
     needs="roller",
     part="roller_bearing",
     kept_as="dynamic load rating of the roller at the life of its grease",
@@ -493,7 +502,8 @@ def grease_life(solution: Solution) -> Demand | None:
         return None
     if bearing.lubrication is None:
         return Demand(None, None, missing=lacking(bearing.table, bearing, "lubrication"))
-    target = _grease_target(solution.machine, bearing)
+    required = grease_target(solution.numbers)
+    target = None if required is None else float(required)
     if bearing.lubrication == "grease_for_life":
         missing = unset(solution.machine.limits, TARGET_LIFE)
     else:
@@ -504,32 +514,37 @@ def grease_life(solution: Solution) -> Demand | None:
     missing += lacking(bearing.table, bearing, "C", "temperature")
     worst, note = NOWHERE, ""
     if not missing:
-        worst = over_duty(solution.cycles, lambda cycle: _grease_life(cycle, solution), life=True)
+        worst = over_duty(
+            solution.cycles,
+            lambda cycle: float(np.ravel(greased(cam_of(solution, cycle)))[0]),
+            life=True,
+        )
         if np.isnan(worst.value):
             missing = lacking(bearing.table, bearing, "grease_life")
             note = "outside the range of the estimate"
     return Demand(worst.value, target, worst, missing, note=note, figures=_card(bearing))
 
 
-def _grease_life(cycle: Cycle, solution: Solution) -> float:
-    """Estimated life of the grease in a load case, s; NaN without its data or out of its range."""
-    roller, cam = solution.machine.roller, cam_of(solution, cycle)
-    bearing = roller.bearing
-    if not bearing.C or bearing.temperature is None:
-        return np.nan
-    if not np.isfinite(cam.normal).all():
-        return np.nan
-    share = float(equivalent_load(cam.normal, cam.spin)) / bearing.C
-    across = _greased_diameter(roller)
-    return bearing_life.grease_life(
-        in_unit(float(cam.spin_mean), "rpm"), across, share, bearing.temperature
-    )
+def greased(cam: LoadedCam) -> Array:
+    """Estimated life of the grease in a load case (1,) or (m, 1), s.
+
+    That of the maker where it is stated; NaN without its data or out of its range.
+    """
+    numbers, bearing = cam.numbers, cam.numbers.known_case.roller.bearing
+    rating, temperature = numbers.get(_RATING), bearing.temperature
+    if bearing.grease_life is not None:
+        return np.array([bearing.grease_life])
+    if rating is None or temperature is None or not np.isfinite(cam.normal).all():
+        return np.array([np.nan])
+    share = equivalent_load(cam.normal, cam.spin)[..., None] / rating
+    speed = np.asarray(cam.spin_mean / factor("rpm"))
+    return bearing_life.grease_life(speed, _greased_diameter(numbers), share, temperature)
 
 
-def _greased_diameter(roller: Roller) -> float:
+def _greased_diameter(numbers: Numbers) -> Value:
     """Outer diameter of the bearing, m."""
-    ring = roller.bearing.ring
-    return 2.0 * roller.radius if ring is None else ring.outer_diameter
+    ring = numbers.known_case.roller.bearing.ring
+    return 2.0 * numbers["roller.radius"] if ring is None else ring.outer_diameter
 
 
 class Grease(NamedTuple):
@@ -547,21 +562,21 @@ class Grease(NamedTuple):
         )
 
 
-def grease_of(machine: Machine) -> Grease | None:
+def grease_of(machine: Machine, numbers: Numbers) -> Grease | None:
     """Grease whose life is estimated; None where it is stated, without grease or its data."""
     if not grease_life.concerns(machine):
         return None
-    roller = machine.roller
-    bearing = roller.bearing
-    target, rating, temperature = _grease_target(machine, bearing), bearing.C, bearing.temperature
+    bearing = machine.roller.bearing
+    target, rating, temperature = grease_target(numbers), bearing.C, bearing.temperature
     if bearing.lubrication in (None, "oil") or bearing.grease_life is not None:
         return None
     if target is None or rating is None or temperature is None:
         return None
-    return Grease(target, rating, _greased_diameter(roller), temperature)
+    return Grease(float(target), rating, float(_greased_diameter(numbers)), temperature)
 
 
-def _grease_target(machine: Machine, bearing: Bearing) -> float | None:
+def grease_target(numbers: Numbers) -> Value | None:
     """Required life of the grease, s."""
+    bearing = numbers.known_case.roller.bearing
     for_life = bearing.lubrication == "grease_for_life"
-    return machine.limits[TARGET_LIFE] if for_life else bearing.relubrication_interval
+    return numbers.get(f"limits.{TARGET_LIFE.id}") if for_life else bearing.relubrication_interval

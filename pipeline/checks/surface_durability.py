@@ -34,6 +34,7 @@ from camwright.pipeline.checks.missing_keys import (
 )
 from camwright.pipeline.contact.oil_film import Lubricant
 from camwright.pipeline.contact.rolling_envelope import Envelope
+from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.contact.traction import rolling_demand
 from camwright.pipeline.cycle.cycle import Cycle
 from camwright.pipeline.cycle.loaded_cam import LoadedCam, not_negative, roller_of
@@ -54,7 +55,8 @@ def _tangential(cam: LoadedCam) -> Array:
         return np.full(np.shape(cam.normal), np.nan)
     rate = path_speed_slope(path.along, path.height, jet.slope, jet.bend, path.path_speed)
     acceleration, force = cam.speed**2 * rate / path.size, not_negative(cam.normal)
-    return magnitude(rolling_demand(drag, force, cam.spin, acceleration, path.size))
+    bearing = drag.bearing_torque(force)
+    return magnitude(rolling_demand(cam.rotor_inertia, bearing, cam.spin, acceleration, path.size))
 
 
 def _traction(cam: LoadedCam) -> Array:
@@ -76,6 +78,7 @@ traction_demand = check(
     source="rolling without slip, Rothbart, Cam Design Handbook (2004), eq. 10.7: verify",
     method="(roller inertia + bearing drag) over roller radius and normal force",
     lift_can_help=True,
+    tier=Tier.SCREENING,
     needs="roller",
     kept_as="friction of the roller on the cam",
     formula="T/N <= mu; T: tangential force of rolling without slip, from the inertia of the roller"
@@ -87,6 +90,7 @@ traction_demand = check(
 ).measured(
     "angles",
     allowed=of_key("roller.friction"),
+    deviation=0.01,
     kept=Kept(_traction_kept, unit="-"),
 )(_traction)
 
@@ -98,13 +102,14 @@ traction_reserve = check(
     method="(roller inertia + bearing drag) over roller radius and normal force",
     must_have=False,
     lift_can_help=True,
+    tier=Tier.SCREENING,
     needs="roller",
     formula="T/N <= c mu; c: limits.traction_share, others as of traction_demand",
     reason="a reserve against a friction coefficient lower than stated; grip itself is"
     " traction_demand",
     values=given.TRACTION,
     page="Contact",
-).measured("angles", allowed=of_key("roller.friction", TRACTION_SHARE))(_traction)
+).measured("angles", allowed=of_key("roller.friction", TRACTION_SHARE), deviation=0.01)(_traction)
 
 
 @check(

@@ -134,7 +134,7 @@ def creepage(
     return slope * (1 - stick_half_width(ratio))
 
 
-def ring_inertia(radius: float, hub_radius: float, width: float, density: float) -> float:
+def ring_inertia(radius: Value, hub_radius: float, width: Value, density: float) -> Value:
     """Moment of inertia of a solid ring about its axis, kg m2: upper bound of an outer ring."""
     return 0.5 * np.pi * density * width * (radius**4 - hub_radius**4)
 
@@ -190,11 +190,10 @@ class RollingContact:
 
 
 def rolling_demand(
-    drag: Drag, normal_force: Values, spin: Values, spin_acceleration: Values, radius: Value
+    inertia: Value, bearing: Values, spin: Values, spin_acceleration: Values, radius: Value
 ) -> Values:
     """Tangential force of rolling without slip (...), N: inertia and bearing drag of the roller."""
-    resisting = np.sign(np.real(spin)) * drag.bearing_torque(normal_force)
-    return (drag.inertia * spin_acceleration + resisting) / radius
+    return (inertia * spin_acceleration + np.sign(np.real(spin)) * bearing) / radius
 
 
 def rolling_contact(
@@ -248,7 +247,7 @@ def rolling_contact(
     speed = np.abs(finite("rolling_speed", rolling_speed))
     step = period / force.size
     resisting = drag.bearing_torque(force)
-    demand = rolling_demand(drag, force, rolling, rate, radius)
+    demand = rolling_demand(drag.inertia, resisting, rolling, rate, radius)
     tangential, turning = _steps(rolling, demand, limit, resisting, drag.inertia, radius, step)
     slip = radius * (rolling - turning)
     sliding = np.abs(slip) > _SETTLED * radius * np.abs(rolling).max(initial=1e-300)

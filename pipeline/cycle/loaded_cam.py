@@ -12,6 +12,7 @@ from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from camwright.geometry.arrays import Array, Value
 from camwright.geometry.errors import GeometryError, InputError
@@ -126,6 +127,11 @@ class LoadedCam:
         return motion_of(self.jet, self.numbers)
 
     @property
+    def least_radius(self) -> Value:
+        """Minimum radius of the contour, m: in a dwell at minimum lift."""
+        return self.motion.radius_at(self.least_lift)
+
+    @property
     def spring_shape(self) -> SpringShape | None:
         """Rise of the force of a spring that is not linear; None: linear."""
         case = self.numbers.case
@@ -136,6 +142,12 @@ class LoadedCam:
         """Inertia and drag of the roller; None without one."""
         case = self.numbers.case
         return None if case is None else case.facing.drag
+
+    @property
+    def rotor_inertia(self) -> Value:
+        """Moment of inertia of the roller, kg m2; 0 without one."""
+        inertia = self.numbers.get("roller.rotor_inertia")
+        return 0.0 if inertia is None else inertia
 
     @property
     def speed(self) -> Value:
@@ -301,6 +313,14 @@ class LoadedCam:
     def torque(self) -> Array:
         """Cam torque, N m."""
         return self.axial * (self.slope + self.motion.sliding)
+
+    @cached_property
+    def reverses(self) -> NDArray[np.bool_]:
+        """Whether the cam torque changes sign over the turn, or is not known, (...) or (m, 1)."""
+        torque = np.real(self.torque)
+        signs = (torque >= 0.0).all(axis=-1), (torque <= 0.0).all(axis=-1)
+        one_way = np.asarray(np.logical_or(*signs))
+        return ~one_way[..., None] if one_way.ndim else ~one_way
 
     @cached_property
     def rubbing(self) -> OfGuides:

@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import partial
+
+import numpy as np
 
 from camwright.geometry.arrays import Value
 from camwright.geometry.errors import InputError
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_values import value_of
 from camwright.pipeline.case.limits import AnyLimit
+from camwright.pipeline.contact.traction import ring_inertia
 from camwright.pipeline.follower.bearing_life import contamination_factor
 from camwright.pipeline.follower.guide_friction import friction_limits
 
@@ -29,6 +32,9 @@ class Numbers:
     changed: Mapping[str, Value | None]
     case: Case | None = None
     _read: dict[str, Value | None] = field(default_factory=dict, repr=False)
+    _figures: dict[object, tuple[tuple[Value | None, ...], tuple[Value, ...]]] = field(
+        default_factory=dict, repr=False
+    )
 
     def get(self, key: str) -> Value | None:
         """Value at a key; None where the case leaves it out."""
@@ -76,9 +82,41 @@ class Numbers:
             raise InputError("case", "missing", "known, to read what is no number")
         return self.case
 
+    def each(
+        self, figures: Callable[[Numbers], Sequence[Value]], keys: Sequence[str], most: int = 0
+    ) -> tuple[Value, ...]:
+        """Figures of a part, of designs those with each of their numbers at some keys.
+
+        They depend on the case and on these numbers alone, and are made once for all designs of the
+        same numbers, load cases and checks; NaN of more than `most` different ones, if not 0.
+        """
+        values = tuple(self.get(key) for key in keys)
+        known = self._figures.get(figures)
+        if known is None or any(a is not b for a, b in zip(known[0], values, strict=True)):
+            known = values, self._each(figures, dict(zip(keys, values, strict=True)), most)
+            self._figures[figures] = known
+        return known[1]
+
+    def _each(
+        self,
+        figures: Callable[[Numbers], Sequence[Value]],
+        values: Mapping[str, Value | None],
+        most: int,
+    ) -> tuple[Value, ...]:
+        arrays = {key: each for key, each in values.items() if isinstance(each, np.ndarray)}
+        if not arrays:
+            return tuple(figures(self))
+        rows = np.concatenate(np.broadcast_arrays(*arrays.values()), axis=-1)
+        distinct, member = np.unique(rows, axis=0, return_inverse=True)
+        known = len(distinct) <= most or not most
+        solved = distinct[: None if known else 1].tolist()
+        own = np.array([figures(self | dict(zip(arrays, row, strict=True))) for row in solved])
+        of_each = own[member.ravel()] if known else np.full((len(rows), own.shape[-1]), np.nan)
+        return tuple(of_each.T[..., None])
+
     def __or__(self, changed: Mapping[str, Value | None]) -> Numbers:
         """With other numbers; what is read from the case is read once."""
-        return Numbers({**self.changed, **changed}, self.case, self._read)
+        return Numbers({**self.changed, **changed}, self.case, self._read, self._figures)
 
 
 def _greatest_friction(guide: str, numbers: Numbers) -> Value:
@@ -129,6 +167,16 @@ def _cleanliness_load(numbers: Numbers) -> Value | None:
     )
 
 
+def _rotor_inertia(numbers: Numbers) -> Value | None:
+    """Moment of inertia of the roller, kg m2; see `Roller.rotor_inertia`."""
+    stated, radius = numbers.get("roller.inertia"), numbers.get("roller.radius")
+    if stated is not None or radius is None or numbers.case is None:
+        return stated
+    roller = numbers.case.roller
+    width, density = numbers["roller.width"], roller.material.density
+    return ring_inertia(radius, roller.hub_radius, width, density)
+
+
 DERIVED: Mapping[str, Callable[[Numbers], Value | None]] = {
     "guides.a.friction_greatest": partial(_greatest_friction, "guides.a"),
     "guides.b.friction_greatest": partial(_greatest_friction, "guides.b"),
@@ -137,6 +185,7 @@ DERIVED: Mapping[str, Callable[[Numbers], Value | None]] = {
     "guides.a.mouth": _mouth,
     "follower.extent": _extent,
     "follower.size": _size,
+    "roller.rotor_inertia": _rotor_inertia,
     "roller.bearing.pitch_diameter": _ball_circle,
     "roller.bearing.cleanliness_load": _cleanliness_load,
 }

@@ -69,6 +69,10 @@ class ContourCam(LoadedCam):
         friction = self.numbers.get("follower.face.friction")
         return self.contour.motion(self.jet, 0.0 if friction is None else friction)
 
+    @property
+    def least_radius(self) -> float:
+        return float(self.contour.radius_min().value)
+
     @classmethod
     def at(cls, contour: Contour, numbers: Numbers, theta: Array, order: int) -> ContourCam:
         """At cam angles (...), rad; order: of its jet."""

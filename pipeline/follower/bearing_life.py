@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from math import exp, log
+from math import log
 from types import MappingProxyType
 
 import numpy as np
 
-from camwright.geometry.arrays import Array, Values
+from camwright.geometry.arrays import Array, Value, Values
 from camwright.geometry.errors import InputError
 from camwright.pipeline.base.units import celsius
 from camwright.pipeline.follower.roller_motion import BALL_LIFE_EXPONENT
@@ -98,7 +98,7 @@ def life_modification(viscosity_ratio: Values, cleanliness_ratio: Values) -> Val
 
 
 def life_used(
-    force: Values, dynamic_rating: float, cleanliness_load: float, viscosity_ratio: Values
+    force: Values, dynamic_rating: Value, cleanliness_load: Value, viscosity_ratio: Values
 ) -> Values:
     """(P/C)^3/a_ISO (...): share of a million revolutions used per revolution, times 1e6.
 
@@ -114,9 +114,9 @@ def life_used(
 
 
 def grease_life(
-    speed: float, outer_diameter: float, load_share: float, temperature: float
-) -> float:
-    """Estimated mean life of the grease in a sealed ball bearing whose outer ring turns, s.
+    speed: Array, outer_diameter: Value, load_share: Array, temperature: float
+) -> Array:
+    """Estimated mean life (...) of the grease in a sealed ball bearing whose outer ring turns, s.
 
     NaN outside the range of the estimate: n D above 500 000 mm/min, P above 0.2 C, above 120 degC.
     Below 125 000 mm/min, 0.05 C and 50 degC it is constant. The speed factor has the outer diameter
@@ -124,21 +124,19 @@ def grease_life(
 
     Parameters
     ----------
-    speed : float            n, rpm
-    outer_diameter : float   D, m
-    load_share : float       P/C
-    temperature : float      of the bearing, K
+    speed : array (...)            n, rpm
+    outer_diameter : array (...)   D, m
+    load_share : array (...)       P/C
+    temperature : float            of the bearing, K
 
     References
     ----------
     JTEKT, Ball and Roller Bearings, sec. 12: log10 L = 6.10 - 4.40e-6 d n - 2.50 (P/C - 0.05)
     - (0.021 - 1.80e-8 d n) T; SKF for the outer ring: n D. Both recalled: verify.
     """
-    share = max(load_share, _LIGHT)
-    if not share <= HEAVY_GREASE:
-        return np.nan
-    light = float(_light_grease(np.asarray(speed), outer_diameter, temperature))
-    return 3600.0 * exp(log(10.0) * (light - _LOSS * (share - _LIGHT)))
+    share = np.where(load_share <= HEAVY_GREASE, np.maximum(load_share, _LIGHT), np.nan)
+    light = _light_grease(speed, outer_diameter, temperature)
+    return 3600.0 * np.exp(log(10.0) * (light - _LOSS * (share - _LIGHT)))
 
 
 HEAVY_GREASE = 0.2
@@ -147,7 +145,7 @@ _LIGHT, _LOSS = 0.05, 2.50  # least P/C that shortens the life, loss of log10 of
 _NEWTON_STEPS = 60
 
 
-def _light_grease(speed: Values, outer_diameter: float, temperature: float) -> Values:
+def _light_grease(speed: Values, outer_diameter: Value, temperature: float) -> Values:
     """log10 of the life of the grease in h (...), at low load; NaN outside the range."""
     size = 1e3 * outer_diameter * speed
     factor = np.where(np.real(size) > 125e3, size, 125e3)

@@ -121,7 +121,8 @@ class Roller(Part):
         """Moment of inertia of the rolling part, kg m2: of the case, else of the solid ring."""
         if self.inertia is not None:
             return self.inertia
-        return ring_inertia(self.radius, self.hub_radius, self.width, self.material.density)
+        solid = ring_inertia(self.radius, self.hub_radius, self.width, self.material.density)
+        return float(solid)
 
     @property
     def drawn_mass(self) -> float:

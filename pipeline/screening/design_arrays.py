@@ -84,6 +84,7 @@ class Designs:
         cam = self.case.cam
         known: dict[str, Value | None] = {
             "cam.held_radius": self.value("cam.bore_radius") + (cam.held_radius - cam.bore_radius),
+            "spring.preload": self.states[0].preload,
             "contact.width": self.contact_width,
             "contact.modulus": self.machine.contact_modulus,
             "cam.fastest": self.fastest[:, None] / self.case.mechanism.gear_ratio,
@@ -157,6 +158,11 @@ class Designs:
     def least_factor(self) -> Array:
         """Minimum undercut factor (m,)."""
         return 1.0 - sampled_greatest(self.whole.motion.sharpness)
+
+    @KeptResult
+    def least_radius(self) -> Array:
+        """Minimum radius of the contour (m, 1), m."""
+        return sampled_least(self.whole.motion.contour_radius)[:, None]
 
     @property
     def least_convex_radius(self) -> Array:
@@ -326,7 +332,7 @@ class TorqueOfSpeed:
 _NODES = 9
 
 
-def _to_all(_: Value) -> NDArray[np.bool_]:
+def _to_all(*_: object) -> NDArray[np.bool_]:
     return np.array(True)
 
 
@@ -338,12 +344,12 @@ class Screened(NamedTuple):
     """A check that screening judges.
 
     deviation: from the demand of the preview, over the greater of demand and limit, as
-    `tests/verification/test_screening.py` measures it; applies: demand (m,) -> to which designs;
+    `tests/verification/test_screening.py` measures it; applies: demand (m,), designs -> to which;
     is_bound: whether the demand is a lower bound, by which it can only fail.
     """
 
     check: str
     judged: Callable[[Designs], Judged | None]
     deviation: float
-    applies: Callable[[Value], NDArray[np.bool_]] = _to_all
+    applies: Callable[[Array, Designs], NDArray[np.bool_]] = _to_all
     is_bound: Callable[[Designs], bool] = _never

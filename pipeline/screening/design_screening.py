@@ -352,7 +352,7 @@ def _figures(
         np.asarray(np.nan if limit is None else limit, dtype=float), demand.shape
     )
     at_most = declared.sense == "at_most"
-    applies = np.broadcast_to(screened.applies(demand), demand.shape)
+    applies = np.broadcast_to(screened.applies(demand, designs), demand.shape)
     demand = np.where(applies, demand, np.nan)
     known = ~np.isnan(demand) & np.isfinite(allowed)
     with np.errstate(invalid="ignore", divide="ignore"):

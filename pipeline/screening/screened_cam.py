@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import NamedTuple, Protocol
 
@@ -44,6 +44,8 @@ class Block(DesignValues, Protocol):
     def supports(self) -> SupportOfMany: ...
     @property
     def relative_radius(self) -> Array: ...
+    @property
+    def least_radius(self) -> Array: ...
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -57,10 +59,15 @@ class ScreenedCam(LoadedCam):
     block: Block
     state: ScreenedState
     crank_speed: Array
+    figures: dict[tuple[object, ...], Array] = field(default_factory=dict, repr=False)
 
     @property
     def motion(self) -> Motion:
         return self.block.motion
+
+    @property
+    def least_radius(self) -> Array:
+        return self.block.least_radius
 
     @cached_property
     def slope(self) -> Array:

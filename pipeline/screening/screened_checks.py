@@ -10,14 +10,16 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
+from numpy.typing import NDArray
 
 from camwright.geometry.arrays import Array, Value
 from camwright.geometry.extrema import sampled_greatest, sampled_least
 from camwright.pipeline.case.limits import TORQUE_REDUCTION
-from camwright.pipeline.checks import demands
+from camwright.pipeline.checks import demands, roller_bearing
 from camwright.pipeline.checks.check import Bounded, Declaration, Measured
 from camwright.pipeline.checks.extremes import BY_DUTY, Measure
 from camwright.pipeline.checks.registry import CHECKS
+from camwright.pipeline.cycle.numbers import Numbers
 from camwright.pipeline.screening.design_arrays import Designs, Judged, Screened
 from camwright.pipeline.screening.design_lengths import has_many_shapes
 from camwright.pipeline.screening.screened_cam import ScreenedCam
@@ -28,18 +30,26 @@ def _by_measure(declared: Declaration, measure: Measure, how: Measured) -> Scree
     if how.deviation is None:
         return None
 
+    def numbers_of(designs: Designs) -> Numbers:
+        own = designs.numbers
+        return own if how.known is None else own | how.known(designs.cams)
+
+    def applies(demand: Array, designs: Designs) -> NDArray[np.bool_]:
+        return np.ravel(how.applies(demand[:, None], numbers_of(designs)))
+
     def judged(designs: Designs) -> Judged:
-        numbers, shape = designs.numbers, (designs.count, 1)
+        numbers, shape = numbers_of(designs), (designs.count, 1)
         allowed, _, if_exceeded = how.allowed(numbers)
-        demand, limit = _demand(measure, how, designs), np.nan if allowed is None else allowed
+        demand = _demand(measure, how, designs, numbers)
+        limit = np.nan if allowed is None else allowed
         demand, limit = np.broadcast_to(demand, shape), np.broadcast_to(limit, shape)
         limit = np.where(demand > limit, limit, np.nan) if if_exceeded else limit
         if own := how.limits_of_strokes(numbers):
-            demands = [_demand(each.measure, how, designs) for each in how.strokes]
+            demands = [_demand(each.measure, how, designs, numbers) for each in how.strokes]
             demand, limit = _of_strokes(demand, limit, demands, own)
         return demand[:, 0], np.asarray(limit, dtype=float)[:, 0]
 
-    return Screened(declared.id, judged, how.deviation, how.applies, _BOUNDED[how.bounded])
+    return Screened(declared.id, judged, how.deviation, applies, _BOUNDED[how.bounded])
 
 
 _BOUNDED: Mapping[Bounded, Callable[[Designs], bool]] = {
@@ -62,50 +72,66 @@ def _of_strokes(
     return np.where(known, demand, either), np.where(known, own, limit)
 
 
-def _demand(measure: Measure, how: Measured, designs: Designs) -> Array:
+def _demand(measure: Measure, how: Measured, designs: Designs, numbers: Numbers) -> Array:
     """Demand (m, 1) by the worst value of a measure, as `worst_measure`; NaN: not known."""
-    numbers = designs.numbers
     lacking = np.zeros((designs.count, 1), dtype=bool)
     for key in how.needed:
-        stated = numbers.get(key)
-        lacking = lacking | np.isnan(np.nan if stated is None else stated)
-    return (
-        np.full(lacking.shape, np.nan)
-        if lacking.all()
-        else np.where(lacking, np.nan, _known(measure, how, designs))
-    )
+        stated: object = numbers.get(key)  # of some keys a word or a part
+        if isinstance(stated, float | np.ndarray):
+            lacking = lacking | np.isnan(stated)
+        elif stated is None:
+            lacking[:] = True
+    if lacking.all():
+        return np.full(lacking.shape, np.nan)
+    return np.where(lacking, np.nan, _known(measure, how, designs, numbers))
 
 
-def _known(measure: Measure, how: Measured, designs: Designs) -> Array:
-    numbers = designs.numbers
-    extreme = sampled_least if how.worst == "least" else sampled_greatest
+def _known(measure: Measure, how: Measured, designs: Designs, numbers: Numbers) -> Array:
     if how.reduce in ("case", "top"):
         return np.asarray(how.value(measure(designs.top), numbers))
     if how.reduce == "contour":
+        extreme = sampled_least if how.worst == "least" else sampled_greatest
         cams = designs.whole_to(how.order)
         return np.asarray(how.value(extreme(measure(cams))[:, None], numbers))
     if how.reduce in BY_DUTY:
-        return _by_duty(measure, how, designs)
-
-    def of_turn(values: Array) -> Array:
-        if how.reduce == "mean":
-            return np.asarray(np.mean(values, axis=-1))
-        return extreme(values) if how.smooth else np.asarray(np.max(values, axis=-1))
-
-    each = [of_turn(measure(cam)) for cam in designs.cams]
+        return _by_duty(measure, how, designs, numbers)
+    each = [_of_turn(measure, how, cam) for cam in designs.cams]
+    if how.reduce == "mean":
+        each = [np.asarray(how.value(mean, numbers)) for mean in each]
     worst = np.min(each, axis=0) if how.worst == "least" else np.max(each, axis=0)
-    return np.asarray(how.value(worst[:, None], numbers))
+    return np.asarray(worst if how.reduce == "mean" else how.value(worst, numbers))
 
 
-def _by_duty(measure: Measure, how: Measured, designs: Designs) -> Array:
-    """As `over_duty`: sum of mean wear or damage of the load cases by their duty."""
-    life, numbers = how.reduce == "life", designs.numbers
+def _of_turn(measure: Measure, how: Measured, cam: ScreenedCam) -> Array:
+    """Mean or worst value of a measure over the turn (m, 1), once for the checks that share it."""
+    key = measure, "mean" if how.reduce in ("mean", *BY_DUTY) else how.worst, how.smooth
+    if key not in cam.figures:
+        values = measure(cam)
+        if key[1] == "mean":
+            figure = np.mean(values, axis=-1)
+        elif how.smooth:
+            figure = (sampled_least if how.worst == "least" else sampled_greatest)(values)
+        else:
+            figure = np.max(values, axis=-1)
+        cam.figures[key] = np.asarray(figure)[:, None]
+    return cam.figures[key]
+
+
+def _by_duty(measure: Measure, how: Measured, designs: Designs, numbers: Numbers) -> Array:
+    """Wear, or life by the mean damage, of the load cases by their duty."""
+
+    def of_turn(cam: ScreenedCam) -> Array:
+        return np.asarray(how.value(_of_turn(measure, how, cam), numbers))
+
+    return _over_duty(designs, of_turn, life=how.reduce == "life")
+
+
+def _over_duty(designs: Designs, of_turn: Callable[[ScreenedCam], Array], *, life: bool) -> Array:
+    """As `over_duty`: sum of wear, or of damage by lives, of the load cases by their duty."""
     running = [cam for cam in designs.cams if cam.state.duty != 0.0]
     if not running:
         return np.full((designs.count, 1), np.nan)
-    values = [
-        np.asarray(how.value(np.mean(measure(cam), axis=-1)[:, None], numbers)) for cam in running
-    ]
+    values = [of_turn(cam) for cam in running]
     duties = [cam.state.duty for cam in running]
     if any(duty is None for duty in duties):
         return np.asarray(np.min(values, axis=0) if life else np.max(values, axis=0))
@@ -136,10 +162,23 @@ def _torque_reduction(designs: Designs) -> Judged | None:
     return np.min(least, axis=0), np.broadcast_to(common, designs.count)
 
 
+def _grease_life(designs: Designs) -> Judged | None:
+    """None with oil."""
+    numbers, shape = designs.numbers, (designs.count, 1)
+    if (lubrication := designs.case.roller.bearing.lubrication) == "oil":
+        return None
+    target = None if lubrication is None else roller_bearing.grease_target(numbers)
+    life = np.nan if lubrication is None else _over_duty(designs, roller_bearing.greased, life=True)
+    limit = np.broadcast_to(np.nan if target is None else target, shape)
+    return np.broadcast_to(life, shape)[:, 0], np.asarray(limit, dtype=float)[:, 0]
+
+
 def _screened(declared: Declaration) -> Screened | None:
     """Screening of a check; None where there is none."""
     if declared.id == TORQUE_REDUCTION.id:
         return Screened(declared.id, _torque_reduction, 0.001)
+    if declared is roller_bearing.grease_life:
+        return Screened(declared.id, _grease_life, 0.001)
     how, measure = declared.measured, declared.measure
     return None if how is None or measure is None else _by_measure(declared, measure, how)
 

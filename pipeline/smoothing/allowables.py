@@ -51,11 +51,12 @@ def ratings_of(case: Case) -> Ratings:
     states = machines(case)
     numbers, machine = numbers_of(case, states), states[0]
     held = machine.cam.held_radius if "prime_radius" in case.smoothing.free else None
+    keyway = keyway_root_of(numbers)
     ratings = Ratings(
         numbers | {"cam.held_radius": held, "guides.a.mouth": numbers["guides.a.mouth"]},
         drag=machine.follower.drag,
-        keyway=keyway_root_of(machine),
-        grease=grease_of(machine),
+        keyway=None if np.isnan(keyway.per_stress) else keyway,
+        grease=grease_of(machine, numbers),
     )
     return ratings.least(limits_of(case))
 
@@ -91,7 +92,7 @@ def limits_of(case: Case) -> dict[str, dict[str, float]]:
             ):
                 if limit is not None:
                     limits.setdefault(f"{key}_{side}", {})[f"{name}_{side}"] = limit
-    grease = grease_of(machine)
+    grease = grease_of(machine, numbers)
     if grease is not None:
         limits[grease_life.id] = {grease_life.id: grease.rating}
     return limits

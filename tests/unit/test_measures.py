@@ -108,7 +108,7 @@ def test_an_unknown_measure_gives_no_verdict(one: Declaration, follower: str) ->
     for unknown in (np.float64(np.nan), np.full((3, 1), np.nan)):
         value = how.value(unknown, NUMBERS[follower])
         assert np.isnan(value).all()
-        assert np.all(how.applies(value))
+        assert np.all(how.applies(value, NUMBERS[follower]))
 
 
 @pytest.mark.parametrize(("one", "follower"), MEASURED)

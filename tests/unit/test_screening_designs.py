@@ -6,6 +6,7 @@ from dataclasses import replace
 from functools import cache
 from pathlib import Path
 
+import made_trial as made
 import numpy as np
 import pytest
 
@@ -18,11 +19,12 @@ from camwright.pipeline.case.toml_text import TomlValue
 from camwright.pipeline.checks.check import Check
 from camwright.pipeline.checks.registry import CHECKS
 from camwright.pipeline.contact.tiers import Tier
+from camwright.pipeline.cycle.numbers import Numbers
 from camwright.pipeline.preview import preview_case
 from camwright.pipeline.results.check_records import governing_id
 from camwright.pipeline.screening import design_screening
 from camwright.pipeline.screening.design_arrays import Designs, TorqueOfSpeed
-from camwright.pipeline.screening.design_factors import ARRAYS, groups
+from camwright.pipeline.screening.design_factors import ARRAYS, groups, is_array
 from camwright.pipeline.screening.design_screening import screen_designs, utilisations
 from camwright.pipeline.screening.screened_checks import SCREENED
 from camwright.pipeline.smoothing.required_lift import cam_lift
@@ -289,3 +291,100 @@ def test_a_life_without_the_surge_of_the_spring_can_only_fail(
     base = base.model_copy(update={"limits": slower})
     columns = screen_designs(base, {"limits.roller_life": ["1 h", "1e6 h"]})
     assert list(columns["roller_life.status"]) == [long_enough, "fail"]
+
+
+def parts_without_ends() -> Case:
+    """Machine with every part but ends of the line of contact and a wound spring."""
+    case = made.case()
+    return case.model_copy(update={
+        "cam": replace(case.cam, end=None), "roller": replace(case.roller, end=None),
+        "spring": replace(case.spring, design=None),
+    })  # fmt: skip
+
+
+ONE_BY_ONE = {"roller": parts_without_ends, "face": made.face_case}
+SLOW = ("guides.spacing", "guides.a.friction_max", "guides.b.friction_max")
+"""Keys of which each value has tables of the guides of its own, or that bound another key."""
+FIXED = (*SLOW, "mechanism.compensation", "roller.radius")
+"""And those that the drawn lift and the ring of the bearing fix."""
+
+
+@pytest.mark.parametrize("follower", ONE_BY_ONE)
+def test_designs_at_once_are_those_one_by_one(follower: str) -> None:
+    """Of every key of an array at once: a check that reads it of the case alone differs."""
+    base, count = ONE_BY_ONE[follower](), 4
+    draw = np.random.default_rng(3)
+    keys = [key for key in ARRAYS if is_array(base, key, [1.0]) and value_of(base, key)
+            and key not in FIXED and not key.startswith("smoothing.")]  # fmt: skip
+    factors = {key: value_of(base, key) * draw.uniform(1.0, 1.02, count) for key in keys}
+    for name in ("roller_reliability", "shaft_reliability"):
+        if f"limits.{name}" in factors:
+            factors[f"limits.{name}"] = draw.uniform(0.9, 0.95, count)
+    assert {"cam.width", "cam.bore_radius", "limits.shaft_reliability"} <= set(keys)
+    assert follower == "face" or {"roller.width", "roller.bearing.C0"} <= set(keys)
+    columns = screen_designs(base, factors)
+    assert set(columns["message"]) == {""}
+    for k in range(count):
+        own = replaced(base, {key: float(values[k]) for key, values in factors.items()})
+        alone = screen_designs(own, {"follower.mass": [own.follower.mass]})
+        assert columns.keys() == alone.keys()
+        for name, values in columns.items():
+            if values.dtype == object:
+                assert values[k] == alone[name][0], name
+            else:
+                np.testing.assert_allclose(values[k], alone[name][0], rtol=1e-12, err_msg=name)
+    judged = {each.check for each in SCREENED
+              if set(columns.get(f"{each.check}.status", [])) & {"pass", "fail"}}  # fmt: skip
+    concerned = {each.check for each in SCREENED if f"{each.check}.status" in columns}
+    assert concerned - judged <= NOT_JUDGED[follower], concerned - judged
+    assert OF_PARTS[follower] <= judged
+
+
+NOT_JUDGED = {
+    "roller": {"concave_radius", "edge_pressure", "guide_pressure_A", "guide_pressure_B"},
+    "face": {"edge_pressure", "guide_pressure_A", "guide_pressure_B", "cam_slip",
+             "spring_stress", "spring_fatigue"},
+}  # fmt: skip
+"""Checks that do not apply, lack the ends, or are a bound within the limit."""
+OF_EVERY = {
+    "key_pressure", "key_pressure_shaft", "key_shear", "keyway_root", "gear_bending",
+    "pinion_bending", "gear_contact", "bore_pressure", "guide_wear_A", "guide_wear_B",
+}  # fmt: skip
+OF_PARTS = {
+    "roller": OF_EVERY | {
+        "cam_slip", "roller_pin", "roller_pin_shear", "roller_pin_pressure", "cheek_pressure",
+        "roller_ring_fatigue", "traction_demand", "traction_reserve", "roller_life",
+        "roller_modified_life", "bearing_lubrication", "grease_life",
+    },
+    "face": OF_EVERY,
+}  # fmt: skip
+
+
+def test_more_rings_than_are_solved_are_not_judged() -> None:
+    base = parts_without_ends()
+    count = 17
+    factors = {"roller.width": np.linspace(1.0, 1.02, count) * base.roller.width}
+    many = screen_designs(base, factors)["roller_ring_fatigue.status"]
+    assert set(many) == {"not_evaluated"}
+    few = screen_designs(base, {"roller.width": factors["roller.width"][:2]})
+    assert "not_evaluated" not in few["roller_ring_fatigue.status"]
+
+
+def test_a_figure_of_a_part_is_made_once_for_equal_designs() -> None:
+    numbers = Numbers({"width": np.array([[1.0], [2.0], [1.0]]), "span": 5.0})
+    made_of: list[float] = []
+
+    def figures(one: Numbers) -> tuple[float, float]:
+        made_of.append(float(one["width"]))
+        return 2.0 * float(one["width"]), float(one["span"])
+
+    for of_load_case in (numbers, numbers | {"speed": 3.0}):
+        double, span = of_load_case.each(figures, ("width", "span"))
+        np.testing.assert_array_equal(double, [[2.0], [4.0], [2.0]])
+        np.testing.assert_array_equal(span, 3 * [[5.0]])
+    assert made_of == [1.0, 2.0]
+    wider = numbers | {"width": np.array([[3.0]])}
+    assert [np.ravel(each).tolist() for each in wider.each(figures, ("width", "span"))] == [
+        [6.0],
+        [5.0],
+    ]

@@ -69,6 +69,20 @@ RANGES: Mapping[str, Mapping[str, tuple[float, float]]] = {
         "spring.design.wire_diameter": (8.2e-3, 8.8e-3),
         "spring.design.free_length": (0.066, 0.078),
     },
+    "machines/two-stroke": {
+        "spring.rate": (90e3, 120e3), "spring.preload": (800.0, 1300.0),
+        "cam.prime_radius": (0.055, 0.07), "cam.offset": (-0.003, 0.003),
+        "cam.width": (0.013, 0.0155), "cam.bore_radius": (0.014, 0.016),
+        "roller.width": (0.017, 0.0185), "roller.bearing.C": (7e3, 12e3),
+        "follower.mass": (0.9, 1.3), "follower.overhang_at_max_lift": (0.047, 0.055),
+        "guides.a.friction": (0.04, 0.08), "guides.b.friction": (0.04, 0.08),
+        "limits.overspeed": (170.0, 250.0), "limits.key_share": (0.2, 0.9),
+        "limits.key_reversal": (0.3, 1.0), "limits.cam_slip": (1.0, 6.0),
+        "limits.shaft_reliability": (0.9, 0.999), "limits.keyway_safety": (1.0, 4.0),
+        "limits.gear_bending_safety": (1.0, 8.0), "limits.gear_contact_safety": (1.0, 3.0),
+        "limits.bore_share": (0.005, 0.1), "limits.pin_share": (0.02, 0.1),
+        "limits.target_life": (1e6, 1e8), "limits.viscosity_ratio": (0.5, 2.0),
+    },
     "papers/petrescu_c": {
         "spring.rate": (2e3, 20e3), "spring.preload": (20.0, 90.0),
         "cam.prime_radius": (0.02, 0.04), "cam.offset": (-0.002, 0.002),
@@ -84,12 +98,21 @@ SHAPES = 8
 STRAIGHT = ("cam.width", "roller.width", "follower.face.depth")
 CROWNED = (*STRAIGHT, "cam.prime_radius", "roller.radius", "roller.crown.radius")
 CROWN = {"roller.crown.kind": "circular", "roller.crown.radius": "200 mm"}
+GREASED = {
+    "roller.friction": 0.1, "roller.bearing.viscosity": "27 mm^2/s",
+    "roller.bearing.contamination": "normal_cleanliness", "roller.bearing.temperature": "60 degC",
+    "roller.bearing.fatigue_load_limit": "17 N", "roller.bearing.lubrication": "grease_for_life",
+    "limits.target_life": "500 h", "guides.a.wear_rate": "3e-7 mm^3/N/m",
+    "guides.b.wear_rate": "3e-8 mm^3/N/m", "limits.roller_life": "100 h",
+}  # fmt: skip
+"""What the case with a crown lacks for the lives of bearing, grease and guides."""
 
 
 def stated(name: str) -> Case:
-    """A shipped case, with a crown where its radius is a factor."""
+    """A shipped case, with a crown and its grease where the radius of the crown is a factor."""
     case = read_case(CASES / f"{name}.toml")
-    return with_values(case, CROWN) if "roller.crown.radius" in RANGES[name] else case
+    crowned = "roller.crown.radius" in RANGES[name]
+    return with_values(case, CROWN | GREASED) if crowned else case
 
 
 def drawn(name: str, count: int, without: tuple[str, ...] = ()) -> dict[str, Array]:
@@ -140,10 +163,9 @@ def deviations(name: str, count: int, without: tuple[str, ...] = ()) -> dict[str
             status = columns[f"{check.id}.status"][k]
             near = used is not None and abs(1.0 - used) <= screened.deviation
             if status == "not_evaluated":
-                assert DECLARED[check.id].is_bound(Tier.SCREENING) or check.status in (
-                    "not_evaluated",
-                    "pass",
-                ), check.id
+                how = DECLARED[check.id].measured
+                bounded = DECLARED[check.id].is_bound(Tier.SCREENING) or (how and how.bounded)
+                assert bounded or check.status in ("not_evaluated", "pass"), check.id
                 continue
             close |= check.must_have and near
             assert status == check.status or near, (check.id, k, str(check))
@@ -176,7 +198,9 @@ def exceeded(worst: Mapping[str, float]) -> dict[str, tuple[float, float]]:
     return {key: (value, most[key]) for key, value in worst.items() if not value <= most[key]}
 
 
-@pytest.mark.parametrize(("name", "count"), [("gx120", 2), ("papers/petrescu_c", 8)])
+@pytest.mark.parametrize(
+    ("name", "count"), [("gx120", 2), ("machines/two-stroke", 2), ("papers/petrescu_c", 8)]
+)
 def test_a_few_designs_agree_with_their_previews(name: str, count: int) -> None:
     worst = deviations(name, count, without=("guides.spacing",))
     assert {"p0", "force", "contact_pressure"} <= set(worst)
@@ -235,6 +259,9 @@ def test_a_single_case_has_the_statuses_of_its_row(name: str) -> None:
         status, check = statuses.get(each.check, ""), known.get(each.check)
         used = None if check is None else check.utilisation
         near = used is not None and abs(1.0 - used) <= each.deviation
+        how = DECLARED[each.check].measured
+        if how and how.bounded == "surge" and status == "not_evaluated":
+            continue  # the row leaves out the surge, which the case has
         assert near or status == ("" if check is None else check.status), each.check
     assert row["screen"][0] == trial.screen
 
