@@ -351,6 +351,11 @@ CONTACT_TORQUE = Limit(
     "contact_torque", "cam torque from contact pressures", In(above=0, at_most=0.01), 1e-4,
     "sum of moments, at most 1 % from contact pressures, ASME V&V 10-2019; flat patch: 1e-4",
 )  # fmt: skip
+FRICTION_POWER = Limit(
+    "friction_power", "friction power", _SHARE, 0.2,
+    "a fifth of the power that an engine indicates at idle, all of it friction, goes into its valve"
+    " train, Wong and Tung, Friction 4 (2016) 1: verify",
+)  # fmt: skip
 FRICTION_BALANCE = Limit(
     "friction_balance", "friction balance", _RESIDUAL, 1e-6, "conservation of energy over one turn",
 )  # fmt: skip

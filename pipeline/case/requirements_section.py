@@ -210,7 +210,8 @@ class LoadCase(Section):
     cam designed for spring.preload. duty is the share of the operating time: the shares add to 1,
     and life and wear count each load case with its own; without any, the worst one all the time.
     With a cylinder model the intake pressure sets the engine load, and an unfired load case is
-    motored, at cranking speed if its speed is 0.
+    motored, at cranking speed if its speed is 0. power is the mean power of the machine, where it
+    is not that of its torque.
     """
 
     name: Name
@@ -223,4 +224,5 @@ class LoadCase(Section):
     torque_reduction: Annotated[float, In(at_least=0, below=1)] | None = None
     speed_reduction: Annotated[float, In(at_least=0, below=1)] | None = None
     duty: Annotated[float, In(at_least=0, at_most=1)] | None = None
+    power: Annotated[float, In("W", above=0, at_most=1e9)] | None = None
     source: Text = ""

@@ -72,6 +72,7 @@ def _text(name: str, kind: Kind) -> str:
     ratio, of_shaft, speed, most = _SHAFTS["shaft" if kind in _MACHINES else "crank"]
     for mark, words in (("RATIO", ratio), ("SHAFT", of_shaft), ("SPEED", speed), ("MOST", most)):
         text = text.replace(f"@{mark}@", words)
+    text = text.replace("@POWER@", _POWER if kind in _WITHOUT_MEAN else "")
     return text.replace("@DATA@", _data_name(name, kind)).replace("@REDUCTION@", reduction)
 
 
@@ -109,6 +110,10 @@ _MEASURED: dict[Kind, str] = {
     "torque": "torque",
 }  # fmt: skip
 """Quantity of the data file of a kind, as in its name."""
+_WITHOUT_MEAN = ("table", "speed", "voltage")
+_POWER = """\
+power = "230 W"                      # indicated: friction leaves the torque no mean
+"""
 
 _MACHINES = ("torque", "harmonics", "compressor", "pump", "press")
 _SHAFTS = {
@@ -433,4 +438,4 @@ positions = 72                       # per cam turn; 720 for a sign-off
 [[load_case]]
 name = "running"
 speed = "@SPEED@"                   # of the @SHAFT@
-"""
+@POWER@"""

@@ -14,12 +14,13 @@ from camwright.pipeline.base.units import shown
 from camwright.pipeline.case.limits import (
     CONTACT_TORQUE,
     FRICTION_BALANCE,
+    FRICTION_POWER,
     SPEED_REDUCTION,
     TORQUE_REDUCTION,
 )
 from camwright.pipeline.checks import demands
 from camwright.pipeline.checks.check import RIPPLE, Demand, check
-from camwright.pipeline.checks.extremes import Extreme, greatest, worst_case
+from camwright.pipeline.checks.extremes import Extreme, cam_of, greatest, worst_case
 from camwright.pipeline.checks.missing_keys import unset
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.cycle import Cycle
@@ -27,6 +28,8 @@ from camwright.pipeline.cycle.solution import Solution
 
 # rad: truncation and round-off of a chord along the tangent are below 1e-9.
 _CHORD = 1e-5
+# Mean over the greatest torque of a machine below which it states no power.
+_NO_MEAN = 1e-6
 
 
 # A gentler lift lowers the reduction: lift_can_help stays False.
@@ -254,6 +257,63 @@ def friction_balance(solution: Solution) -> Demand:
     allowed = solution.machine.limits[FRICTION_BALANCE]
     words = (*map(_loss, solution.cycles), *_applied_work(solution.cycles))
     return Demand(worst.value, allowed, worst, note="; ".join(words))
+
+
+@check(
+    FRICTION_POWER,
+    title="Friction power of the mechanism vs. mean power of the machine",
+    formula="max over the load cases of P_f/P <= c; P_f: mean power of the friction in guides,"
+    " contact and roller bearing, P: load_case.power, else mean torque that drives or loads the"
+    " machine's shaft, the greater, times its speed, c: limits.friction_power",
+    reason="A cam that turns a good part of the machine's power into heat is no gain, and its"
+    " parts run hot.",
+    method="work of the friction over the turn, at the mean friction coefficients, over that of the"
+    " machine; load cases that are fired",
+    lift_can_help=True,
+    values=(*given.LOADS, "load_case.power"),
+    levers=levers.GENTLER,
+    page="Torque",
+)
+def friction_power(solution: Solution) -> Demand | None:
+    """Greatest share of the friction in the power of the machine; None if it has no torque."""
+    states = {state.name: state for state in solution.case.load_cases}
+    running = [
+        cycle
+        for cycle in solution.cycles
+        if cycle.load_case in states
+        and states[cycle.load_case].fired
+        and states[cycle.load_case].speed > 0
+        and (cycle.turn.throughput is not None or states[cycle.load_case].power is not None)
+    ]
+    if not running:
+        return None
+    allowed = solution.machine.limits[FRICTION_POWER]
+    powers = {cycle.load_case: _power(cycle, states[cycle.load_case].power) for cycle in running}
+    if np.isnan(list(powers.values())).any():
+        return Demand(None, allowed, missing=("load_case.power",))
+
+    def loss(cycle: Cycle) -> float:
+        rolling = cycle.rolling.contact
+        micro_slip = 0.0 if rolling is None else rolling.loss / FULL_TURN
+        work = float(np.mean(cam_of(solution, cycle).friction_work)) + micro_slip
+        return work * cycle.cam_speed
+
+    worst = worst_case(running, lambda cycle: loss(cycle) / powers[cycle.load_case])
+    words = []
+    for cycle in running:
+        lost, whole = (shown(each, "W", 3) for each in (loss(cycle), powers[cycle.load_case]))
+        words.append(f"{cycle.load_case}: {lost} of {whole}")
+    return Demand(worst.value, allowed, worst, note="; ".join(words))
+
+
+def _power(cycle: Cycle, stated: float | None) -> float:
+    """Mean power of the machine, W; NaN where the torque has no mean, and none is stated."""
+    throughput, before = cycle.turn.throughput, cycle.turn.torque_before
+    if stated is not None:
+        return stated
+    if throughput is None or before is None or throughput <= _NO_MEAN * np.abs(before).max():
+        return np.nan
+    return throughput * cycle.cam_speed * cycle.machine.gear_ratio
 
 
 def _applied_work(cycles: Sequence[Cycle]) -> tuple[str, ...]:

@@ -314,6 +314,14 @@ class LoadedCam:
         """Cam torque, N m."""
         return self.axial * (self.slope + self.motion.sliding)
 
+    @property
+    def friction_work(self) -> Array:
+        """Friction power of guides, and of roller bearing or face, over the cam speed, N m."""
+        guides = (self.axial - self.closing - self.inertia) * self.slope
+        drag = 0.0 if self.drag is None else self.drag.bearing_torque(self.normal)
+        contact = drag * magnitude(np.asarray(self.motion.rolling))
+        return guides + contact + self.axial * self.motion.sliding
+
     @cached_property
     def reverses(self) -> NDArray[np.bool_]:
         """Whether the cam torque changes sign over the turn, or is not known, (...) or (m, 1)."""

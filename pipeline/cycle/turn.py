@@ -31,7 +31,8 @@ class Turn(Displayed):
     friction included, up to the relative friction_residual; bounds computes the loads at the bounds
     of the friction. The speed of the driven cam varies with the crank if the machine has a
     crankshaft; the loads are those of the constant mean speed. torque_before and torque_after are
-    crank torques without and with the cam less their means, N m; None without an engine.
+    crank torques without and with the cam less their means, N m, and throughput the mean torque of
+    the machine's power; None without an engine.
     """
 
     machine: Machine
@@ -43,6 +44,7 @@ class Turn(Displayed):
     driven: DrivenCam
     torque_before: Array | None
     torque_after: Array | None
+    throughput: float | None = None
 
     def __post_init__(self) -> None:
         freeze(self, theta=self.theta, friction_residual=self.friction_residual)
@@ -204,4 +206,5 @@ def _turn(
         driven=driven_cam(machine, driving, contour.pitch, loads.rubbing),
         torque_before=before,
         torque_after=after,
+        throughput=None if torque is None else torque.throughput,
     )

@@ -16,7 +16,6 @@ import numpy as np
 
 from camwright.geometry.arrays import FULL_TURN, Array, Value
 from camwright.geometry.errors import InputError
-from camwright.geometry.pitch_curve import magnitude
 from camwright.pipeline.follower.spring_kinds import rise
 from camwright.pipeline.smoothing.cam_state import Mean, ScenarioCam
 from camwright.pipeline.smoothing.scenario import DesignVariables, Scenario
@@ -144,11 +143,7 @@ def torque_integral(values: Array) -> Array:
 
 def _loss(at: Turning) -> Mean:
     """Work of the friction of guides, and of roller bearing or face, over a turn."""
-    cam = at.loads
-    guides = (cam.axial - cam.closing - cam.inertia) * cam.jet.slope
-    drag = 0.0 if cam.drag is None else cam.drag.bearing_torque(cam.normal)
-    contact = drag * magnitude(np.asarray(cam.motion.rolling)) + cam.axial * cam.motion.sliding
-    return Mean(FULL_TURN / at.scale.energy * (guides + contact))
+    return Mean(FULL_TURN / at.scale.energy * at.loads.friction_work)
 
 
 def _spring_energy(at: Turning) -> Array:

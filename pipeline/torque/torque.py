@@ -76,6 +76,15 @@ class Torque(Displayed):
         return float(self.total.mean())
 
     @property
+    def throughput(self) -> float:
+        """Mean torque of the components that drive the shaft, or of those that load it, N m.
+
+        The greater of both; times the speed it is the mean power of the machine.
+        """
+        means = np.array([part.mean() for part in self.components.values()])
+        return float(max(means[means > 0.0].sum(), -means[means < 0.0].sum()))
+
+    @property
     def std(self) -> float:
         """Standard deviation about the mean, N m."""
         return float(self.total.std())

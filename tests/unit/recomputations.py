@@ -31,6 +31,7 @@ _BY_TEST: dict[tuple[str, str], tuple[str, ...]] = {
         "phase_tolerance",
     ),
     (_SHAPE, "test_friction_balance_by_reactions_and_travel"): ("friction_balance",),
+    (_SHAPE, "test_friction_power_by_the_way_of_stem_and_roller"): ("friction_power",),
     (_SYNTHESIS, "test_another_method_gains_what_the_check_tells"): ("synthesis_converged",),
     (_NUMERICS, "test_the_torque_of_the_pressures_by_summing_r_x_f"): (
         "contact_torque", "contact_work",

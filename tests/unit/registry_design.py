@@ -32,6 +32,7 @@ from trial_variants import (
     with_speed,
     without_endurance,
     without_heat,
+    without_power,
 )
 
 # function
@@ -69,6 +70,14 @@ by_limit(
     1e-7,
     "one part in ten million more torque than heat",
     base=lossy,
+)
+by_limit(
+    "friction_power",
+    "friction_power",
+    lambda: with_loads(axial_force=NAN),
+    0.5 * 100.0 * 0.5 * made.STROKE * 80.0 / 600.0,
+    "100 N sin theta along h/2 sin theta at 80 rad/s, of the 600 W of the machine",
+    missing=without_power,
 )
 # geometry
 by_limit(

@@ -236,6 +236,28 @@ def test_friction_balance_by_reactions_and_travel():
     assert demand("friction_balance", solved()) <= 1e-6
 
 
+def test_friction_power_by_the_way_of_stem_and_roller():
+    """mu |R| ds in the bores, and the drag of the bearing over the length of the contour / R."""
+    solution = solved()
+    cycle = solution.cycles[0]
+    machine, loads = cycle.machine, cycle.loads
+    guides, roller = machine.guides, machine.roller
+    step = 2.0 * np.pi / cycle.theta.size
+    rubbed = step * np.sum(
+        (guides.a.friction * cycle.guides.rubbing_load_a
+         + guides.b.friction * cycle.guides.rubbing_load_b
+         + machine.viscous_damping * np.abs(loads.velocity)) * np.abs(loads.lift_slope)
+    )  # fmt: skip
+    dense = np.linspace(0.0, 2.0 * np.pi, 20001)
+    x, y = cycle.contour.points(dense)
+    turned = np.hypot(np.diff(x), np.diff(y)).sum() / roller.radius
+    assert roller.drag is not None and roller.drag.bearing_friction == 0.0
+    spent = rubbed + roller.drag.torque * turned
+    power = spent * cycle.cam_speed / (2.0 * np.pi)
+    # creep in the contact adds a ten-thousandth
+    assert demand("friction_power", solution) == pytest.approx(power / 600.0, rel=1e-3)
+
+
 def test_force_and_moment_of_the_guides_by_their_reactions():
     """A, B and the side force on the stem; moments about guide A."""
     cycle = solved().cycles[0]

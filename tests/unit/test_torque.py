@@ -19,7 +19,7 @@ from camwright.pipeline.engine.engine_torque import (
     torque_from_cycle,
     torque_from_cylinder,
 )
-from camwright.pipeline.torque.torque import Torque
+from camwright.pipeline.torque.torque import Torque, uniform_cycle
 
 ENGINE = CylinderEngine(
     bore=0.060,
@@ -67,6 +67,14 @@ def test_figures_of_a_known_torque():
     assert torque.std == pytest.approx(np.sqrt(2.0), rel=1e-12)
     assert torque.peak_to_peak == pytest.approx(4.0, rel=1e-3)
     assert torque.mean * CYCLE_ANGLE == pytest.approx(12.0 * np.pi, rel=1e-14)
+
+
+def test_throughput_is_what_drives_or_loads_the_shaft_in_the_mean():
+    theta = uniform_cycle(12)
+    wave = np.sin(theta)
+    parts = {"gas": 3.0 + wave, "belt": np.full(12, 1.0), "inertia": wave, "pump": -5.0 + wave}
+    assert Torque(theta, parts).throughput == pytest.approx(5.0)
+    assert Torque(theta, {"gas": parts["gas"]}).without_mean().throughput == pytest.approx(3.0)
 
 
 def test_mean_is_taken_away_as_a_steady_load():

@@ -164,6 +164,13 @@ def without_heat(side: str) -> Solution:
     return with_parts(**{f"heat_max_{side}": NAN})
 
 
+def without_power() -> Solution:
+    """A torque without a mean, of a machine that states no power."""
+    plain = with_cycle(throughput=0.0)
+    states = tuple(made.changed(each, power=None) for each in plain.case.load_cases)
+    return made.changed_solution(plain, case=made.changed(plain.case, load_cases=states))
+
+
 def with_worst_friction(**values: Any) -> Solution:
     """The solution with other loads at the greatest friction of the guides."""
     bounds = made.cycle().parts.friction
