@@ -98,6 +98,7 @@ class Material(Part):
     sliding_endurance_intercept: Annotated[float, In(above=0, at_most=1000)] | None = None
     endurance_cycles: Annotated[float, In(at_least=1, at_most=1e15)] = 1e8
     conductivity: Annotated[float, In("W/m/K", above=0, at_most=1e4)] | None = None
+    specific_heat: Annotated[float, In("J/kg/K", above=0, at_most=1e5)] | None = None
     temperature_limit: Temperature | None = None
     fatigue_torsion: Pressure | None = None
     fatigue_bending: Pressure | None = None

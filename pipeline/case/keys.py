@@ -39,7 +39,6 @@ _SAME_TEXTS = {
 _RESOLVED: Mapping[str, str] = {
     "added": "list of tables",
     "spring.catalogue": "`shipped`, or a file name",
-    "lubricant.temperature": In("K", above=0, at_most=5000).limit,
     **dict.fromkeys(
         ("spring.design.card", "spring.gas.card", "roller.bearing.card", "guides.a.card",
          "guides.b.card", "lubricant.card", "materials.NAME.card"), "name of a card",

@@ -1,4 +1,4 @@
-"""Checks of a flat face sliding on the cam: width and PV value."""
+"""Checks of a flat face sliding on the cam: width, PV value, temperature of the contact."""
 
 from __future__ import annotations
 
@@ -10,12 +10,26 @@ from camwright.geometry.arrays import Array
 from camwright.geometry.pitch_curve import magnitude
 from camwright.pipeline.base import levers
 from camwright.pipeline.base import value_groups as given
+from camwright.pipeline.base.material import Material
+from camwright.pipeline.base.units import celsius, shown
 from camwright.pipeline.checks.check import Demand, Kept, check, of_key
 from camwright.pipeline.checks.contact_strength import line_pressure
+from camwright.pipeline.checks.extremes import worst_case
+from camwright.pipeline.checks.missing_keys import lacking, lacking_of_card, no_friction
+from camwright.pipeline.contact.flash_temperature import (
+    BULK_SHARE,
+    effusivity,
+    flash_temperature,
+)
+from camwright.pipeline.contact.oil_film import Lubricant
 from camwright.pipeline.contact.tiers import Tier
+from camwright.pipeline.cycle.cycle import Cycle
 from camwright.pipeline.cycle.loaded_cam import LoadedCam, face_of
 from camwright.pipeline.cycle.solution import Solution
 from camwright.pipeline.follower.flat_face_motion import MEAN_SHARE
+
+_HEAT_PATH = ("conductivity", "specific_heat")
+_OF_OIL = ("temperature", "scuffing_temperature")
 
 
 @check(
@@ -72,3 +86,83 @@ def _sliding(cam: LoadedCam) -> Array:
 def face_pv(cam: LoadedCam) -> Array:
     """Mean contact pressure times sliding speed, Pa m/s."""
     return _sliding(cam) * cam.p0
+
+
+@check(
+    title="Temperature of the sliding contact vs. scuffing temperature of the oil",
+    unit="degC",
+    source="criterion of Blok (1937) for scuffing, ISO/TS 6336-20: verify",
+    method="oil, bulk by the mean flash temperature of the turn, and the greatest flash temperature"
+    " of a band source, at the mean friction coefficient",
+    lift_can_help=True,
+    needs="face",
+    formula="T_oil + 0.47 1.2 mean(T_f) + T_f <= T_s; T_f = 1.11 mu w |u1 - u2| / ((B1 sqrt|u1| +"
+    " B2 sqrt|u2|) sqrt(2 a)), u1 = omega (r + s + s''), u2 = omega s''; mu: friction of the face,"
+    " w: line load, B: root of conductivity times density times specific heat, a: half-width of"
+    " the contact, r: base radius, s: lift, T_oil: lubricant.temperature, T_s:"
+    " lubricant.scuffing_temperature",
+    reason="above it the film breaks down and the surfaces weld, within seconds",
+    values=(
+        *given.CONTACT,
+        "follower.face.friction",
+        "lubricant.temperature",
+        "lubricant.scuffing_temperature",
+        *(f"{part}.material.{key}" for part in ("cam", "follower.face") for key in _HEAT_PATH),
+    ),
+    levers=(levers.one("follower.face.depth"), *levers.GENTLER),
+    page="Flat face",
+)
+def contact_temperature(solution: Solution) -> Demand:
+    """Greatest temperature of the contact, degC; at standstill that of the oil."""
+    machine = solution.machine
+    oil, face = machine.lubricant, machine.face
+    bodies = (machine.cam.material, face.material)
+    missing = [*no_friction(machine)]
+    missing += lacking(Lubricant.table, oil, *_OF_OIL) if oil else [Lubricant.table]
+    for each in bodies:
+        missing += (key for key in lacking_of_card(each, *_HEAT_PATH) if key not in missing)
+    cold = None if oil is None else oil.temperature
+    allowed = None if oil is None else oil.scuffing_temperature
+    limit = None if allowed is None else celsius(allowed)
+    if missing or cold is None or face.friction is None:
+        return Demand(None, limit, missing=tuple(missing))
+    friction, taken = face.friction, (_effusivity(bodies[0]), _effusivity(bodies[1]))
+
+    def flash(cycle: Cycle) -> Array:
+        path, speed, theta = cycle.contour.pitch, cycle.cam_speed, cycle.theta
+        force, through = cycle.loads.normal_force, speed * path.lift(theta, 2)
+        sliding = speed * path.height(theta)
+        heat = friction * np.maximum(force, 0.0) / cycle.pair.width * sliding
+        half_width = np.where(force > 0, cycle.contact.half_width, 1.0)
+        rise = flash_temperature(heat, (through + sliding, through), taken, half_width)
+        # A face that reverses its motion through the contact takes no heat there.
+        after = np.roll(through, -1)
+        before = np.flatnonzero(through * after < 0)
+        share = through[before] / (through[before] - after[before])
+        heat, sliding, half_width = (
+            values[before] + share * (np.roll(values, -1) - values)[before]
+            for values in (heat, sliding, half_width)
+        )
+        reversed_ = flash_temperature(heat, (sliding, 0.0), taken, half_width)
+        np.maximum.at(rise, (before + np.rint(share).astype(int)) % theta.size, reversed_)
+        return rise
+
+    def contact(cycle: Cycle) -> Array:
+        rise = flash(cycle)
+        return celsius(cold + BULK_SHARE * rise.mean() + rise)
+
+    # by the solved angles: a parabola would overshoot the cusp of a reversal
+    worst = worst_case(solution.cycles, lambda cycle: float(contact(cycle).max()))
+    if np.isfinite(worst.value):
+        hottest = next(each for each in solution.cycles if each.load_case == worst.load_case)
+        worst = worst._replace(cam_angle=float(hottest.theta[contact(hottest).argmax()]))
+    flashes = max(float(flash(cycle).max()) for cycle in solution.cycles)
+    note = f"flash temperature up to {shown(flashes, 'K', 3)}"
+    return Demand(worst.value, limit, worst, note=note, figures=(oil.source,) if oil else ())
+
+
+def _effusivity(card: Material) -> float:
+    """Effusivity of a card, NaN without its thermal data."""
+    if card.conductivity is None or card.specific_heat is None:
+        return np.nan
+    return effusivity(card.conductivity, card.density, card.specific_heat)

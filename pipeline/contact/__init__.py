@@ -26,6 +26,7 @@ In the order of the calculation:
 | `bore_stress`        | stress at bore and keyway                      | sigma_v, Pa          |
 | `rolling_envelope`   | stress below the contour, fatigue              | Pa; depth, m         |
 | `oil_film`           | film thickness, asperity load share            | h, m; lambda, -      |
+| `flash_temperature`  | flash and bulk temperature of a sliding contact | T, K                |
 | `finite_length`      | ends, crown and tilt of finite bodies          | K, -                 |
 
 Imports `geometry`, `meshes` and `base`.

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from camwright.geometry.arrays import Array, finite, freeze, positive
 from camwright.geometry.errors import InputError
-from camwright.pipeline.base.quantities import In, Part
+from camwright.pipeline.base.quantities import In, Part, Temperature
 from camwright.pipeline.base.units import shown
 
 UNVERIFIED = (
@@ -38,6 +38,8 @@ class Lubricant(Part):
     viscosity: Annotated[float, In("mPa s", above=0, at_most=1e5)]
     pressure_viscosity: Annotated[float, In("1/GPa", above=0, at_most=1000)]
     film: Literal["smooth", "mixed"] = "smooth"
+    temperature: Temperature | None = None
+    scuffing_temperature: Temperature | None = None
     source: str = ""
 
 

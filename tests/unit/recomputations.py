@@ -83,6 +83,7 @@ _BY_TEST: dict[tuple[str, str], tuple[str, ...]] = {
     (_CONTACT, "test_two_rules_for_one_card_that_differ_are_flagged"): ("endurance_rules",),
     (_CONTACT, "test_axial_offset_beyond_the_difference_of_widths_fails"): ("roller_overlap",),
     (_CONTACT, "test_width_and_pv_of_the_face"): ("face_width", "face_pv"),
+    (_CONTACT, "test_temperature_of_the_sliding_face"): ("contact_temperature",),
     # roller
     (_ROLLER, "test_force_over_its_ratings"): (
         "roller_static", "roller_load_share", "roller_radial", "roller_static_radial",

@@ -8,6 +8,7 @@ from trial_variants import (
     NAN,
     cycle_with,
     faced,
+    oiled,
     unknown,
     with_benchmark,
     with_bore,
@@ -210,6 +211,15 @@ tried(
     lambda: faced(cycle_with("contact", made.cycle(made.face_contour()), p0=NAN)),
     by_hand.sliding(),
     "pi/4 p0 w (r + s)",
+    base=faced,
+)
+tried(
+    "contact_temperature",
+    limited("contact_temperature", lambda top: oiled(scuffing_temperature=top + 273.15), faced),
+    lambda: oiled(scuffing_temperature=None),
+    lambda: faced(cycle_with("contact", made.cycle(made.face_contour()), half_width=NAN)),
+    by_hand.contact_temperature(),
+    "80 degC, mean and greatest flash temperature of Blok",
     base=faced,
 )
 # verification of the solution

@@ -288,6 +288,13 @@ def faced(cycle: Cycle | None = None, **values: Any) -> Solution:
     )
 
 
+def oiled(**values: Any) -> Solution:
+    """A flat face in another oil."""
+    plain = faced()
+    oil = made.changed(plain.case.lubricant, **values)
+    return made.changed_solution(plain, case=made.changed(plain.case, lubricant=oil))
+
+
 def reversing(count: int) -> Solution:
     return with_parts(reversals=(Reversal(1.0, 1.0),) * count)
 

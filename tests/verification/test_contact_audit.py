@@ -32,6 +32,9 @@ POSITIONS = 72
 THETA = uniform_turn(POSITIONS)
 STROKE, BASE, ROLLER, WIDTH, OMEGA = 0.01, 0.05, 0.008, 0.01, 80.0
 E_STEEL = 210e9
+FRICTION = 0.1
+# Conductivity and specific heat of the cards of cam and face.
+THERMAL = ((45.0, 460.0), (42.0, 460.0))
 MODULES = ("contact_strength", "surface_durability", "flat_face_sliding")
 OWN = [each for each in CHECKS if (each.measure or each.demand).__module__.endswith(MODULES)]
 FACE = {
@@ -581,6 +584,26 @@ def test_width_and_pv_of_the_face():
     mean = load / (2.0 * width)
     assert checks["face_pv"].demand == pytest.approx((mean * OMEGA * (BASE + s)).max(), rel=1e-3)
     assert checks["contact_pressure"].demand == pytest.approx(peak.max(), rel=1e-3)
+
+
+def test_temperature_of_the_sliding_face():
+    """Heat conducted into a half-plane below a moving band, integrated by its Green's function."""
+    found, checks = solved(face=True)
+    cycle = found.cycles[0]
+    s, bend = 0.5 * STROKE * (1.0 - np.cos(THETA)), 0.5 * STROKE * np.cos(THETA)
+    heat = FRICTION * cycle.loads.normal_force / WIDTH * OMEGA * (BASE + s)
+    half = cycle.contact.half_width
+    flux = heat / (2.0 * half)
+    # a point under a uniform band for the time 2 a/u: T = 2 q sqrt(t/pi)/B, each body alone
+    alone = [
+        2.0 * flux * np.sqrt(2.0 * half / (np.abs(u) * np.pi)) / np.sqrt(k * 7850.0 * c)
+        for u, k, c in ((OMEGA * (BASE + s + bend), *THERMAL[0]), (OMEGA * bend, *THERMAL[1]))
+    ]
+    shared = 1.0 / (1.0 / alone[0] + 1.0 / alone[1])
+    # 2/sqrt(pi) = 1.13 for a uniform band, 1.11 for that of Hertz
+    flash = 1.11 / (2.0 / np.sqrt(np.pi)) * shared
+    expected = 80.0 + 0.564 * flash.mean() + flash.max()
+    assert checks["contact_temperature"].demand == pytest.approx(expected, rel=1e-3)
 
 
 def test_the_recalled_cap_of_dang_van_is_marked_and_does_not_decide():

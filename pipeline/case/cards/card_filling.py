@@ -189,15 +189,17 @@ def _oil(card: Tables, table: Tables, source: str, field: str) -> Tables:
     Parameters
     ----------
     card : dict         of the oil, `source` its dotted name
-    table : dict        of the lubricant, `field` its dotted name; its temperature is taken out
+    table : dict        of the lubricant, `field` its dotted name
     """
-    temperature = units.parse(table.pop("temperature", "313.15 K"), "K", f"{field}.temperature")
+    temperature = units.parse(table.get("temperature", "313.15 K"), "K", f"{field}.temperature")
     density = units.parse(_entry(card, "density", source), "kg/m^3", f"{source}.density")
     at_40, at_100 = (_positive(card, f"viscosity_{celsius}", source) for celsius in (40, 100))
     dynamic = 1e-6 * viscosity(at_40, at_100, temperature) * density
     return {
         "viscosity": units.format(dynamic, "mPa s"),
         "pressure_viscosity": _entry(card, "pressure_viscosity", source),
+        "temperature": units.format(temperature, "degC"),
+        **{key: card[key] for key in ("scuffing_temperature",) if key in card},
         "source": f"{card['source']}; at {units.celsius(temperature):.1f} degC by ASTM D341",
     }
 
