@@ -1,6 +1,7 @@
 """Checks of the spring design: strength, fatigue, solid length, buckling, surge, relaxation.
 
-Of a gas spring: pressure, stroke, speed and temperature; of a torsion spring: bending stress.
+Of a gas spring: pressure, stroke, speed, temperature, strokes per time; of a torsion spring:
+bending stress.
 """
 
 from __future__ import annotations
@@ -11,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from camwright.geometry.arrays import Array, Value
+from camwright.geometry.arrays import FULL_TURN, Array, Value, uniform_turn
 from camwright.geometry.errors import InputError
 from camwright.geometry.extrema import first_greatest
 from camwright.pipeline.base import levers
@@ -33,6 +34,7 @@ from camwright.pipeline.checks.check import (
 )
 from camwright.pipeline.checks.demands import FatiguePoint, follower_speed, slope_at, slope_over
 from camwright.pipeline.checks.extremes import Extreme, Measure
+from camwright.pipeline.checks.missing_keys import lacking
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.loaded_cam import LoadedCam, wire_of
 from camwright.pipeline.cycle.numbers import Numbers
@@ -51,11 +53,13 @@ from camwright.pipeline.follower.spring import (
     WireLimit,
     surge_harmonics,
 )
-from camwright.pipeline.follower.spring_kinds import TorsionSpring
+from camwright.pipeline.follower.spring_kinds import GasSpring, TorsionSpring
 
 BENDING_STRENGTH = 0.7  # permissible bending stress over R_m, DIN EN 13906-3: verify
 HARDEST = "preload and rate high"
 STABLE = "stable at any deflection"
+_SAMPLES = 720  # of the turn, among which the rises of the lift are counted
+_AT_REST = 1e-6  # of the greatest slope of the lift: a dwell
 
 
 def _design(solution: Solution) -> HelicalSpring:
@@ -427,6 +431,7 @@ def _gas_check(
     formula: str,
     reason: str,
     lift_can_help: bool = True,
+    tier: Tier = Tier.SCREENING,
     values: tuple[str, ...],
     cured_by: tuple[Lever, ...] = (),
     kept_as: str = "",
@@ -439,7 +444,7 @@ def _gas_check(
         source="data sheet of the maker",
         method=method,
         lift_can_help=lift_can_help,
-        tier=Tier.SCREENING,
+        tier=tier,
         moved_by_tolerance=False,
         part="gas_spring",
         kept_as=kept_as,
@@ -540,6 +545,33 @@ gas_temperature = _gas_check(
     remark=_of_gas,
     deviation=0.0,
 )(_gas_temperature)
+
+
+def _stroke_rate(solution: Solution) -> Demand:
+    """Greatest number of strokes of the gas spring per time, 1/s."""
+    gas = solution.machine.spring.gas
+    slope = solution.contour.pitch.lift(uniform_turn(_SAMPLES), 1)
+    way = np.sign(slope[np.abs(slope) > _AT_REST * np.abs(slope).max()])
+    strokes = int(np.sum((way > 0) & (np.roll(way, -1) < 0)))
+    rate = strokes * float(solution.numbers["cam.fastest"]) / FULL_TURN
+    limit = None if gas is None else gas.stroke_rate_limit
+    lacks = () if gas is None else lacking(GasSpring.table, gas, "stroke_rate_limit")
+    return _of_gas(Demand(rate, limit, missing=lacks), solution)
+
+
+gas_stroke_rate = _gas_check(
+    "gas_stroke_rate",
+    title="Strokes per time of the gas spring",
+    unit="1/min",
+    method="rises of the lift in a turn times the greatest speed of the cam",
+    formula="z n <= spring.gas.stroke_rate_limit; z: rises of the lift in a turn, n: greatest speed"
+    " of the cam",
+    reason="each stroke heats gas and seal, which cool between the strokes alone.",
+    lift_can_help=False,
+    tier=Tier.PREVIEW,
+    values=("load_case.speed", "limits.overspeed", "spring.gas.stroke_rate_limit"),
+    cured_by=levers.SPRING,
+)(_stroke_rate)
 
 
 def _torsion(cam: LoadedCam) -> TorsionSpring:

@@ -146,6 +146,7 @@ class GasSpring(Part):
     pressure_limit: Annotated[float, In("bar", above=0, at_most=10_000)] | None = None
     temperature_limit: Temperature | None = None
     speed_limit: Annotated[float, In("m/s", above=0, at_most=1000)] | None = None
+    stroke_rate_limit: Annotated[float, In("1/min", above=0, at_most=1e5)] | None = None
     stroke: Length | None = None
     source: str = ""
 

@@ -139,6 +139,13 @@ for name, field, zero, hand, how in (
         "w h / 2 of a harmonic lift",
     ),
     ("gas_temperature", "temperature_limit", 273.15, 46.85, "stated"),
+    (
+        "gas_stroke_rate",
+        "stroke_rate_limit",
+        0.0,
+        60.0 * made.CAM_SPEED / (2.0 * np.pi),
+        "one rise in a turn",
+    ),
 ):
     tried(
         name,

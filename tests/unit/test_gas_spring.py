@@ -283,6 +283,7 @@ temperature_limit = "353 K"
 speed_limit = "1 m/s"
 stroke = "20 mm"
 source = "made up"
+stroke_rate_limit = "4000 1/min"
 """
 
 
@@ -301,6 +302,9 @@ def test_limits_of_the_maker():
     speed = max(float(np.abs(c.loads.velocity).max()) for c in trial.cycles)
     assert checks["gas_speed"].demand == pytest.approx(speed, rel=1e-12)
     assert checks["gas_temperature"].demand == pytest.approx(46.85)
+    peaks = scipy.signal.find_peaks(np.tile(trial.lift(uniform_turn(720)), 2))[0].size // 2
+    cam_speed = highest_speed(machines(limited)) / limited.mechanism.gear_ratio
+    assert checks["gas_stroke_rate"].demand == pytest.approx(peaks * cam_speed / (2.0 * np.pi))
     assert checks["data_gas_spring"].missing == ("spring.travel_max",)
     assert not any(name.startswith("spring_") and name != "spring_travel" for name in checks)
     allowed = travel_limits(limited)

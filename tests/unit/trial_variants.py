@@ -41,7 +41,7 @@ def with_gas_spring(**values: Any) -> Solution:
     """The solution on a gas spring: a column of 50 mm, 30 bar above the surroundings."""
     stated = {
         "temperature": 320.0, "pressure_limit": 1e7, "temperature_limit": 353.0,
-        "speed_limit": 2.0, "stroke": 0.02, "source": "made up",
+        "speed_limit": 2.0, "stroke": 0.02, "stroke_rate_limit": 50.0, "source": "made up",
     }  # fmt: skip
     gas = GasSpring(pressure=30e5, area=100e-6, volume=5e-6, **(stated | values))
     return with_part("spring", kind="gas", design=None, gas=gas, rate=gas.rate, preload=gas.preload)
