@@ -212,6 +212,8 @@ def _first(verdict: Verdict) -> Iterator[tuple[str, str]]:
     waivers = shortened("; ".join(verdict.waived) or "none", _LONG)
     yield "Scope", scope
     yield "Waivers", waivers
+    if verdict.relaxed:
+        yield "Limits relaxed", shortened("; ".join(verdict.relaxed), _LONG)
     names, room = verdict.confirm, 3 * _LONG - len(scope) - len(waivers)
     listed = "; ".join(names)
     if len(listed) > room:

@@ -13,6 +13,7 @@ from camwright.pipeline.results.check_records import (
     CheckRecord,
     governing_of,
     judgement,
+    relaxed_limits,
     to_be_confirmed,
 )
 from camwright.pipeline.results.check_report import not_proven, reason_without_data
@@ -40,18 +41,20 @@ class Verdict:
 
     `outcome` is ``pass``, ``incomplete`` or ``fail``, of a screen ``open`` or ``fail``; `line` the
     verdict with its reasons, the numbers of waived checks and of values to be confirmed; `confirm`
-    names these values. `sentence` counts the checks by status, `governing` describes the required
-    check of the design of highest utilisation, "" where it is the first of `worst`; `binding` are
-    titles of required checks that fail. `unproven`, `missing` and `waived` are lines on required
-    checks whose error bar lies across the limit, that lack data, and that are waived. `stopped` are
-    the clauses of the reason for which the trials ended, `scope` the parts not covered, `label`
-    what is stated; `ends` where the follower leaves the cam or locks; `worst` are the worst failed
-    required checks in words, each with its remedy, "" without one.
+    names these values, `relaxed` the limits that are weaker than their defaults. `sentence` counts
+    the checks by status, `governing` describes the required check of the design of highest
+    utilisation, "" where it is the first of `worst`; `binding` are titles of required checks that
+    fail. `unproven`, `missing` and `waived` are lines on required checks whose error bar lies
+    across the limit, that lack data, and that are waived. `stopped` are the clauses of the reason
+    for which the trials ended, `scope` the parts not covered, `label` what is stated; `ends` where
+    the follower leaves the cam or locks; `worst` are the worst failed required checks in words,
+    each with its remedy, "" without one.
     """
 
     outcome: str
     line: str
     confirm: tuple[str, ...]
+    relaxed: tuple[str, ...]
     scope: str
     sentence: str
     governing: str
@@ -86,6 +89,7 @@ class Verdict:
     def lists(self) -> list[tuple[str, Sequence[str]]]:
         """(label, items) of the lists below the lines."""
         lists = (
+            ("Limits relaxed", self.relaxed),
             ("Binding", self.binding),
             ("Missing data", self.missing),
             ("Not proven", self.unproven),
@@ -131,6 +135,7 @@ def verdict(
         outcome=outcome,
         line=str(judged["verdict_line"]) if outcome == by_checks else outcome.upper(),
         confirm=tuple(to_be_confirmed(checks)),
+        relaxed=tuple(relaxed_limits(checks)),
         scope=scope,
         sentence=_sentence(checks, required, missing),
         governing="" if governs_first(records) else governing(checks),

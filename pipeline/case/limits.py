@@ -30,6 +30,8 @@ _INNER_SHARE = In(above=0, below=1)
 _RATIO = In(at_least=1, at_most=100)
 _LIFE = In("h", above=0, at_most=1e6)
 _RESIDUAL = In(above=0, at_most=1e-3)
+_REQUIREMENT = "requirement of the case"
+_ROUND_OFF = 1e-9  # of units
 
 
 @dataclass(frozen=True)
@@ -340,11 +342,11 @@ GUIDE_LENGTH = Limit(
 )  # fmt: skip
 TORQUE_REDUCTION = Limit(
     "torque_reduction", "torque ripple reduction", _INNER_SHARE, 0.4,
-    "requirement of the case", "at_least",
+    _REQUIREMENT, "at_least",
 )  # fmt: skip
 SPEED_REDUCTION = OpenLimit(
     "speed_reduction", "speed ripple reduction", _INNER_SHARE,
-    "requirement of the case", "at_least",
+    _REQUIREMENT, "at_least",
     found="requirement of the machine", example=0.1,
 )  # fmt: skip
 CONTACT_TORQUE = Limit(
@@ -376,6 +378,24 @@ LIMITS: Mapping[str, AnyLimit] = MappingProxyType(
     {row.id: row for row in tuple(globals().values()) if isinstance(row, (Limit, OpenLimit))}
 )
 """Every row by its key, in the order of the file."""
+
+
+def is_weaker(limit: AnyLimit, value: float | None) -> bool:
+    """Whether a value, SI, is weaker than the default of its row; of a safety, below 1, too.
+
+    A requirement of the case has no default to be weaker than.
+    """
+    if value is None or limit.source == _REQUIREMENT:
+        return False
+    safety = limit.id.endswith("safety")
+    floor = safety or limit.sense == "at_least"
+    if safety and value < 1.0:
+        return True
+    default = limit.default
+    if default is None:
+        return False
+    least, most = default * (1.0 - _ROUND_OFF), default * (1.0 + _ROUND_OFF)
+    return value < least if floor else value > most
 
 
 class LimitValues(Section):

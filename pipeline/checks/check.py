@@ -629,6 +629,7 @@ class Check(Displayed):
     corner : str             tolerance corner of the worst demand; "": none was solved
     corner_demand : float    demand at that corner; None: none was solved
     unconfirmed : tuple      dotted keys of the values on which it rests and no source confirms
+    relaxed : tuple          its limits that the case makes weaker than their defaults, in words
     judged_at : str          depth that judges it, where the solution is less deep; "": judged
     without : str            load cases without loads, as the follower has left the cam or locked:
                              the demand is that of the others, by which it can only fail; "": none
@@ -651,6 +652,7 @@ class Check(Displayed):
     corner: str = ""
     corner_demand: float | None = None
     unconfirmed: tuple[str, ...] = ()
+    relaxed: tuple[str, ...] = ()
     judged_at: str = ""
     without: str = ""
     remedy: str = ""
@@ -842,6 +844,7 @@ class Check(Displayed):
             "corner_demand": _shown(corner, unit),
             "evidence": self.evidence,
             "to_be_confirmed": list(self.unconfirmed),
+            "relaxed": list(self.relaxed),
             "judged_at": self.judged_at,
             "remedy": self.remedy,
         }

@@ -11,11 +11,16 @@ from dataclasses import replace
 from functools import cache
 
 from camwright.geometry.errors import InputError
+from camwright.pipeline.base.units import shown
 from camwright.pipeline.case.case import Case
+from camwright.pipeline.case.case_values import text_of
 from camwright.pipeline.case.consistency import tightened_tolerances
+from camwright.pipeline.case.limits import LIMITS, is_weaker
 from camwright.pipeline.case.section import suggestion
 from camwright.pipeline.case.value_sources import OF_A_CHECK, confirms, source_of, values_at
 from camwright.pipeline.checks.check import Check
+
+_LIMIT = "limits."
 
 
 def with_values_to_confirm(
@@ -23,6 +28,7 @@ def with_values_to_confirm(
 ) -> tuple[Check, ...]:
     """The checks with the values on which they rest and which nothing confirms.
 
+    Limits of a check that are weaker than their defaults are named with it, evaluated or not.
     The source that a check declares for its limit counts as a value, ``checks.ID``, where it is
     recalled. A check judged at the tolerance corners rests on every tolerance that is tighter than
     its default, whatever its source. A check without data rests on none.
@@ -36,6 +42,7 @@ def with_values_to_confirm(
     InputError
         If the case confirms the source of an unknown check.
     """
+    weaker = _weaker(case)
     tables, tight = case.tables(), tuple(tightened_tolerances(case))
     confirmed = {each.value for each in case.confirmed}
     for value in confirmed:
@@ -60,9 +67,29 @@ def with_values_to_confirm(
                 for value in dict.fromkeys(_open_values(one, open_at, tight))
                 if value not in confirmed
             ),
+            relaxed=tuple(weaker[key] for key in _limits_of(one) if key in weaker),
         )
         for one in checks
     )
+
+
+def _limits_of(one: Check) -> Iterator[str]:
+    """Keys of the limits by which a check judges."""
+    limit = one.declaration.limit
+    own = () if limit is None else (_LIMIT + limit.id,)
+    yield from dict.fromkeys((*own, *(v for v in one.declaration.values if v.startswith(_LIMIT))))
+
+
+def _weaker(case: Case) -> dict[str, str]:
+    """Limits of a case that are weaker than their defaults, in words by key."""
+    words = {}
+    for name, limit in LIMITS.items():
+        if not is_weaker(limit, case.limits[limit]):
+            continue
+        key, default = _LIMIT + name, limit.default
+        usual = "" if default is None else f", default {shown(default, limit.quantity.unit)}"
+        words[key] = f"{key} = {text_of(case, key)}{usual}"
+    return words
 
 
 def _open_values(

@@ -62,12 +62,14 @@ class CheckRecordOfAnyCheck(TypedDict):
 class CheckRecord(CheckRecordOfAnyCheck, total=False):
     """A record of ``6_checks.json``.
 
-    to_be_confirmed: names of the recalled values on which it rests; missing: dotted keys that the
+    to_be_confirmed: names of the recalled values on which it rests; relaxed: its limits that are
+    weaker than their defaults; missing: dotted keys that the
     case lacks and without which it is not evaluated; remedy: smallest change that cures it, "" if
     none is known. Records of earlier versions lack them.
     """
 
     to_be_confirmed: list[str]
+    relaxed: list[str]
     missing: list[str]
     remedy: str
 
@@ -260,8 +262,9 @@ def verdict_of(checks: Iterable[AnyCheck]) -> str:
 def verdict_line(records: Iterable[AnyCheck]) -> str:
     """Verdict of the must-have checks in one line.
 
-    Such as ``PASS, 2 waived, 3 values to be confirmed`` or ``INCOMPLETE: 1 check without data``. A
-    value to be confirmed counts once, however many checks rest on it.
+    Such as ``PASS, 1 limit relaxed, 2 waived, 3 values to be confirmed`` or ``INCOMPLETE: 1 check
+    without data``. A relaxed limit and a value to be confirmed count once, however many checks rest
+    on them.
     """
     deciding = [record for record in records if record["must_have"]]
     if not deciding:
@@ -289,6 +292,7 @@ def _counts(deciding: Sequence[AnyCheck]) -> str:
     statuses = Counter(str(record["status"]) for record in deciding)
     waived, values = statuses["waived"], len(to_be_confirmed(deciding))
     parts = (
+        _counted(len(relaxed_limits(deciding)), "limit relaxed", "limits relaxed"),
         _counted(len(failed) - unproven, "check beyond its limit", "checks beyond their limit"),
         _counted(unproven, "check not proven", "checks not proven"),
         _counted(statuses["not_evaluated"], "check without data", "checks without data"),
@@ -305,7 +309,16 @@ def _counted(number: int, one: str, many: str) -> str:
 
 def to_be_confirmed(records: Iterable[AnyCheck]) -> list[str]:
     """Names of the recalled values on which the must-have checks rest, each once."""
-    listed = (record.get("to_be_confirmed") for record in records if record["must_have"])
+    return _listed(records, "to_be_confirmed")
+
+
+def relaxed_limits(records: Iterable[AnyCheck]) -> list[str]:
+    """Limits of the must-have checks that are weaker than their defaults, in words, each once."""
+    return _listed(records, "relaxed")
+
+
+def _listed(records: Iterable[AnyCheck], field: str) -> list[str]:
+    listed = (record.get(field) for record in records if record["must_have"])
     names = (str(name) for each in listed if isinstance(each, list) for name in each)
     return list(dict.fromkeys(names))
 

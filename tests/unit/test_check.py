@@ -297,6 +297,18 @@ def test_a_check_prints_as_a_line():
             "FAIL: 2 checks beyond their limit, 1 check not proven, 1 check without data",
         ),
         ([at_most(math.nan), at_most(1.0)], "INCOMPLETE: 1 check without data"),
+        (
+            [
+                at_most(1.0, relaxed=("limits.a = 2, default 1", "limits.b = 3, default 1")),
+                at_most(1.0, relaxed=("limits.a = 2, default 1",), unconfirmed=("c",)),
+                at_most(1.0, relaxed=("limits.d = 2, default 1",), must_have=False),
+            ],
+            "PASS, 2 limits relaxed, 1 value to be confirmed",
+        ),
+        (
+            [at_most(3.0, relaxed=("limits.a = 2, default 1",))],
+            "FAIL: 1 limit relaxed, 1 check beyond its limit",
+        ),
     ],
 )
 def test_the_verdict_in_one_line_from_checks_and_from_records(checks, line):

@@ -11,12 +11,14 @@ import pytest
 
 from camwright.geometry.errors import InputError
 from camwright.pipeline.case.case import Case
-from camwright.pipeline.case.case_file import case_of
+from camwright.pipeline.case.case_file import case_of, read_case
+from camwright.pipeline.case.limits import LIMITS, is_weaker
 from camwright.pipeline.case.value_sources import values_at
 from camwright.pipeline.checks.check import Check
 from camwright.pipeline.checks.confirmation import with_values_to_confirm
 from camwright.pipeline.checks.registry import CHECKS, DECLARED, OF_THE_DESIGN
 from camwright.pipeline.preview import preview_case
+from camwright.pipeline.results.check_records import relaxed_limits, screen_line
 
 ENDURANCE = "materials.steel.endurance_pressure"
 
@@ -53,6 +55,51 @@ def sourced(text: str) -> dict[str, str]:
         value for path in DECLARED["contact_pressure"].values for value in values_at(own, path)
     )
     return dict.fromkeys(rests, text)
+
+
+GREATER_IS_WEAKER = {
+    "acceleration_step", "bore_share", "chord_share", "closure", "complementarity",
+    "contact_torque", "end_mean_length", "equilibrium", "follower_mass_ratio", "friction_balance",
+    "friction_power", "jam_index", "jump", "key_reversal", "key_share", "mesh_uncertainty",
+    "pin_pressure_share", "pin_share", "pressure_angle", "roller_load_share", "roller_speed_share",
+    "second_contact_depth", "shaft_deflection", "shaft_slope", "traction_share", "unbalance",
+    "waviness", "wear_depth",
+}  # fmt: skip
+"""Limits that a greater value weakens, by hand; all others with a default, a smaller one."""
+
+
+@pytest.mark.parametrize("name", [name for name, row in LIMITS.items() if row.default is not None])
+def test_a_limit_weaker_than_its_default_is_relaxed(name):
+    row = LIMITS[name]
+    if name == "torque_reduction":  # what the case wants of its cam
+        assert not is_weaker(row, 0.5 * row.default)
+        return
+    weaker, stronger = (1.01, 0.99) if name in GREATER_IS_WEAKER else (0.99, 1.01)
+    assert is_weaker(row, weaker * row.default)
+    assert not is_weaker(row, stronger * row.default) and not is_weaker(row, row.default)
+
+
+def test_weakening_a_limit_further_never_removes_the_words():
+    """Whatever the check then says: passed, failed or without data."""
+    (declared,) = (each for each in CHECKS if each.id == "contact_pressure")
+    for safety in (0.99, 0.3, 1e-6):
+        case = stated(limits={**tables()["limits"], "contact_safety": safety})
+        check = declared(made.solution(case=case))
+        for each in (check, replace(check, demand=None)):
+            (made_,) = with_values_to_confirm([each], case, OF_THE_DESIGN)
+            assert made_.relaxed == (f"limits.contact_safety = {safety:g}, default 1",)
+    assert contact(stated()).relaxed == ()
+
+
+def test_relaxed_limits_stand_on_the_record_of_a_preview():
+    """Of the published forged case: three limits that its author weakened."""
+    case = read_case(made.CASE_FILE.parent / "refused" / "relaxed_limits.toml")
+    judged = with_values_to_confirm(preview_case(case, corners=False).checks, case, OF_THE_DESIGN)
+    records = [each.as_record() for each in judged]
+    assert {words.split(" ")[0] for words in relaxed_limits(records)} == {
+        "limits.contact_safety", "limits.keyway_safety", "limits.unbalance",
+    }  # fmt: skip
+    assert "3 limits relaxed" in screen_line(records, "preview")
 
 
 DRAWN = {

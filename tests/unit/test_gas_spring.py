@@ -4,6 +4,7 @@ import tomllib
 from dataclasses import replace
 from functools import cache
 from itertools import pairwise
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -18,7 +19,7 @@ from camwright.geometry.pitch_curve import PitchCurve
 from camwright.pipeline.base.tables import Table
 from camwright.pipeline.base.units import in_unit
 from camwright.pipeline.case.cards.card_filling import known_cards
-from camwright.pipeline.case.case_file import case_of, parse_case
+from camwright.pipeline.case.case_file import case_of, parse_case, read_case
 from camwright.pipeline.case.case_values import replaced
 from camwright.pipeline.case.load_case_torque import engine_torques
 from camwright.pipeline.case.machine import Corner, machine, machines
@@ -41,6 +42,7 @@ from camwright.pipeline.smoothing.smoothers import Smoother
 from camwright.reports import part_figures
 from camwright.reports.sheet_turn import SheetTurn
 
+ROOT = Path(__file__).resolve().parents[2]
 GAS = GasSpring(pressure=30e5, area=113e-6, volume=6e-6, exponent=1.3)
 SPRING = Spring(kind="gas", gas=GAS, rate=GAS.rate, preload=GAS.preload)
 TABLE = """
@@ -387,3 +389,11 @@ def test_checks_without_a_data_sheet_are_not_evaluated_by_name():
     assert checks["gas_pressure"].status == "not_evaluated"
     assert checks["gas_pressure"].missing == ("spring.gas.pressure_limit",)
     assert "data_spring" not in checks
+
+
+def test_a_nitrogen_spring_in_a_fast_machine_fails_by_its_strokes():
+    """825 strokes a minute at the over-speed, where the card allows 100."""
+    case = read_case(ROOT / "tests" / "data" / "refused" / "gas_spring_duty.toml")
+    checks = {each.id: each for each in preview_case(case, corners=False).checks}
+    assert checks["gas_stroke_rate"].status == "fail"
+    assert in_unit(checks["gas_stroke_rate"].demand, "1/min") == pytest.approx(825.0)
