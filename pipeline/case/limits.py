@@ -327,7 +327,8 @@ BORE_SAFETY = Limit(
     "bore_safety", "safety of the bore", _SAFETY, 1.0, "yield strength of the core",
 )  # fmt: skip
 VISCOSITY_RATIO = Limit(
-    "viscosity_ratio", "viscosity ratio", _SAFETY, 1.0, "kappa = v/v1 >= 1, ISO 281", "at_least",
+    "viscosity_ratio", "viscosity ratio", _SAFETY, 0.1,
+    "ISO 281: a_ISO holds from kappa = 0.1 on, and counts a thin film", "at_least",
 )  # fmt: skip
 WEAR_DEPTH = Limit(
     "wear_depth", "wear depth", _LENGTH, 5e-5, "0.05 mm, shop practice: verify; Archard (1953)",

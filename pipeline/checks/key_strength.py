@@ -208,6 +208,14 @@ def _slip_at(limit: float, numbers: Numbers) -> float | None:
     return slip / (limit * _application(numbers)) if slip else None
 
 
+def _must_not_slip(numbers: Numbers) -> NDArray[np.bool_]:
+    """Whether the torque reverses through the fit: the key alone carries that of a sliding fit."""
+    slip = numbers.get(_SLIP)
+    keyed = numbers.known_case.cam.key is not None
+    slides = np.asarray(keyed and slip is not None and np.asarray(slip) == 0.0)
+    return np.asarray(_reverses(numbers) & ~slides)
+
+
 def _slip_in_words(demand: Demand, solution: Solution) -> Demand:
     sliding = demand.value is not None and solution.numbers[_SLIP] == 0.0
     return replace(demand, note="sliding fit" if sliding else "")
@@ -217,7 +225,8 @@ cam_slip = check(
     CAM_SLIP,
     id="cam_slip",
     title="Slip torque of the cam seat over the greatest cam torque",
-    method="slip torque of the seat over K_A T; evaluated where the torque reverses",
+    method="slip torque of the seat over K_A T; evaluated where the torque reverses, of a sliding"
+    " fit without a key alone: the key of another has its reversals in key_pressure",
     lift_can_help=True,
     tier=Tier.SCREENING,
     part="camshaft",
@@ -235,7 +244,7 @@ cam_slip = check(
     value=lambda worst, numbers: rating_over(numbers[_SLIP], _application(numbers) * worst, np.inf),
     bound=_slip_at,
     needed=(_SLIP,),
-    applies=lambda _, numbers: _reverses(numbers),
+    applies=lambda _, numbers: _must_not_slip(numbers),
     known=_reversal,
     remark=_slip_in_words,
     deviation=0.003,

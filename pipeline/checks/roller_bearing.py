@@ -420,7 +420,7 @@ roller_static_radial = _outer_ring(
     kept_as="mean speed of the roller at the least viscosity ratio",
     formula="v/v1 >= k; v: viscosity in operation, v1: rated viscosity of ISO 281 at the mean speed"
     " of the roller and the pitch diameter of its balls, k: limits.viscosity_ratio",
-    reason="below it the film is torn, and the modified life does not count the wear",
+    reason="below it ISO 281 gives no modified life; above, roller_modified_life counts the film",
     values=("roller.bearing.viscosity", "roller.bearing.*pitch_diameter"),
     levers=(levers.one("roller.bearing.viscosity"),),
     page="Roller",

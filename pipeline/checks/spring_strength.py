@@ -366,13 +366,15 @@ def spring_rate(cam: LoadedCam) -> Array:
     SPRING_SURGE,
     title="Spring surge frequency / cam frequency",
     method="sqrt(k/m)/2 of the active coils over the highest speed of the sweep",
+    must_have=False,
     tier=Tier.SCREENING,
     moved_by_tolerance=False,
     part="spring",
     formula="f1 / f_cam >= limits.spring_surge; f1 = sqrt(k/m)/2: first natural frequency of the"
     " active coils, f_cam: turns of the cam at over-speed, at least at the fastest load case",
-    reason="Below it strong harmonics of the lift drive the coils, and the force on the"
-    " cam depends on a damping that is hardly known.",
+    reason="Below it strong harmonics of the lift drive the coils. A rule of thumb: the sweep over"
+    " the speeds decides, with the least damping, in contact_over_speed, spring_stress and"
+    " spring_fatigue.",
     load_cases=SPEED_RANGE,
     values=(*given.SURGE, "limits.overspeed"),
     page="Spring",

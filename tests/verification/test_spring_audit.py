@@ -148,7 +148,7 @@ def test_first_frequency_is_that_of_the_chain(solved):
     cam = 3600.0 / 120.0
     check = spring_strength.spring_surge(solved)
     assert check.demand == pytest.approx(np.sqrt(square) / (2.0 * np.pi) / cam, rel=1e-3)
-    assert check.must_have
+    assert not check.must_have  # the sweep decides, see below
 
 
 def test_the_contact_is_lost_between_the_load_cases(solved):
