@@ -9,6 +9,7 @@ from camwright.pipeline.base.material import Material
 from camwright.pipeline.case.cards.card_filling import known_cards, viscosity
 from camwright.pipeline.case.case_file import parse_case
 from camwright.pipeline.case.limits import LIMITS
+from camwright.pipeline.case.template import first_case
 from camwright.pipeline.checks.contact_strength import contact_pressure, pressure_at_life
 from camwright.pipeline.contact.hertz import contact_modulus
 from camwright.pipeline.contact.oil_film import Lubricant
@@ -197,3 +198,42 @@ def test_every_check_that_leans_on_a_card_says_verify_whatever_the_case_says():
 def test_a_treatment_that_is_none_is_refused(line, field):
     with pytest.raises(InputError, match=rf"materials\.extra\.{field}"):
         extra('card = "case_hardened"', line)
+
+
+# Table 10-4 of Shigley, mm.
+WIRES = {
+    "music_wire": (0.1, 6.5), "hard_drawn": (0.7, 12.7), "oil_tempered": (0.5, 12.7),
+    "chrome_vanadium": (0.8, 11.1), "chrome_silicon": (1.6, 9.5),
+}  # fmt: skip
+
+
+def wound(card, diameter, *lines):
+    """A case with a spring of a wire, mm, eight times as wide."""
+    text = first_case("wound", "lift").text
+    wire = "\n".join([f'wire_diameter = "{diameter} mm"', *lines])
+    for old, new in (
+        ('card = "chrome_silicon"', f'card = "{card}"'),
+        ('wire_diameter = "8 mm"', wire),
+        ('mean_diameter = "44 mm"', f'mean_diameter = "{8 * diameter} mm"'),
+        ('free_length = "86 mm"', f'free_length = "{10 * diameter + 40} mm"'),
+    ):
+        assert old in text
+        text = text.replace(old, new)
+    return parse_case(text)
+
+
+@pytest.mark.parametrize("name", WIRES)
+def test_a_wire_beyond_the_diameters_of_its_card_is_refused(name):
+    least, most = WIRES[name]
+    assert set(WIRES) == set(known_cards(None)["wires"])
+    for inside in (least, most):
+        assert wound(name, inside).spring.design.wire_diameter == pytest.approx(1e-3 * inside)
+    for beyond in (0.99 * least, 1.01 * most):
+        with pytest.raises(InputError, match=f"for which card {name} has the strength") as found:
+            wound(name, beyond)
+        assert found.value.field == "spring.design.wire_diameter"
+
+
+def test_a_thick_wire_with_a_strength_of_its_own_is_read():
+    own = ('strength_at_1mm = "2100 MPa"', "strength_exponent = 0.145", 'source = "certificate 7"')
+    assert wound("music_wire", 12, *own).spring.design.wire_diameter == pytest.approx(0.012)

@@ -27,6 +27,7 @@ from camwright.pipeline.case.cards.spring_selection import put_force, put_spring
 from camwright.pipeline.case.toml_text import Tables, TomlValue, tables_of
 from camwright.pipeline.case.value_sources import UNSTATED, put_sources
 
+_RANGE = ("diameter_least", "diameter_most")
 KINDS = ("materials", "bushes", "oils", "wires", "gas_springs", "bearings")
 FOLDER = Path(__file__).parent
 USER_FILE = "cards.toml"
@@ -73,6 +74,9 @@ def _fill_places(case: Tables, folder: Path | None) -> None:
         if kind == "oils":
             words = _oil_words(words)
             card = _oil(card, table, place, field)
+        elif kind == "wires":
+            card = _wire(card, table, str(name), field)
+            words = {key: text for key, text in words.items() if key not in _RANGE}
         elif kind == "bearings":
             words = bearing_keys(words)
             part = read_part(BearingCard, without_provenance(card), f"cards.{name}")
@@ -202,6 +206,37 @@ def _oil(card: Tables, table: Tables, source: str, field: str) -> Tables:
         **{key: card[key] for key in ("scuffing_temperature",) if key in card},
         "source": f"{card['source']}; at {units.celsius(temperature):.1f} degC by ASTM D341",
     }
+
+
+def _wire(card: Tables, table: Tables, name: str, field: str) -> Tables:
+    """The values of a wire's card, which hold for its diameters.
+
+    Raises
+    ------
+    InputError
+        If the wire is thinner or thicker, and its strength is not stated.
+    """
+    known = wire_values(card)
+    if "wire_diameter" not in table or {"strength_at_1mm", "strength_exponent"} <= table.keys():
+        return known
+    key, own = f"{field}.wire_diameter", table["wire_diameter"]
+    diameter = units.parse(own, "m", key)
+    least, most = (
+        units.parse(card[end], "m", f"cards.wires.{name}.{end}") if end in card else open_end
+        for end, open_end in zip(_RANGE, (0.0, math.inf), strict=True)
+    )
+    if not least <= diameter <= most:
+        limit = (
+            f"from {units.shown(least, 'mm')} to {units.shown(most, 'mm')}, for which card {name}"
+        )
+        limit += " has the strength; or with strength_at_1mm and strength_exponent of the wire"
+        raise InputError(key, str(own), limit)
+    return known
+
+
+def wire_values(card: Tables) -> Tables:
+    """A wire's card without the diameters for which its values hold."""
+    return {key: value for key, value in card.items() if key not in _RANGE}
 
 
 def _positive(card: Tables, key: str, field: str) -> float:

@@ -14,7 +14,7 @@ from camwright.geometry.arrays import Array
 from camwright.geometry.errors import CamError
 from camwright.pipeline.base.progress import Progress
 from camwright.pipeline.case.cards.bearing_cards import BearingCard
-from camwright.pipeline.case.cards.card_filling import known_cards
+from camwright.pipeline.case.cards.card_filling import known_cards, wire_values
 from camwright.pipeline.case.cards.catalogue import better_roller, catalogue_of, undominated
 from camwright.pipeline.case.cards.part_table import read_part
 from camwright.pipeline.case.cards.provenance import without_provenance
@@ -97,7 +97,7 @@ class Candidate:
 
 def spring_wire(task: DesignTask, folder: Path | None) -> HelicalSpring:
     """Wire of wound springs, as a spring of any size."""
-    card = without_provenance(known_cards(folder)["wires"][WIRE])
+    card = wire_values(without_provenance(known_cards(folder)["wires"][WIRE]))
     size: Tables = {"wire_diameter": "5 mm", "mean_diameter": "30 mm", "coils": 5.0,
                     "free_length": "80 mm"}  # fmt: skip
     drawn: Tables = {"treatment": "peened", "relaxation": RELAXATION}
