@@ -71,6 +71,7 @@ def implausible(case: Case, torques: Mapping[str, Torque]) -> tuple[Implied, ...
     judged += _torque_findings(case, torques)
     judged += _pressure_findings(case)
     judged += _motor_findings(case, torques)
+    judged.append(_oil_finding(case))
     findings = [one for one in judged if one is not None]
     if not {one.title for one in findings} & {"spring.rate", "spring.preload", *_TORQUES}:
         findings += _spring_findings(case, torques)
@@ -147,6 +148,30 @@ def _motor_findings(case: Case, torques: Mapping[str, Torque]) -> Iterator[Impli
         stated, carried = (in_unit(each, "rpm") for each in (state.speed, speed))
         made = Implied(PLAUSIBILITY, key, stated, carried, "rpm", words)
         yield made if made.flagged else None
+
+
+_OIL_DENSITY = 870.0  # kg/m^3, of mineral oil, 850 to 900
+_ONE_OIL = 2.0
+"""Greatest ratio of two viscosities of one oil: 20 K of a mineral oil apart."""
+
+
+def _oil_finding(case: Case) -> Implied | None:
+    """The viscosity of the oil at the cam, against that of the oil in the roller bearing."""
+    bearing = None if case.roller_given is None else case.roller_given.bearing
+    if case.lubricant is None or bearing is None or bearing.lubrication != "oil":
+        return None
+    if bearing.viscosity is None:
+        return None
+    at_cam = case.lubricant.viscosity / _OIL_DENSITY
+    nearest = float(np.clip(at_cam, bearing.viscosity / _ONE_OIL, bearing.viscosity * _ONE_OIL))
+    key, other = "lubricant.viscosity", "roller.bearing.viscosity"
+    words = (
+        f"{key} = {text_of(case, key)}, {shown(at_cam, 'mm^2/s', 3)} of a mineral oil, but {other}"
+    )
+    words += f" = {text_of(case, other)}: of one oil both are as at one temperature"
+    stated, kept = (in_unit(each, "mm^2/s") for each in (at_cam, nearest))
+    made = Implied(PLAUSIBILITY, key, stated, kept, "mm^2/s", words)
+    return made if made.flagged else None
 
 
 def _spring_findings(case: Case, torques: Mapping[str, Torque]) -> Iterator[Implied]:

@@ -66,6 +66,19 @@ def test_a_motor_at_another_speed_than_the_load_case_has_one_warning() -> None:
     )
 
 
+def test_two_viscosities_of_one_oil_have_one_warning() -> None:
+    """24 mPa s at the cam are 27.6 mm2/s; grease in the bearing is another oil."""
+    text = (ROOT / "cases" / "machines" / "compressor.toml").read_text(encoding="utf-8")
+    assert warnings(parse_case(text)) == []
+    thin = changed(text, 'viscosity = "27 mm^2/s"', 'viscosity = "12 mm^2/s"')
+    (one,) = warnings(parse_case(thin))
+    assert (
+        one.startswith("lubricant.viscosity = ") and "roller.bearing.viscosity = 12 mm^2/s" in one
+    )
+    greased = changed(thin, 'lubrication = "oil"', 'lubrication = "grease_for_life"')
+    assert warnings(parse_case(greased)) == []
+
+
 def test_a_rate_a_thousand_times_too_low_contradicts_the_torque() -> None:
     text = changed(REDESIGN, 'rate = "180 kN/m"', 'rate = "180 N/m"')
     text = text[: text.index("[spring.design]")] + text[text.index("[cam]") :]
