@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from camwright.geometry.arrays import Array
+from camwright.geometry.extrema import first_greatest
 from camwright.geometry.pitch_curve import magnitude
 from camwright.pipeline.base import levers
 from camwright.pipeline.base import value_groups as given
@@ -155,7 +156,8 @@ def contact_temperature(solution: Solution) -> Demand:
     worst = worst_case(solution.cycles, lambda cycle: float(contact(cycle).max()))
     if np.isfinite(worst.value):
         hottest = next(each for each in solution.cycles if each.load_case == worst.load_case)
-        worst = worst._replace(cam_angle=float(hottest.theta[contact(hottest).argmax()]))
+        angle = hottest.theta[first_greatest(contact(hottest))]
+        worst = worst._replace(cam_angle=float(angle))
     flashes = max(float(flash(cycle).max()) for cycle in solution.cycles)
     note = f"flash temperature up to {shown(flashes, 'K', 3)}"
     return Demand(worst.value, limit, worst, note=note, figures=(oil.source,) if oil else ())
