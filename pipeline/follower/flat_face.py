@@ -45,7 +45,7 @@ class FlatFace(Part):
     width: Length
     depth: Length
     thickness: Length
-    friction: Annotated[float, In(above=0, below=2)] | None = None
+    friction: Annotated[float, In(above=0, at_most=1)] | None = None
     roughness: Annotated[float, In("um", above=0, at_most=1000)] | None = None
     pv_limit: Annotated[float, In("MPa m/s", above=0, at_most=1e9)] | None = None
     material: Material

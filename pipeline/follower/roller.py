@@ -61,7 +61,7 @@ class Roller(Part):
     inertia: Annotated[float, In("kg mm^2", above=0, at_most=1e9)] | None = None
     mass: Mass | None = None
     axial_offset: Annotated[float, In("mm", at_least=0, at_most=1000)] | None = None
-    friction: Annotated[float, In(above=0, below=2)] | None = None
+    friction: Annotated[float, In(above=0, at_most=1)] | None = None
     roughness: Annotated[float, In("um", above=0, at_most=1000)] | None = None
     material: Material
     end: BodyEnd | None = None
