@@ -22,7 +22,6 @@ from camwright.pipeline.checks import (
     manufacture,
     part_data,
     part_strength,
-    plane_strain_validity,
     roller_bearing,
     solution_verification,
     spring_strength,
@@ -60,7 +59,6 @@ MODULES: tuple[ModuleType, ...] = (
     flat_face_sliding,
     guide_wear,
     manufacture,
-    plane_strain_validity,
     solution_verification,
 )
 """Modules of checks, in the order of the calculation; each check declared in one is listed."""
