@@ -352,6 +352,12 @@ def _camshaft(case: Case) -> Iterator[Rule]:
             return abs(at(teeth) - needed(at)) > _TEETH * needed(at)
 
         yield Rule(teeth, differs, limit, needed)
+
+        def pitch(at: At) -> Any:
+            return 2.0 * at("camshaft.gear_radius") * at(pinion) / at(teeth)
+
+        limit = "< {}, the pitch diameter of its pinion"
+        yield _less("camshaft.gear.machine_shaft_diameter", pitch, limit)
     # outside and width of any ball bearing on the widest section
     sections = [section.diameter for section in shaft.sections]
     widest = max([shaft.diameter or nan, *sections]) if sections else shaft.diameter or nan

@@ -318,6 +318,7 @@ diameter = "30 mm"
 material = "c45"
 bearing_rating = "19.5 kN"           # of two 6206
 bearing_static_rating = "11.2 kN"
+bearing_width = "16 mm"
 slip_torque = "120 N m"              # the cam shrunk on; 0 N m: sliding fit
 counterweight = { residual = "20 g mm", position = "35 mm" }  # balanced on a bench
 
@@ -330,6 +331,7 @@ bending_limit = "430 MPa"
 contact_limit = "1500 MPa"
 pinion_bending_limit = "430 MPa"
 pinion_contact_limit = "1500 MPa"
+machine_shaft_diameter = "16 mm"      # beside the cam; 0 mm where it ends at its pinion
 source = "ISO 6336-5, case-hardened steel, quality MQ, recalled: verify"
 
 [roller]

@@ -11,6 +11,7 @@ from camwright.geometry.errors import InputError
 from camwright.pipeline.base.quantities import In
 from camwright.pipeline.case.requirements_section import Waiver
 from camwright.pipeline.checks import (
+    assembly,
     cam_shape,
     camshaft_strength,
     contact_strength,
@@ -58,6 +59,7 @@ MODULES: tuple[ModuleType, ...] = (
     camshaft_strength,
     flat_face_sliding,
     guide_wear,
+    assembly,
     manufacture,
     solution_verification,
 )

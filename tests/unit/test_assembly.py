@@ -12,12 +12,19 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.spatial import cKDTree
 
+from camwright.geometry.arrays import Array
 from camwright.geometry.errors import InputError
 from camwright.pipeline.case.cards.catalogue import catalogue_of
 from camwright.pipeline.case.cards.shaft_seats import seats
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_file import case_of, with_values
+from camwright.pipeline.case.given_lift import given_lift
+from camwright.pipeline.checks.check import verdict
+from camwright.pipeline.checks.registry import CHECKS, checks_of
+from camwright.pipeline.contact.tiers import Tier
+from camwright.pipeline.cycle.solution import Solution, solution
 from camwright.pipeline.follower.bearing_life import rating_bound, static_rating_bound
 
 DATA = Path(__file__).parents[1] / "data"
@@ -157,3 +164,191 @@ def test_no_full_complement_exceeds_the_bound_of_a_size() -> None:
         assert 0.5 * bound < most < bound / 1.4
         assert 0.4 * static_rating_bound(1e-3 * outside, 1e-3 * width) < still
         assert still < static_rating_bound(1e-3 * outside, 1e-3 * width) / 1.4
+
+
+# --- the checks ------------------------------------------------------------------------------
+
+BY_ID = {declared.id: declared for declared in CHECKS}
+FAILING = {
+    ("camshaft.bearing_spacing", "camshaft.cam_position"): ("bearing_gap", "of no width"),
+    ("camshaft.cam_position",): ("bearing_gap", "fork to bearing 1"),
+    ("roller.fork.cheek_height",): ("fork_shaft_gap", "shaft taken as 30 mm thick"),
+}
+"""Faults of the file that no number contradicts: the check that fails, and its remark."""
+STATED = {"camshaft.bearing_width": "16 mm", "camshaft.gear.machine_shaft_diameter": "16 mm"}
+
+
+def solved(case: Case) -> Solution:
+    return solution(case, case.contour(given_lift(case)), Tier.PREVIEW, torques={}, positions=36)
+
+
+@cache
+def assembled() -> Solution:
+    """The mended case, with the two lengths that it leaves out."""
+    return solved(with_values(sound(), STATED))
+
+
+def gap(name: str, of: Solution) -> float:
+    made = BY_ID[name](of)
+    assert made is not None
+    assert made.demand is not None
+    return made.demand
+
+
+def test_the_mended_case_passes_every_check_of_its_assembly() -> None:
+    for name in ("bearing_gap", "gear_gap", "machine_shaft_gap", "fork_shaft_gap", "fork_gap",
+                 "guide_gap"):  # fmt: skip
+        made = BY_ID[name](assembled())
+        assert made is not None
+        assert made.status == "pass", made
+
+
+@pytest.mark.parametrize(("keys", "expected"), list(FAILING.items()))
+def test_each_other_fault_fails_the_check_of_its_name(
+    keys: tuple[str, ...], expected: tuple[str, str]
+) -> None:
+    """Alone in an otherwise sound case; no other check of the assembly fails."""
+    name, words = expected
+    every = checks_of(solved(case_of(tables(*keys))))
+    failing = {one.id: one for one in every if one.must_have and one.status == "fail"}
+    assert name in failing
+    assert failing.keys() & {"gear_gap", "machine_shaft_gap", "fork_gap", "guide_gap"} == set()
+    assert words in failing[name].note
+    assert verdict(every) == "fail"
+
+
+@pytest.mark.parametrize(
+    ("values", "name", "words"),
+    [
+        ({"camshaft.gear_position": "-15 mm"}, "bearing_gap", "gear to bearing 1"),
+        ({"camshaft.gear_position": "58 mm"}, "gear_gap", "fork to gear"),
+        ({"camshaft.gear_position": "30 mm"}, "gear_gap", " to gear"),
+        ({"camshaft.gear_radius": "30 mm"}, "machine_shaft_gap", "cam to machine shaft"),
+        ({"camshaft.mesh_angle": "0 deg"}, "machine_shaft_gap", "roller to machine shaft"),
+        ({"roller.pin.span": "22 mm"}, "fork_gap", "cheek to roller"),
+        ({"roller.fork.cheek_length": "23 mm"}, "fork_gap", "bridge to roller"),
+        ({"roller.fork.cheek_length": "32 mm"}, "guide_gap", ""),
+        ({"camshaft.diameter": "100 mm"}, "fork_shaft_gap", "100 mm"),
+        ({"cam.width": "18.5 mm", "roller.fork.cheek_height": "50 mm"}, "fork_gap", "cheek to cam"),
+    ],
+)  # fmt: skip
+def test_siblings_of_the_faults_fail_too(values: dict[str, str], name: str, words: str) -> None:
+    made = BY_ID[name](solved(with_values(sound(), STATED | values)))
+    assert made is not None
+    assert made.status == "fail", made
+    assert words in made.note
+
+
+def test_what_a_case_leaves_out_is_bounded_or_missing() -> None:
+    """A bearing at most as wide as its bore, a machine shaft at most as thick as its pinion."""
+    cases = [
+        ({}, "bearing_gap", "not_evaluated", "camshaft.bearing_width"),  # 25 - 10 - 30/2 mm
+        ({"camshaft.gear_position": "-30 mm"}, "bearing_gap", "pass", "an upper bound"),
+        ({"camshaft.gear_position": "-9 mm"}, "bearing_gap", "fail", "of no width"),
+        ({}, "machine_shaft_gap", "not_evaluated", "camshaft.gear.machine_shaft_diameter"),
+        ({"camshaft.gear_radius": "48 mm"}, "machine_shaft_gap", "pass", "wide as its pinion"),
+        ({"camshaft.gear_radius": "30 mm"}, "machine_shaft_gap", "fail", "of no diameter"),
+    ]
+    for values, name, status, words in cases:
+        made = BY_ID[name](solved(with_values(sound(), values)))
+        assert made is not None
+        assert (made.status, words in made.note) == (status, True), made
+    at_pinion = with_values(sound(), {"camshaft.gear.machine_shaft_diameter": "0 mm"})
+    assert BY_ID["machine_shaft_gap"](solved(at_pinion)) is None
+
+
+def circle(radius: float, count: int = 1440) -> Array:
+    turn = np.arange(count) * (2.0 * np.pi / count)
+    return radius * np.array([np.cos(turn), np.sin(turn)])
+
+
+def turned(points: Array, angle: float) -> Array:
+    cosine, sine = np.cos(angle), np.sin(angle)
+    return np.array([[cosine, -sine], [sine, cosine]]) @ points
+
+
+def apart(one: Array, other: Array) -> float:
+    """Distance of two polygons (2, n) that do not cross, m: corners of each from edges of both."""
+
+    def corners(points: Array, ring: Array) -> float:
+        near = cKDTree(ring.T).query(points.T)[0]
+        few = points[:, np.argsort(near)[:8]]
+        start, along = ring[:, None, :], (np.roll(ring, -1, axis=1) - ring)[:, None, :]
+        off = few[:, :, None] - start
+        share = np.clip((off * along).sum(axis=0) / (along**2).sum(axis=0), 0.0, 1.0)
+        return float(np.hypot(*(off - share * along)).min())
+
+    return min(corners(one, other), corners(other, one))
+
+
+@pytest.mark.parametrize(
+    ("mesh_angle", "offset", "cheeks"), [(180.0, 0.0, 22.0), (90.0, 3.0, 22.0), (25.0, 3.0, 60.0)]
+)
+def test_gaps_in_the_plane_of_the_cam_by_polygons_over_the_turn(
+    mesh_angle: float, offset: float, cheeks: float
+) -> None:
+    """machine_shaft_gap and fork_shaft_gap within 1 um: outlines, turned through the cam's turn.
+
+    The cam turns clockwise under a follower that rises along x; cheeks with round ends, the bridge
+    and 200 mm of stem as wide as them.
+    """
+    values = STATED | {
+        "camshaft.mesh_angle": f"{mesh_angle} deg", "cam.offset": f"{offset} mm",
+        "roller.fork.cheek_height": f"{cheeks} mm", "camshaft.gear_radius": "70 mm",
+    }  # fmt: skip
+    of = solved(with_values(sound(), values))
+    machine, pitch = of.machine, of.contour.pitch
+    contour, shaft = of.contour.polygon(3600), circle(0.015)
+    mesh = np.radians(mesh_angle)
+    cranks = [  # on either side of the follower: the check takes the worse side of an offset
+        circle(0.008) + 0.07 * 1.5 * np.array([[np.cos(mesh)], [side * np.sin(mesh)]])
+        for side in (1.0, -1.0)
+    ]
+    half, radius = 0.5e-3 * cheeks, machine.roller.radius
+    end = circle(half)
+    length = np.tile(np.linspace(0.0, 0.2, 201), 2)
+    sides = np.array([length, np.repeat([half, -half], 201)])
+    cheek = np.concatenate([end[:, end[0] < 0.0], sides], axis=1)
+    order = np.argsort(np.arctan2(cheek[1], cheek[0] - 0.05))
+    cheek, roller = cheek[:, order], circle(radius)
+    to_shaft, to_crank = [], []
+    for theta in np.arange(0.0, 2.0 * np.pi, np.pi / 60.0):
+        # the pitch curve is that of the cam's frame: turned back, the roller centre is on the axis
+        place = turned(pitch.points(np.array([theta])), -theta)
+        assert abs(abs(place[1, 0]) - machine.cam.offset) < 1e-9
+        to_shaft.append(apart(cheek + place, shaft))
+        parts = [turned(contour, -theta), roller + place, cheek + place]
+        to_crank += [apart(each, crank) for each in parts for crank in cranks]
+    assert gap("fork_shaft_gap", of) == pytest.approx(min(to_shaft), abs=1e-6)
+    assert gap("machine_shaft_gap", of) == pytest.approx(min(to_crank), abs=1e-6)
+
+
+def test_gaps_along_the_camshaft_by_counting_free_micrometres() -> None:
+    """bearing_gap, gear_gap and fork_gap: cells of 1 um that neither of two parts fills."""
+    cells = 1e-6 * (np.arange(-200_000, 200_000) + 0.5)
+
+    def filled(*ends: tuple[float, float]) -> Array:
+        return np.any([(low < cells) & (cells < high) for low, high in ends], axis=0)
+
+    def free(one: Array, other: Array) -> float:
+        places = np.flatnonzero(one), np.flatnonzero(other)
+        gaps = [abs(places[0][:, None] - places[1][[0, -1]][None, :]).min() - 1,
+                abs(places[1][:, None] - places[0][[0, -1]][None, :]).min() - 1]  # fmt: skip
+        return 1e-6 * min(gaps)
+
+    cam = filled((0.035 - 0.00775, 0.035 + 0.00775))
+    middle = 0.035 + 0.0003  # of the roller at its axial offset, on either side
+    fork = filled(*((m + s * 0.0115 - 0.0025, m + s * 0.0115 + 0.0025)
+                    for m in (middle, 0.035 - 0.0003) for s in (-1, 1)))  # fmt: skip
+    gear = filled((-0.035, -0.015))
+    bearings = [filled((-0.008, 0.008)), filled((0.062, 0.078))]
+    parts = (cam, fork, gear)
+    assert gap("bearing_gap", assembled()) == pytest.approx(
+        min(free(part, each) for part in parts for each in bearings), abs=1e-6
+    )
+    assert gap("gear_gap", assembled()) == pytest.approx(
+        min(free(gear, cam), free(gear, fork)), abs=1e-6
+    )
+    cheek = filled((middle + 0.0115 - 0.0025, middle + 0.0115 + 0.0025))
+    roller = filled((middle - 0.00875, middle + 0.00875))
+    assert gap("fork_gap", assembled()) == pytest.approx(free(cheek, roller), abs=1e-6)
