@@ -273,8 +273,9 @@ def apart(one: Array, other: Array) -> float:
     def corners(points: Array, ring: Array) -> float:
         near = cKDTree(ring.T).query(points.T)[0]
         few = points[:, np.argsort(near)[:8]]
-        start, along = ring[:, None, :], (np.roll(ring, -1, axis=1) - ring)[:, None, :]
-        off = few[:, :, None] - start
+        along = np.roll(ring, -1, axis=1) - ring
+        edges = np.any(along != 0.0, axis=0)
+        along, off = along[:, None, edges], few[:, :, None] - ring[:, None, edges]
         share = np.clip((off * along).sum(axis=0) / (along**2).sum(axis=0), 0.0, 1.0)
         return float(np.hypot(*(off - share * along)).min())
 
