@@ -57,7 +57,8 @@ def sourced(text: str) -> dict[str, str]:
 
 DRAWN = {
     "acceleration_step", "anti_rotation", "cam_radius", "chord_error", "concave_radius",
-    "curvature_rate", "curvature_ratio", "face_width", "guide_gap", "guide_length", "minimum_wall",
+    "bearing_gap", "curvature_rate", "curvature_ratio", "face_width", "fork_gap",
+    "fork_shaft_gap", "gear_gap", "machine_shaft_gap", "guide_gap", "guide_length", "minimum_wall",
     "pressure_angle", "second_contact", "self_intersection", "spring_buckling", "tool_gouge",
     "undercut",
 }  # fmt: skip
