@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from math import cos, isnan, sin, sqrt
+from math import cos, isnan, radians, sin, sqrt
 from typing import NamedTuple
 
 from camwright.geometry.errors import InputError
@@ -11,7 +11,7 @@ from camwright.pipeline.base import levers
 from camwright.pipeline.base.units import shown
 from camwright.pipeline.case.limits import ASSEMBLY_GAP
 from camwright.pipeline.case.machine import Machine
-from camwright.pipeline.checks.check import NONE, Demand, check
+from camwright.pipeline.checks.check import NONE, ROUNDING, Demand, check
 from camwright.pipeline.checks.missing_keys import lacking
 from camwright.pipeline.cycle.solution import Solution
 from camwright.pipeline.follower.camshaft_loads import Camshaft, CamshaftGear
@@ -147,6 +147,33 @@ def gear_gap(solution: Solution) -> Demand:
     gear = _Length("gear", shaft.gear_position, 0.5 * _gear(shaft).width)
     value, name = min((part.gap(gear), part.name) for part in _on_the_shaft(machine))
     return Demand(value, machine.limits[ASSEMBLY_GAP], note=f"{name} to gear")
+
+
+_TEETH_MIN = 14.0  # of full depth at 20 deg without profile shift; 17.1 in theory
+
+
+@check(
+    title="Least number of teeth against undercut",
+    unit="-",
+    sense="at_least",
+    source="14 teeth of 20 deg, practical limit of unshifted full-depth teeth, Roloff/Matek, gears:"
+    " verify",
+    method="fewer teeth of gear and pinion; the limit as 1/sin^2 of the pressure angle",
+    formula="min(z_1, z_2) >= 14 (sin 20 deg/sin alpha)^2; z: teeth of gear and pinion, alpha:"
+    " camshaft.pressure_angle",
+    reason="Undercut teeth are thinner at the root than their strength is judged, and mesh less.",
+    moved_by_tolerance=False,
+    part="gear",
+    load_cases=NONE,
+    page="Camshaft",
+)
+def tooth_count(solution: Solution) -> Demand:
+    """Fewer of the teeth of gear and pinion."""
+    shaft = _shaft(solution.machine)
+    gear, angle = _gear(shaft), sin(shaft.pressure_angle)
+    least = _TEETH_MIN * (sin(radians(20.0)) / angle) ** 2 * (1.0 - ROUNDING) if angle else None
+    module = shown(2.0 * shaft.gear_radius / gear.teeth, "mm")
+    return Demand(float(min(gear.teeth, gear.pinion_teeth)), least, note=f"module {module}")
 
 
 def _to_follower(machine: Machine, along: float, across: float) -> float:

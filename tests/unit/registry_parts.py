@@ -147,6 +147,19 @@ by_limit(
     base=lambda: beside(0.02),
     missing=lambda: beside(None),
 )
+tried(
+    "tooth_count",
+    limited(
+        "tooth_count",
+        lambda z: with_shaft(
+            pressure_angle=float(np.arcsin(np.sqrt(14.0 / z) * np.sin(np.pi / 9.0)))
+        ),
+    ),
+    None,
+    None,  # whole numbers of the case
+    20.0,
+    "teeth of the pinion",
+)
 by_limit(
     "fork_shaft_gap",
     "assembly_gap",

@@ -353,3 +353,41 @@ def test_gaps_along_the_camshaft_by_counting_free_micrometres() -> None:
     cheek = filled((middle + 0.0115 - 0.0025, middle + 0.0115 + 0.0025))
     roller = filled((middle - 0.00875, middle + 0.00875))
     assert gap("fork_gap", assembled()) == pytest.approx(free(cheek, roller), abs=1e-6)
+
+
+@pytest.mark.parametrize("pressure_angle", [15.0, 20.0, 25.0])
+def test_a_rack_cuts_no_tooth_of_the_involute_within_the_limit(pressure_angle: float) -> None:
+    """tooth_count: the involute that a rack of a depth of one module leaves, by rolling it.
+
+    The tip of the rack goes on below the foot of the involute, the base circle along the line of
+    action, where (z/2) sin^2(alpha) < 1 module: at 17.1 teeth of 20 deg. The limit is 14/17.1 of
+    that number, the practical one.
+    """
+    angle, counts = np.radians(pressure_angle), np.arange(8, 60)
+    reach = []
+    for count in counts:
+        pitch = 0.5 * count  # of a module of 1; the rack's flank touches along the line of action
+        along = np.linspace(0.0, 2.0, 200_001) / np.sin(angle)  # from the pitch point
+        foot = pitch * np.sin(angle)  # where the line of action touches the base circle
+        reach.append(float((along * np.sin(angle))[along <= foot].max()))
+    undercut = counts[np.array(reach) < 1.0 - 1e-4]
+    case = with_values(sound(), STATED | {"camshaft.pressure_angle": f"{pressure_angle} deg"})
+    made = BY_ID["tooth_count"](solved(case))
+    assert made is not None
+    assert made.limit is not None
+    assert made.demand == 20.0
+    theory = 2.0 / np.sin(angle) ** 2
+    assert undercut.max() < theory <= undercut.max() + 1
+    assert made.limit == pytest.approx(theory * 14.0 / 17.0973, rel=1e-4)
+
+
+def test_few_teeth_of_a_ratio_fail() -> None:
+    few = {"camshaft.gear.teeth": 26, "camshaft.gear.pinion_teeth": 13}
+    made = BY_ID["tooth_count"](solved(with_values(sound(), STATED | few)))
+    assert made is not None
+    assert made.status == "fail"
+    fourteen = {"camshaft.gear.teeth": 28, "camshaft.gear.pinion_teeth": 14}
+    made = BY_ID["tooth_count"](solved(with_values(sound(), STATED | fourteen)))
+    assert made is not None
+    assert made.status == "pass"
+    assert "module 2.857 mm" in made.note
