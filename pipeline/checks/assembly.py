@@ -9,7 +9,7 @@ from typing import NamedTuple
 from camwright.geometry.errors import InputError
 from camwright.pipeline.base import levers
 from camwright.pipeline.base.units import shown
-from camwright.pipeline.case.limits import ASSEMBLY_GAP
+from camwright.pipeline.case.limits import ASSEMBLY_GAP, CAM_RADIUS
 from camwright.pipeline.case.machine import Machine
 from camwright.pipeline.checks.check import NONE, ROUNDING, Demand, check
 from camwright.pipeline.checks.missing_keys import lacking
@@ -219,6 +219,8 @@ def machine_shaft_gap(solution: Solution) -> Demand | None:
     if isnan(tip):
         return Demand(None, limit)
     if stated is not None:
+        most = shown(centre - 0.5 * stated - limit, "mm")
+        words += f"; limits.{CAM_RADIUS.id} up to {most} keeps the cam off it"
         return Demand(room - 0.5 * stated, limit, note=words)
     gap, radius = _between(lambda radius: room - radius, 0.0, pinion, limit)
     if gap is None:
