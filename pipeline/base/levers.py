@@ -108,7 +108,11 @@ _PRELOAD, _RATE = Scaled(_PRELOADS, 1), one("spring.rate")
 SPRING = (_PRELOAD, _RATE)
 MASS = one("follower.mass", -1, 2.0)
 PRIME = one("cam.prime_radius", most=2.0)
-RADIUS = Scaled(("roller.radius",), 1, along=("cam.prime_radius", "follower.overhang_at_max_lift"))
+RADIUS = Scaled(
+    ("roller.radius",),
+    1,
+    along=("cam.prime_radius", "follower.overhang_at_max_lift", "roller.fork.cheek_length"),
+)
 WIDTH = Scaled(("cam.width", "roller.width", "roller.pin.span", "follower.face.depth"), 1)
 # A cam that ends within the flat of the follower has a lower pressure at its ends.
 NARROWER = Scaled(("cam.width", "cam.key.length"), -1, 1.25)

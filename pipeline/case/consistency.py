@@ -23,6 +23,7 @@ from camwright.pipeline.contact.cam_body import CamBody
 from camwright.pipeline.engine.cylinder import CylinderEngine
 from camwright.pipeline.engine.pickup_voltage import VoltageTable
 from camwright.pipeline.engine.speed_file import SpeedTable
+from camwright.pipeline.follower.bearing_life import rating_bound, static_rating_bound
 from camwright.pipeline.follower.follower_kind import FollowerKind
 from camwright.pipeline.follower.guide_friction import friction_limits
 from camwright.pipeline.follower.spring import Spring
@@ -38,6 +39,7 @@ _DIGITS = (4, 8, 17)  # more where a value and its limit would read alike
 _ROUND_OFF = 1e-9  # of a share of the friction, and of an angle
 _POSITIONS_MIN = 36  # of the cam per cycle of the machine
 _SHARES = 1e-6  # of the sum of the duty
+_OUTSIDE, _WIDE = 4.0, 2.0  # of a rolling bearing over its bore, more than dimension series 4
 
 
 At = Callable[[str], Any]
@@ -322,12 +324,50 @@ def _geometry(case: Case) -> Iterator[Rule]:
         limit = f"< {{}}, {_KEYWAY_WIDTH:g} times {{cam.bore_radius}}"
         yield _less("cam.keyway.width", lambda at: _KEYWAY_WIDTH * at("cam.bore_radius"), limit)
     yield from _key(case)
+    yield from _camshaft(case)
     for side in "ab":
         limit = ">= {follower.stem_diameter}"
         yield _at_least(f"guides.{side}.diameter", lambda at: at("follower.stem_diameter"), limit)
     limit = f">= {{}}, half of {{guides.a.length}}, or the {case.facing.word} enters guide A"
     key = "follower.overhang_at_max_lift"
     yield _at_least(key, _half("guides.a.length"), limit)
+
+
+_TEETH = 1e-5  # of a ratio of teeth written as a decimal number
+
+
+def _camshaft(case: Case) -> Iterator[Rule]:
+    """The teeth have the ratio of the mechanism, and the bearings the size of their ratings."""
+    shaft = case.camshaft
+    if shaft is None:
+        return
+    if shaft.gear is not None:
+        teeth, pinion = "camshaft.gear.teeth", "camshaft.gear.pinion_teeth"
+        limit = f"{{}}, {{mechanism.gear_ratio}} times {{{pinion}}}"
+
+        def needed(at: At) -> Any:
+            return at("mechanism.gear_ratio") * at(pinion)
+
+        def differs(at: At) -> Any:
+            return abs(at(teeth) - needed(at)) > _TEETH * needed(at)
+
+        yield Rule(teeth, differs, limit, needed)
+
+        def pitch(at: At) -> Any:
+            return 2.0 * at("camshaft.gear_radius") * at(pinion) / at(teeth)
+
+        limit = "< {}, the pitch diameter of its pinion"
+        yield _less("camshaft.gear.machine_shaft_diameter", pitch, limit)
+    # outside and width of any ball bearing on the widest section
+    sections = [section.diameter for section in shaft.sections]
+    widest = max([shaft.diameter or nan, *sections]) if sections else shaft.diameter or nan
+    outside, wide = _OUTSIDE * widest, _WIDE * widest
+    limit = "<= {}, the greatest of rolling bearings on a shaft of {camshaft.diameter}, ISO 281"
+    for key, bound in (
+        ("camshaft.bearing_rating", rating_bound(outside, wide)),
+        ("camshaft.bearing_static_rating", static_rating_bound(outside, wide)),
+    ):
+        yield _at_most(key, _fixed(bound), limit)
 
 
 def _half(key: str) -> Callable[[At], Any]:
@@ -409,6 +449,18 @@ def _roller(case: Case) -> Iterator[Rule]:
         limit,
         _half(ring),
     )
+    limit = "<= {}, the greatest of rolling bearings within {roller.radius} and {roller.width}"
+
+    def dynamic(at: At) -> Any:
+        return rating_bound(2.0 * at("roller.radius"), at("roller.width"))
+
+    def static(at: At) -> Any:
+        return static_rating_bound(2.0 * at("roller.radius"), at("roller.width"))
+
+    for name, bound in (
+        ("C", dynamic), ("C0", static), ("radial_limit", static), ("static_radial_limit", static),
+    ):  # fmt: skip
+        yield _at_most(f"roller.bearing.{name}", bound, limit)
     pin = case.roller.pin
     if pin is not None and pin.mounting == "straddled":
         yield _at_least("roller.pin.span", lambda at: at("roller.width"), ">= {roller.width}")

@@ -171,6 +171,11 @@ GUIDE_GAP = Limit(
     "guide_gap", "gap at guide A", In("mm", above=0, at_most=1000), 0.001,
     "1 to 2 mm, shop practice: verify", "at_least",
 )  # fmt: skip
+ASSEMBLY_GAP = Limit(
+    "assembly_gap", "gap between parts that pass one another",
+    In("mm", above=0, at_most=1000), 2e-4,
+    "0.2 mm, tolerance of lengths from 6 to 30 mm, ISO 2768-1 medium: verify", "at_least",
+)  # fmt: skip
 CAM_RADIUS = OpenLimit(
     "cam_radius", "cam radius", _LENGTH, "installation space of the case",
     found="installation space", example="90 mm",

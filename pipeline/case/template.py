@@ -69,9 +69,9 @@ def _text(name: str, kind: Kind) -> str:
     parts = (_HEAD, _SOURCES[kind], _MACHINE, _BALANCE if balances else "", _REQUIREMENTS)
     text = "\n".join(part for part in parts if part).replace("@NAME@", name)
     reduction = _REDUCTION if balances else ""
-    ratio, of_shaft, speed, most = _SHAFTS["shaft" if kind in _MACHINES else "crank"]
-    for mark, words in (("RATIO", ratio), ("SHAFT", of_shaft), ("SPEED", speed), ("MOST", most)):
-        text = text.replace(f"@{mark}@", words)
+    words = _SHAFTS["shaft" if kind in _MACHINES else "crank"]
+    for mark, word in zip(("RATIO", "SHAFT", "SPEED", "MOST", "PINION"), words, strict=True):
+        text = text.replace(f"@{mark}@", word)
     text = text.replace("@POWER@", _POWER if kind in _WITHOUT_MEAN else "")
     return text.replace("@DATA@", _data_name(name, kind)).replace("@REDUCTION@", reduction)
 
@@ -119,14 +119,14 @@ _MACHINES = ("torque", "harmonics", "compressor", "pump", "press")
 _SHAFTS = {
     "crank": (
         "gear_ratio = 2.0                     # crank turns per cam turn",
-        "crank", "1500 rpm", "1650 rpm",
+        "crank", "1500 rpm", "1650 rpm", "20",
     ),
     "shaft": (
         "gear_ratio = 1.0                     # shaft turns per cam turn; 2.0: two lobes",
-        "shaft", "750 rpm", "825 rpm",
+        "shaft", "750 rpm", "825 rpm", "40",
     ),
 }  # fmt: skip
-"""Drive of the cam, name of the shaft, its speed and over-speed."""
+"""Drive of the cam, name of the shaft, its speed and over-speed, teeth of the pinion."""
 
 
 def _torque_text(torque: Torque) -> str:
@@ -323,18 +323,20 @@ diameter = "30 mm"
 material = "c45"
 bearing_rating = "19.5 kN"           # of two 6206
 bearing_static_rating = "11.2 kN"
+bearing_width = "16 mm"
 slip_torque = "120 N m"              # the cam shrunk on; 0 N m: sliding fit
 counterweight = { residual = "20 g mm", position = "35 mm" }  # balanced on a bench
 
 [camshaft.gear]
 teeth = 40
-pinion_teeth = 20
+pinion_teeth = @PINION@
 width = "20 mm"
 material = "case_hardened"
 bending_limit = "430 MPa"
 contact_limit = "1500 MPa"
 pinion_bending_limit = "430 MPa"
 pinion_contact_limit = "1500 MPa"
+machine_shaft_diameter = "16 mm"      # beside the cam; 0 mm where it ends at its pinion
 source = "ISO 6336-5, case-hardened steel, quality MQ, recalled: verify"
 
 [roller]

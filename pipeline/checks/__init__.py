@@ -22,9 +22,9 @@ In the order of the calculation:
 | `camshaft_strength`     | camshaft, its bearings and driving gear    | sigma, Pa; L10, s; rad   |
 | `flat_face_sliding`     | width and PV value of a flat face          | m; PV, Pa m/s            |
 | `guide_wear`            | expansion and wear of the guides           | m                        |
+| `assembly`              | gaps between parts that pass one another   | m                        |
 | `manufacture`           | space, waviness, chord error, phase        | m                        |
-| `plane_strain_validity` | validity limits of the plane-strain model  | half-widths              |
-| `solution_verification` | residuals, meshes, certificate, benchmarks | relative                 |
+| `solution_verification` | plane strain, meshes, certificate          | relative; half-widths    |
 | `error_bars`            | error bars of the demands                  | relative                 |
 | `lost_loads`            | checks where the follower leaves the cam   | cam angle, rad           |
 | `confirmation`          | recalled values on which a check rests     |                          |

@@ -42,9 +42,9 @@ def _gap_left(cam: LoadedCam, limit: float) -> Array:
     title="Gap between guide A and cam or {follower}",
     tier=Tier.SCREENING,
     formula="min(h - max|P|, l - x) >= g; h: end of guide A over the cam axis, P: contour, l: end"
-    " of guide A over the roller centre at maximum lift, x: extent of the follower, g:"
-    " limits.guide_gap",
-    reason="Cam or roller would strike the guide.",
+    " of guide A over the roller centre at maximum lift, x: extent of the follower or its fork,"
+    " g: limits.guide_gap",
+    reason="Cam, roller or fork would strike the guide.",
     method="end of guide A less maximum contour radius, and less the follower, at maximum lift",
     lift_can_help=True,
     load_cases=NONE,

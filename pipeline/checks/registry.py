@@ -11,6 +11,7 @@ from camwright.geometry.errors import InputError
 from camwright.pipeline.base.quantities import In
 from camwright.pipeline.case.requirements_section import Waiver
 from camwright.pipeline.checks import (
+    assembly,
     cam_shape,
     camshaft_strength,
     contact_strength,
@@ -22,7 +23,6 @@ from camwright.pipeline.checks import (
     manufacture,
     part_data,
     part_strength,
-    plane_strain_validity,
     roller_bearing,
     solution_verification,
     spring_strength,
@@ -59,8 +59,8 @@ MODULES: tuple[ModuleType, ...] = (
     camshaft_strength,
     flat_face_sliding,
     guide_wear,
+    assembly,
     manufacture,
-    plane_strain_validity,
     solution_verification,
 )
 """Modules of checks, in the order of the calculation; each check declared in one is listed."""

@@ -136,9 +136,13 @@ def _mouth(numbers: Numbers) -> Value:
 
 
 def _extent(numbers: Numbers) -> Value:
-    """Extent of the follower from its reference point towards guide A, m."""
+    """Extent of the follower from its reference point towards guide A, m: of its fork, too."""
     thickness = numbers.get("follower.face.thickness")
-    return numbers["roller.radius"] if thickness is None else thickness
+    if thickness is not None:
+        return thickness
+    radius = numbers["roller.radius"]
+    cheek, bridge = (numbers.get(f"roller.fork.{name}_length") for name in ("cheek", "bridge"))
+    return radius if cheek is None or bridge is None else np.maximum(radius, cheek + bridge)
 
 
 def _size(numbers: Numbers) -> Value:

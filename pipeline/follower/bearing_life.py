@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import log
+from math import log, pi
 from types import MappingProxyType
 
 import numpy as np
@@ -30,6 +30,43 @@ CONTAMINATION: MappingProxyType[Cleanliness, tuple[float, float]] = MappingProxy
 """e_C below and from 100 mm of pitch diameter, lower ends of ISO 281:2007, table 13: verify."""
 
 SOURCE = "v1, e_C and a_ISO of ISO 281:2007, recalled: verify"
+
+
+_ROLLER_FACTOR = 1.15 * 89.0  # b_m f_c of radial roller bearings, greatest
+_STATIC_FACTOR = 44.0  # N/mm2, of radial roller bearings
+_BEYOND = 1.5  # makers' ratings over those of the standards
+_SLIM = 35.0 / 108.0  # power of the roller diameter: 29/27 - 3/4
+
+
+def rating_bound(outer_diameter: Value, width: Value) -> Value:
+    """Dynamic rating C that no rolling bearing of a size exceeds (...), N; lengths in m.
+
+    b_m f_c L^(7/9) Z^(3/4) D_w^(29/27) of a full complement of Z = pi (D - D_w)/D_w rollers as long
+    as the bearing, of the diameter D_w with the greatest rating, times 1.5; ball bearings, with
+    1.3 * 60 (i cos(a))^0.7 Z^(2/3) D_w^1.8, are below.
+
+    References
+    ----------
+    ISO 281:2007, 5.1 and 7.1, tables of f_c and b_m, recalled: verify.
+    """
+    slim = _SLIM / (_SLIM + 0.75)
+    factor: float = _BEYOND * _ROLLER_FACTOR * slim**_SLIM * (pi * (1.0 - slim)) ** 0.75
+    length: Value = (1e3 * width) ** (7.0 / 9.0)
+    diameter: Value = (1e3 * outer_diameter) ** (29.0 / 27.0)
+    return factor * length * diameter
+
+
+def static_rating_bound(outer_diameter: Value, width: Value) -> Value:
+    """Static rating C0 that no rolling bearing of a size exceeds (...), N; lengths in m.
+
+    44 (1 - D_w/D_pw) Z L D_w < 44 pi D L of a full complement of rollers, times 1.5.
+
+    References
+    ----------
+    ISO 76:2006, 8.1, recalled: verify.
+    """
+    area: Value = 1e6 * outer_diameter * width
+    return area * (_BEYOND * _STATIC_FACTOR * pi)
 
 
 def rated_viscosity(speed: Values, pitch_diameter: float) -> Values:

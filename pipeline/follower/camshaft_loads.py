@@ -119,11 +119,14 @@ class CamshaftGear(Part):
     """Spur gear on the camshaft, 20 deg full depth; the pinion is on the crankshaft.
 
     bending_limit and contact_limit: endurance limits of the gear, those of the pinion apart; both
-    have the same width.
+    have the same width. machine_shaft_diameter: beside the cam, 0 where it ends at the pinion.
     """
 
     table: ClassVar[str] = "camshaft.gear"
-    defaults: ClassVar[Mapping[str, str]] = {"pinion_material": "that of the gear"}
+    defaults: ClassVar[Mapping[str, str]] = {
+        "pinion_material": "that of the gear",
+        "machine_shaft_diameter": "at most that of the pinion",
+    }
 
     teeth: Annotated[int, Count(10, 1000)]
     pinion_teeth: Annotated[int, Count(10, 1000)]
@@ -135,6 +138,7 @@ class CamshaftGear(Part):
     pinion_material: Material | None = None
     pinion_bending_limit: Pressure | None = None
     pinion_contact_limit: Pressure | None = None
+    machine_shaft_diameter: Annotated[float, In("mm", at_least=0, at_most=10_000)] | None = None
     source: str = ""
 
 
@@ -210,15 +214,16 @@ class Camshaft(Part):
     own; surface: finish; notch_bending, notch_torsion: fatigue notch factors at cam and gear,
     end-milled keyway; seat_notch_bending, seat_notch_torsion: at the bearings, shoulder with a
     sharp fillet; sections: further sections, or seats of another diameter or notch; bearing_rating,
-    bearing_static_rating: C and C0 of each bearing; rotor_mass: of cam, shaft and gear together;
-    slip_torque: at which the cam slips on its seat without its key, 0 for a sliding fit;
-    counterweight: against the unbalance of the cam. The fatigue_bending of its material is that of
-    a polished specimen under rotating bending.
+    bearing_static_rating: C and C0 of each bearing; bearing_width: of each; rotor_mass: of cam,
+    shaft and gear together; slip_torque: at which the cam slips on its seat without its key, 0 for
+    a sliding fit; counterweight: against the unbalance of the cam. The fatigue_bending of its
+    material is that of a polished specimen under rotating bending.
     """
 
     table: ClassVar[str] = "camshaft"
     defaults: ClassVar[Mapping[str, str]] = {
-        "rotor_mass": "that of the cam alone, on the safe side"
+        "rotor_mass": "that of the cam alone, on the safe side",
+        "bearing_width": "at most the diameter of the shaft",
     }
 
     bearing_spacing: Length
@@ -238,6 +243,7 @@ class Camshaft(Part):
     sections: tuple[ShaftSection, ...] = ()
     bearing_rating: Force | None = None
     bearing_static_rating: Force | None = None
+    bearing_width: Length | None = None
     rotor_mass: Mass | None = None
     slip_torque: Annotated[float, In("N m", at_least=0, at_most=1e6)] | None = None
     gear: CamshaftGear | None = None

@@ -61,9 +61,9 @@ class Guide(Part):
     length: Length
     diameter: Length
     wall: Length | None = None
-    friction: Annotated[float, In(at_least=0, below=2)]
-    friction_min: Annotated[float, In(at_least=0, below=2)] | None = None
-    friction_max: Annotated[float, In(at_least=0, below=2)] | None = None
+    friction: Annotated[float, In(at_least=0, at_most=1)]
+    friction_min: Annotated[float, In(at_least=0, at_most=1)] | None = None
+    friction_max: Annotated[float, In(at_least=0, at_most=1)] | None = None
     lubrication: Literal["dry", "greased_once", "regularly_greased", "flooded"] | None = None
     clearance: Annotated[float, In("mm", at_least=-100, at_most=100)] = 0.0
     material: Material

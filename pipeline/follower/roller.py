@@ -61,7 +61,7 @@ class Roller(Part):
     inertia: Annotated[float, In("kg mm^2", above=0, at_most=1e9)] | None = None
     mass: Mass | None = None
     axial_offset: Annotated[float, In("mm", at_least=0, at_most=1000)] | None = None
-    friction: Annotated[float, In(above=0, below=2)] | None = None
+    friction: Annotated[float, In(above=0, at_most=1)] | None = None
     roughness: Annotated[float, In("um", above=0, at_most=1000)] | None = None
     material: Material
     end: BodyEnd | None = None
@@ -89,6 +89,18 @@ class Roller(Part):
     def extent(self) -> float:
         """Extent from its centre towards guide A, m."""
         return self.radius
+
+    @property
+    def half_depth(self) -> float:
+        """Half of its length along the cam axis, with the pin and fork described, m."""
+        if self.pin is None or self.fork is None:
+            return 0.5 * self.width
+        return max(0.5 * self.width, self.fork.faces(self.pin)[1])
+
+    def away(self, below: float, aside: float) -> float:
+        """Distance of roller and cheeks from a point, m; see `FollowerKind`."""
+        height = None if self.fork is None else self.fork.cheek_height
+        return float(np.hypot(below, aside)) - max(self.radius, 0.5 * (height or 0.0))
 
     @property
     def held_depth(self) -> float:

@@ -166,6 +166,11 @@ class Fork(Part):
         """Number of cheeks: one beside an overhung pin, else two."""
         return 1 if pin.overhung else 2
 
+    def faces(self, pin: Pin) -> tuple[float, float]:
+        """Inner and outer face of a cheek from the middle of the roller along the pin, m."""
+        inner = pin.span if pin.overhung else 0.5 * (pin.span - self.cheek_width)
+        return inner, inner + self.cheek_width
+
     def mass(self, pin: Pin) -> float | None:
         """Mass of cheeks and bridge, blocks of one height, kg; None without a dimension."""
         height, length, bridge = self.cheek_height, self.cheek_length, self.bridge_length

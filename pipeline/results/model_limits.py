@@ -11,8 +11,8 @@ from camwright.pipeline.checks.contact_strength import (
     shakedown_traction,
 )
 from camwright.pipeline.checks.jump_and_jamming import contact_over_speed
-from camwright.pipeline.checks.plane_strain_validity import excluded_zone, held_distance
 from camwright.pipeline.checks.roller_bearing import roller_radial
+from camwright.pipeline.checks.solution_verification import excluded_zone, held_distance
 
 
 @dataclass(frozen=True)

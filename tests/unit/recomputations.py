@@ -4,6 +4,7 @@ A function of a file of the tests; `test_every_check` holds that every check has
 names the check. Rows of missing data have no demand; `test_part_data` tries them.
 """
 
+_ASSEMBLY = "unit/test_assembly.py"
 _CONTACT = "verification/test_contact_audit.py"
 _GUIDES = "verification/test_guides_audit.py"
 _ROLLER = "verification/test_roller_audit.py"
@@ -23,6 +24,13 @@ _BY_TEST: dict[tuple[str, str], tuple[str, ...]] = {
     (_SHAPE, "test_crossings_and_second_contact_by_distances"): (
         "self_intersection", "second_contact",
     ),
+    (_ASSEMBLY, "test_gaps_in_the_plane_of_the_cam_by_polygons_over_the_turn"): (
+        "machine_shaft_gap", "fork_shaft_gap",
+    ),
+    (_ASSEMBLY, "test_gaps_along_the_camshaft_by_counting_free_micrometres"): (
+        "bearing_gap", "gear_gap", "fork_gap",
+    ),
+    (_ASSEMBLY, "test_a_rack_cuts_no_tooth_of_the_involute_within_the_limit"): ("tooth_count",),
     (_SHAPE, "test_waviness_by_a_follower_on_a_sine"): ("profile_waviness",),
     (_SHAPE, "test_ripple_reduction_by_a_fourier_series_of_the_engine_s_torque"): (
         "torque_reduction",

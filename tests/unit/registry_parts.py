@@ -6,13 +6,16 @@ import numpy as np
 from check_tools import by_limit, counted, limit_of, limited, tried, unlimited
 from trial_variants import (
     NAN,
+    beside,
     frictionless,
     reversing,
     unknown,
+    unknown_beside,
     with_bearing,
     with_contact,
     with_cycle,
     with_elastic_force,
+    with_fork,
     with_gear,
     with_guide,
     with_guides,
@@ -122,8 +125,56 @@ by_limit(
     "guide_gap",
     "guide_gap",
     unknown,
-    12.0,
-    "30 mm less half of 20 and the roller's 8",
+    3.0,
+    "30 mm less half of 20, and less the 12 and 5 of the fork",
+)
+by_limit(
+    "bearing_gap",
+    "assembly_gap",
+    None,
+    4.0,
+    "cam at 20 mm less half of 20 of pin and cheek, less half of 12 of the bearing",
+    base=lambda: with_shaft(bearing_width=0.012),
+    missing=lambda: with_shaft(diameter=None),
+)
+by_limit("gear_gap", "assembly_gap", None, 20.0, "20 + 15 mm less half of 10 and of 20")
+by_limit(
+    "machine_shaft_gap",
+    "assembly_gap",
+    unknown_beside,
+    13.0,
+    "75 mm of centre distance less 50 + 10 - 8 mm of the cam and 10 of the shaft",
+    base=lambda: beside(0.02),
+    missing=lambda: beside(None),
+)
+tried(
+    "tooth_count",
+    limited(
+        "tooth_count",
+        lambda z: with_shaft(
+            pressure_angle=float(np.arcsin(np.sqrt(14.0 / z) * np.sin(np.pi / 9.0)))
+        ),
+    ),
+    None,
+    None,  # whole numbers of the case
+    20.0,
+    "teeth of the pinion",
+)
+by_limit(
+    "fork_shaft_gap",
+    "assembly_gap",
+    None,
+    36.5,
+    "50 mm less half of 10 and of 17",
+    missing=lambda: with_fork(cheek_height=None),
+)
+by_limit(
+    "fork_gap",
+    "assembly_gap",
+    None,
+    1.0,
+    "half of 16 - 4 of the fork and of 10 of the roller",
+    missing=lambda: with_fork(cheek_length=None),
 )
 by_limit(
     "cam_radius",

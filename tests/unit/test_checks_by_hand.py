@@ -84,9 +84,9 @@ def test_shakedown_factor_is_johnsons():
 
 
 def test_guide_gap_by_hand():
-    """Roller of 8 mm, guide of 20 mm whose middle is 30 mm off: 12 mm stay."""
+    """Fork of 17 mm, guide of 20 mm whose middle is 30 mm off: 3 mm stay."""
     gap = manufacture.guide_gap(made.solution()).as_record()
-    assert gap["demand"] == pytest.approx(12.0, abs=1e-6)
+    assert gap["demand"] == pytest.approx(3.0, abs=1e-6)
 
 
 def test_guide_length_by_hand():

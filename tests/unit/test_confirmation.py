@@ -104,9 +104,10 @@ def test_relaxed_limits_stand_on_the_record_of_a_preview():
 
 DRAWN = {
     "acceleration_step", "anti_rotation", "cam_radius", "chord_error", "concave_radius",
-    "curvature_rate", "curvature_ratio", "face_width", "guide_gap", "guide_length", "minimum_wall",
+    "bearing_gap", "curvature_rate", "curvature_ratio", "face_width", "fork_gap",
+    "fork_shaft_gap", "gear_gap", "machine_shaft_gap", "guide_gap", "guide_length", "minimum_wall",
     "pressure_angle", "second_contact", "self_intersection", "spring_buckling", "tool_gouge",
-    "undercut",
+    "tooth_count", "undercut",
 }  # fmt: skip
 """Checks of lengths alone, which the drawing fixes."""
 

@@ -41,6 +41,8 @@ MUST_HAVE = {
         "minimum_wall",
         "spring_travel",
     ),
+    *("bearing_gap", "gear_gap", "machine_shaft_gap", "fork_shaft_gap", "fork_gap"),
+    "tooth_count",
     *("guide_gap", "cam_radius", "torque_reduction", "contact_torque"),
     # forces and contact
     *("contact_force_margin", "jump", "jump_speed", "contact_at_overspeed", "friction_balance"),

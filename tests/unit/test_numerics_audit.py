@@ -26,11 +26,10 @@ from camwright.pipeline.checks import torque_balance
 from camwright.pipeline.checks.cam_shape import acceleration_step, closure, tool_gouge
 from camwright.pipeline.checks.error_bars import with_error_bars
 from camwright.pipeline.checks.extremes import greatest, least, worst_case
-from camwright.pipeline.checks.plane_strain_validity import bore_stress as bore_check
-from camwright.pipeline.checks.plane_strain_validity import held_distance
 from camwright.pipeline.checks.registry import DECLARED
 from camwright.pipeline.checks.roller_bearing import roller_life
-from camwright.pipeline.checks.solution_verification import mesh_edges
+from camwright.pipeline.checks.solution_verification import bore_stress as bore_check
+from camwright.pipeline.checks.solution_verification import held_distance, mesh_edges
 from camwright.pipeline.checks.torque_balance import (
     contact_torque,
     contact_work,

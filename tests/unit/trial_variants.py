@@ -100,6 +100,21 @@ def with_gear(**values: Any) -> Solution:
     return with_shaft(gear=made.changed(made.case().camshaft.gear, **values))
 
 
+def with_fork(**values: Any) -> Solution:
+    return with_part("roller", fork=made.changed(made.case().roller.fork, **values))
+
+
+def beside(diameter: float | None) -> Solution:
+    """The solution with a machine shaft beside the cam, 75 mm from the camshaft."""
+    gear = made.changed(made.case().camshaft.gear, machine_shaft_diameter=diameter)
+    return with_shaft(gear=gear, gear_radius=0.05)
+
+
+def unknown_beside() -> Solution:
+    """The same with a contour of which no place is known."""
+    return made.changed_solution(beside(0.02), contour=unknown().contour)
+
+
 def with_guide(side: str, **values: Any) -> Solution:
     guide = made.changed(getattr(made.case().guides, side), **values)
     return with_part("guides", **{side: guide})

@@ -17,7 +17,7 @@ _BYTES_MAX = 64 * 1024
 
 @dataclass(frozen=True, kw_only=True)
 class Seat(Part):
-    """Bore of a cam with its keyway, and the ball bearing of the same bore."""
+    """Bore of a cam with its keyway, and the ball bearing of the same bore with its width."""
 
     table: ClassVar[str] = "seat"
 
@@ -25,6 +25,7 @@ class Seat(Part):
     key_width: Length
     hub_depth: Length
     bearing: str
+    width: Length
     C: Force
     C0: Force
 

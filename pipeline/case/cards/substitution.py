@@ -184,6 +184,10 @@ def _put_roller(data: Tables, case: Case, card: BearingCard, name: str) -> None:
         pin = table_in(roller, "pin")
         span = card.width + max(old.pin.span - old.width, 0.0)
     roller["pin"] = pin | {"diameter": _mm(card.bore), "span": _mm(span)}
+    fork = old.fork
+    if fork is not None and fork.cheek_length is not None:
+        length = fork.cheek_length + radius - old.radius
+        table_in(roller, "fork")["cheek_length"] = _mm(length)
     table_in(data, "cam")["width"] = _mm(card.width - old.width + case.cam.width)
     overhang = case.follower.overhang_at_max_lift + radius - old.radius
     table_in(data, "follower")["overhang_at_max_lift"] = _mm(overhang)

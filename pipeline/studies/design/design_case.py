@@ -255,6 +255,7 @@ diameter = "{_mm(seat.bore)}"
 material = "c45"
 bearing_rating = "{units.format(seat.C, "kN")}"           # of two {seat.bearing}
 bearing_static_rating = "{units.format(seat.C0, "kN")}"
+bearing_width = "{_mm(seat.width)}"
 slip_torque = "{frame.slip_torque:.3g} N m"              # shrunk H7/s6: 45 MPa, friction 0.12
 rotor_mass = "{rotor:.3g} kg"                # cam, gear and shaft
 counterweight = {{ residual = "{1e6 * residual:.3g} g mm", position = "{_mm(0.5 * spacing)}" }}
@@ -269,6 +270,7 @@ bending_limit = "430 MPa"
 contact_limit = "1500 MPa"
 pinion_bending_limit = "430 MPa"
 pinion_contact_limit = "1500 MPa"
+machine_shaft_diameter = "0 mm"      # assumed: the machine shaft ends at its pinion
 source = "ISO 6336-5, case-hardened steel, quality MQ, recalled: verify"
 """
 

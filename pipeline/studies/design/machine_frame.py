@@ -20,7 +20,7 @@ _KEY_STRESS = 0.45 * 370e6 * 0.6  # Pa: 0.9 R_e of C45, halved by reversals, 60 
 _SHAFT_STRESS = 40e6  # Pa: bending of C45 at a press fit, with safety 1.5 and scatter
 _SHRINK = 45e6 * 0.12  # Pa: pressure of H7/s6 times friction
 _TOOTH = 12e6  # Pa: T / (m^3 z b/m) of case-hardened teeth at half of their strength
-_PINION = 20
+_PINION, _TEETH_MOST = 20, 1000
 ROLLER_CHAMFER, AXIAL_OFFSET = 6e-4, 3e-4  # m
 _OVERHANG = 2e-4  # m, of the roller beyond both ends of the cam at its offset
 
@@ -187,7 +187,7 @@ def frame_of(
 
 def _teeth(ratio: float) -> tuple[int, int]:
     """Teeth of gear and pinion of a ratio of shaft turns per cam turn."""
-    for pinion in range(_PINION, 6 * _PINION):
+    for pinion in range(_PINION, _TEETH_MOST + 1):
         gear = pinion * ratio
         if abs(gear - round(gear)) < 1e-6 and round(gear) >= _PINION:
             return round(gear), pinion
