@@ -157,14 +157,13 @@ _ONE_OIL = 2.0
 
 def _oil_finding(case: Case) -> Implied | None:
     """The viscosity of the oil at the cam, against that of the oil in the roller bearing."""
-    bearing = None if case.roller_given is None else case.roller_given.bearing
-    if case.lubricant is None or bearing is None or bearing.lubrication != "oil":
-        return None
-    if bearing.viscosity is None:
-        return None
-    at_cam = case.lubricant.viscosity / _OIL_DENSITY
-    nearest = float(np.clip(at_cam, bearing.viscosity / _ONE_OIL, bearing.viscosity * _ONE_OIL))
     key, other = "lubricant.viscosity", "roller.bearing.viscosity"
+    dynamic, bearing = value_of(case, key), value_of(case, other)
+    oiled = value_of(case, "roller.bearing.lubrication") == "oil"
+    if dynamic is None or bearing is None or not oiled:
+        return None
+    at_cam = dynamic / _OIL_DENSITY
+    nearest = float(np.clip(at_cam, bearing / _ONE_OIL, bearing * _ONE_OIL))
     words = (
         f"{key} = {text_of(case, key)}, {shown(at_cam, 'mm^2/s', 3)} of a mineral oil, but {other}"
     )
