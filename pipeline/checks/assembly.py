@@ -95,7 +95,7 @@ def _bearing_widths(shaft: Camshaft) -> float | None:
     moved_by_tolerance=False,
     part="camshaft",
     load_cases=NONE,
-    levers=(levers.one("camshaft.bearing_width", -1, 2.0),),
+    levers=(levers.Scaled(("camshaft.bearing_spacing", "camshaft.cam_position"), 1),),
     page="Camshaft",
 )
 def bearing_gap(solution: Solution) -> Demand:
