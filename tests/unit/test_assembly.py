@@ -21,13 +21,16 @@ from camwright.geometry.errors import InputError
 from camwright.pipeline.case.cards.catalogue import catalogue_of
 from camwright.pipeline.case.cards.shaft_seats import seats
 from camwright.pipeline.case.case import Case
-from camwright.pipeline.case.case_file import case_of, with_values
+from camwright.pipeline.case.case_file import case_of, read_case, with_values
 from camwright.pipeline.case.given_lift import given_lift
+from camwright.pipeline.case.template import first_case
 from camwright.pipeline.checks.check import verdict
 from camwright.pipeline.checks.registry import CHECKS, checks_of
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.solution import Solution, solution
 from camwright.pipeline.follower.bearing_life import rating_bound, static_rating_bound
+from camwright.pipeline.preview import preview_case
+from camwright.pipeline.smoothing.allowables import limits_of
 
 DATA = Path(__file__).parents[1] / "data"
 FAULTS = {
@@ -409,3 +412,20 @@ def test_few_teeth_of_a_ratio_fail() -> None:
     assert made is not None
     assert made.status == "pass"
     assert "module 2.857 mm" in made.note
+
+
+@pytest.mark.parametrize("room", ["90 mm", None])
+def test_a_synthesis_keeps_off_the_machine_shaft(tmp_path: Path, room: str | None) -> None:
+    """With and without a limit of the cam radius: 54 mm of centre distance leave 45.8 mm."""
+    first = tmp_path / "first.toml"
+    text = first_case("first").text.replace('gear_radius = "40 mm"', 'gear_radius = "36 mm"')
+    line = next(line for line in text.splitlines() if line.startswith("cam_radius = "))
+    first.write_text(text if room else text.replace(line, ""), encoding="utf-8")
+    case = read_case(first)
+    limits = limits_of(case)["cam_radius"]
+    assert limits["machine_shaft_gap"] == pytest.approx(0.054 - 0.008 - 0.0002, abs=1e-12)
+    trial = preview_case(case, corners=False)
+    judged = {one.id: one for one in trial.checks}
+    assert judged["machine_shaft_gap"].status == "pass"
+    assert judged["machine_shaft_gap"].utilisation == pytest.approx(1.0, abs=0.2)
+    assert judged["torque_reduction"].status == "pass"
