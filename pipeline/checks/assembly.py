@@ -9,7 +9,7 @@ from typing import NamedTuple
 from camwright.geometry.errors import InputError
 from camwright.pipeline.base import levers
 from camwright.pipeline.base.units import shown
-from camwright.pipeline.case.limits import ASSEMBLY_GAP, CAM_RADIUS
+from camwright.pipeline.case.limits import ASSEMBLY_GAP
 from camwright.pipeline.case.machine import Machine
 from camwright.pipeline.checks.check import NONE, ROUNDING, Demand, check
 from camwright.pipeline.checks.missing_keys import lacking
@@ -186,6 +186,23 @@ def _to_follower(machine: Machine, along: float, across: float) -> float:
     return min(machine.follower.away(below, abs(across + side)) for side in (offset, -offset))
 
 
+def _centre_distance(shaft: Camshaft) -> float:
+    """Distance of camshaft and machine shaft, m: pitch radii of gear and pinion."""
+    gear = _gear(shaft)
+    return shaft.gear_radius * (1.0 + gear.pinion_teeth / gear.teeth)
+
+
+def room_beside_shaft(machine: Machine) -> float | None:
+    """Greatest radius of a cam that passes the machine shaft, m; None where it is not known."""
+    shaft = machine.camshaft
+    if shaft is None or shaft.gear is None or not machine.scope.covers("gear"):
+        return None
+    diameter = shaft.gear.machine_shaft_diameter
+    if not diameter:
+        return None
+    return _centre_distance(shaft) - 0.5 * diameter - machine.limits[ASSEMBLY_GAP]
+
+
 @check(
     ASSEMBLY_GAP,
     title="Gap between cam or {follower} and the machine shaft",
@@ -211,16 +228,14 @@ def machine_shaft_gap(solution: Solution) -> Demand | None:
     stated = gear.machine_shaft_diameter
     if stated == 0.0:
         return None
-    pinion = shaft.gear_radius * gear.pinion_teeth / gear.teeth
-    centre = shaft.gear_radius + pinion
+    centre = _centre_distance(shaft)
+    pinion = centre - shaft.gear_radius
     place = centre * cos(shaft.mesh_angle), centre * sin(shaft.mesh_angle)
     room, name = min((centre - tip, "cam"), (_to_follower(machine, *place), machine.follower.word))
     words = f"{name} to machine shaft, centre distance {shown(centre, 'mm')}"
     if isnan(tip):
         return Demand(None, limit)
     if stated is not None:
-        most = shown(centre - 0.5 * stated - limit, "mm")
-        words += f"; limits.{CAM_RADIUS.id} up to {most} keeps the cam off it"
         return Demand(room - 0.5 * stated, limit, note=words)
     gap, radius = _between(lambda radius: room - radius, 0.0, pinion, limit)
     if gap is None:

@@ -87,8 +87,8 @@ class Roller(Part):
 
     @property
     def extent(self) -> float:
-        """Extent from its centre towards guide A, m."""
-        return self.radius
+        """Extent from its centre towards guide A, with its fork, m."""
+        return max(self.radius, self.moving.inset)
 
     @property
     def half_depth(self) -> float:

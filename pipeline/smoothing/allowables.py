@@ -13,11 +13,13 @@ from camwright.geometry.lift import Jet
 from camwright.pipeline.base.material import ROOM
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.limits import (
+    CAM_RADIUS,
     KEYWAY_SAFETY,
     PRESSURE_ANGLE,
     RETURN_PRESSURE_ANGLE,
 )
 from camwright.pipeline.case.machine import Machine, machines
+from camwright.pipeline.checks.assembly import machine_shaft_gap, room_beside_shaft
 from camwright.pipeline.checks.cam_shape import lift, spring_travel
 from camwright.pipeline.checks.check import Declaration, Measured
 from camwright.pipeline.checks.contact_strength import (
@@ -80,6 +82,8 @@ def limits_of(case: Case) -> dict[str, dict[str, float]]:
         for stroke, own in zip(how.strokes[1:], how.limits_of_strokes(numbers)[1:], strict=False):
             limits[stroke.limit.id] = {each.id: float(own)}
     limits[PRESSURE] |= pressure_allowables(machine, greatest_cycles(case))
+    if (room := room_beside_shaft(machine)) is not None:
+        limits.setdefault(CAM_RADIUS.id, {})[machine_shaft_gap.id] = room
     limits[spring_travel.id] = _travel_limit(case)
     limits[jump_speed.id] = {jump_speed.id: cam_speed_without_jump(numbers)}
     limits[KEYWAY_SAFETY.id] = {keyway_root.id: machine.limits[KEYWAY_SAFETY]}

@@ -8,6 +8,7 @@ from functools import partial
 
 from camwright.pipeline.base.units import in_unit
 from camwright.pipeline.case.limits import ROLLER_STATIC_SAFETY, AnyLimit, utilisation_slope
+from camwright.pipeline.checks.assembly import machine_shaft_gap
 from camwright.pipeline.checks.cam_shape import TOOL_ALLOWANCE, concave_radius
 from camwright.pipeline.checks.check import FACTOR_MAX
 from camwright.pipeline.checks.demands import NORMAL_FORCE
@@ -73,10 +74,11 @@ def _times(key: str, ratings: Ratings, factor: float) -> Ratings:
     return ratings.times(key, factor)
 
 
-def _of_row(row: AnyLimit, _: Ratings, one: AnyConstraint, value: float) -> Bound:
+def _of_row(row: AnyLimit, ratings: Ratings, one: AnyConstraint, value: float) -> Bound:
     unit = row.quantity.unit or "-"
     shown, factor = in_unit(value, unit), min(one.kept.factor_max, one.kept.value_max / value)
-    relaxed = partial(_times, one.key) if factor else None
+    is_fixed = ratings.by.get(one.key) == machine_shaft_gap.id  # no limit of the case moves it
+    relaxed = partial(_times, one.key) if factor and not is_fixed else None
     return Bound(row.title, shown, unit, utilisation_slope(row, shown), relaxed, factor)
 
 

@@ -21,13 +21,17 @@ from camwright.geometry.errors import InputError
 from camwright.pipeline.case.cards.catalogue import catalogue_of
 from camwright.pipeline.case.cards.shaft_seats import seats
 from camwright.pipeline.case.case import Case
-from camwright.pipeline.case.case_file import case_of, with_values
+from camwright.pipeline.case.case_file import case_of, read_case, with_values
 from camwright.pipeline.case.given_lift import given_lift
+from camwright.pipeline.case.machine import machines
+from camwright.pipeline.case.template import first_case
 from camwright.pipeline.checks.check import verdict
 from camwright.pipeline.checks.registry import CHECKS, checks_of
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.solution import Solution, solution
 from camwright.pipeline.follower.bearing_life import rating_bound, static_rating_bound
+from camwright.pipeline.preview import preview_case
+from camwright.pipeline.smoothing.allowables import limits_of
 
 DATA = Path(__file__).parents[1] / "data"
 FAULTS = {
@@ -409,3 +413,43 @@ def test_few_teeth_of_a_ratio_fail() -> None:
     assert made is not None
     assert made.status == "pass"
     assert "module 2.857 mm" in made.note
+
+
+@pytest.mark.parametrize("room", ["90 mm", None])
+def test_a_synthesis_keeps_off_the_machine_shaft(tmp_path: Path, room: str | None) -> None:
+    """With and without a limit of the cam radius: 54 mm of centre distance leave 45.8 mm."""
+    first = tmp_path / "first.toml"
+    text = first_case("first").text.replace('gear_radius = "40 mm"', 'gear_radius = "36 mm"')
+    line = next(line for line in text.splitlines() if line.startswith("cam_radius = "))
+    first.write_text(text if room else text.replace(line, ""), encoding="utf-8")
+    case = read_case(first)
+    limits = limits_of(case)["cam_radius"]
+    assert limits["machine_shaft_gap"] == pytest.approx(0.054 - 0.008 - 0.0002, abs=1e-12)
+    trial = preview_case(case, corners=False)
+    judged = {one.id: one for one in trial.checks}
+    assert judged["machine_shaft_gap"].status == "pass"
+    assert judged["machine_shaft_gap"].utilisation == pytest.approx(1.0, abs=0.2)
+    assert judged["torque_reduction"].status == "pass"
+
+
+def test_an_overhung_pin_is_counted_from_the_face_of_its_cheek() -> None:
+    """Span of 12 mm to the middle of the roller of 17.5 mm, a cheek of 5 mm beyond it."""
+    text = tables()
+    put(text, "roller.pin.mounting", "overhung")
+    put(text, "roller.pin.span", "12 mm")
+    of = solved(with_values(case_of(text), STATED | {"camshaft.gear_position": "-40 mm"}))
+    assert gap("fork_gap", of) == pytest.approx(0.0025, abs=1e-12)  # to the bridge
+    assert gap("bearing_gap", of) == pytest.approx(0.035 - 0.0173 - 0.008, abs=1e-12)
+    deeper = {"roller.fork.cheek_length": "30 mm", "follower.overhang_at_max_lift": "52 mm"}
+    of = solved(with_values(of.case, deeper))
+    assert gap("fork_gap", of) == pytest.approx(0.012 - 0.00875, abs=1e-12)
+
+
+def test_a_flat_face_passes_the_machine_shaft_by_its_width_and_depth() -> None:
+    """Distances of points beside, below and obliquely below the face of the shipped case."""
+    machine = machines(read_case(DATA.parents[1] / "cases" / "gx120-flat-face.toml"))[0]
+    width = machine.face.width
+    assert machine.follower.away(0.0, 0.5 * width + 0.003) == pytest.approx(0.003, abs=1e-15)
+    assert machine.follower.away(0.004, 0.5 * width + 0.003) == pytest.approx(0.005, abs=1e-15)
+    assert machine.follower.away(0.004, 0.0) == pytest.approx(0.004, abs=1e-15)
+    assert machine.follower.half_depth == 0.5 * machine.face.depth

@@ -357,7 +357,7 @@ def test_every_must_have_that_the_lift_can_help_is_kept_or_named():
         # a term of the objective; a face that keeps its PV value is warm by its mean load
         "friction_power": "loss_weight", "contact_temperature": "face_pv",
         "second_contact": "undercut", "tool_gouge": "concave_radius",
-        "machine_shaft_gap": "cam_radius",  # at the limit that its remark states
+        "machine_shaft_gap": "cam_radius",
         # limits of the contact pressure, of the lift and of the normal force
         **dict.fromkeys(
             ("shakedown", "contact_pressure_at_life", "edge_pressure", "edge_shakedown",
