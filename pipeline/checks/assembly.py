@@ -149,6 +149,32 @@ def gear_gap(solution: Solution) -> Demand:
     return Demand(value, machine.limits[ASSEMBLY_GAP], note=f"{name} to gear")
 
 
+_RATIO = 1e-5  # of one written as a decimal number
+
+
+@check(
+    title="Ratio of the teeth vs. ratio of the mechanism",
+    unit="-",
+    source="kinematics of gear and pinion",
+    method="teeth of the gear over those that the ratio needs, less 1",
+    formula="|z/(i z_p) - 1| <= 1e-5; z, z_p: camshaft.gear.teeth and pinion_teeth, i:"
+    " mechanism.gear_ratio",
+    reason="With other teeth the cam turns at another speed than all loads are computed at.",
+    moved_by_tolerance=False,
+    part="gear",
+    load_cases=NONE,
+    page="Camshaft",
+)
+def tooth_ratio(solution: Solution) -> Demand:
+    """Deviation of the ratio of the teeth from that of the mechanism, relative."""
+    gear, ratio = _gear(_shaft(solution.machine)), solution.machine.gear_ratio
+    needed = ratio * gear.pinion_teeth
+    note = f"camshaft.gear.teeth = {gear.teeth}, {shown(needed, '')} at mechanism.gear_ratio ="
+    note += f" {shown(ratio, '')} and camshaft.gear.pinion_teeth = {gear.pinion_teeth}"
+    deviation = abs(gear.teeth / needed - 1.0)
+    return Demand(deviation, _RATIO, note=note if not deviation <= _RATIO else "")
+
+
 _TEETH_MIN = 14.0  # of full depth at 20 deg without profile shift; 17.1 in theory
 
 

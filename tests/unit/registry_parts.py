@@ -3,11 +3,12 @@
 import hand_calculations as by_hand
 import made_trial as made
 import numpy as np
-from check_tools import by_limit, counted, limit_of, limited, tried, unlimited
+from check_tools import by_limit, counted, limit_of, limited, loaded, tried, unlimited
 from trial_variants import (
     NAN,
     beside,
     frictionless,
+    geared,
     reversing,
     unknown,
     unknown_beside,
@@ -146,6 +147,15 @@ by_limit(
     "75 mm of centre distance less 50 + 10 - 8 mm of the cam and 10 of the shaft",
     base=lambda: beside(0.02),
     missing=lambda: beside(None),
+)
+tried(
+    "tooth_ratio",
+    loaded("tooth_ratio", lambda off: geared(40.0 * (1.0 + off))),
+    None,
+    lambda: geared(np.nan),
+    0.25,
+    "50 : 20 teeth at a ratio of 2",
+    base=lambda: geared(50.0),
 )
 tried(
     "tooth_count",

@@ -80,8 +80,6 @@ def sound() -> Case:
 
 
 REFUSED = {
-    "camshaft.gear.teeth": "camshaft.gear.teeth = 60, must be 40, mechanism.gear_ratio = 2.0 times"
-    " camshaft.gear.pinion_teeth = 20",
     "roller.friction": "roller.friction = 1.9, must be > 0 and <= 1",
     "roller.bearing.C": "roller.bearing.C = 900 kN, must be <= 1.087e+05 N, the greatest of rolling"
     " bearings within roller.radius = 23.5 mm and roller.width = 17.5 mm",
@@ -117,15 +115,18 @@ def test_the_file_is_refused_until_its_last_contradiction_is_mended() -> None:
     assert set(named) == set(REFUSED)
     every = checks_of(solved(case))
     assert {one.id for one in every if one.must_have and one.status == "fail"} == {
-        "bearing_gap", "fork_shaft_gap",
+        "bearing_gap", "fork_shaft_gap", "tooth_ratio",
     }  # fmt: skip
+    told = next(one.note for one in every if one.id == "tooth_ratio")
+    assert told == (
+        "camshaft.gear.teeth = 60, 40 at mechanism.gear_ratio = 2 and camshaft.gear.pinion_teeth"
+        " = 20"
+    )
 
 
 @pytest.mark.parametrize(
     ("values", "words"),
     [
-        ({"camshaft.gear.pinion_teeth": 21}, "camshaft.gear.teeth = 40, must be 42"),
-        ({"mechanism.gear_ratio": 1.0}, "camshaft.gear.teeth = 40, must be 20"),
         ({"guides.a.friction": 1.01}, "guides.a.friction = 1.01, must be >= 0 and <= 1"),
         ({"guides.b.friction_max": 1.01}, "guides.b.friction_max = 1.01"),
         ({"camshaft.bearing_rating": "900 kN"}, "camshaft.bearing_rating = 900 kN, must be <= "),
@@ -147,7 +148,20 @@ def test_teeth_of_a_ratio_written_as_a_decimal_or_a_quotient_are_accepted() -> N
     for ratio, teeth, pinion in ((2.0, 44, 22), (1.5, 36, 24), ("4:3", 40, 30), (0.333333, 20, 60)):
         values = {"mechanism.gear_ratio": ratio, "camshaft.gear.teeth": teeth,
                   "camshaft.gear.pinion_teeth": pinion}  # fmt: skip
-        assert with_values(sound(), values).camshaft is not None
+        case = with_values(sound(), STATED | values)
+        (made,) = checks_of(solved(case), [BY_ID["tooth_ratio"]])
+        assert made.status == "pass", ratio
+
+
+@pytest.mark.parametrize(
+    ("values", "deviation"),
+    [({"camshaft.gear.pinion_teeth": 21}, 1.0 / 21.0), ({"mechanism.gear_ratio": 1.0}, 1.0)],
+)
+def test_teeth_of_another_ratio_fail(values: dict[str, float], deviation: float) -> None:
+    """By the turns of the gear: a pinion of 21 turns 40 teeth by 21 a turn, 40/21 turns for 2."""
+    (made,) = checks_of(solved(with_values(sound(), STATED | values)), [BY_ID["tooth_ratio"]])
+    assert made.status == "fail" and made.must_have
+    assert made.demand == pytest.approx(deviation, rel=1e-12)
 
 
 def test_no_bearing_of_the_catalogue_comes_near_the_bound_of_its_size() -> None:

@@ -107,7 +107,7 @@ DRAWN = {
     "bearing_gap", "curvature_rate", "curvature_ratio", "face_width", "fork_gap",
     "fork_shaft_gap", "gear_gap", "machine_shaft_gap", "guide_gap", "guide_length", "minimum_wall",
     "pressure_angle", "second_contact", "self_intersection", "spring_buckling", "tool_gouge",
-    "tooth_count", "undercut",
+    "tooth_count", "tooth_ratio", "undercut",
 }  # fmt: skip
 """Checks of lengths alone, which the drawing fixes."""
 

@@ -179,6 +179,12 @@ def without_heat(side: str) -> Solution:
     return with_parts(**{f"heat_max_{side}": NAN})
 
 
+def geared(teeth: float) -> Solution:
+    """The solution with another number of teeth of the gear."""
+    gear = made.solution().machine.camshaft.gear
+    return with_shaft(gear=replace(gear, teeth=teeth))
+
+
 def without_power() -> Solution:
     """A torque without a mean, of a machine that states no power."""
     plain = with_cycle(throughput=0.0)

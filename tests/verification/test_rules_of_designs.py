@@ -22,7 +22,7 @@ ROOT = Path(__file__).parents[2]
 FAR, NEAR = (0.02, 50.0), (0.98, 1.02)
 """Factors of the value at a key, and of the bound of a rule."""
 STRUCTURE = {
-    "cam.key.length", "cam.key.shaft_depth", "cam.key.height", "camshaft.gear.teeth",
+    "cam.key.length", "cam.key.shaft_depth", "cam.key.height",
     "camshaft.gear.machine_shaft_diameter",
     "camshaft.bearing_rating", "camshaft.bearing_static_rating", "guides.a.diameter",
     "guides.b.diameter", "solver.positions", "spring.rate_tolerance", "spring.preload_tolerance",
