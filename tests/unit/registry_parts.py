@@ -150,12 +150,12 @@ by_limit(
 )
 tried(
     "tooth_ratio",
-    loaded("tooth_ratio", lambda off: geared(40.0 * (1.0 + off))),
+    loaded("tooth_ratio", geared),
     None,
-    lambda: geared(np.nan),
+    None,  # whole numbers of the case
     0.25,
-    "50 : 20 teeth at a ratio of 2",
-    base=lambda: geared(50.0),
+    "40 : 20 teeth at a ratio of 1.6",
+    base=lambda: geared(0.25),
 )
 tried(
     "tooth_count",

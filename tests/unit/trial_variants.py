@@ -179,10 +179,9 @@ def without_heat(side: str) -> Solution:
     return with_parts(**{f"heat_max_{side}": NAN})
 
 
-def geared(teeth: float) -> Solution:
-    """The solution with another number of teeth of the gear."""
-    gear = made.solution().machine.camshaft.gear
-    return with_shaft(gear=replace(gear, teeth=teeth))
+def geared(off: float) -> Solution:
+    """The solution with teeth, 40 : 20, that are off the ratio of the mechanism by a share."""
+    return with_part("mechanism", gear_ratio=2.0 / (1.0 + off))
 
 
 def without_power() -> Solution:
