@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
-from camwright.pipeline.case.case_file import read_case
+from camwright.pipeline.case.case_file import read_case, with_values
 from camwright.pipeline.case.load_case_torque import engine_torques
 from camwright.pipeline.smoothing.problem_setup import problem_of
 from camwright.pipeline.smoothing.required_lift import cam_lift
@@ -34,6 +34,7 @@ def lifts(name: str) -> dict[str, float]:
 def utilisations(name: str) -> dict[str, float]:
     """Ripple, costs and limits of a synthesis at nine tenths of the exact energy, J."""
     case = read_case(CASES / f"{name}.toml")
+    case = with_values(case, {"limits.viscosity_ratio": 1.0})  # the default of that time
     problem = problem_of(case, engine_torques(case))
     search = Search(problem)
     state = search.state(0.9 * search.exact, problem.variables)

@@ -230,7 +230,7 @@ def _wire(card: Tables, table: Tables, name: str, field: str) -> Tables:
             f"from {units.shown(least, 'mm')} to {units.shown(most, 'mm')}, for which card {name}"
         )
         limit += " has the strength; or with strength_at_1mm and strength_exponent of the wire"
-        raise InputError(key, str(own), limit)
+        raise InputError(key, units.rounded(str(own)), limit)
     return known
 
 
