@@ -354,8 +354,8 @@ def test_every_must_have_that_the_lift_can_help_is_kept_or_named():
     reasons = {
         # recomputed from the contour as delivered: a closed quintic spline has none
         "acceleration_step": "smooth spline", "self_intersection": "undercut",
-        # a term of the objective; a face that keeps its PV value is warm by its mean load
-        "friction_power": "loss_weight", "contact_temperature": "face_pv",
+        # a term of the objective, and the temperature that follows from it: neither is kept
+        "friction_power": "loss_weight", "contact_temperature": "loss_weight",
         "second_contact": "undercut", "tool_gouge": "concave_radius",
         "machine_shaft_gap": "cam_radius",
         # limits of the contact pressure, of the lift and of the normal force
