@@ -127,39 +127,41 @@ def contact_temperature(solution: Solution) -> Demand:
     limit = None if allowed is None else celsius(allowed)
     if missing or cold is None or face.friction is None:
         return Demand(None, limit, missing=tuple(missing))
-    friction, taken = face.friction, (_effusivity(bodies[0]), _effusivity(bodies[1]))
+    taken = _effusivity(bodies[0]), _effusivity(bodies[1])
 
     def flash(cycle: Cycle) -> Array:
-        path, speed, theta = cycle.contour.pitch, cycle.cam_speed, cycle.theta
-        force, through = cycle.loads.normal_force, speed * path.lift(theta, 2)
-        sliding = speed * path.height(theta)
-        heat = friction * np.maximum(force, 0.0) / cycle.pair.width * sliding
-        half_width = np.where(force > 0, cycle.contact.half_width, 1.0)
-        rise = flash_temperature(heat, (through + sliding, through), taken, half_width)
+        rubbing, half_width = cycle.rolling.sliding, cycle.contact.half_width
+        if rubbing is None:  # the contour bounds no body
+            return np.full(cycle.theta.size, np.nan)
+        through = cycle.cam_speed * cycle.contour.pitch.lift(cycle.theta, 2)
+        heat, half_width = (
+            rubbing.power / cycle.pair.width,
+            np.where(rubbing.power > 0, half_width, 1.0),
+        )
+        rise = flash_temperature(heat, (through + rubbing.speed, through), taken, half_width)
         # A face that reverses its motion through the contact takes no heat there.
         after = np.roll(through, -1)
         before = np.flatnonzero(through * after < 0)
         share = through[before] / (through[before] - after[before])
         heat, sliding, half_width = (
             values[before] + share * (np.roll(values, -1) - values)[before]
-            for values in (heat, sliding, half_width)
+            for values in (heat, rubbing.speed, half_width)
         )
         reversed_ = flash_temperature(heat, (sliding, 0.0), taken, half_width)
-        np.maximum.at(rise, (before + np.rint(share).astype(int)) % theta.size, reversed_)
+        np.maximum.at(rise, (before + np.rint(share).astype(int)) % cycle.theta.size, reversed_)
         return rise
 
-    def contact(cycle: Cycle) -> Array:
+    def hottest(cycle: Cycle) -> float:
         rise = flash(cycle)
-        return celsius(cold + BULK_SHARE * rise.mean() + rise)
+        return float(celsius(cold + BULK_SHARE * rise.mean() + rise.max()))
 
     # by the solved angles: a parabola would overshoot the cusp of a reversal
-    worst = worst_case(solution.cycles, lambda cycle: float(contact(cycle).max()))
+    worst, note = worst_case(solution.cycles, hottest), ""
     if np.isfinite(worst.value):
-        hottest = next(each for each in solution.cycles if each.load_case == worst.load_case)
-        angle = hottest.theta[first_greatest(contact(hottest))]
-        worst = worst._replace(cam_angle=float(angle))
-    flashes = max(float(flash(cycle).max()) for cycle in solution.cycles)
-    note = f"flash temperature up to {shown(flashes, 'K', 3)}"
+        cycle = next(each for each in solution.cycles if each.load_case == worst.load_case)
+        rise = flash(cycle)
+        worst = worst._replace(cam_angle=float(cycle.theta[first_greatest(rise)]))
+        note = f"flash temperature up to {shown(float(rise.max()), 'K', 3)}"
     return Demand(worst.value, limit, worst, note=note, figures=(oil.source,) if oil else ())
 
 

@@ -276,8 +276,10 @@ def _pressure(base: Cycle, torque: np.ndarray) -> np.ndarray:
 
 def _rolling(base: Cycle) -> RollingHistory:
     still = np.zeros(POSITIONS)
+    face, force = base.rolling.sliding, 300.0 + 100.0 * WAVE
     rolling = put(
         base.rolling,
+        sliding=face and replace(face, power=FACE["friction"] * force * face.speed),
         traction_demand=0.02 + 0.01 * WAVE,
         von_mises=420e6 + 100e6 * WAVE,
     )
