@@ -11,10 +11,11 @@ from camwright.pipeline.base import levers
 from camwright.pipeline.base.units import shown
 from camwright.pipeline.case.limits import ASSEMBLY_GAP
 from camwright.pipeline.case.machine import Machine
+from camwright.pipeline.checks.camshaft_strength import camshaft_of, gear_of
 from camwright.pipeline.checks.check import NONE, ROUNDING, Demand, check
 from camwright.pipeline.checks.missing_keys import lacking
 from camwright.pipeline.cycle.solution import Solution
-from camwright.pipeline.follower.camshaft_loads import Camshaft, CamshaftGear
+from camwright.pipeline.follower.camshaft_loads import Camshaft
 from camwright.pipeline.follower.roller import Roller
 from camwright.pipeline.follower.roller_parts import Fork, Pin
 
@@ -31,18 +32,6 @@ class _Length(NamedTuple):
         return abs(self.middle - other.middle) - self.half - other.half
 
 
-def _shaft(machine: Machine) -> Camshaft:
-    if machine.camshaft is None:
-        raise InputError("camshaft", "missing", "described for its checks")
-    return machine.camshaft
-
-
-def _gear(shaft: Camshaft) -> CamshaftGear:
-    if shaft.gear is None:
-        raise InputError("camshaft.gear", "missing", "described for its checks")
-    return shaft.gear
-
-
 def _fork_of(machine: Machine) -> tuple[Roller, Pin | None, Fork]:
     roller = machine.roller
     if roller.fork is None:
@@ -52,7 +41,7 @@ def _fork_of(machine: Machine) -> tuple[Roller, Pin | None, Fork]:
 
 def _on_the_shaft(machine: Machine) -> tuple[_Length, ...]:
     """Cam, and follower with pin and fork as far as they are described, along the camshaft."""
-    at, follower = _shaft(machine).cam_position, machine.follower
+    at, follower = camshaft_of(machine).cam_position, machine.follower
     name = follower.word if follower.parts.get("fork") is None else "fork"
     half = follower.half_depth + (follower.axial_offset or 0.0)
     return _Length("cam", at, 0.5 * machine.cam.width), _Length(name, at, half)
@@ -101,7 +90,7 @@ def _bearing_widths(shaft: Camshaft) -> float | None:
 def bearing_gap(solution: Solution) -> Demand:
     """Least axial gap between a camshaft bearing and cam, gear or follower, m."""
     machine, limit = solution.machine, solution.machine.limits[ASSEMBLY_GAP]
-    shaft = _shaft(machine)
+    shaft = camshaft_of(machine)
     parts = list(_on_the_shaft(machine))
     if shaft.gear is not None and machine.scope.covers("gear"):
         parts.append(_Length("gear", shaft.gear_position, 0.5 * shaft.gear.width))
@@ -143,8 +132,8 @@ def bearing_gap(solution: Solution) -> Demand:
 def gear_gap(solution: Solution) -> Demand:
     """Least axial gap between gear or pinion and cam or follower, m."""
     machine = solution.machine
-    shaft = _shaft(machine)
-    gear = _Length("gear", shaft.gear_position, 0.5 * _gear(shaft).width)
+    shaft = camshaft_of(machine)
+    gear = _Length("gear", shaft.gear_position, 0.5 * gear_of(shaft).width)
     value, name = min((part.gap(gear), part.name) for part in _on_the_shaft(machine))
     return Demand(value, machine.limits[ASSEMBLY_GAP], note=f"{name} to gear")
 
@@ -167,7 +156,7 @@ _RATIO = 1e-5  # of one written as a decimal number
 )
 def tooth_ratio(solution: Solution) -> Demand:
     """Deviation of the ratio of the teeth from that of the mechanism, relative."""
-    gear, ratio = _gear(_shaft(solution.machine)), solution.machine.gear_ratio
+    gear, ratio = gear_of(camshaft_of(solution.machine)), solution.machine.gear_ratio
     needed = ratio * gear.pinion_teeth
     note = f"camshaft.gear.teeth = {gear.teeth}, {shown(needed, '')} at mechanism.gear_ratio ="
     note += f" {shown(ratio, '')} and camshaft.gear.pinion_teeth = {gear.pinion_teeth}"
@@ -195,8 +184,8 @@ _TEETH_MIN = 14.0  # of full depth at 20 deg without profile shift; 17.1 in theo
 )
 def tooth_count(solution: Solution) -> Demand:
     """Fewer of the teeth of gear and pinion."""
-    shaft = _shaft(solution.machine)
-    gear, angle = _gear(shaft), sin(shaft.pressure_angle)
+    shaft = camshaft_of(solution.machine)
+    gear, angle = gear_of(shaft), sin(shaft.pressure_angle)
     least = _TEETH_MIN * (sin(radians(20.0)) / angle) ** 2 * (1.0 - ROUNDING) if angle else None
     module = shown(2.0 * shaft.gear_radius / gear.teeth, "mm")
     return Demand(float(min(gear.teeth, gear.pinion_teeth)), least, note=f"module {module}")
@@ -214,7 +203,7 @@ def _to_follower(machine: Machine, along: float, across: float) -> float:
 
 def _centre_distance(shaft: Camshaft) -> float:
     """Distance of camshaft and machine shaft, m: pitch radii of gear and pinion."""
-    gear = _gear(shaft)
+    gear = gear_of(shaft)
     return shaft.gear_radius * (1.0 + gear.pinion_teeth / gear.teeth)
 
 
@@ -249,8 +238,8 @@ def room_beside_shaft(machine: Machine) -> float | None:
 def machine_shaft_gap(solution: Solution) -> Demand | None:
     """Least gap between the machine shaft and cam or follower, m; None: it ends at its pinion."""
     machine, limit = solution.machine, solution.machine.limits[ASSEMBLY_GAP]
-    shaft = _shaft(machine)
-    gear, tip = _gear(shaft), solution.contour.radius_max().value
+    shaft = camshaft_of(machine)
+    gear, tip = gear_of(shaft), solution.contour.radius_max().value
     stated = gear.machine_shaft_diameter
     if stated == 0.0:
         return None

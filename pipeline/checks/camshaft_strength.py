@@ -89,14 +89,14 @@ class _Shaft:
     sections: tuple[ShaftSection, ...]
 
 
-def _camshaft(machine: Machine | Case) -> Camshaft:
+def camshaft_of(machine: Machine | Case) -> Camshaft:
     """Camshaft of a machine or case; its checks are made only where it is described."""
     if machine.camshaft is None:
         raise InputError("camshaft", "missing", "described for its checks")
     return machine.camshaft
 
 
-def _gear(shaft: Camshaft) -> CamshaftGear:
+def gear_of(shaft: Camshaft) -> CamshaftGear:
     """Gear of the camshaft; its checks are made only where it is described."""
     if shaft.gear is None:
         raise InputError("camshaft.gear", "missing", "described for its checks")
@@ -105,7 +105,7 @@ def _gear(shaft: Camshaft) -> CamshaftGear:
 
 def _described(machine: Machine) -> _Shaft | tuple[str, ...]:
     """Camshaft with its diameter and material, or the keys that the case lacks."""
-    shaft, cam = _camshaft(machine), machine.cam
+    shaft, cam = camshaft_of(machine), machine.cam
     if shaft.diameter is None or shaft.material is None:
         return lacking(shaft.table, shaft, "diameter", "material")
     key_length = 0.0 if cam.key is None else cam.key.length or 0.0
@@ -363,7 +363,7 @@ def shaft_slope(solution: Solution) -> Demand:
 )
 def shaft_bearing_static(solution: Solution) -> Demand:
     """Static safety factor s0 of the camshaft bearing with the greater load."""
-    shaft = _camshaft(solution.machine)
+    shaft = camshaft_of(solution.machine)
     rating = shaft.bearing_static_rating
 
     def load(cycle: Cycle) -> Array:
@@ -399,7 +399,7 @@ def shaft_bearing_static(solution: Solution) -> Demand:
 )
 def shaft_bearing_life(solution: Solution) -> Demand:
     """Rating life of the camshaft bearing with the greater load, s."""
-    shaft = _camshaft(solution.machine)
+    shaft = camshaft_of(solution.machine)
     rating, target = shaft.bearing_rating, solution.machine.limits[SHAFT_BEARING_LIFE]
     missing = lacking(shaft.table, shaft, "bearing_rating")
     missing += unset(solution.machine.limits, SHAFT_BEARING_LIFE)
@@ -432,8 +432,8 @@ def shaft_bearing_life(solution: Solution) -> Demand:
 
 
 def _geared(numbers: Numbers) -> tuple[Camshaft, CamshaftGear]:
-    shaft = _camshaft(numbers.known_case)
-    return shaft, _gear(shaft)
+    shaft = camshaft_of(numbers.known_case)
+    return shaft, gear_of(shaft)
 
 
 def _push(numbers: Numbers) -> float:
@@ -467,7 +467,7 @@ def _tooth_bending(
         return Allowed(REVERSED * limit / numbers.limit(GEAR_BENDING_SAFETY))
 
     def with_card(demand: Demand, solution: Solution) -> Demand:
-        gear = _gear(_camshaft(solution.machine))
+        gear = gear_of(camshaft_of(solution.machine))
         figure = f"{wheel(gear)[1].name}: {gear.source}".rstrip(": ")
         return replace(demand, figures=(figure,))
 
@@ -551,7 +551,7 @@ def _flank_allowed(numbers: Numbers) -> Allowed:
 
 
 def _with_card_of_gear(demand: Demand, solution: Solution) -> Demand:
-    gear = _gear(_camshaft(solution.machine))
+    gear = gear_of(camshaft_of(solution.machine))
     return replace(demand, figures=(f"{gear.material.name}: {gear.source}".rstrip(": "),))
 
 

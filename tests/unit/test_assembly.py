@@ -66,11 +66,11 @@ def put(tables: object, key: str, value: object) -> None:
 def tables(*faults: str) -> dict[str, object]:
     """The case of the file with all but some of its faults mended."""
     text = (DATA / "impossible.toml").read_text(encoding="utf-8")
-    found = tomllib.loads(text)
+    case = tomllib.loads(text)
     for key, value in FAULTS.items():
         if key not in faults:
-            put(found, key, value)
-    return found
+            put(case, key, value)
+    return case
 
 
 @cache
