@@ -534,9 +534,11 @@ def greased(cam: LoadedCam) -> Array:
     rating, temperature = numbers.get(_RATING), bearing.temperature
     if bearing.grease_life is not None:
         return np.array([bearing.grease_life])
-    if rating is None or temperature is None or not np.isfinite(cam.normal).all():
+    if rating is None or temperature is None:
         return np.array([np.nan])
-    share = equivalent_load(cam.normal, cam.spin)[..., None] / rating
+    known = np.isfinite(cam.normal).all(axis=-1, keepdims=True)
+    load = equivalent_load(np.where(known, cam.normal, 0.0), cam.spin)[..., None]
+    share = np.where(known, load, np.nan) / rating
     speed = np.asarray(cam.spin_mean / factor("rpm"))
     return bearing_life.grease_life(speed, _greased_diameter(numbers), share, temperature)
 

@@ -5,17 +5,21 @@ from __future__ import annotations
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import made_trial as made
 import numpy as np
 import pytest
 
+from camwright.geometry.arrays import Array
 from camwright.geometry.errors import GeometryError, InputError
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_file import read_case, with_values
 from camwright.pipeline.case.case_values import quantity_of, replaced, value_of
 from camwright.pipeline.case.load_case_torque import engine_torques
 from camwright.pipeline.case.toml_text import TomlValue
+from camwright.pipeline.checks import roller_bearing
 from camwright.pipeline.checks.check import Check
 from camwright.pipeline.checks.registry import CHECKS
 from camwright.pipeline.contact.tiers import Tier
@@ -388,3 +392,21 @@ def test_a_figure_of_a_part_is_made_once_for_equal_designs() -> None:
         [6.0],
         [5.0],
     ]
+
+
+def test_a_design_of_unknown_force_leaves_the_others_their_grease_life() -> None:
+    """Judged together: one whose forces are not known has no life, the others keep theirs."""
+    base = parts_without_ends()
+    bearing = replace(base.roller.bearing, grease_life=None, temperature=333.0)
+    case = base.model_copy(update={"roller_given": replace(base.roller, bearing=bearing)})
+    spin, normal = np.full((2, 8), 100.0), np.full((2, 8), 40.0)
+    normal[1, 0] = np.nan
+
+    def greased(rows: slice) -> Array:
+        figures = {"normal": normal[rows], "spin": spin[rows], "spin_mean": spin[rows, :1]}
+        cam: Any = SimpleNamespace(numbers=Numbers({}, case), **figures)
+        return roller_bearing.greased(cam)
+
+    (alone,) = greased(slice(1))
+    assert np.isfinite(alone).all()
+    np.testing.assert_array_equal(greased(slice(2)), [alone, [np.nan]])
