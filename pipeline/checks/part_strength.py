@@ -61,8 +61,8 @@ def _bending(numbers: Numbers) -> Value:
 
 
 def _bent(numbers: Numbers) -> tuple[float]:
-    pin, width = _described(numbers)[1], float(numbers["roller.width"])
-    return (pin_strength.pin_bending_stress(1.0, pin.diameter, width, pin.span, pin.overhung),)
+    key, (roller, _) = "roller.width", _described(numbers)
+    return (roller.with_values({key: float(numbers[key])}).pin_stress_per_newton or 0.0,)
 
 
 def _bending_allowed(numbers: Numbers) -> Allowed:
