@@ -347,8 +347,7 @@ def _camshaft(case: Case) -> Iterator[Rule]:
         limit = "< {}, the pitch diameter of its pinion"
         yield _less("camshaft.gear.machine_shaft_diameter", pitch, limit)
     # outside and width of any ball bearing on the widest section
-    sections = [section.diameter for section in shaft.sections]
-    widest = max([shaft.diameter or nan, *sections]) if sections else shaft.diameter or nan
+    widest = shaft.widest or nan
     outside, wide = _OUTSIDE * widest, _WIDE * widest
     limit = "<= {}, the greatest of rolling bearings on a shaft of {camshaft.diameter}, ISO 281"
     for key, bound in (

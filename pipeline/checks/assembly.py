@@ -62,16 +62,6 @@ def _between(
     return None, None
 
 
-def _bearing_widths(shaft: Camshaft) -> float | None:
-    """Greatest width of a bearing by its bore, m; None: its seat is not known.
-
-    Ball bearings of the dimension series 02 and 03 are narrower than their bore from 12 mm.
-    """
-    if shaft.diameter is None:
-        return None
-    return max(shaft.diameter, *(each.diameter for each in shaft.sections), 0.0)
-
-
 @check(
     ASSEMBLY_GAP,
     title="Axial gap beside the camshaft bearings",
@@ -106,7 +96,8 @@ def bearing_gap(solution: Solution) -> Demand:
     if stated is not None:
         value, words = min(gaps(stated))
         return Demand(value, limit, note=words)
-    gap, width = _between(lambda width: min(gaps(width))[0], 0.0, _bearing_widths(shaft), limit)
+    # Ball bearings of the dimension series 02 and 03 are narrower than their bore from 12 mm.
+    gap, width = _between(lambda width: min(gaps(width))[0], 0.0, shaft.widest, limit)
     if gap is None or width is None:
         return Demand(None, limit, missing=("camshaft.bearing_width",))
     how = f"bearings taken as {shown(width, 'mm')} wide, as their bore, an upper bound"

@@ -250,6 +250,13 @@ class Camshaft(Part):
     counterweight: Counterweight | None = None
     source: str = ""
 
+    @property
+    def widest(self) -> float | None:
+        """Greatest diameter of shaft and sections, m; None without that of the shaft."""
+        if self.diameter is None:
+            return None
+        return max([self.diameter, *(each.diameter for each in self.sections)])
+
 
 @dataclass(frozen=True, eq=False)
 class ShaftLoads:
