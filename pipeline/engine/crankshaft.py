@@ -22,6 +22,7 @@ SETTLED = 1e-13  # change of the speed between two passes over its mean
 PASSES_MAX = 200
 _STEP_END = 1e-12  # relative step of the kinetic energy; the next one would be its square
 _STEPS_MAX = 60
+_STEEP = 3.0  # greatest range of the logarithm of an integrating factor
 
 # Crank torque (n,) of a mechanism without the inertia of its moving parts, N m, from crank
 # speed (n,), rad/s, and crank acceleration (n,), rad/s2.
@@ -386,19 +387,25 @@ def _speed_on_line(
 
     Newton's steps from the speed `start`, each the solution of the linearised equation
     dE/dtheta + c E = r, with c > 0 where the line falls. With the integrating factor of c about its
-    mean it has constant coefficients, and each harmonic its own equation.
+    mean it has constant coefficients, and each harmonic its own equation. A steep line on a light
+    crank has a factor that harmonics do not resolve: c is then the middle of its range, and each
+    step leaves the share of the error that c departs from it.
     """
     speed, order = start, _orders(driven.size, span)
     for _ in range(_STEPS_MAX):
         energy = 0.5 * inertia * speed**2
         fall = -motor.slope(speed) / (inertia * speed)
         rate = float(fall.mean())
+        exponent = _integral(fall - rate, span)
+        if np.ptp(exponent) > _STEEP:
+            rate = 0.5 * float(fall.min() + fall.max())
+            fall, exponent = np.full_like(fall, rate), np.zeros_like(fall)
         if not rate > 0.0:
             raise CamError(
                 f"the motor cannot carry its load: at {shown(_time_mean(speed), 'rpm')} its torque"
                 " does not fall with the speed"
             )
-        factor = np.exp(_integral(fall - rate, span))
+        factor = np.exp(exponent)
         right = factor * (driven + motor.torque(speed) + fall * energy)
         raised = np.fft.irfft(np.fft.rfft(right) / (1j * order + rate), n=driven.size) / factor
         before, speed = speed, np.sqrt(2.0 * np.maximum(raised, 0.25 * energy) / inertia)

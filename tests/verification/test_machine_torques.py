@@ -336,20 +336,33 @@ def motor(*points: tuple[float, float]) -> MotorLine:
 INDUCTION = motor((0.0, 120.0), (140.0, 160.0), (157.0, 0.0))  # rising to its pull-out torque
 
 
-def test_the_speed_on_a_motor_line_is_that_of_the_equation_of_motion() -> None:
+LIGHT_PUMP = motor((4.0, 5.0), (4.25, 0.0))  # rad/s, on a crank of 0.05 kg m2
+
+
+@pytest.mark.parametrize(
+    ("line", "size", "share", "load", "start"),
+    [
+        (INDUCTION, 0.3, 0.05, (50.0, 40.0, 30.0), 150.0),
+        (LIGHT_PUMP, 0.05, 0.0, (4.0, 5.0, 3.0), 4),
+    ],
+    ids=["induction", "steep line on a light crank"],
+)
+def test_the_speed_on_a_motor_line_is_that_of_the_equation_of_motion(
+    line: MotorLine, size: float, share: float, load: tuple[float, float, float], start: float
+) -> None:
     """Against a Runge-Kutta integration to the periodic motion; 1e-9 is that of its steps."""
     theta, count = grid(720), 720
 
-    def load(angle: Array) -> Array:
-        return -50.0 - 40.0 * np.sin(angle) - 30.0 * np.cos(3.0 * angle)
+    def loaded(angle: Array) -> Array:
+        return -load[0] - load[1] * np.sin(angle) - load[2] * np.cos(3.0 * angle)
 
     def inertia(angle: Array) -> Array:
-        return 0.3 + 0.05 * np.sin(angle) ** 2
+        return size + share * np.sin(angle) ** 2
 
     def slope(angle: float, energy: Array) -> Array:
-        return load(angle) + INDUCTION.torque(np.sqrt(2.0 * energy / inertia(angle)))
+        return loaded(angle) + line.torque(np.sqrt(2.0 * energy / inertia(angle)))
 
-    energy = np.array([0.5 * 0.3 * 150.0**2])
+    energy = np.array([0.5 * size * start**2])
     for _ in range(20):
         last = scipy.integrate.solve_ivp(
             slope,
@@ -357,16 +370,16 @@ def test_the_speed_on_a_motor_line_is_that_of_the_equation_of_motion() -> None:
             energy,
             method="DOP853",
             rtol=1e-12,
-            atol=1e-9,
+            atol=1e-12 * energy[0],
             t_eval=[*theta, TURN],
         )
         energy = last.y[:, -1]
     expected = np.sqrt(2.0 * last.y[0, :count] / inertia(theta))
-    at = Inertia(0.3, 0.05 * np.sin(theta) ** 2)
-    motion = crank_motion(load(theta), at, 60.0, load=INDUCTION, span=TURN)
+    at = Inertia(size, share * np.sin(theta) ** 2)
+    motion = crank_motion(loaded(theta), at, start, load=line, span=TURN)
     np.testing.assert_allclose(motion.speed, expected, rtol=1e-9)
     assert motion.closure < 1e-12
-    assert -motion.load_torque.mean() == pytest.approx(50.0, rel=1e-12)
+    assert -motion.load_torque.mean() == pytest.approx(load[0], rel=1e-12)
 
 
 def test_a_steep_line_holds_the_speed_and_a_flat_one_gives_the_torque() -> None:
