@@ -9,6 +9,7 @@ In the order of use:
 | `missing_kinds`    | kinds of cams, followers and springs that are not done   |                  |
 | `quantities`       | quantities of an input: unit and bounds of a field       | SI               |
 | `material`         | material card: elastic constants, strengths, source      | E, Pa; nu; S, Pa |
+| `cooling`          | heat that the mechanism gives to its surroundings        | G, W/K; T, K     |
 | `external_force`   | force over the cam angle, linear between samples         | F_e, N           |
 | `files`            | files read, written in one step, hashed; JSON records    | SHA-256          |
 | `extras`           | libraries that are not installed with the package        |                  |

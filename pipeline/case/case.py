@@ -15,6 +15,7 @@ from camwright.geometry.display import Displayed, panels_of
 from camwright.geometry.errors import InputError
 from camwright.geometry.lift import Lift
 from camwright.pipeline.base.columns import data_frame
+from camwright.pipeline.base.cooling import Cooling
 from camwright.pipeline.base.files import hash_inputs
 from camwright.pipeline.base.material import Material
 from camwright.pipeline.base.units import shown
@@ -83,6 +84,7 @@ class Case(Displayed, Section):
     follower: Follower
     guides: Table[GuidePair]
     lubricant: Table[Lubricant] | None = None
+    cooling: Table[Cooling] = Cooling()
     materials: Materials
     scope: Scope = Scope()
     smoothing: Smoothing = Smoothing()

@@ -364,6 +364,12 @@ FRICTION_POWER = Limit(
     "a fifth of the power that an engine indicates at idle, all of it friction, goes into its valve"
     " train, Wong and Tung, Friction 4 (2016) 1: verify",
 )  # fmt: skip
+SURFACE_TEMPERATURE = Limit(
+    "surface_temperature", "temperature of the surfaces", In("K", above=0, at_most=5000), 423.15,
+    "150 degC: hardened steel is tempered from 150 to 180 degC, and the adsorbed layer of a mineral"
+    " oil without additives, on which a contact without a full film rests, is lost at 120 to 150"
+    " degC, textbooks, recalled: verify",
+)  # fmt: skip
 FRICTION_BALANCE = Limit(
     "friction_balance", "friction balance", _RESIDUAL, 1e-6, "conservation of energy over one turn",
 )  # fmt: skip

@@ -9,6 +9,7 @@ import numpy as np
 
 from camwright.geometry.display import Displayed
 from camwright.geometry.errors import InputError
+from camwright.pipeline.base.cooling import Cooling
 from camwright.pipeline.base.external_force import ExternalForce
 from camwright.pipeline.base.material import Material
 from camwright.pipeline.case.case import Case
@@ -142,6 +143,7 @@ class Machine(Displayed):
     camshaft: Camshaft | None
     crankshaft: Crankshaft | None
     lubricant: Lubricant | None
+    cooling: Cooling
     limits: Limits
     scope: Scope
 
@@ -439,6 +441,7 @@ def machine(case: Case, state: LoadCase) -> Machine:
         camshaft=case.camshaft,
         crankshaft=case.crankshaft,
         lubricant=case.lubricant,
+        cooling=case.cooling,
         limits=case.limits,
         scope=case.scope,
     )

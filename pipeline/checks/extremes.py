@@ -66,6 +66,12 @@ def _vertex(cycles: Sequence[Cycle], measure: Callable[[Cycle], Array], sign: fl
     return worst._replace(value=sign * peak.value, cam_angle=peak.theta)
 
 
+def steady(solution: Solution) -> list[Cycle]:
+    """Cycles of the load cases of the case: in standstill and over-speed nothing warms up."""
+    declared = {state.name for state in solution.case.load_cases}
+    return [cycle for cycle in solution.cycles if cycle.load_case in declared]
+
+
 def worst_case(
     cycles: Iterable[Cycle],
     measure: Callable[[Cycle], float],

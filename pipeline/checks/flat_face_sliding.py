@@ -11,17 +11,13 @@ from camwright.geometry.extrema import first_greatest
 from camwright.geometry.pitch_curve import magnitude
 from camwright.pipeline.base import levers
 from camwright.pipeline.base import value_groups as given
-from camwright.pipeline.base.material import Material
 from camwright.pipeline.base.units import celsius, shown
+from camwright.pipeline.case.limits import SURFACE_TEMPERATURE
 from camwright.pipeline.checks.check import Demand, Kept, check, of_key
 from camwright.pipeline.checks.contact_strength import line_pressure
 from camwright.pipeline.checks.extremes import worst_case
 from camwright.pipeline.checks.missing_keys import lacking, lacking_of_card, no_friction
-from camwright.pipeline.contact.flash_temperature import (
-    BULK_SHARE,
-    effusivity,
-    flash_temperature,
-)
+from camwright.pipeline.contact.flash_temperature import bulk_rise
 from camwright.pipeline.contact.oil_film import Lubricant
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.cycle import Cycle
@@ -115,47 +111,24 @@ def face_pv(cam: LoadedCam) -> Array:
 )
 def contact_temperature(solution: Solution) -> Demand:
     """Greatest temperature of the contact, degC; at standstill that of the oil."""
-    machine = solution.machine
-    oil, face = machine.lubricant, machine.face
-    bodies = (machine.cam.material, face.material)
-    missing = [*no_friction(machine)]
-    missing += lacking(Lubricant.table, oil, *_OF_OIL) if oil else [Lubricant.table]
-    for each in bodies:
-        missing += (key for key in lacking_of_card(each, *_HEAT_PATH) if key not in missing)
+    oil, missing = solution.machine.lubricant, _heat_missing(solution, *_OF_OIL)
     cold = None if oil is None else oil.temperature
     allowed = None if oil is None else oil.scuffing_temperature
     limit = None if allowed is None else celsius(allowed)
-    if missing or cold is None or face.friction is None:
-        return Demand(None, limit, missing=tuple(missing))
-    taken = _effusivity(bodies[0]), _effusivity(bodies[1])
+    if missing or cold is None:
+        return Demand(None, limit, missing=missing)
 
     def flash(cycle: Cycle) -> Array:
-        rubbing, half_width = cycle.rolling.sliding, cycle.contact.half_width
-        if rubbing is None:  # the contour bounds no body
-            return np.full(cycle.theta.size, np.nan)
-        through = cycle.cam_speed * cycle.contour.pitch.lift(cycle.theta, 2)
-        heat, half_width = (
-            rubbing.power / cycle.pair.width,
-            np.where(rubbing.power > 0, half_width, 1.0),
-        )
-        rise = flash_temperature(heat, (through + rubbing.speed, through), taken, half_width)
-        # A face that reverses its motion through the contact takes no heat there.
-        after = np.roll(through, -1)
-        before = np.flatnonzero(through * after < 0)
-        share = through[before] / (through[before] - after[before])
-        heat, sliding, half_width = (
-            values[before] + share * (np.roll(values, -1) - values)[before]
-            for values in (heat, rubbing.speed, half_width)
-        )
-        reversed_ = flash_temperature(heat, (sliding, 0.0), taken, half_width)
-        np.maximum.at(rise, (before + np.rint(share).astype(int)) % cycle.theta.size, reversed_)
-        return rise
-
-    def hottest(cycle: Cycle) -> float:
-        rise = flash(cycle)
-        return float(celsius(cold + BULK_SHARE * rise.mean() + rise.max()))
+        rise = cycle.rolling.flash
+        # the contour may bound no body
+        return np.full(cycle.theta.size, np.nan) if rise is None else rise
 
     # by the solved angles: a parabola would overshoot the cusp of a reversal
+    peaks = {cycle.load_case: float(flash(cycle).max()) for cycle in solution.cycles}
+
+    def hottest(cycle: Cycle) -> float:
+        return float(celsius(cold + bulk_rise(flash(cycle)) + peaks[cycle.load_case]))
+
     worst, note = worst_case(solution.cycles, hottest), ""
     if np.isfinite(worst.value):
         cycle = next(each for each in solution.cycles if each.load_case == worst.load_case)
@@ -165,8 +138,54 @@ def contact_temperature(solution: Solution) -> Demand:
     return Demand(worst.value, limit, worst, note=note, figures=(oil.source,) if oil else ())
 
 
-def _effusivity(card: Material) -> float:
-    """Effusivity of a card, NaN without its thermal data."""
-    if card.conductivity is None or card.specific_heat is None:
-        return np.nan
-    return effusivity(card.conductivity, card.density, card.specific_heat)
+@check(
+    SURFACE_TEMPERATURE,
+    id="bulk_temperature",
+    title="Temperature of cam and face between the contacts",
+    unit="degC",
+    method="oil, and bulk by the mean flash temperature of the turn, at the mean friction"
+    " coefficient",
+    lift_can_help=True,
+    needs="face",
+    formula="T_oil + 0.47 1.2 mean(T_f) <= limits.surface_temperature, and that of the cards of cam"
+    " and face where they state one; T_oil: lubricant.temperature, T_f: flash temperature, as of"
+    " contact_temperature",
+    reason="above it hardened surfaces are tempered, and a contact without a full film loses the"
+    " layer that keeps the steels apart",
+    values=(
+        *given.CONTACT,
+        "follower.face.friction",
+        "lubricant.temperature",
+        *(f"{part}.material.{key}" for part in ("cam", "follower.face") for key in _HEAT_PATH),
+    ),
+    levers=(levers.one("follower.face.depth"), *levers.GENTLER),
+    page="Flat face",
+)
+def bulk_temperature(solution: Solution) -> Demand:
+    """Greatest bulk temperature of the load cases, degC."""
+    machine = solution.machine
+    oil, limit = machine.lubricant, machine.limits[SURFACE_TEMPERATURE]
+    stated = [card.temperature_limit for card in machine.bodies.values()]
+    allowed = celsius(min([limit, *(each for each in stated if each is not None)]))
+    missing = _heat_missing(solution, "temperature")
+    if missing or oil is None or oil.temperature is None:
+        return Demand(None, allowed, missing=missing)
+    cold = oil.temperature
+
+    def bulk(cycle: Cycle) -> float:
+        flash = cycle.rolling.flash
+        return np.nan if flash is None else float(celsius(cold + bulk_rise(flash)))
+
+    worst = worst_case(solution.cycles, bulk)
+    return Demand(worst.value, allowed, worst, figures=(oil.source,))
+
+
+def _heat_missing(solution: Solution, *of_oil: str) -> tuple[str, ...]:
+    """Keys that the temperature of the face lacks."""
+    machine = solution.machine
+    missing = [*no_friction(machine)]
+    oil = machine.lubricant
+    missing += lacking(Lubricant.table, oil, *of_oil) if oil else [Lubricant.table]
+    for each in (machine.cam.material, machine.face.material):
+        missing += (key for key in lacking_of_card(each, *_HEAT_PATH) if key not in missing)
+    return tuple(missing)

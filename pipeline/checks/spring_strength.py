@@ -1,7 +1,7 @@
 """Checks of the spring design: strength, fatigue, solid length, buckling, surge, relaxation.
 
-Of a gas spring: pressure, stroke, speed, temperature, strokes per time; of a torsion spring:
-bending stress.
+Of a gas spring: pressure, stroke, speed, temperature, strokes per time, force lost by cold and
+leakage, self-heating; of a torsion spring: bending stress.
 """
 
 from __future__ import annotations
@@ -17,6 +17,7 @@ from camwright.geometry.errors import InputError
 from camwright.geometry.extrema import first_greatest
 from camwright.pipeline.base import levers
 from camwright.pipeline.base import value_groups as given
+from camwright.pipeline.base.cooling import Cooling
 from camwright.pipeline.base.levers import Lever
 from camwright.pipeline.base.units import celsius, shown
 from camwright.pipeline.case.limits import SPRING_FATIGUE, SPRING_SOLID, SPRING_SURGE
@@ -33,9 +34,10 @@ from camwright.pipeline.checks.check import (
     of_key,
 )
 from camwright.pipeline.checks.demands import FatiguePoint, follower_speed, slope_at, slope_over
-from camwright.pipeline.checks.extremes import Extreme, Measure
+from camwright.pipeline.checks.extremes import Extreme, Measure, steady, worst_case
 from camwright.pipeline.checks.missing_keys import lacking
 from camwright.pipeline.contact.tiers import Tier
+from camwright.pipeline.cycle.cycle import Cycle
 from camwright.pipeline.cycle.loaded_cam import LoadedCam, wire_of
 from camwright.pipeline.cycle.numbers import Numbers
 from camwright.pipeline.cycle.solution import Solution
@@ -53,7 +55,12 @@ from camwright.pipeline.follower.spring import (
     WireLimit,
     surge_harmonics,
 )
-from camwright.pipeline.follower.spring_kinds import GasSpring, TorsionSpring
+from camwright.pipeline.follower.spring_kinds import (
+    ATMOSPHERE,
+    CHARGED_AT,
+    GasSpring,
+    TorsionSpring,
+)
 
 BENDING_STRENGTH = 0.7  # permissible bending stress over R_m, DIN EN 13906-3: verify
 HARDEST = "preload and rate high"
@@ -549,13 +556,89 @@ gas_temperature = _gas_check(
 )(_gas_temperature)
 
 
+def _lost_force(cam: LoadedCam) -> Array:
+    """Share of the preload that is missing at the coldest start after the service interval."""
+    numbers = cam.numbers
+    absolute = numbers["spring.preload"] / numbers["spring.gas.area"] + ATMOSPHERE
+    warm = numbers.get("spring.gas.temperature")
+    cold = numbers["spring.gas.cold_temperature"] / (CHARGED_AT if warm is None else warm)
+    left = absolute * (1.0 - numbers["spring.gas.loss"]) * cold
+    return np.asarray((absolute - left) / (absolute - ATMOSPHERE))
+
+
+gas_force_lost = _gas_check(
+    "gas_force_lost",
+    title="Force of the gas spring lost by cold and leakage",
+    unit="-",
+    method="ideal gas at constant volume",
+    formula="(p - p (1 - c) T_c/T)/(p - p_0) <= spring.preload_tolerance; p: absolute pressure at"
+    " zero lift and T, spring.gas.temperature, p_0: of the surroundings, T_c:"
+    " spring.gas.cold_temperature, c: spring.gas.loss",
+    reason="a cold spring, and one that has lost gas, is weaker than the tolerance at which all"
+    " else is judged, and the follower leaves the cam.",
+    lift_can_help=False,
+    values=("spring.gas.*temperature*", "spring.gas.loss", "spring.preload_tolerance"),
+    cured_by=levers.SPRING,
+).measured(
+    "case",
+    allowed=of_key("spring.preload_tolerance"),
+    needed=("spring.gas.cold_temperature", "spring.gas.loss"),
+    remark=_of_gas,
+    deviation=1e-6,
+)(_lost_force)
+
+
+def _strokes(solution: Solution) -> int:
+    """Rises of the lift in a turn."""
+    slope = solution.contour.pitch.lift(uniform_turn(_SAMPLES), 1)
+    way = np.sign(slope[np.abs(slope) > _AT_REST * np.abs(slope).max()])
+    return int(np.sum((way > 0) & (np.roll(way, -1) < 0)))
+
+
+def _self_heating(solution: Solution) -> Demand:
+    """Temperature of the gas by the friction of its seals, degC, in the fastest load case."""
+    machine, spring = solution.machine, solution.machine.spring
+    gas = spring.gas
+    if gas is None:
+        raise InputError("spring.gas", "missing", "given for the checks of the gas spring")
+    work = spring.energy(float(solution.contour.pitch.lift.highest.value))
+    cooling = Cooling(
+        ambient_temperature=machine.cooling.ambient_temperature, conductance=gas.conductance
+    )
+
+    def warm(cycle: Cycle) -> float:
+        rate = _strokes(solution) * cycle.cam_speed / FULL_TURN
+        return float(celsius(cooling.temperature(2.0 * gas.friction * work * rate, gas.surface)))
+
+    worst = worst_case(steady(solution), warm, integral=False)
+    return _of_gas(Demand(worst.value, float(celsius(gas.warm)), worst), solution)
+
+
+gas_heating = _gas_check(
+    "gas_heating",
+    title="Temperature of the gas by its own friction vs. that stated",
+    unit="degC",
+    method="friction of the seals over each stroke to and fro, given off by the cylinder",
+    formula="T_amb + 2 f W z n/G <= spring.gas.temperature; f: spring.gas.friction, W: energy of"
+    " the spring at maximum lift, z n: strokes per time, T_amb: cooling.ambient_temperature, G:"
+    " spring.gas.conductance, else 10 W/(m^2 K) of the surface of the cylinder",
+    reason="pressure and force are those of the stated temperature, and a hotter seal leaks.",
+    tier=Tier.PREVIEW,
+    values=(
+        "load_case.speed",
+        "spring.gas.*temperature",
+        "spring.gas.friction",
+        "spring.gas.conductance",
+        "cooling.ambient_temperature",
+    ),
+    cured_by=(levers.one("spring.gas.conductance"), *levers.SPRING),
+)(_self_heating)
+
+
 def _stroke_rate(solution: Solution) -> Demand:
     """Greatest number of strokes of the gas spring per time, 1/s."""
     gas = solution.machine.spring.gas
-    slope = solution.contour.pitch.lift(uniform_turn(_SAMPLES), 1)
-    way = np.sign(slope[np.abs(slope) > _AT_REST * np.abs(slope).max()])
-    strokes = int(np.sum((way > 0) & (np.roll(way, -1) < 0)))
-    rate = strokes * float(solution.numbers["cam.fastest"]) / FULL_TURN
+    rate = _strokes(solution) * float(solution.numbers["cam.fastest"]) / FULL_TURN
     limit = None if gas is None else gas.stroke_rate_limit
     lacks = () if gas is None else lacking(GasSpring.table, gas, "stroke_rate_limit")
     return _of_gas(Demand(rate, limit, missing=lacks), solution)

@@ -10,7 +10,8 @@ from camwright.geometry.arrays import FULL_TURN, Array
 from camwright.geometry.extrema import first_least
 from camwright.pipeline.base import levers
 from camwright.pipeline.base import value_groups as given
-from camwright.pipeline.base.units import shown
+from camwright.pipeline.base.cooling import housing_area
+from camwright.pipeline.base.units import celsius, shown
 from camwright.pipeline.case.limits import (
     CONTACT_TORQUE,
     FRICTION_BALANCE,
@@ -20,7 +21,7 @@ from camwright.pipeline.case.limits import (
 )
 from camwright.pipeline.checks import demands
 from camwright.pipeline.checks.check import RIPPLE, Demand, check
-from camwright.pipeline.checks.extremes import Extreme, cam_of, greatest, worst_case
+from camwright.pipeline.checks.extremes import Extreme, cam_of, greatest, steady, worst_case
 from camwright.pipeline.checks.missing_keys import unset
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.cycle import Cycle
@@ -292,18 +293,79 @@ def friction_power(solution: Solution) -> Demand | None:
     if np.isnan(list(powers.values())).any():
         return Demand(None, allowed, missing=("load_case.power",))
 
-    def loss(cycle: Cycle) -> float:
-        rolling = cycle.rolling.contact
-        micro_slip = 0.0 if rolling is None else rolling.loss / FULL_TURN
-        work = float(np.mean(cam_of(solution, cycle).friction_work)) + micro_slip
-        return work * cycle.cam_speed
-
-    worst = worst_case(running, lambda cycle: loss(cycle) / powers[cycle.load_case])
+    worst = worst_case(
+        running, lambda cycle: _friction_power(solution, cycle) / powers[cycle.load_case]
+    )
     words = []
     for cycle in running:
-        lost, whole = (shown(each, "W", 3) for each in (loss(cycle), powers[cycle.load_case]))
-        words.append(f"{cycle.load_case}: {lost} of {whole}")
+        name = cycle.load_case
+        lost, whole = (
+            shown(each, "W", 3) for each in (_friction_power(solution, cycle), powers[name])
+        )
+        words.append(f"{name}: {lost} of {whole}")
     return Demand(worst.value, allowed, worst, note="; ".join(words))
+
+
+_STATED = (
+    "lubricant.temperature",
+    "roller.bearing.temperature",
+    "spring.design.temperature",
+)
+
+
+@check(
+    id="mechanism_temperature",
+    title="Temperature of the mechanism vs. that at which its parts are judged",
+    unit="degC",
+    source="balance of heat; temperatures stated for oil, bearing and wire",
+    formula="T_amb + (P_f + Q)/G <= least temperature stated for oil, roller bearing and wire, and"
+    " limit of the steels; P_f: mean power of the friction in guides, contact and"
+    " roller bearing, T_amb, Q, G: cooling.ambient_temperature, .heat, .conductance; without G that"
+    " of the box around cam and follower in still air, 10 W/(m^2 K)",
+    reason="Viscosity, grease and relaxation of the wire are those of the stated temperatures: a"
+    " machine that runs hotter is not the one that is judged.",
+    method="greatest friction power of the load cases, over-speed left out, at the mean friction"
+    " coefficients; the shaft's own bearings and the gear count in cooling.heat",
+    lift_can_help=True,
+    values=(*given.LOADS, "cooling.*"),
+    levers=(levers.one("cooling.conductance"), *levers.GENTLER),
+    page="Torque",
+)
+def mechanism_temperature(solution: Solution) -> Demand | None:
+    """Steady temperature of the mechanism, degC; None where none is stated for a part."""
+    machine, contour = solution.machine, solution.contour
+    numbers, cooling = solution.numbers, machine.cooling
+    named = {key: numbers.get(key) for key in _STATED}
+    named |= {card.name: card.temperature_limit for card in machine.bodies.values()}
+    stated = {key: float(value) for key, value in named.items() if value is not None}
+    running = [cycle for cycle in steady(solution) if cycle.cam_speed > 0]
+    if not stated or not running:
+        return None
+    across = 2.0 * contour.radius_max().value
+    height = across + float(numbers.get("follower.stem_length") or 0.0)
+    area = housing_area(across, height, machine.cam.width)
+    worst = worst_case(
+        running, lambda cycle: cooling.temperature(_friction_power(solution, cycle), area)
+    )
+    least = min(stated, key=stated.__getitem__)
+    warm, allowed = celsius(worst.value), celsius(stated[least])
+    hottest = next(cycle for cycle in running if cycle.load_case == worst.load_case)
+    lost = shown(_friction_power(solution, hottest), "W", 3)
+    note = f"{lost} of friction; least stated: {least}"
+    if cooling.conductance is None and not warm <= allowed:
+        still = f"{float(warm):.3g} degC"
+        note += f"; {still} in still air around the box of cam and follower"
+        return Demand(None, allowed, note=note, missing=("cooling.conductance",))
+    if cooling.conductance is None:
+        note += "; no cooling is stated: still air on the box around cam and follower"
+    return Demand(float(warm), float(allowed), worst._replace(value=float(warm)), note=note)
+
+
+def _friction_power(solution: Solution, cycle: Cycle) -> float:
+    """Mean friction power of guides, contact and roller bearing, W."""
+    rolling = cycle.rolling.contact
+    micro_slip = 0.0 if rolling is None else rolling.loss / FULL_TURN
+    return (float(np.mean(cam_of(solution, cycle).friction_work)) + micro_slip) * cycle.cam_speed
 
 
 def _power(cycle: Cycle, stated: float | None) -> float:

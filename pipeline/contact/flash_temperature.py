@@ -12,6 +12,11 @@ BULK_SHARE = 0.47 * 1.2
 the oil or are splashed: ISO/TS 6336-20, recalled: verify."""
 
 
+def bulk_rise(flash: Array | None) -> float:
+    """Rise of the bodies over the oil, K, from flash temperatures (n,) of a turn; 0 of None."""
+    return 0.0 if flash is None else BULK_SHARE * float(flash.mean())
+
+
 def effusivity(conductivity: float, density: float, specific_heat: float) -> float:
     """Root of conductivity times density times specific heat, W s^0.5/(m^2 K)."""
     return float(np.sqrt(conductivity * density * specific_heat))

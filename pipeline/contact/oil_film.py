@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Annotated, ClassVar, Literal
 
 import numpy as np
@@ -17,6 +17,9 @@ from camwright.pipeline.base.units import shown
 UNVERIFIED = (
     "regression of Masjedi and Khonsari (2012) as recalled, not checked against the paper: verify"
 )
+_WALTHER = 1e-6  # m2/s, unit of the viscosity in Walther's equation
+_DENSITY = 870.0  # kg/m3 of a mineral oil; its thinning is not sensitive to it
+_THINNEST = 0.2  # least viscosity of that equation, in its unit
 _RANGE = {  # of the regression, orders of magnitude: verify
     "load": (2e-5, 5e-4),
     "speed": (1e-12, 1e-10),
@@ -30,7 +33,8 @@ _RANGE = {  # of the regression, orders of magnitude: verify
 class Lubricant(Part):
     """Oil in the contact of cam and follower at the inlet temperature.
 
-    film "mixed" adds the film of rough surfaces by a regression with unverified source.
+    film "mixed" adds the film of rough surfaces by a regression with unverified source. thinning:
+    slope B of log log (v + 0.7) = A - B log T, v in mm2/s; the default is that of a mineral oil.
     """
 
     table: ClassVar[str] = "lubricant"
@@ -39,8 +43,26 @@ class Lubricant(Part):
     pressure_viscosity: Annotated[float, In("1/GPa", above=0, at_most=1000)]
     film: Literal["smooth", "mixed"] = "smooth"
     temperature: Temperature | None = None
+    thinning: Annotated[float, In(above=0, at_most=10)] = 3.6
     scuffing_temperature: Temperature | None = None
     source: str = ""
+
+    def warmer(self, rise: float) -> Lubricant:
+        """The oil at a temperature that is higher by a rise, K; as it is without a temperature.
+
+        References
+        ----------
+        Walther's equation, ASTM D341.
+        """
+        if self.temperature is None or not rise > 0.0:
+            return self
+        kinematic = max(self.viscosity / _DENSITY / _WALTHER, 2.0 * _THINNEST)
+        level = np.log10(np.log10(kinematic + 0.7))
+        level -= self.thinning * np.log10(1.0 + rise / self.temperature)
+        thinner = max(10.0 ** (10.0**level) - 0.7, _THINNEST) * _DENSITY * _WALTHER
+        return replace(
+            self, viscosity=min(thinner, self.viscosity), temperature=self.temperature + rise
+        )
 
 
 @dataclass(frozen=True, eq=False)

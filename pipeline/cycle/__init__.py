@@ -14,6 +14,7 @@ In the order of the calculation:
 | `part_loads`         | guides, stem, spring, pin, ring, key, camshaft  | p, sigma, Pa; F, N     |
 | `oil_film_history`   | film thickness and its ratio to roughness       | h, m; lambda           |
 | `length_history`     | pressure along the line: ends, crown, tilt      | K, -; M, N m           |
+| `contact_heat`       | flash temperature of a flat face                | T, K                   |
 | `rolling_history`    | traction, creep, rolling fatigue, bore stress   | tau, sigma, Pa; xi     |
 | `cycle`              | turn with contact; columns of its table         |                        |
 | `speed_sweep`        | surge, contact force, torque over the speed     | F_n, N; T, N m         |

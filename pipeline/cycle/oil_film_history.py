@@ -86,9 +86,18 @@ class FilmHistory:
 
 
 def film_history(
-    machine: Machine, contact: ContactHistory, entrainment: Array
+    machine: Machine, contact: ContactHistory, entrainment: Array, rise: float = 0.0
 ) -> FilmHistory | None:
-    """Oil film at entrainment speeds (n,), m/s; None without a lubricant."""
+    """Oil film at entrainment speeds (n,), m/s; None without a lubricant.
+
+    Parameters
+    ----------
+    rise : float   of the bodies over the oil, K: at the inlet the oil is as warm as they
+
+    References
+    ----------
+    ISO/TS 6336-22 takes the film at the bulk temperature, recalled: verify.
+    """
     oil, modulus = machine.lubricant, machine.contact_modulus
     if oil is None:
         return None
@@ -97,7 +106,7 @@ def film_history(
         contact.relative_radius,
         modulus,
         entrainment,
-        oil,
+        oil.warmer(rise),
     )
     thickness = minimum_film(groups)
     cam, other = machine.cam.roughness, machine.follower.roughness

@@ -17,6 +17,7 @@ from camwright.pipeline.case.machine import Machine
 from camwright.pipeline.contact.bore_stress import BoreStress, bore_stress
 from camwright.pipeline.contact.contact_history import ContactHistory
 from camwright.pipeline.contact.contact_pair import ContactPair
+from camwright.pipeline.contact.flash_temperature import bulk_rise
 from camwright.pipeline.contact.rolling_envelope import (
     STATIONS,
     Envelope,
@@ -26,6 +27,7 @@ from camwright.pipeline.contact.rolling_envelope import (
 )
 from camwright.pipeline.contact.traction import RollingContact, rolling_increase
 from camwright.pipeline.contact.two_scale import CycleBodies
+from camwright.pipeline.cycle.contact_heat import flash_history
 from camwright.pipeline.cycle.oil_film_history import FilmHistory, film_history
 from camwright.pipeline.follower.flat_face_motion import FaceSliding
 from camwright.pipeline.follower.follower_forces import Loads, follower_loads
@@ -79,10 +81,11 @@ class SweptStress:
 class RollingHistory(Displayed):
     """One turn; arrays (n,) SI. None where the case lacks the data.
 
-    shear_range, Pa, of the orthogonal shear stress in the cam; bore, None in a preview; swept,
-    map of the maximum stresses; traction_demand, tangential over normal force of rolling without
-    slip, NaN where the contact is open, None under a flat face; sliding of a flat face; contact,
-    creep and slip of a roller; tau_max and von_mises, Pa, in the cam with traction; film.
+    shear_range, Pa, of the orthogonal shear stress in the cam; bore, None in a preview; swept, map
+    of the maximum stresses; traction_demand, tangential over normal force of rolling without slip,
+    NaN where the contact is open, None under a flat face; sliding of a flat face; flash, rise of
+    the temperature in its contact, K; contact, creep and slip of a roller; tau_max and von_mises,
+    Pa, in the cam with traction; film.
     """
 
     shear_range: Array
@@ -90,6 +93,7 @@ class RollingHistory(Displayed):
     swept: SweptStress
     traction_demand: Array | None = None
     sliding: FaceSliding | None = None
+    flash: Array | None = None
     contact: RollingContact | None = None
     tau_max: Array | None = None
     von_mises: Array | None = None
@@ -99,6 +103,8 @@ class RollingHistory(Displayed):
         freeze(self, shear_range=self.shear_range)
         if self.traction_demand is not None:
             freeze(self, traction_demand=self.traction_demand)
+        if self.flash is not None:
+            freeze(self, flash=self.flash)
 
     @property
     def envelope(self) -> Envelope:
@@ -128,6 +134,9 @@ class RollingHistory(Displayed):
             columns[demand] = self.traction_demand
         if self.sliding is not None:
             columns |= self.sliding.columns()
+        if self.flash is not None:
+            words = "Rise of the temperature in the contact of the face"
+            columns[column("flash_temperature", "K", words)] = self.flash
         if (bore := self.bore) is not None:
             columns |= {
                 column(
@@ -187,6 +196,9 @@ def rolling_history(
         shear, mises = contact.tau_max * more[0], contact.von_mises * more[1]
     map_ = partial(_envelope, machine, pair, bodies, loads, contact)
     worst = partial(map_, governing=True) if bodies is None else None
+    flash = None
+    if motion.sliding is not None:
+        flash = flash_history(machine, pair, contour.pitch, theta, contact, motion.sliding)
     reach = rolling_pass(pair.cam.poisson).shear_range.max()
     bore = None
     if bodies is not None:
@@ -198,10 +210,11 @@ def rolling_history(
         swept=SweptStress(map_, worst),
         traction_demand=motion.traction_demand,
         sliding=motion.sliding,
+        flash=flash,
         contact=motion.rolling,
         tau_max=shear,
         von_mises=mises,
-        film=film_history(machine, contact, motion.entrainment),
+        film=film_history(machine, contact, motion.entrainment, bulk_rise(flash)),
     )
 
 

@@ -125,7 +125,9 @@ class GasSpring(Part):
 
     pressure: above that of the surroundings at zero lift and 20 degC; volume: of the gas at zero
     lift; exponent: of the polytropic compression, 1 slow to 1.4 fast for nitrogen; temperature: of
-    the gas in operation, at which the pressure is higher. Limits: of the maker, each of a check.
+    the gas in operation, at which the pressure is higher; cold_temperature: of the coldest start;
+    loss: share of the gas that is lost in a service interval; friction: of the seals, over the
+    force; conductance: heat that the spring gives off. Limits: of the maker, each of a check.
 
     Raises
     ------
@@ -135,7 +137,10 @@ class GasSpring(Part):
 
     table: ClassVar[str] = "spring.gas"
     defaults: ClassVar[Mapping[str, str]] = MappingProxyType(
-        {"temperature": "20 degC, at which the pressure is stated"}
+        {
+            "temperature": "20 degC, at which the pressure is stated",
+            "conductance": "of its cylinder in still air",
+        }
     )
 
     pressure: Annotated[float, In("bar", above=0, at_most=10_000)]
@@ -143,6 +148,10 @@ class GasSpring(Part):
     volume: Annotated[float, In("cm^3", above=0, at_most=1e6)]
     exponent: Annotated[float, In(at_least=1, at_most=1.7)] = 1.3
     temperature: Temperature | None = None
+    cold_temperature: Temperature | None = None
+    loss: Annotated[float, In(at_least=0, below=1)] | None = None
+    friction: Annotated[float, In(at_least=0, below=1)] = 0.05
+    conductance: Annotated[float, In("W/K", above=0, at_most=1e6)] | None = None
     pressure_limit: Annotated[float, In("bar", above=0, at_most=10_000)] | None = None
     temperature_limit: Temperature | None = None
     speed_limit: Annotated[float, In("m/s", above=0, at_most=1000)] | None = None
@@ -174,6 +183,11 @@ class GasSpring(Part):
     def rate(self) -> float:
         """Slope of the force at zero lift, n p A^2 / V, N/m."""
         return self.exponent * self.absolute * self.area / self.column
+
+    @property
+    def surface(self) -> float:
+        """Area of a cylinder of the gas, m^2."""
+        return float(2.0 * np.sqrt(np.pi * self.area) * self.column + 2.0 * self.area)
 
     @property
     def reach(self) -> float:

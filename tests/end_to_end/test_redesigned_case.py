@@ -47,9 +47,10 @@ def test_cam_under_a_flat_face_fails_by_its_friction_alone(tmp_path):
     open_or_failing = {each["id"] for each in final.checks if each["status"] != "pass"}
     assert open_or_failing == {
         "torque_reversals", "curvature_rate", "speed_reduction", "film_ratio", "friction_power",
+        "mechanism_temperature",
     }  # fmt: skip
     decisive = [each["id"] for each in final.checks if each["must_have"]]
-    assert open_or_failing & set(decisive) == {"friction_power"}
+    assert open_or_failing & set(decisive) == {"friction_power", "mechanism_temperature"}
     assert summary["verdict"] == "fail"
     record = final.record["synthesis"]
     assert record["feasible"] and record["starts"]["agree"]

@@ -80,15 +80,17 @@ def tried(name: str, *args, **more) -> None:
     TRIED[name] = Tried(*args, **more)
 
 
-def by_limit(name, field, nan, hand, how, *, factor=1.0, base=made.solution, missing=None) -> None:
-    """A check whose limit is one of the case's times a factor.
+def by_limit(
+    name, field, nan, hand, how, *, factor=1.0, zero=0.0, base=made.solution, missing=None
+) -> None:
+    """A check whose limit is one of the case's times a factor, from a zero.
 
     `missing` is the solution without its data, where they may be left out.
     """
 
     def set_limit(value):
         plain = base()
-        limits = made.changed(plain.case.limits, **{field: value * factor})
+        limits = made.changed(plain.case.limits, **{field: value * factor + zero})
         return made.changed_solution(plain, case=made.changed(plain.case, limits=limits))
 
     tried(name, limited(name, set_limit, base), missing, nan, hand, how, base)

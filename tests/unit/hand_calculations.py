@@ -112,13 +112,29 @@ def sliding() -> float:
     return float(np.max(0.25 * np.pi * (800.0 + 100.0 * made.WAVE) * speed))
 
 
+def bulk_temperature() -> float:
+    """Oil at 80 degC and 0.47 1.2 of the mean flash temperature, degC."""
+    return float(80.0 + 0.47 * 1.2 * flash_temperature().mean())
+
+
 def contact_temperature() -> float:
-    """Oil at 80 degC, Blok's band source on steel and 0.47 1.2 of its mean over the turn, degC."""
+    """Bulk and greatest flash temperature, degC."""
+    return bulk_temperature() + float(flash_temperature().max())
+
+
+def flash_temperature() -> np.ndarray:
+    """Blok's band source on steel, K."""
     heat = 0.1 * (300.0 + 100.0 * made.WAVE) / 0.01 * made.CAM_SPEED * (made.BASE + S)
     cam, face = made.CAM_SPEED * (made.BASE + S + BEND), made.CAM_SPEED * np.abs(BEND)
     taken = np.sqrt(45.0 * 7850.0 * 460.0 * cam) + np.sqrt(42.0 * 7850.0 * 470.0 * face)
-    flash = 1.11 * heat / taken / np.sqrt(2.0 * 1e-4)
-    return float(80.0 + 0.47 * 1.2 * flash.mean() + flash.max())
+    return 1.11 * heat / taken / np.sqrt(2.0 * 1e-4)
+
+
+def gas_friction() -> float:
+    """W: 5 % of the force on a column of 50 mm over 10 mm to and fro, p V^1.3 constant."""
+    absolute = (3e6 + 101325.0) * 320.0 / 293.15
+    work = 5e-6 * absolute * (0.8**-0.3 - 1.0) / 0.3 - 101325.0 * 1e-6
+    return float(2.0 * 0.05 * work * made.CAM_SPEED / (2.0 * np.pi))
 
 
 def ring_amplitude(force: float) -> float:

@@ -36,6 +36,7 @@ from camwright.pipeline.contact.elasticity.mesh_convergence import Convergence
 from camwright.pipeline.contact.rolling_envelope import Envelope
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle import solution as solving
+from camwright.pipeline.cycle.contact_heat import flash_history
 from camwright.pipeline.cycle.cycle import Cycle
 from camwright.pipeline.cycle.elastic_response import ElasticHistory
 from camwright.pipeline.cycle.length_history import LengthHistory
@@ -277,9 +278,13 @@ def _pressure(base: Cycle, torque: np.ndarray) -> np.ndarray:
 def _rolling(base: Cycle) -> RollingHistory:
     still = np.zeros(POSITIONS)
     face, force = base.rolling.sliding, 300.0 + 100.0 * WAVE
+    sliding = face and replace(face, power=FACE["friction"] * force * face.speed)
+    contact = replace(base.contact, half_width=np.full(POSITIONS, 1e-4))
     rolling = put(
         base.rolling,
-        sliding=face and replace(face, power=FACE["friction"] * force * face.speed),
+        sliding=sliding,
+        flash=sliding
+        and flash_history(base.machine, base.pair, base.contour.pitch, THETA, contact, sliding),
         traction_demand=0.02 + 0.01 * WAVE,
         von_mises=420e6 + 100e6 * WAVE,
     )

@@ -9,6 +9,7 @@ from trial_variants import (
     NO_ROLLING,
     TWO_ENDS,
     coasting,
+    cooled,
     hollow,
     lossy,
     open_ended,
@@ -78,6 +79,14 @@ by_limit(
     0.5 * 100.0 * 0.5 * made.STROKE * 80.0 / 600.0,
     "100 N sin theta along h/2 sin theta at 80 rad/s, of the 600 W of the machine",
     missing=without_power,
+)
+tried(
+    "mechanism_temperature",
+    limited("mechanism_temperature", lambda oil: with_part("lubricant", temperature=oil + 273.15)),
+    lambda: cooled(conductance=None, heat=1e4),
+    lambda: with_loads(axial_force=NAN),
+    25.0 + 0.5 * 100.0 * 0.5 * made.STROKE * 80.0 + 5.0,
+    "25 degC, 20 W of the guides and 5 W of other parts over 1 W/K",
 )
 # geometry
 by_limit(

@@ -160,6 +160,27 @@ for name, field, zero, hand, how in (
         how,
         with_gas_spring,
     )
+tried(
+    "gas_force_lost",
+    limited(
+        "gas_force_lost", lambda lost: with_gas_spring(preload_tolerance=lost), with_gas_spring
+    ),
+    lambda: with_gas_spring(loss=None),
+    lambda: with_gas_spring(cold_temperature=np.nan),
+    ((3e6 + 101325.0) / 293.15 * (320.0 - 0.98 * 300.0))
+    / ((3e6 + 101325.0) * 320.0 / 293.15 - 101325.0),
+    "98 % of the gas at 300 K against all of it at 320 K",
+    with_gas_spring,
+)
+tried(
+    "gas_heating",
+    lambda share: with_gas_spring(conductance=by_hand.gas_friction() / (46.85 * share - 25.0)),
+    None,
+    lambda: with_gas_spring(conductance=np.nan),
+    25.0 + by_hand.gas_friction() / 0.5,
+    "friction of the seals over 0.5 W/K",
+    lambda: with_gas_spring(conductance=0.5),
+)
 # the arm has turned by asin(1/4) over the stroke, moment and rise of the force 5 % high
 BENT = (12.0 + 20.0 * np.arcsin(0.25)) * 1.05
 CURVED = (8.0 + 0.07) / (8.0 - 0.75) * 32.0 / (np.pi * 0.006**3) / 1e6
@@ -224,10 +245,20 @@ tried(
     "contact_temperature",
     limited("contact_temperature", lambda top: oiled(scuffing_temperature=top + 273.15), faced),
     lambda: oiled(scuffing_temperature=None),
-    lambda: faced(cycle_with("contact", made.cycle(made.face_contour()), half_width=NAN)),
+    lambda: faced(cycle_with("rolling", made.cycle(made.face_contour()), flash=NAN)),
     by_hand.contact_temperature(),
     "80 degC, mean and greatest flash temperature of Blok",
     base=faced,
+)
+by_limit(
+    "bulk_temperature",
+    "surface_temperature",
+    lambda: faced(cycle_with("rolling", made.cycle(made.face_contour()), flash=NAN)),
+    by_hand.bulk_temperature(),
+    "80 degC and a share of the mean flash temperature",
+    base=faced,
+    missing=lambda: oiled(temperature=None),
+    zero=273.15,
 )
 # verification of the solution
 for _name, _field, _part, _value in (

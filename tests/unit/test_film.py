@@ -30,6 +30,25 @@ def test_groups_by_hand():
     assert film.material == pytest.approx(2e-8 * 2 * 115.4e9)
 
 
+@pytest.mark.parametrize(
+    ("at_40", "at_100"), [(32.0, 5.4), (150.0, 15.0), (460.0, 30.8)], ids=["32", "150", "460"]
+)
+def test_a_warmer_oil_is_that_of_its_card(at_40, at_100):
+    """The viscosity at 40 degC leads to that at 100; its density of 870 kg/m3 is exact here."""
+    slope = (np.log10(np.log10(at_40 + 0.7)) - np.log10(np.log10(at_100 + 0.7))) / np.log10(
+        373.15 / 313.15
+    )
+    cold = Lubricant(
+        viscosity=870e-6 * at_40, pressure_viscosity=2e-8, temperature=313.15, thinning=slope
+    )
+    assert cold.warmer(60.0).viscosity == pytest.approx(870e-6 * at_100, rel=1e-9)
+    assert cold.warmer(0.0) is cold
+    # the default is that of mineral oils of VG 32 to 460 within a tenth of its viscosity
+    usual = replace(cold, thinning=3.6)
+    assert usual.warmer(30.0).viscosity == pytest.approx(cold.warmer(30.0).viscosity, rel=0.15)
+    assert replace(cold, temperature=None).warmer(60.0).viscosity == cold.viscosity
+
+
 def test_dowson_higginson_by_hand():
     U, G, W = 8e-11, 4616.0, 6.7e-5
     film = LineFilm(np.array(W), np.array(U), G, np.array(0.0065))

@@ -286,6 +286,9 @@ speed_limit = "1 m/s"
 stroke = "20 mm"
 source = "made up"
 stroke_rate_limit = "4000 1/min"
+cold_temperature = "5 degC"
+loss = 0.03
+conductance = "0.2 W/K"
 """
 
 
@@ -307,6 +310,15 @@ def test_limits_of_the_maker():
     peaks = scipy.signal.find_peaks(np.tile(trial.lift(uniform_turn(720)), 2))[0].size // 2
     cam_speed = highest_speed(machines(limited)) / limited.mechanism.gear_ratio
     assert checks["gas_stroke_rate"].demand == pytest.approx(peaks * cam_speed / (2.0 * np.pi))
+    tolerance = checks["gas_force_lost"]
+    cold = absolute * 0.97 * 278.15 / 320.0 - ATMOSPHERE  # the ideal gas, less 3 % of it
+    lost = 1.0 - cold / (absolute - ATMOSPHERE)
+    assert (tolerance.demand, tolerance.limit) == pytest.approx((lost, 0.05))
+    along = absolute * np.exp(-1.3 * np.log(volume / volume[0]))
+    work = scipy.integrate.trapezoid(along - ATMOSPHERE, -volume)
+    fastest = max(each.speed for each in limited.load_cases) / limited.mechanism.gear_ratio
+    warmer = 2.0 * 0.05 * work * peaks * fastest / (2.0 * np.pi) / 0.2
+    assert checks["gas_heating"].demand == pytest.approx(20.0 + warmer, rel=1e-4)
     assert checks["data_gas_spring"].missing == ("spring.travel_max",)
     assert not any(name.startswith("spring_") and name != "spring_travel" for name in checks)
     allowed = travel_limits(limited)

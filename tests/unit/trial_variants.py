@@ -37,14 +37,23 @@ def with_part(section: str, **values: Any) -> Solution:
     return with_case(**{section: made.changed(getattr(made.case(), section), **values)})
 
 
-def with_gas_spring(**values: Any) -> Solution:
+def with_gas_spring(preload_tolerance: float = 0.05, **values: Any) -> Solution:
     """The solution on a gas spring: a column of 50 mm, 30 bar above the surroundings."""
     stated = {
         "temperature": 320.0, "pressure_limit": 1e7, "temperature_limit": 353.0,
         "speed_limit": 2.0, "stroke": 0.02, "stroke_rate_limit": 50.0, "source": "made up",
+        "cold_temperature": 300.0, "loss": 0.02,
     }  # fmt: skip
     gas = GasSpring(pressure=30e5, area=100e-6, volume=5e-6, **(stated | values))
-    return with_part("spring", kind="gas", design=None, gas=gas, rate=gas.rate, preload=gas.preload)
+    return with_part(
+        "spring",
+        kind="gas",
+        design=None,
+        gas=gas,
+        rate=gas.rate,
+        preload=gas.preload,
+        preload_tolerance=preload_tolerance,
+    )
 
 
 def with_torsion_spring(**values: Any) -> Solution:
@@ -306,6 +315,11 @@ def faced(cycle: Cycle | None = None, **values: Any) -> Solution:
         contour=made.face_contour(),
         cycles=(cycle or made.cycle(made.face_contour()),),
     )
+
+
+def cooled(**values: Any) -> Solution:
+    """The solution with another cooling."""
+    return with_part("cooling", **values)
 
 
 def oiled(**values: Any) -> Solution:

@@ -604,6 +604,8 @@ def test_temperature_of_the_sliding_face():
     flash = 1.11 / (2.0 / np.sqrt(np.pi)) * shared
     expected = 80.0 + 0.564 * flash.mean() + flash.max()
     assert checks["contact_temperature"].demand == pytest.approx(expected, rel=1e-3)
+    bulk = 80.0 + 0.564 * flash.mean()
+    assert checks["bulk_temperature"].demand == pytest.approx(bulk, rel=1e-3)
 
 
 def test_the_recalled_cap_of_dang_van_is_marked_and_does_not_decide():

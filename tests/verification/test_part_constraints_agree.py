@@ -355,7 +355,11 @@ def test_every_must_have_that_the_lift_can_help_is_kept_or_named():
         # recomputed from the contour as delivered: a closed quintic spline has none
         "acceleration_step": "smooth spline", "self_intersection": "undercut",
         # a term of the objective, and the temperature that follows from it: neither is kept
-        "friction_power": "loss_weight", "contact_temperature": "loss_weight",
+        **dict.fromkeys(
+            ("friction_power", "contact_temperature", "bulk_temperature", "mechanism_temperature",
+             "gas_heating"),
+            "loss_weight",
+        ),
         "second_contact": "undercut", "tool_gouge": "concave_radius",
         "machine_shaft_gap": "cam_radius",
         # limits of the contact pressure, of the lift and of the normal force

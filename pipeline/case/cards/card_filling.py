@@ -116,10 +116,15 @@ def viscosity(at_40: float, at_100: float, temperature: float) -> float:
     ----------
     Walther's equation, ASTM D341: log log (v + 0.7) is linear in log T.
     """
+    level = math.log10(math.log10(at_40 + 0.7))
+    level -= thinning(at_40, at_100) * math.log10(temperature / 313.15)
+    return float(10.0 ** (10.0**level) - 0.7)
+
+
+def thinning(at_40: float, at_100: float) -> float:
+    """Slope of Walther's equation of an oil, from its kinematic viscosities (mm2/s)."""
     low, high = (math.log10(math.log10(v + 0.7)) for v in (at_40, at_100))
-    start, end = math.log10(313.15), math.log10(373.15)
-    place = (math.log10(temperature) - start) / (end - start)
-    return float(10.0 ** (10.0 ** (low + place * (high - low))) - 0.7)
+    return (low - high) / math.log10(373.15 / 313.15)
 
 
 @cache
@@ -203,6 +208,7 @@ def _oil(card: Tables, table: Tables, source: str, field: str) -> Tables:
         "viscosity": units.format(dynamic, "mPa s"),
         "pressure_viscosity": _entry(card, "pressure_viscosity", source),
         "temperature": units.format(temperature, "degC"),
+        "thinning": round(thinning(at_40, at_100), 3),
         **{key: card[key] for key in ("scuffing_temperature",) if key in card},
         "source": f"{card['source']}; at {units.celsius(temperature):.1f} degC by ASTM D341",
     }

@@ -317,6 +317,9 @@ source = "assumed: proportions"
 [lubricant]
 card = "{oil}"
 temperature = "{_celsius(design)}"
+
+[cooling]
+ambient_temperature = "{units.format(design.task.ambient, "K")}"
 """
 
 

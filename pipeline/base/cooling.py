@@ -1,0 +1,45 @@
+"""Cooling of the mechanism: heat that its housing gives to the surroundings."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Annotated, ClassVar
+
+from camwright.pipeline.base.material import ROOM
+from camwright.pipeline.base.quantities import In, Part, Temperature
+
+STILL_AIR = 10.0
+"""Heat that a housing in still air gives to it, W/(m^2 K): 10 to 18 of gear cases, ISO/TR 14179-2,
+recalled: verify."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Cooling(Part):
+    """Heat that leaves the mechanism per kelvin above the surroundings, and heat that enters.
+
+    conductance: of housing, oil and shaft together; heat: of other parts in the same housing.
+    """
+
+    table: ClassVar[str] = "cooling"
+
+    ambient_temperature: Temperature = ROOM
+    conductance: Annotated[float, In("W/K", above=0, at_most=1e6)] | None = None
+    heat: Annotated[float, In("W", at_least=0, at_most=1e9)] = 0.0
+    source: str = ""
+
+    def temperature(self, loss: float, area: float) -> float:
+        """Steady temperature of the mechanism, K.
+
+        Parameters
+        ----------
+        loss : float   mean friction power, W
+        area : float   of the housing at least, m^2: gives heat to still air where no conductance
+                       is stated
+        """
+        carried = STILL_AIR * area if self.conductance is None else self.conductance
+        return self.ambient_temperature + (loss + self.heat) / carried
+
+
+def housing_area(diameter: float, height: float, width: float) -> float:
+    """Least area of a housing, m^2: that of the box around cam and follower."""
+    return 2.0 * (diameter * height + diameter * width + height * width)
