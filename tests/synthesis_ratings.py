@@ -26,7 +26,7 @@ NUMBERS = {
     "contact_modulus": "contact.modulus", "overspeed": "cam.fastest",
     "force_safety": "limits.roller_static_safety", "dynamic_rating": "roller.bearing.C",
     "held_radius": "cam.held_radius", "guide_mouth": "guides.a.mouth",
-    "shaft_drag": "camshaft.drag", "profile_tolerance": "cam.profile_tolerance",
+    "shaft_drag": "camshaft.drag", "wave_height": "cam.waviness",
     "wave_length": "cam.waviness_length", "width": "follower.face.width",
     "face_friction": "follower.face.friction", "modified_rating": "roller.bearing.C",
     "modified_cleanliness_load": "roller.bearing.cleanliness_load",
@@ -60,10 +60,10 @@ def rated(start=None, **values):
         width, friction, pv = values.pop("face")
         values |= {"width": width, "face_width": width, "face_friction": friction, "face_pv": pv}
     if "wave_amplitude" in values:
-        values["profile_tolerance"] = 2.0 * values.pop("wave_amplitude")
+        values["wave_height"] = 2.0 * values.pop("wave_amplitude")
     if "waves" in values:
         amplitude, length = values.pop("waves")
-        values |= {"profile_tolerance": 2.0 * amplitude, "wave_length": length}
+        values |= {"wave_height": 2.0 * amplitude, "wave_length": length}
     if "modified" in values:
         values |= dict(zip(MODIFIED, values.pop("modified"), strict=True))
     for name in [name for name, value in values.items() if isinstance(value, tuple)]:
@@ -87,6 +87,6 @@ def named(ratings):
     known |= {name: ratings.numbers.get(key) for name, key in NUMBERS.items()}
     pairs = {name[:-2] for name in known if name.endswith("_a")}
     known |= {name: (known[f"{name}_a"], known[f"{name}_b"]) for name in pairs}
-    tolerance = known["profile_tolerance"]
-    known["wave_amplitude"] = None if tolerance is None else 0.5 * tolerance
+    height = known["wave_height"]
+    known["wave_amplitude"] = None if height is None else 0.5 * height
     return SimpleNamespace(**known)

@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from camwright.pipeline.base.units import in_unit, shown
+from camwright.pipeline.base.units import celsius, in_unit, shown
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_values import text_of, value_of
 from camwright.pipeline.case.external_load import closing_preload
@@ -72,6 +72,7 @@ def implausible(case: Case, torques: Mapping[str, Torque]) -> tuple[Implied, ...
     judged += _pressure_findings(case)
     judged += _motor_findings(case, torques)
     judged.append(_oil_finding(case))
+    judged += _temperature_findings(case)
     findings = [one for one in judged if one is not None]
     if not {one.title for one in findings} & {"spring.rate", "spring.preload", *_TORQUES}:
         findings += _spring_findings(case, torques)
@@ -147,6 +148,26 @@ def _motor_findings(case: Case, torques: Mapping[str, Torque]) -> Iterator[Impli
         words += f" torque of {shown(-torque.mean, 'N m')} at {shown(speed, 'rpm')}"
         stated, carried = (in_unit(each, "rpm") for each in (state.speed, speed))
         made = Implied(PLAUSIBILITY, key, stated, carried, "rpm", words)
+        yield made if made.flagged else None
+
+
+_SURROUNDED = ("lubricant", "roller.bearing", "spring.design", "spring.gas")
+
+
+def _temperature_findings(case: Case) -> Iterator[Implied | None]:
+    """Temperatures of parts in operation below that of their surroundings."""
+    around = ("guides.ambient_temperature", "cooling.ambient_temperature")
+    warm = {key: value for key in around if (value := value_of(case, key)) is not None}
+    warmest = max(warm, key=warm.__getitem__)
+    for part in _SURROUNDED:
+        key = f"{part}.temperature"
+        value = value_of(case, key)
+        if value is None or value >= warm[warmest]:
+            continue
+        stated, least = (float(celsius(each)) for each in (value, warm[warmest]))
+        words = f"{key} = {text_of(case, key)}, but {warmest} = {text_of(case, warmest)}: in"
+        words += " operation no part is colder than its surroundings"
+        made = Implied(PLAUSIBILITY, key, stated, least, "degC", words)
         yield made if made.flagged else None
 
 

@@ -310,7 +310,7 @@ end = { kind = "sharp" }
 bore_radius = "15 mm"
 material = "case_hardened"
 roughness = "0.3 um"
-profile_tolerance = "8 um"           # ground; for waves of waviness_length, 5 mm
+profile_tolerance = "8 um"           # ground
 keyway = { width = "8 mm", depth = "3.3 mm", root_radius = "0.2 mm" }  # DIN 6885-1: 0.16 to 0.25
 key = { length = "15 mm", form = "B", material = "c45" }
 

@@ -84,26 +84,27 @@ cam_radius = check(
 ).measured("contour", deviation=1e-4, kept=Kept(factor_max=FACTOR_MAX))(contour_radius)
 
 
-_BAND, _WAVES = "cam.profile_tolerance", "cam.waviness_length"
+_HEIGHT, _LENGTH = "cam.waviness", "cam.waviness_length"
 
 
 def _wave_force(cam: LoadedCam) -> Array:
-    """Inertia force of the follower on waves over the full profile tolerance, N."""
+    """Inertia force of the follower on the waves of the track, N."""
     numbers, speed = cam.numbers, cam.speed * cam.motion.contour_speed
-    amplitude = 0.5 * numbers[_BAND]
-    square: Array = (FULL_TURN * speed / numbers[_WAVES]) ** 2
+    amplitude = 0.5 * numbers[_HEIGHT]
+    square: Array = (FULL_TURN * speed / numbers[_LENGTH]) ** 2
     return numbers["follower.mass"] * amplitude * square
 
 
 def _force_of_waves(cam: LoadedCam, limit: float) -> Array | None:
-    """No constraint without a profile tolerance."""
-    if cam.numbers.get(_BAND) is None:
+    """No constraint without a height of the waves."""
+    if cam.numbers.get(_HEIGHT) is None:
         return None
     return demands.over_normal_force(cam, _wave_force(cam) / limit)
 
 
 def _waves_in_words(demand: Demand, solution: Solution) -> Demand:
-    return replace(demand, note=f"waves of {shown(solution.machine.cam.waviness_length, 'mm')}")
+    high, long = (float(solution.numbers[key]) for key in (_HEIGHT, _LENGTH))
+    return replace(demand, note=f"waves of {shown(high, 'um', 3)} over {shown(long, 'mm')}")
 
 
 @check(
@@ -111,18 +112,18 @@ def _waves_in_words(demand: Demand, solution: Solution) -> Demand:
     id="profile_waviness",
     title="Waviness inertia force / contact force",
     tier=Tier.SCREENING,
-    formula="max m a (2 pi v/lambda)^2 / N <= c; m: moving mass, a: half of"
-    " cam.profile_tolerance, v: speed of the contact along the contour, lambda:"
-    " cam.waviness_length, N: contact force, at least 1 % of the least spring force, c:"
-    " limits.waviness",
-    reason="Waves of the ground surface unload the contact and mark it.",
-    method="m delta (2 pi v/lambda)^2, waves over the full profile tolerance",
-    values=(*given.LOADS, "cam.waviness_length", "cam.profile_tolerance"),
+    formula="max m a (2 pi v/lambda)^2 / N <= c; m: moving mass, a: half of cam.waviness_height,"
+    " else of that of cam.process at lambda and at most of cam.profile_tolerance, v: speed of the"
+    " contact along the contour, lambda: cam.waviness_length, N: contact force, at least 1 % of the"
+    " least spring force, c: limits.waviness",
+    reason="Waves of the surface unload the contact and mark it.",
+    method="m a (2 pi v/lambda)^2 of sine waves",
+    values=(*given.LOADS, "cam.process", "cam.waviness_*", "cam.profile_tolerance"),
     levers=(levers.one("cam.profile_tolerance", -1, 10.0), levers.MASS, *levers.SPRING),
     page="Cam",
 ).measured(
     "angles",
-    needed=(_BAND,),
+    needed=(_HEIGHT,),
     remark=_waves_in_words,
     deviation=0.05,
     smooth=False,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from types import MappingProxyType
 from typing import Annotated, ClassVar, Literal, NamedTuple
 
 from camwright.pipeline.base.material import Material
@@ -94,6 +95,12 @@ EFFECTIVE_LENGTH = 1.3
 """Bearing length of a key over the shaft diameter, at most: DIN 6892 (recalled, verify)."""
 
 
+Process = Literal["ground", "milled", "cut"]
+WAVES: Mapping[str, float] = MappingProxyType({"ground": 0.8e-3, "milled": 3e-3, "cut": 8e-3})
+"""Height of the waves of a track over their length, crest to trough, by process: 4, 15 and 40 um at
+5 mm, workshop practice, recalled: verify. cut: by laser, plasma or flame."""
+
+
 @dataclass(frozen=True, kw_only=True)
 class BalanceHole(Part):
     """Request for a hole through the cam that removes its unbalance.
@@ -118,6 +125,7 @@ class CamBody(Part):
     width_key: ClassVar[str] = "cam.width"
     defaults: ClassVar[Mapping[str, str]] = {
         "roughness": "unknown: the film ratio, which is advisory, is not evaluated",
+        "waviness_height": "of the process at the wavelength, within the profile tolerance",
     }
 
     prime_radius: Length
@@ -129,7 +137,9 @@ class CamBody(Part):
     key: ParallelKey | None = None
     roughness: Annotated[float, In("um", above=0, at_most=1000)] | None = None
     profile_tolerance: Annotated[float, In("mm", above=0, at_most=10)] = 1e-4
+    process: Process = "ground"
     waviness_length: Length = 0.005
+    waviness_height: Length | None = None
     end: BodyEnd | None = None
     crown: AxialCrown | None = None
     counter_hole: BalanceHole | None = None

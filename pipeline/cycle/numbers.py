@@ -13,6 +13,7 @@ from camwright.geometry.errors import InputError
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_values import value_of
 from camwright.pipeline.case.limits import AnyLimit
+from camwright.pipeline.contact.cam_body import WAVES
 from camwright.pipeline.contact.traction import ring_inertia
 from camwright.pipeline.follower.bearing_life import contamination_factor
 from camwright.pipeline.follower.guide_friction import friction_limits
@@ -171,6 +172,15 @@ def _cleanliness_load(numbers: Numbers) -> Value | None:
     )
 
 
+def _waviness(numbers: Numbers) -> Value | None:
+    """Height of the waves of the track, m: as stated, else of the process, within the profile."""
+    stated, band = numbers.get("cam.waviness_height"), numbers.get("cam.profile_tolerance")
+    if stated is not None or band is None:
+        return stated
+    process = numbers.known_case.cam.process
+    return np.minimum(WAVES[process] * numbers["cam.waviness_length"], band)
+
+
 def _rotor_inertia(numbers: Numbers) -> Value | None:
     """Moment of inertia of the roller, kg m2; see `Roller.rotor_inertia`."""
     stated, radius = numbers.get("roller.inertia"), numbers.get("roller.radius")
@@ -189,6 +199,7 @@ DERIVED: Mapping[str, Callable[[Numbers], Value | None]] = {
     "guides.a.mouth": _mouth,
     "follower.extent": _extent,
     "follower.size": _size,
+    "cam.waviness": _waviness,
     "roller.rotor_inertia": _rotor_inertia,
     "roller.bearing.pitch_diameter": _ball_circle,
     "roller.bearing.cleanliness_load": _cleanliness_load,

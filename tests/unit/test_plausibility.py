@@ -79,6 +79,18 @@ def test_two_viscosities_of_one_oil_have_one_warning() -> None:
     assert warnings(parse_case(greased)) == []
 
 
+def test_no_part_in_operation_is_colder_than_its_surroundings() -> None:
+    text = (ROOT / "cases" / "machines" / "compressor.toml").read_text(encoding="utf-8")
+    cold = changed(text, 'ambient_temperature = "60 degC"', 'ambient_temperature = "100 degC"')
+    found = warnings(parse_case(cold))
+    assert [one.split(" = ")[0] for one in found] == [
+        "lubricant.temperature", "spring.design.temperature"
+    ]  # fmt: skip
+    assert all("guides.ambient_temperature = 100 degC" in one for one in found)
+    hot_day = changed(text, 'ambient_temperature = "30 degC"', 'ambient_temperature = "100 degC"')
+    assert "cooling.ambient_temperature = 100 degC" in warnings(parse_case(hot_day))[0]
+
+
 def test_a_rate_a_thousand_times_too_low_contradicts_the_torque() -> None:
     text = changed(REDESIGN, 'rate = "180 kN/m"', 'rate = "180 N/m"')
     text = text[: text.index("[spring.design]")] + text[text.index("[cam]") :]

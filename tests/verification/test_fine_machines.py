@@ -1,5 +1,6 @@
 """Machines that no engineer would refuse, and what in each looks like a fault."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -48,3 +49,15 @@ def test_the_key_of_a_sliding_fit_carries_the_torque():
     for name in ("key_pressure", "key_pressure_shaft", "key_shear"):
         assert checks[name].must_have and checks[name].utilisation < 0.5, name
     assert blocking(checks) == WITHOUT_DATA
+
+
+def test_a_wide_profile_is_no_wave():
+    """A ground profile of 25 um has waves of 4 um at 5 mm; cut by laser it has waves of 25 um."""
+    check = checked("ground_profile")["profile_waviness"]
+    assert check.status == "pass"
+    assert check.note.endswith("waves of 4 um over 5 mm")
+    ground = read_case(FINE / "ground_profile.toml")
+    cut = ground.model_copy(update={"cam": replace(ground.cam, process="cut")})
+    of_cut = {each.id: each for each in preview_case(cut, corners=False).checks}["profile_waviness"]
+    assert of_cut.status == "fail"
+    assert of_cut.demand == pytest.approx(25.0 / 4.0 * check.demand, rel=1e-9)

@@ -21,12 +21,11 @@ from camwright.pipeline.case.cards.provenance import without_provenance
 from camwright.pipeline.case.cards.shaft_seats import seats
 from camwright.pipeline.case.case_file import parse_case
 from camwright.pipeline.case.toml_text import Tables
-from camwright.pipeline.checks.manufacture import cam_radius, profile_waviness
+from camwright.pipeline.checks.manufacture import cam_radius
 from camwright.pipeline.follower.spring import HelicalSpring
 from camwright.pipeline.screening.design_screening import Column, screen_designs
 from camwright.pipeline.studies.design.design_case import (
     OIL_WARMER,
-    PROFILES,
     Machinery,
     case_text,
     oils_of,
@@ -53,7 +52,6 @@ _REMOVED_MORE = 0.05  # of the ripple, above the requirement
 _PEAK = 1.25  # cam torque over that of the balanced ripple
 _FREE_ROOM = 5.0  # m, of a cam whose space is not limited
 _SMOOTHER = 'kind = "harmonic"\nharmonics = 12.0\n'
-_WAVY = 0.75  # utilisation above which the contour is ground finely: the preload is free
 POSITIONS = 60
 
 
@@ -264,9 +262,6 @@ def _judged(designs: list[Machinery], columns: Mapping[str, Column]) -> list[Can
         if name.endswith(".utilisation")
     ])  # fmt: skip
     names = [name.split(".")[0] for name in columns if name.endswith(".utilisation")]
-    wavy = names.index(profile_waviness.id)  # proportional to the tolerance of the contour
-    finely = used[wavy] > _WAVY
-    used[wavy, finely] *= PROFILES[1] / PROFILES[0]
     excess = np.maximum(used - 1.0, 0.0).sum(axis=0)
     worst = used.argmax(axis=0)
     ripple = np.asarray(columns["headline.torque_std_after_Nm"], dtype=float)
@@ -275,11 +270,7 @@ def _judged(designs: list[Machinery], columns: Mapping[str, Column]) -> list[Can
     good &= np.asarray(columns["screen"] != "error")
     return [
         Candidate(
-            replace(
-                designs[row],
-                cam_radius=1e-3 * float(radius[row]),
-                profile=PROFILES[int(finely[row])],
-            ),
+            replace(designs[row], cam_radius=1e-3 * float(radius[row])),
             float(ripple[row]),
             1e-3 * float(radius[row]),
             float(excess[row]),

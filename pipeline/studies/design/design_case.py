@@ -31,7 +31,7 @@ _KAPPA = 1.25  # viscosity ratio of the roller bearing at the least speed
 _CENTISTOKES = 1e-6
 _ROOM = "given: space less the height of the roller at maximum lift"
 _BALANCED = 3e-3  # m/s, residual unbalance of the bench
-PROFILES = (8e-6, 4e-6)  # m, tolerance of the contour: ground, finely ground
+PROFILE = 8e-6  # m, tolerance of the ground contour
 SEARCHED = 72  # cam angles of a turn in the search
 WRITTEN = 144  # in a case file, for the error bars of a run
 _STEPS = (0.5, 0.25, 0.2, 0.1)  # deg, of the contour table
@@ -48,8 +48,7 @@ rest_force_weight = 0.0
 class Machinery:
     """A design in numbers, SI: frame, spring, least radius of the roller's centre, its offset.
 
-    lift: greatest lift for which the frame has room; cam_radius: that of the cam expected; profile:
-    tolerance of the ground contour.
+    lift: greatest lift for which the frame has room; cam_radius: that of the cam expected.
     """
 
     task: DesignTask = field(repr=False)
@@ -60,7 +59,6 @@ class Machinery:
     cam_radius: float
     offset: float = 0.0
     bush: str = "ptfe_lined"
-    profile: float = PROFILES[0]
     oils: Mapping[str, tuple[float, float]] = field(default_factory=dict, repr=False)
 
     @property
@@ -215,7 +213,6 @@ def _spring_source(spring: HelicalSpring) -> str:
 def _cam(design: Machinery) -> str:
     frame, seat = design.frame, design.frame.seat
     offset = f'offset = "{_mm(design.offset)}"\n' if design.offset else ""
-    ground = "ground" if design.profile == PROFILES[0] else "finely ground"
     return f"""\
 # --- Cam: the prime radius is that of the roller's CENTRE on the base circle.
 [cam]
@@ -225,7 +222,7 @@ end = {{ kind = "sharp" }}
 bore_radius = "{_mm(0.5 * seat.bore)}"
 material = "case_hardened"
 roughness = "0.3 um"                 # ground
-profile_tolerance = "{units.format(design.profile, "um")}"           # {ground}; for waves of 5 mm
+profile_tolerance = "{units.format(PROFILE, "um")}"           # ground
 keyway = {{ width = "{_mm(seat.key_width)}", depth = "{_mm(seat.hub_depth)}" }}
 source = "assumed: case-hardened and ground"
 
@@ -413,7 +410,7 @@ positions = {positions}                       # per cam turn; 720 for a sign-off
 
 def _table_step(design: Machinery) -> float:
     """Step of the contour table, deg: chords of a circle, twice as curved as that of the cam."""
-    radius, error = 2.0 * design.prime_radius, CHORD_SHARE.default * design.profile
+    radius, error = 2.0 * design.prime_radius, CHORD_SHARE.default * PROFILE
     return next((s for s in _STEPS if radius * np.radians(s) ** 2 / 8.0 <= error), _STEPS[-1])
 
 
