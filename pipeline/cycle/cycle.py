@@ -38,6 +38,7 @@ from camwright.pipeline.follower.camshaft_loads import ShaftLoads
 from camwright.pipeline.follower.follower_forces import Loads, follower_loads, share_left
 from camwright.pipeline.follower.guide_effects import GuideShares, guide_shares
 from camwright.pipeline.follower.guide_reactions import GuideReactions
+from camwright.pipeline.follower.shaft_strength import in_the_normal, slope_at_cam
 from camwright.pipeline.follower.spring import Spring
 
 LIFT = Column("lift", "mm", "Lift")
@@ -214,6 +215,17 @@ class Cycle(Tabled):
     def shaft(self) -> ShaftLoads | None:
         """Loads of the camshaft; None where the case does not describe one."""
         return shaft_of(self.turn, self.contour)
+
+    @property
+    def shaft_tilt(self) -> Array:
+        """Slope of the camshaft at the cam in the plane of the contact normal (n,), rad, signed.
+
+        Zero without a camshaft, NaN where its diameter or material is missing.
+        """
+        shaft, pressure_angle = self.machine.camshaft, self.loads.pressure_angle
+        if shaft is None or self.shaft is None:
+            return np.zeros(self.theta.size)
+        return in_the_normal(slope_at_cam(self.shaft, shaft), pressure_angle)
 
     @KeptResult
     def elastic(self) -> ElasticHistory:

@@ -257,6 +257,13 @@ class Camshaft(Part):
             return None
         return max([self.diameter, *(each.diameter for each in self.sections)])
 
+    @property
+    def thinnest(self) -> float | None:
+        """Least diameter of shaft and sections, m; None without that of the shaft."""
+        if self.diameter is None:
+            return None
+        return min([self.diameter, *(each.diameter for each in self.sections)])
+
 
 @dataclass(frozen=True, eq=False)
 class ShaftLoads:
@@ -295,8 +302,7 @@ def shaft_loads(
 ) -> ShaftLoads:
     """Bearing loads of the camshaft from contact force and gear force.
 
-    The follower exerts -F_a along its axis and -F_t across it on the cam. The tangential gear force
-    supplies cam torque and drag; the radial gear force separates the gears.
+    The follower exerts -F_a along its axis and -F_t across it on the cam.
 
     Parameters
     ----------
@@ -314,10 +320,7 @@ def shaft_loads(
     across = finite("tangential_force", tangential_force)
     torque = finite("cam_torque", cam_torque)
     cam = np.stack([-along, -across]) + finite("unbalance_force", unbalance_force)
-    tooth = (torque + shaft.drag) / shaft.gear_radius
-    outward = np.array([np.cos(shaft.mesh_angle), np.sin(shaft.mesh_angle)])[:, None]
-    sideways = np.array([-np.sin(shaft.mesh_angle), np.cos(shaft.mesh_angle)])[:, None]
-    gear = tooth * sideways - np.abs(tooth) * np.tan(shaft.pressure_angle) * outward
+    gear = gear_force(torque, shaft)
     weight = np.zeros_like(cam) + finite("counterweight_force", counterweight_force)
     acting = [(shaft.cam_position, cam), (shaft.gear_position, gear)]
     if shaft.counterweight is not None:
@@ -325,6 +328,18 @@ def shaft_loads(
     second = -np.sum([force * (at / shaft.bearing_spacing) for at, force in acting], axis=0)
     first = -np.sum([force for _, force in acting], axis=0) - second
     return ShaftLoads(cam, gear, weight, first, second)
+
+
+def gear_force(torque: Array, shaft: Camshaft) -> Array:
+    """Force of the teeth on the gear (2, ...), N, at cam torques (...), N m, drag added.
+
+    The tangential force supplies the torque; the radial force separates the gears.
+    """
+    tooth = (torque + shaft.drag) / shaft.gear_radius
+    outward = np.array([np.cos(shaft.mesh_angle), np.sin(shaft.mesh_angle)])
+    sideways = np.array([-np.sin(shaft.mesh_angle), np.cos(shaft.mesh_angle)])
+    apart = np.abs(tooth) * np.tan(shaft.pressure_angle)
+    return np.asarray(np.multiply.outer(sideways, tooth) - np.multiply.outer(outward, apart))
 
 
 @dataclass(frozen=True, eq=False)

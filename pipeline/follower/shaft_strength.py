@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from statistics import NormalDist
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -274,6 +275,68 @@ def shaft_bending(
     moment = bending_moment(loads, shaft, places) * simpson * step / 6.0
     total = (units[..., None, None] * moment).reshape(3, places.size, *loads.cam.shape).sum(axis=1)
     return ShaftBending(*(total / stiffness))
+
+
+class CamSlope(NamedTuple):
+    """Slope of the shaft at the middle of the cam per force at cam, gear, counterweight, rad/N."""
+
+    cam: float
+    gear: float
+    counterweight: float
+
+    def under(self, cam: Array, gear: Array, counterweight: ArrayLike = 0.0) -> Array:
+        """Slope (2, ...), rad, under forces (2, ...), N: rise of the deflection from bearing 1."""
+        weight = np.asarray(counterweight, dtype=float)
+        return np.asarray(self.cam * cam + self.gear * gear + self.counterweight * weight)
+
+
+@lru_cache(maxsize=32)
+def cam_slope(shaft: Camshaft, diameter: float, elastic_modulus: float) -> CamSlope:
+    """Slope at the cam, between the bearings or overhung; shaft as of `shaft_bending`.
+
+    References
+    ----------
+    Unit-load method, of a unit couple at the cam; exact, see `shaft_bending`.
+    """
+    span, cam = shaft.bearing_spacing, shaft.cam_position
+    weight = cam if shaft.counterweight is None else shaft.counterweight.position
+    stiffness = elastic_modulus * np.pi * diameter**4 / 64.0
+    corners = distinct([0.0, span, cam, shaft.gear_position, weight])
+    start, end = corners[:-1], corners[1:]
+    places = np.stack([start, 0.5 * (start + end), end])
+
+    def reacted(at: float, first: float, second: float) -> Array:
+        """Moment at the places of forces at the bearings, and of one at a place that they hold."""
+        load = -(first + second)
+        return np.asarray(
+            first * np.maximum(places, 0.0)
+            + second * np.maximum(places - span, 0.0)
+            + load * np.maximum(places - at, 0.0)
+        )
+
+    couple = reacted(cam, 1.0 / span, -1.0 / span) - (start >= cam)
+    weights = (end - start) * np.array([[1.0], [4.0], [1.0]]) / (6.0 * stiffness)
+    slopes = (
+        float(np.sum(weights * couple * reacted(at, at / span - 1.0, -at / span)))
+        for at in (cam, shaft.gear_position, weight)
+    )
+    return CamSlope(*slopes)
+
+
+def slope_at_cam(loads: ShaftLoads, shaft: Camshaft) -> Array:
+    """Slope of the shaft at the cam (2, n), rad; see `CamSlope`.
+
+    NaN where the case does not state diameter or material.
+    """
+    if shaft.thinnest is None or shaft.material is None:
+        return np.full_like(loads.cam, np.nan)
+    per_force = cam_slope(shaft, shaft.thinnest, shaft.material.E)
+    return per_force.under(loads.cam, loads.gear, loads.counterweight)
+
+
+def in_the_normal(slope: Array, pressure_angle: Array) -> Array:
+    """Part (...) of a slope of the shaft (2, ...), rad, in the plane of the contact normal."""
+    return np.asarray(slope[0] * np.cos(pressure_angle) + slope[1] * np.sin(pressure_angle))
 
 
 ROOT_OF_PUSH, ROOT_OF_CONTACT = 0.70, 4.1
