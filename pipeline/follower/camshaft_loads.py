@@ -10,7 +10,7 @@ from typing import Annotated, ClassVar, Literal, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from camwright.geometry.arrays import FULL_TURN, Array, finite, freeze
+from camwright.geometry.arrays import FULL_TURN, Array, Value, finite, freeze
 from camwright.geometry.contour import Contour
 from camwright.geometry.cutouts import KeywayLike
 from camwright.geometry.errors import GeometryError, InputError
@@ -199,9 +199,14 @@ class Counterweight(Part):
 
         A residual has no known direction: it is taken on the side of the counterweight.
         """
+        product, angle = self.against(made.product, made.angle)
+        return float(product), float(angle)
+
+    def against(self, product: Value, angle: Value) -> tuple[Value, Value]:
+        """As `set_against`, of cams (...) of an unbalance, kg m, and its direction, rad."""
         if self.unbalance is not None and self.angle is not None:
             return self.unbalance, self.angle
-        return made.product + (self.residual or 0.0), made.angle + pi
+        return product + (self.residual or 0.0), angle + pi
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -370,20 +375,20 @@ class Unbalance:
         return bool(np.hypot(*self.moment) <= _BALANCED * self.area**1.5)
 
 
-def rotating_force(product: float, direction: float, cam_speed: float, theta: Array) -> Array:
-    """Centrifugal force of an unbalance on the shaft (2, n), N, in the frame of `ShaftLoads`.
+def rotating_force(product: Value, direction: Value, cam_speed: Value, theta: Array) -> Array:
+    """Centrifugal force of an unbalance on the shaft (2, ..., n), N, in the frame of `ShaftLoads`.
 
     It points along the follower at the cam angle of the centre of mass and rotates with the
     cam.
 
     Parameters
     ----------
-    product, direction : float   m e, kg m, and its direction in the cam frame, rad
-    cam_speed : float            rad/s
+    product, direction : (...)   m e, kg m, and its direction in the cam frame, rad
+    cam_speed : (...)            rad/s
     theta : array (n,)           cam angles, rad
     """
     turned = finite("theta", theta) - direction
-    return product * cam_speed**2 * np.stack([np.cos(turned), np.sin(turned)])
+    return np.asarray(product * cam_speed**2 * np.stack([np.cos(turned), np.sin(turned)]))
 
 
 def unbalance(
@@ -415,20 +420,28 @@ def unbalance(
     moment = area * np.asarray(contour.centroid())
     area -= np.pi * bore_radius**2
     if keyway is not None:
-        cut, arm = _keyway_moment(bore_radius, keyway.width, keyway.depth)
-        area -= cut
-        moment = moment - arm * np.array([np.cos(keyway.angle), np.sin(keyway.angle)])
+        cut = keyway_cut(bore_radius, keyway.width, keyway.depth)
+        area -= float(cut.area)
+        moment = moment - cut.moment * np.array([np.cos(keyway.angle), np.sin(keyway.angle)])
     mass = density * width * area
     return Unbalance(area, moment, mass, float(density * width * np.hypot(*moment)))
 
 
-def _keyway_moment(bore: float, width: float, depth: float) -> tuple[float, float]:
+class KeywayCut(NamedTuple):
     """Area of a keyway outside the bore, m2, and its first moment about the cam axis, m3."""
+
+    area: Value
+    moment: Value
+
+
+def keyway_cut(bore: Value, width: float, depth: float) -> KeywayCut:
+    """What a keyway takes from a cam of a bore radius (...), m; width and depth, m."""
     half, floor = 0.5 * width, bore + depth
     chord = np.sqrt(bore**2 - half**2)
     under_arc = half * chord + bore**2 * np.arcsin(half / bore)
     # Across the width the keyway extends from sqrt(bore^2 - y^2) to the floor.
-    return width * floor - under_arc, width * floor**2 / 2.0 - (bore**2 * half - half**3 / 3.0)
+    moment = width * floor**2 / 2.0 - (bore**2 * half - half**3 / 3.0)
+    return KeywayCut(width * floor - under_arc, moment)
 
 
 class CounterHole(NamedTuple):

@@ -278,11 +278,15 @@ def shaft_bending(
 
 
 class CamSlope(NamedTuple):
-    """Slope of the shaft at the middle of the cam per force at cam, gear, counterweight, rad/N."""
+    """Slope of the shaft at the middle of the cam per force at cam, gear, counterweight, rad/N.
+
+    couple: per moment at the cam, rad/(N m), > 0.
+    """
 
     cam: float
     gear: float
     counterweight: float
+    couple: float
 
     def under(self, cam: Array, gear: Array, counterweight: ArrayLike = 0.0) -> Array:
         """Slope (2, ...), rad, under forces (2, ...), N: rise of the deflection from bearing 1."""
@@ -316,22 +320,21 @@ def cam_slope(shaft: Camshaft, diameter: float, elastic_modulus: float) -> CamSl
 
     couple = reacted(cam, 1.0 / span, -1.0 / span) - (start >= cam)
     weights = (end - start) * np.array([[1.0], [4.0], [1.0]]) / (6.0 * stiffness)
-    slopes = (
+    under_cam, under_gear, under_weight = (
         float(np.sum(weights * couple * reacted(at, at / span - 1.0, -at / span)))
         for at in (cam, shaft.gear_position, weight)
     )
-    return CamSlope(*slopes)
+    return CamSlope(under_cam, under_gear, under_weight, float(np.sum(weights * couple**2)))
 
 
-def slope_at_cam(loads: ShaftLoads, shaft: Camshaft) -> Array:
-    """Slope of the shaft at the cam (2, n), rad; see `CamSlope`.
+def slope_of(shaft: Camshaft | None) -> CamSlope | None:
+    """Slope at the cam of a shaft of its least diameter.
 
-    NaN where the case does not state diameter or material.
+    None without a shaft, or where the case does not state its diameter or material.
     """
-    if shaft.thinnest is None or shaft.material is None:
-        return np.full_like(loads.cam, np.nan)
-    per_force = cam_slope(shaft, shaft.thinnest, shaft.material.E)
-    return per_force.under(loads.cam, loads.gear, loads.counterweight)
+    if shaft is None or shaft.thinnest is None or shaft.material is None:
+        return None
+    return cam_slope(shaft, shaft.thinnest, shaft.material.E)
 
 
 def in_the_normal(slope: Array, pressure_angle: Array) -> Array:

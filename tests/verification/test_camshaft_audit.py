@@ -194,6 +194,8 @@ def test_slope_at_an_overhung_cam_is_that_of_the_textbook(reach):
     assert cam_slope(shaft, DIAMETER, YOUNG).cam == pytest.approx(expected, rel=1e-12)
     beyond = replace(shaft, cam_position=SPAN + reach)
     assert cam_slope(beyond, DIAMETER, YOUNG).cam == pytest.approx(-expected, rel=1e-12)
+    couple = (SPAN + 3 * reach) / (3 * bend)
+    assert cam_slope(shaft, DIAMETER, YOUNG).couple == pytest.approx(couple, rel=1e-12)
 
 
 @pytest.mark.parametrize("place", [0.01, 0.03, 0.045])
@@ -208,6 +210,8 @@ def test_slope_at_a_cam_between_the_bearings_is_that_of_the_textbook(place):
     arm = SPAN - 0.052
     line = arm * (SPAN**2 - arm**2 - 3 * place**2) / (6 * bend * SPAN)
     assert slope.gear == pytest.approx(line, rel=1e-12)
+    couple = (place**3 + beside**3) / (3 * bend * SPAN**2)
+    assert slope.couple == pytest.approx(couple, rel=1e-12)
 
 
 def test_no_place_of_the_shaft_has_a_greater_moment_than_the_judged_sections():
