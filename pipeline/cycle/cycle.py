@@ -390,6 +390,12 @@ class Cycle(Tabled):
                 contact_column(
                     "centre_factor", "", "Contact pressure in the middle over plane strain"
                 ): length.centre,
+                Column(
+                    "shaft_tilt", "mrad", "Slope of the camshaft at the cam, in the contact normal"
+                ): length.tilt.shaft,
+                Column(
+                    "forced_tilt", "mrad", "Tilt of the contact beyond the clearance of the guides"
+                ): length.tilt.forced,
                 contact_column(
                     "tilt_moment", "N mm", "Greatest moment of the contact force about its middle"
                 ): length.moment,
