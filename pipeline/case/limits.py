@@ -199,10 +199,12 @@ CAM_RUN_OUT = Limit(
     In("um", at_least=0, at_most=1000), 5e-6,
     "5 um, ground seat and shoulder, shop practice, recalled: verify", "at_least",
 )  # fmt: skip
-ROLLER_CLEARANCE = Limit(
-    "roller_clearance", "radial clearance in the bearing of the roller, over its width a tilt",
-    In("um", at_least=0, at_most=1000), 18e-6,
-    "18 um, the most of group N at bores of 10 to 18 mm, ISO 5753-1, recalled: verify", "at_least",
+ROLLER_CLEARANCE = Limit(  # at either end of it the contact turns the roller back: nothing holds it
+    "roller_clearance", "radial clearance in which the roller tilts on its bearing, over its width",
+    In("um", at_least=0, at_most=1000), 0.0,
+    "0 um, the contact force seats the roller on its bearing; one that is not seated has that of"
+    " its catalogue, 3 to 18 um of group N at bores of 10 to 18 mm, ISO 5753-1, recalled: verify",
+    "at_least",
 )  # fmt: skip
 WAVINESS = Limit(
     "waviness", "waviness force over contact force", _SHARE, 0.2,
