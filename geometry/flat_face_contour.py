@@ -170,9 +170,14 @@ class FaceMotion:
     def sliding(self) -> Array:
         return self.friction * self.height
 
+    @property
+    def contact_point(self) -> tuple[Array, Array]:
+        return self.height, self.jet.slope
+
     @cached_property
     def contour_radius(self) -> Array:
-        return np.sqrt(self.height**2 + self.jet.slope**2)
+        along, across = self.contact_point
+        return np.sqrt(along**2 + across**2)
 
     @property
     def contour_speed(self) -> Array:

@@ -95,6 +95,10 @@ class Motion(Protocol):
         """Turn of a roller over that of the cam."""
 
     @property
+    def contact_point(self) -> tuple[Array, Array]:
+        """Place of the contact along the line of travel and across it, from the cam axis."""
+
+    @property
     def contour_radius(self) -> Array:
         """Distance of the contact from the cam axis."""
 

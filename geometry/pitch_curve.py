@@ -179,9 +179,14 @@ class RollerMotion:
         return 0.0
 
     @cached_property
-    def contour_radius(self) -> Array:
+    def contact_point(self) -> tuple[Array, Array]:
         inset = self.size / self.path_speed
-        return np.sqrt((self.height * (1.0 - inset)) ** 2 + (self.offset + inset * self.along) ** 2)
+        return self.height * (1.0 - inset), self.offset + inset * self.along
+
+    @property
+    def contour_radius(self) -> Array:
+        along, across = self.contact_point
+        return np.sqrt(along**2 + across**2)
 
     @property
     def contour_speed(self) -> Array:

@@ -119,6 +119,7 @@ NARROWER = Scaled(("cam.width", "cam.key.length"), -1, 1.25)
 PRESSED = Catalogued(BEARING, "C0")
 LENGTHS: tuple[Scaled | Catalogued, ...] = (WIDTH, NARROWER, PRESSED)
 """Levers of the length of contact: with a crown each step is a pair of bodies with a new table."""
+STIFFER_SHAFT = (one("camshaft.diameter", most=2.0), one("camshaft.bearing_spacing", -1, 2.0))
 CROWNED, RECROWNED = Crowned(first=True), Crowned(first=False)
 OVERHANG = one("follower.overhang_at_max_lift", -1, 2.0)
 SPACING = one("guides.spacing", most=2.0)

@@ -46,6 +46,8 @@ LENGTH = (
     *("cam.end.*", "roller.end.*", "follower.face.end.*"),
     *("cam.crown.*", "roller.crown.*", "follower.face.crown.*"),
     *("guides.a.clearance", "guides.b.clearance", "roller.axial_offset"),
+    *("limits.axis_parallelism", "limits.cam_run_out", "limits.roller_clearance"),
+    *("camshaft.drag", "camshaft.material.E", "cam.material.density", *BENCH),
 )
 
 

@@ -189,6 +189,23 @@ END_MEAN_LENGTH = Limit(
     In("mm", at_least=0.02, at_most=10), 1e-4,
     "0.1 mm, about a half-width of contact: the mean over it does not depend on the mesh",
 )  # fmt: skip
+AXIS_PARALLELISM = Limit(
+    "axis_parallelism", "tilt of the cam axis to that of the follower as made",
+    In("mrad", at_least=0, at_most=100), 1e-4,
+    "0.01 mm over 100 mm, bores machined in one setting, ISO 1101, recalled: verify", "at_least",
+)  # fmt: skip
+CAM_RUN_OUT = Limit(
+    "cam_run_out", "axial run-out of the cam on its shaft at the base circle, full reading",
+    In("um", at_least=0, at_most=1000), 5e-6,
+    "5 um, ground seat and shoulder, shop practice, recalled: verify", "at_least",
+)  # fmt: skip
+ROLLER_CLEARANCE = Limit(  # at either end of it the contact turns the roller back: nothing holds it
+    "roller_clearance", "radial clearance in which the roller tilts on its bearing, over its width",
+    In("um", at_least=0, at_most=1000), 0.0,
+    "0 um, the contact force seats the roller on its bearing; one that is not seated has that of"
+    " its catalogue, 3 to 18 um of group N at bores of 10 to 18 mm, ISO 5753-1, recalled: verify",
+    "at_least",
+)  # fmt: skip
 WAVINESS = Limit(
     "waviness", "waviness force over contact force", _SHARE, 0.2,
     "10 to 20 % of the force, Rothbart (2004) sec. 10.4",

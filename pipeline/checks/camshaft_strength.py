@@ -106,14 +106,13 @@ def gear_of(shaft: Camshaft) -> CamshaftGear:
 def _described(machine: Machine) -> _Shaft | tuple[str, ...]:
     """Camshaft with its diameter and material, or the keys that the case lacks."""
     shaft, cam = camshaft_of(machine), machine.cam
-    if shaft.diameter is None or shaft.material is None:
+    if shaft.diameter is None or shaft.thinnest is None or shaft.material is None:
         return lacking(shaft.table, shaft, "diameter", "material")
     key_length = 0.0 if cam.key is None else cam.key.length or 0.0
     reach = 0.5 * max(cam.width, key_length)
     gear_reach = 0.0 if shaft.gear is None else 0.5 * shaft.gear.width
     sections = judged_sections(shaft, shaft.diameter, reach, gear_reach)
-    least = min(shaft.diameter, *(one.diameter for one in sections))
-    return _Shaft(shaft, shaft.material, least, sections)
+    return _Shaft(shaft, shaft.material, shaft.thinnest, sections)
 
 
 def _by_value(each: tuple[Extreme, ShaftSection]) -> float:

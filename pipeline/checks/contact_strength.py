@@ -23,8 +23,11 @@ from camwright.pipeline.base import value_groups as given
 from camwright.pipeline.base.material import Endurance, Material
 from camwright.pipeline.base.units import shown
 from camwright.pipeline.case.limits import (
+    AXIS_PARALLELISM,
+    CAM_RUN_OUT,
     CONTACT_SAFETY,
     END_MEAN_LENGTH,
+    ROLLER_CLEARANCE,
     SHAKEDOWN_SAFETY,
     TARGET_LIFE,
     YIELD_SAFETY,
@@ -35,7 +38,7 @@ from camwright.pipeline.checks.demands import PRESSURE
 from camwright.pipeline.checks.extremes import Extreme, greatest
 from camwright.pipeline.checks.missing_keys import (
     lacking,
-    lacking_ends,
+    lacking_along_line,
     lacking_of_card,
     no_friction,
     unset,
@@ -301,12 +304,15 @@ def _shakedown_in_words(demand: Demand, solution: Solution) -> Demand:
 
 def _ends_in_words(demand: Demand, solution: Solution) -> Demand:
     machine, worst = solution.machine, demand.at
-    mean = f"limits.end_mean_length: {machine.limits.source(END_MEAN_LENGTH)}"
+    rows = END_MEAN_LENGTH, AXIS_PARALLELISM, CAM_RUN_OUT, ROLLER_CLEARANCE
     return replace(
         demand,
-        missing=(*demand.missing, *lacking_ends(machine)),
+        missing=(*demand.missing, *lacking_along_line(machine)),
         note="" if worst is None else signed_sentence(solution, worst),
-        figures=(_least_endurance(machine).source, mean),
+        figures=(
+            _least_endurance(machine).source,
+            *(f"limits.{row.id}: {machine.limits.source(row)}" for row in rows),
+        ),
     )
 
 
@@ -467,7 +473,7 @@ shakedown = check(
         *given.bodies("*endurance_slope", "*endurance_intercept"),
         "limits.contact_safety",
     ),
-    levers=(levers.CROWNED, levers.NARROWER, *levers.ENDURANCE),
+    levers=(levers.CROWNED, levers.NARROWER, *levers.STIFFER_SHAFT, *levers.ENDURANCE),
     page="Contact",
     certified_by="p0",
     scales_with=(PRESSURE, 1.0),
@@ -476,7 +482,10 @@ def contact_pressure_at_life(solution: Solution) -> Demand:
     """Maximum contact pressure, Pa, against the endurance at the target life."""
     machine = solution.machine
     operating = [each for each in solution.cycles if each.machine.duty != 0.0]
-    worst, lacks = greatest(operating, lambda cycle: cycle.signed_pressure), lacking_ends(machine)
+    worst, lacks = (
+        greatest(operating, lambda cycle: cycle.signed_pressure),
+        lacking_along_line(machine),
+    )
     if machine.limits[TARGET_LIFE] is None:
         missing = unset(machine.limits, TARGET_LIFE)
         figures = tuple(f"{card.name}: {card.source}" for card in machine.bodies.values())
@@ -513,8 +522,10 @@ def pressure_at_life(cycles: float, slope: float, intercept: float, modulus: flo
 
 _SIGNED = (
     "contact pressure of plane strain times the factor along the line of contact, at each angle"
-    " without tilt and under the greatest moment of friction in the guides and axial offset; at a"
-    " corner the mean over limits.end_mean_length, else the greatest pressure; half-spaces with"
+    " without tilt and under the greatest moment: that of the tilt of camshaft, parallelism,"
+    " run-out, guides and roller bearing as far as friction of the guides and axial offset hold it,"
+    " or that of the tilt beyond the clearance of the guides, less what stem and camshaft yield; at"
+    " a corner the mean over limits.end_mean_length, else the greatest pressure; half-spaces with"
     " mirrored ends, in a certified run times the ratio of finite elements to them at the certified"
     " angles"
 )
@@ -531,11 +542,14 @@ _SIGNED = (
     tier=Tier.SCREENING,
     error="ends",
     kept_as="edge pressure at the endurance limit",
-    formula="K p0 <= p_E / S; p0: contact pressure of plane strain, K: signed pressure over it, p_E"
-    " and S as of contact_pressure",
+    formula="K p0 <= p_E / S; p0: contact pressure of plane strain, K: signed pressure over it, at"
+    " the tilt phi + t_p + t_r/(2 r_b) + c/b + g, or, forced, at phi + t_p + t_r/(2 r_b) - g;"
+    " phi: slope of the camshaft at the cam, t_p: limits.axis_parallelism, t_r: limits.cam_run_out,"
+    " r_b: base radius, c: limits.roller_clearance, b: width of the roller, g: tilt of the stem in"
+    " its guides, p_E and S as of contact_pressure",
     reason="a line contact fails at its ends first, and most where it is tilted",
     values=(*given.LENGTH, *given.bodies("*endurance_pressure"), "limits.contact_safety"),
-    levers=(levers.CROWNED, levers.NARROWER, *levers.ENDURANCE),
+    levers=(levers.CROWNED, levers.NARROWER, *levers.STIFFER_SHAFT, *levers.ENDURANCE),
     page="Contact",
     certified_by="p0",
     scales_with=(PRESSURE, 1.0),
@@ -569,7 +583,7 @@ def edge_pressure(cam: LoadedCam) -> Array:
         *given.bodies("yield_strength"),
         "follower.face.friction",
     ),
-    levers=(levers.CROWNED, levers.NARROWER, *levers.YIELD),
+    levers=(levers.CROWNED, levers.NARROWER, *levers.STIFFER_SHAFT, *levers.YIELD),
     page="Contact",
     certified_by="p0",
     scales_with=(PRESSURE, 1.0),
@@ -579,7 +593,7 @@ def edge_shakedown(solution: Solution) -> Demand:
     machine = solution.machine
     worst = greatest(solution.cycles, lambda each: each.signed_pressure * _traction_factor(each))
     limit = _times(shear_yield(machine), SHAKEDOWN)
-    missing = (*lacking_ends(machine), *no_friction(machine))
+    missing = (*lacking_along_line(machine), *no_friction(machine))
     return _judged(worst, limit, missing=missing, note=signed_sentence(solution, worst))
 
 

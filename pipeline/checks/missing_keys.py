@@ -27,7 +27,8 @@ def no_friction(machine: Machine) -> tuple[str, ...]:
     return lacking(machine.follower.table, machine.follower, "friction")
 
 
-def lacking_ends(machine: Machine) -> tuple[str, ...]:
-    """Keys of the ends of the contact that the case lacks."""
-    parts = (machine.cam, machine.follower)
-    return tuple(key for part in parts for key in lacking(part.table, part, "end"))
+def lacking_along_line(machine: Machine) -> tuple[str, ...]:
+    """Keys of the ends of the contact that the case lacks, and of the slope of its camshaft."""
+    parts, shaft = (machine.cam, machine.follower), machine.camshaft
+    ends = tuple(key for part in parts for key in lacking(part.table, part, "end"))
+    return ends if shaft is None else (*ends, *lacking(shaft.table, shaft, "diameter", "material"))

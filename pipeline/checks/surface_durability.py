@@ -29,7 +29,7 @@ from camwright.pipeline.checks.contact_strength import endurance_of
 from camwright.pipeline.checks.extremes import greatest, least, worst_case
 from camwright.pipeline.checks.missing_keys import (
     lacking,
-    lacking_ends,
+    lacking_along_line,
     lacking_of_card,
 )
 from camwright.pipeline.contact.oil_film import Lubricant
@@ -380,7 +380,7 @@ def case_depth(solution: Solution) -> Demand | None:
         worst,
         (
             *(key for card in incomplete for key in _lacks(card, "case_depth")),
-            *lacking_ends(solution.machine),
+            *lacking_along_line(solution.machine),
         ),
         figures=tuple(f"{card.name}: {card.source}" for card in bodies.values()),
     )

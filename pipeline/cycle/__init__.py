@@ -13,6 +13,7 @@ In the order of the calculation:
 | `elastic_response`   | follower on its elastic stem, loss of contact   | F, N; delta, m         |
 | `part_loads`         | guides, stem, spring, pin, ring, key, camshaft  | p, sigma, Pa; F, N     |
 | `oil_film_history`   | film thickness and its ratio to roughness       | h, m; lambda           |
+| `line_tilt`          | tilt of the line of contact, its parts          | rad                    |
 | `length_history`     | pressure along the line: ends, crown, tilt      | K, -; M, N m           |
 | `contact_heat`       | flash temperature of a flat face                | T, K                   |
 | `rolling_history`    | traction, creep, rolling fatigue, bore stress   | tau, sigma, Pa; xi     |

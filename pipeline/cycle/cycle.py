@@ -38,6 +38,7 @@ from camwright.pipeline.follower.camshaft_loads import ShaftLoads
 from camwright.pipeline.follower.follower_forces import Loads, follower_loads, share_left
 from camwright.pipeline.follower.guide_effects import GuideShares, guide_shares
 from camwright.pipeline.follower.guide_reactions import GuideReactions
+from camwright.pipeline.follower.shaft_strength import in_the_normal, slope_of
 from camwright.pipeline.follower.spring import Spring
 
 LIFT = Column("lift", "mm", "Lift")
@@ -215,6 +216,18 @@ class Cycle(Tabled):
         """Loads of the camshaft; None where the case does not describe one."""
         return shaft_of(self.turn, self.contour)
 
+    @property
+    def shaft_tilt(self) -> Array:
+        """Slope of the camshaft at the cam in the plane of the contact normal (n,), rad, signed.
+
+        Zero where the case does not state the diameter and material of a camshaft.
+        """
+        slope, loads = slope_of(self.machine.camshaft), self.shaft
+        if slope is None or loads is None:
+            return np.zeros(self.theta.size)
+        bent = slope.under(loads.cam, loads.gear, loads.counterweight)
+        return in_the_normal(bent, self.loads.pressure_angle)
+
     @KeptResult
     def elastic(self) -> ElasticHistory:
         """Response of the elastic follower.
@@ -377,6 +390,12 @@ class Cycle(Tabled):
                 contact_column(
                     "centre_factor", "", "Contact pressure in the middle over plane strain"
                 ): length.centre,
+                Column(
+                    "shaft_tilt", "mrad", "Slope of the camshaft at the cam, in the contact normal"
+                ): length.tilt.shaft,
+                Column(
+                    "forced_tilt", "mrad", "Tilt of the contact beyond the clearance of the guides"
+                ): length.tilt.forced,
                 contact_column(
                     "tilt_moment", "N mm", "Greatest moment of the contact force about its middle"
                 ): length.moment,
@@ -402,9 +421,15 @@ class Cycle(Tabled):
         return columns | self.parts.columns(self.elastic) | self.shares.columns()
 
 
+def turn_of_line(cycle: Cycle) -> TurnOfLine:
+    """What the pressure along the line of contact of a cycle follows from."""
+    force = cycle.loads.normal_force
+    return TurnOfLine(cycle.machine, cycle.contact, force, cycle.guides, cycle.shaft_tilt)
+
+
 def _lengths(cycles: Sequence[Cycle]) -> list[LengthHistory | None]:
     """Pressure along the line of contact of cycles whose contour encloses a body."""
-    turns = [TurnOfLine(c.machine, c.contact, c.loads.normal_force, c.guides) for c in cycles]
+    turns = [turn_of_line(each) for each in cycles]
     return [
         solved if solved is None or cycle.ends is None else solved.corrected(cycle.ends)
         for cycle, solved in zip(cycles, length_histories(turns), strict=True)

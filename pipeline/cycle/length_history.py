@@ -10,10 +10,15 @@ from typing import NamedTuple, Protocol
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from camwright.geometry.arrays import Array, freeze
+from camwright.geometry.arrays import Array, Value, freeze
 from camwright.geometry.extrema import TIE
 from camwright.pipeline.base.units import shown
-from camwright.pipeline.case.limits import END_MEAN_LENGTH
+from camwright.pipeline.case.limits import (
+    AXIS_PARALLELISM,
+    CAM_RUN_OUT,
+    END_MEAN_LENGTH,
+    ROLLER_CLEARANCE,
+)
 from camwright.pipeline.case.machine import Machine
 from camwright.pipeline.contact.contact_history import ContactHistory
 from camwright.pipeline.contact.finite_length.axial_drop import (
@@ -31,7 +36,9 @@ from camwright.pipeline.contact.finite_length.length_contact import (
     SignedPressure,
     signed_pressure,
 )
+from camwright.pipeline.cycle.line_tilt import LineTilt, line_tilt
 from camwright.pipeline.follower.guide_reactions import GuideReactions
+from camwright.pipeline.follower.shaft_strength import slope_of
 
 _ANY_CURVATURE = 1.0  # 1/m: a table has every curvature
 _ROUND_OFF = 1e-9
@@ -49,8 +56,9 @@ class LengthHistory:
 
     centre: in the middle, untilted; level, tilted: signed, without a moment and at the greatest
     one, `moment` (N m); at_corner: whether the greater of both is the mean over `mean_length` (m)
-    at a corner. 1 and no moment without contact. tilt: greatest in the guides, rad. correction: of
-    the half-spaces by finite elements, included in the pressures; None: half-spaces alone.
+    at a corner. 1 and no moment without contact. tilt: its parts; couple (n,): greatest that
+    friction of the guides and axial offset hold, N m. correction: of the half-spaces by finite
+    elements, included in the pressures; None: half-spaces alone.
     """
 
     centre: Array
@@ -59,7 +67,8 @@ class LengthHistory:
     moment: Array
     at_corner: NDArray[np.bool_]
     mean_length: float
-    tilt: float
+    tilt: LineTilt
+    couple: Array
     is_crowned: bool
     correction: EndCorrection | None = None
 
@@ -114,10 +123,14 @@ class LengthHistory:
                 f"mean pressure over the last {mean} of contact: at its corner the peak grows"
                 " with the mesh, the mean does not"
             )
-        most = shown(float(self.moment[place]), "N mm")
+        most, held = float(self.moment[place]), float(self.couple[place])
+        by = "that friction in the guides and axial offset hold"
+        if most > held * (1.0 + TIE):
+            by = "that the tilt forces"
         return (
             f"{what}; {self.factor[place]:.4g} times plane strain, {self.level[place]:.4g} without"
-            f" tilt, at a moment of 0 to {most}, of friction in the guides and axial offset;"
+            f" tilt, at a moment of up to {shown(most, 'N mm')} {by};"
+            f" {self.tilt.sentence(place)};"
             f" {self.tier(place)}"
         )
 
@@ -146,12 +159,17 @@ class LengthHistory:
 
 
 class TurnOfLine(NamedTuple):
-    """A turn of which the pressure along the line is sought; force (n,): normal force, N."""
+    """A turn of which the pressure along the line is sought.
+
+    force (n,): normal force, N; shaft (n,): slope of the camshaft at the cam, rad, as of
+    `Cycle.shaft_tilt`.
+    """
 
     machine: Machine
     contact: ContactHistory
     force: Array
     guides: GuideReactions
+    shaft: Array
 
     @property
     def rows(self) -> NDArray[np.intp]:
@@ -160,13 +178,42 @@ class TurnOfLine(NamedTuple):
         return np.flatnonzero(np.isfinite(radius) & (radius > 0) & (self.force > 0))
 
     @property
+    def tilt(self) -> LineTilt:
+        """Tilt of the line of contact."""
+        machine, follower = self.machine, self.machine.follower
+        return line_tilt(
+            self.shaft,
+            parallelism=machine.limits[AXIS_PARALLELISM],
+            run_out=machine.limits[CAM_RUN_OUT],
+            base_radius=machine.base_radius,
+            clearance=machine.limits[ROLLER_CLEARANCE],
+            bearing_length=None if follower.slides else follower.line_width,
+            guides=machine.guides.tilt_max,
+        )
+
+    @property
     def loads(self) -> ContactLoads:
         """Contacts at the angles with contact."""
-        rows, machine = self.rows, self.machine
-        force, tilt = self.force[rows], np.full(rows.size, machine.guides.tilt_max)
-        couple = held_couple(machine, self.guides)[rows] + force * machine.stem_offset
+        rows, tilt = self.rows, self.tilt
+        force = self.force[rows]
         radius = self.contact.relative_radius[rows]
-        return ContactLoads(1.0 / radius, force, tilt, couple, raised_load(force))
+        return ContactLoads(
+            1.0 / radius, force, tilt.greatest[rows], tilt.forced[rows],
+            np.full(rows.size, self.tilt_compliance), self.couple[rows], raised_load(force),
+        )  # fmt: skip
+
+    @property
+    def couple(self) -> Array:
+        """Greatest couple (n,), N m, that friction of the guides and axial offset can hold."""
+        machine = self.machine
+        return held_couple(machine, self.guides) + self.force * machine.stem_offset
+
+    @property
+    def tilt_compliance(self) -> float:
+        """Slope of stem and camshaft together under the moment of the contact, rad/(N m)."""
+        machine, guides = self.machine, self.machine.guides
+        reach = machine.overhang_at_max_lift
+        return float(moment_compliance(machine, reach, guides.spacing))
 
     def history(self, solved: FactorRange | None) -> LengthHistory:
         """History of the factors at the angles with contact; None: no contact."""
@@ -175,7 +222,8 @@ class TurnOfLine(NamedTuple):
         history = LengthHistory(
             *(blank, blank, blank, np.zeros(count), np.zeros(count, dtype=bool)),
             self.machine.limits[END_MEAN_LENGTH],
-            self.machine.guides.tilt_max,
+            self.tilt,
+            self.couple,
             self.machine.is_crowned,
         )
         return history if solved is None else history.with_rows(self.rows, solved)
@@ -184,9 +232,8 @@ class TurnOfLine(NamedTuple):
 def length_histories(turns: Sequence[TurnOfLine]) -> tuple[LengthHistory | None, ...]:
     """Pressure along the line of contact of each turn; None where the case lacks an end.
 
-    The stem aligns itself with the cam up to the friction of its guides: the moment lies between
-    zero and the lesser of that of the greatest tilt in the clearances and of the couple that
-    friction and axial offset can hold. Contacts of the same bodies are evaluated at once.
+    The moment lies between zero and `greatest_moment`. Contacts of the same bodies are evaluated at
+    once.
     """
     histories: list[LengthHistory | None] = [None] * len(turns)
     alike: dict[tuple[object, float], list[int]] = {}
@@ -233,12 +280,18 @@ def _together(machine: Machine, loads: Sequence[ContactLoads]) -> FactorRange:
 
 
 class ContactLoads(NamedTuple):
-    """Contacts (count,): curvature, 1/m, > 0; force, N, > 0; greatest tilt, rad; greatest couple
-    that can hold it, N m; factor that raises vanishing loads, see `raised_load`."""
+    """Contacts, all (count,).
+
+    curvature, 1/m, > 0; force, N, > 0; tilt, forced: greatest and forced, rad, see `LineTilt`;
+    compliance: of stem and shaft, see `moment_compliance`; couple: greatest that friction and axial
+    offset can hold, N m; raised: factor that raises vanishing loads, see `raised_load`.
+    """
 
     curvature: Array
     force: Array
     tilt: Array
+    forced: Array
+    compliance: Array
     couple: Array
     raised: Array
 
@@ -262,9 +315,8 @@ def factor_range(pair: FinitePair, mean_length: float, loads: ContactLoads) -> F
     """
     table = length_table(pair, mean_length)
     curvature, raised = loads.curvature, loads.raised
-    force, couple = raised * loads.force, raised * loads.couple
-    most = np.minimum(couple, (1.0 - _ROUND_OFF) * GREATEST_MOMENT * force * pair.contact_length)
-    moment = np.abs(table.moment_at_tilt(curvature, force, loads.tilt, most))
+    force = raised * loads.force
+    moment = greatest_moment(table, loads)
     directions = (1.0,) if pair.is_symmetric else (-1.0, 1.0)
     count = 1 + len(directions)
     moments = np.concatenate([np.zeros(force.size), *(each * moment for each in directions)])
@@ -276,6 +328,59 @@ def factor_range(pair: FinitePair, mean_length: float, loads: ContactLoads) -> F
     corner = np.where(worse, tilts[0].at_corner, tilts[-1].at_corner)
     at_corner = np.where(level.value > tilted, level.at_corner, corner)
     return FactorRange(level.centre, level.value, tilted, moment / raised, at_corner)
+
+
+def moment_compliance(machine: Machine, overhang: Value, spacing: Value) -> Value:
+    """Slope of stem and camshaft together under the moment of the contact (...), rad/(N m).
+
+    Parameters
+    ----------
+    overhang : float or array   of the stem at maximum lift, m: where it is shortest
+    spacing : float or array    of the guides, m
+    """
+    shaft = slope_of(machine.camshaft)
+    yields = 0.0 if shaft is None else shaft.couple
+    return machine.guides.tilt_compliance(machine.stem, overhang, spacing) + yields
+
+
+class TiltedPair(Protocol):
+    """A pair of bodies whose moment under a tilt is known."""
+
+    @property
+    def pair(self) -> FinitePair: ...
+    def moment_at_tilt(
+        self, curvature: Array, force: Array, tilt: Array, most: Array, compliance: Array
+    ) -> Array:
+        """Moment (count,), N m, of contacts between supports tilted by `tilt` (count,), rad.
+
+        At most about `most`, N m. compliance, rad/(N m): by which one support yields.
+        """
+        ...
+
+
+def greatest_moment(lines: TiltedPair, loads: ContactLoads) -> Array:
+    """Greatest moment (count,), N m, >= 0, about the middle of contacts, their loads raised.
+
+    Within the clearances of the guides the stem aligns itself with the cam but for the couple that
+    friction and axial offset hold: the moment is the lesser of it and of that of the greatest tilt.
+    Beyond them the tilt is forced on the contact, less what stem and camshaft bend: the moment is
+    that one if it is greater. Of both directions the greater.
+    """
+    force, couple = loads.raised * loads.force, loads.raised * loads.couple
+    limit = (1.0 - _ROUND_OFF) * GREATEST_MOMENT * force * lines.pair.contact_length
+    held, rigid = np.minimum(couple, limit), np.zeros_like(force)
+    rows = np.flatnonzero(loads.forced > 0)
+    moments = np.zeros_like(force)
+    for sign in (1.0,) if lines.pair.is_symmetric else (-1.0, 1.0):
+        turned = lines.moment_at_tilt(loads.curvature, force, sign * loads.tilt, held, rigid)
+        moments = np.maximum(moments, np.minimum(np.abs(turned), held))
+        if rows.size:
+            bent = lines.moment_at_tilt(
+                loads.curvature[rows], force[rows], sign * loads.forced[rows],
+                limit[rows], loads.compliance[rows],
+            )  # fmt: skip
+            moments[rows] = np.maximum(moments[rows], np.minimum(np.abs(bent), limit[rows]))
+    return moments
 
 
 def raised_load(force: Array) -> Array:

@@ -10,7 +10,7 @@ from typing import Annotated, ClassVar, Literal, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from camwright.geometry.arrays import FULL_TURN, Array, finite, freeze
+from camwright.geometry.arrays import FULL_TURN, Array, Value, finite, freeze
 from camwright.geometry.contour import Contour
 from camwright.geometry.cutouts import KeywayLike
 from camwright.geometry.errors import GeometryError, InputError
@@ -199,9 +199,14 @@ class Counterweight(Part):
 
         A residual has no known direction: it is taken on the side of the counterweight.
         """
+        product, angle = self.against(made.product, made.angle)
+        return float(product), float(angle)
+
+    def against(self, product: Value, angle: Value) -> tuple[Value, Value]:
+        """As `set_against`, of cams (...) of an unbalance, kg m, and its direction, rad."""
         if self.unbalance is not None and self.angle is not None:
             return self.unbalance, self.angle
-        return made.product + (self.residual or 0.0), made.angle + pi
+        return product + (self.residual or 0.0), angle + pi
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -257,6 +262,13 @@ class Camshaft(Part):
             return None
         return max([self.diameter, *(each.diameter for each in self.sections)])
 
+    @property
+    def thinnest(self) -> float | None:
+        """Least diameter of shaft and sections, m; None without that of the shaft."""
+        if self.diameter is None:
+            return None
+        return min([self.diameter, *(each.diameter for each in self.sections)])
+
 
 @dataclass(frozen=True, eq=False)
 class ShaftLoads:
@@ -295,8 +307,7 @@ def shaft_loads(
 ) -> ShaftLoads:
     """Bearing loads of the camshaft from contact force and gear force.
 
-    The follower exerts -F_a along its axis and -F_t across it on the cam. The tangential gear force
-    supplies cam torque and drag; the radial gear force separates the gears.
+    The follower exerts -F_a along its axis and -F_t across it on the cam.
 
     Parameters
     ----------
@@ -314,10 +325,7 @@ def shaft_loads(
     across = finite("tangential_force", tangential_force)
     torque = finite("cam_torque", cam_torque)
     cam = np.stack([-along, -across]) + finite("unbalance_force", unbalance_force)
-    tooth = (torque + shaft.drag) / shaft.gear_radius
-    outward = np.array([np.cos(shaft.mesh_angle), np.sin(shaft.mesh_angle)])[:, None]
-    sideways = np.array([-np.sin(shaft.mesh_angle), np.cos(shaft.mesh_angle)])[:, None]
-    gear = tooth * sideways - np.abs(tooth) * np.tan(shaft.pressure_angle) * outward
+    gear = gear_force(torque, shaft)
     weight = np.zeros_like(cam) + finite("counterweight_force", counterweight_force)
     acting = [(shaft.cam_position, cam), (shaft.gear_position, gear)]
     if shaft.counterweight is not None:
@@ -325,6 +333,18 @@ def shaft_loads(
     second = -np.sum([force * (at / shaft.bearing_spacing) for at, force in acting], axis=0)
     first = -np.sum([force for _, force in acting], axis=0) - second
     return ShaftLoads(cam, gear, weight, first, second)
+
+
+def gear_force(torque: Array, shaft: Camshaft) -> Array:
+    """Force of the teeth on the gear (2, ...), N, at cam torques (...), N m, drag added.
+
+    The tangential force supplies the torque; the radial force separates the gears.
+    """
+    tooth = (torque + shaft.drag) / shaft.gear_radius
+    outward = np.array([np.cos(shaft.mesh_angle), np.sin(shaft.mesh_angle)])
+    sideways = np.array([-np.sin(shaft.mesh_angle), np.cos(shaft.mesh_angle)])
+    apart = np.abs(tooth) * np.tan(shaft.pressure_angle)
+    return np.asarray(np.multiply.outer(sideways, tooth) - np.multiply.outer(outward, apart))
 
 
 @dataclass(frozen=True, eq=False)
@@ -355,20 +375,20 @@ class Unbalance:
         return bool(np.hypot(*self.moment) <= _BALANCED * self.area**1.5)
 
 
-def rotating_force(product: float, direction: float, cam_speed: float, theta: Array) -> Array:
-    """Centrifugal force of an unbalance on the shaft (2, n), N, in the frame of `ShaftLoads`.
+def rotating_force(product: Value, direction: Value, cam_speed: Value, theta: Array) -> Array:
+    """Centrifugal force of an unbalance on the shaft (2, ..., n), N, in the frame of `ShaftLoads`.
 
     It points along the follower at the cam angle of the centre of mass and rotates with the
     cam.
 
     Parameters
     ----------
-    product, direction : float   m e, kg m, and its direction in the cam frame, rad
-    cam_speed : float            rad/s
+    product, direction : (...)   m e, kg m, and its direction in the cam frame, rad
+    cam_speed : (...)            rad/s
     theta : array (n,)           cam angles, rad
     """
     turned = finite("theta", theta) - direction
-    return product * cam_speed**2 * np.stack([np.cos(turned), np.sin(turned)])
+    return np.asarray(product * cam_speed**2 * np.stack([np.cos(turned), np.sin(turned)]))
 
 
 def unbalance(
@@ -400,20 +420,28 @@ def unbalance(
     moment = area * np.asarray(contour.centroid())
     area -= np.pi * bore_radius**2
     if keyway is not None:
-        cut, arm = _keyway_moment(bore_radius, keyway.width, keyway.depth)
-        area -= cut
-        moment = moment - arm * np.array([np.cos(keyway.angle), np.sin(keyway.angle)])
+        cut = keyway_cut(bore_radius, keyway.width, keyway.depth)
+        area -= float(cut.area)
+        moment = moment - cut.moment * np.array([np.cos(keyway.angle), np.sin(keyway.angle)])
     mass = density * width * area
     return Unbalance(area, moment, mass, float(density * width * np.hypot(*moment)))
 
 
-def _keyway_moment(bore: float, width: float, depth: float) -> tuple[float, float]:
+class KeywayCut(NamedTuple):
     """Area of a keyway outside the bore, m2, and its first moment about the cam axis, m3."""
+
+    area: Value
+    moment: Value
+
+
+def keyway_cut(bore: Value, width: float, depth: float) -> KeywayCut:
+    """What a keyway takes from a cam of a bore radius (...), m; width and depth, m."""
     half, floor = 0.5 * width, bore + depth
     chord = np.sqrt(bore**2 - half**2)
     under_arc = half * chord + bore**2 * np.arcsin(half / bore)
     # Across the width the keyway extends from sqrt(bore^2 - y^2) to the floor.
-    return width * floor - under_arc, width * floor**2 / 2.0 - (bore**2 * half - half**3 / 3.0)
+    moment = width * floor**2 / 2.0 - (bore**2 * half - half**3 / 3.0)
+    return KeywayCut(width * floor - under_arc, moment)
 
 
 class CounterHole(NamedTuple):

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.polynomial.legendre import Legendre
 from numpy.typing import ArrayLike
 
-from camwright.geometry.arrays import Array, finite, freeze, readonly
+from camwright.geometry.arrays import Array, Value, finite, freeze, readonly
 from camwright.geometry.display import Displayed
 from camwright.geometry.errors import ContactError, InputError
 from camwright.pipeline.base.material import ROOM, Material
@@ -143,11 +143,37 @@ class GuidePair(Part):
 
     @property
     def tilt_max(self) -> float:
-        """Greatest tilt of the stem in its clearances, rad: both diametral clearances over twice
-        the length from the outer end of one guide to that of the other.
+        """Greatest tilt of the stem in its clearances, rad."""
+        return float(self.tilt_at(self.spacing))
+
+    def tilt_at(self, spacing: Value) -> Value:
+        """Greatest tilt of the stem in the clearances at a spacing (...), m, rad.
+
+        Both diametral clearances over twice the length from the outer end of one guide to that of
+        the other.
         """
-        length = self.spacing + 0.5 * (self.a.length + self.b.length)
-        return 0.5 * (self.a.clearance + self.b.clearance) / length
+        return 0.5 * (self.a.clearance + self.b.clearance) / (spacing + self._half_lengths)
+
+    def tilt_compliance(self, stem: Stem, overhang: Value, spacing: Value) -> Value:
+        """Slope of the end of the stem under a moment there (...), rad/(N m), at most as great.
+
+        As a bar on the outer ends of both guides, between which it tilts.
+
+        Parameters
+        ----------
+        overhang : float or array   from the middle of guide A, m
+        spacing : float or array    of the guides, m
+
+        References
+        ----------
+        Roark: a bar over two supports under a couple at its overhanging end.
+        """
+        reach = overhang - 0.5 * self.a.length
+        return (reach + (spacing + self._half_lengths) / 3.0) / stem.bending_stiffness
+
+    @property
+    def _half_lengths(self) -> float:
+        return 0.5 * (self.a.length + self.b.length)
 
     @property
     def both(self) -> tuple[tuple[Literal["A", "B"], Guide], ...]:

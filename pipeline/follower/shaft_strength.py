@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from statistics import NormalDist
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -274,6 +275,71 @@ def shaft_bending(
     moment = bending_moment(loads, shaft, places) * simpson * step / 6.0
     total = (units[..., None, None] * moment).reshape(3, places.size, *loads.cam.shape).sum(axis=1)
     return ShaftBending(*(total / stiffness))
+
+
+class CamSlope(NamedTuple):
+    """Slope of the shaft at the middle of the cam per force at cam, gear, counterweight, rad/N.
+
+    couple: per moment at the cam, rad/(N m), > 0.
+    """
+
+    cam: float
+    gear: float
+    counterweight: float
+    couple: float
+
+    def under(self, cam: Array, gear: Array, counterweight: ArrayLike = 0.0) -> Array:
+        """Slope (2, ...), rad, under forces (2, ...), N: rise of the deflection from bearing 1."""
+        weight = np.asarray(counterweight, dtype=float)
+        return np.asarray(self.cam * cam + self.gear * gear + self.counterweight * weight)
+
+
+@lru_cache(maxsize=32)
+def cam_slope(shaft: Camshaft, diameter: float, elastic_modulus: float) -> CamSlope:
+    """Slope at the cam, between the bearings or overhung; shaft as of `shaft_bending`.
+
+    References
+    ----------
+    Unit-load method, of a unit couple at the cam; exact, see `shaft_bending`.
+    """
+    span, cam = shaft.bearing_spacing, shaft.cam_position
+    weight = cam if shaft.counterweight is None else shaft.counterweight.position
+    stiffness = elastic_modulus * np.pi * diameter**4 / 64.0
+    corners = distinct([0.0, span, cam, shaft.gear_position, weight])
+    start, end = corners[:-1], corners[1:]
+    places = np.stack([start, 0.5 * (start + end), end])
+
+    def reacted(at: float, first: float, second: float) -> Array:
+        """Moment at the places of forces at the bearings, and of one at a place that they hold."""
+        load = -(first + second)
+        return np.asarray(
+            first * np.maximum(places, 0.0)
+            + second * np.maximum(places - span, 0.0)
+            + load * np.maximum(places - at, 0.0)
+        )
+
+    couple = reacted(cam, 1.0 / span, -1.0 / span) - (start >= cam)
+    weights = (end - start) * np.array([[1.0], [4.0], [1.0]]) / (6.0 * stiffness)
+    under_cam, under_gear, under_weight = (
+        float(np.sum(weights * couple * reacted(at, at / span - 1.0, -at / span)))
+        for at in (cam, shaft.gear_position, weight)
+    )
+    return CamSlope(under_cam, under_gear, under_weight, float(np.sum(weights * couple**2)))
+
+
+def slope_of(shaft: Camshaft | None) -> CamSlope | None:
+    """Slope at the cam of a shaft of its least diameter.
+
+    None without a shaft, or where the case does not state its diameter or material.
+    """
+    if shaft is None or shaft.thinnest is None or shaft.material is None:
+        return None
+    return cam_slope(shaft, shaft.thinnest, shaft.material.E)
+
+
+def in_the_normal(slope: Array, pressure_angle: Array) -> Array:
+    """Part (...) of a slope of the shaft (2, ...), rad, in the plane of the contact normal."""
+    return np.asarray(slope[0] * np.cos(pressure_angle) + slope[1] * np.sin(pressure_angle))
 
 
 ROOT_OF_PUSH, ROOT_OF_CONTACT = 0.70, 4.1

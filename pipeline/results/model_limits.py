@@ -35,8 +35,9 @@ MODEL_LIMITS = (
     ModelLimit(
         "Contact and stress are solved in plane strain. The pressure along the line of contact, its"
         " ends, crown and tilt, is a factor on it by half-spaces with mirrored ends, 5 % of the"
-        " mean at a corner and 2 % elsewhere from finite elements; the stem has no bending in the"
-        " plane of stem and cam axis.",
+        " mean at a corner and 2 % elsewhere from finite elements. Under a forced tilt stem and"
+        " camshaft bend; guides, roller bearing and pin do not yield, and are not loaded by the"
+        " moment of the tilted contact.",
         edge_pressure.id,
     ),
     ModelLimit(
@@ -63,7 +64,8 @@ MODEL_LIMITS = (
     ),
     ModelLimit(
         "Camshaft, camshaft bearings and the drive of the cam are rigid, without backlash."
-        " The deflection of the camshaft is checked apart, without effect on the contact.",
+        " The deflection of the camshaft is checked apart; its slope at the cam tilts the line of"
+        " contact, and neither changes lift nor loads.",
         shaft_deflection.id,
     ),
     ModelLimit(

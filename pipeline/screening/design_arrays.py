@@ -24,9 +24,8 @@ from camwright.pipeline.case.machine import CREEP, Machine, machine
 from camwright.pipeline.case.requirements_section import LoadCase
 from camwright.pipeline.cycle.loaded_cam import LoadedCam, motion_of
 from camwright.pipeline.cycle.numbers import Numbers
-from camwright.pipeline.follower.follower_forces import (
-    Push,
-)
+from camwright.pipeline.follower.camshaft_loads import keyway_cut, rotating_force
+from camwright.pipeline.follower.follower_forces import Push
 from camwright.pipeline.follower.guide_table import SupportOfMany
 from camwright.pipeline.follower.spring import stored_lift
 from camwright.pipeline.screening.screened_cam import ScreenedCam, ScreenedState
@@ -265,6 +264,31 @@ class Designs:
         overhang = self.value("follower.overhang_at_max_lift") + (self.highest[:, None] - lift)
         push = Push(motion.side, motion.arm, self.value("guides.spacing"))
         return SupportOfMany.of(known.stem, known.guides, push, np.asarray(overhang))
+
+    @KeptResult
+    def unbalance(self) -> tuple[Array, Array]:
+        """Unbalance of the cams (m, 1), kg m, and its direction, rad; none with a counter-hole."""
+        cam, (along, across) = self.machine.cam, self.whole.motion.contact_point
+        if cam.counter_hole is not None:
+            return np.zeros((self.count, 1)), np.zeros((self.count, 1))
+        theta = uniform_turn(along.shape[-1])
+        ring = (along + 1j * across) * np.exp(1j * theta)
+        beside = np.roll(ring, -1, axis=-1)
+        swept = np.imag(np.conj(ring) * beside)
+        moment = np.sum((ring + beside) * swept, axis=-1, keepdims=True) / 6.0
+        if cam.keyway is not None:
+            cut = keyway_cut(self.value("cam.bore_radius"), cam.keyway.width, cam.keyway.depth)
+            moment = moment - cut.moment * np.exp(1j * cam.keyway.angle)
+        product = cam.material.density * self.value("cam.width") * moment
+        return np.abs(product), np.angle(product)
+
+    def thrown(self, speed: Value) -> tuple[Array, Array]:
+        """Centrifugal forces on cam and counterweight (2, m, n), N, at cam speeds (m, 1), rad/s."""
+        shaft, made = self.machine.camshaft, self.unbalance
+        force = rotating_force(*made, speed, self.theta)
+        if shaft is None or shaft.counterweight is None:
+            return force, np.zeros_like(force)
+        return force, rotating_force(*shaft.counterweight.against(*made), speed, self.theta)
 
     @KeptResult
     def contact_width(self) -> Array:

@@ -10,15 +10,22 @@ import numpy as np
 from numpy.typing import NDArray
 
 from camwright.geometry.arrays import Array
-from camwright.pipeline.case.limits import END_MEAN_LENGTH
+from camwright.pipeline.case.limits import (
+    AXIS_PARALLELISM,
+    CAM_RUN_OUT,
+    END_MEAN_LENGTH,
+    ROLLER_CLEARANCE,
+)
 from camwright.pipeline.case.machine import Machine
 from camwright.pipeline.cycle.length_history import (
     ContactLoads,
     FactorRange,
     factor_range,
+    moment_compliance,
     raised_load,
     worst_of,
 )
+from camwright.pipeline.cycle.line_tilt import LineTilt, line_tilt
 from camwright.pipeline.cycle.numbers import Numbers
 
 # Keys that the contact of finite length depends on, and the number of its different shapes up to
@@ -46,7 +53,7 @@ class DesignValues(Protocol):
 
 
 def factors_of(
-    designs: DesignValues, force: Array, radius: Array, rubbing: tuple[Array, Array]
+    designs: DesignValues, force: Array, radius: Array, rubbing: tuple[Array, Array], shaft: Array
 ) -> FactorRange | None:
     """Factors (m, n) of the designs; 1 without contact, NaN where the contour bounds no body.
 
@@ -57,12 +64,16 @@ def factors_of(
     ----------
     force, radius : array (m, n)   normal force, N; relative radius, m
     rubbing : two arrays (m, n)    normal loads of guides A and B, N
+    shaft : array (m, n)           slope of the camshaft at the cam, rad, as of `LineTilt`
     """
     varied, shapes, member = _shapes(designs)
     if not designs.machine.finite_pairs or len(shapes) > _SHAPES:
         return None
-    tilt, couple = _tilt(designs), _held_couple(designs, rubbing)
-    tilt, couple = (np.broadcast_to(each, force.shape) for each in (tilt, couple))
+    tilt = _tilt(designs, shaft)
+    greatest, forced, yields, couple = (
+        np.broadcast_to(each, force.shape)
+        for each in (tilt.greatest, tilt.forced, _yields(designs), _held_couple(designs, rubbing))
+    )
     one, still = np.ones(force.shape), np.zeros(force.shape)
     whole = FactorRange(one, one.copy(), one.copy(), still, np.zeros(force.shape, dtype=bool))
     for number, shape in enumerate(shapes):
@@ -72,7 +83,8 @@ def factors_of(
             continue
         held = couple[at] + force[at] * machine.stem_offset
         raised = raised_load(force[at])
-        known = ContactLoads(1.0 / radius[at], force[at], tilt[at], held, raised)
+        turned = greatest[at], forced[at], yields[at]
+        known = ContactLoads(1.0 / radius[at], force[at], *turned, held, raised)
         mean = machine.limits[END_MEAN_LENGTH]
         worst = worst_of([factor_range(pair, mean, known) for pair in machine.finite_pairs])
         for whole_values, values in zip(whole, worst, strict=True):
@@ -104,11 +116,28 @@ def _of_shape(machine: Machine, values: Mapping[str, float]) -> Machine:
     return replace(machine, cam=cam, follower=follower)
 
 
-def _tilt(designs: DesignValues) -> Array:
-    """Greatest tilt of the stem in its guides (m, 1), rad."""
-    guides = designs.machine.guides
-    ends = 0.5 * (guides.a.length + guides.b.length)
-    return np.asarray(guides.tilt_max * (guides.spacing + ends) / (_spacing(designs) + ends))
+def _tilt(designs: DesignValues, shaft: Array) -> LineTilt:
+    """Tilt of the line of contact (m, n); see `TurnOfLine.tilt`."""
+    machine = designs.machine
+    follower, radius = machine.follower, machine.follower.contact_radius
+    sizes = designs.value("roller.radius") if radius is not None else 0.0
+    ends = 0.0 if follower.end is None else 2.0 * follower.end.size
+    width = None if follower.slides else designs.value(follower.width_key) - ends
+    return line_tilt(
+        shaft,
+        parallelism=designs.value(f"limits.{AXIS_PARALLELISM.id}"),
+        run_out=designs.value(f"limits.{CAM_RUN_OUT.id}"),
+        base_radius=designs.value("cam.prime_radius") - sizes,
+        clearance=designs.value(f"limits.{ROLLER_CLEARANCE.id}"),
+        bearing_length=width,
+        guides=machine.guides.tilt_at(_spacing(designs)),
+    )
+
+
+def _yields(designs: DesignValues) -> Array:
+    """Slope of stem and camshaft under the moment of the contact (m, 1), rad/(N m)."""
+    overhang = designs.value("follower.overhang_at_max_lift")
+    return np.asarray(moment_compliance(designs.machine, overhang, _spacing(designs)))
 
 
 def _held_couple(designs: DesignValues, rubbing: tuple[Array, Array]) -> Array:

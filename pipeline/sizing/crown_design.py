@@ -32,8 +32,8 @@ from camwright.pipeline.contact.finite_length.axial_drop import (
     SummedCrown,
     TabulatedCrown,
 )
-from camwright.pipeline.cycle.cycle import Cycle
-from camwright.pipeline.cycle.length_history import held_couple
+from camwright.pipeline.cycle.cycle import Cycle, turn_of_line
+from camwright.pipeline.cycle.length_history import ContactLoads
 from camwright.pipeline.preview import preview_case
 from camwright.pipeline.sizing.least_crown import (
     KINDS,
@@ -162,11 +162,10 @@ class CrownDesign(Displayed):
         return self.machine.limits[END_MEAN_LENGTH]
 
     def _solved(self, crown: Crown, row: int) -> list[SignedRange]:
-        problem, at = self.least.problem, [row]
-        states = problem.states
-        loads = states.curvature[at], states.force[at], states.couple[at]
+        problem = self.least.problem
+        loads = problem.states.loads(np.array([row]), problem.compliance)
         return [
-            signed_range(SolvedLines(pair, self._mean_length), *loads, problem.tilt)
+            signed_range(SolvedLines(pair, self._mean_length), loads)
             for pair in problem.pairs(crown)
         ]
 
@@ -319,7 +318,7 @@ def crown(
         states=states,
         families=families(chosen, length, pair.curvature, pair.contact_modulus, reach),
         factor=_factor_of(machine.limits[END_MEAN_LENGTH]),
-        tilt=machine.guides.tilt_max,
+        compliance=turn_of_line(cycles[0]).tilt_compliance,
     )
     least = least_crown(problem, ratio)
     return CrownDesign(
@@ -382,12 +381,16 @@ def _states(cycles: Sequence[Cycle]) -> tuple[ContactStates, Array]:
     for number, cycle in enumerate(cycles):
         contact, force = cycle.contact, cycle.loads.normal_force
         rows = np.flatnonzero((force > 0) & (contact.p0 > 0))
-        couple = held_couple(cycle.machine, cycle.guides) + force * cycle.machine.stem_offset
-        values = (1.0 / contact.relative_radius, force, couple, contact.p0, cycle.theta)
+        turn = turn_of_line(cycle)
+        values = (
+            *(1.0 / contact.relative_radius, force, turn.couple),
+            *(turn.tilt.greatest, turn.tilt.forced, contact.p0, cycle.theta),
+        )
         number_of = np.full(rows.size, number)
         columns.append(np.stack([*(each[rows] for each in values), number_of]))
-    curvature, force, couple, p0, theta, load_case = np.concatenate(columns, axis=1)
-    states = ContactStates(curvature, force, couple, p0, load_case.astype(np.intp))
+    curvature, force, couple, tilt, forced, p0, theta, number_of = np.concatenate(columns, axis=1)
+    numbers = number_of.astype(np.intp)
+    states = ContactStates(curvature, force, couple, tilt, forced, p0, numbers)
     kept = states.governing
     return states.at(kept), theta[kept]
 
@@ -395,10 +398,7 @@ def _states(cycles: Sequence[Cycle]) -> tuple[ContactStates, Array]:
 def _factor_of(mean_length: float) -> AxialFactor:
     """Signed factor by contacts solved one by one; mean_length, m, at a corner."""
 
-    def factor(
-        pair: FinitePair, curvature: Array, force: Array, couple: Array, tilt: float
-    ) -> Array:
-        lines = SolvedLines(pair, mean_length)
-        return signed_range(lines, curvature, force, couple, tilt).factor
+    def factor(pair: FinitePair, loads: ContactLoads) -> Array:
+        return signed_range(SolvedLines(pair, mean_length), loads).factor
 
     return factor

@@ -27,6 +27,7 @@ from camwright.pipeline.contact.finite_length.axial_drop import (
     johns_gohar,
     lundberg,
 )
+from camwright.pipeline.cycle.length_history import ContactLoads
 
 IntArray = NDArray[np.intp]
 CrownKind = Literal["johns_gohar", "lundberg", "circular", "table"]
@@ -54,18 +55,21 @@ _RADIUS_DIGITS, _DROP_DECIMALS = 4, 9
 class ContactStates:
     """Loads of `count` contacts of the same bodies, all (count,): the rows of a cycle.
 
-    curvature 1/m; force N, > 0; couple N m, the greatest that can hold the bodies tilted; p0 Pa, of
-    plane strain at the mean line load; load_case, number of the load case.
+    curvature 1/m; force N, > 0; couple N m, the greatest that can hold the bodies tilted; tilt,
+    forced: greatest and forced tilt, rad; p0 Pa, of plane strain at the mean line load; load_case,
+    number of the load case.
     """
 
     curvature: Array
     force: Array
     couple: Array
+    tilt: Array
+    forced: Array
     p0: Array
     load_case: IntArray
 
     def __post_init__(self) -> None:
-        names = ("curvature", "force", "couple", "p0")
+        names = ("curvature", "force", "couple", "tilt", "forced", "p0")
         freeze(self, **{name: getattr(self, name) for name in names})
         if not self.force.size:
             raise InputError("contact", "without load", "loaded at one angle at least")
@@ -84,23 +88,26 @@ class ContactStates:
 
     @property
     def governing(self) -> IntArray:
-        """Rows than which no other of the same load case has more force, curvature and couple.
+        """Rows than which no other of the load case has more force, curvature, couple and tilt.
 
-        The pressure grows with each of the three: the greatest of a load case is at one of them.
-        Of more than 16 rows of a load case those evenly between them, and the greatest p0, force
-        and couple.
+        The pressure grows with each of them: the greatest of a load case is at one of them.
+        Of more than 16 rows of a load case those evenly between them, and the greatest p0, force,
+        couple and forced tilt.
         """
         chosen = []
         for case in np.unique(self.load_case):
             rows = np.flatnonzero(self.load_case == case)
-            loads = np.stack([self.force, self.curvature, self.couple])[:, rows]
+            loads = np.stack([self.force, self.curvature, self.couple, self.tilt, self.forced])[
+                :, rows
+            ]
             more = loads[:, :, None] >= loads[:, None, :]
             same = (loads[:, :, None] == loads[:, None, :]).all(axis=0)
             first = rows[:, None] < rows[None, :]
             beaten = more.all(axis=0) & (~same | first)
             left = rows[~beaten.any(axis=0)]
             evenly = np.linspace(0, left.size - 1, min(left.size, _STATES)).round().astype(np.intp)
-            greatest = [left[np.argmax(each[left])] for each in (self.p0, self.force, self.couple)]
+            measures = (self.p0, self.force, self.couple, self.forced)
+            greatest = [left[np.argmax(each[left])] for each in measures]
             chosen.append(np.union1d(left[evenly], greatest))
         return np.concatenate(chosen)
 
@@ -108,7 +115,21 @@ class ContactStates:
         """Some of the rows."""
         return ContactStates(
             self.curvature[rows], self.force[rows], self.couple[rows],
-            self.p0[rows], self.load_case[rows],
+            self.tilt[rows], self.forced[rows], self.p0[rows], self.load_case[rows],
+        )  # fmt: skip
+
+    def loads(self, rows: IntArray, compliance: float, tilt: float = 1.0) -> ContactLoads:
+        """Loads of some of the rows.
+
+        Parameters
+        ----------
+        compliance : float   of the stem against a tilt, rad/(N m)
+        tilt : float         factor of all tilts and couples
+        """
+        return ContactLoads(
+            self.curvature[rows], self.force[rows], tilt * self.tilt[rows],
+            tilt * self.forced[rows], np.full(rows.size, compliance), tilt * self.couple[rows],
+            np.ones(rows.size),
         )  # fmt: skip
 
 
@@ -186,13 +207,8 @@ class DeviatedCrown:
 class AxialFactor(Protocol):
     """Signed axial pressure of a pair over plane strain."""
 
-    def __call__(
-        self, pair: FinitePair, curvature: Array, force: Array, couple: Array, tilt: float
-    ) -> Array:
-        """Factors (count,), the worse of aligned and tilted.
-
-        At curvatures, 1/m, forces, N, and couples, N m, all (count,), up to a tilt, rad.
-        """
+    def __call__(self, pair: FinitePair, loads: ContactLoads) -> Array:
+        """Factors (count,), the worse of aligned and tilted."""
         ...
 
 
@@ -204,14 +220,14 @@ class CrownProblem:
     ----------
     pairs : callable           both bodies with a crown: one pair, or one for each end
     states : ContactStates     loads of each pair
-    tilt : float               greatest, rad, that the couples may hold
+    compliance : float         of the stem against a tilt, rad/(N m)
     families : tuple           crowns to choose from
     factor : AxialFactor            signed axial pressure over plane strain
     """
 
     pairs: Callable[[Crown], tuple[FinitePair, ...]]
     states: ContactStates
-    tilt: float
+    compliance: float
     families: tuple[CrownFamily, ...]
     factor: AxialFactor
 
@@ -223,13 +239,13 @@ class CrownProblem:
         Parameters
         ----------
         rows : array (count,)   of the states; None: all
-        tilt : float            factor of the greatest tilt and of all couples
+        tilt : float            factor of all tilts and couples
         """
         states = self.states
         rows = np.arange(states.force.size) if rows is None else rows
-        loads = states.curvature[rows], states.force[rows], tilt * states.couple[rows]
+        loads = states.loads(rows, self.compliance, tilt)
         try:
-            each = [self.factor(pair, *loads, tilt * self.tilt) for pair in self.pairs(crown)]
+            each = [self.factor(pair, loads) for pair in self.pairs(crown)]
         except ContactError:
             return np.full(rows.size, np.inf)
         return np.asarray(np.max(each, axis=0))

@@ -20,7 +20,11 @@ from camwright.pipeline.contact.finite_length.half_space import shared_complianc
 from camwright.pipeline.contact.finite_length.length_contact import LengthContact
 from camwright.pipeline.contact.finite_length.length_tiers import cycle_sizes
 from camwright.pipeline.contact.finite_length.pressure_cells import pressure_cells
-from camwright.pipeline.cycle.length_history import signed_factor
+from camwright.pipeline.cycle.length_history import (
+    ContactLoads,
+    greatest_moment,
+    signed_factor,
+)
 
 # Ratio of the half-widths, m, of neighbouring cells: contacts between them have the wider ones.
 _LADDER = 1.1
@@ -51,15 +55,27 @@ class SolvedLines:
             edges[rows], line[rows] = contact.cells.y, contact.centre_line / p0[:, None]
         return edges, line
 
-    def moment_at_tilt(self, curvature: ArrayLike, force: ArrayLike, tilt: ArrayLike) -> Array:
-        """Moment (count,), N m, of contacts tilted by `tilt` (count,), rad."""
+    def moment_at_tilt(
+        self,
+        curvature: ArrayLike,
+        force: ArrayLike,
+        tilt: ArrayLike,
+        most: ArrayLike = np.inf,  # noqa: ARG002 - each is solved by itself
+        compliance: ArrayLike = 0.0,
+    ) -> Array:
+        """Moment (count,), N m, of contacts tilted by `tilt` (count,), rad.
+
+        One of both supports yields by `compliance`, rad/(N m), times the moment: the least of
+        those given.
+        """
         moment = np.empty(np.broadcast(curvature, force, tilt).shape)
-        for each, contact, _ in self._solved(curvature, force, tilt=tilt):
+        yields = float(np.min(compliance))
+        for each, contact, _ in self._solved(curvature, force, yields, tilt=tilt):
             moment[each] = contact.moment
         return moment
 
     def _solved(
-        self, curvature: ArrayLike, force: ArrayLike, **turned: ArrayLike
+        self, curvature: ArrayLike, force: ArrayLike, yields: float = 0.0, **turned: ArrayLike
     ) -> Iterator[tuple[NDArray[np.intp], LengthContact, Array]]:
         """Rows of like half-width, their contacts, and p0, Pa, of plane strain."""
         (name, value), pair = next(iter(turned.items())), self.pair
@@ -79,6 +95,9 @@ class SolvedLines:
                 cells.integrated_gap(replace(pair, curvature=float(value))) for value in kappa[rows]
             ]
             compliance = shared_compliance(cells, pair.bodies)
+            if yields:  # the moment of both halves turns the gap
+                levers = cells.areas * cells.centres[1]
+                compliance = compliance + 2.0 * yields * np.outer(levers, levers)
             contact = length_contact.solve(
                 cells, compliance, gaps, load[rows], **{name: turn[rows]}
             )
@@ -88,24 +107,17 @@ class SolvedLines:
 class SignedRange(NamedTuple):
     """Signed pressure over plane strain (count,), of the worse of aligned and tilted; moment, N m.
 
-    The moment is the greatest: that of the tilt, up to the couple that can hold it.
+    The moment is the greatest, see `greatest_moment`.
     """
 
     factor: Array
     moment: Array
 
 
-def signed_range(
-    lines: SolvedLines, curvature: Array, force: Array, couple: Array, tilt: float
-) -> SignedRange:
-    """Signed pressure of contacts that align themselves up to a couple.
-
-    Parameters
-    ----------
-    couple : array (count,)   greatest that can hold the bodies tilted, N m
-    tilt : float              greatest, rad
-    """
-    moment = np.minimum(np.abs(lines.moment_at_tilt(curvature, force, tilt)), couple)
+def signed_range(lines: SolvedLines, loads: ContactLoads) -> SignedRange:
+    """Signed pressure of contacts without a moment and under the greatest one."""
+    moment = greatest_moment(lines, loads)
     sides = (0.0, 1.0) if lines.pair.is_symmetric else (-1.0, 0.0, 1.0)
-    signed = [signed_factor(lines, curvature, force, side * moment).value for side in sides]
+    at = loads.curvature, loads.force
+    signed = [signed_factor(lines, *at, side * moment).value for side in sides]
     return SignedRange(np.max(signed, axis=0), moment)

@@ -40,6 +40,7 @@ from camwright.pipeline.cycle.contact_heat import flash_history
 from camwright.pipeline.cycle.cycle import Cycle
 from camwright.pipeline.cycle.elastic_response import ElasticHistory
 from camwright.pipeline.cycle.length_history import LengthHistory
+from camwright.pipeline.cycle.line_tilt import LineTilt
 from camwright.pipeline.cycle.oil_film_history import FilmHistory
 from camwright.pipeline.cycle.part_loads import PartLoads
 from camwright.pipeline.cycle.rolling_history import RollingHistory, SweptStress
@@ -258,7 +259,8 @@ def _length() -> LengthHistory:
     """A quarter more pressure along the line of the tilted roller."""
     one = np.ones(POSITIONS)
     corner = np.zeros(POSITIONS, dtype=bool)
-    return LengthHistory(one, 1.1 * one, 1.25 * one, one, corner, 1e-4, 1e-3, is_crowned=False)
+    tilt = LineTilt(0.1e-3 * one, 0.1e-3, 0.1e-3, 0.5e-3, 0.2e-3)
+    return LengthHistory(one, 1.1 * one, 1.25 * one, one, corner, 1e-4, tilt, one, is_crowned=False)
 
 
 def _even(force: np.ndarray, knots: np.ndarray) -> np.ndarray:

@@ -16,11 +16,10 @@ from camwright.pipeline.contact.finite_length.factor_table import GREATEST_MOMEN
 from camwright.pipeline.contact.finite_length.length_contact import rebinned
 from camwright.pipeline.contact.finite_length.length_tiers import half_space_factors
 from camwright.pipeline.cycle.axial_pressure import AXIAL_ARRAYS, axial_arrays, with_end_cells
-from camwright.pipeline.cycle.cycle import solve_lengths
+from camwright.pipeline.cycle.cycle import solve_lengths, turn_of_line
 from camwright.pipeline.cycle.length_history import (
     ContactLoads,
     FactorRange,
-    TurnOfLine,
     factor_range,
     held_couple,
     length_histories,
@@ -87,10 +86,35 @@ def test_moment_is_the_lesser_of_tilt_and_friction():
 
 def test_without_clearance_and_offset_there_is_no_tilt():
     made = cycle(
-        guides__a__clearance="0 mm", guides__b__clearance="0 mm", roller__axial_offset="0 mm"
-    )
+        guides__a__clearance="0 mm", guides__b__clearance="0 mm", roller__axial_offset="0 mm",
+        limits__axis_parallelism="0 mrad", limits__cam_run_out="0 um",
+        limits__roller_clearance="0 um", camshaft=None,
+    )  # fmt: skip
     assert np.abs(made.length.moment).max() < 1e-12  # N m
     np.testing.assert_allclose(made.length.tilted, made.length.level)
+
+
+def test_the_tilt_has_its_parts():
+    made = cycle(camshaft__cam_position="-20 mm", limits__roller_clearance="10 um")
+    tilt, machine = made.length.tilt, made.machine
+    place = int(np.argmax(np.abs(tilt.shaft)))
+    np.testing.assert_array_equal(tilt.shaft, made.shaft_tilt)
+    radius = machine.cam.prime_radius - machine.roller.radius
+    by_hand = {
+        "camshaft": abs(made.shaft_tilt[place]),
+        "parallelism": 0.1e-3,
+        "run-out": 5e-6 / (2 * radius),
+        "guide clearance": 0.03e-3 / (machine.guides.spacing + machine.guides.a.length),
+        "roller bearing": 10e-6 / 16.3e-3,
+    }
+    assert dict(tilt.parts(place)) == pytest.approx(by_hand)
+    assert tilt.greatest[place] == pytest.approx(sum(by_hand.values()))
+    out_of_parallel = sum(by_hand[name] for name in ("camshaft", "parallelism", "run-out"))
+    forced = out_of_parallel - by_hand["guide clearance"]
+    assert tilt.forced[place] == pytest.approx(max(forced, 0.0))
+    sentence = made.length.sentence(place)
+    for name in by_hand:
+        assert name in sentence
 
 
 def test_a_crown_lowers_the_ends_and_raises_the_middle():
@@ -129,13 +153,16 @@ def test_a_chamfered_end_is_solved_down_to_vanishing_loads_under_the_heaviest_ti
     force = np.array([1e-6, 1.0, 3e3])
     couple = force * pair.contact_length
     curvature = np.full(3, pair.curvature)
-    tilt = np.full(3, 0.05)
-    loads = ContactLoads(curvature, force, tilt, couple, raised_load(force))
+    tilt, none = np.full(3, 0.05), np.zeros(3)
+    loads = ContactLoads(curvature, force, tilt, none, none, couple, raised_load(force))
     solved = factor_range(pair, 1e-4, loads)
     assert (solved.moment <= GREATEST_MOMENT * couple).all()
     assert (solved.tilted > solved.level).all()
     # The lightest load has the factor of a thousandth of the greatest.
-    light = ContactLoads(curvature[:1], 3.0 * force[1:2], tilt[:1], 3.0 * couple[1:2], np.ones(1))
+    light = ContactLoads(
+        curvature[:1], 3.0 * force[1:2], tilt[:1], none[:1], none[:1],
+        3.0 * couple[1:2], np.ones(1),
+    )  # fmt: skip
     least = factor_range(pair, 1e-4, light)
     assert solved.tilted[0] == pytest.approx(least.tilted[0], rel=1e-9)
 
@@ -143,7 +170,7 @@ def test_a_chamfered_end_is_solved_down_to_vanishing_loads_under_the_heaviest_ti
 def test_without_an_end_nothing_is_signed():
     made = cycle()
     bare = replace(made.machine, cam=replace(made.machine.cam, end=None))
-    turn = TurnOfLine(bare, made.contact, made.loads.normal_force, made.guides)
+    turn = turn_of_line(made)._replace(machine=bare)
     assert length_histories([turn]) == (None,)
 
 

@@ -35,6 +35,16 @@ def test_line_contact_of_hertz():
     assert stress.end1.von_mises == pytest.approx(stress.end2.von_mises, rel=1e-6)
 
 
+def test_an_end_that_a_tilt_lifts_has_the_stress_below_its_last_cell():
+    """Cells wider than the stretch: that of the cell, not of none."""
+    x, y = np.linspace(0, 1.25, 41), np.concatenate([np.linspace(-10, 8, 10), [9.9, 10.0]])
+    pressure = np.tile(mean_square_root(x), (11, 1))
+    pressure[:3] = 0.0
+    lifted = subsurface_stress(contact(x, y, pressure), 1.0, 0.3, 0.2, has_corner=True)
+    assert 0.3 < lifted.end1.von_mises < 0.7
+    assert lifted.end2.von_mises > 0.0
+
+
 @pytest.mark.parametrize(
     ("poisson", "shear", "mises", "depth"),
     [(0.3, 0.3100, 0.6200, 0.481), (0.25, 0.3217, 0.6434, 0.464)],

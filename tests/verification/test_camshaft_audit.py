@@ -44,6 +44,7 @@ from camwright.pipeline.follower.camshaft_loads import (
 )
 from camwright.pipeline.follower.shaft_strength import (
     bending_moment,
+    cam_slope,
     judged_sections,
     keyway_root_stress,
     reliability_factor,
@@ -172,6 +173,45 @@ def test_moments_and_bending_agree_with_beam_elements(load_case):
     bent = shaft_bending(acting, shaft, DIAMETER, YOUNG)
     for one, other in ((bent.deflection, 0), (bent.slope_1, 5), (bent.slope_2, 15)):
         np.testing.assert_allclose(np.hypot(*one), np.hypot(*beam.u[other]), rtol=1e-8)
+    at_cam = cam_slope(shaft, DIAMETER, YOUNG).under(acting.cam, acting.gear)
+    np.testing.assert_allclose(at_cam, beam.u[1], rtol=1e-8)  # with its sign
+    np.testing.assert_allclose(cycle.shaft_tilt, in_the_normal(cycle, beam.u[1]), rtol=1e-6)
+
+
+def in_the_normal(cycle, slope):
+    """Part of a slope (2, n) of the shaft that turns the cam about the tangent of the contact."""
+    loads = cycle.loads
+    along, across = loads.axial_force, loads.tangential_force  # both by the normal force
+    return (slope[0] * along + slope[1] * across) / np.hypot(along, across)
+
+
+@pytest.mark.parametrize("reach", [0.011, 0.025, 0.06])
+def test_slope_at_an_overhung_cam_is_that_of_the_textbook(reach):
+    """F a (2 l + 3 a)/(6 E I), Roark: a bar over two supports, loaded beyond one of them."""
+    bend = YOUNG * pi * DIAMETER**4 / 64
+    shaft = replace(machines(read_case(CASE))[0].camshaft, cam_position=-reach)
+    expected = -reach * (2 * SPAN + 3 * reach) / (6 * bend)
+    assert cam_slope(shaft, DIAMETER, YOUNG).cam == pytest.approx(expected, rel=1e-12)
+    beyond = replace(shaft, cam_position=SPAN + reach)
+    assert cam_slope(beyond, DIAMETER, YOUNG).cam == pytest.approx(-expected, rel=1e-12)
+    couple = (SPAN + 3 * reach) / (3 * bend)
+    assert cam_slope(shaft, DIAMETER, YOUNG).couple == pytest.approx(couple, rel=1e-12)
+
+
+@pytest.mark.parametrize("place", [0.01, 0.03, 0.045])
+def test_slope_at_a_cam_between_the_bearings_is_that_of_the_textbook(place):
+    """F a b (b - a)/(3 E I l) under the force, none in the middle; by one at a distance c."""
+    bend, beside = YOUNG * pi * DIAMETER**4 / 64, SPAN - place
+    shaft = machines(read_case(CASE))[0].camshaft
+    shaft = replace(shaft, cam_position=place, gear_position=0.052)
+    slope = cam_slope(shaft, DIAMETER, YOUNG)
+    expected = place * beside * (beside - place) / (3 * bend * SPAN)
+    assert slope.cam == pytest.approx(expected, rel=1e-12, abs=1e-18)
+    arm = SPAN - 0.052
+    line = arm * (SPAN**2 - arm**2 - 3 * place**2) / (6 * bend * SPAN)
+    assert slope.gear == pytest.approx(line, rel=1e-12)
+    couple = (place**3 + beside**3) / (3 * bend * SPAN**2)
+    assert slope.couple == pytest.approx(couple, rel=1e-12)
 
 
 def test_no_place_of_the_shaft_has_a_greater_moment_than_the_judged_sections():

@@ -54,7 +54,8 @@ def with_limits(case: Case, random: np.random.Generator) -> Case:
         if row.sense == "at_most" and not name.endswith("_safety") and name not in REQUIREMENTS:
             tighter = value / share
         else:
-            tighter = 1.0 - (1.0 - value) / share if most <= 1.0 else value * share
+            is_share = most <= 1.0 and not row.quantity.unit
+            tighter = 1.0 - (1.0 - value) / share if is_share else value * share
         if row.quantity.holds(tighter):
             changed[name] = tighter
     return case.model_copy(update={"limits": case.limits.model_copy(update=changed)})

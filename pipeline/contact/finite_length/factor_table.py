@@ -153,11 +153,17 @@ class FactorTable:
         return pressure_cells.edges_along(pair, float(half_width[0]), cycle_sizes(pair))
 
     def moment_at_tilt(
-        self, curvature: ArrayLike, force: ArrayLike, tilt: ArrayLike, most: ArrayLike = np.inf
+        self,
+        curvature: ArrayLike,
+        force: ArrayLike,
+        tilt: ArrayLike,
+        most: ArrayLike = np.inf,
+        compliance: ArrayLike = 0.0,
     ) -> Array:
         """Moment (count,), N m, of contacts tilted by `tilt` (count,), rad, as half-spaces.
 
-        In amount at most `most` (count,), N m, and `GREATEST_MOMENT` of force and length.
+        In amount at most `most` (count,), N m, and `GREATEST_MOMENT` of force and length. One of
+        both supports yields by `compliance` (count,), rad/(N m), times the moment.
         """
         kappa, load, angle = _alike(curvature, force, tilt)
         length = load * self.pair.contact_length
@@ -165,13 +171,15 @@ class FactorTable:
         if self.pair.is_symmetric and not (angle * limit).any():
             return np.zeros(load.size)
         half_width, _ = self._hertz(kappa, load)
-        target = angle * self.pair.contact_length / (kappa * half_width**2)
+        per_tilt = self.pair.contact_length / (kappa * half_width**2)
+        target = angle * per_tilt
+        yielding = (np.asarray(compliance) * length * per_tilt)[:, None] * self._ladder.signed
         ladder, rows = self._ladder, np.arange(load.size)
         batches = [count for count in ladder.batches if count > 1]
         count = np.full(load.size, batches[0])
         for more in [*batches[1:], 0]:
             nodes, columns, values = self._place(kappa, load, count)
-            turns = _weighted(columns, values, np.array([node.turn for node in nodes]))
+            turns = _weighted(columns, values, np.array([node.turn for node in nodes])) + yielding
             # A target between the last two moments takes one more.
             inner = turns[rows, ladder.zero + 2 - count], turns[rows, ladder.zero - 2 + count]
             beyond = (target < inner[0]) | (target > inner[1])

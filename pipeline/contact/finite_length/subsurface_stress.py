@@ -64,10 +64,12 @@ def subsurface_stress(
     middles = cells.centres_along
     touching = np.flatnonzero(contact.centre_line[0] > 0)
     first, last = cells.y[touching[0]], cells.y[touching[-1] + 1]
+    numbers = np.arange(middles.size)
     depths = half_width * np.arange(_STEP, _DEEPEST + 0.5 * _STEP, _STEP)
+    # A tilt may lift an end: where the cells are wider than the stretch, the last one that touches.
     ends = (
-        (first, (middles > first) & (middles < first + stretch)),
-        (last, (middles < last) & (middles > last - stretch)),
+        (first, (middles > first) & (middles < first + stretch) | (numbers == touching[0])),
+        (last, (middles < last) & (middles > last - stretch) | (numbers == touching[-1])),
     )
     peaks = [_peak(stress_below(cells, pressure, poisson, np.zeros(1), depths), depths)]
     for edge, inside in ends:

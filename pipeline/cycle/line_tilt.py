@@ -1,0 +1,93 @@
+"""Tilt of the line of contact: its parts, and what of it the guides do not take up."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from camwright.geometry.arrays import Array, Value, freeze
+from camwright.pipeline.base.units import in_unit
+
+
+@dataclass(frozen=True, eq=False)
+class LineTilt:
+    """Parts of the tilt of the line of contact, rad, in the plane of its normal and the cam axis.
+
+    shaft (n,): slope of the camshaft at the cam, signed; parallelism: of the axes of cam and
+    follower as made; run_out: of the cam on its shaft; roller: of the roller in the clearance of
+    its bearing; guides: of the stem in the clearances of its guides. All but that of the shaft have
+    either sign, arrays that broadcast against it.
+
+    A stem aligns itself with the cam within the clearances of its guides, up to their friction.
+    What cam and follower are out of parallel beyond these clearances is forced on the contact.
+    """
+
+    shaft: Array
+    parallelism: Value
+    run_out: Value
+    roller: Value
+    guides: Value
+
+    def __post_init__(self) -> None:
+        freeze(self, shaft=self.shaft)
+
+    @property
+    def imposed(self) -> Array:
+        """Greatest angle (n,) between cam and guides: the shaft's with the worst of the others."""
+        return np.asarray(np.abs(self.shaft) + self.parallelism + self.run_out)
+
+    @property
+    def forced(self) -> Array:
+        """Tilt (n,), >= 0, that is left where the stem has used up the clearances of its guides."""
+        return np.asarray(np.maximum(self.imposed - self.guides, 0.0))
+
+    @property
+    def greatest(self) -> Array:
+        """Greatest tilt (n,): all parts, as far as friction of the guides can hold it."""
+        return np.asarray(self.imposed + self.roller + self.guides)
+
+    def parts(self, place: int) -> Iterator[tuple[str, float]]:
+        """Parts by their names at one of the angles, rad."""
+        yield "camshaft", abs(float(self.shaft[place]))
+        yield "parallelism", float(self.parallelism)
+        yield "run-out", float(self.run_out)
+        yield "guide clearance", float(self.guides)
+        yield "roller bearing", float(self.roller)
+
+    def sentence(self, place: int) -> str:
+        """The tilt and its parts at one of the angles."""
+        parts = ", ".join(
+            f"{name} {in_unit(angle, 'mrad'):.3g}" for name, angle in self.parts(place)
+        )
+        greatest, forced = (
+            in_unit(float(each[place]), "mrad") for each in (self.greatest, self.forced)
+        )
+        return f"tilt of up to {greatest:.3g} mrad ({parts}), {forced:.3g} mrad of it forced"
+
+
+def line_tilt(
+    shaft: Array,
+    *,
+    parallelism: Value,
+    run_out: Value,
+    base_radius: Value,
+    clearance: Value,
+    bearing_length: Value | None,
+    guides: Value,
+) -> LineTilt:
+    """Tilt of a line of contact from the slope of the shaft and the tolerances.
+
+    Parameters
+    ----------
+    shaft : array (..., n)     slope of the camshaft at the cam, rad
+    parallelism : float        of the axes, rad
+    run_out : float            axial, of the cam at its base circle, m: full reading
+    base_radius : float        m
+    clearance : float          radial internal clearance of the roller's bearing, m: full play
+    bearing_length : float     m; None: a follower without a bearing
+    guides : float             tilt of the stem in its guides, rad
+    """
+    roller = 0.0 if bearing_length is None else clearance / bearing_length
+    return LineTilt(shaft, parallelism, run_out / (2.0 * base_radius), roller, guides)
