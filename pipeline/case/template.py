@@ -311,8 +311,8 @@ bore_radius = "15 mm"
 material = "case_hardened"
 roughness = "0.3 um"
 profile_tolerance = "8 um"           # ground; for waves of waviness_length, 5 mm
-keyway = { width = "8 mm", depth = "3.3 mm", root_radius = "0.2 mm" }  # DIN 6885-1: 0.16 to 0.25
-fit = { least_interference = "12 um", greatest_interference = "23 um" }  # negative: clearance
+keyway = { width = "8 mm", depth = "3.3 mm", root_radius = "0.25 mm" }  # DIN 6885-1: 0.16 to 0.25
+fit = { least_interference = "15 um", greatest_interference = "22 um" }  # negative: clearance
 key = { length = "15 mm", form = "B", material = "c45" }
 
 [camshaft]
