@@ -78,7 +78,8 @@ class FittedRing(NamedTuple):
 
     @property
     def _inner_share(self) -> Value:
-        return (self.radius / self.outer) ** 2
+        walled = np.asarray(self.outer) > self.radius
+        return np.where(walled, (self.radius / self.outer) ** 2, np.nan)[()]
 
     def pressure(
         self, interference: Value, speed: Value = 0.0, farthest: Value | None = None
@@ -106,8 +107,7 @@ class FittedRing(NamedTuple):
             disc = self.shaft.density * (1.0 - self.shaft.nu) * a**2 / self.shaft.E
             left = left - 0.25 * a * speed**2 * (ring - disc)
         closed = np.where(np.asarray(left) > 0.0, left, np.where(np.isnan(left), np.nan, 0.0))
-        walled = np.asarray(self.outer) > a
-        return np.where(walled, closed / np.where(walled, a * yielding, 1.0), np.nan)[()]
+        return (closed / (a * yielding))[()]
 
     def hoop(self, pressure: Value, radius: Value) -> Value:
         """Hoop stress of the ring at a radius, Pa."""

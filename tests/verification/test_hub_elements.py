@@ -1,11 +1,12 @@
 """The cam on its shaft by finite elements: Lame, rotation, equilibrium, finer meshes, the bound."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 from small_machine import small_machine
-from trial_variants import with_fit
+from test_camshaft_audit import solved, with_case
 
 from camwright.geometry.arrays import uniform_turn
 from camwright.geometry.contour import RollerContour
@@ -17,6 +18,7 @@ from camwright.pipeline.case.case_file import parse_case
 from camwright.pipeline.checks import key_strength
 from camwright.pipeline.contact.elasticity.elastic_body import Elastic
 from camwright.pipeline.contact.hub_elements import HubLoads, RotatingBody, SeatedCam, Slot
+from camwright.pipeline.contact.shrink_fit import SeatFit
 from camwright.pipeline.cycle.notch_fatigue import fitted_root, notch_strength
 
 E, NU, DENSITY = 210e9, 0.3, 7850.0
@@ -78,10 +80,15 @@ def test_rotation_loosens_the_ring():
 
 def test_wall_of_a_fit_by_elements():
     """Hoop stress and pressure at the bore in the von Mises stress, as the closed form, 0.2 %."""
-    units = seated(outer=42e-3, bore=8.5e-3).units
+    case = solved().case
+    fit = SeatFit(least_interference=20e-6, greatest_interference=30e-6, source="made up")
+    cam = replace(case.cam, fit=fit)
+    outer = cam.prime_radius - case.roller.radius
+    units = seated(outer=outer, bore=cam.bore_radius).units
     pressure, along = units.unloaded(15e-6), units.state(loads(15e-6, count=1)).stress.mean()
     of_elements = np.sqrt(along**2 + along * pressure + pressure**2)
-    assert key_strength.fit_yield(with_fit()).demand == pytest.approx(of_elements, rel=2e-3)
+    judged = key_strength.fit_yield(with_case(case.model_copy(update={"cam": cam})))
+    assert judged.demand == pytest.approx(of_elements, rel=2e-3)
 
 
 @pytest.mark.parametrize("interference", [-10e-6, 0.0, 5e-6, 20e-6])
@@ -127,6 +134,16 @@ def test_the_search_finds_the_least_energy():
 def test_a_cam_without_force_on_a_clearance_is_refused():
     with pytest.raises(ContactError, match="contact of the seat"):
         seated(KEYED).units.state(loads(-5e-6))
+
+
+def test_the_key_balances_the_contact():
+    """The couple of the contact on the cam is the cam torque: the key has the opposite one."""
+    cycle, contour = solved().cycles[0], solved().contour
+    (x, y), (across, along) = contour.points(cycle.theta), contour.normal(cycle.theta)
+    couple = -(x * along - y * across) * cycle.loads.normal_force
+    assert couple == pytest.approx(
+        cycle.loads.cam_torque, abs=0.02 * np.abs(cycle.loads.cam_torque).max()
+    )
 
 
 @pytest.mark.slow
