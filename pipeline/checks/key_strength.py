@@ -369,7 +369,9 @@ def _with_fit(demand: Demand, solution: Solution) -> Demand:
     solved = solution.hub_fatigue
     if solved is None:
         bound, limit = demand.value, demand.allowed
-        if solution.coarse or bound is None or limit is None or not presses(solution.numbers):
+        if bound is None or limit is None or not presses(solution.numbers):
+            return demand
+        if solution.coarse or not solution.cycles[0].error_bars:  # for ratios of demands
             return demand
         note = f"{demand.note}; at least {bound:.3g} by the closed form, a bound"
         if not bound < limit:
