@@ -9,6 +9,7 @@ In the order of the calculation:
 | `cam_outline`   | contour, bore and keyway of the cam, wall | m                     |
 | `gmsh_mesher`   | triangulation within outlines, by gmsh    | m                     |
 | `body_mesh`     | meshes of cam, roller, face and patch     | x, y, m               |
+| `shaft_mesh`    | cam on its shaft, facing nodes            | x, y, m               |
 | `mesh_quality`  | angles, scaled Jacobians, edges           | deg; -                |
 | `vtu`           | VTU file of a grid                        |                       |
 | `mesh_files`    | MSH and VTU files                         | mm, N, MPa            |

@@ -22,6 +22,7 @@ TESTS = Path(__file__).parent
 sys.path[:0] = [str(TESTS), str(TESTS / "verification"), str(TESTS / "unit")]
 
 import made_trial as made  # noqa: E402
+from clamped_case import read_clamped  # noqa: E402
 from synthesis_problems import described, with_corrections  # noqa: E402
 from test_part_constraints_agree import random_cam  # noqa: E402
 from test_screening import POSITIONS, drawn, stated  # noqa: E402
@@ -123,7 +124,7 @@ def _plain(value: Any) -> Json:
 
 def of_gradients(name: str) -> Json:
     """Utilisations and derivatives of a synthesis at its start, along random directions."""
-    case = read_case(CASES / f"{name}.toml")
+    case = read_clamped(CASES / f"{name}.toml")
     smoothing = case.smoothing.model_copy(update={"corners": True})
     case = case.model_copy(update={"smoothing": smoothing})
     problem = problem_of(case, engine_torques(case))

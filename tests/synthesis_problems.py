@@ -4,6 +4,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+from clamped_case import read_clamped
 from synthesis_ratings import named, rated
 from synthesis_scenarios import changed, figures, loaded_with
 
@@ -101,7 +102,7 @@ def measured(name):
 
 def constrained(path):
     """Problem of a case with all its constraints; the torque ripple alone is the objective."""
-    case = read_case(ROOT / path)
+    case = read_clamped(ROOT / path)
     problem = problem_of(case, engine_torques(case))
     return replace(problem, coefficients=96, objective=(Weighted(TORQUE, 1.0),))
 

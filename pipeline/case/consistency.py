@@ -324,6 +324,7 @@ def _geometry(case: Case) -> Iterator[Rule]:
         limit = f"< {{}}, {_KEYWAY_WIDTH:g} times {{cam.bore_radius}}"
         yield _less("cam.keyway.width", lambda at: _KEYWAY_WIDTH * at("cam.bore_radius"), limit)
     yield from _key(case)
+    _fit(case)
     yield from _camshaft(case)
     for side in "ab":
         limit = ">= {follower.stem_diameter}"
@@ -331,6 +332,23 @@ def _geometry(case: Case) -> Iterator[Rule]:
     limit = f">= {{}}, half of {{guides.a.length}}, or the {case.facing.word} enters guide A"
     key = "follower.overhang_at_max_lift"
     yield _at_least(key, _half("guides.a.length"), limit)
+
+
+def _fit(case: Case) -> None:
+    """A heated fit needs the expansions.
+
+    Raises
+    ------
+    InputError
+        If one is missing.
+    """
+    fit, shaft = case.cam.fit, case.camshaft
+    if fit is None or shaft is None:
+        return
+    for part, card in (("cam", case.cam.material), ("camshaft", shaft.material)):
+        if fit.heated and card is not None and card.expansion is None:
+            limit = "given with the temperatures of cam.fit"
+            raise InputError(f"materials.{card.name}.expansion", f"missing for the {part}", limit)
 
 
 def _camshaft(case: Case) -> Iterator[Rule]:

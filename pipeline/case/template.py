@@ -311,7 +311,8 @@ bore_radius = "15 mm"
 material = "case_hardened"
 roughness = "0.3 um"
 profile_tolerance = "8 um"           # ground
-keyway = { width = "8 mm", depth = "3.3 mm", root_radius = "0.2 mm" }  # DIN 6885-1: 0.16 to 0.25
+keyway = { width = "8 mm", depth = "3.3 mm", root_radius = "0.25 mm" }  # DIN 6885-1: 0.16 to 0.25
+fit = { least_interference = "15 um", greatest_interference = "22 um" }  # negative: clearance
 key = { length = "15 mm", form = "B", material = "c45" }
 
 [camshaft]
@@ -324,7 +325,6 @@ material = "c45"
 bearing_rating = "19.5 kN"           # of two 6206
 bearing_static_rating = "11.2 kN"
 bearing_width = "16 mm"
-slip_torque = "120 N m"              # the cam shrunk on; 0 N m: sliding fit
 counterweight = { residual = "20 g mm", position = "35 mm" }  # balanced on a bench
 
 [camshaft.gear]

@@ -103,6 +103,7 @@ class Demand:
     source: str = ""
     must_have: bool = True
     corner: str = ""
+    judged_at: str = ""
 
 
 class Allowed(NamedTuple):
@@ -398,6 +399,7 @@ class Declaration:
             note="; ".join(filter(None, (_missing_words(missing), demand.note))),
             error_share=None if demand.at is None else demand.at.error_share,
             corner=demand.corner,
+            judged_at=demand.judged_at,
             corner_demand=demand.value if demand.corner else None,
         )
         # a demand beyond its limit by what is known is judged without the rest

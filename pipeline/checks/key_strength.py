@@ -23,13 +23,15 @@ from camwright.pipeline.case.limits import (
     KEYWAY_SAFETY,
     SHAFT_RELIABILITY,
 )
-from camwright.pipeline.checks.check import Allowed, Declaration, Demand, Kept, check
+from camwright.pipeline.checks.check import NONE, Allowed, Declaration, Demand, Kept, check
 from camwright.pipeline.checks.demands import CAM_TORQUE, PerLoad, cam_torque, rating_over
+from camwright.pipeline.checks.extremes import Extreme, worst_measure
 from camwright.pipeline.checks.missing_keys import lacking, lacking_of_card
 from camwright.pipeline.contact.cam_body import CamBody, ParallelKey
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.loaded_cam import LoadedCam
-from camwright.pipeline.cycle.numbers import Numbers
+from camwright.pipeline.cycle.notch_fatigue import fitted_root, notch_strength
+from camwright.pipeline.cycle.numbers import Numbers, fitted_ring, greatest_interference, presses
 from camwright.pipeline.cycle.solution import Solution
 from camwright.pipeline.follower.camshaft_loads import KeyStress, key_stress
 from camwright.pipeline.follower.shaft_strength import (
@@ -38,19 +40,29 @@ from camwright.pipeline.follower.shaft_strength import (
     surface_factor,
 )
 
+FIT = "cam.fit.least_interference", "cam.fit.greatest_interference"
 METHOD = "DIN 6892 method C at the greatest cam torque, bearing length without round ends"
 LOOSE = "must-have: a key that yields under reversed torque works loose and the cam loses its phase"
 ALLOWED = (
     "R_e: lower yield strength of the two parts, S: limits.key_share, f: limits.key_reversal where"
     " the torque reverses, else 1"
 )
+BY_ELEMENTS = (
+    "plane-stress elements of the cam on a solid shaft, frictionless unilateral contact with the"
+    " interference, key and contact force over the turns at least and greatest interference; the"
+    " lower of modified Goodman (Marin factors) and FKM local stress (recalled: verify)"
+)
+STEADY = 0.03
+"""Relative error of the safety at the root by elements: their change with a finer mesh."""
 WALLS = 0.75, 4.0
 """Least and greatest wall over the radius of the keyway floor for which the stress is known."""
+_OF_FORCES = 2  # highest derivative of the lift
 TINY = 1e-12
 """Utilisation of an unloaded root: its safety is finite."""
 
 
 _BORE = "cam.bore_radius", "cam.width"
+_RING = "cam.prime_radius", "roller.radius"
 _REVERSES = "cam.torque_reverses"
 
 
@@ -231,13 +243,14 @@ cam_slip = check(
     tier=Tier.SCREENING,
     part="camshaft",
     kept_as="cam torque at the slip of the cam's seat",
-    formula="T_slip/(K_A T) >= limits.cam_slip; T_slip: camshaft.slip_torque of the press or"
-    " clamped seat without its key, 0 for a sliding fit, T: greatest cam torque, K_A: application"
-    " factor of the key, or 1 without one",
+    formula="T_slip/(K_A T) >= limits.cam_slip; T_slip: 2 pi mu p a^2 b of cam.fit, p: pressure at"
+    " its least interference, least radius and greatest speed, mu, a, b: friction, radius and width"
+    " of the seat, or the stated camshaft.slip_torque, 0 for a sliding fit, T: greatest cam torque,"
+    " K_A: application factor of the key, or 1 without one",
     reason="where the torque reverses, a seat that slips within the clearance of its key"
     " frets, and fretting starts fatigue cracks",
-    values=(*given.KEY, "camshaft.slip_torque"),
-    levers=(levers.one("camshaft.slip_torque"), *levers.GENTLER),
+    values=(*given.KEY, "camshaft.slip_torque", "cam.fit.*"),
+    levers=(levers.one("camshaft.slip_torque"), levers.one(FIT[0]), *levers.GENTLER),
     page="Camshaft",
 ).measured(
     "angles",
@@ -252,13 +265,73 @@ cam_slip = check(
 )(cam_torque)
 
 
+def _wall_allowed(numbers: Numbers) -> Allowed:
+    card = numbers.known_case.cam.material
+    return Allowed(card.core_yield_strength or card.yield_strength)
+
+
+def _wall_in_words(demand: Demand, solution: Solution) -> Demand:
+    card, pressure = solution.case.cam.material, solution.numbers.get("cam.fit.greatest_pressure")
+    note = "" if pressure is None else f"pressure of the fit {shown(float(pressure), 'MPa')}"
+    return replace(demand, note=note, figures=(f"{card.name}: {card.source}",))
+
+
+@check(
+    id="fit_yield",
+    title="Von Mises stress of the cam's wall by its fit",
+    unit="MPa",
+    source="yield strength of the core; elastic press fit, DIN 7190-1",
+    method="thick ring of the least radius at the greatest interference, at its bore",
+    tier=Tier.SCREENING,
+    moved_by_tolerance=False,
+    part="camshaft",
+    load_cases=NONE,
+    formula="sqrt(t^2 + t p + p^2) <= R_e; p: pressure of cam.fit at its greatest interference on"
+    " the ring of the least radius, t = p (b^2 + a^2)/(b^2 - a^2), a, b: radius of the bore and"
+    " least radius of the contour, R_e: core yield strength of the cam",
+    reason="a wall that yields loses its fit",
+    values=("cam.material.E", "cam.material.nu", "cam.material.*yield_strength", "cam.fit.*"),
+    levers=(levers.one(FIT[1], -1),),
+    page="Cam",
+).measured(
+    "case",
+    allowed=_wall_allowed,
+    applies=lambda _, numbers: np.array(numbers.known_case.cam.fit is not None),
+    needed=("cam.fit.greatest_pressure",),
+    remark=_wall_in_words,
+    deviation=1e-4,
+)
+def fit_yield(cam: LoadedCam) -> Array:
+    """Von Mises stress at the bore of the least ring, Pa."""
+    ring, greatest = fitted_ring(cam.numbers), greatest_interference(cam.numbers)
+    if ring is None or greatest is None:
+        return np.asarray(np.nan)
+    return np.asarray(ring.von_mises(ring.pressure(greatest)))
+
+
+def _no_fit(numbers: Numbers) -> tuple[str, ...]:
+    """Keys of the fit that a seat with a slip torque of its own lacks."""
+    case = numbers.known_case
+    shaft = case.camshaft
+    if case.cam.fit is not None or shaft is None:
+        return ()
+    return FIT if shaft.slip_torque else ()
+
+
 def _root_in_words(demand: Demand, solution: Solution) -> Demand:
-    """None without data, and of a wall for which the stress is not known."""
-    cam, limit, root = solution.machine.cam, demand.allowed, keyway_root_of(solution.numbers)
+    """None without data, and of a wall for which the stress is not known.
+
+    With a fit and finite elements it is their demand; the bound below them judges what it passes.
+    """
+    numbers = solution.numbers
+    cam, limit, root = solution.machine.cam, demand.allowed, keyway_root_of(numbers)
     card = cam.material
     if np.isnan(root.per_stress):
         missing = *_no_key_data(cam), *lacking_of_card(card, "fatigue_bending", "tensile_strength")
         missing += () if cam.keyway_root_radius is not None else ("cam.keyway.root_radius",)
+        missing += _no_fit(numbers)
+        if cam.fit is not None and fitted_ring(numbers) is None:
+            missing += ("camshaft.material",)
         return Demand(None, limit, missing=missing)
     wall = float(solution.contour.radius_min().value - root.held_radius)
     thin, fillet = float(root.thin), float(root.root_radius)
@@ -267,7 +340,54 @@ def _root_in_words(demand: Demand, solution: Solution) -> Demand:
         return Demand(None, limit, note=note)
     note = f"root radius {shown(fillet, 'mm')}, wall {shown(wall, 'mm')}"
     reliability = solution.machine.limits.source(SHAFT_RELIABILITY)
-    return replace(demand, note=note, figures=(reliability, f"{card.name}: {card.source}"))
+    judged = replace(demand, note=note, figures=(reliability, f"{card.name}: {card.source}"))
+    if cam.fit is None:
+        return judged
+    return _with_fit(replace(judged, figures=(*judged.figures, cam.fit.source)), solution)
+
+
+def _bound_says(demand: Value, numbers: Numbers) -> NDArray[np.bool_]:
+    """Whether the closed form judges the root: under a press fit it is a bound of the safety."""
+    below = np.asarray(demand) < np.asarray(numbers.limit(KEYWAY_SAFETY))
+    return np.asarray(~below if presses(numbers) else np.ones_like(below))
+
+
+def _root_solved(solution: Solution) -> Demand:
+    """Demand by the closed form, or by the finite elements where there are some."""
+    worst = worst_measure(solution, _root_safety, "angles", float, at_least=True, order=_OF_FORCES)
+    limit = solution.machine.limits[KEYWAY_SAFETY]
+    return _root_in_words(Demand(worst.value, limit, worst), solution)
+
+
+def _root_safety(cam: LoadedCam) -> Array:
+    measure = keyway_root.measure
+    return np.asarray(np.nan) if measure is None else measure(cam)
+
+
+def _with_fit(demand: Demand, solution: Solution) -> Demand:
+    """Demand of the root under a fit: by finite elements, or the closed form as a bound."""
+    solved = solution.hub_fatigue
+    if solved is None:
+        bound, limit = demand.value, demand.allowed
+        if bound is None or limit is None or not presses(solution.numbers):
+            return demand
+        if solution.coarse or not solution.cycles[0].error_bars:  # for ratios of demands
+            return demand
+        note = f"{demand.note}; at least {bound:.3g} by the closed form, a bound"
+        if not bound < limit:
+            return replace(demand, note=note)
+        return replace(demand, value=None, at=None, note=note, judged_at=Tier.CYCLE.word)
+    worst = solved.governing
+    ends = ", ".join(
+        f"{shown(2.0 * one.interference, 'um')} of interference: Goodman {one.goodman:.3g},"
+        f" FKM {one.fkm:.3g}, {shown(one.pressure, 'MPa')} of pressure"
+        for one in (solved.loose, solved.tight)
+    )
+    opens = max(solved.loose.opened, solved.tight.opened)
+    note = f"{demand.note}; {ends}"
+    note += f"; a part of the seat opens at {opens:.0%} of the angles" if opens else ""
+    at = Extreme(worst.safety, worst.load_case, worst.cam_angle, STEADY)
+    return replace(demand, value=worst.safety, at=at, note=note, method=BY_ELEMENTS)
 
 
 @check(
@@ -275,7 +395,8 @@ def _root_in_words(demand: Demand, solution: Solution) -> Demand:
     id="keyway_root",
     title="Fatigue safety factor of the keyway root in the cam",
     method="elements of rings with DIN 6885-1 keyways: greatest principal stress at the fillet by"
-    " key pressure and contact force, pulsating from zero; Goodman line, machined surface",
+    " key pressure and contact force, pulsating from zero, with cam.fit by its greatest"
+    " interference, too; Goodman line, machined surface",
     lift_can_help=True,
     tier=Tier.SCREENING,
     part="key",
@@ -283,7 +404,11 @@ def _root_in_words(demand: Demand, solution: Solution) -> Demand:
     " (t2/r)^0.4555: greatest over the turn, p: key_pressure, F_n: normal force, b: cam width, h:"
     " least wall beyond the keyway, from 0.75 and counted up to 4 times the radius of its floor,"
     " t2, r: depth and root radius of the keyway, S_e = k_a k_e S_e':"
-    " endurance of the cam's material with factors of surface and limits.shaft_reliability",
+    " endurance of the cam's material with factors of surface and limits.shaft_reliability. With"
+    " cam.fit: 1/max(a/S_e + m/R_m, u_FKM), a, m: amplitude and mean at the root by the finite"
+    " elements, the lower at least and greatest interference, u_FKM: use by the FKM guideline; in a"
+    " preview a bound, a = (1.775 F_n/(2 t2 b) + 0.635 p) q, m = (3 s_f + 0.515 p) q, q ="
+    " (t2/r)^0.3, s_f: hoop stress of the fit at the floor of the keyway",
     reason="a crack from the root of the keyway splits the cam",
     values=(
         *given.KEY,
@@ -291,10 +416,18 @@ def _root_in_words(demand: Demand, solution: Solution) -> Demand:
         "cam.material.fatigue_bending",
         "cam.material.tensile_strength",
         "limits.shaft_reliability",
+        "cam.fit.*",
     ),
     levers=(levers.one("cam.keyway.root_radius"), levers.one("cam.width"), *levers.GENTLER),
     page="Cam",
-).measured("angles", worst="least", remark=_root_in_words, deviation=0.003)
+).measured(
+    "angles",
+    worst="least",
+    applies=_bound_says,
+    remark=_root_in_words,
+    solved=_root_solved,
+    deviation=0.003,
+)
 def keyway_root(cam: LoadedCam) -> Array:
     """Fatigue safety factor of the keyway's root in the cam; NaN of a wall below `WALLS`."""
     root = keyway_root_of(cam.numbers)
@@ -316,7 +449,8 @@ class KeywayRoot(NamedTuple):
     """Stress at the root of the keyway in the cam: Pa per N m and, of a thick wall, per N.
 
     held_radius: of the floor of the keyway, root_radius: of its corner, thick: greatest wall that
-    counts, m; per_stress: use of the fatigue strength, 1/Pa. Of designs arrays (m, 1).
+    counts, m; per_stress: use of the fatigue strength, 1/Pa; by_fit: use by the fit alone. Of
+    designs arrays (m, 1).
     """
 
     by_torque: Value
@@ -325,6 +459,7 @@ class KeywayRoot(NamedTuple):
     root_radius: Value
     thick: Value
     per_stress: Value
+    by_fit: Value = 0.0
 
     @property
     def thin(self) -> Value:
@@ -334,26 +469,33 @@ class KeywayRoot(NamedTuple):
     def used_by(self, torque: Values, force: Values, wall: float | Values) -> Values:
         """Stress over strength (...) by torque, N m, and force, N, at a wall of at most `thick`."""
         stress: Values = self.by_torque * torque + self.by_force * force * (self.thick / wall)
-        return stress * self.per_stress
+        return stress * self.per_stress + self.by_fit
 
 
 def keyway_root_of(numbers: Numbers) -> KeywayRoot:
     """Root of the keyway in the cam; NaN without its data, or outside the scope."""
-    return KeywayRoot(*numbers.each(_root_of, (*_BORE, f"limits.{SHAFT_RELIABILITY.id}")))
+    keys: tuple[str, ...] = (*_BORE, f"limits.{SHAFT_RELIABILITY.id}")
+    if numbers.known_case.cam.fit is not None:
+        keys = (*keys, *FIT, *_RING)
+    return KeywayRoot(*numbers.each(_root_of, keys))
 
 
 def _root_of(numbers: Numbers) -> KeywayRoot:
     cam, card = _cam_of(numbers), numbers.known_case.cam.material
     keyway, key, flanks, radius = cam.keyway, cam.key, cam.key_flanks, cam.keyway_root_radius
     endurance, tensile = card.fatigue_bending, card.tensile_strength
-    unknown = KeywayRoot(*(6 * [np.nan]))
+    unknown = KeywayRoot(*(7 * [np.nan]))
     if keyway is None or key is None or flanks is None or radius is None:
         return unknown
     if endurance is None or tensile is None or not numbers.known_case.scope.covers("key"):
         return unknown
+    if _no_fit(numbers):
+        return unknown
+    pressure = key_stress(key.application_factor, 2.0 * cam.bore_radius, flanks).hub
+    if presses(numbers):
+        return _fitted_root(numbers, cam, float(pressure), radius) or unknown
     strength = surface_factor("machined", tensile) * endurance
     strength *= reliability_factor(float(numbers.limit(SHAFT_RELIABILITY)))
-    pressure = key_stress(key.application_factor, 2.0 * cam.bore_radius, flanks).hub
     thick = WALLS[1] * cam.held_radius
     shape = cam.width, thick, keyway.depth, radius
     return KeywayRoot(
@@ -363,4 +505,33 @@ def _root_of(numbers: Numbers) -> KeywayRoot:
         root_radius=radius,
         thick=thick,
         per_stress=0.5 * (1.0 / strength + 1.0 / tensile),
+    )
+
+
+def _fitted_root(
+    numbers: Numbers, cam: CamBody, pressure: float, radius: float
+) -> KeywayRoot | None:
+    """Root of a keyway under a fit, key pressure in Pa per N m; None without its data."""
+    ring, greatest = fitted_ring(numbers), greatest_interference(numbers)
+    strength = notch_strength(cam.material, radius, float(numbers.limit(SHAFT_RELIABILITY)))
+    if ring is None or greatest is None or strength is None or cam.keyway is None:
+        return None
+    depth = cam.keyway.depth
+    root = fitted_root(ring.hoop(ring.pressure(greatest), cam.held_radius), depth, radius)
+    amplitude, mean = strength.bound
+
+    def use(tension: float, compression: float) -> float:
+        change, middle = 0.5 * (tension + compression), 0.5 * max(tension - compression, 0.0)
+        return change * amplitude + middle * mean
+
+    # the wall does not count: that of the contact is bounded by the depth of the keyway
+    thin = WALLS[0] * cam.held_radius
+    return KeywayRoot(
+        by_torque=use(*root.key) * pressure / amplitude,
+        by_force=use(*root.contact) / (2.0 * depth * cam.width) / amplitude,
+        held_radius=cam.held_radius,
+        root_radius=radius,
+        thick=thin,
+        per_stress=amplitude,
+        by_fit=float(root.fit) * mean,
     )

@@ -486,7 +486,9 @@ def _bore_cards(case: Case) -> tuple[list[Material], tuple[str, ...]]:
 def _bore_allowed(numbers: Numbers) -> Allowed:
     cards, missing = _bore_cards(numbers.known_case)
     known = _share_of_tensile(BORE_SHARE, cards, numbers)
-    return Allowed(None, (*missing, *known.missing)) if missing else known
+    if missing or known.value is None:
+        return Allowed(None, (*missing, *known.missing))
+    return known._replace(value=known.value - _fit_pressure(numbers))
 
 
 def _with_cards_of_bore(demand: Demand, solution: Solution) -> Demand:
@@ -494,6 +496,14 @@ def _with_cards_of_bore(demand: Demand, solution: Solution) -> Demand:
 
 
 _of_bore = PerLoad(_bore)
+
+
+def _fit_pressure(numbers: Numbers) -> Value:
+    """Greatest pressure of the fit, Pa; 0 without one."""
+    pressure = numbers.get("cam.fit.greatest_pressure")
+    return 0.0 if pressure is None else pressure
+
+
 bore_pressure = check(
     BORE_SHARE,
     id="bore_pressure",
@@ -503,13 +513,15 @@ bore_pressure = check(
     lift_can_help=True,
     tier=Tier.SCREENING,
     kept_as="normal force at the maximum pressure of the cam's bore",
-    formula="F_n/(d b) <= limits.bore_share R_m; F_n: greatest normal force over all load cases and"
-    " angles, d: bore diameter, b: cam width, R_m: lower tensile strength of cam and camshaft",
+    formula="F_n/(d b) <= limits.bore_share R_m - p; F_n: greatest normal force over all load cases"
+    " and angles, d: bore diameter, b: cam width, R_m: lower tensile strength of cam and camshaft,"
+    " p: pressure of cam.fit at its greatest interference, 0 without one",
     reason="a widened bore loosens the cam on its shaft",
     values=(
         *given.LOADS,
         "cam.material.tensile_strength",
         "camshaft.material.tensile_strength",
+        "cam.fit.*",
     ),
     levers=(levers.one("cam.width"), levers.one("cam.bore_radius", most=2.0), *levers.LOAD),
     page="Cam",

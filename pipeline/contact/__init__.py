@@ -7,6 +7,7 @@ In the order of the calculation:
 | `elasticity`         | plane-strain elasticity of bodies and surfaces |                      |
 | `tiers`              | tiers of a solution: preview, finite elements  |                      |
 | `axial_shape`        | ends and crown of a body, as a case has them   | m                    |
+| `shrink_fit`         | fit of the cam on its shaft: pressure, slip    | p, Pa; T, N m        |
 | `cam_body`           | cam disc: radii, width, bore, key, material    | m                    |
 | `hertz`              | line contact, subsurface stress                | a, m; p0, Pa; E*, Pa |
 | `follower_body`      | roller or flat face in contact with the cam    | m                    |
@@ -24,6 +25,7 @@ In the order of the calculation:
 | `traction`           | stick zone, creepage, slip of a driven roller  | F_t, N; slip, m/s    |
 | `tangential_patch`   | finite-element template under tractions        | -                    |
 | `bore_stress`        | stress at bore and keyway                      | sigma_v, Pa          |
+| `hub_elements`       | cam on its shaft: pressure, keyway's root      | p, sigma, Pa         |
 | `rolling_envelope`   | stress below the contour, fatigue              | Pa; depth, m         |
 | `oil_film`           | film thickness, asperity load share            | h, m; lambda, -      |
 | `flash_temperature`  | flash and bulk temperature of a sliding contact | T, K                |

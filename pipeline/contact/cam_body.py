@@ -10,6 +10,7 @@ from typing import Annotated, ClassVar, Literal, NamedTuple
 from camwright.pipeline.base.material import Material
 from camwright.pipeline.base.quantities import Angle, In, Length, Part
 from camwright.pipeline.contact.axial_shape import AxialCrown, BodyEnd, flat_width
+from camwright.pipeline.contact.shrink_fit import SeatFit
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -135,6 +136,7 @@ class CamBody(Part):
     material: Material
     keyway: Keyway | None = None
     key: ParallelKey | None = None
+    fit: SeatFit | None = None
     roughness: Annotated[float, In("um", above=0, at_most=1000)] | None = None
     profile_tolerance: Annotated[float, In("mm", above=0, at_most=10)] = 1e-4
     process: Process = "ground"

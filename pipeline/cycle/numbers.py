@@ -14,6 +14,7 @@ from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_values import value_of
 from camwright.pipeline.case.limits import AnyLimit
 from camwright.pipeline.contact.cam_body import WAVES
+from camwright.pipeline.contact.shrink_fit import FittedRing, slip_torque
 from camwright.pipeline.contact.traction import ring_inertia
 from camwright.pipeline.follower.bearing_life import contamination_factor
 from camwright.pipeline.follower.guide_friction import friction_limits
@@ -191,11 +192,91 @@ def _rotor_inertia(numbers: Numbers) -> Value | None:
     return ring_inertia(radius, roller.hub_radius, width, density)
 
 
+def base_radius(numbers: Numbers) -> Value:
+    """Least radius of the contour at zero lift, m."""
+    prime, width = numbers["cam.prime_radius"], numbers.get("follower.face.width")
+    return prime - numbers["roller.radius"] if width is None else prime
+
+
+def fitted_ring(numbers: Numbers, *, thick: bool = False) -> FittedRing | None:
+    """The cam on its shaft as a ring, of its least or greatest radius; None without a fit.
+
+    None without the material of the camshaft, too. The least radius has the lower pressure and,
+    of one interference, the greater hoop stress.
+    """
+    case = numbers.case
+    if case is None or case.cam.fit is None or case.camshaft is None:
+        return None
+    shaft, outer = case.camshaft.material, base_radius(numbers)
+    if shaft is None:
+        return None
+    if thick:
+        outer = outer + numbers["spring.travel_max"]
+    return FittedRing(numbers["cam.bore_radius"], outer, case.cam.material, shaft)
+
+
+def least_interference(numbers: Numbers) -> Value | None:
+    """Least interference of the radii at rest, m, cold or in operation; None without a fit."""
+    return _interference(numbers, "least")
+
+
+def greatest_interference(numbers: Numbers) -> Value | None:
+    """Greatest interference of the radii at rest, m, cold or in operation; None without a fit."""
+    return _interference(numbers, "greatest")
+
+
+def presses(numbers: Numbers) -> bool:
+    """Whether the cam may press on its shaft: its greatest interference is one."""
+    greatest = greatest_interference(numbers)
+    return greatest is not None and bool(np.any(np.asarray(greatest) > 0.0))
+
+
+def _interference(numbers: Numbers, end: str) -> Value | None:
+    ring, case = fitted_ring(numbers), numbers.case
+    if ring is None or case is None or case.cam.fit is None:
+        return None
+    grown = case.cam.fit.growth(ring.radius, ring.cam, ring.shaft)
+    worse = np.minimum(grown, 0.0) if end == "least" else np.maximum(grown, 0.0)
+    return 0.5 * numbers[f"cam.fit.{end}_interference"] + worse
+
+
+def _least_fit_pressure(numbers: Numbers) -> Value | None:
+    """Least pressure of the fit, Pa: at the greatest cam speed."""
+    ring, wide = fitted_ring(numbers), fitted_ring(numbers, thick=True)
+    least = least_interference(numbers)
+    if ring is None or wide is None or least is None:
+        return None
+    fastest = numbers.get("cam.fastest")
+    return ring.pressure(least, 0.0 if fastest is None else fastest, wide.outer)
+
+
+def _greatest_fit_pressure(numbers: Numbers) -> Value | None:
+    """Greatest pressure of the fit, Pa: at standstill."""
+    wide, greatest = fitted_ring(numbers, thick=True), greatest_interference(numbers)
+    return None if wide is None or greatest is None else wide.pressure(greatest)
+
+
+def _slip_torque(numbers: Numbers) -> Value | None:
+    """Torque at which the cam slips on its seat, N m: stated, or that of the fit."""
+    case = numbers.case
+    stated = None if case is None else value_of(case, "camshaft.slip_torque")
+    if stated is not None or case is None or case.cam.fit is None:
+        return stated
+    pressure = numbers.get("cam.fit.least_pressure")
+    if pressure is None:
+        return None
+    radius, width = numbers["cam.bore_radius"], numbers["cam.width"]
+    return slip_torque(pressure, radius, width, float(numbers["cam.fit.friction"]))
+
+
 DERIVED: Mapping[str, Callable[[Numbers], Value | None]] = {
     "guides.a.friction_greatest": partial(_greatest_friction, "guides.a"),
     "guides.b.friction_greatest": partial(_greatest_friction, "guides.b"),
     "guides.a.area": partial(_area, "guides.a"),
     "guides.b.area": partial(_area, "guides.b"),
+    "cam.fit.least_pressure": _least_fit_pressure,
+    "cam.fit.greatest_pressure": _greatest_fit_pressure,
+    "camshaft.slip_torque": _slip_torque,
     "guides.a.mouth": _mouth,
     "follower.extent": _extent,
     "follower.size": _size,

@@ -40,7 +40,8 @@ from camwright.pipeline.cycle.contact_setup import contact_pair
 from camwright.pipeline.cycle.contact_store import NOT_STORED, ContactStore, piece_key
 from camwright.pipeline.cycle.crank_speed import SpeedRipple
 from camwright.pipeline.cycle.cycle import Cycle
-from camwright.pipeline.cycle.numbers import Numbers
+from camwright.pipeline.cycle.hub_history import HubFatigue, hub_fatigue
+from camwright.pipeline.cycle.numbers import Numbers, presses
 from camwright.pipeline.cycle.solved_cam import ForcesCam, SolvedCam, numbers_of
 from camwright.pipeline.cycle.speed_sweep import (
     SpeedSweep,
@@ -175,6 +176,16 @@ class Solution(Displayed):
                 for each in self.cycles
             ),
         )
+
+    @KeptResult
+    def hub_fatigue(self) -> HubFatigue | None:
+        """Fatigue of the keyway's root, the cam on its shaft by finite elements.
+
+        None in a preview, without a press fit or its data, and if the contour encloses no body.
+        """
+        if self.tier < Tier.CYCLE or self.mesh is None or not presses(self.numbers):
+            return None
+        return hub_fatigue(self.contour, self.cycles, self.numbers)
 
     @property
     def _speeds(self) -> tuple[float, ...]:

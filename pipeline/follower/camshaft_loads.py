@@ -221,14 +221,15 @@ class Camshaft(Part):
     sharp fillet; sections: further sections, or seats of another diameter or notch; bearing_rating,
     bearing_static_rating: C and C0 of each bearing; bearing_width: of each; rotor_mass: of cam,
     shaft and gear together; slip_torque: at which the cam slips on its seat without its key, 0 for
-    a sliding fit; counterweight: against the unbalance of the cam. The fatigue_bending of its
-    material is that of a polished specimen under rotating bending.
+    a sliding fit, of another that of `cam.fit`; counterweight: against the unbalance of the cam.
+    The fatigue_bending of its material is that of a polished specimen under rotating bending.
     """
 
     table: ClassVar[str] = "camshaft"
     defaults: ClassVar[Mapping[str, str]] = {
         "rotor_mass": "that of the cam alone, on the safe side",
         "bearing_width": "at most the diameter of the shaft",
+        "slip_torque": "that of cam.fit",
     }
 
     bearing_spacing: Length

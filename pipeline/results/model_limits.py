@@ -89,9 +89,11 @@ MODEL_LIMITS = (
         " between Hertz theory and finite elements."
     ),
     ModelLimit(
-        "The keyway corners are meshed sharp. Stress there and at the edge of the bore has no bound"
-        " as the mesh is refined and is excluded from all checks; the root of the keyway is checked"
-        " apart by its fillet.",
+        "In the bodies of the contact the keyway corners are meshed sharp. Stress there and at the"
+        " edge of the bore has no bound as the mesh is refined and is excluded from all checks; the"
+        " root of the keyway is checked apart by its fillet, under a press fit by elements of the"
+        " cam on a solid shaft without friction, in plane stress; the keyway of the shaft, a tight"
+        " key and friction that relieves it are left out.",
         excluded_zone.id,
         singular=True,
     ),

@@ -36,7 +36,7 @@ from camwright.pipeline.checks.key_strength import keyway_root, keyway_root_of
 from camwright.pipeline.checks.registry import CHECKS
 from camwright.pipeline.checks.roller_bearing import grease_life, grease_of
 from camwright.pipeline.cycle.loaded_cam import LoadedCam
-from camwright.pipeline.cycle.numbers import Numbers
+from camwright.pipeline.cycle.numbers import Numbers, presses
 from camwright.pipeline.cycle.part_loads import edge_pressure_of
 from camwright.pipeline.cycle.solution import Solution
 from camwright.pipeline.cycle.solved_cam import ContourCam, numbers_of
@@ -49,7 +49,10 @@ _LINE_LOADS = (1.0, 1e9)  # N/m, of any guide
 
 
 def ratings_of(case: Case) -> Ratings:
-    """Ratings of a case; the wall over the bore counts where the prime radius is free."""
+    """Ratings of a case; the wall over the bore counts where the prime radius is free.
+
+    The root of a keyway under a fit is judged by finite elements alone: its bound is too wide.
+    """
     states = machines(case)
     numbers, machine = numbers_of(case, states), states[0]
     held = machine.cam.held_radius if "prime_radius" in case.smoothing.free else None
@@ -57,7 +60,7 @@ def ratings_of(case: Case) -> Ratings:
     ratings = Ratings(
         numbers | {"cam.held_radius": held, "guides.a.mouth": numbers["guides.a.mouth"]},
         drag=machine.follower.drag,
-        keyway=None if np.isnan(keyway.per_stress) else keyway,
+        keyway=None if presses(numbers) or np.isnan(keyway.per_stress) else keyway,
         grease=grease_of(machine, numbers),
     )
     return ratings.least(limits_of(case))

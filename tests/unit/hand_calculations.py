@@ -322,6 +322,18 @@ KEY_PUSH = 1.5 * float(TORQUE.max()) / 8.5e-3
 TOOTH = 1.5 * float(np.max(np.abs(made.cycle().loads.cam_torque + 0.5))) / 0.02
 
 
+def wall_stress(interference: float) -> float:
+    """Von Mises stress at the bore of a steel ring shrunk on a shaft of its own steel, Pa.
+
+    By the stresses A -+ B/r^2 with no pressure outside; interference: of the diameters, m.
+    """
+    inner, outer = 8.5e-3, made.BASE - made.ROLLER
+    pressure = 210e9 * interference / (4.0 * inner) * (1.0 - (inner / outer) ** 2)
+    b = pressure / (inner**-2 - outer**-2)
+    along, across = b * (outer**-2 + inner**-2), b * (outer**-2 - inner**-2)
+    return float(np.sqrt(along**2 - along * across + across**2))
+
+
 def root_safety() -> float:
     """Pulsating from zero; 0.16 mm of fillet at 2.3 mm, wall from 10.8 to 42 mm, cam 10 mm wide."""
     loads = made.cycle().loads

@@ -7,6 +7,7 @@ names the check. Rows of missing data have no demand; `test_part_data` tries the
 _ASSEMBLY = "unit/test_assembly.py"
 _CONTACT = "verification/test_contact_audit.py"
 _GUIDES = "verification/test_guides_audit.py"
+_HUB = "verification/test_hub_elements.py"
 _ROLLER = "verification/test_roller_audit.py"
 _SHAFT = "verification/test_camshaft_audit.py"
 _SPRING = "verification/test_spring_audit.py"
@@ -135,6 +136,7 @@ _BY_TEST: dict[tuple[str, str], tuple[str, ...]] = {
     ),
     # camshaft
     (_SHAFT, "test_slip_and_bore"): ("cam_slip", "bore_pressure"),
+    (_HUB, "test_wall_of_a_fit_by_elements"): ("fit_yield",),
     (_SHAFT, "test_reversals_by_the_sign_of_the_torque"): ("torque_reversals",),
     (_SHAFT, "test_unbalance_by_point_masses"): ("cam_unbalance",),
     (_SHAFT, "test_key_by_the_flank_that_bears"): (

@@ -16,6 +16,7 @@ from trial_variants import (
     with_contact,
     with_cycle,
     with_elastic_force,
+    with_fit,
     with_fork,
     with_gear,
     with_guide,
@@ -31,6 +32,7 @@ from trial_variants import (
     with_worst_friction,
     without_endurance,
     without_heat,
+    without_seat,
 )
 
 # Four times the greatest shear along the surface over p0 at a traction coefficient of 0.03, of the
@@ -248,7 +250,16 @@ by_limit(
     lambda: with_loads(cam_torque=NAN),
     100.0 / (1.5 * float(by_hand.TORQUE.max())),
     "slip torque over 1.5 T",
-    missing=lambda: with_shaft(slip_torque=None),
+    missing=without_seat,
+)
+tried(
+    "fit_yield",
+    limited("fit_yield", lambda p: with_fit(core_yield_strength=p), with_fit),
+    lambda: with_fit(shaft_material=None),
+    None,  # of the case alone
+    1e-6 * by_hand.wall_stress(30e-6),
+    "Lame's ring of 20 mm on 8.5 mm",
+    with_fit,
 )
 by_limit(
     "bore_pressure",

@@ -64,7 +64,7 @@ MUST_HAVE = {
     *("contact_over_speed", "elastic_contact", "friction_power", "contact_temperature"),
     # camshaft
     *("key_pressure", "key_pressure_shaft", "key_shear", "cam_slip"),
-    *("keyway_root", "bore_pressure"),
+    *("keyway_root", "fit_yield", "bore_pressure"),
     *("shaft_fatigue", "shaft_yield", "shaft_deflection", "shaft_slope"),
     *("shaft_bearing_static", "shaft_bearing_life", "gear_bending", "pinion_bending"),
     *("gear_contact", "cam_unbalance"),

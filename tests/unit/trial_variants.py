@@ -13,6 +13,7 @@ from camwright.geometry.interference import SecondContact
 from camwright.geometry.lift import Lift
 from camwright.geometry.periodic_spline import DEGREE, PeriodicPolynomial
 from camwright.geometry.pitch_curve import PitchCurve
+from camwright.pipeline.contact.shrink_fit import SeatFit
 from camwright.pipeline.cycle.cycle import Cycle
 from camwright.pipeline.cycle.rolling_history import RollingHistory, SweptStress
 from camwright.pipeline.cycle.solution import Solution
@@ -99,6 +100,26 @@ def with_ring(**values: Any) -> Solution:
 
 def with_shaft(**values: Any) -> Solution:
     return with_part("camshaft", **values)
+
+
+def with_fit(**changed: Any) -> Solution:
+    """The solution with an interference of 20 to 30 um and other values of the steel.
+
+    shaft_material: that of the camshaft.
+    """
+    shaft = {key[6:]: changed.pop(key) for key in list(changed) if key.startswith("shaft_")}
+    plain = with_material("steel", **changed)
+    fit = SeatFit(least_interference=20e-6, greatest_interference=30e-6, source="made up")
+    case = plain.case
+    cam, camshaft = made.changed(case.cam, fit=fit), made.changed(case.camshaft, **shaft)
+    return made.changed_solution(plain, case=made.changed(case, cam=cam, camshaft=camshaft))
+
+
+def without_seat() -> Solution:
+    """The solution without fit and slip torque."""
+    plain = with_shaft(slip_torque=None)
+    cam = made.changed(plain.case.cam, fit=None)
+    return made.changed_solution(plain, case=made.changed(plain.case, cam=cam))
 
 
 def with_key(**values: Any) -> Solution:

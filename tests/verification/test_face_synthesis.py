@@ -6,6 +6,7 @@ from pathlib import Path
 import face_limits
 import numpy as np
 import pytest
+from clamped_case import read_clamped
 from oracle_model import DEGREE
 from synthesis_problems import REFINED, with_corrections
 from synthesis_ratings import rated
@@ -15,7 +16,6 @@ from camwright.geometry.arrays import uniform_turn
 from camwright.geometry.energy import spring_deflection, stored_energy
 from camwright.geometry.lift import Jet, Lift
 from camwright.geometry.motion_laws import Segment, SegmentMotion
-from camwright.pipeline.case.case_file import read_case
 from camwright.pipeline.case.case_values import replaced, value_of
 from camwright.pipeline.case.load_case_torque import engine_torques
 from camwright.pipeline.checks.check import depends_on_lift, within_depth
@@ -305,7 +305,7 @@ def test_convex_start_is_the_optimum_where_width_force_and_travel_limit_alone():
 @pytest.fixture(scope="module")
 def drawn():
     """The case of a flat face at nominal values, with every limit that a synthesis knows."""
-    case = read_case(CASES / "gx120-flat-face.toml")
+    case = read_clamped(CASES / "gx120-flat-face.toml")
     smoothing = case.smoothing.model_copy(
         update={"corners": False, "coefficients": 48, "starts": 1}
     )

@@ -12,6 +12,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from clamped_case import read_clamped
 from test_part_constraints_agree import random_cam
 
 from camwright.geometry.arrays import Array, uniform_turn
@@ -109,7 +110,7 @@ def solved() -> dict[str, Solution]:
     cases = {"roller": "gx120-redesign", "face": "gx120-flat-face"}
     states = {}
     for follower, name in cases.items():
-        case = read_case(CASES / f"{name}.toml")
+        case = read_clamped(CASES / f"{name}.toml")
         smoothing = case.smoothing.model_copy(update={"corners": False})
         case = case.model_copy(update={"smoothing": smoothing})
         states[follower] = solution(case, contour_of(case), Tier.PREVIEW, positions=POSITIONS)

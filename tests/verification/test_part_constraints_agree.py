@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from clamped_case import read_clamped
 from scipy.optimize import brentq
 from synthesis_problems import OF_ROLLER, REFINED
 from synthesis_ratings import named, rated
@@ -13,7 +14,6 @@ from camwright.geometry.arrays import uniform_turn
 from camwright.geometry.contour import RollerContour
 from camwright.geometry.lift import Jet, Lift
 from camwright.geometry.pitch_curve import PitchCurve
-from camwright.pipeline.case.case_file import read_case
 from camwright.pipeline.case.load_case_torque import engine_torques
 from camwright.pipeline.checks import demands
 from camwright.pipeline.checks.registry import CHECKS, DECLARED, checks_of
@@ -74,7 +74,7 @@ EACH = [
 @pytest.fixture(scope="module")
 def case():
     """The redesign, with every limit that a synthesis knows, and grease at a low load."""
-    drawn = read_case(CASE)
+    drawn = read_clamped(CASE)
     smoothing = drawn.smoothing.model_copy(update={"corners": False})
     limits = drawn.limits.model_copy(update={"curvature_rate": 9e3})
     greased = replace(
@@ -276,7 +276,7 @@ def test_a_life_by_the_duty_is_that_of_its_check(sharing, name):
 @pytest.mark.slow
 def test_a_synthesised_cam_spends_the_life_of_the_roller_by_the_duty():
     """Its check, in both load cases, is at the utilisation of the constraint, which binds."""
-    case = read_case(CASE)
+    case = read_clamped(CASE)
     states = tuple(
         each.model_copy(update={"duty": share})
         for each, share in zip(case.load_cases, (0.6, 0.4), strict=True)

@@ -13,9 +13,10 @@ import tomli_w
 
 from camwright.pipeline.base import units
 from camwright.pipeline.case.cards.card_filling import known_cards, viscosity
-from camwright.pipeline.case.cards.shaft_seats import seat_source
+from camwright.pipeline.case.cards.shaft_seats import Seat, seat_source
 from camwright.pipeline.case.limits import CHORD_SHARE
 from camwright.pipeline.case.toml_text import tables_of
+from camwright.pipeline.contact.cam_body import STANDARD_KEYS
 from camwright.pipeline.follower.bearing_life import rated_viscosity
 from camwright.pipeline.follower.spring import HelicalSpring
 from camwright.pipeline.studies.design.machine_frame import (
@@ -212,6 +213,7 @@ def _spring_source(spring: HelicalSpring) -> str:
 
 def _cam(design: Machinery) -> str:
     frame, seat = design.frame, design.frame.seat
+    least, greatest = frame.interferences
     offset = f'offset = "{_mm(design.offset)}"\n' if design.offset else ""
     return f"""\
 # --- Cam: the prime radius is that of the roller's CENTRE on the base circle.
@@ -223,8 +225,13 @@ bore_radius = "{_mm(0.5 * seat.bore)}"
 material = "case_hardened"
 roughness = "0.3 um"                 # ground
 profile_tolerance = "{units.format(PROFILE, "um")}"           # ground
-keyway = {{ width = "{_mm(seat.key_width)}", depth = "{_mm(seat.hub_depth)}" }}
+keyway = {{ width = "{_mm(seat.key_width)}", depth = "{_mm(seat.hub_depth)}"{_root(seat)} }}
 source = "assumed: case-hardened and ground"
+
+[cam.fit]                            # shrunk on a shaft that is ground to the bore
+least_interference = "{1e6 * least:.3g} um"
+greatest_interference = "{1e6 * greatest:.3g} um"
+source = "assumed; friction by DIN 7190-1, recalled: verify"
 
 [cam.key]
 length = "{_mm(frame.key_length)}"
@@ -232,6 +239,12 @@ form = "B"
 material = "c45"
 source = "{seat_source()}"
 """
+
+
+def _root(seat: Seat) -> str:
+    """Root radius of a keyway of a standard width: 1.5 times the least, within DIN 6885-1."""
+    row = STANDARD_KEYS.get(round(1e3 * seat.key_width))
+    return "" if row is None else f', root_radius = "{_mm(1.5 * row.fillet)}"'
 
 
 def _shaft(design: Machinery) -> str:
@@ -253,7 +266,6 @@ material = "c45"
 bearing_rating = "{units.format(seat.C, "kN")}"           # of two {seat.bearing}
 bearing_static_rating = "{units.format(seat.C0, "kN")}"
 bearing_width = "{_mm(seat.width)}"
-slip_torque = "{frame.slip_torque:.3g} N m"              # shrunk H7/s6: 45 MPa, friction 0.12
 rotor_mass = "{rotor:.3g} kg"                # cam, gear and shaft
 counterweight = {{ residual = "{1e6 * residual:.3g} g mm", position = "{_mm(0.5 * spacing)}" }}
 source = "assumed: proportions; {seat_source()}"

@@ -18,7 +18,9 @@ STEEL = 7850.0  # kg/m3
 MEAN_BUSH = 1.5  # length over diameter
 _KEY_STRESS = 0.45 * 370e6 * 0.6  # Pa: 0.9 R_e of C45, halved by reversals, 60 % used
 _SHAFT_STRESS = 40e6  # Pa: bending of C45 at a press fit, with safety 1.5 and scatter
-_SHRINK = 45e6 * 0.12  # Pa: pressure of H7/s6 times friction
+INTERFERENCE = 1.0 / 2500.0, 1.0 / 1300.0
+"""Least and greatest interference over the diameter of a shaft that is ground to its bore."""
+_SHRINK = 33e6 * 0.12  # Pa: pressure of the least interference times friction, hub of 1.8 bores
 _TOOTH = 12e6  # Pa: T / (m^3 z b/m) of case-hardened teeth at half of their strength
 _PINION, _TEETH_MOST = 20, 1000
 ROLLER_CHAMFER, AXIAL_OFFSET = 6e-4, 3e-4  # m
@@ -132,9 +134,10 @@ class MachineFrame:
         return 1e-3 * int(1e3 * self.cam_width - 0.4)
 
     @property
-    def slip_torque(self) -> float:
-        """Torque of the shrunk seat of the cam, N m."""
-        return 0.5 * _SHRINK * pi * self.seat.bore**2 * self.cam_width
+    def interferences(self) -> tuple[float, float]:
+        """Least and greatest interference of the shrunk seat of the cam, m."""
+        least, greatest = (share * self.seat.bore for share in INTERFERENCE)
+        return least, greatest
 
     @property
     def least_radius(self) -> float:
