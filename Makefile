@@ -1,11 +1,11 @@
-# make run     set up .venv, run the GX120 case into runs/gx120, print verdict and report
+# make run     set up .venv, run the redesigned GX120 into runs/gx120, print verdict and report
 # make test    set up .venv, run ruff, mypy and the tests
 # make verify  the slow tests, or PART="sizes ends" of them; writes docs/verification.md
 # make bench   benchmarks             make lint  ruff and mypy only
 # make fuzz    20,000 mutated input files     make pins   write the pinned figures of the cases anew
 
 PYTHON ?= python3
-CASE ?= cases/gx120.toml
+CASE ?= cases/gx120-redesign.toml
 OUT ?= runs/gx120
 
 BIN := .venv/bin

@@ -281,7 +281,6 @@ class Declaration:
     tier : Tier                least tier that can judge it; below it the check is not evaluated
     fails_from : Tier          least tier with a lower bound of its utilisation: below `tier` it
                                fails by it or is not evaluated
-    forecast : bool            quick enough to forecast a smoother
     moved_by_tolerance : bool  its demand differs at a tolerance corner
     error : str                origin of the error bar of the demand
     needs : str                kind of follower; "": any
@@ -320,7 +319,6 @@ class Declaration:
     lift_can_help: bool
     tier: Tier
     fails_from: Tier
-    forecast: bool
     moved_by_tolerance: bool
     error: Error
     needs: Literal["", "roller", "face"]
@@ -420,7 +418,6 @@ def check(
     lift_can_help: bool = False,
     tier: Tier = Tier.PREVIEW,
     fails_from: Tier | None = None,
-    forecast: bool = False,
     moved_by_tolerance: bool = True,
     error: Error = "sampling",
     needs: Literal["", "roller", "face"] = "",
@@ -464,7 +461,6 @@ def check(
             lift_can_help=lift_can_help,
             tier=tier,
             fails_from=tier if fails_from is None else fails_from,
-            forecast=forecast,
             moved_by_tolerance=moved_by_tolerance,
             error=error,
             needs=needs,

@@ -369,7 +369,6 @@ contact_pressure = check(
     method="greatest contact pressure over the turn; least endurance of cam and follower",
     lift_can_help=True,
     tier=Tier.SCREENING,
-    forecast=True,
     error="contact",
     kept_as="contact pressure at the endurance limit",
     formula="p0 <= p_E / S; p0: greatest contact pressure over all load cases and angles, p_E:"
@@ -432,7 +431,6 @@ shakedown = check(
     " cam and follower",
     lift_can_help=True,
     tier=Tier.SCREENING,
-    forecast=True,
     error="contact",
     kept_as="shakedown pressure",
     formula="p0 <= 4 k / S; k = Y/sqrt(3): least shear yield strength of cam and follower, S:"

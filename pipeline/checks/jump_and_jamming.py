@@ -69,7 +69,6 @@ def _required(cam: LoadedCam) -> Array:
     " samples",
     lift_can_help=True,
     tier=Tier.SCREENING,
-    forecast=True,
     formula="N_min / F_0 >= limits.contact_force_margin; N_min: least normal force over all load"
     " cases and angles with guide friction and inertia, without surge, F_0: spring force at minimum"
     " lift",
@@ -98,7 +97,6 @@ def contact_force_margin(cam: LoadedCam) -> Array:
     " w / sqrt of it",
     lift_can_help=True,
     tier=Tier.SCREENING,
-    forecast=True,
     formula="max(-m w^2 s'' / F_c) <= limits.jump over all load cases and angles; m: moving mass,"
     " w: cam speed, s'': second derivative of the lift, F_c: closing force, of the spring with"
     " weight and external force",
@@ -132,7 +130,6 @@ def _on_points(demand: Demand, solution: Solution) -> Demand:
     " length with clearance",
     lift_can_help=True,
     tier=Tier.SCREENING,
-    forecast=True,
     part="guides",
     formula="max((mu_A R_A + mu_B R_B) / F_a) <= j on the rise; R: sum of the pushes on both sides"
     " of a guide, mu: its nominal friction, F_a: axial force of the cam, j: limits.jam_index.",

@@ -9,6 +9,7 @@ from types import ModuleType
 
 from camwright.geometry.errors import InputError
 from camwright.pipeline.base.quantities import In
+from camwright.pipeline.case.limits import TORQUE_REDUCTION
 from camwright.pipeline.case.requirements_section import Waiver
 from camwright.pipeline.checks import (
     assembly,
@@ -70,8 +71,12 @@ CHECKS: tuple[Declaration, ...] = tuple(
 )
 OF_THE_DESIGN = tuple(each.id for each in CHECKS if not each.evidence)
 """Ids of the checks of the design."""
-FORECAST = tuple(each for each in CHECKS if each.forecast)
-"""Quick checks of the design, to forecast a smoother."""
+FORECAST = tuple(
+    each
+    for each in CHECKS
+    if each.must_have and (each.lift_can_help or each.id == TORQUE_REDUCTION.id)
+)
+"""What a smoother changes: the torque reduction, and what a gentler lift can pass."""
 TOLERANCED = tuple(each for each in CHECKS if each.moved_by_tolerance and not each.evidence)
 """Checks of the design whose demand differs at a tolerance corner."""
 WAIVERS_WITHOUT_EFFECT = check(

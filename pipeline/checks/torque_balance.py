@@ -44,7 +44,6 @@ _NO_MEAN = 1e-6
     reason="It is the purpose of the cam.",
     method="1 - std of the torque with the cam, friction and inertia included, over that"
     " without it",
-    forecast=True,
     load_cases=RIPPLE,
     values=given.LOADS,
     levers=levers.STRONGER,

@@ -122,7 +122,10 @@ def _score(
 
 
 def _corrected(check: Check, candidate: Mapping[str, Check], own: Mapping[str, Check]) -> Check:
-    """A trial's check plus the difference of two forecasts; unchanged without a forecast."""
+    """A trial's check plus the difference of two forecasts; unchanged without a forecast.
+
+    The demand at its tolerance corner moves as that of the nominal cam, in proportion.
+    """
     there, here = candidate.get(check.id), own.get(check.id)
     if there is None or here is None:
         return check
@@ -130,7 +133,7 @@ def _corrected(check: Check, candidate: Mapping[str, Check], own: Mapping[str, C
         return _with_margin(there)
     if check.demand is None or there.demand is None or here.demand is None:
         return replace(check, demand=None)
-    return _with_margin(replace(check, demand=check.demand + there.demand - here.demand))
+    return _with_margin(_moved(check, there.demand - here.demand))
 
 
 def _with_margin(check: Check) -> Check:
@@ -138,4 +141,12 @@ def _with_margin(check: Check) -> Check:
     if check.demand is None or check.limit is None:
         return check
     side = 1.0 if check.sense == "at_most" else -1.0
-    return replace(check, demand=check.demand + side * MARGIN * abs(check.limit))
+    return _moved(check, side * MARGIN * abs(check.limit))
+
+
+def _moved(check: Check, by: float) -> Check:
+    """The check with another demand, and another one at its tolerance corner."""
+    demand, corner = float(check.demand or 0.0), check.corner_demand
+    if corner is not None:
+        corner += by * (abs(corner / demand) if demand else 1.0)
+    return replace(check, demand=demand + by, corner_demand=corner)

@@ -280,6 +280,22 @@ def test_checks_without_a_forecast_stay_as_the_trial_has_them():
     assert len(attempts) <= 3
 
 
+def test_a_forecast_moves_the_tolerance_corner_too():
+    """Judged at its corner, a third above the nominal cam that is forecast."""
+
+    def truth(s):
+        cornered = check("pressure_angle", 1.2 / s, corner="friction high", corner_demand=1.6 / s)
+        return torque(0.9 - 0.2 * s), cornered
+
+    def closed_form(s):
+        return torque(0.9 - 0.2 * s), check("pressure_angle", 1.2 / s)
+
+    attempts, _, stop = drive(truth, forecast=closed_form)
+    assert stop.binding == ()
+    assert attempts[-1].smoother.strength == pytest.approx(1.6, rel=0.02)
+    assert len(attempts) == 2
+
+
 def test_a_foreseen_pass_by_a_hair_is_not_trusted():
     def model(s):
         return torque(0.9 - 0.1 * s), check("pressure_angle", 1.4 if s < 1.3 else 0.9)

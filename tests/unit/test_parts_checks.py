@@ -28,7 +28,7 @@ from camwright.pipeline.checks import (
 )
 from camwright.pipeline.checks.cam_shape import acceleration_step
 from camwright.pipeline.checks.check import Declaration
-from camwright.pipeline.checks.registry import FORECAST, all_checks, checks_of
+from camwright.pipeline.checks.registry import all_checks, checks_of
 from camwright.pipeline.checks.torque_balance import friction_balance
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.solution import Solution, solution
@@ -154,10 +154,6 @@ def test_a_must_have_that_is_not_described_is_not_evaluated_and_blocks(bare):
         assert checks[name].status == "not_evaluated"
         assert checks[name].blocks is (name in must)
         assert checks[name].note
-
-
-def test_a_forecast_leaves_the_parts_out():
-    assert not set(PARTS) & set(FORECAST)
 
 
 def test_all_checks_contain_the_parts(bare):
