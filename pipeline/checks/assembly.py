@@ -1,19 +1,31 @@
-"""Checks of the assembly: no part within another over the whole turn."""
+"""Checks of the assembly: no part within another over the whole turn.
+
+A spring around a guide, and a torsion spring, which stands beside the stem, are not judged.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from math import cos, isnan, radians, sin, sqrt
 from typing import NamedTuple
 
+import numpy as np
+
+from camwright.geometry.arrays import Value
 from camwright.geometry.errors import InputError
 from camwright.pipeline.base import levers
+from camwright.pipeline.base.stem_layout import SEAT_MOST, StemLayout
 from camwright.pipeline.base.units import shown
 from camwright.pipeline.case.limits import ASSEMBLY_GAP
 from camwright.pipeline.case.machine import Machine
+from camwright.pipeline.checks.cam_shape import lift
 from camwright.pipeline.checks.camshaft_strength import camshaft_of, gear_of
 from camwright.pipeline.checks.check import NONE, ROUNDING, Demand, check
 from camwright.pipeline.checks.missing_keys import lacking
+from camwright.pipeline.contact.tiers import Tier
+from camwright.pipeline.cycle.loaded_cam import wire_of
+from camwright.pipeline.cycle.numbers import Numbers
 from camwright.pipeline.cycle.solution import Solution
 from camwright.pipeline.follower.camshaft_loads import Camshaft
 from camwright.pipeline.follower.roller import Roller
@@ -329,3 +341,110 @@ def fork_gap(solution: Solution) -> Demand:
         gaps.append((inner - aside, "cheek to cam"))
     value, words = min(gaps)
     return Demand(value, limit, note=words)
+
+
+def _layout(lift: Value, numbers: Numbers) -> StemLayout:
+    """Guides, stem and coil spring at a maximum lift; the spring at its least preload."""
+    wire = wire_of(numbers)
+    squeezed = numbers["spring.preload_least"] / numbers["spring.rate"]
+    return StemLayout(
+        overhang=numbers["follower.overhang_at_max_lift"],
+        spacing=numbers["guides.spacing"],
+        length_a=numbers["guides.a.length"],
+        length_b=numbers["guides.b.length"],
+        lift=lift,
+        extent=numbers["follower.extent"],
+        stem_diameter=numbers["follower.stem_diameter"],
+        stem_length=numbers.get("follower.stem_length"),
+        spring_length=wire.free_length - squeezed,
+        spring_bore=wire.mean_diameter - wire.wire_diameter,
+    )
+
+
+_SEAT = "spring.seat_height", "spring.seat_thickness"
+
+
+def _of_seat(demand: Demand, solution: Solution) -> Demand:
+    """With the place of the seat, and what the case lacks to decide the gap."""
+    numbers = solution.numbers
+    layout = _layout(solution.contour.lift.highest.value, numbers)
+    limit, height, thickness = numbers.limit(ASSEMBLY_GAP), *(numbers.get(key) for key in _SEAT)
+    if demand.value is None or isnan(demand.value):
+        open_end = bool(np.isnan(layout.seated(0.0, limit, height).gap).all())
+        lacks = {"follower.stem_length": open_end, _SEAT[1]: not open_end}
+        keys = (key for key, lacked in lacks.items() if lacked and numbers.get(key) is None)
+        return replace(demand, at=None, missing=tuple(keys))
+    taken, how = thickness, ""
+    if taken is None:
+        taken = 0.0 if float(demand.value or 0.0) < limit else SEAT_MOST * layout.stem_diameter
+        how = f", taken as {shown(float(taken), 'mm')} thick, an upper bound"
+        how = ", even of no thickness" if taken == 0.0 else how
+    place = layout.seated(taken, limit, height)
+    where = f"moving seat at {shown(float(np.ravel(place.height)[0]), 'mm')}"
+    return replace(demand, at=None, note=f"{where} at maximum lift{how}")
+
+
+def _seat_gap(lift: Value, numbers: Numbers) -> Value:
+    """Least clearance of spring and seats from guides and stem, m; NaN: not known."""
+    height, thickness = (numbers.get(key) for key in _SEAT)
+    return _layout(lift, numbers).known_gap(thickness, numbers.limit(ASSEMBLY_GAP), height)
+
+
+def _room_of_gas(lift: Value, numbers: Numbers) -> Value:
+    """Lesser clearance of the rod from guide B and of the piston from its end, m."""
+    top = numbers["follower.overhang_at_max_lift"] + numbers["guides.spacing"]
+    stem = numbers.get("follower.stem_length")
+    over = (np.nan if stem is None else stem) - lift - top - 0.5 * numbers["guides.b.length"]
+    left = numbers["spring.gas.volume"] / numbers["spring.gas.area"] - lift
+    return np.minimum(over, left)
+
+
+spring_gap = check(
+    ASSEMBLY_GAP,
+    id="spring_gap",
+    title="Gap between the spring with its seats and guides or stem",
+    tier=Tier.SCREENING,
+    formula="between the guides min(s - h - t - a, (D - d - d_s)/2) >= g, s: height of the moving"
+    " seat over roller centre or face at maximum lift, spring.seat_height, else b - L + h, under"
+    " guide B, h: maximum lift, t: spring.seat_thickness, else at most d_s/2, a, b: upper end of"
+    " guide A, lower end of guide B, L = L_0 - P/k: length of the spring at zero lift, D, d: mean"
+    " and wire diameter, d_s: of the stem; else above guide B, s - h - t - c >= g, c: its upper"
+    " end, s: at most follower.stem_length; g: limits.assembly_gap",
+    reason="A spring or seat within a guide cannot be assembled, or stops the follower.",
+    method="seats and spring, longest at the least preload, from the ends of the guides at zero"
+    " lift, and coils from the stem; the length at maximum lift is that of spring_coil_gap",
+    moved_by_tolerance=False,
+    part="spring",
+    load_cases=NONE,
+    values=("spring.rate", "spring.preload"),
+    levers=(
+        levers.Scaled(("guides.spacing", "follower.stem_length"), 1, 2.0),
+        levers.one("follower.stem_length", most=2.0),
+    ),
+    page="Spring",
+).measured("top", value=_seat_gap, remark=_of_seat, deviation=1e-4)(lift)
+
+
+gas_gap = check(
+    ASSEMBLY_GAP,
+    id="gas_gap",
+    title="Gap of the gas spring over guide B and in its cylinder",
+    tier=Tier.SCREENING,
+    formula="min(l - h - c, V/A - h) >= g; l: follower.stem_length, on whose end the rod rests, h:"
+    " maximum lift, c: upper end of guide B over roller centre or face at maximum lift, V, A:"
+    " volume and area of spring.gas, g: limits.assembly_gap",
+    reason="A rod that strikes guide B, or a piston the end of its cylinder, stops the follower.",
+    method="end of the stem over guide B at zero lift, and column of the gas left at maximum lift;"
+    " the stroke that the maker permits is that of gas_stroke",
+    moved_by_tolerance=False,
+    part="gas_spring",
+    load_cases=NONE,
+    levers=(levers.one("follower.stem_length", most=2.0), levers.one("spring.gas.volume")),
+    page="Spring",
+).measured(
+    "top",
+    value=_room_of_gas,
+    needed=("follower.stem_length",),
+    remark=lambda demand, _: replace(demand, at=None),
+    deviation=1e-4,
+)(lift)

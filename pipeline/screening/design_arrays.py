@@ -149,8 +149,12 @@ class Designs:
     def top(self) -> LoadedCam:
         """The unloaded cams at their maximum lift, (m, 1); with the preloads of the load cases."""
         lift = self.highest[:, None]
-        preload = np.max([cam.state.preload for cam in self.cams], axis=0)
-        numbers = self.numbers | {"spring.preload_greatest": preload}
+        preloads = [cam.state.preload for cam in self.cams]
+        extremes = {
+            "spring.preload_greatest": np.max(preloads, axis=0),
+            "spring.preload_least": np.min(preloads, axis=0),
+        }
+        numbers = self.numbers | extremes
         return LoadedCam(Jet(lift, np.zeros_like(lift), np.zeros_like(lift)), numbers, lift)
 
     @KeptResult
