@@ -32,6 +32,14 @@ class SeatPlace(NamedTuple):
     gap: Array
 
 
+def decided(most: Value, none: Value, limit: Value) -> Array:
+    """Gap that a size decides of which only bounds are known, (...); NaN: they do not decide it.
+
+    The gap at the greatest size is within the limit, and so at every one; or that at none is not.
+    """
+    return np.where(most >= limit, most, np.where(none < limit, none, np.nan))
+
+
 def _overlap(room: Value) -> Array:
     """A room that parts at rest to one another may use up: no clearance unless they overlap."""
     return np.where(np.asarray(room) < 0.0, room, np.inf)
@@ -135,4 +143,4 @@ class StemLayout:
             return self.seated(thickness, clearance, height).gap
         widest = self.seated(SEAT_MOST * self.stem_diameter, clearance, height).gap
         none = self.seated(0.0, clearance, height).gap
-        return np.where(widest >= clearance, widest, np.where(none < clearance, none, np.nan))
+        return decided(widest, none, clearance)

@@ -84,6 +84,7 @@ class Designs:
         known: dict[str, Value | None] = {
             "cam.held_radius": self.value("cam.bore_radius") + (cam.held_radius - cam.bore_radius),
             "spring.preload": self.states[0].preload,
+            "spring.preload_least": np.min([each.preload for each in self.states], axis=0),
             "contact.width": self.contact_width,
             "contact.modulus": self.machine.contact_modulus,
             "cam.fastest": self.fastest[:, None] / self.case.mechanism.gear_ratio,
@@ -149,12 +150,8 @@ class Designs:
     def top(self) -> LoadedCam:
         """The unloaded cams at their maximum lift, (m, 1); with the preloads of the load cases."""
         lift = self.highest[:, None]
-        preloads = [cam.state.preload for cam in self.cams]
-        extremes = {
-            "spring.preload_greatest": np.max(preloads, axis=0),
-            "spring.preload_least": np.min(preloads, axis=0),
-        }
-        numbers = self.numbers | extremes
+        preload = np.max([cam.state.preload for cam in self.cams], axis=0)
+        numbers = self.numbers | {"spring.preload_greatest": preload}
         return LoadedCam(Jet(lift, np.zeros_like(lift), np.zeros_like(lift)), numbers, lift)
 
     @KeptResult

@@ -23,11 +23,12 @@ from camwright.pipeline.case.cards.shaft_seats import seats
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_file import case_of, read_case, with_values
 from camwright.pipeline.case.given_lift import given_lift
-from camwright.pipeline.case.machine import machines
 from camwright.pipeline.case.template import first_case
+from camwright.pipeline.checks.assembly import from_follower
 from camwright.pipeline.checks.check import verdict
 from camwright.pipeline.checks.registry import CHECKS, checks_of
 from camwright.pipeline.contact.tiers import Tier
+from camwright.pipeline.cycle.numbers import Numbers
 from camwright.pipeline.cycle.solution import Solution, solution
 from camwright.pipeline.follower.bearing_life import rating_bound, static_rating_bound
 from camwright.pipeline.preview import preview_case
@@ -519,9 +520,10 @@ def test_an_overhung_pin_is_counted_from_the_face_of_its_cheek() -> None:
 
 def test_a_flat_face_passes_the_machine_shaft_by_its_width_and_depth() -> None:
     """Distances of points beside, below and obliquely below the face of the shipped case."""
-    machine = machines(read_case(DATA.parents[1] / "cases" / "gx120-flat-face.toml"))[0]
-    width = machine.face.width
-    assert machine.follower.away(0.0, 0.5 * width + 0.003) == pytest.approx(0.003, abs=1e-15)
-    assert machine.follower.away(0.004, 0.5 * width + 0.003) == pytest.approx(0.005, abs=1e-15)
-    assert machine.follower.away(0.004, 0.0) == pytest.approx(0.004, abs=1e-15)
-    assert machine.follower.half_depth == 0.5 * machine.face.depth
+    case = read_case(DATA.parents[1] / "cases" / "gx120-flat-face.toml")
+    numbers = Numbers({}, case)
+    half = 0.5 * case.follower.face.width
+    assert from_follower(numbers, 0.0, half + 0.003) == pytest.approx(0.003, abs=1e-15)
+    assert from_follower(numbers, 0.004, half + 0.003) == pytest.approx(0.005, abs=1e-15)
+    assert from_follower(numbers, 0.004, 0.0) == pytest.approx(0.004, abs=1e-15)
+    assert numbers["follower.half_depth"] == 0.5 * case.follower.face.depth
