@@ -12,6 +12,7 @@ In the order of use:
 | `cooling`          | heat that the mechanism gives to its surroundings        | G, W/K; T, K     |
 | `external_force`   | force over the cam angle, linear between samples         | F_e, N           |
 | `stem_layout`      | guides, seats and spring along the stem                  | z, m             |
+| `envelope`         | box that holds the mechanism over the turn               | m                |
 | `files`            | files read, written in one step, hashed; JSON records    | SHA-256          |
 | `extras`           | libraries that are not installed with the package        |                  |
 | `kept_results`     | properties kept in a field that other owners take over   |                  |

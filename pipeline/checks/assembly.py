@@ -125,7 +125,7 @@ def _of_bearings(demand: Demand, solution: Solution) -> Demand:
     load_cases=NONE,
     levers=(levers.Scaled(("camshaft.bearing_spacing", "camshaft.cam_position"), 1),),
     page="Camshaft",
-).measured("case", value=_with_bearings, remark=_of_bearings, deviation=0.0)
+).measured("case", value=_with_bearings, remark=_of_bearings, deviation=1e-9)
 def bearing_gap(cam: LoadedCam) -> Array:
     """Least axial gap between a camshaft bearing of no width and cam, gear or follower, m."""
     return np.asarray(_least(_beside_bearings(cam.numbers)))
@@ -162,7 +162,7 @@ def _named(gaps: Callable[[Numbers], Gaps]) -> Callable[[Demand, Solution], Dema
     load_cases=NONE,
     levers=(levers.one("camshaft.gear.width", -1, 2.0),),
     page="Camshaft",
-).measured("case", remark=_named(_beside_gear), deviation=0.0)
+).measured("case", remark=_named(_beside_gear), deviation=1e-9)
 def gear_gap(cam: LoadedCam) -> Array:
     """Least axial gap between gear or pinion and cam or follower, m."""
     return np.asarray(_least(_beside_gear(cam.numbers)))
@@ -199,7 +199,7 @@ def _of_teeth(demand: Demand, solution: Solution) -> Demand:
     part="gear",
     load_cases=NONE,
     page="Camshaft",
-).measured("case", allowed=lambda _: Allowed(_RATIO), remark=_of_teeth, deviation=0.0)
+).measured("case", allowed=lambda _: Allowed(_RATIO), remark=_of_teeth, deviation=1e-9)
 def tooth_ratio(cam: LoadedCam) -> Array:
     """Deviation of the ratio of the teeth from that of the mechanism, relative."""
     gear = gear_of(camshaft_of(cam.numbers.known_case))
@@ -236,7 +236,7 @@ def _with_module(demand: Demand, solution: Solution) -> Demand:
     part="gear",
     load_cases=NONE,
     page="Camshaft",
-).measured("case", worst="least", allowed=_fewest, remark=_with_module, deviation=0.0)
+).measured("case", worst="least", allowed=_fewest, remark=_with_module, deviation=1e-9)
 def tooth_count(cam: LoadedCam) -> Array:
     """Fewer of the teeth of gear and pinion."""
     gear = gear_of(camshaft_of(cam.numbers.known_case))
@@ -391,7 +391,7 @@ def _of_thickness(demand: Demand, solution: Solution) -> Demand:
     load_cases=NONE,
     levers=(levers.one("roller.fork.cheek_height", -1), levers.PRIME),
     page="Roller",
-).measured("case", needed=(_HEIGHT,), remark=_of_thickness, deviation=0.0)
+).measured("case", needed=(_HEIGHT,), remark=_of_thickness, deviation=1e-9)
 def fork_shaft_gap(cam: LoadedCam) -> Array:
     """Least gap between the cheeks of the fork and the camshaft, m."""
     numbers = cam.numbers
@@ -430,7 +430,7 @@ def _in_fork(numbers: Numbers) -> Gaps:
     load_cases=NONE,
     levers=(levers.one("roller.pin.span", most=2.0), levers.one("roller.fork.cheek_length")),
     page="Roller",
-).measured("case", needed=(Pin.table, _HEIGHT, _LENGTH), remark=_named(_in_fork), deviation=0.0)
+).measured("case", needed=(Pin.table, _HEIGHT, _LENGTH), remark=_named(_in_fork), deviation=1e-9)
 def fork_gap(cam: LoadedCam) -> Array:
     """Least gap between the fork and roller or cam, m."""
     return np.asarray(_least(_in_fork(cam.numbers)))
