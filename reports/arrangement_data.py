@@ -7,7 +7,9 @@ from functools import lru_cache
 import numpy as np
 
 from camwright.geometry.arrays import median
+from camwright.pipeline.base.envelope import Disc, MechanismSizes, Sleeve
 from camwright.pipeline.base.files import Json
+from camwright.pipeline.base.stem_layout import SEAT_MOST, StemLayout
 from camwright.reports.drawing import arrangement
 from camwright.reports.drawing.arrangement import FORCES, DrawnBush, DrawnMechanism, DrawnMotion
 from camwright.reports.drawing.drawing_shapes import Drawing
@@ -65,13 +67,78 @@ def mechanism_of(turn: SheetTurn) -> DrawnMechanism:
     stroke = float(np.max(turn.lift["lift_mm"]))
     stem = turn.length("follower", "stem_diameter") or 0.2 * float(np.hypot(*contour).min())
     guides = _guides(turn, stem, lowest + stroke)
-    spring = _spring(turn, stem, stroke, guides)
+    seat = turn.length("spring", "seat_thickness") or SEAT_MOST * stem
+    spring = _spring(turn, stem, (lowest, stroke), guides, seat)
+    end = _stem_end(turn, stem, lowest, guides, spring)
     roller = turn.length("roller", "radius") if turn.rolls else None
     return DrawnMechanism(
         contour, turn.length("cam", "bore_radius"), turn.keyway, _drilled(turn), axis, lowest,
         stroke, roller, _pin(turn, roller or 0.0), _face(turn) if roller is None else None, stem,
-        _stem_end(turn, stem, lowest, guides, spring), guides, spring,
+        end, guides, spring, seat,
+        _sizes(turn, (axis, lowest, stroke, stem, end - lowest), guides, spring, seat),
+        _counterweight(turn),
     )  # fmt: skip
+
+
+def _counterweight(turn: SheetTurn) -> float | None:
+    """Angle of the counterweight, against the unbalance of the cam, rad; None without one."""
+    angle = turn.balance["unbalance_angle_deg"]
+    if turn.length("camshaft", "counterweight", "residual", unit="kg m") is None:
+        return None
+    return np.radians(float(angle) + 180.0) if isinstance(angle, (int, float)) else None
+
+
+def _sizes(
+    turn: SheetTurn, stem: tuple[float, float, float, float, float],
+    guides: tuple[DrawnBush, DrawnBush], spring: Spring, seat: float,
+) -> MechanismSizes:  # fmt: skip
+    """Parts of the mechanism; stem: follower axis, height and lift, diameter and end of the stem.
+
+    Heights of the parts about the stem are over roller centre or face at maximum lift.
+    """
+    axis, lowest, lift, diameter, end = stem
+    highest, cheeks = lowest + lift, turn.length("roller", "fork", "cheek_height") or 0.0
+    sleeves = [
+        Sleeve(_bottom(each) - highest, _top(each) - highest,
+               each.bore + 2.0 * (turn.length("guides", name, "wall") or 0.0))
+        for name, each in zip("ab", guides, strict=True)
+    ]  # fmt: skip
+    sleeves.append(Sleeve(spring.seat - seat - highest, spring.top - highest, 2.0 * spring.reach))
+    half = max(turn.length("roller", "radius") or 0.0, 0.5 * cheeks)
+    deep = 0.5 * (turn.length("roller", "width") or 0.0)
+    if not turn.rolls:
+        half = 0.5 * _face(turn)[0]
+        deep = 0.5 * (turn.length("follower", "face", "depth") or 0.0)
+    span, cheek = (
+        turn.length("roller", *key) for key in (("pin", "span"), ("fork", "cheek_width"))
+    )
+    if span is not None and cheek is not None:
+        held = turn.case["roller"]["pin"].get("mounting") == "overhung"
+        deep = max(deep, span + cheek if held else 0.5 * (span + cheek))
+    deep += turn.length("roller", "axial_offset") or 0.0
+    radius = float(np.hypot(turn.contour["contour_x_mm"], turn.contour["contour_y_mm"]).max())
+    width = turn.length("cam", "width") or 0.0
+    return MechanismSizes(radius, width, axis, lowest, lift, (half, deep), diameter, end,
+                          tuple(sleeves), _discs(turn))  # fmt: skip
+
+
+def _discs(turn: SheetTurn) -> tuple[Disc, ...]:
+    """Bearings and gear along the camshaft, as far as the case states them."""
+
+    def at(*path: str) -> float | None:
+        return turn.length("camshaft", *path)
+
+    cam, spacing = at("cam_position"), at("bearing_spacing")
+    if cam is None or spacing is None:
+        return ()
+    diameter = at("diameter") or 2.0 * (turn.length("cam", "bore_radius") or 0.0)
+    width = at("bearing_width") or at("diameter") or 0.0
+    discs = [Disc(place - cam, width, diameter) for place in (0.0, spacing)]
+    place, radius, wide = at("gear_position"), at("gear_radius"), at("gear", "width")
+    teeth = turn.case["camshaft"].get("gear", {}).get("teeth")
+    if place is not None and radius is not None and wide is not None and teeth:
+        discs.append(Disc(place - cam, wide, 2.0 * radius * (1.0 + 2.0 / int(teeth))))
+    return tuple(discs)
 
 
 def _reference(turn: SheetTurn) -> tuple[float, float]:
@@ -120,12 +187,19 @@ def _guides(turn: SheetTurn, stem: float, highest: float) -> tuple[DrawnBush, Dr
 
 
 def _spring(
-    turn: SheetTurn, stem: float, stroke: float, guides: tuple[DrawnBush, DrawnBush]
-) -> Spring:
-    """The spring between the guides where it fits there, else above them."""
-    kind, seat = turn.case.get("spring", {}).get("kind", "coil"), arrangement.SEAT * stem
+    turn: SheetTurn, stem: float, places: tuple[float, float],
+    guides: tuple[DrawnBush, DrawnBush], seat: float,
+) -> Spring:  # fmt: skip
+    """The spring between the guides where it fits there, else above them; see `StemLayout`.
+
+    places: height of the reference point of the follower at zero lift, and the lift.
+    """
+    lowest, stroke = places
+    kind = turn.case.get("spring", {}).get("kind", "coil")
     above = _top(guides[1]) + seat + 0.3 * stem
+    end = turn.length("follower", "stem_length")
     if kind == "gas":
+        above = above if end is None else lowest + end
         area = turn.length("spring", "gas", "area", unit="mm^2") or stem**2
         volume = turn.length("spring", "gas", "volume", unit="cm^3")
         return DrawnGasSpring.of(
@@ -146,9 +220,21 @@ def _spring(
     length = stated or (room if room > 1.3 * stroke else 1.8 * stroke + 2.0 * stem)
     thickest = min(_WIRE * stem, 0.75 * (length - stroke) / (turns + 1.0))
     wire = turn.length("spring", "design", "wire_diameter") or thickest
-    if length <= room and diameter - wire > stem:
-        return Coil(wire, diameter, turns, _bottom(guides[1]) - length, length)
-    return Coil(wire, diameter, turns, above, length)
+    layout = StemLayout(
+        overhang=guides[0].middle - lowest - stroke,
+        spacing=guides[1].middle - guides[0].middle,
+        length_a=guides[0].length,
+        length_b=guides[1].length,
+        lift=stroke,
+        extent=0.0,
+        stem_diameter=stem,
+        stem_length=end,
+        spring_length=length,
+        spring_bore=diameter - wire,
+    )
+    clearance = turn.bound("spring_gap") or 0.0
+    place = layout.seated(seat, clearance, turn.length("spring", "seat_height"))
+    return Coil(wire, diameter, turns, lowest + float(place.height), length)
 
 
 def _installed(turn: SheetTurn) -> float | None:

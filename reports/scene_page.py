@@ -12,9 +12,12 @@ from numpy.typing import ArrayLike, NDArray
 
 from camwright.geometry.arrays import Array
 from camwright.geometry.errors import ResultError
+from camwright.pipeline.base.envelope import Sleeve
 from camwright.pipeline.base.files import Json, read_npz, write_atomic
 from camwright.pipeline.results.field_file import EndField, read_end_field
 from camwright.reports import stress_map
+from camwright.reports.arrangement_data import mechanism_of
+from camwright.reports.drawing.arrangement import DrawnMechanism
 from camwright.reports.interactive import script_safe_json, scripts
 from camwright.reports.page import environment
 from camwright.reports.pressure_figures import Record
@@ -143,15 +146,15 @@ def scene(material: ReportMaterial, view: TurnView) -> dict[str, Json]:
     """
     turn = material.turn
     width = turn.length("cam", "width") or 5.0
-    stem = turn.length("follower", "stem_diameter") or 0.6 * width
     lab = view.lab_origin()
     rows = material.run.final.cycle.of_load_case(view.load_case)
     bodies = {"flank": _flank(material, view, width), "cam": _cam(view, width).as_record(_DIGITS)}
     bodies["bore"] = ring(view.bore, width).as_record(_DIGITS)
-    bodies["follower"] = _follower(material, view, width, stem).as_record(_DIGITS)
-    guide = _guide(material, view, stem)
-    if guide is not None:
-        bodies["guide"] = guide.as_record(_DIGITS)
+    mechanism = mechanism_of(turn)
+    end = mechanism.stem_end - mechanism.lowest
+    bodies["follower"] = _follower(view, width, mechanism.stem, end).as_record(_DIGITS)
+    bodies["guide"] = _frame(mechanism).as_record(_DIGITS)
+    envelope = mechanism.envelope
     spin = view.arc() / float(np.hypot(*view.follower).max()) if view.is_roller else 0.0
     return {
         "bodies": bodies,
@@ -170,8 +173,9 @@ def scene(material: ReportMaterial, view: TurnView) -> dict[str, Json]:
         "shaft": turn.words.shaft,
         "ratio": float(rows["crank_angle_deg"][1] / rows["cam_angle_deg"][1]),
         "reach": {
-            "side": float(np.hypot(*view.contour).max()),
-            "top": float(lab[1].min()) + _stem_end(material, view, stem),
+            "side": float(np.abs([*envelope.across, envelope.along[0]]).max()),
+            "top": float(envelope.along[1]),
+            "deep": float(np.abs(envelope.depth).max()),
         },
         "ends": _ends(material),
     }
@@ -221,10 +225,9 @@ def _roller(view: TurnView, width: float) -> Json:
     return solid.as_record(_DIGITS) | {"spoke": _rounded(spoke)}
 
 
-def _follower(material: ReportMaterial, view: TurnView, width: float, stem: float) -> Solid:
+def _follower(view: TurnView, width: float, stem: float, top: float) -> Solid:
     """Stem with fork and pin of a roller, or with the block of a flat face."""
     low, high = view.follower.min(axis=1), view.follower.max(axis=1)
-    top = _stem_end(material, view, stem)
     if not view.is_roller:
         # the y axis of the body points to the cam, downwards here
         block = box((-high[0], -high[1], -width / 2), (-low[0], -low[1], width / 2))
@@ -249,18 +252,29 @@ def _pin_radius(view: TurnView) -> float:
     return float(min(0.98 * away.min(), 0.52 * away.max()))
 
 
-def _guide(material: ReportMaterial, view: TurnView, stem: float) -> Solid | None:
-    """Bush of guide A; None if the case does not state its position."""
-    length = material.turn.length("guides", "a", "length")
-    overhang = material.turn.length("follower", "overhang_at_max_lift")
-    if length is None or overhang is None:
-        return None
-    outer, inner = 0.85 * stem * unit_circle(), 0.5 * stem * unit_circle()
+def _frame(mechanism: DrawnMechanism) -> Solid:
+    """Guides, space of the spring with its seats over the turn, shaft with bearings and gear."""
+    highest = mechanism.lowest + mechanism.stroke
+    solids = [
+        _sleeve(each, mechanism.stem, highest).shifted(mechanism.axis)
+        for each in mechanism.sizes.sleeves
+    ]
+    discs = mechanism.sizes.discs
+    solids += [pin(0.5 * each.diameter, 0.5 * each.width).deeper(each.place) for each in discs]
+    if discs:
+        ends = [each.place + side * 0.5 * each.width for each in discs for side in (-1, 1)]
+        outline = 0.5 * min(each.diameter for each in discs) * unit_circle()
+        solids.append(ring(outline, max(ends) - min(ends)).deeper(0.5 * (max(ends) + min(ends))))
+    return joined(solids)
+
+
+def _sleeve(sleeve: Sleeve, bore: float, highest: float) -> Solid:
+    """Body about the stem, its ends at heights over the reference point at maximum lift."""
+    length = sleeve.high - sleeve.low
+    outer, inner = 0.5 * sleeve.diameter * unit_circle(), 0.5 * bore * unit_circle()
     walls = [ring(outer, length), ring(inner, length)]
     ends = [tube(outer, inner, side * length / 2) for side in (-1, 1)]
-    middle = float(view.lab_origin()[1].max()) + overhang
-    bush = joined([*walls, *ends]).upright(middle)
-    return bush.shifted(float(view.lab_origin()[0].mean()))
+    return joined([*walls, *ends]).upright(highest + 0.5 * (sleeve.low + sleeve.high))
 
 
 def _contacts(view: TurnView, lab: Array) -> Array:
@@ -275,16 +289,6 @@ def _contacts(view: TurnView, lab: Array) -> Array:
         there = np.array([[np.cos(turn), -np.sin(turn)], [np.sin(turn), np.cos(turn)]]) @ surface
         lowest.append(there[:, int(np.argmax(there[1]))])
     return np.stack(lowest, axis=1)
-
-
-def _stem_end(material: ReportMaterial, view: TurnView, stem: float) -> float:
-    """Height of the stem end above the follower origin, mm: beyond guide A at any lift."""
-    length = material.turn.length("guides", "a", "length")
-    overhang = material.turn.length("follower", "overhang_at_max_lift")
-    if length is None or overhang is None:
-        return 4.0 * stem + float(view.follower[1].max())
-    lifted = view.lab_origin()[1]
-    return overhang + 0.5 * length + float(np.ptp(lifted)) + 0.5 * stem
 
 
 def _ends(material: ReportMaterial) -> Json:

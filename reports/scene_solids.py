@@ -30,6 +30,10 @@ class Solid:
         """The solid shifted along x."""
         return Solid(self.points + np.array([[across], [0.0], [0.0]]), self.triangles)
 
+    def deeper(self, along: float) -> Solid:
+        """The solid shifted along z."""
+        return Solid(self.points + np.array([[0.0], [0.0], [along]]), self.triangles)
+
     def as_record(self, digits: int) -> dict[str, Json]:
         """Coordinates x, y, z and corners i, j, k, as Plotly names them."""
         points = [[float(f"{v:.{digits}g}") for v in part] for part in self.points.tolist()]

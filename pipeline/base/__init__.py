@@ -11,6 +11,8 @@ In the order of use:
 | `material`         | material card: elastic constants, strengths, source      | E, Pa; nu; S, Pa |
 | `cooling`          | heat that the mechanism gives to its surroundings        | G, W/K; T, K     |
 | `external_force`   | force over the cam angle, linear between samples         | F_e, N           |
+| `stem_layout`      | guides, seats and spring along the stem                  | z, m             |
+| `envelope`         | box that holds the mechanism over the turn               | m                |
 | `files`            | files read, written in one step, hashed; JSON records    | SHA-256          |
 | `extras`           | libraries that are not installed with the package        |                  |
 | `kept_results`     | properties kept in a field that other owners take over   |                  |

@@ -55,9 +55,7 @@ def _gap_left(cam: LoadedCam, limit: float) -> Array:
     value=lambda worst, numbers: (
         numbers["guides.a.mouth"] - np.maximum(worst, numbers["follower.extent"])
     ),
-    remark=lambda demand, _: replace(
-        demand, at=None, note="the positions of spring and frame are not in the case"
-    ),
+    remark=lambda demand, _: replace(demand, at=None, note="the frame is not in the case"),
     deviation=1e-4,
     kept=Kept(_gap_left, once=True, unit="mm"),
 )

@@ -81,6 +81,10 @@ def design(
     return _run(out) if run else PASSED
 
 
+def _whole(point: dict[str, Any]) -> str:
+    return " x ".join(f"{length:.4g}" for length in point["envelope_mm"])
+
+
 def _show(document: dict[str, Any], out: Path) -> None:
     demand = document["torque"]
     stdout.print(
@@ -101,6 +105,7 @@ def _show(document: dict[str, Any], out: Path) -> None:
         stdout.print(
             f"chosen: {out}: {chosen['size_mm']:.4g} mm, {100 * chosen['removed']:.0f} % removed; "
             f"passes by closed forms\n"
+            f"whole mechanism, across and along the stem, along the camshaft: {_whole(chosen)} mm\n"
             f"options not given, so assumed: {assumed}; values to be confirmed in all: "
             f"{len(chosen['to_be_confirmed'])}, listed by camwright check after the run\n"
             f"next: camwright run {out} --out runs/{out.stem}",

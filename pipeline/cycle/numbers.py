@@ -147,6 +147,29 @@ def _extent(numbers: Numbers) -> Value:
     return radius if cheek is None or bridge is None else np.maximum(radius, cheek + bridge)
 
 
+def _half_depth(numbers: Numbers) -> Value:
+    """Half of the length of the follower along the cam axis, m: with the pin and fork described."""
+    depth = numbers.get("follower.face.depth")
+    if depth is not None:
+        return 0.5 * depth
+    half, roller = 0.5 * numbers["roller.width"], numbers.known_case.roller
+    if roller.pin is None or roller.fork is None:
+        return half
+    return np.maximum(half, roller.fork.faces(roller.pin)[1])
+
+
+def _half_flat(numbers: Numbers) -> Value:
+    """Half of the width of a face, m; 0 of a roller."""
+    width = numbers.get("follower.face.width")
+    return 0.0 if width is None else 0.5 * width
+
+
+def _round(numbers: Numbers) -> Value:
+    """Radius of roller or cheeks about the pin, the greater, m; 0 of a face."""
+    radius, height = numbers.get("roller.radius"), numbers.get("roller.fork.cheek_height")
+    return np.maximum(0.0 if radius is None else radius, 0.5 * (height or 0.0))
+
+
 def _size(numbers: Numbers) -> Value:
     """Roller radius, or half of the width of a face, m: scale of a gap."""
     width = numbers.get("follower.face.width")
@@ -279,6 +302,9 @@ DERIVED: Mapping[str, Callable[[Numbers], Value | None]] = {
     "camshaft.slip_torque": _slip_torque,
     "guides.a.mouth": _mouth,
     "follower.extent": _extent,
+    "follower.half_depth": _half_depth,
+    "follower.half_flat": _half_flat,
+    "follower.round": _round,
     "follower.size": _size,
     "cam.waviness": _waviness,
     "roller.rotor_inertia": _rotor_inertia,

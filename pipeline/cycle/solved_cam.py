@@ -24,7 +24,7 @@ from camwright.pipeline.follower.follower_forces import Loads, share_left
 def numbers_of(case: Case, machines: Sequence[Machine]) -> Numbers:
     """Numbers of machines, one a load case, which at a tolerance corner are not those of the case.
 
-    Those of the first, the greatest cam speed and the greatest preload; see `in_load_case`.
+    Those of the first, the greatest cam speed, the extreme preloads; see `in_load_case`.
     """
     shared = {
         "cam.held_radius": machines[0].cam.held_radius,
@@ -32,6 +32,7 @@ def numbers_of(case: Case, machines: Sequence[Machine]) -> Numbers:
         "contact.modulus": machines[0].contact_modulus,
         "cam.fastest": highest_speed(machines) / machines[0].gear_ratio,
         "spring.preload_greatest": max(each.spring.preload for each in machines),
+        "spring.preload_least": min(each.spring.preload for each in machines),
     }
     return in_load_case(Numbers(shared, case), machines[0])
 

@@ -6,8 +6,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Annotated, ClassVar
 
-import numpy as np
-
 from camwright.geometry.arrays import Array
 from camwright.geometry.contour import Contour
 from camwright.geometry.flat_face_contour import FacePath, FlatFaceContour
@@ -74,15 +72,6 @@ class FlatFace(Part):
     def extent(self) -> float:
         """Thickness of the block towards guide A, m."""
         return self.thickness
-
-    @property
-    def half_depth(self) -> float:
-        """Half of its depth, m."""
-        return 0.5 * self.depth
-
-    def away(self, below: float, aside: float) -> float:
-        """Distance of the block from a point, m; see `FollowerKind`."""
-        return float(np.hypot(below, max(aside - 0.5 * self.width, 0.0)))
 
     @property
     def held_depth(self) -> None:

@@ -119,18 +119,6 @@ class FollowerKind(Protocol):
         ...
 
     @property
-    def half_depth(self) -> float:
-        """Half of its length along the cam axis, with the pin and fork described, m."""
-        ...
-
-    def away(self, below: float, aside: float) -> float:
-        """Distance from a point (m): negative within the follower and all above it.
-
-        below : its distance below the reference point, >= 0; aside : from the axis, >= 0
-        """
-        ...
-
-    @property
     def held_depth(self) -> float | None:
         """Distance of contact surface and held or supported surface, m; None for a flat face."""
         ...

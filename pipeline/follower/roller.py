@@ -91,18 +91,6 @@ class Roller(Part):
         return max(self.radius, self.moving.inset)
 
     @property
-    def half_depth(self) -> float:
-        """Half of its length along the cam axis, with the pin and fork described, m."""
-        if self.pin is None or self.fork is None:
-            return 0.5 * self.width
-        return max(0.5 * self.width, self.fork.faces(self.pin)[1])
-
-    def away(self, below: float, aside: float) -> float:
-        """Distance of roller and cheeks from a point, m; see `FollowerKind`."""
-        height = None if self.fork is None else self.fork.cheek_height
-        return float(np.hypot(below, aside)) - max(self.radius, 0.5 * (height or 0.0))
-
-    @property
     def held_depth(self) -> float:
         """Thickness of the outer ring on its balls, or of the roller solid on its hub, m."""
         ring = self.bearing.ring

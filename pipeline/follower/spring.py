@@ -463,8 +463,9 @@ class Spring(Part):
     """Spring of the follower, preloaded at zero lift; linear, or of another kind.
 
     rate: at zero lift. Tolerances are relative, of the preload and of the rise of the force;
-    travel_max: maximum lift; design: geometry of the wound spring. A gas or torsion spring sets
-    rate and preload, which its case leaves out.
+    travel_max: maximum lift; design: geometry of the wound spring; seat_height: of the moving seat
+    over roller centre or face, where the coils rest on it; seat_thickness: of that seat. A gas or
+    torsion spring sets rate and preload, which its case leaves out.
 
     Raises
     ------
@@ -473,12 +474,21 @@ class Spring(Part):
     """
 
     table: ClassVar[str] = "spring"
-    defaults: ClassVar[Mapping[str, str]] = MappingProxyType({"kind": "coil"})
+    defaults: ClassVar[Mapping[str, str]] = MappingProxyType(
+        {
+            "kind": "coil",
+            "seat_height": "under guide B where the spring fits between the guides, else on the end"
+            " of the stem above them",
+            "seat_thickness": "at most half of the stem diameter",
+        }
+    )
 
     kind: Literal["coil", "gas", "torsion"] | None = None
     rate: Rate
     preload: Preload
     travel_max: Length | None = None
+    seat_height: Length | None = None
+    seat_thickness: Length | None = None
     rate_tolerance: Annotated[float, In(above=0, below=1)] = 0.05
     preload_tolerance: Annotated[float, In(above=0, below=1)] = 0.05
     design: HelicalSpring | None = None

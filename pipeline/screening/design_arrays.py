@@ -84,6 +84,7 @@ class Designs:
         known: dict[str, Value | None] = {
             "cam.held_radius": self.value("cam.bore_radius") + (cam.held_radius - cam.bore_radius),
             "spring.preload": self.states[0].preload,
+            "spring.preload_least": np.min([each.preload for each in self.states], axis=0),
             "contact.width": self.contact_width,
             "contact.modulus": self.machine.contact_modulus,
             "cam.fastest": self.fastest[:, None] / self.case.mechanism.gear_ratio,

@@ -13,6 +13,7 @@ from functools import cached_property, lru_cache
 import numpy as np
 
 from camwright.geometry.arrays import Array
+from camwright.pipeline.base.envelope import Box, MechanismSizes
 from camwright.pipeline.base.files import Json
 from camwright.reports.drawing.drawing_shapes import (
     Arrow,
@@ -33,8 +34,6 @@ from camwright.reports.drawing.spring_shapes import Coil, Spring
 
 _EDGE, _THIN = 0.45, 0.22  # mm, of lines on a mechanism `_WHOLE` high
 _WHOLE = 260.0
-SEAT = 0.22
-"""Thickness of a seat of the spring over the diameter of the stem."""
 _FORCE_SHARE = 0.85
 """Length of the greatest force over the least radius of the cam."""
 FORCES = {"contact": "Contact force", "spring": "Spring force",
@@ -68,6 +67,9 @@ class DrawnMechanism:
     roller, pin              radii; None: a flat face
     face                     width and thickness of a flat face; None: a roller
     stem, stem_end           diameter; height of its end at zero lift
+    seat                     thickness of the seats of the spring
+    sizes                    of all parts, by which the envelope goes
+    counterweight            angle of its place in the frame of the cam, rad; None: none
     """
 
     contour: Array
@@ -84,6 +86,19 @@ class DrawnMechanism:
     stem_end: float
     guides: tuple[DrawnBush, DrawnBush]
     spring: Spring
+    seat: float
+    sizes: MechanismSizes
+    counterweight: float | None
+
+    @cached_property
+    def envelope(self) -> Box:
+        """Box that holds the mechanism over the turn, mm."""
+        return self.sizes.envelope
+
+    @cached_property
+    def reach(self) -> float:
+        """Greatest radius about the camshaft, of cam, gear and bearings, mm."""
+        return -self.envelope.along[0]
 
     @cached_property
     def radius_max(self) -> float:
@@ -93,13 +108,12 @@ class DrawnMechanism:
     @cached_property
     def top(self) -> float:
         """Height of the highest part, mm."""
-        above = self.guides[1].middle + 0.5 * self.guides[1].length
-        return max(self.stem_end + self.stroke, self.spring.top + 0.06 * self.stem, above)
+        return self.envelope.along[1]
 
     @cached_property
     def height(self) -> float:
         """Height of cam and follower together, mm."""
-        return self.top + self.radius_max
+        return self.top + self.reach
 
     @cached_property
     def scale(self) -> float:
@@ -152,7 +166,7 @@ def drawing(mechanism: DrawnMechanism, motion: DrawnMotion, row: int) -> Drawing
     behind, before = m.spring.groups(m.axis, lift)
     theta = float(motion.theta[row])
     groups = (
-        ShapeGroup("axes", tuple(_axes(m))),
+        ShapeGroup("axes", (*_axes(m), *_gear(m))),
         ShapeGroup("cam", tuple(_cam(m)), Pose(cam_turn(theta))),
         ShapeGroup("turning", tuple(_turning(m))),
         *behind,
@@ -162,7 +176,11 @@ def drawing(mechanism: DrawnMechanism, motion: DrawnMotion, row: int) -> Drawing
         ShapeGroup("forces", tuple(arrows(m, motion, row))),
         ShapeGroup("values", tuple(_values(m, motion, row))),
     )
-    return Drawing("Arrangement", alt(motion, row), groups, _box(m))
+    size = " x ".join(f"{length:.4g}" for length in m.envelope.size)
+    words = (
+        f"{alt(motion, row)} Envelope across and along the stem and along the camshaft: {size} mm."
+    )
+    return Drawing("Arrangement", words, groups, _box(m))
 
 
 def alt(motion: DrawnMotion, row: int) -> str:
@@ -189,13 +207,33 @@ def _newtons(motion: DrawnMotion, name: str, row: int) -> str:
 def _axes(m: DrawnMechanism) -> list[Shape]:
     """Follower axis and centre lines of the cam."""
     pen = Pen("muted", _THIN * m.scale, dash="dashdot")
-    reach = m.radius_max + 0.8 * m.text
+    reach = m.reach + 0.8 * m.text
     return [
         DrawnOutline(
             (segment((m.axis, -reach), (m.axis, m.top + 0.8 * m.text)),), pen, closed=False
         ),
         DrawnOutline((segment((-reach, 0.0), (reach, 0.0)),), pen, closed=False),
     ]
+
+
+def _gear(m: DrawnMechanism) -> list[Shape]:
+    """Outline of the greatest part about the camshaft, behind the cam: the gear."""
+    if not m.reach > m.radius_max:
+        return []
+    pen = Pen("muted", _THIN * m.scale, dash="dashdot")
+    return [DrawnOutline((circle(m.reach),), pen)]
+
+
+def _counterweight(m: DrawnMechanism) -> list[Shape]:
+    """Counterweight on the flank of the cam at its angle; its size is not in the case."""
+    if m.counterweight is None:
+        return []
+    outer = 0.92 * float(np.hypot(*m.contour).min())
+    inner = 0.5 * (outer + (m.bore or 0.0))
+    angle = m.counterweight + np.radians(np.linspace(-35.0, 35.0, 29))
+    arc = np.stack([np.cos(angle), np.sin(angle)])
+    outline = np.concatenate([outer * arc, inner * arc[:, ::-1]], axis=1)
+    return [DrawnOutline((outline,), Pen("ink", _EDGE * m.scale, "muted"))]
 
 
 def _cam(m: DrawnMechanism) -> list[Shape]:
@@ -212,6 +250,7 @@ def _cam(m: DrawnMechanism) -> list[Shape]:
                  0.85 * m.text, "muted", "middle")  # fmt: skip
     return [
         DrawnOutline((m.contour, *holes), edge),
+        *_counterweight(m),
         DrawnOutline((mark,), Pen("ink", 1.6 * edge.width), closed=False),
         words,
     ]
@@ -219,7 +258,7 @@ def _cam(m: DrawnMechanism) -> list[Shape]:
 
 def _turning(m: DrawnMechanism) -> list[Shape]:
     """Arc with an arrow in the direction of turning, below the cam on its left."""
-    radius = m.radius_max + 0.9 * m.text
+    radius = m.reach + 0.9 * m.text
     angle = np.radians(np.linspace(247.0, 218.0, 25))
     arc = radius * np.stack([np.cos(angle), np.sin(angle)])
     width = 0.8 * m.scale
@@ -252,7 +291,7 @@ def _follower(m: DrawnMechanism) -> list[Shape]:
             DrawnOutline((rectangle(-0.5 * width, 0.0, 0.5 * width, thick),), edge),
         ]
     seat, reach = m.spring.seat - m.lowest, min(m.spring.reach, 4.0 * m.stem)
-    thick = SEAT * m.stem
+    thick = m.seat
     if not isinstance(m.spring, Coil):
         reach = 0.8 * m.stem
     made.append(DrawnOutline((rectangle(-reach, seat - thick, reach, seat),), edge))
@@ -281,7 +320,7 @@ def _guides(m: DrawnMechanism) -> list[Shape]:
                 m.axis + side * 0.55 * m.stem,
                 m.axis + side * (m.spring.reach + m.stem / 4),
             )
-            box = (min(inner, outer), m.spring.top, max(inner, outer), m.spring.top + SEAT * m.stem)
+            box = (min(inner, outer), m.spring.top, max(inner, outer), m.spring.top + m.seat)
             made += [DrawnOutline(hatching(box, 3.2 * m.scale), thin, closed=False),
                      DrawnOutline((segment((inner, m.spring.top), (outer, m.spring.top)),),
                              Pen("ink", edge.width), closed=False)]  # fmt: skip
@@ -329,11 +368,11 @@ def label_places(mechanism: DrawnMechanism) -> dict[str, tuple[float, float]]:
     m, pitch = mechanism, 2.7 * mechanism.text
     wanted = sorted(
         {
-            "contact": m.radius_max + 0.6 * m.text, "guide-a": m.guides[0].middle,
+            "contact": m.reach + 0.6 * m.text, "guide-a": m.guides[0].middle,
             "spring": m.spring.seat + 0.5 * m.stroke, "guide-b": m.guides[1].middle,
         }.items(), key=lambda item: item[1],
     )  # fmt: skip
-    across, free = _column(m), m.radius_max + 0.6 * m.text
+    across, free = _column(m), m.reach + 0.6 * m.text
     places = {}
     for name, height in wanted:
         places[name] = (across, max(height, free))
@@ -386,10 +425,10 @@ def _box(m: DrawnMechanism) -> tuple[float, float, float, float]:
     margin = 1.4 * m.text
     places = label_places(m)
     widest = max(Text(name, (0.0, 0.0), 0.82 * m.text).box[2] for name in FORCES.values())
-    right = max(m.radius_max + margin, _column(m) + widest)
-    left = min(-m.radius_max - margin, m.axis - 0.5 * m.stem - m.arrow_length - 0.5 * margin)
+    right = max(m.reach + margin, _column(m) + widest)
+    left = min(m.envelope.across[0] - margin, m.axis - 0.5 * m.stem - m.arrow_length - 0.5 * margin)
     top = max(m.top + margin, max(y for _, y in places.values()) + 2.2 * m.text)
-    return left, -m.radius_max - 2.4 * margin, right, top
+    return left, -m.reach - 2.4 * margin, right, top
 
 
 def moving_record(

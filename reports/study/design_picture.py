@@ -124,10 +124,12 @@ def _words(axes: Axes, document: Record) -> None:
         "",
     ]
     if chosen is not None:
+        whole = " x ".join(f"{length:.4g}" for length in chosen["envelope_mm"])
         lines += [
             f"ripple left       {chosen['ripple_left_Nm']:.4g} N m, "
             f"{100 * chosen['removed']:.0f} % removed",
             f"size              {chosen['size_mm']:.4g} mm",
+            f"whole mechanism   {whole} mm",
             f"prime radius      {chosen['prime_radius_mm']:.4g} mm, offset "
             f"{chosen['offset_mm']:.3g} mm",
             f"lift              {chosen['lift_max_mm']:.4g} mm",

@@ -123,7 +123,7 @@
     return pairs.map((_, t) => t);
   }
 
-  const { side, top } = data.reach, deep = 0.3 * (side + top), unit = (side + top) / 1.22;
+  const { side, top } = data.reach, deep = Math.max(0.3 * (side + top), data.reach.deep), unit = (side + top) / 1.22;
   const axis = (range) => ({ range, visible: false, autorange: false });
   const layout = () => ({
     margin: { l: 0, r: 0, t: 0, b: 0 }, showlegend: false, uirevision: "fixed",

@@ -18,6 +18,7 @@ from trial_variants import (
     with_elastic_force,
     with_fit,
     with_fork,
+    with_gas_spring,
     with_gear,
     with_guide,
     with_guides,
@@ -187,6 +188,23 @@ by_limit(
     1.0,
     "half of 16 - 4 of the fork and of 10 of the roller",
     missing=lambda: with_fork(cheek_length=None),
+)
+by_limit(
+    "spring_gap",
+    "assembly_gap",
+    unknown,
+    6.0,
+    "end of the stem at 140 mm less 10 of lift, 4 of the seat and 30 + 80 + 10 up to guide B's end",
+    base=lambda: with_part("spring", seat_thickness=0.004),
+    missing=lambda: with_part("follower", stem_length=None),
+)
+by_limit(
+    "gas_gap",
+    "assembly_gap",
+    None,
+    10.0,
+    "140 mm less 10 of lift and 120 up to guide B's end; 40 of 50 mm of gas left",
+    base=with_gas_spring,
 )
 by_limit(
     "cam_radius",

@@ -15,6 +15,7 @@ from camwright.geometry.arrays import rotation
 from camwright.pipeline import run
 from camwright.pipeline.case.case_file import read_case
 from camwright.pipeline.contact.tiers import Tier
+from camwright.pipeline.cycle.machine_envelope import sizes_of
 from camwright.reports.arrangement_data import arrangement_at, mechanism_of, motion_of
 from camwright.reports.drawing import arrangement
 from camwright.reports.drawing.drawing_shapes import Arrow, Text, bore_outline, hatching
@@ -192,3 +193,42 @@ def test_an_arrow_shorter_than_its_head_is_hidden(turn):
     group = replace(drawn.groups[0], shapes=(tiny, Text("<&>", (0.0, 0.0), 1.0)))
     text = svg_of(replace(drawn, groups=(group,)), COLOURS, "x")
     assert 'visibility="hidden"' in text and "&lt;&amp;&gt;" in text
+
+
+def test_the_drawing_has_the_envelope_of_the_case(turn, request):
+    """The sizes that a report reads from its run are those of the case that `design` states."""
+    mechanism = mechanism_of(turn)
+    case = read_case(CASES[request.node.callspec.params["turn"]])
+    if case.spring.design is None:
+        pytest.skip("a spring that is not described is drawn by its room")
+    own = sizes_of(case, 1e-3 * mechanism.sizes.cam_radius, 1e-3 * mechanism.stroke).envelope
+    np.testing.assert_allclose(np.array(own) * 1e3, np.array(mechanism.envelope), atol=1e-6)
+
+
+def test_the_envelope_holds_all_that_is_drawn_at_every_angle(turn):
+    """Outlines of cam, follower, guides and spring, turned and shifted; within 1 % by the wires."""
+    mechanism, motion = mechanism_of(turn), motion_of(turn)
+    (left, right), (low, high) = mechanism.envelope[:2]
+    names = {"cam", "follower", "spring-behind", "spring-before"}
+    room = 0.01 * mechanism.height
+    for row in range(0, POSITIONS, 9):
+        for group in arrangement.drawing(mechanism, motion, row).groups:
+            if group.name not in names:
+                continue
+            points = [line for shape in group.shapes for line in getattr(shape, "lines", ())]
+            assert points
+            x, y = group.pose.of(np.concatenate(points, axis=1))
+            assert left - room <= x.min() and x.max() <= right + room
+            assert low - room <= y.min() and y.max() <= high + room
+
+
+def test_the_spring_is_drawn_where_it_is_judged(turn):
+    """Its seats clear the guides of the drawing as the check says."""
+    mechanism = mechanism_of(turn)
+    judged = {each["id"]: each for each in turn.checks}.get("spring_gap")
+    if judged is None:
+        pytest.skip("the case describes no spring")
+    top = [guide.middle + 0.5 * guide.length for guide in mechanism.guides]
+    below = [edge for edge in top if edge <= mechanism.spring.seat]
+    gap = mechanism.spring.seat - mechanism.seat - max(below)
+    assert gap == pytest.approx(judged["demand"], abs=1e-6)

@@ -23,11 +23,12 @@ from camwright.pipeline.case.cards.shaft_seats import seats
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_file import case_of, read_case, with_values
 from camwright.pipeline.case.given_lift import given_lift
-from camwright.pipeline.case.machine import machines
 from camwright.pipeline.case.template import first_case
+from camwright.pipeline.checks.assembly import from_follower
 from camwright.pipeline.checks.check import verdict
 from camwright.pipeline.checks.registry import CHECKS, checks_of
 from camwright.pipeline.contact.tiers import Tier
+from camwright.pipeline.cycle.numbers import Numbers
 from camwright.pipeline.cycle.solution import Solution, solution
 from camwright.pipeline.follower.bearing_life import rating_bound, static_rating_bound
 from camwright.pipeline.preview import preview_case
@@ -360,6 +361,64 @@ def test_gaps_in_the_plane_of_the_cam_by_polygons_over_the_turn(
     assert gap("machine_shaft_gap", of) == pytest.approx(min(to_crank), abs=1e-6)
 
 
+def box(radii: tuple[float, float], ends: tuple[float, float], steps: int = 40) -> Array:
+    """Outline of a body round the stem in the half plane of its axis: along it, and from it."""
+    along, across = np.linspace(*ends, steps), np.linspace(*radii, steps)
+    return np.concatenate(
+        [[along, np.full(steps, radii[0])], [np.full(steps, ends[1]), across],
+         [along[::-1], np.full(steps, radii[1])], [np.full(steps, ends[0]), across[::-1]]], axis=1,
+    )  # fmt: skip
+
+
+SEATS = [
+    ({}, "between"),
+    ({"spring.design.mean_diameter": "25 mm"}, "stem"),  # coils of 8.5 mm touch a stem of 16 mm
+    ({"guides.spacing": "95 mm", "spring.design.mean_diameter": "42 mm"}, "above"),
+    ({"spring.seat_height": "85 mm"}, "between"),
+    ({"spring.seat_height": "40 mm", "follower.overhang_at_max_lift": "125 mm"}, "below"),
+]
+
+
+@pytest.mark.parametrize(("values", "where"), SEATS)
+def test_spring_seats_and_guides_by_outlines_over_the_turn(
+    values: dict[str, str], where: str
+) -> None:
+    """spring_gap within 1 um: outlines in the plane of the stem's axis, at each lift of the turn.
+
+    Where the spring is fixed it rests on guide B or on the housing: those two are not compared.
+    """
+    known = {"spring.seat_thickness": "6 mm", "follower.stem_length": "330 mm"}
+    of = solved(with_values(sound(), STATED | known | values))
+    lift, machine, spring = of.contour.lift, of.machine, of.machine.spring
+    top, design, stem = lift.highest.value, spring.design, 0.5 * machine.stem.diameter
+    assert design is not None
+    guides = machine.guides
+    middle = machine.overhang_at_max_lift
+    bushes = [
+        box((stem, stem + 0.02), (at - 0.5 * bush.length, at + 0.5 * bush.length))
+        for at, bush in ((middle, guides.a), (middle + guides.spacing, guides.b))
+    ]
+    inner, outer = (0.5 * (design.mean_diameter + s * design.wire_diameter) for s in (-1.0, 1.0))
+    long = design.free_length - spring.preload / spring.rate
+    seat = {
+        "between": bushes[1][0].min() - long + top, "stem": 0.33, "above": 0.33,
+    }.get(where, 0.0)  # fmt: skip
+    if "spring.seat_height" in values:
+        seat = 1e-3 * float(values["spring.seat_height"].split()[0])
+    least = []
+    for raised in np.append(lift(np.linspace(0.0, 2.0 * np.pi, 181)), [0.0, top]):
+        face = seat - top + raised
+        fixed = seat - top + long
+        collar = box((stem, outer), (face - 0.006, face))
+        least += [apart(collar, bush) for bush in bushes]
+        if seat < 0.33:
+            rod = box((0.0, stem), (raised - top + 0.001, raised - top + 0.33))
+            coils = box((inner, outer), (face, fixed))
+            least.append(apart(coils, rod))
+            assert where == "below" or fixed <= bushes[1][0].min() + 1e-9
+    assert gap("spring_gap", of) == pytest.approx(min(least), abs=1e-6)
+
+
 def test_gaps_along_the_camshaft_by_counting_free_micrometres() -> None:
     """bearing_gap, gear_gap and fork_gap: cells of 1 um that neither of two parts fills."""
     cells = 1e-6 * (np.arange(-200_000, 200_000) + 0.5)
@@ -461,9 +520,10 @@ def test_an_overhung_pin_is_counted_from_the_face_of_its_cheek() -> None:
 
 def test_a_flat_face_passes_the_machine_shaft_by_its_width_and_depth() -> None:
     """Distances of points beside, below and obliquely below the face of the shipped case."""
-    machine = machines(read_case(DATA.parents[1] / "cases" / "gx120-flat-face.toml"))[0]
-    width = machine.face.width
-    assert machine.follower.away(0.0, 0.5 * width + 0.003) == pytest.approx(0.003, abs=1e-15)
-    assert machine.follower.away(0.004, 0.5 * width + 0.003) == pytest.approx(0.005, abs=1e-15)
-    assert machine.follower.away(0.004, 0.0) == pytest.approx(0.004, abs=1e-15)
-    assert machine.follower.half_depth == 0.5 * machine.face.depth
+    case = read_case(DATA.parents[1] / "cases" / "gx120-flat-face.toml")
+    numbers = Numbers({}, case)
+    half = 0.5 * case.follower.face.width
+    assert from_follower(numbers, 0.0, half + 0.003) == pytest.approx(0.003, abs=1e-15)
+    assert from_follower(numbers, 0.004, half + 0.003) == pytest.approx(0.005, abs=1e-15)
+    assert from_follower(numbers, 0.004, 0.0) == pytest.approx(0.004, abs=1e-15)
+    assert numbers["follower.half_depth"] == 0.5 * case.follower.face.depth

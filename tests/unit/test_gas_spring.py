@@ -319,6 +319,17 @@ def test_limits_of_the_maker():
     fastest = max(each.speed for each in limited.load_cases) / limited.mechanism.gear_ratio
     warmer = 2.0 * 0.05 * work * peaks * fastest / (2.0 * np.pi) / 0.2
     assert checks["gas_heating"].demand == pytest.approx(20.0 + warmer, rel=1e-4)
+    ends = {"gas left": volume[-1] / 113e-6}
+    state = machines(limited)[0]
+    ends["stem"] = 0.2 - (state.overhang_at_max_lift + state.guides.spacing)
+    ends["stem"] -= 0.5 * state.guides.b.length + highest
+    assert checks["gas_gap"].status == "not_evaluated"
+    assert checks["gas_gap"].missing == ("follower.stem_length",)
+    long = limited.model_copy(
+        update={"follower": limited.follower.model_copy(update={"stem_length": 0.2})}
+    )
+    (own,) = [c for c in preview_case(long, corners=False).checks if c.id == "gas_gap"]
+    assert own.demand == pytest.approx(min(ends.values()), rel=1e-6)
     assert checks["data_gas_spring"].missing == ("spring.travel_max",)
     assert not any(name.startswith("spring_") and name != "spring_travel" for name in checks)
     allowed = travel_limits(limited)

@@ -358,6 +358,7 @@ NAME_CHECKS = {
     "reports.part_figures": _DRAWN,
     "reports.picture_list": _DRAWN,
     "reports.report_content": "figure of the record of a trial",
+    "reports.arrangement_data": "limit by which the drawn spring is placed",
 }
 """Modules in which the id of a check is a string besides its declaration, and what it names."""
 

@@ -197,6 +197,7 @@ def _spring(design: Machinery) -> str:
 rate = {_text(units.format(spring.rate, "kN/m"))}
 preload = {_text(_round(point.preload, "N"))}                      # on the base circle
 travel_max = {_text(_mm(design.lift))}
+seat_thickness = {_text(_mm(design.frame.seat_thickness))}
 source = "chosen: {origin}"
 
 [spring.design]

@@ -20,6 +20,7 @@ from camwright.pipeline.case.cards.catalogue import SPRINGS_FILE
 from camwright.pipeline.case.case_file import parse_case
 from camwright.pipeline.case.section import SAFE_NAME
 from camwright.pipeline.checks.registry import DECLARED
+from camwright.pipeline.cycle.machine_envelope import sizes_of
 from camwright.pipeline.preview import preview_case
 from camwright.pipeline.results.check_records import to_be_confirmed
 from camwright.pipeline.results.run_folder import versions
@@ -137,7 +138,8 @@ def designed(task: DesignTask, out: Path, progress: Progress = SILENT) -> Record
     if points:
         best = points[0]
         document["points"] = _write_points(study, points)
-        document["chosen"] = _row(best) | _drawing(study, best) | {"file": out.name}
+        whole = {"envelope_mm": _envelope(study, best), "file": out.name}
+        document["chosen"] = _row(best) | _drawing(study, best) | whole
         head = _summary(study, best, points)
         write_atomic(out, _written(best, out.stem, file, head))
     else:
@@ -247,7 +249,7 @@ def _write_points(study: PointStudy, points: Sequence[Solved]) -> list[Record]:
         name = f"point_{number:02d}"
         head = f"# Point {number} of {len(points)} of the front of ripple against size.\n"
         write_atomic(study.folder / f"{name}.toml", _written(point, name, study.file, head))
-        rows.append({"file": f"{name}.toml"} | _row(point))
+        rows.append({"file": f"{name}.toml", "envelope_mm": _envelope(study, point)} | _row(point))
     return rows
 
 
@@ -259,13 +261,23 @@ def _written(point: Solved, name: str, file: str, head: str) -> str:
     return case_text(point.design, name, file, head, positions=WRITTEN)
 
 
+def _envelope(study: PointStudy, point: Solved) -> list[float]:
+    """Lengths of the whole mechanism across and along the stem and along the camshaft, mm."""
+    case = parse_case(study.text(point.design), study.folder)
+    radius, lift = (1e-3 * float(point.record[key]) for key in ("cam_radius_mm", "lift_max_mm"))
+    return [round(1e3 * length, 2) for length in sizes_of(case, radius, lift).envelope.size]
+
+
 def _summary(study: PointStudy, best: Solved, points: Sequence[Solved]) -> str:
     row, task = _row(best), study.task
+    whole = " x ".join(f"{length:.4g}" for length in _envelope(study, best))
     lines = [
         f"# Designed from {study.file}: {100 * row['removed']:.0f} % of the torque ripple removed"
         f" by closed forms,",
         f"# {best.ripple:.4g} of {task.demand.ripple:.4g} N m (std) left; "
         f"{row['size_mm']:.4g} mm from the cam's far side to the top of the roller.",
+        f"# The whole mechanism over its turn: {whole} mm across and along the stem, and along the"
+        f" camshaft.",
         "# The smallest point that passes. The front, size against ripple left:",
     ]
     lines += [f"#   {1e3 * each.size:7.1f} mm  {each.ripple:8.4g} N m" for each in points]

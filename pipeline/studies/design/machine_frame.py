@@ -93,10 +93,15 @@ class MachineFrame:
         least = 2.3 * (self.overhang + lift) - self.bush_length
         return 1e-3 * ceil(1e3 * max(least, 2.0 * self.bush_length))
 
+    @property
+    def seat_thickness(self) -> float:
+        """Moving seat of the spring: a quarter of the stem diameter."""
+        return 1e-3 * ceil(250.0 * self.stem)
+
     def stem_length(self, lift: float) -> float:
-        """From the roller's centre through guide B at zero lift."""
+        """From the roller's centre through guide B, and the seat of the spring, at zero lift."""
         reach = self.overhang + lift + self.spacing(lift) + 0.5 * self.bush_length
-        return 1e-3 * ceil(1e3 * reach + 3.0)
+        return 1e-3 * ceil(1e3 * (reach + self.seat_thickness) + 3.0)
 
     def mass(self, lift: float, spring: float) -> float:
         """Mass of all that moves with the follower, a third of a spring (kg) among it, kg."""

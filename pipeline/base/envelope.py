@@ -1,0 +1,105 @@
+"""Envelope of the mechanism over the whole turn: the box that holds every part of it.
+
+Lengths in one unit. `across` the stem in the plane of the cam, `along` the stem, and `depth` along
+the camshaft, from the middle of the cam on its axis.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import NamedTuple
+
+Ends = tuple[float, float]
+
+
+class Box(NamedTuple):
+    """Ends of a part, or of several, across and along the stem and along the camshaft."""
+
+    across: Ends
+    along: Ends
+    depth: Ends
+
+    @property
+    def size(self) -> tuple[float, float, float]:
+        """Lengths across and along the stem and along the camshaft."""
+        (left, right), (low, high), (back, front) = self
+        return right - left, high - low, front - back
+
+
+def around(boxes: Iterable[Box]) -> Box:
+    """Least box around several."""
+    ends = [tuple(zip(*sides, strict=True)) for sides in zip(*boxes, strict=True)]
+    return Box(*((min(lows), max(highs)) for lows, highs in ends))
+
+
+class Disc(NamedTuple):
+    """Part about the axis of the camshaft: place of its middle from that of the cam, width."""
+
+    place: float
+    width: float
+    diameter: float
+
+
+class Sleeve(NamedTuple):
+    """Part about the stem: lower and upper end over the reference point at maximum lift."""
+
+    low: float
+    high: float
+    diameter: float
+
+
+@dataclass(frozen=True)
+class MechanismSizes:
+    """Parts of the mechanism, as far as a case describes them.
+
+    Parameters
+    ----------
+    cam_radius, cam_width   maximum radius of the contour; width
+    axis, lowest, lift      place of the follower axis; height of roller centre or face at zero
+                            lift; maximum lift
+    follower                half of its greatest length across the stem and along the camshaft
+    stem_diameter, stem_end   height of the end over the reference point
+    sleeves                 guides, and spring with its seats over the turn
+    discs                   gear, bearings, shaft
+    """
+
+    cam_radius: float
+    cam_width: float
+    axis: float
+    lowest: float
+    lift: float
+    follower: tuple[float, float]
+    stem_diameter: float
+    stem_end: float
+    sleeves: tuple[Sleeve, ...]
+    discs: tuple[Disc, ...]
+
+    @property
+    def parts(self) -> tuple[Box, ...]:
+        """Boxes of the parts over the turn; the follower from its lowest to its highest place."""
+        highest = self.lowest + self.lift
+        half, deep = self.follower
+        about = (Disc(0.0, self.cam_width, 2.0 * self.cam_radius), *self.discs)
+        stem = Sleeve(-self.lift, self.stem_end, self.stem_diameter)
+        across = self.axis - half, self.axis + half
+        return (
+            *(self._disc(each) for each in about),
+            Box(across, (self.lowest, highest), (-deep, deep)),
+            *(self._sleeve(each, highest) for each in (stem, *self.sleeves)),
+        )
+
+    @property
+    def envelope(self) -> Box:
+        """Box that holds the mechanism over the whole turn."""
+        return around(self.parts)
+
+    @staticmethod
+    def _disc(disc: Disc) -> Box:
+        half, wide = 0.5 * disc.diameter, 0.5 * disc.width
+        return Box((-half, half), (-half, half), (disc.place - wide, disc.place + wide))
+
+    def _sleeve(self, sleeve: Sleeve, highest: float) -> Box:
+        half = 0.5 * sleeve.diameter
+        ends = highest + sleeve.low, highest + sleeve.high
+        return Box((self.axis - half, self.axis + half), ends, (-half, half))
