@@ -36,6 +36,7 @@ _BALANCED = 3e-3  # m/s, residual unbalance of the bench
 PROFILE = 8e-6  # m, tolerance of the ground contour
 SEARCHED = 72  # cam angles of a turn in the search
 WRITTEN = 144  # in a case file, for the error bars of a run
+_AROUND = 0.01  # m of room and wall between parts and outside of the housing
 _TOOTH_LOSS = 0.01  # of the torque at the gear
 _BEARING_FRICTION = 1.5e-3  # deep-groove ball bearings: moment over force and half the bore
 _STEPS = (0.5, 0.25, 0.2, 0.1)  # deg, of the contour table
@@ -97,7 +98,8 @@ class Machinery:
         """Heat to still air from a housing about cam, gear and follower, W/K."""
         across = 2.0 * max(self.cam_radius, self.frame.gear_radius)
         height = across + self.frame.stem_length(self.lift)
-        return STILL_AIR * housing_area(across, height, self.frame.housing_width)
+        sides = (across, height, self.frame.housing_width)
+        return STILL_AIR * housing_area(*(each + 2.0 * _AROUND for each in sides))
 
     @property
     def other_heat(self) -> float:

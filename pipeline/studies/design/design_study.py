@@ -25,6 +25,7 @@ from camwright.pipeline.results.check_records import to_be_confirmed
 from camwright.pipeline.results.run_folder import versions
 from camwright.pipeline.studies.design.candidate_search import Candidate, candidates
 from camwright.pipeline.studies.design.design_case import WRITTEN, case_text
+from camwright.pipeline.studies.design.part_exchange import Exchanged, exchanged
 from camwright.pipeline.studies.design.relaxation_search import relaxations
 from camwright.pipeline.studies.design.synthesised_points import (
     PointStudy,
@@ -113,8 +114,15 @@ def designed(task: DesignTask, out: Path, progress: Progress = SILENT) -> Record
         progress.stage("solve the front")
         points, failing = solved_front(study, drafts(study, screened, workers), workers, progress)
         changes: list[Record] = []
-        if not points:
-            progress.stage("smallest relaxation")
+        smaller: Exchanged | None = None
+        if points:
+            head = _summary(study, points, None)
+            write_atomic(out, _written(points[0], out.stem, file, head))  # a first answer
+            progress.stage("exchange parts")
+            smaller = exchanged(study, points[0], workers, progress)
+            points = [smaller.point, *points[1:]]
+        else:
+            progress.stage("relaxations")
             nearest = failing[0] if failing else None
             changes = relaxations(study, nearest, out, workers, progress)
     document: Record = {
@@ -134,11 +142,15 @@ def designed(task: DesignTask, out: Path, progress: Progress = SILENT) -> Record
         "chosen": None,
         "conflict": None,
     }
-    if points:
+    if smaller is not None:
         best = points[0]
         document["points"] = _write_points(study, points)
-        document["chosen"] = _row(best) | _drawing(study, best) | {"file": out.name}
-        head = _summary(study, best, points)
+        document["chosen"] = (
+            _row(best)
+            | _drawing(study, best)
+            | {"file": out.name, "exchanges": smaller.as_record()}
+        )
+        head = _summary(study, points, smaller)
         write_atomic(out, _written(best, out.stem, file, head))
     else:
         limits = _limits(task, screened, failing)
@@ -259,14 +271,17 @@ def _written(point: Solved, name: str, file: str, head: str) -> str:
     return case_text(point.design, name, file, head, positions=WRITTEN)
 
 
-def _summary(study: PointStudy, best: Solved, points: Sequence[Solved]) -> str:
-    row, task = _row(best), study.task
+def _summary(study: PointStudy, points: Sequence[Solved], smaller: Exchanged | None) -> str:
+    best, task = points[0], study.task
+    row = _row(best)
+    shown = "its parts are yet to be exchanged" if smaller is None else smaller.sentence
     lines = [
         f"# Designed from {study.file}: {100 * row['removed']:.0f} % of the torque ripple removed"
         f" by closed forms,",
         f"# {best.ripple:.4g} of {task.demand.ripple:.4g} N m (std) left; "
         f"{row['size_mm']:.4g} mm from the cam's far side to the top of the roller.",
-        "# The smallest point that passes. The front, size against ripple left:",
+        f"# The smallest of the designs that were solved and pass; {shown}.",
+        "# The front of those solved, size against ripple left:",
     ]
     lines += [f"#   {1e3 * each.size:7.1f} mm  {each.ripple:8.4g} N m" for each in points]
     return "\n".join(lines) + "\n"
