@@ -280,7 +280,8 @@ def _summary(study: PointStudy, points: Sequence[Solved], smaller: Exchanged | N
         f" by closed forms,",
         f"# {best.ripple:.4g} of {task.demand.ripple:.4g} N m (std) left; "
         f"{row['size_mm']:.4g} mm from the cam's far side to the top of the roller.",
-        f"# The smallest of the designs that were solved and pass; {shown}.",
+        "# The smallest of the designs that were solved and pass;",
+        f"# {shown}.",
         "# The front of those solved, size against ripple left:",
     ]
     lines += [f"#   {1e3 * each.size:7.1f} mm  {each.ripple:8.4g} N m" for each in points]
