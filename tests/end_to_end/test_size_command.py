@@ -389,6 +389,21 @@ def test_two_per_cent_less_of_a_hundred_springs_does_not_hold(seed: int) -> None
 
 
 @pytest.mark.slow
+@pytest.mark.parametrize("seed", [0, 4, 9])
+def test_the_sized_spring_passes_its_own_checks_at_the_worst_tolerances(seed: int) -> None:
+    opened = open_spring(seed)
+    sizing = sized(opened)
+    assert sizing.verdict == "pass"
+    key = opened.gaps[-1]
+    stated = {"spring.rate": sizing.spring.rate, "spring.preload": sizing.spring.preload}
+    assert holds(sizing.case, stated)
+    held = {"jump", "jump_speed", "contact_at_overspeed", "elastic_contact"}
+    assert {each.status for each in sizing.checks if each.id in held} == {"pass"}
+    if "jump" in sizing.sources[key]:
+        assert not holds(sizing.case, stated | {key: 0.98 * stated[key]})
+
+
+@pytest.mark.slow
 def test_the_preload_is_the_least_that_holds_an_elastic_stem() -> None:
     sizing = cw.size(STRANGERS / "size_spring.toml", ("spring.rate", "spring.preload"))
     assert sizing.verdict == "pass" and "elastic stem" in sizing.sources["spring.preload"]
