@@ -71,6 +71,33 @@ def corners_of(case: Case) -> tuple[Corner, ...]:
     return (*alone, *sample)
 
 
+def spring_corners(case: Case) -> tuple[Corner, ...]:
+    """Corners of all tolerances at once at which a spring holds its follower the least, and most.
+
+    Weakest spring and lowest contour with each end of the masses and of the friction; strongest
+    spring and highest contour.
+    """
+    ranges = _ranges(case)
+
+    def at(ends: Mapping[str, int], name: str) -> Corner:
+        values = {
+            field: bounds[ends[label]]
+            for label, tolerance in ranges.items()
+            if label in ends
+            for field, bounds in tolerance.items()
+        }
+        return Corner(name, **values)
+
+    weak = {"spring rate": 0, "preload": 0, "line profile": 0}
+    corners = [
+        at(weak | {"mass": mass, "friction": friction}, f"weakest spring {2 * mass + friction + 1}")
+        for mass in (0, 1)
+        for friction in (0, 1)
+    ]
+    strong = at(dict.fromkeys(weak, 1), "strongest spring")
+    return tuple(dict.fromkeys((*corners, strong)))
+
+
 def outcomes(
     case: Case,
     torques: Mapping[str, Torque],

@@ -75,7 +75,7 @@ def check(
         bool,
         typer.Option(
             "--remedies",
-            help="Seek the smallest change of a case that cures each failed check; of a run those "
+            help="Seek a small change of a case that cures each failed check; of a run those "
             "recorded are printed in any event.",
         ),
     ] = False,

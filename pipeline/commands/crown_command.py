@@ -1,4 +1,4 @@
-"""Command `crown`: the least crown that keeps the axial pressure of a case within a ratio."""
+"""Command `crown`: the crown that keeps the axial pressure of a case within a ratio."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ def crown(
     ] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print the record as JSON.")] = False,
 ) -> int:
-    """Find the least crown that keeps the axial pressure within a ratio.
+    """Find the crown in the middle of those that keep the axial pressure within a ratio.
 
     Over all load cases and cam angles, aligned and at the greatest tilt of each. The crown is
     printed as TOML to be pasted into CASE, with its cost at the centre and in life, and with the

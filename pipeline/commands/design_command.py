@@ -53,12 +53,13 @@ def design(
     """Design a cam with all its parts for a torque.
 
     Spring, preload, base circle, roller, guides, shaft and key from the catalogues, the lift by
-    the constrained synthesis. Writes the smallest case that passes by closed forms, the front of
-    ripple against size in CASE_design, and a picture of the choice. Where none passes, the limits
-    in conflict and the smallest relaxation. What is not given is assumed, and marked so. Exit
-    code 0: a case passes, 1: none does, 2: error; with --run that of the verdict. Solved points are
-    cached in CASE_design/solved; run the same command again to resume. The table, and cards.toml
-    and springs.toml beside it, are copied beside the case.
+    the constrained synthesis. Writes the smallest of the solved cases that pass by closed forms,
+    its parts exchanged for the next smaller of their catalogues until none passes, the front of
+    ripple against size in CASE_design, and a picture of the choice. Where the search finds none,
+    the limits in conflict and relaxations that pass. What is not given is assumed, and marked so.
+    Exit code 0: a case passes, 1: none found, 2: error; with --run that of the verdict. Solved
+    points are cached in CASE_design/solved; run the same command again to resume. The table, and
+    cards.toml and springs.toml beside it, are copied beside the case.
     """
     from camwright.pipeline.studies.design.design_study import PICTURE, designed, points_folder
     from camwright.pipeline.studies.design.torque_task import task_of
@@ -104,7 +105,8 @@ def _show(document: dict[str, Any], out: Path) -> None:
     if chosen is not None:
         stdout.print(
             f"chosen: {out}: {chosen['size_mm']:.4g} mm, {100 * chosen['removed']:.0f} % removed; "
-            f"passes by closed forms\n"
+            f"passes by closed forms, the smallest of those solved that do\n"
+            f"{_exchanges(chosen['exchanges'])}\n"
             f"whole mechanism, across and along the stem, along the camshaft: {_whole(chosen)} mm\n"
             f"options not given, so assumed: {assumed}; values to be confirmed in all: "
             f"{len(chosen['to_be_confirmed'])}, listed by camwright check after the run\n"
@@ -113,24 +115,36 @@ def _show(document: dict[str, Any], out: Path) -> None:
         )
         return
     conflict = document["conflict"]
-    stdout.print(f"no design keeps together: {'; '.join(conflict['limits'])}", markup=False)
+    stdout.print(
+        f"the search keeps no design within: {'; '.join(conflict['limits'])}", markup=False
+    )
     for each in conflict["relaxations"]:
-        fails = each["fails_at"]
-        least = "an upper bound" if fails is None else f"none passes with {fails}"
         stdout.print(
-            f"  passes with {each['option']} {each['to']}, not {each['from']}; {least}:",
+            f"  passes with {each['option']} {each['to']}, not {each['from']}; with "
+            f"{each['fails_at']} the search finds none:",
             markup=False,
         )
         stdout.print(f"    {each['command']}", markup=False, soft_wrap=True)
     if conflict["relaxations"]:
         stdout.print(
-            "  each: one option alone; the first is the smallest by the ratio of its values within "
-            "2 %: no other option passes with that ratio; with less than an upper bound a design "
-            "may pass",
+            "  each: one option alone, half of whose change, by the ratio of its values, does not "
+            "pass in the same search; of the first one no more than 2 % less does",
             markup=False,
         )
     else:
-        stdout.print("  no relaxation of one option passes within its range", markup=False)
+        stdout.print(
+            "  the search finds none with a relaxation of one option within its range", markup=False
+        )
+
+
+def _exchanges(record: dict[str, Any]) -> str:
+    """What the exchange of the parts has shown."""
+    lines = [
+        f"  exchanged: {each['part']} {each['from']} for {each['to']}" for each in record["kept"]
+    ]
+    lines.append(f"{record['claim']}{':' if record['failing'] else ''}")
+    lines += [f"  {each['part']} {each['to']}: {each['why']}" for each in record["failing"]]
+    return "\n".join(lines)
 
 
 def _run(case: Path) -> int:

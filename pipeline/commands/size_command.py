@@ -46,7 +46,7 @@ def size(
     ] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print the record as JSON.")] = False,
 ) -> int:
-    """Size a cam: smallest base radius, best offset, roller, face and spring within the limits.
+    """Size a cam: smallest base radius, its offset, roller, face and spring within the limits.
 
     CASE may leave out cam.prime_radius, cam.offset, roller.radius, follower.face.width, spring.rate
     and spring.preload; those left out are found, the others kept. Exit code 0: the checks that they

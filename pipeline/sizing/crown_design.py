@@ -1,4 +1,4 @@
-"""Least crown of cam or follower of a case: loads and tilts of its cycle, costs, sensitivity."""
+"""Crown of cam or follower of a case: loads and tilts of its cycle, costs, sensitivity."""
 
 from __future__ import annotations
 
@@ -44,6 +44,7 @@ from camwright.pipeline.sizing.least_crown import (
     LeastCrown,
     families,
     least_crown,
+    middle_crown,
 )
 from camwright.pipeline.sizing.solved_lines import SignedRange, SolvedLines, signed_range
 
@@ -54,6 +55,7 @@ if TYPE_CHECKING:
 RATIO, TOLERANCE = 1.1, 2e-6
 """Greatest signed pressure over plane strain; deviation of the drop at the ends, m."""
 DROP_TABLE, CASE_TEXT = "crown_drop.csv", "crown.toml"
+_MIDDLE = "Crown within the ratio"
 # Factors of the greatest moment; rows of the drop table.
 _TILTS, _ROWS = (0.0, 0.5, 1.0, 1.5, 2.0), 21
 
@@ -90,7 +92,7 @@ class LifeCost:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class CrownDesign(Displayed):
-    """Least crown of one body of a case.
+    """Crown of one body of a case, in the middle of those within a ratio.
 
     Parameters
     ----------
@@ -102,7 +104,7 @@ class CrownDesign(Displayed):
     machine : Machine      of the first load case
     load_cases : tuple     names by the number in the states
     theta : array (n,)     cam angles of the states, rad
-    least : LeastCrown
+    chosen : LeastCrown    in the middle of those within the ratio
     tilts : tuple          factor of the moments, greatest ratio
     deviations : tuple     deviation of the drop at the ends, m, greatest ratio
     """
@@ -115,7 +117,7 @@ class CrownDesign(Displayed):
     machine: Machine
     load_cases: tuple[str, ...]
     theta: Array
-    least: LeastCrown
+    chosen: LeastCrown
     tilts: tuple[tuple[float, float], ...]
     deviations: tuple[tuple[float, float], ...]
 
@@ -126,20 +128,20 @@ class CrownDesign(Displayed):
             "case": self.case.name,
             "on": self.on,
             "kind": self.kind,
-            "drop": shown(self.least.drop, "um"),
-            "ratio": self.least.ratio,
-            "straight": float(self.least.straight.max()),
+            "drop": shown(self.chosen.drop, "um"),
+            "ratio": self.chosen.ratio,
+            "straight": float(self.chosen.straight.max()),
         }
 
     @property
     def governing(self) -> int:
         """Row of the greatest ratio with the crown."""
-        return int(self.least.ratios.argmax())
+        return int(self.chosen.ratios.argmax())
 
     @property
     def moment(self) -> float:
         """Greatest moment at the governing row with the crown, N m."""
-        solved = self._solved(self.least.crown, self.governing)
+        solved = self._solved(self.chosen.crown, self.governing)
         return max(float(each.moment[0]) for each in solved)
 
     def line(self, crown: Crown, row: int, *, tilted: bool) -> AxialLine:
@@ -147,10 +149,10 @@ class CrownDesign(Displayed):
 
         Aligned, or under the greatest moment.
         """
-        states, lines = self.least.problem.states, []
+        states, lines = self.chosen.problem.states, []
         loads = states.curvature[[row]], states.force[[row]]
         for pair, solved in zip(
-            self.least.problem.pairs(crown), self._solved(crown, row), strict=True
+            self.chosen.problem.pairs(crown), self._solved(crown, row), strict=True
         ):
             moment = solved.moment if tilted else 0.0
             edges, line = SolvedLines(pair, self._mean_length).axial_pressure(*loads, moment)
@@ -162,7 +164,7 @@ class CrownDesign(Displayed):
         return self.machine.limits[END_MEAN_LENGTH]
 
     def _solved(self, crown: Crown, row: int) -> list[SignedRange]:
-        problem = self.least.problem
+        problem = self.chosen.problem
         loads = problem.states.loads(np.array([row]), problem.compliance)
         return [
             signed_range(SolvedLines(pair, self._mean_length), loads)
@@ -172,16 +174,17 @@ class CrownDesign(Displayed):
     @cached_property
     def centres(self) -> tuple[float, float]:
         """Factor at the centre without and with the crown, aligned at the greatest p0."""
-        worst = self.least.problem.states.worst
+        worst = self.chosen.problem.states.worst
         straight, crowned = (
-            self.line(crown, worst, tilted=False).centre for crown in (Straight(), self.least.crown)
+            self.line(crown, worst, tilted=False).centre
+            for crown in (Straight(), self.chosen.crown)
         )
         return straight, crowned
 
     @property
     def lives(self) -> tuple[LifeCost, ...]:
         """Cost in life of the bodies whose card has a line of endurance."""
-        straight, crowned = float(self.least.straight.max()), self.least.ratio
+        straight, crowned = float(self.chosen.straight.max()), self.chosen.ratio
         costs = []
         for body, card in self.machine.bodies.items():
             slope = card.endurance(sliding=self.machine.follower.slides).slope
@@ -194,14 +197,14 @@ class CrownDesign(Displayed):
     @property
     def shape(self) -> AxialCrown | None:
         """The crown as the case states it; None: straight."""
-        crown = self.least.crown
+        crown = self.chosen.crown
         if isinstance(crown, Straight):
             return None
         if isinstance(crown, CircularCrown):
             return AxialCrown(kind="circular", radius=crown.radius)
         if isinstance(crown, TabulatedCrown):
             return AxialCrown(kind="table", file=DROP_TABLE)
-        return AxialCrown(kind=self.kind, line_load=self.least.load)
+        return AxialCrown(kind=self.kind, line_load=self.chosen.load)
 
     @property
     def text(self) -> str:
@@ -220,9 +223,9 @@ class CrownDesign(Displayed):
         tables: Tables = {}
         enter(tables, key, dict(entries))
         if self._stated is None:
-            head = "# Least crown. Paste the block at the end of the case file.\n"
+            head = f"# {_MIDDLE}. Paste the block at the end of the case file.\n"
             return head + tomli_w.dumps({ADDED: [tables]})
-        return f"# Least crown. It replaces [{key}] of the case file.\n" + tomli_w.dumps(tables)
+        return f"# {_MIDDLE}. It replaces [{key}] of the case file.\n" + tomli_w.dumps(tables)
 
     @property
     def _stated(self) -> AxialCrown | None:
@@ -232,17 +235,22 @@ class CrownDesign(Displayed):
     @property
     def heaviest(self) -> Crown | None:
         """Heaviest crown of the family within the ratio; None beyond those tried."""
-        load = self.least.heaviest
-        return self.least.family.crown(load) if np.isfinite(load) else None
+        load = self.chosen.heaviest
+        return self.chosen.family.crown(load) if np.isfinite(load) else None
 
     def columns(self) -> dict[Column, Array]:
-        """Drop table: y from the middle, drop, and that of the heaviest crown within the ratio."""
-        crown = self.least.crown
-        family = self.least.family
+        """Drop table: y from the middle, drop, and those at the ends of the range."""
+        crown = self.chosen.crown
+        family = self.chosen.family
         y = np.append(0.5 * family.length * np.linspace(0.0, 1.0, _ROWS)[:-1], family.gauge)
         if isinstance(crown, TabulatedCrown):
             y = crown.y
-        columns = {Column("y", "mm"): y, Column("drop", "um"): crown.drop(y)}
+        lightest = family.crown(self.chosen.lightest)
+        columns = {
+            Column("y", "mm"): y,
+            Column("drop", "um"): crown.drop(y),
+            Column("drop_min", "um"): lightest.drop(y),
+        }
         if self.heaviest is not None:
             columns[Column("drop_max", "um")] = self.heaviest.drop(y)
         return columns
@@ -263,7 +271,7 @@ class CrownDesign(Displayed):
         """Axial pressure at the governing angle, and drop over y."""
         pressure, drop = panels_of(2)
         row = self.governing
-        for label, crown in (("straight", Straight()), ("crowned", self.least.crown)):
+        for label, crown in (("straight", Straight()), ("crowned", self.chosen.crown)):
             line = self.line(crown, row, tilted=True)
             pressure.plot(1e3 * line.y, line.factor, label=label)
         pressure.axhline(self.limit, color="tab:red", linewidth=0.9)
@@ -285,7 +293,7 @@ def crown(
     tolerance: float = TOLERANCE,
     progress: Progress = SILENT,
 ) -> CrownDesign:
-    """Least crown of a case that keeps the axial pressure within a ratio.
+    """Crown of a case that keeps the axial pressure within a ratio, in the middle of those that do.
 
     The ratio is the signed axial pressure over the greatest of plane strain in the same load case,
     at every angle, load case and both ends of the range of tilt of its preview. A crown that the
@@ -320,7 +328,7 @@ def crown(
         factor=_factor_of(machine.limits[END_MEAN_LENGTH]),
         compliance=turn_of_line(cycles[0]).tilt_compliance,
     )
-    least = least_crown(problem, ratio)
+    middle = middle_crown(least_crown(problem, ratio), ratio)
     return CrownDesign(
         case=case,
         on="cam" if on == "cam" else machine.follower.table,
@@ -330,9 +338,11 @@ def crown(
         machine=machine,
         load_cases=tuple(each.load_case for each in cycles),
         theta=theta,
-        least=least,
-        tilts=tuple((factor, least.at_tilt(factor)) for factor in _TILTS),
-        deviations=tuple((step, least.at_deviation(step)) for step in (-tolerance, 0.0, tolerance)),
+        chosen=middle,
+        tilts=tuple((factor, middle.at_tilt(factor)) for factor in _TILTS),
+        deviations=tuple(
+            (step, middle.at_deviation(step)) for step in (-tolerance, 0.0, tolerance)
+        ),
     )
 
 

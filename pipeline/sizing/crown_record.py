@@ -1,4 +1,4 @@
-"""Record of the least crown of a case, and its text."""
+"""Record of the crown of a case, and its text."""
 
 from __future__ import annotations
 
@@ -21,22 +21,23 @@ _WORDS = {
 
 
 def crown_record(design: CrownDesign) -> dict[str, Json]:
-    """Record of a least crown; ratios over the greatest plane-strain pressure of the load case.
+    """Record of a crown; ratios over the greatest plane-strain pressure of the load case.
 
-    ``crown``: as in the case; ``heaviest``: of the same kind within the ratio, None beyond those
-    tried; ``governing``: state of the greatest ratio; ``centre``: pressure over plane strain at
-    the greatest load, aligned; ``life``: load cycles over those of plane strain; ``lines``: axial
-    pressure at the governing state; ``drop_table``: rows of the workshop.
+    ``crown``: as in the case; ``lightest``, ``heaviest``: of the same kind within the ratio, None
+    beyond those tried; ``governing``: state of the greatest ratio; ``centre``: pressure over plane
+    strain at the greatest load, aligned; ``life``: load cycles over those of plane strain;
+    ``lines``: axial pressure at the governing state; ``drop_table``: rows of the workshop.
     """
-    least, centre, rows = design.least, design.centres, table(design.columns())
+    chosen, centre, rows = design.chosen, design.centres, table(design.columns())
     return {
         "case": design.case.name,
         "on": design.on,
         "kind": design.kind,
         "ratio_limit": design.limit,
-        "ratio": least.ratio,
-        "ratio_straight": float(least.straight.max()),
+        "ratio": chosen.ratio,
+        "ratio_straight": float(chosen.straight.max()),
         "crown": _shape_record(design),
+        "lightest": _drop_record(design, design.chosen.lightest),
         "heaviest": _heaviest_record(design),
         "governing": _governing_record(design),
         "centre": {"straight": centre[0], "crowned": centre[1]},
@@ -63,7 +64,7 @@ def crown_record(design: CrownDesign) -> dict[str, Json]:
 
 def crown_lines(design: CrownDesign) -> Iterator[str]:
     """Crown, ratios, costs and sensitivity, a line each."""
-    least, governing = design.least, _governing_record(design)
+    chosen, governing = design.chosen, _governing_record(design)
     shape, (before, after) = design.shape, design.centres
     if shape is None:
         yield f"{design.on}: no crown is needed"
@@ -74,12 +75,12 @@ def crown_lines(design: CrownDesign) -> Iterator[str]:
         if shape.radius is not None:
             words.append(f"radius {shown(shape.radius, 'mm')}")
         if design.kind == "table":
-            straight = least.family.straight * least.family.length
+            straight = chosen.family.straight * chosen.family.length
             words.append(f"straight over {shown(straight, 'mm')}")
-        yield f"{', '.join(words)}, drop {shown(least.drop, 'um', 3)} at the ends"
+        yield f"{', '.join(words)}, drop {shown(chosen.drop, 'um', 3)} at the ends"
     yield (
-        f"greatest pressure {least.ratio:.4f} of plane strain, at most {design.limit:g};"
-        f" {float(least.straight.max()):.4f} without a crown"
+        f"greatest pressure {chosen.ratio:.4f} of plane strain, at most {design.limit:g};"
+        f" {float(chosen.straight.max()):.4f} without a crown"
     )
     yield (
         f"governs: {governing['load_case']}, cam angle {governing['cam_angle_deg']:.4g} deg,"
@@ -93,9 +94,8 @@ def crown_lines(design: CrownDesign) -> Iterator[str]:
         )
     if not design.lives:
         yield "life: no material has a line of endurance"
-    if design.heaviest is not None:
-        most = least.family.drop(least.heaviest)
-        yield f"heaviest crown of the same ratio: drop {shown(most, 'um', 3)} at the ends"
+    if shape is not None:
+        yield _range_words(design)
     tilts = ", ".join(f"{value:.4f} at {factor:g}" for factor, value in design.tilts)
     yield f"greatest pressure by tilt, over the greatest moment of each angle: {tilts}"
     made = ", ".join(
@@ -105,34 +105,53 @@ def crown_lines(design: CrownDesign) -> Iterator[str]:
     yield f"greatest pressure by deviation of the drop at the ends: {made}"
 
 
+def _range_words(design: CrownDesign) -> str:
+    """Range of the drops within the ratio, and whether the tolerance is within it."""
+    chosen = design.chosen
+    low = shown(chosen.family.drop(chosen.lightest), "um", 3)
+    high = "more than those tried"
+    if design.heaviest is not None:
+        high = shown(chosen.family.drop(chosen.heaviest), "um", 3)
+    kept = all(ratio <= design.limit for _, ratio in design.deviations)
+    verb = "keep" if kept else "do not keep"
+    place = "its least" if chosen.load == chosen.lightest else "in its middle"
+    return (
+        f"range of the crowns within the ratio: drop {low} to {high} at the ends, this one {place};"
+        f" deviations of {shown(design.tolerance, 'um')} {verb} it"
+    )
+
+
 def _shape_record(design: CrownDesign) -> Json:
     """The crown in the units of its keys; None: straight."""
-    least, shape = design.least, design.shape
+    chosen, shape = design.chosen, design.shape
     if shape is None:
         return None
-    record: dict[str, Json] = {"kind": shape.kind, "drop_at_ends_um": in_unit(least.drop, "um")}
+    record: dict[str, Json] = {"kind": shape.kind, "drop_at_ends_um": in_unit(chosen.drop, "um")}
     if shape.line_load is not None:
         record["line_load_N_per_mm"] = in_unit(shape.line_load, "N/mm")
     if shape.radius is not None:
         record["radius_mm"] = in_unit(shape.radius, "mm")
     if shape.kind == "table":
-        straight = least.family.straight * least.family.length
+        straight = chosen.family.straight * chosen.family.length
         record["straight_length_mm"] = round(in_unit(straight, "mm"), 9)
-    return record | {"length_mm": round(in_unit(least.family.length, "mm"), 9)}
+    return record | {"length_mm": round(in_unit(chosen.family.length, "mm"), 9)}
 
 
 def _heaviest_record(design: CrownDesign) -> Json:
     if design.heaviest is None:
         return None
-    load = design.least.heaviest
+    return _drop_record(design, design.chosen.heaviest)
+
+
+def _drop_record(design: CrownDesign, load: float) -> dict[str, Json]:
     return {
         "line_load_N_per_mm": in_unit(load, "N/mm"),
-        "drop_at_ends_um": in_unit(design.least.family.drop(load), "um"),
+        "drop_at_ends_um": in_unit(design.chosen.family.drop(load), "um"),
     }
 
 
 def _governing_record(design: CrownDesign) -> dict[str, Json]:
-    states, row = design.least.problem.states, design.governing
+    states, row = design.chosen.problem.states, design.governing
     return {
         "load_case": design.load_cases[int(states.load_case[row])],
         "cam_angle_deg": in_unit(float(design.theta[row]), "deg"),
@@ -144,7 +163,7 @@ def _governing_record(design: CrownDesign) -> dict[str, Json]:
 
 def _lines_record(design: CrownDesign) -> list[Json]:
     """Axial pressure over plane strain at the governing state, aligned and under its moment."""
-    row, crowned = design.governing, design.least.crown
+    row, crowned = design.governing, design.chosen.crown
     shapes: tuple[tuple[str, Crown], ...] = (("straight", Straight()), ("crowned", crowned))
     drawn = [
         (name, tilted, design.line(shape, row, tilted=tilted))

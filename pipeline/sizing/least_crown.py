@@ -2,13 +2,14 @@
 
 A crown relieves the ends and loads the middle: with a heavier crown the greatest pressure falls as
 long as the ends govern, and rises as soon as the middle does. The crowns within a ratio thus lie
-between two design loads, about that of the lowest pressure; the least crown is the lighter one.
+between two design loads, about that of the lowest pressure; the least crown is the lighter one. At
+either end the ratio is used up, and a deviation exceeds it: a drawing states the middle.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal, Protocol, get_args
 
 import numpy as np
@@ -258,9 +259,10 @@ class CrownProblem:
 
 @dataclass(frozen=True, eq=False)
 class LeastCrown:
-    """Least crown of a problem within a ratio.
+    """Crown of a problem within a ratio: the least one, or that in the middle of the range.
 
     load : float       design load, N/m; 0: the straight contact keeps the ratio
+    lightest : float   least design load that keeps it, N/m
     heaviest : float   greatest design load that keeps it, N/m; infinite beyond those tried
     ratios : array     (count,) of all states with the crown
     straight : array   (count,) of all states without it
@@ -270,6 +272,7 @@ class LeastCrown:
     problem: CrownProblem
     family: CrownFamily
     load: float
+    lightest: float
     heaviest: float
     ratios: Array
     straight: Array
@@ -325,6 +328,37 @@ def least_crown(problem: CrownProblem, ratio: float) -> LeastCrown:
     raise InputError("ratio", ratio, f">= {reached:.4f}, the least of kind {kind}: by {by}")
 
 
+def middle_crown(least: LeastCrown, ratio: float) -> LeastCrown:
+    """The crown whose drop is in the middle of those within a ratio.
+
+    The least where none is needed, or the range is no wider than the search is precise.
+
+    Beyond the heaviest one tried the range counts as ended.
+    """
+    if least.load == 0:
+        return least
+    problem, family = least.problem, least.family
+    low, high = least.load, least.heaviest
+    if not np.isfinite(high):
+        high = max(low, _ladder(problem, family)[-1])
+    wanted = 0.5 * (family.drop(low) + family.drop(high))
+    while high - low > _PRECISION * high:
+        middle = 0.5 * (low + high)
+        low, high = (low, middle) if family.drop(middle) > wanted else (middle, high)
+    load = _rounded(high, np.ceil)
+    ratios = problem.ratios(family.crown(load))
+    if not ratios.max() <= ratio:
+        return least
+    rows = np.union1d(least.rows, np.argsort(-ratios)[:_TOP])
+    return replace(least, load=load, ratios=ratios, rows=rows)
+
+
+def _ladder(problem: CrownProblem, family: CrownFamily) -> list[float]:
+    """Design loads tried first, N/m."""
+    scale = float(problem.states.force[problem.states.worst]) / family.length
+    return [0.0, *(_rounded(scale * 2.0**k, np.ceil) for k in range(_LIGHTEST, _HEAVIEST + 1))]
+
+
 def _of_family(
     problem: CrownProblem, family: CrownFamily, ratio: float, straight: Array
 ) -> LeastCrown:
@@ -341,7 +375,7 @@ def _of_family(
         if ratios[worst] <= max(ratio, (1.0 + _NEIGHBOUR) * search.at(load)) or worst in rows:
             top = [np.argsort(-each)[:_TOP] for each in (ratios, straight)]
             kept = np.unique(np.concatenate([rows, *top]))
-            return LeastCrown(problem, family, load, heaviest, ratios, straight, kept)
+            return LeastCrown(problem, family, load, load, heaviest, ratios, straight, kept)
         rows = np.union1d(rows, _greatest_of_each(problem.states, ratios))
         aim = (1.0 - _NEIGHBOUR) * ratio
 
@@ -363,9 +397,7 @@ class _CrownSearch:
 
     def __init__(self, problem: CrownProblem, family: CrownFamily, rows: IntArray) -> None:
         self._problem, self._family, self._rows = problem, family, rows
-        scale = float(problem.states.force[problem.states.worst]) / family.length
-        steps = range(_LIGHTEST, _HEAVIEST + 1)
-        self._ladder = [0.0, *(_rounded(scale * 2.0**k, np.ceil) for k in steps)]
+        self._ladder = _ladder(problem, family)
         self._values: dict[float, float] = {}
 
     def at(self, load: float) -> float:

@@ -60,7 +60,7 @@ def _roller_panels(shapes: RollerShapes, shape: Shape) -> list[dict[str, Json]]:
         angles.append(
             curve("no offset", some, lambda p: cam.extremes(p).pressure_angle.value, "deg")
         )
-    angles.append(curve("best offset of each radius", some, best, "deg", dashed=True))
+    angles.append(curve("balanced offset of each radius", some, best, "deg", dashed=True))
     radius = [curve("", primes, lambda prime: sized[prime].convex_radius.value, "mm")]
     least = in_unit(shapes.limits(shape.roller_radius).convex_radius, "mm")
     return [

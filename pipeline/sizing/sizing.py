@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -48,12 +48,14 @@ from camwright.pipeline.checks.jump_and_jamming import (
     jump_speed,
 )
 from camwright.pipeline.checks.manufacture import cam_radius
+from camwright.pipeline.checks.registry import TOLERANCED
 from camwright.pipeline.checks.spring_strength import (
     spring_coil_gap,
     spring_rate,
     spring_solid,
     spring_surge,
 )
+from camwright.pipeline.checks.tolerance_corners import governed, outcomes, spring_corners
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.results.trial import Trial
 from camwright.pipeline.sizing.open_case import (
@@ -76,7 +78,14 @@ from camwright.pipeline.sizing.shapes import (
     values_of,
 )
 from camwright.pipeline.sizing.size_chart import chart_record
-from camwright.pipeline.sizing.spring_choice import ChosenSpring, more_preload, spring_of, stiffer
+from camwright.pipeline.sizing.spring_choice import (
+    BESIDE,
+    NO_JUMP,
+    ChosenSpring,
+    more_preload,
+    spring_of,
+    stiffer,
+)
 from camwright.pipeline.smoothing.required_lift import cam_lift
 from camwright.pipeline.solver import solve
 from camwright.pipeline.torque.torque import Torque
@@ -111,9 +120,10 @@ _MARGIN = 1.001
 """The ratio of preview and screening changes slightly with the radius."""
 _STIFFER, _LARGER, _TRIES = 1.1, 1.01, 8
 """Factors of rate and of radius by which a failing preview is repeated; how often."""
-_FIRMER, _DOUBLINGS, _BRACKET = 1.1, 5, 1.01
-"""First factor of the preload or rate of a follower that is not held, its squares tried up to
-_FIRMER**(2**(_DOUBLINGS - 1)), 4.6; ratio of passing to failing value at which the search ends."""
+_PROVEN, _FIRMER, _DOUBLINGS, _BRACKET = 1.005, 1.1, 5, 1.01
+"""First factor of the preload or rate of a follower that is not held, for the error bars of a
+closed form at its limit; the next one, its squares tried up to _FIRMER**(2**(_DOUBLINGS - 1)), 4.6;
+ratio of passing to failing value at which the search ends."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -234,7 +244,8 @@ def sized(opened: OpenCase, *, least_radius: float = 0.0, progress: Progress = S
 
     The geometry gives the smallest cam of pressure angle, curvature, tool and wall. It grows until
     the closed-form checks of contact pressure and jamming pass; the preload grows until contact
-    holds with friction, surge and elastic stem. The complete case is judged by a preview.
+    holds with friction, surge and elastic stem, with all tolerances at their worst ends at once.
+    The complete case is judged by a preview at its tolerance corners.
 
     Raises
     ------
@@ -317,7 +328,14 @@ class _SizeSearch:
         return PRELOAD in self.opened.gaps or self._rate_is_open
 
     def _spring(self, shape: Shape, stiff: ChosenSpring | None = None) -> ChosenSpring:
-        return spring_of(self.opened.case, self.opened.gaps, self.shapes.parts(shape), stiff)
+        """Spring of the closed forms, above their limit by the error bars of the checks."""
+        gaps = self.opened.gaps
+        spring = spring_of(self.opened.case, gaps, self.shapes.parts(shape), stiff)
+        if PRELOAD in gaps and spring.preload_by == NO_JUMP:
+            return more_preload(spring, _PROVEN, NO_JUMP)
+        if spring.rate_by == BESIDE:
+            return stiffer(spring, _PROVEN, BESIDE)
+        return spring
 
     def _stiffened(self, exact: Shape, first: _Tried) -> _Tried:
         """The first of stiffer springs whose winding passes; the given one if none does."""
@@ -336,7 +354,9 @@ class _SizeSearch:
     def _firm(
         self, exact: Shape, start: ChosenSpring, reason: str, raised: Mapping[str, float]
     ) -> _Tried | None:
-        """The least spring whose preview holds the follower, within 1 %; None if none tried does.
+        """A spring whose preview holds the follower, 1 % above one that does not.
+
+        None: none of those tried does.
 
         The preload grows where it is open; what the case states stays, then the rate grows.
         """
@@ -351,12 +371,12 @@ class _SizeSearch:
                 return None
             return None if _failing(judged[2], _HELD) else (spring, shape, judged)
 
-        low, high, least = 1.0, _FIRMER, None
-        for _ in range(_DOUBLINGS):
-            least = holding(high)
+        low, high, least = 1.0, _PROVEN, None
+        for factor in (_PROVEN, *(_FIRMER ** (2**k) for k in range(_DOUBLINGS))):
+            high, least = factor, holding(factor)
             if least is not None:
                 break
-            low, high = high, high**2
+            low = factor
         if least is None:
             return None
         while high > _BRACKET * low:
@@ -474,7 +494,19 @@ class _SizeSearch:
         text = self.opened.with_sources(values, self._sources(shape, spring))
         case = self.opened.sized(text)
         contour = case.contour(self._lift(case))
-        return text, case, solve(case, contour, tier=Tier.PREVIEW, torques=self.torques)
+        trial = solve(case, contour, tier=Tier.PREVIEW, torques=self.torques)
+        return text, case, self._at_corners(trial) if self._spring_is_open else trial
+
+    def _at_corners(self, trial: Trial) -> Trial:
+        """The preview with its checks of the spring also at the worst of all tolerances at once."""
+        ones = [each for each in (*_HELD, *_WOUND) if each in TOLERANCED]
+        nominal = [each for each in trial.checks if each.declaration in ones]
+        if any(each.must_have and each.status == "fail" for each in nominal):
+            return trial
+        case, contour = trial.case, trial.contour
+        worst = outcomes(case, self.torques, contour, spring_corners(case), ones)
+        judged = {each.id: each for each in governed(nominal, (*trial.corners, *worst))}
+        return replace(trial, checks=tuple(judged.get(each.id, each) for each in trial.checks))
 
 
 def _failing(

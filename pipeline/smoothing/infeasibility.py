@@ -15,6 +15,7 @@ from camwright.pipeline.checks.demands import NORMAL_FORCE
 from camwright.pipeline.smoothing import bounds
 from camwright.pipeline.smoothing.bounds import bounds_of
 from camwright.pipeline.smoothing.constrained_synthesis import synthesise
+from camwright.pipeline.smoothing.multistart import continued
 from camwright.pipeline.smoothing.objective import TORQUE, Weighted
 from camwright.pipeline.smoothing.synthesis_problem import RESERVE, Problem, coarsened
 
@@ -73,7 +74,9 @@ class Infeasibility:
         """One line for the statement of a run."""
         names = ", ".join(self.conflict) or "the limits taken together"
         ways = "; or ".join(item.sentence for item in self.relaxations[:3])
-        return f"no cam keeps together: {names}" + (f"; feasible with {ways}" if ways else "")
+        return f"the synthesis does not keep together: {names}" + (
+            f"; feasible with {ways}" if ways else ""
+        )
 
 
 @dataclass(frozen=True)
@@ -127,7 +130,7 @@ def infeasibility(
         wider = ((name, _with_margin(other, margin)) for name, other in rollers)
         relaxations += _from_catalogue(problem, wider, relaxations)
     if TORQUE_REDUCTION.id in conflict:
-        relaxations += _less_reduction(wide, least)
+        relaxations += _less_reduction(wide, _with_margin(known, margin), least)
     return Infeasibility(tuple(conflict), tuple(sorted(relaxations, key=lambda item: item.factor)))
 
 
@@ -281,13 +284,22 @@ def _replaced_by(other: Problem) -> Change:
     return lambda _problem, _factor: other
 
 
-def _less_reduction(problem: Problem, margin: float) -> list[Relaxation]:
-    """Torque ripple reduction feasible within the other limits: the greatest one required."""
-    ripple = _ripple_over_ceilings(problem)
+def _less_reduction(problem: Problem, fine: Problem, margin: float) -> list[Relaxation]:
+    """Torque ripple reduction feasible within the other limits: the greatest one required.
+
+    Less than the one required by the margin at least, which a coarse problem may seem to keep.
+
+    Parameters
+    ----------
+    fine : Problem   the same on all its splines, which leave less ripple
+    """
+    ripple, ripple_of_all = _ripple_over_ceilings(problem), _ripple_over_ceilings(fine)
     best = None if ripple is None else synthesise(ripple)
-    if best is None or not best.feasible:
+    if best is None or ripple_of_all is None or not best.feasible:
         return []
-    factor = best.ripple * (1.0 - RESERVE) * margin
+    least = continued(ripple_of_all, best)
+    left = min(best.ripple, least.ripple) if least.feasible else best.ripple
+    factor = max(left * (1.0 - RESERVE), 1.0) * margin
 
     def less(required: float | None, size: float) -> float | None:
         return None if required is None else 1.0 - (1.0 - required) * size

@@ -143,7 +143,7 @@ def _reached(attempts: Sequence[Attempt]) -> str:
     best = attempts[best_attempt(attempts)].smoother
     return (
         f"no smoother that keeps {TORQUE_REDUCTION.id} passes the other checks: "
-        f"the best is {best.width_in_words}"
+        f"the best tried is {best.width_in_words}"
     )
 
 

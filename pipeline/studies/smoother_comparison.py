@@ -221,7 +221,9 @@ def _constrained(case: Case) -> Compared:
     smoothing = case.smoothing.model_copy(update={"kind": "constrained"})
     trial = preview_case(case.model_copy(update={"smoothing": smoothing}))
     feasible = trial.synthesis is not None and trial.synthesis["feasible"]
-    words = "least ripple within all limits" if feasible else "no cam keeps all limits"
+    words = (
+        "least ripple within all limits" if feasible else "the synthesis ends outside the limits"
+    )
     return Compared("constrained", words, trial.lift, _record(trial))
 
 

@@ -51,7 +51,8 @@ def _pressure(axes: Axes, document: Record) -> None:
 def _drop(axes: Axes, document: Record) -> None:
     table = document["drop_table"]
     for name, label, line in (
-        ("drop_um", "least", "-"),
+        ("drop_um", "middle", "-"),
+        ("drop_min_um", "least", (0, (1, 2))),
         ("drop_max_um", "heaviest", (0, (4, 3.4))),
     ):
         if name in table:

@@ -143,7 +143,8 @@ def _words(axes: Axes, document: Record) -> None:
         ]
     else:
         conflict = document["conflict"]
-        lines += ["no design keeps together:", *(f"  {each}" for each in conflict["limits"])]
+        lines.append("the search keeps no design within:")
+        lines += [f"  {each}" for each in conflict["limits"]]
         lines += [f"passes with {each['option']} {each['to']}" for each in conflict["relaxations"]]
     lines += ["", "assumed: " + (", ".join(document["assumed"]) or "nothing")]
     axes.text(0.0, 1.0, "\n".join(lines), va="top", family="monospace", fontsize=9)

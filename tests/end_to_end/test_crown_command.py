@@ -45,6 +45,9 @@ def test_a_pasted_crown_is_that_of_the_drop_table(kind, ratio, tmp_path, capsys)
     drop = pair.crown.drop(1e-3 * rows["y_mm"])
     np.testing.assert_allclose(1e6 * drop, rows["drop_um"], atol=1e-3)
     assert (rows["drop_max_um"] >= rows["drop_um"]).all()
+    assert (rows["drop_um"] >= rows["drop_min_um"]).all()
+    ends = [record[name]["drop_at_ends_um"] for name in ("lightest", "heaviest")]
+    assert record["crown"]["drop_at_ends_um"] == pytest.approx(sum(ends) / 2, rel=0.02)
 
 
 @pytest.mark.parametrize(

@@ -99,6 +99,7 @@ def test_the_smallest_relaxation_passes_by_finite_elements(designed: Designed, n
     conflict = record_of(out)["conflict"]
     assert conflict["limits"]
     least = conflict["relaxations"][0]
+    assert all(each["fails_at"] for each in conflict["relaxations"])
     assert not passes_by_closed_forms(out, name, {least["option"][2:]: least["fails_at"]})
     assert passes_as_printed(least["command"])
 
@@ -112,6 +113,12 @@ def test_a_pump_passes_by_finite_elements(designed: Designed) -> None:
     assert document["chosen"]["removed"] >= 0.5
     sizes = [row["size_mm"] for row in document["points"]]
     assert sizes == sorted(sizes)
+    # the claim: the smallest that was solved, each part of it tried at the next smaller one
+    assert document["chosen"]["size_mm"] == sizes[0]
+    exchanges = document["chosen"]["exchanges"]
+    assert exchanges["complete"] and exchanges["failing"]
+    assert all(each["why"] for each in exchanges["failing"])
+    assert f"# {exchanges['claim']}." in text
     assert (folder / "design.png").read_bytes().startswith(b"\x89PNG")
     assert 'overspeed = "assumed' in text
     table, speed = out.with_suffix(".csv"), MACHINES["pump"].speed

@@ -20,7 +20,11 @@ from camwright.pipeline.case.cards.catalogue import catalogue_of
 from camwright.pipeline.case.cards.shaft_seats import seats
 from camwright.pipeline.case.cards.spring_catalogue import SpringDemand
 from camwright.pipeline.case.case_file import parse_case
-from camwright.pipeline.studies.design import relaxation_search, synthesised_points
+from camwright.pipeline.studies.design import (
+    part_exchange,
+    relaxation_search,
+    synthesised_points,
+)
 from camwright.pipeline.studies.design.candidate_search import candidates, spring_wire
 from camwright.pipeline.studies.design.design_case import Machinery, case_text, oils_of
 from camwright.pipeline.studies.design.design_study import _prepare, designed
@@ -269,9 +273,15 @@ def test_the_first_relaxation_is_the_smallest_of_all_options(
     failing = getattr(study.task.relaxed(fails), first["option"][2:])
     assert np.log(stated / passing) - np.log(stated / failing) <= 1.1 * WIDTH  # of printed digits
     for each in others:
-        assert each["fails_at"] is None
-        assert searched.passes(relaxed_by(each["command"]))
-    assert len(searched.tasks) <= 20
+        name = each["option"][2:]
+        task = relaxed_by(each["command"])
+        fails = study.task.relaxed({name: each["fails_at"]})
+        assert searched.passes(task) and not searched.passes(fails)
+        stated, passing, failing = (getattr(one, name) for one in (study.task, task, fails))
+        # half of the change fails, as printed, and none is stricter than the task
+        assert np.log(stated / passing) <= 2.02 * np.log(stated / failing) + WIDTH
+        assert passing < stated
+    assert len(searched.tasks) <= 36
 
 
 def test_without_a_relaxation_none_is_listed(
@@ -280,10 +290,99 @@ def test_without_a_relaxation_none_is_listed(
     searched = Searched(monkeypatch, 0.0, 0.0, 0.0)
     study = PointStudy(task_in(tmp_path), tmp_path, "torque.csv", "")
     assert relaxations(study, None, tmp_path / "c.toml", ALONE, SILENT) == []
-    loosest = {"remove": 0.125, "speed": 120.0 * RPM, "overspeed": 300.0 * RPM, "life": 3.6e5}
+    loosest = {"remove": 0.125, "speed": 120.0 * RPM, "overspeed": 300.0 * RPM, "life": 3.6e5,
+               "ambient": 293.15}  # fmt: skip
     for name, value in loosest.items():
         assert any(getattr(task, name) == pytest.approx(value) for task in searched.tasks)
-    assert len(searched.tasks) == 7  # but for the over-speed a smaller change before
+    assert len(searched.tasks) == 9  # but for the over-speed a smaller change before
+
+
+def test_a_slower_cam_is_offered_by_the_next_ratio_alone(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    searched = Searched(monkeypatch, 0.0, 0.0, 0.45)
+    searched.passes = lambda task: task.remove <= 0.45 or task.ratio >= 2.0
+    study = PointStudy(task_in(tmp_path), tmp_path, "torque.csv", "")
+    offered = {each["option"]: each for each in relaxations(
+        study, None, tmp_path / "c.toml", ALONE, SILENT
+    )}  # fmt: skip
+    assert set(offered) == {"--remove", "--ratio"}
+    assert (offered["--ratio"]["from"], offered["--ratio"]["to"]) == ("1", "2")
+    assert relaxed_by(offered["--ratio"]["command"]).ratio == 2.0
+
+
+def exchange_of(size: float, *failing: str) -> Any:
+    """Stand-in for a solved design of a size that fails by some checks."""
+    return SimpleNamespace(
+        size=size, design=size, has_cam=True, passes=not failing, failing=list(failing),
+        record={"open": []},
+    )  # fmt: skip
+
+
+def test_parts_are_exchanged_until_none_passes(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A shaft that passes thrice, a stem that passes once the shaft is the least, no roller."""
+    tried: list[tuple[str, Any]] = []
+
+    def way(part: str, steps: dict[Any, Any]) -> Any:
+        return lambda design, _: (
+            part_exchange.Smaller(part, str(design), str(each), each)
+            for each in steps.get(design, [])
+        )
+
+    ways = way("shaft", {9: [8], 8: [7], 7: [6]}), way("roller", {6: [60], 5: [50]}), way(
+        "stem", {9: [90], 6: [5], 5: [4]}
+    )  # fmt: skip
+    monkeypatch.setattr(part_exchange, "_WAYS", ways)
+    monkeypatch.setattr(part_exchange.Shelves, "of", lambda _: None)
+
+    def solved(design: Any) -> Any:
+        tried.append(design)
+        return exchange_of(design, *(["Fatigue"] if design in (60, 50, 90, 4) else []))
+
+    study: Any = SimpleNamespace(solved=solved)
+    result = part_exchange.exchanged(study, exchange_of(9), ALONE, SILENT)
+    assert result.point.size == 5
+    assert [each.becomes for each in result.kept] == ["8", "7", "6", "5"]
+    record = result.as_record()
+    assert {each["part"]: each["why"] for each in record["failing"]} == {
+        "roller": "Fatigue", "stem": "Fatigue",
+    }  # fmt: skip
+    assert result.complete and "no part can be exchanged" in record["claim"]
+    monkeypatch.setattr(part_exchange, "_MOST", 2)
+    stopped = part_exchange.exchanged(study, exchange_of(9), ALONE, SILENT)
+    assert not stopped.complete and "may pass" in stopped.sentence
+
+
+def test_the_next_smaller_parts_follow_the_catalogues(tmp_path: Path) -> None:
+    """The hub takes the base circle with it; a smaller roller keeps it."""
+    task = task_in(tmp_path)
+    card = catalogue_of(None).rollers["track_roller_40x16"]
+    frame = frame_of("track_roller_40x16", card, 40.0, 3e3, task.ratio, seats())
+    assert frame is not None
+    point = wound(
+        spring_wire(task, None), np.array([150e3]), np.array([900.0]), np.array([9e-3]), 30.0
+    )[0]
+    prime = 1e-4 * np.ceil(1e4 * frame.least_radius)
+    design = Machinery(task, frame, point, prime, 9e-3, 0.04, oils=oils_of(None))
+    shelves = part_exchange.Shelves.of(PointStudy(task, tmp_path, "torque.csv", ""))
+    smaller = [each for way in part_exchange._WAYS for each in way(design, shelves)]
+    by_part: dict[str, list[Any]] = {}
+    for each in smaller:
+        by_part.setdefault(each.part, []).append(each.design)
+    shafts = by_part["shaft with key and bearings"]
+    bores = [seat.bore for seat in seats()]
+    assert {each.frame.seat.bore for each in shafts} == {bores[bores.index(frame.seat.bore) - 1]}
+    hub = frame.least_radius - shafts[0].frame.least_radius
+    assert shafts[0].prime_radius == pytest.approx(prime - hub, abs=1e-4)
+    assert shafts[1].prime_radius == prime
+    (roller,) = by_part["roller"]
+    base = roller.prime_radius - roller.frame.radius
+    assert base == pytest.approx(prime - frame.radius, abs=1e-3)
+    assert roller.frame.card.outer_diameter <= card.outer_diameter
+    assert by_part["stem with bushes"][0].frame.stem < frame.stem
+    assert "spring" not in by_part  # wound for its forces
+    for each in smaller:  # a case of each
+        parse_case(case_text(each.design, "sine", "torque.csv"), tmp_path)
 
 
 def test_the_better_of_two_designs_passes_with_less_ripple_in_the_same_size() -> None:

@@ -24,6 +24,7 @@ from camwright.pipeline.sizing.least_crown import (
     CrownProblem,
     families,
     least_crown,
+    middle_crown,
 )
 from camwright.pipeline.sizing.solved_lines import SolvedLines, signed_range
 
@@ -99,6 +100,12 @@ def test_every_state_is_within_the_ratio_and_a_lighter_crown_is_not(kind):
     assert lighter.max() > 1.1
     assert 1.0 <= crown.heaviest / crown.load < 20
     assert made.ratios(crown.family.crown(crown.heaviest)).max() <= 1.1
+    middle = middle_crown(crown, 1.1)
+    ends = crown.drop, crown.family.drop(crown.heaviest)
+    assert middle.drop == pytest.approx(0.5 * sum(ends), rel=0.02)
+    assert middle.ratio < 1.1 and middle.lightest == crown.load
+    assert max(middle.at_deviation(each) for each in (-2e-7, 2e-7)) <= 1.1
+    assert crown.at_deviation(-2e-7) > 1.1
 
 
 @pytest.mark.slow

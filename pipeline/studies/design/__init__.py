@@ -10,6 +10,7 @@ In the order of the calculation:
 | `design_case`      | case file of a design, with reasons and sources |                     |
 | `candidate_search` | screening over rollers, springs, base circles   | T, N m; m           |
 | `synthesised_points` | prime radius, preload and lift by the synthesis | r, m; P, N; s, m  |
+| `part_exchange`    | parts exchanged for the next smaller ones that pass |                 |
 | `relaxation_search` | smallest change of one option that passes      |                     |
 | `design_study`     | front, choice, conflict and relaxations, files  |                     |
 

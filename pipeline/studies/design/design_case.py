@@ -12,6 +12,7 @@ import numpy as np
 import tomli_w
 
 from camwright.pipeline.base import units
+from camwright.pipeline.base.cooling import STILL_AIR, housing_area
 from camwright.pipeline.case.cards.card_filling import known_cards, viscosity
 from camwright.pipeline.case.cards.shaft_seats import Seat, seat_source
 from camwright.pipeline.case.limits import CHORD_SHARE
@@ -35,6 +36,9 @@ _BALANCED = 3e-3  # m/s, residual unbalance of the bench
 PROFILE = 8e-6  # m, tolerance of the ground contour
 SEARCHED = 72  # cam angles of a turn in the search
 WRITTEN = 144  # in a case file, for the error bars of a run
+_AROUND = 0.01  # m of room and wall between parts and outside of the housing
+_TOOTH_LOSS = 0.01  # of the torque at the gear
+_BEARING_FRICTION = 1.5e-3  # deep-groove ball bearings: moment over force and half the bore
 _STEPS = (0.5, 0.25, 0.2, 0.1)  # deg, of the contour table
 SYNTHESIS = """\
 kind = "constrained"
@@ -88,6 +92,22 @@ class Machinery:
     @property
     def oil_temperature(self) -> float:
         return self.task.ambient + OIL_WARMER
+
+    @property
+    def conductance(self) -> float:
+        """Heat to still air from a housing about cam, gear and follower, W/K."""
+        across = 2.0 * max(self.cam_radius, self.frame.gear_radius)
+        height = across + self.frame.stem_length(self.lift)
+        sides = (across, height, self.frame.housing_width)
+        return STILL_AIR * housing_area(*(each + 2.0 * _AROUND for each in sides))
+
+    @property
+    def other_heat(self) -> float:
+        """Heat of gear and camshaft bearings at the greatest speed, W."""
+        speed = self.task.speeds[1] / self.task.ratio
+        force = 0.5 * (self.spring.preload + self.spring.greatest)
+        bearings = _BEARING_FRICTION * force * 0.5 * self.frame.seat.bore
+        return speed * (_TOOTH_LOSS * self.task.ratio * self.task.demand.ripple + bearings)
 
     @cached_property
     def oil(self) -> tuple[str, float]:
@@ -330,6 +350,9 @@ temperature = "{_celsius(design)}"
 
 [cooling]
 ambient_temperature = "{units.format(design.task.ambient, "K")}"
+conductance = "{design.conductance:.3g} W/K"
+heat = "{design.other_heat:.3g} W"                      # of gear and camshaft bearings
+source = "assumed: still air about a housing of cam, gear and follower"
 """
 
 

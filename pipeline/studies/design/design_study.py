@@ -26,6 +26,7 @@ from camwright.pipeline.results.check_records import to_be_confirmed
 from camwright.pipeline.results.run_folder import versions
 from camwright.pipeline.studies.design.candidate_search import Candidate, candidates
 from camwright.pipeline.studies.design.design_case import WRITTEN, case_text
+from camwright.pipeline.studies.design.part_exchange import Exchanged, exchanged
 from camwright.pipeline.studies.design.relaxation_search import relaxations
 from camwright.pipeline.studies.design.synthesised_points import (
     PointStudy,
@@ -114,8 +115,15 @@ def designed(task: DesignTask, out: Path, progress: Progress = SILENT) -> Record
         progress.stage("solve the front")
         points, failing = solved_front(study, drafts(study, screened, workers), workers, progress)
         changes: list[Record] = []
-        if not points:
-            progress.stage("smallest relaxation")
+        smaller: Exchanged | None = None
+        if points:
+            head = _summary(study, points, None)
+            write_atomic(out, _written(points[0], out.stem, file, head))  # a first answer
+            progress.stage("exchange parts")
+            smaller = exchanged(study, points[0], workers, progress)
+            points = [smaller.point, *points[1:]]
+        else:
+            progress.stage("relaxations")
             nearest = failing[0] if failing else None
             changes = relaxations(study, nearest, out, workers, progress)
     document: Record = {
@@ -135,12 +143,19 @@ def designed(task: DesignTask, out: Path, progress: Progress = SILENT) -> Record
         "chosen": None,
         "conflict": None,
     }
-    if points:
+    if smaller is not None:
         best = points[0]
         document["points"] = _write_points(study, points)
-        whole = {"envelope_mm": _envelope(study, best), "file": out.name}
-        document["chosen"] = _row(best) | _drawing(study, best) | whole
-        head = _summary(study, best, points)
+        document["chosen"] = (
+            _row(best)
+            | _drawing(study, best)
+            | {
+                "file": out.name,
+                "exchanges": smaller.as_record(),
+                "envelope_mm": _envelope(study, best),
+            }
+        )
+        head = _summary(study, points, smaller)
         write_atomic(out, _written(best, out.stem, file, head))
     else:
         limits = _limits(task, screened, failing)
@@ -268,8 +283,10 @@ def _envelope(study: PointStudy, point: Solved) -> list[float]:
     return [round(1e3 * length, 2) for length in sizes_of(case, radius, lift).envelope.size]
 
 
-def _summary(study: PointStudy, best: Solved, points: Sequence[Solved]) -> str:
-    row, task = _row(best), study.task
+def _summary(study: PointStudy, points: Sequence[Solved], smaller: Exchanged | None) -> str:
+    best, task = points[0], study.task
+    row = _row(best)
+    shown = "its parts are yet to be exchanged" if smaller is None else smaller.sentence
     whole = " x ".join(f"{length:.4g}" for length in _envelope(study, best))
     lines = [
         f"# Designed from {study.file}: {100 * row['removed']:.0f} % of the torque ripple removed"
@@ -278,7 +295,9 @@ def _summary(study: PointStudy, best: Solved, points: Sequence[Solved]) -> str:
         f"{row['size_mm']:.4g} mm from the cam's far side to the top of the roller.",
         f"# The whole mechanism over its turn: {whole} mm across and along the stem, and along the"
         f" camshaft.",
-        "# The smallest point that passes. The front, size against ripple left:",
+        "# The smallest of the designs that were solved and pass;",
+        f"# {shown}.",
+        "# The front of those solved, size against ripple left:",
     ]
     lines += [f"#   {1e3 * each.size:7.1f} mm  {each.ripple:8.4g} N m" for each in points]
     return "\n".join(lines) + "\n"

@@ -37,6 +37,8 @@ class MachineFrame:
     card : BearingCard
     seat : Seat         of the cam on its shaft
     module : float      of the gear
+    teeth : tuple       of gear and pinion
+    stem_chosen : float   diameter of the stem; None: by the roller
     """
 
     roller: str
@@ -44,6 +46,7 @@ class MachineFrame:
     seat: Seat
     module: float
     teeth: tuple[int, int]
+    stem_chosen: float | None = None
 
     @property
     def radius(self) -> float:
@@ -51,7 +54,7 @@ class MachineFrame:
 
     @property
     def stem(self) -> float:
-        return stem_of(self.card)
+        return stem_of(self.card) if self.stem_chosen is None else self.stem_chosen
 
     @property
     def bush_length(self) -> float:
@@ -128,6 +131,12 @@ class MachineFrame:
     @property
     def gear_position(self) -> float:
         return -1e-3 * ceil(1e3 * (0.5 * self.gear_width + 0.5 * self.seat.bore))
+
+    @property
+    def housing_width(self) -> float:
+        """From the outer face of the gear to that of the further bearing."""
+        gear = 0.5 * self.gear_width - self.gear_position
+        return gear + self.bearing_spacing + 0.5 * self.seat.width
 
     @property
     def cam_width(self) -> float:

@@ -1,4 +1,4 @@
-"""Smallest change of one option of a design with which a case passes.
+"""Change of one option of a design with which the search finds a case, half of which finds none.
 
 A change is measured by the logarithm of its value over that of the task.
 """
@@ -10,6 +10,7 @@ from dataclasses import dataclass, field, replace
 from math import copysign, exp, inf, log
 from pathlib import Path
 
+from camwright.geometry.arrays import FULL_TURN
 from camwright.pipeline.base import units
 from camwright.pipeline.base.progress import SILENT, Progress
 from camwright.pipeline.base.worker_processes import Crew
@@ -29,6 +30,8 @@ _LEAST_REMOVED = 0.25  # of the ripple
 _SLOWEST = 0.4  # of the speeds
 _SHORTEST = 0.05  # of the life
 _FREE_SPACE = 5.0  # of the space
+_COOL = 20.0  # degC of the surroundings
+_ICE = 273.15  # K
 _SPARE = 1.005  # of the size of a design
 _EQUAL = 1e-9  # difference of equal changes
 _FIRST = 0.6  # change that is tried first, a factor of 1.8
@@ -42,7 +45,8 @@ class Lever:
     """An option that is relaxed from the value of the task to a loosest one.
 
     options: options of the command at a value; shown: a value in words; reached: value that a
-    draft keeps, None where it does not tell; order: in which designs are drafted.
+    draft keeps, None where it does not tell; order: in which designs are drafted; whole: whether
+    the loosest value is the next one.
     """
 
     name: str
@@ -52,6 +56,7 @@ class Lever:
     shown: Callable[[float], str]
     reached: Callable[[Solved], float] | None = None
     order: Callable[[Candidate], float] = lack
+    whole: bool = False
 
     @property
     def greatest(self) -> float:
@@ -74,7 +79,7 @@ class Lever:
 
 @dataclass(frozen=True)
 class Bracket:
-    """Two changes of an option: no design passes with `failing`, one does with `passing`.
+    """Two changes of an option: the search finds a design with `passing`, none with `failing`.
 
     needed: change that the design needs; stride: below it, of the change to be tried next.
     """
@@ -89,6 +94,11 @@ class Bracket:
     def narrow(self) -> bool:
         """Whether the bracket is as narrow as `WIDTH`."""
         return self.passing - self.failing <= WIDTH
+
+    @property
+    def halved(self) -> bool:
+        """Whether half of the change fails, as far as `WIDTH` tells them apart."""
+        return self.passing <= max(WIDTH, 2.0 * self.failing + _EQUAL) or self.lever.whole
 
     def inner(self) -> float:
         """Change to be tried next: below that needed, that, above it, or the middle."""
@@ -138,14 +148,36 @@ class _Search:
                 bracket = replace(inner, stride=2.0 * bracket.stride)
         return bracket
 
+    def smallest(self, lever: Lever, failing: float) -> Bracket | None:
+        """Change that passes, half of which does not; None: none up to the greatest passes.
+
+        failing: change up to which it is doubled.
+        """
+        change = lever.greatest if lever.whole else 2.0 * max(failing, WIDTH)
+        while not self.fails(lever, change):
+            bracket = self.bracket(lever, change)
+            if bracket is not None:
+                return self.halved(bracket)
+            change *= 2.0
+        return None
+
+    def halved(self, bracket: Bracket) -> Bracket:
+        """The bracket with at least half of its change failing."""
+        while not bracket.halved:
+            change = 0.5 * bracket.passing
+            inner = self.bracket(bracket.lever, change)
+            bracket = replace(bracket, failing=change) if inner is None else inner
+        return bracket
+
 
 def relaxations(
     study: PointStudy, nearest: Solved | None, out: Path, workers: Crew, progress: Progress
 ) -> list[Record]:
     """Relaxations of one option each, with the command line of each; the smallest first.
 
-    With each the command passes. With the first it does not at `fails_at`, which is nearer to the
-    value of the task by `WIDTH` at most, nor with another option changed by that ratio.
+    With each the command passes, and does not at `fails_at`, half of the change or more. With the
+    first that is nearer to the value of the task by `WIDTH` at most, and no other option passes
+    with a change by that ratio. Every option is looser than that of the task.
 
     Parameters
     ----------
@@ -153,7 +185,8 @@ def relaxations(
     nearest : Solved   the design that fails by the least
     out : Path         case file of the command
     """
-    levers = tuple(_levers(study.task))
+    every = tuple(_levers(study.task))
+    levers = tuple(each for each in every if not each.whole)
     search = _Search(study, workers, progress)
     best, larger = _first(search, levers, nearest), list[Bracket]()
     while best is not None:
@@ -162,8 +195,18 @@ def relaxations(
         if rival is None:
             break
         best, larger = rival, [best, *larger]
-    brackets = [] if best is None else [best, *larger]
-    return [_record(study.task, each, out, first=k == 0) for k, each in enumerate(brackets)]
+    if best is None:
+        return []
+    known = {each.lever.name: each for each in reversed(larger)}
+    others = [
+        search.smallest(lever, best.failing)
+        if lever.name not in known
+        else search.halved(known[lever.name])
+        for lever in every
+        if lever is not best.lever
+    ]
+    rest = sorted((each for each in others if each is not None), key=lambda each: each.passing)
+    return [_record(study.task, each, out) for each in (best, *rest)]
 
 
 def _first(search: _Search, levers: tuple[Lever, ...], nearest: Solved | None) -> Bracket | None:
@@ -216,6 +259,15 @@ def _levers(task: DesignTask) -> Iterator[Lever]:
         "--life", task.life, _SHORTEST * task.life,
         lambda value: {"life": _text(value, "h")}, lambda value: _text(value, "h"),
     )  # fmt: skip
+    warm = task.ambient - _ICE
+    if warm > (1.0 + WIDTH) * _COOL:
+        yield Lever("--ambient", warm, _COOL, lambda value: {"ambient": _celsius(value)}, _celsius)
+    lobes = round(FULL_TURN * task.ratio / task.demand.cycle)
+    slower = task.ratio * (lobes + 1) / lobes
+    yield Lever(
+        "--ratio", task.ratio, slower,
+        lambda value: {"ratio": f"{value:.12g}"}, lambda value: f"{value:.4g}", whole=True,
+    )  # fmt: skip
 
 
 def _slower(task: DesignTask, share: float) -> DesignOptions:
@@ -238,19 +290,23 @@ def _text(value: float, unit: str) -> str:
     return units.shown(value, unit)
 
 
+def _celsius(value: float) -> str:
+    return f"{value:.3g} degC"
+
+
 def _percent(share: float) -> str:
     return f"{100.0 * share:.3g}%"
 
 
-def _record(task: DesignTask, bracket: Bracket, out: Path, *, first: bool) -> Record:
-    """Record of a relaxation; first: whether it is the smallest."""
+def _record(task: DesignTask, bracket: Bracket, out: Path) -> Record:
+    """Record of a relaxation."""
     lever, value = bracket.lever, bracket.lever.value(bracket.passing)
     options = lever.options(value)
     return {
         "option": lever.name,
         "from": lever.shown(lever.stated),
         "to": lever.shown(value),
-        "fails_at": lever.shown(lever.value(bracket.failing)) if first else None,
+        "fails_at": lever.shown(lever.value(bracket.failing)),
         "options": options,
         "command": task.relaxed(options).command(out),
     }

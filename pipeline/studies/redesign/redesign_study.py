@@ -227,7 +227,7 @@ def _why(record: Record, front: str) -> str:
     if "why" in record:
         return str(record["why"])
     if not record["feasible"]:
-        return "no cam keeps all limits on the fine turn"
+        return "the synthesis on the fine turn ends outside the limits"
     if record["failing"]:
         return f"fails {', '.join(record['failing'])}"
     if record["open"] and front != "incomplete":

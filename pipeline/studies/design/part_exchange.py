@@ -1,0 +1,224 @@
+"""Parts of a design that passes, exchanged for the next smaller of their catalogue while it passes.
+
+Each exchange is solved and judged as the points of the front are: preview at all tolerance corners.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+from camwright.pipeline.base.progress import Progress
+from camwright.pipeline.base.worker_processes import Crew
+from camwright.pipeline.case.cards.bearing_cards import BearingCard
+from camwright.pipeline.case.cards.catalogue import better_roller, catalogue_of, undominated
+from camwright.pipeline.case.cards.shaft_seats import Seat, seats
+from camwright.pipeline.checks.registry import DECLARED
+from camwright.pipeline.follower.spring import HelicalSpring
+from camwright.pipeline.studies.design.design_case import Machinery
+from camwright.pipeline.studies.design.machine_frame import MODULES, STEMS
+from camwright.pipeline.studies.design.synthesised_points import PointStudy, Solved
+from camwright.pipeline.studies.design.wound_springs import of_catalogue
+from camwright.pipeline.studies.redesign.point_store import Record
+
+_MOST = 24  # designs tried
+_TOGETHER = 2  # solved at once
+_SAME = 1e-6  # m, of equal sizes
+_STEP = 1e-4  # m, of a prime radius as a drawing states it
+_RIM = 0.8  # bores in the radius of the gear, at least
+
+
+@dataclass(frozen=True)
+class Shelves:
+    """Parts of the catalogues by increasing size."""
+
+    seats: Sequence[Seat]
+    rollers: Mapping[str, BearingCard]
+    springs: Sequence[HelicalSpring]
+
+    @classmethod
+    def of(cls, study: PointStudy) -> Shelves:
+        """Those of the shipped cards and of the user's beside the torque table."""
+        parts = catalogue_of(study.folder)
+        rollers = undominated(parts.rollers, better_roller)
+        known = {name: card for name, card in rollers.items() if card.balls is not None}
+        order = sorted(known, key=lambda name: (known[name].outer_diameter, known[name].C))
+        springs = sorted(parts.springs.values(), key=lambda spring: spring.mass)
+        return cls(seats(), {name: known[name] for name in order}, springs)
+
+
+@dataclass(frozen=True)
+class Smaller:
+    """A design with one part the next smaller of its catalogue, in words."""
+
+    part: str
+    was: str
+    becomes: str
+    design: Machinery
+
+
+@dataclass(frozen=True)
+class Exchanged:
+    """A design whose parts were exchanged.
+
+    kept: exchanges with which it passes, in their order; failing: exchanges of the last design
+    with why each fails; complete: whether every part of it was tried.
+    """
+
+    point: Solved
+    kept: tuple[Smaller, ...] = ()
+    failing: tuple[tuple[Smaller, str], ...] = ()
+    complete: bool = True
+
+    @property
+    def sentence(self) -> str:
+        """What the exchanges have shown."""
+        if not self.complete:
+            return f"{_MOST} exchanges of parts tried: a design of smaller parts may pass"
+        return "no part can be exchanged for the next smaller of its catalogue"
+
+    def as_record(self) -> Record:
+        """Record for JSON."""
+        return {
+            "kept": [_words(each) for each in self.kept],
+            "failing": [_words(each) | {"why": why} for each, why in self.failing],
+            "complete": self.complete,
+            "claim": self.sentence,
+        }
+
+
+def exchanged(study: PointStudy, point: Solved, workers: Crew, progress: Progress) -> Exchanged:
+    """The design with the smallest parts that single exchanges reach.
+
+    One part at a time becomes the next smaller of its catalogue: the shaft with key and bearings,
+    the roller, the spring if it is of a catalogue, the stem with its bushes, the module of the
+    gear. A hub that becomes smaller is tried with the base circle less by as much, then with the
+    same one; oil, fork and housing follow from the parts. An exchange that passes is kept;
+    the search ends when every part of the same design has failed.
+    """
+    shelves, kept = Shelves.of(study), list[Smaller]()
+    failing: dict[str, tuple[Smaller, str]] = {}
+    place = unchanged = tried = 0
+    while unchanged < len(_WAYS) and tried < _MOST:
+        progress.advance(tried, _MOST)
+        ways = list(_WAYS[place](point.design, shelves))
+        after = _WAYS[(place + 1) % len(_WAYS)](point.design, shelves)
+        ahead = [] if len(ways) >= _TOGETHER else list(after)[:1]  # solved while another waits
+        solving = [workers.submit(study.solved, each.design) for each in (*ways, *ahead)]
+        tried += len(ways)
+        unchanged += 1
+        for each, solution in zip(ways, solving, strict=False):
+            solved: Solved = solution.result()
+            if solved.has_cam and solved.passes and solved.size <= point.size + _SAME:
+                kept.append(each)
+                point, failing, unchanged = solved, {}, 0
+                break
+            failing[each.part] = each, why_not(solved)
+        if unchanged:
+            place = (place + 1) % len(_WAYS)
+    progress.advance(_MOST, _MOST)
+    complete = unchanged >= len(_WAYS)
+    return Exchanged(point, tuple(kept), tuple(failing.values()), complete)
+
+
+def why_not(point: Solved) -> str:
+    """Why a design does not pass, in words."""
+    if not point.has_cam:
+        return str(point.record["why"])
+    if point.failing:
+        return "; ".join(point.failing)
+    lacking = point.record.get("open", [])
+    if lacking:
+        return f"not known: {'; '.join(DECLARED[name].title for name in lacking)}"
+    return "larger" if point.passes else "torque ripple"
+
+
+def _words(each: Smaller) -> Record:
+    return {"part": each.part, "from": each.was, "to": each.becomes}
+
+
+def _shaft(design: Machinery, shelves: Shelves) -> Iterator[Smaller]:
+    frame = design.frame
+    lesser = [each for each in shelves.seats if each.bore < frame.seat.bore]
+    if not lesser:
+        return
+    seat = lesser[-1]
+    smaller = replace(frame, seat=seat)
+    hub = frame.least_radius - smaller.least_radius
+    words = _mm(frame.seat.bore), _mm(seat.bore)
+    primes = _steps(design.prime_radius - hub), design.prime_radius
+    for prime in dict.fromkeys(primes):
+        other = replace(design, frame=smaller, prime_radius=prime)
+        yield Smaller("shaft with key and bearings", *words, _with_cam(design, other))
+
+
+def _roller(design: Machinery, shelves: Shelves) -> Iterator[Smaller]:
+    frame = design.frame
+    order = list(shelves.rollers)
+    if frame.roller not in order or order[0] == frame.roller:
+        return
+    name = order[order.index(frame.roller) - 1]
+    smaller = replace(frame, roller=name, card=shelves.rollers[name])
+    if smaller.stem > frame.stem:
+        smaller = replace(smaller, stem_chosen=frame.stem)
+    prime = _steps(design.prime_radius - frame.radius + smaller.radius)
+    other = replace(design, frame=smaller, prime_radius=max(prime, _steps(smaller.least_radius)))
+    yield Smaller("roller", frame.roller, name, other)
+
+
+def _spring(design: Machinery, shelves: Shelves) -> Iterator[Smaller]:
+    point = design.spring
+    spring = point.spring
+    if not spring.name:  # wound for its forces
+        return
+    lesser = [each for each in shelves.springs if each.mass < spring.mass]
+    if not lesser:
+        return
+    lighter = lesser[-1]
+    speed = design.task.cam_speed
+    for other in of_catalogue([lighter], [point.energy], [point.travel], speed):
+        drawn = replace(other.spring, temperature=spring.temperature, relaxation=spring.relaxation)
+        yield Smaller(
+            "spring",
+            spring.name,
+            lighter.name,
+            replace(design, spring=replace(other, spring=drawn)),
+        )
+
+
+def _stem(design: Machinery, _: Shelves) -> Iterator[Smaller]:
+    frame = design.frame
+    lesser = [1e-3 * each for each in STEMS if 1e-3 * each < frame.stem - _SAME]
+    for size in lesser[-1:]:
+        other = replace(design, frame=replace(frame, stem_chosen=size))
+        yield Smaller("stem with bushes", _mm(frame.stem), _mm(size), other)
+
+
+def _module(design: Machinery, _: Shelves) -> Iterator[Smaller]:
+    frame = design.frame
+    lesser = [1e-3 * each for each in MODULES if 1e-3 * each < frame.module - _SAME]
+    for size in lesser[-1:]:
+        if not 0.5 * size * frame.teeth[0] > _RIM * frame.seat.bore:
+            return
+        other = replace(design, frame=replace(frame, module=size))
+        yield Smaller("module of the gear", _mm(frame.module), _mm(size), other)
+
+
+_WAYS: tuple[Callable[[Machinery, Shelves], Iterator[Smaller]], ...] = (
+    _shaft, _roller, _spring, _stem, _module,
+)  # fmt: skip
+"""Designs with one part the next smaller, the part of the greatest gain first."""
+
+
+def _with_cam(design: Machinery, other: Machinery) -> Machinery:
+    """The other design with the cam smaller by as much as its base circle, if the room is free."""
+    less = design.prime_radius - other.prime_radius
+    return replace(other, cam_radius=design.cam_radius - less)
+
+
+def _steps(length: float) -> float:
+    return _STEP * round(length / _STEP)
+
+
+def _mm(length: float) -> str:
+    return f"{1e3 * length:g} mm"
