@@ -20,6 +20,7 @@ from camwright.pipeline.case.cards.catalogue import catalogue_of
 from camwright.pipeline.case.cards.shaft_seats import seats
 from camwright.pipeline.case.cards.spring_catalogue import SpringDemand
 from camwright.pipeline.case.case_file import parse_case
+from camwright.pipeline.cycle.machine_envelope import sizes_of
 from camwright.pipeline.studies.design import (
     part_exchange,
     relaxation_search,
@@ -173,6 +174,13 @@ def test_the_case_states_given_and_assumed(tmp_path: Path) -> None:
     )[0]
     design = Machinery(task, frame, point, 0.046, 9e-3, 0.035, oils=oils_of(None))
     case = parse_case(case_text(design, "sine", "torque.csv"), tmp_path)
+    seat = case.spring.seat_thickness
+    assert seat == 0.004  # a quarter of 14 mm, rounded up
+    # the spring stands on the end of the stem, 3 to 4 mm over guide B
+    above = case.follower.stem_length - 9e-3 - seat - case.guides.spacing
+    assert 3e-3 <= above - frame.overhang - 0.5 * frame.bush_length + 1e-12 < 4e-3
+    box = sizes_of(case, 0.06, 9e-3).envelope
+    assert box.along[1] > box.along[0] + 0.06 + case.follower.stem_length
     assert case.period.angle == pytest.approx(2.0 * np.pi)
     assert case.limits.sources["target_life"] == "assumed"
     assert case.limits.sources["overspeed"].startswith("assumed")
