@@ -120,15 +120,16 @@ def _show(document: dict[str, Any], out: Path) -> None:
     )
     for each in conflict["relaxations"]:
         stdout.print(
-            f"  passes with {each['option']} {each['to']}, not {each['from']}; with "
-            f"{each['fails_at']} the search finds none:",
+            f"  passes with {each['option']} {each['to']}, not {each['from']}; none "
+            f"found with {each['fails_at']}:",
             markup=False,
         )
         stdout.print(f"    {each['command']}", markup=False, soft_wrap=True)
     if conflict["relaxations"]:
         stdout.print(
-            "  each: one option alone, half of whose change, by the ratio of its values, does not "
-            "pass in the same search; of the first one no more than 2 % less does",
+            "  each: one option alone; with half of its change, by the ratio of its values, the "
+            "search finds none, nor of the first with 2 % less. Exchanges of parts, which follow a "
+            "design that passes, may find more",
             markup=False,
         )
     else:

@@ -319,6 +319,21 @@ def test_a_slower_cam_is_offered_by_the_next_ratio_alone(
     assert relaxed_by(offered["--ratio"]["command"]).ratio == 2.0
 
 
+def test_the_space_is_that_of_a_design_with_exchanged_parts(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The search finds none in any space; exchanges of parts reach one in 120 mm."""
+    searched = Searched(monkeypatch, 0.0, 0.0, 0.2)
+    searched.passes = lambda task: task.remove <= 0.2
+    task = task_of(table(tmp_path), speed="300 rpm", space=0.1)
+    study = PointStudy(task, tmp_path, "torque.csv", "")
+    first, *_ = relaxations(study, None, tmp_path / "c.toml", ALONE, SILENT, room=0.12)
+    assert first["option"] == "--space"
+    wide, narrow = (task.relaxed({"space": first[key]}).space for key in ("to", "fails_at"))
+    assert wide is not None and narrow is not None
+    assert 0.1 < narrow < 0.12 <= wide <= np.exp(WIDTH) * narrow * 1.001
+
+
 def exchange_of(size: float, *failing: str) -> Any:
     """Stand-in for a solved design of a size that fails by some checks."""
     return SimpleNamespace(

@@ -5,6 +5,8 @@ from __future__ import annotations
 import re
 from collections import Counter
 from collections.abc import Sequence
+from dataclasses import replace
+from math import inf
 from pathlib import Path
 
 import numpy as np
@@ -14,7 +16,7 @@ from camwright.geometry.errors import InputError, ResultError
 from camwright.pipeline.base import units
 from camwright.pipeline.base.files import json_text, write_atomic
 from camwright.pipeline.base.progress import SILENT, Progress
-from camwright.pipeline.base.worker_processes import crew
+from camwright.pipeline.base.worker_processes import Crew, crew
 from camwright.pipeline.case.cards.card_filling import USER_FILE
 from camwright.pipeline.case.cards.catalogue import SPRINGS_FILE
 from camwright.pipeline.case.case_file import parse_case
@@ -39,6 +41,7 @@ from camwright.pipeline.studies.redesign.point_store import SOLVED, Record
 
 RECORD = "design.json"
 PICTURE = "design.png"
+_SPARE = 1.001  # of the size of a design, for its tolerances
 _BINDING = 3  # limits that the nearest design uses fully, named with those that it fails
 _OURS = re.compile(
     rf"design\.(json|png)|point_\d+\.toml|{SOLVED}|.*\.csv|cards\.toml|springs\.toml"
@@ -116,6 +119,9 @@ def designed(task: DesignTask, out: Path, progress: Progress = SILENT) -> Record
         points, failing = solved_front(study, drafts(study, screened, workers), workers, progress)
         changes: list[Record] = []
         smaller: Exchanged | None = None
+        roomy = None if points or task.space is None else _without_limit(study, workers, progress)
+        if roomy is not None:
+            points = _within_space(study, roomy.point)
         if points:
             head = _summary(study, points, None)
             write_atomic(out, _written(points[0], out.stem, file, head))  # a first answer
@@ -125,7 +131,8 @@ def designed(task: DesignTask, out: Path, progress: Progress = SILENT) -> Record
         else:
             progress.stage("relaxations")
             nearest = failing[0] if failing else None
-            changes = relaxations(study, nearest, out, workers, progress)
+            room = inf if roomy is None else _SPARE * roomy.point.size
+            changes = relaxations(study, nearest, out, workers, progress, room)
     document: Record = {
         "schema": 1,
         "torque": _demand_record(task),
@@ -162,6 +169,31 @@ def designed(task: DesignTask, out: Path, progress: Progress = SILENT) -> Record
         document["conflict"] = {"limits": limits, "relaxations": changes}
     write_atomic(folder / RECORD, json_text(document) + "\n")
     return document
+
+
+def _without_limit(study: PointStudy, workers: Crew, progress: Progress) -> Exchanged | None:
+    """The smallest design that the search reaches by exchanges where the space is not limited.
+
+    None where there is none.
+    """
+    task = study.task
+    roomy = replace(study, task=replace(task, space=None))
+    progress.stage("solve the front without the limit of the space")
+    screened = candidates(roomy.task, study.folder, study.file, SILENT)
+    points, _ = solved_front(roomy, drafts(roomy, screened, workers), workers, progress)
+    if not points:
+        return None
+    progress.stage("exchange parts")
+    return exchanged(roomy, points[0], workers, progress)
+
+
+def _within_space(study: PointStudy, point: Solved) -> list[Solved]:
+    """The design with the limit of the space, if it is small enough and passes."""
+    space = study.task.space
+    if space is None or _SPARE * point.size > space:
+        return []
+    limited = study.solved(replace(point.design, task=study.task))
+    return [limited] if limited.has_cam and limited.passes else []
 
 
 def _prepare(task: DesignTask, folder: Path, out: Path) -> tuple[str, list[str]]:

@@ -25,6 +25,7 @@ from camwright.pipeline.studies.design.synthesised_points import (
 from camwright.pipeline.studies.design.torque_task import DesignOptions, DesignTask
 from camwright.pipeline.studies.redesign.point_store import Record
 
+SPACE = "--space"
 WIDTH = 0.02  # greatest difference of the changes that pass and fail
 _LEAST_REMOVED = 0.25  # of the ripple
 _SLOWEST = 0.4  # of the speeds
@@ -110,11 +111,16 @@ class Bracket:
 
 @dataclass
 class _Search:
-    """Trials of changes; failing: greatest change known to fail, by option."""
+    """Trials of changes.
+
+    room: space in which a design is known to pass; failing: greatest change known to fail, by
+    option.
+    """
 
     study: PointStudy
     workers: Crew
     progress: Progress
+    room: float = inf
     failing: dict[str, float] = field(default_factory=dict)
     tried: int = 0
 
@@ -128,6 +134,9 @@ class _Search:
         self.tried += 1
         change = min(change, lever.greatest)
         study = self.study
+        if lever.name == SPACE and lever.value(change) >= self.room:
+            needed = log(self.room / lever.stated)
+            return Bracket(lever, self.failing.get(lever.name, 0.0), change, needed)
         own = replace(study, task=study.task.relaxed(lever.options(lever.value(change))))
         screened = candidates(own.task, own.folder, own.file, SILENT)
         draft = passing_draft(own, screened, self.workers, lever.order)
@@ -171,7 +180,12 @@ class _Search:
 
 
 def relaxations(
-    study: PointStudy, nearest: Solved | None, out: Path, workers: Crew, progress: Progress
+    study: PointStudy,
+    nearest: Solved | None,
+    out: Path,
+    workers: Crew,
+    progress: Progress,
+    room: float = inf,
 ) -> list[Record]:
     """Relaxations of one option each, with the command line of each; the smallest first.
 
@@ -184,10 +198,11 @@ def relaxations(
     study : PointStudy      with whose task no design passes
     nearest : Solved   the design that fails by the least
     out : Path         case file of the command
+    room : float       space, m, in which a design passes by exchanges of parts; infinite: not known
     """
     every = tuple(_levers(study.task))
     levers = tuple(each for each in every if not each.whole)
-    search = _Search(study, workers, progress)
+    search = _Search(study, workers, progress, room)
     best, larger = _first(search, levers, nearest), list[Bracket]()
     while best is not None:
         best = search.narrowed(best)
@@ -242,7 +257,7 @@ def _levers(task: DesignTask) -> Iterator[Lever]:
     )  # fmt: skip
     if task.space is not None:
         yield Lever(
-            "--space", task.space, _FREE_SPACE * task.space,
+            SPACE, task.space, _FREE_SPACE * task.space,
             lambda value: {"space": _text(value, "mm")}, lambda value: _text(value, "mm"),
             lambda draft: _SPARE * draft.size, lambda candidate: candidate.size,
         )  # fmt: skip
