@@ -402,6 +402,10 @@ wear_rate = "3e-8 mm^3/N/m"
 card = "iso_vg_150"
 temperature = "80 degC"
 
+[cooling]
+ambient_temperature = "30 degC"      # of the housing
+conductance = "2 W/K"                # of a housing of 0.13 m2 at 15 W/(m2 K)
+
 [materials]
 case_hardened = { card = "case_hardened" }
 bearing_steel = { card = "bearing_steel" }

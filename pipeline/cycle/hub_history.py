@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from camwright.geometry.contour import Contour
+from camwright.geometry.extrema import first_greatest
 from camwright.pipeline.case.limits import SHAFT_RELIABILITY
 from camwright.pipeline.contact.elasticity.elastic_body import Elastic
 from camwright.pipeline.contact.hub_elements import HubLoads, RotatingBody, SeatedCam, Slot
@@ -129,9 +130,9 @@ def _fatigue(
     low = np.min([each.min(axis=0) for each in stresses], axis=0)
     amplitude, mean = 0.5 * (high - low), 0.5 * (high + low)
     by_goodman, by_fkm = strength.goodman(amplitude, mean), strength.fkm(amplitude, mean)
-    place = int(np.argmax(np.maximum(by_goodman, by_fkm)))
-    number = int(np.argmax([each[:, place].max() for each in stresses]))
-    at = int(np.argmax(stresses[number][:, place]))
+    place = first_greatest(np.maximum(by_goodman, by_fkm))
+    number = first_greatest([each[:, place].max() for each in stresses])
+    at = first_greatest(stresses[number][:, place])
     return RootFatigue(
         interference=interference,
         goodman=1.0 / float(by_goodman.max()),

@@ -62,8 +62,8 @@ GREATER_IS_WEAKER = {
     "contact_torque", "end_mean_length", "equilibrium", "follower_mass_ratio", "friction_balance",
     "friction_power", "jam_index", "jump", "key_reversal", "key_share", "mesh_uncertainty",
     "pin_pressure_share", "pin_share", "pressure_angle", "roller_load_share", "roller_speed_share",
-    "second_contact_depth", "shaft_deflection", "shaft_slope", "traction_share", "unbalance",
-    "waviness", "wear_depth",
+    "second_contact_depth", "shaft_deflection", "shaft_slope", "surface_temperature",
+    "traction_share", "unbalance", "waviness", "wear_depth",
 }  # fmt: skip
 """Limits that a greater value weakens, by hand; all others with a default, a smaller one."""
 
@@ -108,7 +108,8 @@ def test_relaxed_limits_stand_on_the_record_of_a_preview():
 DRAWN = {
     "acceleration_step", "anti_rotation", "cam_radius", "chord_error", "concave_radius",
     "bearing_gap", "curvature_rate", "curvature_ratio", "face_width", "fork_gap",
-    "fork_shaft_gap", "gear_gap", "machine_shaft_gap", "guide_gap", "guide_length", "minimum_wall",
+    "fork_shaft_gap", "gas_gap", "gear_gap", "machine_shaft_gap", "guide_gap", "guide_length",
+    "minimum_wall",
     "pressure_angle", "second_contact", "self_intersection", "spring_buckling", "tool_gouge",
     "tooth_count", "tooth_ratio", "undercut",
 }  # fmt: skip

@@ -11,7 +11,6 @@ from camwright.pipeline.checks import (
     roller_bearing,
     surface_durability,
 )
-from camwright.pipeline.checks.registry import FORECAST
 
 HALF_WIDTH, PV = 1e-4, 1e6 * by_hand.sliding()
 
@@ -63,7 +62,6 @@ def test_checks_of_a_roller_do_not_apply_to_a_face_nor_the_other_way():
         assert check(solution) is None
     for check in (flat_face_sliding.face_width, flat_face_sliding.face_pv):
         assert check(made.solution()) is None
-        assert check not in FORECAST
 
 
 def test_a_face_is_called_a_face():

@@ -13,7 +13,7 @@ from camwright.pipeline.smoothing.synthesis_problem import CONVERGED, coarsened
 from camwright.pipeline.smoothing.trust_region import descended
 
 MACHINES = Path(__file__).parents[2] / "cases" / "machines"
-OFFSET = 'offset = "11.02 mm"'
+OFFSET = 'offset = "11.02 mm"\nwaviness_height = "5 um"'
 
 
 @cache
