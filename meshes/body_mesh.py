@@ -398,3 +398,9 @@ def cam_mesh(
         loops.append([arc("counter_hole", counter_hole.radius, turn, 0.0, (x, y))])
     size = size.refined(refinement)
     return _body(triangulate(_discretised(loops, size), size))
+
+
+def facet_shapes(s: Array | float) -> Array:
+    """Quadratic shapes (3, ...) of start, end and mid-side node at s in 0 to 1 of a facet."""
+    s = np.asarray(s)
+    return np.array([(1.0 - s) * (1.0 - 2.0 * s), s * (2.0 * s - 1.0), 4.0 * s * (1.0 - s)])

@@ -81,6 +81,8 @@ class Material(Part):
         "endurance_intercept": "none: the endurance pressure holds up to endurance_cycles",
         "sliding_endurance_slope": "none: the endurance pressure holds up to endurance_cycles",
         "sliding_endurance_intercept": "none: the endurance pressure holds up to endurance_cycles",
+        "conductivity": "unknown: needed under a flat face, which slides, and by guides",
+        "specific_heat": "unknown: needed under a flat face, which slides",
         "fatigue_bending": "unknown: no criteria of Crossland and Dang Van, which are advisory",
     }
 

@@ -90,7 +90,7 @@ traction_demand = check(
 ).measured(
     "angles",
     allowed=of_key("roller.friction"),
-    deviation=0.02,
+    deviation=0.01,
     kept=Kept(_traction_kept, unit="-"),
 )(_traction)
 
@@ -109,7 +109,12 @@ traction_reserve = check(
     " traction_demand",
     values=given.TRACTION,
     page="Contact",
-).measured("angles", allowed=of_key("roller.friction", TRACTION_SHARE), deviation=0.02)(_traction)
+).measured(
+    "angles",
+    allowed=of_key("roller.friction", TRACTION_SHARE),
+    # 1.6 % of a cam about to leave its roller: the quotient has a kink where the force is least
+    deviation=0.02,
+)(_traction)
 
 
 @check(

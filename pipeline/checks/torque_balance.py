@@ -343,21 +343,22 @@ def mechanism_temperature(solution: Solution) -> Demand | None:
     across = 2.0 * contour.radius_max().value
     height = across + float(numbers.get("follower.stem_length") or 0.0)
     area = housing_area(across, height, machine.cam.width)
+    # in degrees Celsius, of which the error bar is a share
     worst = worst_case(
-        running, lambda cycle: cooling.temperature(_friction_power(solution, cycle), area)
+        running,
+        lambda cycle: float(celsius(cooling.temperature(_friction_power(solution, cycle), area))),
     )
     least = min(stated, key=stated.__getitem__)
-    warm, allowed = celsius(worst.value), celsius(stated[least])
-    hottest = next(cycle for cycle in running if cycle.load_case == worst.load_case)
-    lost = shown(_friction_power(solution, hottest), "W", 3)
+    warm, allowed = worst.value, celsius(stated[least])
+    lost = shown(max(_friction_power(solution, cycle) for cycle in running), "W", 3)
     note = f"{lost} of friction; least stated: {least}"
-    if cooling.conductance is None and not warm <= allowed:
-        still = f"{float(warm):.3g} degC"
+    if cooling.conductance is None and warm > allowed:
+        still = f"{warm:.3g} degC"
         note += f"; {still} in still air around the box of cam and follower"
         return Demand(None, allowed, note=note, missing=("cooling.conductance",))
     if cooling.conductance is None:
         note += "; no cooling is stated: still air on the box around cam and follower"
-    return Demand(float(warm), float(allowed), worst._replace(value=float(warm)), note=note)
+    return Demand(warm, float(allowed), worst, note=note)
 
 
 def _friction_power(solution: Solution, cycle: Cycle) -> float:

@@ -17,7 +17,7 @@ import scipy
 from numpy.typing import NDArray
 
 from camwright.geometry.arrays import Array, freeze
-from camwright.meshes.body_mesh import BodyMesh
+from camwright.meshes.body_mesh import BodyMesh, facet_shapes
 from camwright.pipeline.contact.body_compliance import RECIPE, LoadedBody
 from camwright.pipeline.contact.elasticity import plane_stress_measures
 from camwright.pipeline.contact.elasticity.elastic_body import StressRecovery
@@ -157,10 +157,10 @@ def _zones(mesh: BodyMesh, nodes: NDArray[np.int64], excluded: float | None) -> 
         for facet in facets[:, away[facets[0]] * away[facets[1]] < 0].T:
             arm = mesh.points[:, facet] - corner[:, None]
             at = scipy.optimize.brentq(
-                lambda s, arm=arm: np.hypot(*(arm @ _shapes(s))) - excluded, 0.0, 1.0
+                lambda s, arm=arm: np.hypot(*(arm @ facet_shapes(s))) - excluded, 0.0, 1.0
             )
             weights = np.zeros(nodes.size)
-            weights[np.searchsorted(nodes, facet)] = _shapes(at)
+            weights[np.searchsorted(nodes, facet)] = facet_shapes(at)
             rims.append(weights)
     return _Zones(excluded, within, np.array(rims).reshape(-1, nodes.size))
 
@@ -174,11 +174,6 @@ def _edges(mesh: BodyMesh) -> NDArray[np.int64]:
     sharp = np.sum(chord[:, before] * chord[:, after], axis=0) < np.cos(_SHARP)
     in_bore = np.intersect1d(mesh.boundary_nodes("bore"), mesh.boundary_nodes("keyway"))
     return np.concatenate([in_bore, at[sharp]])
-
-
-def _shapes(s: float) -> Array:
-    """Quadratic shapes (3,) of start, end and mid-side node at s in 0 to 1 of a facet."""
-    return np.array([(1.0 - s) * (1.0 - 2.0 * s), s * (2.0 * s - 1.0), 4.0 * s * (1.0 - s)])
 
 
 def _half_plane(points: Array, contacts: Array, normals: Array) -> Array:

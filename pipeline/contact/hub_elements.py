@@ -24,10 +24,10 @@ from numpy.typing import NDArray
 from camwright.geometry.arrays import FULL_TURN, Array, rotation, uniform_turn
 from camwright.geometry.errors import ContactError
 from camwright.meshes import body_mesh, cam_outline, shaft_mesh
-from camwright.meshes.body_mesh import BodyMesh
+from camwright.meshes.body_mesh import BodyMesh, facet_shapes
 from camwright.meshes.cam_outline import ContourLike
 from camwright.meshes.element_size import ElementSize
-from camwright.meshes.shaft_mesh import CamOnShaft, cam_on_shaft
+from camwright.meshes.shaft_mesh import cam_on_shaft
 from camwright.pipeline.base import disk_cache
 from camwright.pipeline.contact.elasticity import elastic_body, sparse_factor
 from camwright.pipeline.contact.elasticity.elastic_body import (
@@ -276,16 +276,16 @@ def _solved(seated: SeatedCam) -> dict[str, Array]:
     loads = np.concatenate([_keyed(cam, seated), cam.spun()[..., None], _pushed(cam, seated)], 2)
     resultant = loads.sum(axis=1)
     seat = _at_nodes(cam, meshes.of_bore, normals)
-    moved = cam.displacement(np.concatenate([seat, loads], axis=2))
+    of_loads = cam.displacement(np.concatenate([seat, loads], axis=2))
     back = np.concatenate([_at_nodes(shaft, meshes.of_shaft, normals), shaft.spun()[..., None]], 2)
     yielded = shaft.displacement(back)
-    of_cam = np.einsum("ck,ckl->kl", normals, moved[:, meshes.of_bore])
+    of_cam = np.einsum("ck,ckl->kl", normals, of_loads[:, meshes.of_bore])
     of_shaft = np.einsum("ck,ckl->kl", normals, yielded[:, meshes.of_shaft])
     count = normals.shape[1]
     compliance = of_cam[:, :count] + of_shaft[:, :count]
     gap = of_cam[:, count:].copy()
     gap[:, 2] -= of_shaft[:, count]
-    places, stress = _along_root(cam, seated, moved)
+    places, stress = _along_root(cam, seated, of_loads)
     return {
         "places": places,
         "normals": normals,
@@ -348,11 +348,8 @@ class _Free:
 def _tangential(mesh: BodyMesh, name: str) -> Array:
     """Nodal forces (2, nodes) along the outline, counter-clockwise."""
     forces, radius = np.zeros_like(mesh.points), mesh.boundary_nodes(name)
-    weight = np.zeros(mesh.points.shape[1])
-    start, end, middle = mesh.facet_triples(name)
-    length = np.hypot(*(mesh.points[:, end] - mesh.points[:, start]))
-    for nodes, part in ((start, 1.0), (end, 1.0), (middle, 4.0)):
-        np.add.at(weight, nodes, part / 6.0 * length)
+    start, end, _ = mesh.facet_triples(name)
+    weight = _nodal(mesh, name, np.hypot(*(mesh.points[:, end] - mesh.points[:, start])))
     forces[0, radius] = -(weight * mesh.points[1])[radius]
     forces[1, radius] = (weight * mesh.points[0])[radius]
     return forces
@@ -360,14 +357,18 @@ def _tangential(mesh: BodyMesh, name: str) -> Array:
 
 def _shares(mesh: BodyMesh, name: str, nodes: NDArray[np.int64]) -> Array:
     """Length (k,) of a round boundary that each of its nodes carries, m."""
-    share = np.zeros(mesh.points.shape[1])
-    start, end, middle = mesh.facet_triples(name)
+    start, end, _ = mesh.facet_triples(name)
     chord = np.hypot(*(mesh.points[:, end] - mesh.points[:, start]))
     radius = np.hypot(*mesh.points[:, start])
-    length = 2.0 * radius * np.arcsin(0.5 * chord / radius)
-    for each, part in ((start, 1.0), (end, 1.0), (middle, 4.0)):
-        np.add.at(share, each, part / 6.0 * length)
-    return share[nodes]
+    return _nodal(mesh, name, 2.0 * radius * np.arcsin(0.5 * chord / radius))[nodes]
+
+
+def _nodal(mesh: BodyMesh, name: str, length: Array) -> Array:
+    """Length (all nodes,) that each node carries of the facets of a boundary, by Simpson's rule."""
+    carried = np.zeros(mesh.points.shape[1])
+    for nodes, part in zip(mesh.facet_triples(name), (1.0, 1.0, 4.0), strict=True):
+        np.add.at(carried, nodes, part / 6.0 * length)
+    return carried
 
 
 def _at_nodes(body: _Free, nodes: NDArray[np.int64], normals: Array) -> Array:
@@ -388,9 +389,7 @@ def _pushed(cam: _Free, seated: SeatedCam) -> Array:
         arm, chord = points[:, k, None] - ends[:, 0], ends[:, 1] - ends[:, 0]
         s = np.clip((arm * chord).sum(axis=0) / (chord * chord).sum(axis=0), 0.0, 1.0)
         facet = int(np.argmin(np.hypot(*(arm - s * chord))))
-        at = s[facet]
-        shapes = (1.0 - at) * (1.0 - 2.0 * at), at * (2.0 * at - 1.0), 4.0 * at * (1.0 - at)
-        for node, shape in zip(triples[:, facet], shapes, strict=True):
+        for node, shape in zip(triples[:, facet], facet_shapes(s[facet]), strict=True):
             loads[:, node, k] -= shape * normals[:, k]
     return loads
 
@@ -416,14 +415,13 @@ def _keyed(cam: _Free, seated: SeatedCam) -> Array:
             # exact integral of the shapes over the loaded part of a straight facet
             x = 0.5 * (low + high_loaded) + 0.5 * (high_loaded - low) * s
             at = (x - local[0, facet[0]]) / (local[0, facet[1]] - local[0, facet[0]])
-            shapes = (1.0 - at) * (1.0 - 2.0 * at), at * (2.0 * at - 1.0), 4.0 * at * (1.0 - at)
-            for node, shape in zip(facet, shapes, strict=True):
+            for node, shape in zip(facet, facet_shapes(at), strict=True):
                 push = 0.5 * (high_loaded - low) * float(weights @ shape)
                 loads[:, node, column] += side * push * across
     return loads / np.abs(cam.couple(loads))
 
 
-def _along_root(cam: _Free, seated: SeatedCam, moved: Array) -> tuple[Array, Array]:
+def _along_root(cam: _Free, seated: SeatedCam, displacement: Array) -> tuple[Array, Array]:
     """Places (2, m) of the root and stress (m, k) along the boundary there."""
     mesh, slot = cam.mesh, seated.slot
     name = "bore" if slot is None else "keyway"
@@ -443,13 +441,7 @@ def _along_root(cam: _Free, seated: SeatedCam, moved: Array) -> tuple[Array, Arr
     near = np.flatnonzero(np.isin(mesh.triangles, nodes).any(axis=0))
     recovery = StressRecovery(cam.body, near)
     rows = np.searchsorted(np.sort(recovery.nodes), nodes)
-    xx, yy, xy = recovery(moved)[:, np.argsort(recovery.nodes)[rows]]
+    xx, yy, xy = recovery(displacement)[:, np.argsort(recovery.nodes)[rows]]
     cosine, sine = (tangent[:, nodes] / np.hypot(*tangent[:, nodes]))[..., None]
     along = xx * cosine**2 + yy * sine**2 + 2.0 * xy * cosine * sine
     return mesh.points[:, nodes], along
-
-
-def meshes_of(seated: SeatedCam) -> CamOnShaft:
-    """Meshes of the elements."""
-    sizing = ElementSize(far_size=_FAR_SIZE * seated.bore_radius)
-    return cam_on_shaft(seated.contour, seated.bore_radius, seated.slot, sizing, seated.refinement)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from typing import Annotated, ClassVar, Literal
 
@@ -38,6 +38,9 @@ class Lubricant(Part):
     """
 
     table: ClassVar[str] = "lubricant"
+    defaults: ClassVar[Mapping[str, str]] = {
+        "scuffing_temperature": "unknown: needed under a flat face, which slides",
+    }
 
     viscosity: Annotated[float, In("mPa s", above=0, at_most=1e5)]
     pressure_viscosity: Annotated[float, In("1/GPa", above=0, at_most=1000)]
@@ -48,7 +51,7 @@ class Lubricant(Part):
     source: str = ""
 
     def warmer(self, rise: float) -> Lubricant:
-        """The oil at a temperature that is higher by a rise, K; as it is without a temperature.
+        """The oil warmer by a rise, K; unchanged where its temperature is not stated.
 
         References
         ----------

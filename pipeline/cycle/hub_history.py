@@ -111,11 +111,10 @@ def _fatigue(
     if strength is None:
         return None
     stresses, opened = [], []
-    angles = [cycle.theta[:: max(1, cycle.theta.size // ANGLES)] for cycle in cycles]
-    for cycle, theta in zip(cycles, angles, strict=True):
-        step = slice(None, None, max(1, cycle.theta.size // ANGLES))
+    steps = [slice(None, None, max(1, cycle.theta.size // ANGLES)) for cycle in cycles]
+    for cycle, step in zip(cycles, steps, strict=True):
         loads = HubLoads(
-            theta,
+            cycle.theta[step],
             np.maximum(cycle.loads.normal_force[step], 0.0) / cam.width,
             # the drive of the cam turns it against the way of the contact along the contour
             -key.application_factor * cycle.loads.cam_torque[step] / flanks.length,
@@ -140,7 +139,7 @@ def _fatigue(
         greatest=float(high[place]),
         least=float(low[place]),
         load_case=cycles[number].load_case,
-        cam_angle=float(angles[number][at]),
+        cam_angle=float(cycles[number].theta[steps[number]][at]),
         opened=float(np.mean(np.concatenate(opened))),
         pressure=float(unloaded),
     )

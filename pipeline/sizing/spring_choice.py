@@ -28,8 +28,6 @@ from camwright.pipeline.sizing.spring_size import (
 _DIGITS = 4
 """Significant digits of a sized rate or preload."""
 _ROUND_OFF = 1e-12
-NO_JUMP = "no follower jump over the speed range"
-BESIDE = f"{NO_JUMP} at the stated preload"
 
 
 def conditions_of(case: Case) -> tuple[HoldingCondition, ...]:
@@ -100,7 +98,7 @@ def spring_of(
     elif RATE in gaps and PRELOAD not in gaps:
         preload = case.spring.preload
         rate = _up_to_digits(least_rate(lift, preload, conditions, force))
-        rate_by = BESIDE
+        rate_by = "no follower jump over the speed range at the stated preload"
         if rate == 0.0:
             rate = _to_digits(preload / lift.stroke)
             rate_by = "least energy at full lift; the stated preload alone holds the follower"
@@ -111,7 +109,11 @@ def spring_of(
         return ChosenSpring(rate, case.spring.preload, rate_by)
     spring = smallest_spring(lift, conditions, rate=rate, force=force)
     share = spring.preload > preload_needed(lift, rate, conditions, force).value
-    preload_by = f"share of {PRELOAD_SHARE:g} of the force at full lift" if share else NO_JUMP
+    preload_by = (
+        f"share of {PRELOAD_SHARE:g} of the force at full lift"
+        if share
+        else "no follower jump over the speed range"
+    )
     return ChosenSpring(rate, _up_to_digits(spring.preload), rate_by, preload_by)
 
 

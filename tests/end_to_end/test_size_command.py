@@ -250,6 +250,8 @@ def test_the_return_may_be_steeper() -> None:
     case["roller"]["bearing"] = {"name": "plain", "C": "20 kN", "C0": "20 kN"}
     case["cam"]["bore_radius"], case["roller"]["hub_radius"] = "10 mm", "6 mm"
     case["limits"] |= {"return_pressure_angle": "45 deg", "tool_radius": "5 mm"}
+    # a tilted sharp end would make the cam grow
+    case["limits"] |= {"axis_parallelism": "0.001 mrad", "cam_run_out": "0.1 um"}
     sizing = sized(parse_open_case(tomli_w.dumps(case)))
     assert isinstance(sizing.shapes, RollerShapes)
     angles = sizing.shapes.cam.extremes(sizing.exact.prime_radius, sizing.exact.offset)
@@ -293,7 +295,7 @@ def test_a_spring_of_the_catalogue_keeps_the_follower_on_the_cam_with_its_surge(
 def test_the_rate_is_found_beside_a_stated_preload() -> None:
     """29.04 lbf/in = 5085.5 N/m beside 2 lbf, by hand in `test_spring_size`; to four digits up.
 
-    Half a per cent more for the error bars of the checks.
+    The profile at its lowest takes 0.03 % of the jump speed; the first step of the search is 0.5 %.
     """
     sizing = cw.size(STRANGERS / "05-shm-imperial" / "free_rate.toml", ["spring.rate"])
     assert sizing.spring.rate == 5112.0
@@ -321,7 +323,7 @@ def test_the_preload_is_the_least_without_jump_at_the_worst_tolerances() -> None
         assert (jump.demand >= jump.limit) is holds
 
 
-PROVEN = 1.005  # of a closed form at its limit, for the error bars of the checks
+FINE = 1440  # cam angles, at which the error bars are below the rounding of a spring to four digits
 LAWS = ("modified_sine", "cycloidal", "polynomial_345", "polynomial_4567")
 
 
@@ -352,6 +354,7 @@ def holds(case: ReadCase, spring: dict[str, float]) -> bool:
         worst[key] = (1.0 - weaker[key]) * value
     for mass in (1.0 + case.tolerances.mass, 1.0 - case.tolerances.mass):
         other = replaced(case, worst | {"follower.mass": mass * case.follower.mass})
+        other = other.with_positions(FINE)
         trial = cw.solve(other, other.contour(given_lift(other)), tier=cw.Tier.SCREENING)
         judged = {each.id: each.status for each in trial.checks}
         if {judged["jump_speed"], judged["contact_at_overspeed"]} - {"pass"}:
@@ -370,8 +373,7 @@ def least_by_closed_forms(seed: int) -> None:
         assert "spring.preload" in str(error)
         return
     stated = {"spring.rate": spring.rate, "spring.preload": spring.preload}
-    firm = {key: PROVEN * value for key, value in stated.items() if key in opened.gaps}
-    assert holds(opened.case, stated | firm)
+    assert holds(opened.case, stated)
     key, reasons = opened.gaps[-1], spring.preload_by + spring.rate_by
     if "share of" not in reasons and "alone holds" not in reasons:
         assert not holds(opened.case, stated | {key: 0.98 * stated[key]})

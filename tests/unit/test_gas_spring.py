@@ -400,7 +400,7 @@ def test_synthesis_on_a_gas_spring_keeps_every_limit():
     head, rest = text.split("[spring]")
     load = 'gravity_angle = "0 deg"\nexternal_force = "100 N"\nmass = "1.1 kg"'
     text = head + spring + rest[rest.index("\n[cam]") :].replace('mass = "1.1 kg"', load)
-    text = text.replace('"1 m/s"', '"2 m/s"').replace('"0.2 W/K"', '"2 W/K"')
+    text = text.replace('"1 m/s"', '"2 m/s"').replace('"0.2 W/K"', '"4 W/K"')
     text = text.replace('"5 degC"', '"315 K"').replace("loss = 0.03", "loss = 0.01")
     limited = parse_case(text)
     trial = preview_case(limited, corners=False)
