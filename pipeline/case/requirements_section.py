@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import datetime as dt
+from collections.abc import Mapping
 from math import radians
 from typing import Annotated, Literal, Self
 
@@ -40,9 +41,21 @@ Order = Annotated[float, In(at_least=0.5, at_most=180)]
 Phase = Annotated[float, In("deg", at_least=-180, at_most=180)]
 
 
+_OF_FILTER: Mapping[str, tuple[str, ...]] = {
+    "moving_average": ("points", "spacing"),
+    "gaussian": ("width",),
+    "harmonic": ("harmonics", "taper"),
+    "savitzky_golay": ("points", "spacing", "degree"),
+    "smoothing_spline": ("cutoff",),
+}
+"""Keys of `[smoothing]` that a filter uses."""
+
+
 class Smoothing(Section):
     """Smoothing of the torque before the lift is computed from it; angles are crank angles.
 
+    Several filters may be stated, of which kind takes one; a kind whose keys are all missing beside
+    those of another filter is refused.
     `constrained` computes the lift of least ripple within all limits; values named by `free` are
     variables within their ranges. Each weight is that of a term over its reference: ripple of
     torque, speed and harmonics (rms) over that of the engine; loss of guides and roller bearing per
@@ -114,6 +127,20 @@ class Smoothing(Section):
             if ends is None or not ends[0] < ends[1]:
                 field = f"smoothing.{name}_range"
                 raise InputError(field, ends, "two rising values, as smoothing.free names it")
+        return self
+
+    @model_validator(mode="after")
+    def _uses_what_is_stated(self) -> Self:
+        """Several filters may be stated, for a study of kinds; one alone is that of the kind."""
+        every = dict.fromkeys(key for keys in _OF_FILTER.values() for key in keys)
+        stated = [key for key in every if key in self.model_fields_set]
+        if stated and "kind" not in self.model_fields_set:
+            limit = f"given with smoothing.{stated[0]}: without it nothing is smoothed"
+            raise InputError("smoothing.kind", "missing", limit)
+        own = _OF_FILTER.get(self.kind, ())
+        if own and stated and not {*own} & {*stated}:
+            limit = f"given: kind = {self.kind} does not use smoothing.{stated[0]}"
+            raise InputError(f"smoothing.{own[0]}", "missing", limit)
         return self
 
     @model_validator(mode="after")

@@ -23,7 +23,8 @@ from camwright.pipeline.checks.cam_shape import contour_radius, lift
 from camwright.pipeline.checks.camshaft_strength import camshaft_of, gear_of
 from camwright.pipeline.checks.check import NONE, ROUNDING, Allowed, Demand, check
 from camwright.pipeline.contact.tiers import Tier
-from camwright.pipeline.cycle.loaded_cam import LoadedCam, wire_of
+from camwright.pipeline.cycle.loaded_cam import LoadedCam
+from camwright.pipeline.cycle.machine_envelope import stem_layout
 from camwright.pipeline.cycle.numbers import Numbers
 from camwright.pipeline.cycle.solution import Solution
 from camwright.pipeline.follower.camshaft_loads import Camshaft
@@ -437,21 +438,8 @@ def fork_gap(cam: LoadedCam) -> Array:
 
 
 def _layout(lift: Value, numbers: Numbers) -> StemLayout:
-    """Guides, stem and coil spring at a maximum lift; the spring at its least preload."""
-    wire = wire_of(numbers)
-    squeezed = numbers["spring.preload_least"] / numbers["spring.rate"]
-    return StemLayout(
-        overhang=numbers["follower.overhang_at_max_lift"],
-        spacing=numbers["guides.spacing"],
-        length_a=numbers["guides.a.length"],
-        length_b=numbers["guides.b.length"],
-        lift=lift,
-        extent=numbers["follower.extent"],
-        stem_diameter=numbers["follower.stem_diameter"],
-        stem_length=numbers.get("follower.stem_length"),
-        spring_length=wire.free_length - squeezed,
-        spring_bore=wire.mean_diameter - wire.wire_diameter,
-    )
+    """Guides, stem and coil spring at a maximum lift, with the spring at its least preload."""
+    return stem_layout(lift, numbers, numbers["spring.preload_least"])
 
 
 _SEAT = "spring.seat_height", "spring.seat_thickness"

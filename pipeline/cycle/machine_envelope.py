@@ -4,12 +4,42 @@ from __future__ import annotations
 
 from math import sqrt
 
+from camwright.geometry.arrays import Value
 from camwright.pipeline.base.envelope import Disc, MechanismSizes, Sleeve
 from camwright.pipeline.base.stem_layout import SEAT_MOST, StemLayout
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.limits import ASSEMBLY_GAP
 from camwright.pipeline.case.machine import machine
+from camwright.pipeline.cycle.loaded_cam import wire_of
 from camwright.pipeline.cycle.numbers import Numbers
+
+
+def stem_layout(lift: Value, numbers: Numbers, preload: Value) -> StemLayout:
+    """Guides, stem and coil spring at a maximum lift and a preload; parts left out have no size.
+
+    Raises
+    ------
+    InputError
+        If the case has no wound spring.
+    """
+    wire = wire_of(numbers)
+
+    def size(key: str) -> Value:
+        value = numbers.get(key)
+        return 0.0 if value is None else value
+
+    return StemLayout(
+        overhang=size("follower.overhang_at_max_lift"),
+        spacing=size("guides.spacing"),
+        length_a=size("guides.a.length"),
+        length_b=size("guides.b.length"),
+        lift=lift,
+        extent=size("follower.extent"),
+        stem_diameter=size("follower.stem_diameter"),
+        stem_length=numbers.get("follower.stem_length"),
+        spring_length=wire.free_length - preload / numbers["spring.rate"],
+        spring_bore=wire.mean_diameter - wire.wire_diameter,
+    )
 
 
 def sizes_of(case: Case, cam_radius: float, lift: float) -> MechanismSizes:
@@ -32,19 +62,8 @@ def sizes_of(case: Case, cam_radius: float, lift: float) -> MechanismSizes:
     end = number("follower.stem_length", sleeves[1].high + lift)
     design = state.spring.design
     if design is not None:
-        length = design.free_length - state.spring.preload / state.spring.rate
-        layout = StemLayout(
-            overhang=overhang,
-            spacing=spacing,
-            length_a=number("guides.a.length"),
-            length_b=number("guides.b.length"),
-            lift=lift,
-            extent=number("follower.extent"),
-            stem_diameter=stem,
-            stem_length=numbers.get("follower.stem_length"),
-            spring_length=length,
-            spring_bore=design.mean_diameter - design.wire_diameter,
-        )
+        layout = stem_layout(lift, numbers, state.spring.preload)
+        length = float(layout.spring_length)
         thick = number("spring.seat_thickness", SEAT_MOST * stem)
         stated = numbers.get("spring.seat_height")
         seat = float(layout.seated(thick, case.limits[ASSEMBLY_GAP], stated).height)

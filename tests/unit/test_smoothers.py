@@ -1,5 +1,7 @@
 """The smoothers: linear, zero phase, mean kept, nothing amplified."""
 
+import re
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -177,6 +179,31 @@ def test_from_case_takes_every_field_of_the_section():
     assert (smoother.kind, smoother.width) == ("gaussian", np.radians(40.0))
     assert (smoother.harmonics, smoother.degree) == (9.0, 3)
     assert Smoother.from_case(Smoothing(kind="none"), FOUR_STROKE).angular_width == 0.0
+
+
+@pytest.mark.parametrize(
+    ("stated", "message"),
+    [
+        ({"width": "80 deg"}, "smoothing.kind = missing, must be given with smoothing.width"),
+        ({"kind": "moving_average", "width": "80 deg"}, "smoothing.points = missing, must be given"
+         ": kind = moving_average does not use smoothing.width"),
+        ({"kind": "gaussian", "points": 9, "spacing": "5 deg"}, "smoothing.width = missing, must"),
+        ({"kind": "harmonic", "cutoff": "90 deg"}, "smoothing.harmonics = missing, must be given"),
+        ({"kind": "savitzky_golay", "taper": 0.1}, "smoothing.points = missing, must be given"),
+        ({"kind": "smoothing_spline", "degree": 3}, "smoothing.cutoff = missing, must be given"),
+    ],
+)  # fmt: skip
+def test_a_stated_width_is_used_or_refused(stated, message):
+    with pytest.raises(InputError, match=re.escape(message)):
+        Smoothing(**stated)
+
+
+@pytest.mark.parametrize("kind", KINDS[1:])
+def test_several_filters_may_be_stated_and_none_of_no_kind(kind):
+    every = {"points": 9, "width": "80 deg", "harmonics": 9.0, "cutoff": "90 deg"}
+    assert Smoothing(kind=kind, **every).kind == kind
+    assert Smoothing(kind="none", **every).kind == "none"
+    assert Smoothing(kind=kind).kind == kind
 
 
 def test_a_smoother_has_the_defaults_of_its_section():
