@@ -15,19 +15,25 @@ from camwright.pipeline.base.progress import SILENT, Progress
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_values import refused_as_written
 from camwright.pipeline.case.load_case_torque import engine_torques
+from camwright.pipeline.checks.registry import checks_of
 from camwright.pipeline.contact.tiers import Tier
+from camwright.pipeline.cycle.solution import Solution, solution
 from camwright.pipeline.results.run_folder import versions
 from camwright.pipeline.results.trial import CONSTRAINED, GIVEN_LIFT, SmoothingRecord, Trial
 from camwright.pipeline.smoothing.required_lift import cam_lift
 from camwright.pipeline.smoothing.scenario import DesignVariables, redrawn
 from camwright.pipeline.smoothing.smoothers import Smoother
-from camwright.pipeline.solver import judged_at_corners, solve
+from camwright.pipeline.solver import CHECKS, checked, judged_at_corners, solve
 from camwright.pipeline.torque.torque import Torque
 
 if TYPE_CHECKING:
     from camwright.pipeline.smoothing.fe_correction import SynthesisRecord
 
+_CONVERGENCE = 2.0  # of a preview over that of a run
 _ROUNDS = 4  # of synthesis and correction
+_ENDED_ROUNDS = 2  # of them, where the effort ends the search
+_ENDED = "the preview ends the search for the cam before it has converged; a run goes on"
+_EFFORT = 12  # convex programs, tried steps, of a search: most need fewer
 
 
 def preview_case(
@@ -96,65 +102,77 @@ def _kept(case: Case, torques: Mapping[str, Torque], progress: Progress) -> Tria
     drawn = redrawn(case, DesignVariables(*cam["variables"].tolist()))
     record = json.loads(cam["record"].tobytes())
     lift, gain = Lift(cam["theta"], cam["lift"]), float(cam["gain"])
-    return _trial_of(drawn, lift, None if np.isnan(gain) else gain, record, torques, progress)
+    again = _solved(drawn, lift, None if np.isnan(gain) else gain, torques, progress)
+    return _trial_of(again, record, progress)
 
 
-def _trial_of(
+def _solved(
     drawn: Case,
     lift: Lift,
     gain: float | None,
-    record: SynthesisRecord,
     torques: Mapping[str, Torque],
     progress: Progress,
-) -> Trial:
+) -> Solution:
+    """Cam of a synthesis by closed forms."""
+    solved = solution(drawn, drawn.contour(lift), Tier.PREVIEW, torques=torques, progress=progress)
+    return replace(solved, synthesis_gain=gain)
+
+
+def _trial_of(solved: Solution, record: SynthesisRecord, progress: Progress) -> Trial:
     """Trial of the cam of a synthesis, without tolerance corners."""
-    trial = solve(
-        drawn,
-        drawn.contour(lift),
-        tier=Tier.PREVIEW,
-        torques=torques,
-        corners=False,
-        synthesis_gain=gain,
-        progress=progress,
-    )
-    return replace(trial, smoothing=CONSTRAINED, synthesis=record)
+    progress.stage(CHECKS)
+    return replace(checked(solved), smoothing=CONSTRAINED, synthesis=record)
 
 
 def _synthesised(case: Case, torques: Mapping[str, Torque], progress: Progress) -> Trial:
-    """Trial of the constrained synthesis, without tolerance corners."""
+    """Trial of the constrained synthesis, without tolerance corners.
+
+    The number of splines rises once, with the first correction. A search that has not converged
+    after `_EFFORT` ends, as a note tells: a run goes on.
+    """
     # Most previews need no optimiser.
     from camwright.pipeline.smoothing.constrained_synthesis import synthesise
     from camwright.pipeline.smoothing.fe_correction import (
         Comparison,
-        Rank,
         compared,
         corrected,
         design_record,
         rank,
         solved_ripple,
     )
-    from camwright.pipeline.smoothing.multistart import explored
+    from camwright.pipeline.smoothing.multistart import explored, resolved
     from camwright.pipeline.smoothing.problem_setup import problem_of
 
-    problem = problem_of(case, torques)
+    asked = problem_of(case, torques)
+    problem = replace(asked, convergence=None, effort=_EFFORT)
+    convergence = None if asked.convergence is None else _CONVERGENCE * asked.convergence
+    design, refined = explored(problem, 1).design, convergence is None
     comparisons: list[Comparison] = []
-    best: tuple[Rank, Trial] | None = None
+    tried: list[tuple[Solution, SynthesisRecord]] = []
     while True:
-        if comparisons:
+        if not refined and (comparisons or not (design.feasible or design.stuck)):
+            rising = replace(problem, convergence=convergence)
+            design, refined = resolved(rising, design)[0][-1], True
+            problem = replace(problem, coefficients=design.coefficients.size)
+        elif comparisons:
             design = synthesise(problem)
-        else:
-            first = explored(problem, 1)
-            design, problem = first.design, replace(problem, coefficients=first.splines)
-        drawn, record = redrawn(case, design.variables), design_record(design, problem)
-        trial = _trial_of(drawn, design.lift(), design.ripple_gain, record, torques, progress)
-        comparisons.append(compared(problem, design, trial.solution))
-        ranked = rank(trial.checks, solved_ripple(trial.cycles))
-        if best is None or ranked <= best[0]:
-            best = (ranked, trial)
-        last = not design.feasible or len(comparisons) == _ROUNDS
-        if last or comparisons[-1].settled:
-            return best[1]
+        drawn, gain = redrawn(case, design.variables), design.ripple_gain
+        solved = _solved(drawn, design.lift(), None if design.ended else gain, torques, progress)
+        tried.append((solved, design_record(design, problem)))
+        comparisons.append(compared(problem, design, solved))
+        # After a search that its effort has ended, corrections do not settle.
+        rounds = _ENDED_ROUNDS if design.ended else _ROUNDS
+        last = not design.feasible or len(comparisons) >= rounds
+        if last or (refined and comparisons[-1].settled):
+            break
         problem = corrected(problem, design, comparisons)
+    if design.ended:
+        progress.note(_ENDED)
+    # Of equal ones the last.
+    best = min(
+        reversed(tried), key=lambda one: rank(checks_of(one[0]), solved_ripple(one[0].cycles))
+    )
+    return _trial_of(*best, progress)
 
 
 def smoothing_record(smoother: Smoother | None) -> SmoothingRecord:

@@ -84,8 +84,13 @@ def solve(
         if tier is Tier.CERTIFIED:
             solved = certified_solution(solved, hands, progress=progress)
         progress.stage(CHECKS)
-        trial = Trial(1, "", GIVEN_LIFT, solved, all_checks(solved))
+        trial = checked(solved)
         return trial if tried is None else _at_corners(trial, tried.result())
+
+
+def checked(solved: Solution) -> Trial:
+    """Trial of a solution with its checks, nominal."""
+    return Trial(1, "", GIVEN_LIFT, solved, all_checks(solved))
 
 
 def judged_at_corners(trial: Trial, torques: Mapping[str, Torque]) -> Trial:

@@ -123,18 +123,30 @@ def _read(path: Path) -> dict[str, Array] | None:
 def _write(path: Path, arrays: Arrays) -> None:
     """Write an entry; a folder that cannot be written is no error."""
     with suppress(OSError, ResultError):
-        write_atomic(path, npz_bytes(arrays, compressed=False))
+        write_atomic(path, npz_bytes(arrays, compressed=False), durable=False)
         _make_room(path)
 
 
 def _make_room(newest: Path) -> None:
-    """Delete the least recently used entries until the rest is no larger than `LARGEST`."""
-    entries = [(entry.stat(), entry) for entry in newest.parent.glob("*.npz") if entry != newest]
-    room = LARGEST - newest.stat().st_size
+    """Delete the least recently used entries until the rest is no larger than `LARGEST`.
+
+    The folder is measured at the first entry of a process and when its own entries fill it.
+    """
+    place, size = newest.parent, newest.stat().st_size
+    if place in _sizes and _sizes[place] + size <= LARGEST:
+        _sizes[place] += size
+        return
+    entries = [(entry.stat(), entry) for entry in place.glob("*.npz") if entry != newest]
+    kept = size
     for state, entry in sorted(entries, key=lambda pair: pair[0].st_mtime, reverse=True):
-        room -= state.st_size
-        if room < 0:
+        kept += state.st_size
+        if kept > LARGEST:
             entry.unlink(missing_ok=True)
+    _sizes[place] = min(kept, LARGEST)
+
+
+_sizes: dict[Path, int] = {}
+"""Bytes of the entries of a folder as far as this process knows."""
 
 
 @lru_cache(maxsize=1)

@@ -230,8 +230,11 @@ def locked(path: Path, busy: str) -> IO[str] | None:
         lock.close()  # its holder deleted it after it was opened here
 
 
-def write_atomic(path: Path, content: bytes | str) -> Path:
+def write_atomic(path: Path, content: bytes | str, *, durable: bool = True) -> Path:
     """Write a file whole or not at all; creates missing parent folders.
+
+    durable: on the disk when this returns. A file that may be missing or cut short after a loss of
+    power need not wait for it.
 
     Raises
     ------
@@ -245,8 +248,9 @@ def write_atomic(path: Path, content: bytes | str) -> Path:
         handle, temporary = tempfile.mkstemp(prefix=".", suffix=".tmp", dir=path.parent)
         with os.fdopen(handle, "wb") as file:
             file.write(data)
-            file.flush()
-            os.fsync(file.fileno())
+            if durable:
+                file.flush()
+                os.fsync(file.fileno())
         Path(temporary).chmod(0o644)
         Path(temporary).replace(path)
     except OSError as error:

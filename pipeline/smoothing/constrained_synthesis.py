@@ -62,7 +62,7 @@ def synthesise(
 
 def approached(problem: Problem) -> State:
     """End of a search at the points alone: a start for more splines."""
-    return descended(started(problem), 1.0).state
+    return descended(started(problem), 1.0, draft=True).state
 
 
 def started(problem: Problem, ripple_weight: float = 1.0) -> Search:
@@ -137,6 +137,7 @@ def _design(search: Search, descent: Descent, steps: int, peaks: _Peaks) -> Desi
         steps=steps,
         gain=descent.gain,
         stuck=descent.stuck,
+        ended=descent.ended,
         lagrangian=None
         if descent.model is None or descent.program is None
         else Lagrangian.of(search, state, descent.model, descent.program),

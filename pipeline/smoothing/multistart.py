@@ -184,17 +184,21 @@ def resolved(problem: Problem, start: Design | State) -> tuple[list[Design], Res
     if problem.convergence is None:
         return designs, Resolution(problem.lobes * problem.coefficients)
     most = COEFFICIENTS_MAX // problem.lobes
-    if designs[0].stuck:
+    if designs[0].stuck or designs[0].ended:
         return designs, Resolution(problem.lobes * problem.coefficients, settled=False)
+    change = problem.convergence
     while True:
         before, count = designs[-1], designs[-1].coefficients.size
-        finer = min(round(_REFINEMENT * count), most)
+        # As often as the change must be halved, which a refinement does at best.
+        halvings = max(1, round(np.log2(abs(change) / problem.convergence)))
+        finer = min(round(_REFINEMENT**halvings * count), most)
         designs.append(continued(replace(problem, coefficients=finer), before))
         after = designs[-1]
         least = max(after.ripple, NEGLIGIBLE)  # below, ripples are equal
         change = max(before.ripple, NEGLIGIBLE) / least - 1.0
         settled = abs(change) <= problem.convergence
-        if settled or finer == most or not (before.feasible and after.feasible):
+        further = finer < most and not after.ended
+        if settled or not further or not (before.feasible and after.feasible):
             lobes = problem.lobes
             return designs, Resolution(lobes * finer, lobes * count, change, settled)
 

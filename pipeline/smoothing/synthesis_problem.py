@@ -56,6 +56,8 @@ class Problem:
                                     and the end of the error bar, over that of the scenarios, by
                                     limit; of a limit that is not named 1
     seed : array (coefficients,)    start, J; None: convex optimum or exact energy
+    effort : int                    convex programs after which a search within the limits ends;
+                                    None: it ends at an optimum
     """
 
     scenarios: tuple[Scenario, ...]
@@ -73,6 +75,7 @@ class Problem:
     left_out: frozenset[str] = frozenset()
     judged: Mapping[str, float] = field(default_factory=dict)
     seed: Array | None = None
+    effort: int | None = None
 
     def grid(self, theta: Array) -> Grid:
         """Splines of the energy at cam angles (m,), rad."""
@@ -132,6 +135,7 @@ class Design:
     steps : int             of the search
     gain : float            decrease of the objective that another step of the search foresees
     stuck : bool            whether no cam near it exceeds the limits by notably less
+    ended : bool            whether the effort of the problem ended the search, not an optimum
     lobes : int             equal lobes of the turn
     lagrangian : OfProblems   of the optimum; None: no program was solved
     """
@@ -146,6 +150,7 @@ class Design:
     steps: int
     gain: float
     stuck: bool = False
+    ended: bool = False
     lobes: int = 1
     lagrangian: OfProblems | None = None
 

@@ -26,10 +26,12 @@ _RAISED = 1e-4  # foreseen gain at `PENALTY`, outside a limit, at which the pena
 _STEPS_MAX = 60
 _TRUST, _TRUST_LEAST = 0.3, 1e-7
 _PROOF = 0.03  # least trust region in which a foreseen gain proves convergence
+_GROWTH, _GROWTH_OUTSIDE = 4.0, 2.0  # of the trust region after a good step, within the limits
 _SMALLER, _SMALLEST = 0.35, 0.1  # of the trust region of a refused step
 _REFUSALS = 2  # of a step; after more the functions are rough
 _ADDITIONS = 4
 _CORRECTED = 0.9  # of the foreseen gain: below, the step is corrected
+_BENT = 0.5  # of the foreseen gain: below, the step is shortened
 _SETTLING = 10  # steps in which most searches outside the limits converge; then they may be stuck
 _STUCK = 0.01  # of the violation: greatest decrease in the linear models of a search that is stuck
 _VIOLATED = 1e-6
@@ -40,7 +42,8 @@ class Descent(NamedTuple):
     """End of a descent: state, last model and its program, number of steps.
 
     gain: decrease of the merit that another step foresees; penalty: of a unit of violation. stuck:
-    whether no cam near the end exceeds the limits by notably less.
+    whether no cam near the end exceeds the limits by notably less. ended: whether the effort of the
+    problem ended the search.
     """
 
     state: State
@@ -50,6 +53,7 @@ class Descent(NamedTuple):
     gain: float
     penalty: float
     stuck: bool = False
+    ended: bool = False
 
 
 def descended(
@@ -58,6 +62,8 @@ def descended(
     earlier: Descent | None = None,
     enough: float | None = None,
     worth: float = 0.0,
+    *,
+    draft: bool = False,
 ) -> Descent:
     """Local optimum of a search from its start.
 
@@ -75,6 +81,8 @@ def descended(
     worth : float           least decrease of the merit over `_PATIENCE` steps within the limits:
                             means of loads that jump at the reversals of an offset follower are
                             rough functions of the cam, on which the search creeps
+    draft : bool            a start for another search: the effort of the problem ends it outside
+                            the limits, too
 
     References
     ----------
@@ -92,6 +100,7 @@ def descended(
     state, trust = search.state(*start), _TRUST
     penalty = PENALTY if earlier is None else earlier.penalty
     merits: list[float] = []
+    tries, effort = 0, search.problem.effort or np.inf
     for step in range(1, _STEPS_MAX + 1):
         before, priced = model, program
         merits.append(state.merit(penalty, ripple_weight))
@@ -100,6 +109,8 @@ def descended(
             return Descent(state, before, priced, step, worth, penalty)
         if enough is not None and state.ripple <= enough and _within(state):
             return Descent(state, before, priced, step, np.inf, penalty)
+        if tries >= effort and (draft or _within(state)):
+            return Descent(state, None, None, step, np.inf, penalty, ended=True)
         model = search.model(state)
         if before is not None and priced is not None:
             bend = lagrangian_curvature(search, state, model, before, priced)
@@ -107,6 +118,7 @@ def descended(
         proven, gain, tested, widest, refused = False, np.inf, False, trust, 0
         while True:
             program, there, model = _program(search, state, model, trust, penalty, ripple_weight)
+            tries += 1
             if program is None:
                 trust *= 0.3
                 if trust < _TRUST_LEAST:
@@ -151,6 +163,9 @@ def descended(
                     if gain > actual:
                         (_, there, _), actual = other, gain
                     gain /= scale
+            if not outside and least < actual < _BENT * predicted:
+                nearer = _nearer(search, state, program.step, there, penalty, ripple_weight)
+                there, actual = nearer, now - nearer.merit(penalty, ripple_weight)
             # Narrower steps than the first were refused before those that prove convergence.
             if predicted <= least or (proven and trust < min(widest, _PROOF)):
                 if trust < _PROOF and not proven:
@@ -166,7 +181,8 @@ def descended(
             share = actual / predicted
             if share > 0.05:
                 state = there
-                trust = min(trust * (2.0 if share > 0.7 else 1.0 if share > 0.25 else 0.5), 1.0)
+                wider = _GROWTH_OUTSIDE if outside else _GROWTH
+                trust = min(trust * (wider if share > 0.7 else 1.0 if share > 0.25 else 0.5), 1.0)
                 break
             refused += 1
             trust *= _SMALLER if refused <= _REFUSALS else _SMALLEST
@@ -176,6 +192,25 @@ def descended(
             if trust < _TRUST_LEAST:
                 return Descent(state, model, program, step, gain, penalty)
     return Descent(state, model, program, _STEPS_MAX, gain, penalty)
+
+
+def _nearer(
+    search: Search, state: State, step: Array, there: State, penalty: float, ripple_weight: float
+) -> State:
+    """Best of the end of a step, its middle and the least of the parabola of their merits.
+
+    Where the curvature of the model is too small, steps fall to and fro across a valley.
+    """
+    middle = search.state(*search.after(state, 0.5 * step))
+    merits = [each.merit(penalty, ripple_weight) for each in (state, middle, there)]
+    slope, bend = (
+        4.0 * merits[1] - 3.0 * merits[0] - merits[2],
+        merits[0] - 2.0 * merits[1] + merits[2],
+    )
+    tried = [there, middle]
+    if bend > 0.0 and 0.0 < (place := -0.25 * slope / bend) < 1.0:
+        tried.append(search.state(*search.after(state, place * step)))
+    return min(tried, key=lambda each: each.merit(penalty, ripple_weight))
 
 
 def _stuck(search: Search, state: State, model: Model) -> bool:

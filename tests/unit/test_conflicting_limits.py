@@ -1,7 +1,7 @@
-"""Work of a synthesis whose limits conflict: it is bounded, and the violation is near the least.
+"""Work of a synthesis: it is bounded where limits conflict and where a search falls to and fro.
 
 The violations compared with are those of a search that goes on, by penalties of 200 and 2000, until
-its trust region is 1e-7: 667, 1061 and 1089 programs for the three cases.
+its trust region is 1e-7.
 """
 
 from dataclasses import replace
@@ -45,6 +45,29 @@ FAST_TWO_STROKE = (
         "solver.positions": 72,
     },
 )
+ACROSS_A_VALLEY = (
+    "machines/hand-pump.toml",
+    {
+        "cam.offset": "-5.8354 mm",
+        "cam.profile_tolerance": "16.6194 um",
+        "cam.width": "17.2678 mm",
+        "guides.b.length": "36.5461 mm",
+        "limits.overspeed": "68.6006 rpm",
+        "limits.torque_reduction": 0.2656,
+        "load_case[0].speed": "52.1364 rpm",
+        "solver.positions": 127,
+        "spring.preload": "445.164 N",
+    },
+)
+ROUGH = (
+    "machines/compressor.toml",
+    {
+        "cam.offset": "11.0199 mm",
+        "cam.prime_radius": "57.023 mm",
+        "follower.mass": "1.64193 kg",
+        "solver.positions": 127,
+    },
+)
 WIDE_SPEEDS_OF_A_FACE = (
     "gx120-flat-face.toml",
     {
@@ -81,7 +104,7 @@ def programs(monkeypatch):
     ("variant", "least"),
     [
         pytest.param(OFFSET_PUMP, 0.3693, id="offset"),
-        pytest.param(FAST_TWO_STROKE, 0.6827, id="offset and two lobes", marks=pytest.mark.slow),
+        pytest.param(FAST_TWO_STROKE, 0.02009, id="offset and two lobes", marks=pytest.mark.slow),
         pytest.param(WIDE_SPEEDS_OF_A_FACE, 1.8049, id="flat face", marks=pytest.mark.slow),
     ],
 )
@@ -110,3 +133,20 @@ def test_a_limit_dearer_than_the_first_penalty_is_kept_all_the_same():
     end = descended(started(coarsened(kept)), ripple_weight=500.0)
     assert end.penalty > PENALTY and not end.stuck
     assert end.state.violation < 1e-5
+
+
+def test_a_search_does_not_fall_to_and_fro_across_a_valley(programs):
+    """Ripple and loss trade: 15 programs where steps that are not shortened take 40."""
+    found = explored(replace(problem(*ACROSS_A_VALLEY), convergence=None), 1).design
+    assert len(programs) < 25
+    assert found.converged and found.feasible
+    assert found.objective == pytest.approx(0.25896, rel=3e-4)
+
+
+def test_the_effort_ends_a_rough_search_within_the_limits(programs):
+    """Near the ripple of the search to its end, 0.7807."""
+    asked = replace(problem(*ROUGH), convergence=None, effort=12)
+    found = explored(asked, 1).design
+    assert found.ended and found.feasible and not found.converged
+    assert found.ripple == pytest.approx(0.7807, rel=0.002)
+    assert found.lagrangian is None and found.ripple_gain

@@ -30,6 +30,7 @@ _SYMMETRIC = 1e-12
 _MIRROR, _MIRROR_POISSON, _MIRROR_LIKE = 2.07, 0.667, 0.314
 # Remainder over half the length, of a body as deep as long: squares, product times squares.
 _SQUARES, _ODD = -0.145, 0.21
+_TINY = np.finfo(float).tiny  # of a logarithm whose factor is zero
 
 
 def mirror_factor(poisson: float, likeness: ArrayLike = 1.0) -> Array:
@@ -221,8 +222,9 @@ def _double_integral(across: _Pairs, along: _Pairs) -> Array:
 
 def _fourth_primitive(x: Array, y: Array) -> Array:
     """Primitive of 1/r, twice in x and twice in y, m3, for x and y >= 0."""
-    r = np.hypot(x, y)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        first = np.where(x == 0, 0.0, 0.5 * x**2 * y * np.arcsinh(y / x))
-        second = np.where(y == 0, 0.0, 0.5 * x * y**2 * np.arcsinh(x / y))
-    return np.asarray(first + second - r**3 / 6.0)
+    # arsinh(y/x) = ln(y + r) - ln(x), to the round-off of r^3; the logarithms are vectorised.
+    r = np.sqrt(x * x + y * y)
+    logs = [np.log(np.where(each == 0, 1.0, each)) for each in (x, y)]
+    first = x * x * y * (np.log(np.maximum(y + r, _TINY)) - logs[0])
+    second = x * y * y * (np.log(np.maximum(x + r, _TINY)) - logs[1])
+    return np.asarray(0.5 * (first + second) - r * r * r / 6.0)
