@@ -230,7 +230,7 @@ def _differing(
         residuals = {"load_case"} if evidence else set()
         for key in sorted((now.keys() | stored.keys()) - residuals):
             own = ERRORS if key == "error" or evidence else tolerance
-            shares = evidence and key in ("utilisation", "margin") or where == ".utilisations"
+            shares = (evidence and key in ("utilisation", "margin")) or where == ".utilisations"
             size = 1.0 if shares else least
             path = f"{where}.{key}"
             yield from _differing(now.get(key), stored.get(key), own, path, size)
