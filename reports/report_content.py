@@ -14,6 +14,7 @@ from camwright.pipeline.results.check_records import CERTIFIED
 from camwright.pipeline.results.model_limits import MODEL_LIMITS
 from camwright.pipeline.results.run_reader import TrialRecord, load_end_words, results_sha256
 from camwright.reports import report_tables, verification_tables
+from camwright.reports.analysis_sheet import TRIALS
 from camwright.reports.check_parts import PARTS
 from camwright.reports.figure_svg import Drawn, drawn_groups
 from camwright.reports.report_data import ReportMaterial
@@ -40,9 +41,11 @@ _RUNNING = ("report", "total")
 SHORT = 140
 """Maximum number of characters of a title or name on one line."""
 TRIALS_HEAD = (
-    "Trial", "Smoothing", "Strength", "Width, shaft angle", "Reason", "Verdict",
+    "Trial", "Smoothing", "Strength", "Width, shaft angle", "Ripple left", "Reason", "Verdict",
     "Required checks not passed",
 )  # fmt: skip
+WORST_NAMED = 6
+"""Failed checks of a trial that its row names."""
 MISSING = (
     "A required check without data leaves the verdict INCOMPLETE at best. Describe the part in the "
     "case, or leave it out of the sign-off in [scope]."
@@ -322,7 +325,8 @@ def _sheet(material: ReportMaterial) -> ReportSection:
         others = f", {words}; ribbons: range of all {count} load cases"
     return ReportSection(
         "sheet", "Cam analysis sheet",
-        [SectionBlock(Figures(drawn), title) for title, drawn in drawn_groups(material)],
+        [SectionBlock(Figures(drawn), title) for title, drawn in drawn_groups(material)
+         if title != TRIALS],
         f"Load case {isolated(turn.load_case)}{others}. Dotted line: cam angle of the maximum "
         f"contact pressure. Red dashed lines: limits. {_beyond_hertz(material)}".rstrip(),
     )  # fmt: skip
@@ -330,7 +334,8 @@ def _sheet(material: ReportMaterial) -> ReportSection:
 
 def _trials(material: ReportMaterial) -> ReportSection:
     run = material.run
-    table = ReportTable("Trials", TRIALS_HEAD, [_trial(trial) for trial in run.trials], 2, 2)
+    rows = [_trial(*each) for each in zip(run.trials, run.ripples, strict=True)]
+    table = ReportTable("Trials", TRIALS_HEAD, rows, 2, 3)
     prices = verification_tables.prices(run.summary["prices"])
     shaft = material.turn.words.shaft
     lead = (
@@ -348,30 +353,36 @@ def _trials(material: ReportMaterial) -> ReportSection:
         "trials", "Trials and shadow prices",
         [
             SectionBlock(Tabular(table)),
+            *(SectionBlock(Figures(each), "Trials compared")
+              for title, each in drawn_groups(material) if title == TRIALS),
             *_tables(
                 (prices, "Shadow prices of the limits", lead),
                 (machine, "Prices of the numbers of the machine", machine_lead),
             ),
         ],
         "Each trial recomputes all stages from its own lift; "
-        f"trial {run.final.number} is the result.",
+        f"trial {run.final.number} is the result. Ripple left: standard deviation of the {shaft} "
+        "torque with the cam in the design load case.",
         "Trials",
     )  # fmt: skip
 
 
-def _trial(trial: TrialRecord) -> list[str | Status]:
-    """A trial as a row."""
+def _trial(trial: TrialRecord, ripple: float | None) -> list[str | Status]:
+    """A trial as a row; ripple: see `Run.ripples`."""
     record = trial.record
     rows = [row for row in report_tables.check_rows(trial.checks) if row.id in trial.binding]
     width = record["smoothing_width_deg"]
     failing = [f"{row.title} ({row.utilisation})" for row in rows if row.status.id == "fail"]
     unknown = sum(row.status.id == "not_evaluated" for row in rows)
-    held = [*failing, *([f"{unknown} without data"] if unknown else [])]
+    more = len(failing) - WORST_NAMED
+    held = [*failing[:WORST_NAMED], *([f"{more} more fail"] if more > 0 else []),
+            *([f"{unknown} without data"] if unknown else [])]  # fmt: skip
     word = str(trial.verdict or trial.screen)
     return [
         str(trial.number), str(record["smoothing_description"]),
         report_tables.number(record["smoothing_strength"], 3),
         report_tables.quantity(width, "deg") if width is not None else DASH,
+        report_tables.quantity(ripple, "N m", 3),
         titled(str(record["why"]), trial.checks), Status(word, word.upper()),
         "; ".join(held) or "none",
     ]  # fmt: skip

@@ -105,10 +105,12 @@ def run(
                 ahead=None if no_report else drawings.begin,
                 also=valve_record,
             )
-    from camwright.pipeline.results.run_reader import read_summary, read_verdict
-    from camwright.pipeline.results.verdict_summary import Places
+    from camwright.pipeline.results.run_reader import read_run, read_summary, read_verdict
+    from camwright.pipeline.results.verdict_summary import Places, trial_lines
 
     seconds = read_summary(out)["timings_s"]["total"]
+    for line in trial_lines(read_run(out)):
+        stdout.print(line, markup=False)
     show(read_verdict(out), Places(str(out), str(case), page_of(out), seconds))
     return PASSED
 
