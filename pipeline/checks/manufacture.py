@@ -73,6 +73,9 @@ cam_radius = check(
     title="Maximum cam radius",
     tier=Tier.SCREENING,
     formula="max |P| <= R; P: contour, R: limits.cam_radius",
+    symbols={
+        "P": "contour_radius",
+    },
     reason="The cam must fit into its space.",
     method="greatest radius of the contour, refined between samples",
     lift_can_help=True,
@@ -114,6 +117,13 @@ def _waves_in_words(demand: Demand, solution: Solution) -> Demand:
     " else of that of cam.process at lambda and at most of cam.profile_tolerance, v: speed of the"
     " contact along the contour, lambda: cam.waviness_length, N: contact force, at least 1 % of the"
     " least spring force, c: limits.waviness",
+    symbols={
+        "m": "follower.mass",
+        "a": "cam.waviness/2 [um]",
+        "v": "cam.speed contour_speed [m/s]",
+        "lambda": "cam.waviness_length",
+        "N": "normal_force",
+    },
     reason="Waves of the surface unload the contact and mark it.",
     method="m a (2 pi v/lambda)^2 of sine waves",
     values=(*given.LOADS, "cam.process", "cam.waviness_*", "cam.profile_tolerance"),

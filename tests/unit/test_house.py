@@ -33,6 +33,7 @@ ORDER = (
     "pipeline.checks",
     "pipeline.smoothing",
     "pipeline.results",
+    "pipeline.hand_check",
     "pipeline.remedies",
     "pipeline",
     "pipeline.screening",
