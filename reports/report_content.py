@@ -9,7 +9,10 @@ from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
+from camwright.geometry.errors import CamError
 from camwright.pipeline.base.files import Json
+from camwright.pipeline.hand_check.hand_sheet import SheetRun
+from camwright.pipeline.hand_check.printed_sheet import PrintedSheet, printed
 from camwright.pipeline.results.check_records import CERTIFIED
 from camwright.pipeline.results.model_limits import MODEL_LIMITS
 from camwright.pipeline.results.run_reader import TrialRecord, load_end_words, results_sha256
@@ -137,6 +140,14 @@ class Points:
 
 
 @dataclass(frozen=True)
+class Sheets:
+    """Hand-check sheets: all on the page, the governing ones in the PDF."""
+
+    kind: ClassVar[str] = "sheets"
+    sheets: Sequence[PrintedSheet]
+
+
+@dataclass(frozen=True)
 class Note:
     """Paragraph in small type."""
 
@@ -153,7 +164,9 @@ class Signatures:
     lines: Sequence[str] = ("Name", "Date", "Signature")
 
 
-Content = Checks | Tabular | Pairs | Figures | Pictures | Inputs | Points | Note | Signatures
+Content = (
+    Checks | Tabular | Pairs | Figures | Pictures | Inputs | Points | Note | Sheets | Signatures
+)
 
 
 @dataclass(frozen=True, eq=False)
@@ -224,7 +237,7 @@ def report_content(material: ReportMaterial) -> Report:
                 (SectionBlock(Points([each.statement for each in MODEL_LIMITS])),),
                 brief="Assumptions",
             ),
-            _checks(material), _versions(material),
+            _checks(material), _sheets(material), _versions(material),
         ),
         f"Camwright · {shortened(str(run.summary['case']), 60)}",
         "Cam sign-off" if final.depth == CERTIFIED else f"Cam, {final.depth} without sign-off",
@@ -467,6 +480,25 @@ def _evidence(material: ReportMaterial) -> ReportSection:
     lead = f"Contact model: {method}. {_beyond_hertz(material)}".rstrip() if method else ""
     lead = f"{lead} {verification_tables.ends_refused(final.record)}".strip()
     return ReportSection("evidence", "Evidence", blocks, lead)
+
+
+def _sheets(material: ReportMaterial) -> ReportSection:
+    """Hand-check sheets; the reason why the run has none."""
+    title = "Hand-check sheets"
+    try:
+        run = SheetRun(material.run.path, material.run)
+        governing = {each.record["id"] for each in run.governing()}
+        made = [printed(run.sheet(name), governing=name in governing) for name in run.records]
+    except CamError as error:
+        note = SectionBlock(Note(f"The sheets are not available: {error}"))
+        return ReportSection("hand", title, (note,), brief=title)
+    made.sort(key=lambda each: not each.governing)  # stable
+    return ReportSection(
+        "hand", title, (SectionBlock(Sheets(made)),),
+        "The formula of each check, evaluated once more on the numbers of the run. A result of a "
+        "solver enters as a stated number.",
+        title,
+    )  # fmt: skip
 
 
 def _versions(material: ReportMaterial) -> ReportSection:

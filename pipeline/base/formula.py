@@ -1,4 +1,4 @@
-"""Formula texts of checks: read, evaluated on numbers, and written as text, MathML or Typst.
+"""Formula texts of checks: read, evaluated on numbers, and written as text or in print.
 
 A text has the form ``demand <= limit; symbols with their meaning``. A space is a product; ``max``
 and ``min`` before an argument are those over the turn.
@@ -10,8 +10,7 @@ import math
 import re
 from collections.abc import Callable, Collection, Iterator, Mapping
 from dataclasses import dataclass
-from html import escape
-from typing import NamedTuple
+from typing import Generic, NamedTuple, TypeVar
 
 import numpy as np
 
@@ -272,142 +271,123 @@ class _Reader:
         return Node("call", text, tuple(parts))
 
 
-class Style(NamedTuple):
-    """How a formula is written: its parts as text of a notation.
+@dataclass(frozen=True)
+class Printed:
+    """A part of a formula in print: a letter with its subscript, a number, a sign, or a form.
 
-    name, number : callable      text -> text
-    fraction, power, product : callable   two parts -> text
+    form: name, number, sign, fraction, power, root, bars, group or call; parts: rows of them
     """
 
-    name: Callable[[str], str]
-    number: Callable[[str], str]
-    fraction: Callable[[str, str], str]
-    power: Callable[[str, str], str]
-    product: Callable[[str, str], str]
-    sign: Callable[[str], str]
-    root: Callable[[str], str]
-    absolute: Callable[[str], str]
-    group: Callable[[str], str]
-    call: Callable[[str, str], str]
-    comma: str
-    divides: bool  # whether a fraction needs no parentheses about its parts
+    form: str
+    text: str = ""
+    below: str = ""
+    parts: tuple[tuple[Printed, ...], ...] = ()
 
 
-def written(node: Node, style: Style, known: Mapping[str, str] | None = None) -> str:
-    """A tree in a notation; known: text in place of a name, such as its value with unit."""
+Text = TypeVar("Text", str, tuple[Printed, ...])
 
-    def of(each: Node, least: int) -> str:
+
+@dataclass(frozen=True)
+class Style(Generic[Text]):
+    """How a formula is written: its parts, each by a function of those that it holds.
+
+    divides : bool   a fraction needs no parentheses about its parts
+    """
+
+    name: Callable[[str], Text]
+    number: Callable[[str], Text]
+    sign: Callable[[str], Text]
+    fraction: Callable[[Text, Text], Text]
+    power: Callable[[Text, Text], Text]
+    root: Callable[[Text], Text]
+    bars: Callable[[Text], Text]
+    group: Callable[[Text], Text]
+    call: Callable[[str, Text], Text]
+    divides: bool
+
+
+def written(node: Node, style: Style[Text], known: Mapping[str, str] | None = None) -> Text:
+    """A tree in a style; known: text in place of a name, such as its value with unit."""
+
+    def of(each: Node, least: int) -> Text:
         """Text of a part that has to bind at least so strongly."""
         text = written(each, style, known)
-        return style.group(text) if _binds(each, style) < least else text
+        return style.group(text) if _binds(each, style.divides) < least else text
 
     if node.kind == "number":
         return style.number(node.text)
     if node.kind == "name":
         shown = None if known is None else known.get(node.text)
         return style.name(node.text) if shown is None else style.number(shown)
+    one = node.parts[0]
     if node.kind == "abs":
-        return style.absolute(of(node.parts[0], _SUM))
+        return style.bars(of(one, _SUM))
     if node.kind == "minus":
-        return style.sign("-") + of(node.parts[0], _PRODUCT)
+        return style.sign("-") + of(one, _PRODUCT)
     if node.kind == "call":
-        inner = style.comma.join(of(part, _SUM) for part in node.parts)
+        inner = of(one, _SUM)
+        for part in node.parts[1:]:
+            inner = inner + style.sign(",") + of(part, _SUM)
         return style.root(inner) if node.text == "sqrt" else style.call(node.text, inner)
-    one, other = node.parts
+    other = node.parts[1]
     if node.kind == "/":
-        least = _SUM if style.divides else _PRODUCT
-        return style.fraction(of(one, least), of(other, _SUM if style.divides else _POWER))
+        least = (_SUM, _SUM) if style.divides else (_PRODUCT, _POWER)
+        return style.fraction(of(one, least[0]), of(other, least[1]))
     if node.kind == "^":
-        return style.power(of(one, _ATOM), of(other, _ATOM))
+        return style.power(of(one, _ATOM), of(other, _SUM if style.divides else _ATOM))
     if node.kind == "*":
-        return style.product(
-            of(one, _PRODUCT), of(other, _POWER if not style.divides else _PRODUCT)
-        )
+        return of(one, _PRODUCT) + style.sign("*") + of(other, _POWER)
     return of(one, _SUM) + style.sign(node.kind) + of(other, _PRODUCT)
 
 
-def _binds(node: Node, style: Style) -> int:
+def _binds(node: Node, divides: bool) -> int:
+    """How strongly a node binds; divides: see `Style`."""
     if node.kind in ("+", "-", "minus"):
         return _SUM
-    if node.kind == "*" or (node.kind == "/" and not style.divides):
+    if node.kind == "*" or (node.kind == "/" and not divides):
         return _PRODUCT
     return _POWER if node.kind in ("^", "/") else _ATOM
 
 
-TEXT = Style(
-    name=str,
-    number=str,
-    fraction=lambda one, other: f"{one} / {other}",
-    power=lambda one, other: f"{one}^{other}",
-    product=lambda one, other: f"{one} · {other}",
-    sign=lambda sign: f" {sign} " if sign != "-" else " - ",
-    root=lambda inner: f"sqrt({inner})",
-    absolute=lambda inner: f"|{inner}|",
-    group=lambda inner: f"({inner})",
-    call=lambda name, inner: f"{name}({inner})",
-    comma=", ",
-    divides=False,
-)
-"""Plain text of one line."""
 _GREEK = {
     "alpha": "α", "kappa": "κ", "lambda": "λ", "mu": "μ", "nu": "ν", "phi": "φ", "pi": "π",
     "rho": "ρ", "sigma": "σ", "tau": "τ", "theta": "θ", "zeta": "ζ",
 }  # fmt: skip
+_SIGN = {"*": "·", "-": "\N{MINUS SIGN}"}
 
 
-def symbol(name: str) -> tuple[str, str]:
-    """Letter and subscript of a name in print: ``rho_p`` is ρ with p, ``limits.jump`` itself."""
-    if "." in name:
-        return name, ""
+def _letter(name: str) -> tuple[Printed, ...]:
+    """A name in print: ``rho_p`` is ρ with p below, a key or ``R(T)`` itself."""
+    if "." in name or "(" in name:
+        return (Printed("name", name),)
     base, _, below = name.partition("_")
-    primes = len(name) - len(name.rstrip("'"))
-    return _GREEK.get(base.rstrip("'"), base.rstrip("'")) + "′" * primes, below.rstrip("'")
+    letter = base.rstrip("'")
+    return (Printed("name", _GREEK.get(letter, letter) + "′" * (len(base) - len(letter)), below),)
 
 
-def _mathml_name(name: str) -> str:
-    letter, below = symbol(name)
-    word = f"<mi>{escape(letter)}</mi>"
-    return f"<msub>{word}<mi>{escape(below)}</mi></msub>" if below else word
-
-
-def _row(*parts: str) -> str:
-    return f"<mrow>{''.join(parts)}</mrow>"
-
-
-MATHML = Style(
-    name=_mathml_name,
-    number=lambda text: f"<mtext>{escape(text)}</mtext>",
-    fraction=lambda one, other: f"<mfrac>{_row(one)}{_row(other)}</mfrac>",
-    power=lambda one, other: f"<msup>{_row(one)}{_row(other)}</msup>",
-    product=lambda one, other: f"{one}<mo>·</mo>{other}",
-    sign=lambda sign: f"<mo>{sign.replace('-', '−')}</mo>",
-    root=lambda inner: f"<msqrt>{inner}</msqrt>",
-    absolute=lambda inner: _row("<mo>|</mo>", inner, "<mo>|</mo>"),
-    group=lambda inner: _row("<mo>(</mo>", inner, "<mo>)</mo>"),
-    call=lambda name, inner: f"<mi>{name}</mi>{_row('<mo>(</mo>', inner, '<mo>)</mo>')}",
-    comma="<mo>,</mo>",
-    divides=True,
-)
-"""Elements of MathML, to stand in a ``math`` element."""
-
-
-def _typst_name(name: str) -> str:
-    letter, below = symbol(name)
-    return f'"{letter}"_"{below}"' if below else f'"{letter}"'
-
-
-TYPST = Style(
-    name=_typst_name,
-    number=lambda text: f'"{text}"',
-    fraction=lambda one, other: f"frac({one}, {other})",
-    power=lambda one, other: f"({one})^({other})" if " " in one else f"{one}^({other})",
-    product=lambda one, other: f"{one} dot {other}",
-    sign=lambda sign: f" {sign} ",
+TEXT: Style[str] = Style(
+    name=str,
+    number=str,
+    sign=lambda sign: {"*": " · ", ",": ", "}.get(sign, f" {sign} "),
+    fraction=lambda one, other: f"{one} / {other}",
+    power=lambda one, other: f"{one}^{other}",
     root=lambda inner: f"sqrt({inner})",
-    absolute=lambda inner: f"abs({inner})",
-    group=lambda inner: f"lr(({inner}))",
-    call=lambda name, inner: f'op("{name}")({inner})',
-    comma=", ",
+    bars=lambda inner: f"|{inner}|",
+    group=lambda inner: f"({inner})",
+    call=lambda name, inner: f"{name}({inner})",
+    divides=False,
+)
+"""Plain text of one line."""
+PRINT: Style[tuple[Printed, ...]] = Style(
+    name=_letter,
+    number=lambda text: (Printed("number", text.replace("-", _SIGN["-"])),),
+    sign=lambda sign: (Printed("sign", _SIGN.get(sign, sign)),),
+    fraction=lambda one, other: (Printed("fraction", parts=(one, other)),),
+    power=lambda one, other: (Printed("power", parts=(one, other)),),
+    root=lambda inner: (Printed("root", parts=(inner,)),),
+    bars=lambda inner: (Printed("bars", parts=(inner,)),),
+    group=lambda inner: (Printed("group", parts=(inner,)),),
+    call=lambda name, inner: (Printed("call", name, parts=(inner,)),),
     divides=True,
 )
-"""Math mode of Typst."""
+"""Parts that a page sets as MathML and a PDF as mathematics."""

@@ -283,8 +283,7 @@ def _guide_pv(side: Side) -> Declaration:
         " sliding speed, mean over the turn, d, L: diameter and length of the guide; PV:"
         " guides.*.pv_limit, or the limit of nylon by guides.*.lubrication.",
         symbols={
-            "R": f"guide_normal_load_{side}",
-            "v": "follower_velocity",
+            "mean(|R v|)": f"mean(|guide_normal_load_{side} follower_velocity|) [N m/s]",
             "d": f"{table_of(side)}.diameter",
             "L": f"{table_of(side)}.length",
         },

@@ -42,9 +42,9 @@ _NO_MEAN = 1e-6
     " T_c: torque of machine and cam about their means, c_i: load_case.torque_reduction, else"
     " limits.torque_reduction, c: the greatest c_i",
     symbols={
-        "T_e": "torque_before",
-        "T_c": "torque_before - torque_after [N m]",
-        "c": "limits.torque_reduction",
+        "std(T_e)": "std(torque_before) [N m]",
+        "std(T_e - T_c)": "std(torque_after) [N m]",
+        "c": "torque.greatest_reduction",
         "c_i": "torque.required_reduction",
     },
     reason="It is the purpose of the cam.",

@@ -75,7 +75,7 @@ class Quantity:
     Parameters
     ----------
     symbol : str
-    value : float   SI; of values over the turn their mean
+    value : float   SI
     shown : str     value in the unit of the case or of the column
     source : str    key, table with load case and cam angle, or the cam as drawn; expression
     recorded : bool   one column of the cycle, as solved
@@ -247,32 +247,31 @@ class _Evaluation:
         """Value of a definition, made once."""
         if name not in self.values:
             tree = self.trees[name]
-            value = formula.value(tree, self._symbol, partial(self._symbol, turn=True))
+            value = formula.value(tree, self._symbol)
             self.values[name] = value
             unit = self.declared.symbols.get(name, "").strip("[]")
-            self.steps[name] = SheetStep(
-                name, tree, units.shown(float(np.mean(value)), unit, DIGITS)
-            )
+            self.steps[name] = SheetStep(name, tree, units.shown(float(value), unit, DIGITS))
         return self.values[name]
 
-    def _symbol(self, name: str, *, turn: bool = False) -> Value:
-        """Value of a symbol of the formula; turn: at all cam angles of the load case."""
+    def _symbol(self, name: str) -> Value:
+        """Value of a symbol of the formula."""
         if name in self.trees:
             return self._defined(name)
         text, _, unit = self.declared.symbols.get(name, name).partition(" [")
-        tree, over_turn = formula.parsed(text), partial(self._number, turn=True)
-        value = formula.value(tree, over_turn if turn else self._number, over_turn)
+        tree = formula.parsed(text)
+        value = float(formula.value(tree, self._number, partial(self._number, turn=True)))
         sources = [each for each in formula.names(tree) if each not in formula.CONSTANTS]
         plain = tree.kind == "name"
-        mean = float(np.mean(value))
         where = "; ".join(dict.fromkeys(map(self._where, sources)))
-        where += ", mean over the turn" if turn else ""
-        shown = self._shown(text, mean) if plain and not unit else units.shown(
-            mean, unit.rstrip("]"), DIGITS)  # fmt: skip
+        shown = (
+            self._shown(text, value)
+            if plain and not unit
+            else units.shown(value, unit.rstrip("]"), DIGITS)
+        )
         bare = plain and "." in text  # the key says all
         source = where if bare else f"{where}: {text}"
         recorded = plain and "." not in text and text not in FIGURES
-        self.quantities[name] = Quantity(name, mean, shown, source, recorded)
+        self.quantities[name] = Quantity(name, value, shown, source, recorded)
         return value
 
     def _number(self, name: str, *, turn: bool = False) -> Value:
@@ -315,8 +314,10 @@ class _Evaluation:
     def _numbers(self) -> Numbers:
         shared = numbers_of(self.run.case, tuple(self.run.machines.values()))
         flanks = self.run.case.cam.key_flanks
+        required = [each.torque_reduction for each in self.run.machines.values()]
         own = {
             "torque.required_reduction": self._machine.torque_reduction,
+            "torque.greatest_reduction": max(filter(None, required), default=None),
             "cam.key.bearing_length": None if flanks is None else flanks.length,
         }
         return in_load_case(shared, self._machine) | own

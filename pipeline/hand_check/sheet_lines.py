@@ -5,7 +5,7 @@ from __future__ import annotations
 from camwright.pipeline.base import formula
 from camwright.pipeline.base.units import used
 from camwright.pipeline.hand_check.hand_sheet import Sheet
-from camwright.pipeline.results.check_records import utilisation_of
+from camwright.pipeline.results.check_records import CheckRecord, utilisation_of
 from camwright.pipeline.results.check_report import (
     corner,
     number,
@@ -21,12 +21,29 @@ STATED = (
 """Words on a demand without an evaluation."""
 
 
+def demand_words(record: CheckRecord) -> str:
+    """Demand of a check with its error bar and place."""
+    at = place(record)
+    shown = f"{with_error(record['demand'], record['error'])}{unit_text(record['unit'])}"
+    return f"{shown} at {at}" if at else shown
+
+
+def limit_words(record: CheckRecord) -> str:
+    """Limit of a check with its source."""
+    sense = ">=" if record["sense"] == "at_least" else "<="
+    return f"{sense} {number(record['limit'])}{unit_text(record['unit'])}: {record['source']}"
+
+
+def outcome_words(sheet: Sheet) -> str:
+    """Whether the formula gives the demand, or why it is stated."""
+    if sheet.is_stated:
+        return STATED
+    return "agrees" if sheet.agrees else "DISAGREES with the demand of the check"
+
+
 def sheet_lines(sheet: Sheet) -> list[str]:
     """A sheet in lines: formula, symbols, steps, result, limit with its source."""
     record = sheet.record
-    unit = unit_text(record["unit"])
-    sense = ">=" if record["sense"] == "at_least" else "<="
-    shown = f"{with_error(record['demand'], record['error'])}{unit}"
     rows = [("formula", sheet.text)]
     rows += [(each.symbol, f"{each.shown}  [{each.source}]") for each in sheet.quantities]
     for step in sheet.steps:
@@ -35,18 +52,12 @@ def sheet_lines(sheet: Sheet) -> list[str]:
         )
         equal = "" if numbers == step.shown else f" = {step.shown}"
         rows.append((step.name or "demand", f"{symbols} = {numbers}{equal}"))
-    at = place(record)
-    rows.append(("check", f"{shown}{f' at {at}' if at else ''}"))
-    if sheet.is_stated:
-        rows.append(("", STATED))
-    else:
-        rows.append(("", "agrees" if sheet.agrees else "DISAGREES with the demand of the check"))
-    rows.append(("limit", f"{sense} {number(record['limit'])}{unit}: {record['source']}"))
+    rows.append(("check", demand_words(record)))
+    rows.append(("", outcome_words(sheet)))
+    rows.append(("limit", limit_words(record)))
     if worst := corner(record):
-        rows.append(("corner", f"{worst}{unit}"))
+        rows.append(("corner", f"{worst}{unit_text(record['unit'])}"))
     rows.append(("result", f"{status(record)}, {used(utilisation_of(record))} used"))
     width = max(len(name) for name, _ in rows) + 2
-    return [
-        f"{record['id']}: {record['title']}",
-        *(f"  {name:<{width}}{text}" for name, text in rows),
-    ]
+    title = f"{record['id']}: {record['title']}"
+    return [title, *(f"  {name:<{width}}{text}" for name, text in rows)]

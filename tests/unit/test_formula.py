@@ -78,11 +78,15 @@ def test_written_formulas_mean_what_was_read():
         assert value(shown.replace("·", "*")) == pytest.approx(value(text))
     tree = formula.parsed("rho_p/(r - s') <= "[:-4])
     assert formula.written(tree, formula.TEXT, {"r": "2 mm"}) == "rho_p / (2 mm - s')"
-    assert formula.written(tree, formula.MATHML) == (
-        "<mfrac><mrow><msub><mi>ρ</mi><mi>p</mi></msub></mrow>"
-        "<mrow><mi>r</mi><mo>−</mo><mi>s′</mi></mrow></mfrac>"
-    )
-    assert formula.written(tree, formula.TYPST) == 'frac("ρ"_"p", "r" - "s′")'
+    (fraction,) = formula.written(tree, formula.PRINT, {"r": "-2 mm"})
+    assert fraction == formula.Printed("fraction", parts=(
+        (formula.Printed("name", "ρ", "p"),),
+        (formula.Printed("number", "−2 mm"), formula.Printed("sign", "−"),
+         formula.Printed("name", "s′")),
+    ))  # fmt: skip
+    (power,) = formula.written(formula.parsed("(a - b)^2"), formula.PRINT)
+    base, exponent = power.parts
+    assert power.form == "power" and base[0].form == "group" and exponent[0].text == "2"
 
 
 @pytest.mark.parametrize("name", [each.id for each in DECLARED.values() if each.symbols])

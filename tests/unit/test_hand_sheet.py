@@ -4,6 +4,7 @@ from dataclasses import replace
 from pathlib import Path
 from types import MappingProxyType
 
+import pypdf
 import pytest
 
 from camwright.geometry.errors import InputError
@@ -16,6 +17,9 @@ from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.hand_check.hand_sheet import Sheet, SheetRun
 from camwright.pipeline.hand_check.sheet_lines import STATED, sheet_lines
 from camwright.pipeline.run import run_case
+from camwright.reports import sections
+from camwright.reports.documents import PDF
+from camwright.reports.page import PAGE
 
 CASES = Path(__file__).parents[2] / "cases"
 
@@ -100,6 +104,29 @@ def test_the_governing_sheets_are_those_of_the_greatest_utilisations(run):
     uses = [each.record["utilisation"] for each in sheets]
     assert len(sheets) == 12 and uses == sorted(uses, reverse=True)
     assert all(each.record["must_have"] and not each.record["evidence"] for each in sheets)
+
+
+@pytest.mark.slow
+def test_the_page_has_every_sheet_and_the_pdf_the_governing_ones(run):
+    folder = run.run.path
+    sections.report(folder, sections.chosen(["page", "pdf"]))
+    page = (folder / PAGE).read_text(encoding="utf-8")
+    assert page.count('<details class="sheet"') == len(run.records)
+    shown = page[page.index('id="hand-gear_bending"') :]
+    shown = shown[: shown.index("</details>")]
+    for words in (
+        "<mfrac>",
+        "<msub><mi>K</mi><mi>A</mi></msub>",
+        "camshaft.gear.width",
+        "<b>agrees",
+    ):
+        assert words in shown
+    printed = pypdf.PdfReader(folder / PDF)
+    text = " ".join("".join(each.extract_text() for each in printed.pages).split())
+    text = text[text.index("The formula of each check, evaluated once more") :]
+    for sheet in run.governing():
+        assert sheet.record["title"] in text
+    assert run.records["roller_pin_shear"]["title"] not in text
 
 
 def test_the_command_prints_the_sheets_and_fails_by_one_that_disagrees(run, capsys, monkeypatch):
