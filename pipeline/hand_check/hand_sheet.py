@@ -176,7 +176,9 @@ class SheetRun:
         if name not in self.records:
             known = ", ".join(sorted(self.records))
             raise InputError("--check", name, f"a check of the run: {known}")
-        record, declared = self.records[name], DECLARED[name]
+        record, declared = self.records[name], DECLARED.get(name)
+        if declared is None:  # of a run by another version
+            return Sheet(record, "")
         if not declared.symbols or record["demand"] is None or not self._holds(declared):
             return Sheet(record, declared.formula)
         evaluation = _Evaluation(self, record, declared)
