@@ -156,6 +156,12 @@ def _named(gaps: Callable[[Numbers], Gaps]) -> Callable[[Demand, Solution], Dema
     formula="|z_g - z_c| - (w_g + w)/2 >= g; z_g, z_c: places of gear and cam on the camshaft, w_g:"
     " width of gear and pinion, w: width of cam, or of roller with pin and fork, or face, g:"
     " limits.assembly_gap",
+    symbols={
+        "z_g": "camshaft.gear_position",
+        "z_c": "camshaft.cam_position",
+        "w_g": "camshaft.gear.width",
+        "w": "max(cam.width, 2 (follower.half_depth + roller.axial_offset)) [mm]",
+    },
     reason="A cam or follower in the plane of gear and pinion strikes them.",
     method="distance of the faces along the camshaft; gear and pinion in one plane",
     moved_by_tolerance=False,

@@ -44,6 +44,13 @@ def _gap_left(cam: LoadedCam, limit: float) -> Array:
     formula="min(h - max|P|, l - x) >= g; h: end of guide A over the cam axis, P: contour, l: end"
     " of guide A over the roller centre at maximum lift, x: extent of the follower or its fork,"
     " g: limits.guide_gap",
+    symbols={
+        "?": "follower.kind roller",
+        "h": "pitch_height + lift_highest + guides.a.mouth [mm]",
+        "P": "contour_radius_greatest",
+        "l": "guides.a.mouth [mm]",
+        "x": "follower.extent [mm]",
+    },
     reason="Cam, roller or fork would strike the guide.",
     method="end of guide A less maximum contour radius, and less the follower, at maximum lift",
     lift_can_help=True,

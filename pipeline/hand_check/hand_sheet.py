@@ -55,6 +55,7 @@ FIGURES: Mapping[str, tuple[str, _Figure]] = {
     "pitch_speed": ("mm/rad", lambda cam: roller_of(cam.motion).path_speed),
     "contour_speed": ("mm/rad", lambda cam: cam.motion.contour_speed),
     "contour_radius": ("mm", lambda cam: cam.motion.contour_radius),
+    "contour_radius_greatest": ("mm", lambda cam: cam.contour.radius_max().value),
     "closing_force": ("N", lambda cam: cam.closing),
     "least_spring_force": ("N", lambda cam: cam.least_spring),
 }
