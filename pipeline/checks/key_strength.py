@@ -306,6 +306,13 @@ def _wall_in_words(demand: Demand, solution: Solution) -> Demand:
     formula="sqrt(t^2 + t p + p^2) <= R_e; p: pressure of cam.fit at its greatest interference on"
     " the ring of the least radius, t = p (b^2 + a^2)/(b^2 - a^2), a, b: radius of the bore and"
     " least radius of the contour, R_e: core yield strength of the cam",
+    symbols={
+        "p": "cam.fit.ring_pressure [MPa]",
+        "t": "[MPa]",
+        "a": "cam.bore_radius",
+        "b": "cam.prime_radius - roller.radius [mm]",
+        "?": "follower.kind roller",
+    },
     reason="a wall that yields loses its fit",
     values=("cam.material.E", "cam.material.nu", "cam.material.*yield_strength", "cam.fit.*"),
     levers=(levers.one(FIT[1], -1),),

@@ -25,7 +25,7 @@ from camwright.pipeline.checks.check import Declaration
 from camwright.pipeline.checks.extremes import BY_DUTY
 from camwright.pipeline.checks.registry import DECLARED
 from camwright.pipeline.cycle.loaded_cam import roller_of
-from camwright.pipeline.cycle.numbers import Numbers
+from camwright.pipeline.cycle.numbers import Numbers, fitted_ring, greatest_interference
 from camwright.pipeline.cycle.solved_cam import ContourCam, in_load_case, numbers_of
 from camwright.pipeline.results.check_records import CheckRecord, utilisation_of
 from camwright.pipeline.results.check_report import place
@@ -316,11 +316,14 @@ class _Evaluation:
     @cached_property
     def _numbers(self) -> Numbers:
         shared = numbers_of(self.run.case, tuple(self.run.machines.values()))
+        ring, interference = fitted_ring(shared), greatest_interference(shared)
+        fitted = None if ring is None or interference is None else ring.pressure(interference)
         flanks = self.run.case.cam.key_flanks
         required = [each.torque_reduction for each in self.run.machines.values()]
         own = {
             "torque.required_reduction": self._machine.torque_reduction,
             "torque.greatest_reduction": max(filter(None, required), default=None),
+            "cam.fit.ring_pressure": fitted,
             "cam.key.bearing_length": None if flanks is None else flanks.length,
         }
         return in_load_case(shared, self._machine) | own

@@ -9,7 +9,7 @@ import pytest
 
 from camwright.geometry.errors import InputError
 from camwright.pipeline.base.tables import Table
-from camwright.pipeline.case.case_file import read_case
+from camwright.pipeline.case.case_file import parse_case, read_case
 from camwright.pipeline.checks.registry import DECLARED
 from camwright.pipeline.commands.run_command import report
 from camwright.pipeline.commands.terminal import FAILED, PASSED
@@ -97,6 +97,20 @@ def test_a_result_of_a_solver_is_stated_and_not_passed_off_as_evaluated(run):
     assert not run.sheet("pressure_angle").is_stated
     with pytest.raises(InputError, match="--check"):
         run.sheet("no_such_check")
+
+
+def test_a_formula_is_not_evaluated_for_a_case_of_which_it_does_not_hold(run):
+    """A duty sums the lives of the load cases; a pin held at one end bends otherwise."""
+    altered = SheetRun(run.run.path, run.run)
+    altered.__dict__["machines"] = {
+        name: replace(each, duty=0.25) for name, each in run.machines.items()
+    }
+    text = run.run.case_text
+    assert text.count('mounting = "straddled"') == 1
+    altered.case = parse_case(text.replace('mounting = "straddled"', 'mounting = "overhung"'))
+    for name in ("roller_life", "guide_wear_A", "roller_pin", "roller_pin_shear"):
+        assert run.sheet(name).steps and altered.sheet(name).is_stated, name
+    assert altered.sheet("pressure_angle").steps
 
 
 def test_the_governing_sheets_are_those_of_the_greatest_utilisations(run):
