@@ -27,7 +27,6 @@ FUNCTIONS: Mapping[str, Callable[..., Value]] = {
     "cos": np.cos,
     "atan": np.arctan,
     "sign": np.sign,
-    "ln": np.log,
     "mean": np.mean,
     "std": np.std,
     "max": lambda *values: np.max(values),
@@ -43,7 +42,7 @@ _TOKEN = re.compile(
     r"|(?P<name>[A-Za-z](?:\w|\.(?=[A-Za-z*])|(?<=\.)\*|,(?=max))*'*)|(?P<sign>[-+*/^(),|]))"
 )
 _HEAD = re.compile(
-    r"(?P<demand>.+?)\s*(?P<sense><=|>=|=)\s*(?P<limit>[^=<>]+?)"
+    r"(?P<demand>.+?)\s*(?:<=|>=|=)\s*(?P<limit>[^=<>]+?)"
     r"(?: over | on the | at (?=[a-z])|, |; |\.?$)"
 )
 _WORST = re.compile(r"^(?:max|min) over the load cases of ")
@@ -68,12 +67,10 @@ class Statement(NamedTuple):
     Parameters
     ----------
     demand, limit : str
-    sense : str            ``<=``, ``>=`` or ``=``
     defined : mapping      text by name, such as ``y``: ``0.154 - 0.912/z``
     """
 
     demand: str
-    sense: str
     limit: str
     defined: Mapping[str, str]
 
@@ -95,7 +92,7 @@ def stated(text: str) -> Statement:
     named = re.fullmatch(r"([A-Za-z]\w*) = (.+)", demand)
     if named is not None:
         demand = named[2]
-    return Statement(demand, match["sense"], match["limit"], defined)
+    return Statement(demand, match["limit"], defined)
 
 
 def parsed(text: str, known: Collection[str] = ()) -> Node:
@@ -312,7 +309,9 @@ def written(node: Node, style: Style[Text], known: Mapping[str, str] | None = No
     def of(each: Node, least: int) -> Text:
         """Text of a part that has to bind at least so strongly."""
         text = written(each, style, known)
-        return style.group(text) if _binds(each, style.divides) < least else text
+        negative = known is not None and known.get(each.text, "").startswith("-")
+        binds = _SUM if negative else _binds(each, style.divides)
+        return style.group(text) if binds < least else text
 
     if node.kind == "number":
         return style.number(node.text)
@@ -323,7 +322,7 @@ def written(node: Node, style: Style[Text], known: Mapping[str, str] | None = No
     if node.kind == "abs":
         return style.bars(of(one, _SUM))
     if node.kind == "minus":
-        return style.sign("-") + of(one, _PRODUCT)
+        return style.sign("minus") + of(one, _PRODUCT)
     if node.kind == "call":
         inner = of(one, _SUM)
         for part in node.parts[1:]:
@@ -353,7 +352,7 @@ _GREEK = {
     "alpha": "α", "kappa": "κ", "lambda": "λ", "mu": "μ", "nu": "ν", "phi": "φ", "pi": "π",
     "rho": "ρ", "sigma": "σ", "tau": "τ", "theta": "θ", "zeta": "ζ",
 }  # fmt: skip
-_SIGN = {"*": "·", "-": "\N{MINUS SIGN}"}
+_SIGN = {"*": "·", "-": "\N{MINUS SIGN}", "minus": "\N{MINUS SIGN}"}
 
 
 def _letter(name: str) -> tuple[Printed, ...]:
@@ -368,7 +367,7 @@ def _letter(name: str) -> tuple[Printed, ...]:
 TEXT: Style[str] = Style(
     name=str,
     number=str,
-    sign=lambda sign: {"*": " · ", ",": ", "}.get(sign, f" {sign} "),
+    sign=lambda sign: {"*": " · ", ",": ", ", "minus": "-"}.get(sign, f" {sign} "),
     fraction=lambda one, other: f"{one} / {other}",
     power=lambda one, other: f"{one}^{other}",
     root=lambda inner: f"sqrt({inner})",

@@ -105,6 +105,7 @@ class Sheet:
     ----------
     record : mapping       of `6_checks.json`
     text : str             formula of the declaration
+    limit : str            limit as the formula has it; "": it is not evaluated
     quantities : tuple     symbols with their values, of the formula and of its definitions
     steps : tuple          definitions, and last the demand; empty: not evaluated
     result : float         demand by the formula, in the unit of the record; None: the demand is a
@@ -113,6 +114,7 @@ class Sheet:
 
     record: CheckRecord
     text: str
+    limit: str = ""
     quantities: tuple[Quantity, ...] = ()
     steps: tuple[SheetStep, ...] = ()
     result: float | None = None
@@ -229,14 +231,19 @@ class _Evaluation:
         demand = float(np.asarray(self._defined("")).item())
         last = self.steps.pop("")._replace(shown=units.shown(demand, unit, DIGITS))
         return Sheet(
-            self.record, self.declared.formula, tuple(self.quantities.values()),
+            self.record, self.declared.formula, self.said.limit, tuple(self.quantities.values()),
             (*self.steps.values(), last), units.in_unit(demand, unit),
         )  # fmt: skip
 
     @cached_property
+    def said(self) -> formula.Statement:
+        """The formula text, read."""
+        return formula.stated(self.declared.formula)
+
+    @cached_property
     def trees(self) -> Mapping[str, formula.Node]:
         """Expressions of the definitions by their name, and of the demand by ""."""
-        said, symbols = formula.stated(self.declared.formula), self.declared.symbols
+        said, symbols = self.said, self.declared.symbols
         own = {
             name: text
             for name, text in said.defined.items()

@@ -35,7 +35,6 @@ class PrintedSheet:
     text : str           formula of the declaration, with the meaning of its symbols
     symbols, steps : sequence   steps: with symbols, with numbers, and the result
     demand, outcome, limit, use : str   in words; outcome: whether the sheet agrees
-    agrees : bool        with the demand of the check
     governing : bool     one of the checks of the greatest utilisation
     """
 
@@ -48,7 +47,6 @@ class PrintedSheet:
     outcome: str
     limit: str
     use: str
-    agrees: bool
     governing: bool
 
 
@@ -66,9 +64,8 @@ def printed(sheet: Sheet, *, governing: bool) -> PrintedSheet:
         [_step(sheet, k) for k in range(len(sheet.steps))],
         demand_words(record),
         outcome_words(sheet),
-        limit_words(record),
+        limit_words(sheet),
         used(utilisation_of(record)),
-        sheet.agrees,
         governing,
     )
 

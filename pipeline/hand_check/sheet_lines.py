@@ -28,10 +28,13 @@ def demand_words(record: CheckRecord) -> str:
     return f"{shown} at {at}" if at else shown
 
 
-def limit_words(record: CheckRecord) -> str:
-    """Limit of a check with its source."""
+def limit_words(sheet: Sheet) -> str:
+    """Limit of a check, as its formula has it, with its source."""
+    record = sheet.record
     sense = ">=" if record["sense"] == "at_least" else "<="
-    return f"{sense} {number(record['limit'])}{unit_text(record['unit'])}: {record['source']}"
+    shown = f"{sense} {number(record['limit'])}{unit_text(record['unit'])}"
+    formed = "" if sheet.limit in ("", number(record["limit"])) else f" = {sheet.limit}"
+    return f"{shown}{formed}: {record['source']}"
 
 
 def outcome_words(sheet: Sheet) -> str:
@@ -54,7 +57,7 @@ def sheet_lines(sheet: Sheet) -> list[str]:
         rows.append((step.name or "demand", f"{symbols} = {numbers}{equal}"))
     rows.append(("check", demand_words(record)))
     rows.append(("", outcome_words(sheet)))
-    rows.append(("limit", limit_words(record)))
+    rows.append(("limit", limit_words(sheet)))
     if worst := corner(record):
         rows.append(("corner", f"{worst}{unit_text(record['unit'])}"))
     rows.append(("result", f"{status(record)}, {used(utilisation_of(record))} used"))

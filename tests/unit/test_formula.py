@@ -62,7 +62,7 @@ def test_a_statement_has_demand_limit_and_definitions():
     said = formula.stated(
         "F K/(b y) <= 0.7 s / S; F = |T + drag|/r, y = 0.154 - 0.912/z: Lewis, s: strength"
     )
-    assert (said.demand, said.sense, said.limit) == ("F K/(b y)", "<=", "0.7 s / S")
+    assert (said.demand, said.limit) == ("F K/(b y)", "0.7 s / S")
     assert said.defined == {"F": "|T + drag|/r", "y": "0.154 - 0.912/z"}
     named = formula.stated("lambda = h / r >= limits.film_ratio; h: film")
     assert (named.demand, named.limit) == ("h / r", "limits.film_ratio")
@@ -84,6 +84,8 @@ def test_written_formulas_mean_what_was_read():
         (formula.Printed("number", "−2 mm"), formula.Printed("sign", "−"),
          formula.Printed("name", "s′")),
     ))  # fmt: skip
+    product = formula.parsed("-a b - a")
+    assert formula.written(product, formula.TEXT, {"a": "-2 mm"}) == "(-(-2 mm)) · b - (-2 mm)"
     (power,) = formula.written(formula.parsed("(a - b)^2"), formula.PRINT)
     base, exponent = power.parts
     assert power.form == "power" and base[0].form == "group" and exponent[0].text == "2"
