@@ -21,6 +21,7 @@ verdict; a failed trial is smoothed again. `results` writes the run folder, `rep
 | `checks`             | one function per check: demand, limit                | utilisation, -     |
 | `smoothing`          | smoothers, constrained synthesis, shadow prices      | s, m               |
 | `results`            | trial, run folder, records, workshop files, sign-off | mm, N, MPa         |
+| `hand_check`         | formulas of the checks evaluated once more           | utilisation, -     |
 | `remedies`           | smallest change that cures a failed check            | factor             |
 | `solver`             | solution of one design at one tier                   |                    |
 | `preview`            | synthesis and preview of a case                      |                    |

@@ -8,9 +8,11 @@ import numpy as np
 
 from camwright.geometry.arrays import Array
 from camwright.pipeline.base.tables import Table
+from camwright.pipeline.results.run_reader import TrialRecord
 from camwright.reports.figures import (
     SERIES,
     AngleFigure,
+    ContoursFigure,
     Curve,
     Figure,
     LimitLine,
@@ -24,6 +26,8 @@ from camwright.reports.part_figures import PART_FIGURES
 from camwright.reports.report_tables import isolated, number, quantity, words
 from camwright.reports.sheet_turn import SheetTurn, angle_figure, both_ways, curves_of
 
+TRIALS = "Trials"
+"""Group of the figures that compare the trials."""
 GROUPS = (
     ("Torque", ("torque", "torque-spectrum", "torque-components", "crank-speed", "ripple-map")),
     ("Shape", ("outline", "pressure-angle", "face", "lift", "radii")),
@@ -44,7 +48,7 @@ GROUPS = (
             "parts",
         ),
     ),
-    ("Trials", ("trial-points",)),
+    (TRIALS, ("trial-points", "trial-contours", "trial-torque")),
 )
 LARGEST_RADIUS_MM = 150.0
 HARD_STOP_DEG = 45.0
@@ -60,7 +64,7 @@ def groups(turn: SheetTurn) -> tuple[tuple[str, tuple[Figure, ...]], ...]:
     makers: tuple[Callable[[SheetTurn], Figure | None], ...] = (
         _torque, _spectrum, _components, _crank_speed, _lift, _outline, _pressure_angle, _face,
         _radii, _limits_strip, _pressure, _half_width, _stress, *PART_FIGURES,
-        _ripple_map, _trial_points,
+        _ripple_map, _trial_points, _trial_contours, _trial_torque,
     )  # fmt: skip
     made = (maker(turn) for maker in makers)
     by_id = {figure.id: figure for figure in made if figure is not None}
@@ -374,6 +378,48 @@ def _trial_points(turn: SheetTurn) -> Figure | None:
         "utilisation of the required checks that depend on the lift, by trial.",
         "trial", "", column("trial"), panels, whole=True,
     )  # fmt: skip
+
+
+def _trial_contours(turn: SheetTurn) -> Figure | None:
+    """Contours of the trials over each other; None of a single trial."""
+    if len(turn.trials) < 2:
+        return None
+    contours = tuple(
+        (_of_trial(trial), np.array([trial.contour[f"contour_{axis}_mm"] for axis in "xy"]))
+        for trial in turn.trials
+    )
+    return ContoursFigure(
+        "trial-contours", "Contours of the trials",
+        f"Cam contour of each trial in the direction of the shaft; solid: {contours[-1][0]}, the "
+        "result.", contours, turn.length("cam", "bore_radius"),
+    )  # fmt: skip
+
+
+def _trial_torque(turn: SheetTurn) -> Figure | None:
+    """Torque with the cam of each trial; None of a single trial or without a torque."""
+    turn = turn.balanced
+    cycles = [trial.cycle.of_load_case(turn.load_case) for trial in turn.trials]
+    after = [cycle.get("torque_after_Nm") for cycle in cycles]
+    shown = [values for values in after if values is not None and np.isfinite(values).all()]
+    if len(after) < 2 or len(shown) < len(after):
+        return None
+    curves = tuple(
+        Curve(_of_trial(trial), values, colour, dashed=trial is not turn.trials[-1])
+        for trial, values, colour in zip(turn.trials, shown, SERIES, strict=False)
+    )
+    return angle_figure(
+        turn, "trial-torque", "Torque of the trials",
+        f"Deviation of the {turn.words.shaft} torque from its mean with the cam of each trial; "
+        f"solid: {curves[-1].label}, the result. Load case {isolated(turn.load_case)}.",
+        Panel("torque", "N m", curves, height=1.25), mark=False,
+    )  # fmt: skip
+
+
+def _of_trial(trial: TrialRecord) -> str:
+    """Name of a trial in a figure, with the width of its smoother."""
+    width = trial.record["smoothing_width_deg"]
+    name = f"trial {trial.number}"
+    return name if width is None else f"{name}, {quantity(width, 'deg')}"
 
 
 def _limits_strip(turn: SheetTurn) -> Figure | None:

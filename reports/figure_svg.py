@@ -32,6 +32,7 @@ from camwright.reports.figures import (
     X_AXIS,
     Y_AXIS,
     AngleFigure,
+    ContoursFigure,
     Figure,
     LineFigure,
     OutlineFigure,
@@ -156,7 +157,7 @@ def style(salt: str) -> Iterator[None]:
 
 def draw(figure: Figure) -> Canvas:
     """The matplotlib figure of a figure."""
-    if isinstance(figure, OutlineFigure):
+    if isinstance(figure, (OutlineFigure, ContoursFigure)):
         return _outline(figure)
     return _angles(figure) if isinstance(figure, AngleFigure) else _lines(figure)
 
@@ -416,7 +417,7 @@ def _cam_axis(ax: Axes, gear_ratio: float) -> None:
     cam.xaxis.label.set_color(COLOURS["ink"])
 
 
-def _outline(figure: OutlineFigure) -> Canvas:
+def _outline(figure: OutlineFigure | ContoursFigure) -> Canvas:
     """Curves and text of the outline on equal axes."""
     canvas = _canvas(FIGURE_WIDTH - 0.1)
     ax = canvas.add_axes((LEFT / FIGURE_WIDTH, 0.42 / 5.5, 4.84 / FIGURE_WIDTH, 4.84 / 5.5))

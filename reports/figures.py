@@ -448,6 +448,45 @@ class OutlineFigure:
         )
 
 
+@dataclass(frozen=True, eq=False)
+class ContoursFigure:
+    """Contours over each other: label and points (2, n), mm; the last one is the result."""
+
+    id: str
+    title: str
+    caption: str
+    contours: tuple[tuple[str, Array], ...]
+    bore_radius: float | None
+    texts: tuple[OutlineText, ...] = ()
+
+    @property
+    def curves(self) -> tuple[OutlineCurve, ...]:
+        """All curves, from the bottom layer to the top one."""
+        made = []
+        if self.bore_radius is not None:
+            made.append(OutlineCurve(circle((0.0, 0.0), self.bore_radius), "muted", "", 0.7))
+        last = len(self.contours) - 1
+        for k, (label, points) in enumerate(self.contours):
+            angle = np.linspace(0.0, 360.0, points.shape[1] + 1)
+            width, dash = (1.4, "solid") if k == last else (1.0, "dashed")
+            made.append(OutlineCurve(closed(points), SERIES[k], label, width, dash, angle=angle))
+        return tuple(made)
+
+    @property
+    def reach(self) -> float:
+        """Half the side of the square about the shaft that is shown, mm."""
+        return 1.06 * max(float(np.abs(points).max()) for _, points in self.contours)
+
+    @property
+    def alt(self) -> str:
+        """Text alternative: range of the radius of each contour."""
+        parts = []
+        for label, points in self.contours:
+            radius = np.hypot(*points)
+            parts.append(f"{label}: {radius.min():.4g} to {radius.max():.4g} mm")
+        return f"{self.title}, distance from the shaft. {'. '.join(parts)}."
+
+
 def circle(centre: tuple[float, float], radius: float) -> Array:
     """Closed circle (2, n)."""
     angle = np.linspace(0.0, 2 * np.pi, _ROUND)
@@ -462,4 +501,4 @@ def _slot(bore_radius: float, width: float, depth: float, angle: float) -> Array
     return np.array([[cosine, -sine], [sine, cosine]]) @ corners
 
 
-Figure = AngleFigure | LineFigure | OutlineFigure
+Figure = AngleFigure | LineFigure | OutlineFigure | ContoursFigure

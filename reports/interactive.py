@@ -25,6 +25,7 @@ from camwright.reports.figures import (
     X_AXIS,
     Y_AXIS,
     AngleFigure,
+    ContoursFigure,
     Curve,
     Figure,
     LineFigure,
@@ -85,7 +86,7 @@ def specification(figure: Figure) -> Spec:
     A figure over the turn has one `x`, the angle of the machine's shaft, and one `cam` for all its
     traces, deg.
     """
-    if isinstance(figure, OutlineFigure):
+    if isinstance(figure, (OutlineFigure, ContoursFigure)):
         return _outline(figure)
     return _angles(figure) if isinstance(figure, AngleFigure) else _sweep(figure)
 
@@ -303,7 +304,7 @@ def _shades(figure: AngleFigure) -> list[Spec]:
     return shapes
 
 
-def _outline(figure: OutlineFigure) -> Spec:
+def _outline(figure: OutlineFigure | ContoursFigure) -> Spec:
     reach = [-figure.reach, figure.reach]
     notes: list[Spec] = [
         {"text": text.words, "x": text.place[0], "y": text.place[1], "textangle": -text.turn,

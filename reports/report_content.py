@@ -9,11 +9,15 @@ from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
+from camwright.geometry.errors import CamError
 from camwright.pipeline.base.files import Json
+from camwright.pipeline.hand_check.hand_sheet import SheetRun
+from camwright.pipeline.hand_check.printed_sheet import PrintedSheet, printed
 from camwright.pipeline.results.check_records import CERTIFIED
 from camwright.pipeline.results.model_limits import MODEL_LIMITS
 from camwright.pipeline.results.run_reader import TrialRecord, load_end_words, results_sha256
 from camwright.reports import report_tables, verification_tables
+from camwright.reports.analysis_sheet import TRIALS
 from camwright.reports.check_parts import PARTS
 from camwright.reports.figure_svg import Drawn, drawn_groups
 from camwright.reports.report_data import ReportMaterial
@@ -40,9 +44,11 @@ _RUNNING = ("report", "total")
 SHORT = 140
 """Maximum number of characters of a title or name on one line."""
 TRIALS_HEAD = (
-    "Trial", "Smoothing", "Strength", "Width, shaft angle", "Reason", "Verdict",
+    "Trial", "Smoothing", "Strength", "Width, shaft angle", "Ripple left", "Reason", "Verdict",
     "Required checks not passed",
 )  # fmt: skip
+WORST_NAMED = 6
+"""Failed checks of a trial that its row names."""
 MISSING = (
     "A required check without data leaves the verdict INCOMPLETE at best. Describe the part in the "
     "case, or leave it out of the sign-off in [scope]."
@@ -134,6 +140,14 @@ class Points:
 
 
 @dataclass(frozen=True)
+class Sheets:
+    """Hand-check sheets: all on the page, the governing ones in the PDF."""
+
+    kind: ClassVar[str] = "sheets"
+    sheets: Sequence[PrintedSheet]
+
+
+@dataclass(frozen=True)
 class Note:
     """Paragraph in small type."""
 
@@ -150,7 +164,9 @@ class Signatures:
     lines: Sequence[str] = ("Name", "Date", "Signature")
 
 
-Content = Checks | Tabular | Pairs | Figures | Pictures | Inputs | Points | Note | Signatures
+Content = (
+    Checks | Tabular | Pairs | Figures | Pictures | Inputs | Points | Note | Sheets | Signatures
+)
 
 
 @dataclass(frozen=True, eq=False)
@@ -221,7 +237,7 @@ def report_content(material: ReportMaterial) -> Report:
                 (SectionBlock(Points([each.statement for each in MODEL_LIMITS])),),
                 brief="Assumptions",
             ),
-            _checks(material), _versions(material),
+            _checks(material), _sheets(material), _versions(material),
         ),
         f"Camwright · {shortened(str(run.summary['case']), 60)}",
         "Cam sign-off" if final.depth == CERTIFIED else f"Cam, {final.depth} without sign-off",
@@ -322,7 +338,8 @@ def _sheet(material: ReportMaterial) -> ReportSection:
         others = f", {words}; ribbons: range of all {count} load cases"
     return ReportSection(
         "sheet", "Cam analysis sheet",
-        [SectionBlock(Figures(drawn), title) for title, drawn in drawn_groups(material)],
+        [SectionBlock(Figures(drawn), title) for title, drawn in drawn_groups(material)
+         if title != TRIALS],
         f"Load case {isolated(turn.load_case)}{others}. Dotted line: cam angle of the maximum "
         f"contact pressure. Red dashed lines: limits. {_beyond_hertz(material)}".rstrip(),
     )  # fmt: skip
@@ -330,7 +347,8 @@ def _sheet(material: ReportMaterial) -> ReportSection:
 
 def _trials(material: ReportMaterial) -> ReportSection:
     run = material.run
-    table = ReportTable("Trials", TRIALS_HEAD, [_trial(trial) for trial in run.trials], 2, 2)
+    rows = [_trial(*each) for each in zip(run.trials, run.ripples, strict=True)]
+    table = ReportTable("Trials", TRIALS_HEAD, rows, 2, 3)
     prices = verification_tables.prices(run.summary["prices"])
     shaft = material.turn.words.shaft
     lead = (
@@ -348,30 +366,36 @@ def _trials(material: ReportMaterial) -> ReportSection:
         "trials", "Trials and shadow prices",
         [
             SectionBlock(Tabular(table)),
+            *(SectionBlock(Figures(each), "Trials compared")
+              for title, each in drawn_groups(material) if title == TRIALS),
             *_tables(
                 (prices, "Shadow prices of the limits", lead),
                 (machine, "Prices of the numbers of the machine", machine_lead),
             ),
         ],
         "Each trial recomputes all stages from its own lift; "
-        f"trial {run.final.number} is the result.",
+        f"trial {run.final.number} is the result. Ripple left: standard deviation of the {shaft} "
+        "torque with the cam in the design load case.",
         "Trials",
     )  # fmt: skip
 
 
-def _trial(trial: TrialRecord) -> list[str | Status]:
-    """A trial as a row."""
+def _trial(trial: TrialRecord, ripple: float | None) -> list[str | Status]:
+    """A trial as a row; ripple: see `Run.ripples`."""
     record = trial.record
     rows = [row for row in report_tables.check_rows(trial.checks) if row.id in trial.binding]
     width = record["smoothing_width_deg"]
     failing = [f"{row.title} ({row.utilisation})" for row in rows if row.status.id == "fail"]
     unknown = sum(row.status.id == "not_evaluated" for row in rows)
-    held = [*failing, *([f"{unknown} without data"] if unknown else [])]
+    more = len(failing) - WORST_NAMED
+    held = [*failing[:WORST_NAMED], *([f"{more} more fail"] if more > 0 else []),
+            *([f"{unknown} without data"] if unknown else [])]  # fmt: skip
     word = str(trial.verdict or trial.screen)
     return [
         str(trial.number), str(record["smoothing_description"]),
         report_tables.number(record["smoothing_strength"], 3),
         report_tables.quantity(width, "deg") if width is not None else DASH,
+        report_tables.quantity(ripple, "N m", 3),
         titled(str(record["why"]), trial.checks), Status(word, word.upper()),
         "; ".join(held) or "none",
     ]  # fmt: skip
@@ -456,6 +480,25 @@ def _evidence(material: ReportMaterial) -> ReportSection:
     lead = f"Contact model: {method}. {_beyond_hertz(material)}".rstrip() if method else ""
     lead = f"{lead} {verification_tables.ends_refused(final.record)}".strip()
     return ReportSection("evidence", "Evidence", blocks, lead)
+
+
+def _sheets(material: ReportMaterial) -> ReportSection:
+    """Hand-check sheets; the reason why the run has none."""
+    title = "Hand-check sheets"
+    try:
+        run = SheetRun(material.run.path, material.run)
+        governing = {each.record["id"] for each in run.governing()}
+        made = [printed(run.sheet(name), governing=name in governing) for name in run.records]
+    except CamError as error:
+        note = SectionBlock(Note(f"The sheets are not available: {error}"))
+        return ReportSection("hand", title, (note,), brief=title)
+    made.sort(key=lambda each: not each.governing)  # stable
+    return ReportSection(
+        "hand", title, (SectionBlock(Sheets(made)),),
+        "The formula of each check, evaluated once more on the numbers of the run. A result of a "
+        "solver enters as a stated number.",
+        title,
+    )  # fmt: skip
 
 
 def _versions(material: ReportMaterial) -> ReportSection:

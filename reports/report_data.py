@@ -9,7 +9,8 @@ from pathlib import Path
 from camwright.geometry.errors import ResultError
 from camwright.pipeline.base.files import parse_toml
 from camwright.pipeline.base.worker_processes import PendingCall
-from camwright.pipeline.results.run_reader import Run, read_run
+from camwright.pipeline.results.run_reader import Run, TrialRecord, read_run
+from camwright.reports.figures import SERIES
 from camwright.reports.report_tables import Record, shortened
 from camwright.reports.sheet_turn import SheetTurn
 from camwright.reports.verdict_text import governing_load_case
@@ -71,8 +72,15 @@ def governing_turn(run: Run, case: Record) -> SheetTurn:
         by_name[drawn], tuple(by_name.values()), final.lift, final.contour, run.torque,
         final.checks, case, final.record["balance"], drawn, run.speed, final.limits,
         run.summary["trial_points"], run.summary["ripple_map"], final.sweep,
-        final.record.get("fatigue") or {},
+        final.record.get("fatigue") or {}, _compared(run),
     )  # fmt: skip
+
+
+def _compared(run: Run) -> tuple[TrialRecord, ...]:
+    """Trials that the figures compare, one a colour: first, latest, and last the final one."""
+    final = run.final
+    others = [trial for trial in run.trials if trial is not final]
+    return (*others[:1], *others[1:][-(len(SERIES) - 2) :], final)
 
 
 def title_block(case: Record) -> Sequence[tuple[str, str]]:

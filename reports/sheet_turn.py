@@ -12,6 +12,7 @@ from camwright.geometry.errors import InputError, ResultError
 from camwright.pipeline.base import units
 from camwright.pipeline.base.files import Json
 from camwright.pipeline.base.tables import Table
+from camwright.pipeline.results.run_reader import TrialRecord
 from camwright.reports.figures import SERIES, AngleFigure, Curve, Figure, LimitLine, Panel
 from camwright.reports.machine_words import MachineWords, words_of
 from camwright.reports.report_tables import Record, in_unit
@@ -41,6 +42,7 @@ class SheetTurn:
     ripple_map : mapping       ripple_map of run.json; None without one
     sweep : Table or None      5_speed_sweep.csv
     fatigue : mapping          fatigue of trial.json, by part
+    trials : sequence          trials to be compared, the final one last
     """
 
     columns: Table
@@ -58,6 +60,7 @@ class SheetTurn:
     ripple_map: Record | None = None
     sweep: Table | None = None
     fatigue: Record = field(default_factory=dict)
+    trials: Sequence[TrialRecord] = ()
 
     @property
     def counter_hole(self) -> tuple[float, float, float, bool] | None:

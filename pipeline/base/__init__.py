@@ -23,6 +23,7 @@ In the order of use:
 | `disk_cache`       | arrays that depend on their key alone, kept between runs |                  |
 | `worker_processes` | processes with one BLAS thread and a safe import path    |                  |
 | `value_groups`     | dotted keys on which checks rest, in groups              |                  |
+| `formula`          | formula texts of checks: read, evaluated, written        | SI               |
 | `levers`           | levers of a check: keys, direction, range                | factor           |
 | `progress`         | progress of a run on the terminal                        | s                |
 

@@ -156,6 +156,12 @@ def _named(gaps: Callable[[Numbers], Gaps]) -> Callable[[Demand, Solution], Dema
     formula="|z_g - z_c| - (w_g + w)/2 >= g; z_g, z_c: places of gear and cam on the camshaft, w_g:"
     " width of gear and pinion, w: width of cam, or of roller with pin and fork, or face, g:"
     " limits.assembly_gap",
+    symbols={
+        "z_g": "camshaft.gear_position",
+        "z_c": "camshaft.cam_position",
+        "w_g": "camshaft.gear.width",
+        "w": "max(cam.width, 2 (follower.half_depth + roller.axial_offset)) [mm]",
+    },
     reason="A cam or follower in the plane of gear and pinion strikes them.",
     method="distance of the faces along the camshaft; gear and pinion in one plane",
     moved_by_tolerance=False,
@@ -195,6 +201,11 @@ def _of_teeth(demand: Demand, solution: Solution) -> Demand:
     method="teeth of the gear over those that the ratio needs, less 1",
     formula="|z/(i z_p) - 1| <= 1e-5; z, z_p: camshaft.gear.teeth and pinion_teeth, i:"
     " mechanism.gear_ratio",
+    symbols={
+        "z": "camshaft.gear.teeth",
+        "z_p": "camshaft.gear.pinion_teeth",
+        "i": "mechanism.gear_ratio",
+    },
     reason="With other teeth the cam turns at another speed than all loads are computed at.",
     moved_by_tolerance=False,
     part="gear",
@@ -232,6 +243,10 @@ def _with_module(demand: Demand, solution: Solution) -> Demand:
     method="fewer teeth of gear and pinion; the limit as 1/sin^2 of the pressure angle",
     formula="min(z_1, z_2) >= 14 (sin 20 deg/sin alpha)^2; z: teeth of gear and pinion, alpha:"
     " camshaft.pressure_angle",
+    symbols={
+        "z_1": "camshaft.gear.teeth",
+        "z_2": "camshaft.gear.pinion_teeth",
+    },
     reason="Undercut teeth are thinner at the root than their strength is judged, and mesh less.",
     moved_by_tolerance=False,
     part="gear",
@@ -383,6 +398,11 @@ def _of_thickness(demand: Demand, solution: Solution) -> Demand:
     formula="r_p - h/2 - d/2 >= g; r_p: cam.prime_radius, the least distance of the roller centre"
     " from the cam axis, h: roller.fork.cheek_height, d: diameter of the camshaft beside the cam,"
     " at least its bore, g: limits.assembly_gap",
+    symbols={
+        "r_p": "cam.prime_radius",
+        "h": "roller.fork.cheek_height",
+        "d": "2 cam.bore_radius [mm]",
+    },
     reason="Cheeks that reach the shaft stop the follower before it is down.",
     method="roller centre at the least lift less half of the cheek height, the end of the cheeks"
     " round about the pin, and the radius of the shaft",
@@ -423,6 +443,15 @@ def _in_fork(numbers: Numbers) -> Gaps:
     " roller, (span - cheek_width)/2 of a straddled pin, span of an overhung one, w, r: width and"
     " radius of the roller, l: roller.fork.cheek_length, b: width of the cam, x:"
     " roller.axial_offset; the last where h/2 > r, h: cheek_height, g: limits.assembly_gap",
+    symbols={
+        "?": "roller.pin.mounting straddled",
+        "f": "(roller.pin.span - roller.fork.cheek_width)/2 [mm]",
+        "w": "roller.width",
+        "l": "roller.fork.cheek_length",
+        "r": "roller.radius",
+        "b": "cam.width",
+        "x": "roller.axial_offset",
+    },
     reason="A roller that rubs in its fork does not turn; cheeks beside the cam strike it.",
     method="faces of the cheeks from roller and cam, and bridge from roller",
     moved_by_tolerance=False,

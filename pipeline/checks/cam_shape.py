@@ -159,6 +159,12 @@ def _wall_left(cam: LoadedCam, limit: float) -> Array | None:
     formula="max |atan((s' - e)/(d + s))| <= alpha; s, s': lift and its slope, e: offset, d:"
     " height of the roller centre at zero lift, alpha: limits.pressure_angle, on the return"
     " limits.return_pressure_angle where the case sets it",
+    symbols={
+        "s": "lift",
+        "s'": "lift_slope",
+        "e": "cam.offset",
+        "d": "pitch_height",
+    },
     reason="Side force, guide friction and jamming grow with the tangent of the angle.",
     method="greatest |atan((s' - e)/d)| of the pitch curve, refined between samples",
     lift_can_help=True,
@@ -187,6 +193,10 @@ curvature_ratio = check(
     tier=Tier.SCREENING,
     formula="min rho_p / r >= c; rho_p: convex radius of curvature of the pitch curve, r: roller"
     " radius, c: limits.curvature_ratio",
+    symbols={
+        "rho_p": "1/pitch_curvature [mm]",
+        "r": "roller.radius",
+    },
     reason="Near a ratio of 1 the convex cam surface becomes an edge.",
     method="least radius of curvature of the convex pitch curve, refined between samples",
     lift_can_help=True,
@@ -209,6 +219,11 @@ undercut = check(
     tier=Tier.SCREENING,
     formula="min(1 - r kappa_p) >= c; r: roller radius, kappa_p: curvature of the pitch curve, c:"
     " limits.undercut_factor; flat face: min((R + s + s'')/(R + s)), R: base radius",
+    symbols={
+        "r": "roller.radius",
+        "kappa_p": "pitch_curvature",
+        "?": "follower.kind roller",
+    },
     reason="At zero the cam has a cusp; below, the follower does not follow the lift.",
     method="least 1 - roller radius x pitch curvature, refined between samples",
     lift_can_help=True,
@@ -358,6 +373,11 @@ minimum_wall = check(
     tier=Tier.SCREENING,
     formula="min |P| / (R_b + t) >= c; P: contour, R_b: bore radius, t: depth of the keyway, c:"
     " limits.minimum_wall",
+    symbols={
+        "P": "contour_radius",
+        "R_b": "cam.bore_radius",
+        "t": "cam.keyway.depth",
+    },
     reason="A thinner ring bursts at the keyway or opens on the shaft.",
     method="least contour radius over bore radius plus keyway depth",
     load_cases=NONE,
@@ -378,6 +398,9 @@ spring_travel = check(
     tier=Tier.SCREENING,
     kept_as="spring travel",
     formula="max s <= x; s: lift, x: spring.travel_max",
+    symbols={
+        "s": "lift",
+    },
     reason="Beyond its travel the spring is solid and the follower is blocked.",
     unit="mm",
     source="spring travel of the case",

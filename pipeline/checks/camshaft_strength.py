@@ -354,6 +354,10 @@ def shaft_slope(solution: Solution) -> Demand:
     kept_as="normal force at the static load rating of the camshaft bearings",
     formula="C0/P0 >= limits.shaft_bearing_static_safety; C0: camshaft.bearing_static_rating, P0:"
     " greatest radial load of either bearing over all load cases and angles",
+    symbols={
+        "C0": "camshaft.bearing_static_rating",
+        "P0": "max(shaft_bearing_load_1, shaft_bearing_load_2) [N]",
+    },
     reason="dents of the raceway under the greatest load are permanent",
     values=(*given.SHAFT, "camshaft.bearing_static_rating"),
     levers=(levers.one("camshaft.bearing_static_rating"), *levers.LOAD),
@@ -390,6 +394,12 @@ def shaft_bearing_static(solution: Solution) -> Demand:
     formula="L10 >= limits.shaft_bearing_life; L10 = (C/P_m)^3 10^6 turns, C:"
     " camshaft.bearing_rating, P_m: cube mean of the radial load over the turn, P <= C/2"
     f" throughout. Least over both bearings; over the load cases {BY_DUTY}",
+    symbols={
+        "C": "camshaft.bearing_rating",
+        "P_m": ("max(mean(shaft_bearing_load_1^3), mean(shaft_bearing_load_2^3))^(1/3) [N]"),
+        "turns": "2 pi/cam.speed [s]",
+        "L10": "[h]",
+    },
     reason=BREAKS,
     values=(*given.SHAFT, "camshaft.bearing_rating"),
     levers=(levers.one("camshaft.bearing_rating"), *levers.LOAD),
@@ -450,9 +460,13 @@ def _tooth_bending(
     key: str,
     wheel: Callable[[CamshaftGear], tuple[int, Material]],
     *,
+    teeth: str,
     kept_as: str,
 ) -> Declaration:
-    """Tooth root stress of a wheel with its own form factor; key: of its bending limit."""
+    """Tooth root stress of a wheel with its own form factor.
+
+    key, teeth: of its bending limit and of its number of teeth
+    """
 
     def per_torque(numbers: Numbers) -> float:
         shaft, gear = _geared(numbers)
@@ -481,6 +495,16 @@ def _tooth_bending(
         part="gear",
         kept_as=kept_as,
         formula=formula,
+        symbols={
+            "T": "cam_torque",
+            "drag": "camshaft.drag",
+            "r": "camshaft.gear_radius",
+            "K_A": "camshaft.gear.application_factor",
+            "b": "camshaft.gear.width",
+            "m": "2 camshaft.gear_radius/camshaft.gear.teeth [mm]",
+            "z": teeth,
+            "F": "[N]",
+        },
         reason=reason,
         values=(
             *given.LOADS,
@@ -511,17 +535,19 @@ gear_bending = _tooth_bending(
     (),
     "camshaft.gear.bending_limit",
     lambda gear: (gear.teeth, gear.material),
+    teeth="camshaft.gear.teeth",
     kept_as="torque at the maximum root stress of the driving gear",
 )
 pinion_bending = _tooth_bending(
     "pinion_bending",
     "Tooth root bending stress of the pinion on the machine shaft",
-    "as gear_bending, with the teeth of the pinion and camshaft.gear.pinion_bending_limit;"
-    " fewer teeth are thinner at the root",
+    "F K_A/(b m pi y) <= 0.7 s_F / S; F = |T + drag|/r, y = 0.154 - 0.912/z: Lewis, z: teeth of the"
+    " pinion, thinner at the root, s_F: camshaft.gear.pinion_bending_limit, else as gear_bending",
     "a broken tooth stops the camshaft, and the pinion has the weaker tooth",
     ("camshaft.gear.pinion_bending_limit",),
     "camshaft.gear.pinion_bending_limit",
     lambda gear: (gear.pinion_teeth, gear.pinion_material or gear.material),
+    teeth="camshaft.gear.pinion_teeth",
     kept_as="torque at the maximum root stress of the pinion",
 )
 
@@ -567,6 +593,19 @@ gear_contact = check(
     formula="Z_H Z_E sqrt(F K_A (u + 1)/(b d u)) <= s_H / S; d, u: pitch diameter of the smaller"
     " wheel and ratio of teeth, s_H: lower contact limit of gear and pinion, S:"
     " limits.gear_contact_safety",
+    symbols={
+        "?": "camshaft.gear.pinion_material None",
+        "Z_H": "sqrt(2/(sin(camshaft.pressure_angle) cos(camshaft.pressure_angle)))",
+        "Z_E": ("sqrt(camshaft.gear.material.E/(2 pi (1 - camshaft.gear.material.nu^2)))"),
+        "F": "|cam_torque + camshaft.drag|/camshaft.gear_radius [N]",
+        "K_A": "camshaft.gear.application_factor",
+        "u": (
+            "max(camshaft.gear.teeth/camshaft.gear.pinion_teeth, "
+            "camshaft.gear.pinion_teeth/camshaft.gear.teeth)"
+        ),
+        "b": "camshaft.gear.width",
+        "d": ("2 camshaft.gear_radius min(1, camshaft.gear.pinion_teeth/camshaft.gear.teeth) [mm]"),
+    },
     reason="pitted flanks break",
     values=(
         *given.LOADS,

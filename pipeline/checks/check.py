@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import partial
+from types import MappingProxyType
 from typing import Literal, NamedTuple, Protocol
 
 import numpy as np
@@ -286,6 +287,9 @@ class Declaration:
     needs : str                kind of follower; "": any
     part : str                 part of the scope that it judges; "": cam or follower
     formula : str              demand and limit with their symbols, for the documentation
+    symbols : mapping          where the symbols of the formula stand in a run, for the hand-check
+                               sheet: dotted keys, columns of the cycle, figures of the cam, or
+                               expressions of them; empty: the demand is stated, not evaluated
     reason : str               why it decides the verdict, or why it does not
     load_cases : str           load cases in which it is made, in words
     rests_on : str             "loads": of the cam, none where the follower has left it or locked;
@@ -324,6 +328,7 @@ class Declaration:
     needs: Literal["", "roller", "face"]
     part: PartName | Literal[""]
     formula: str
+    symbols: Mapping[str, str] = field(repr=False, hash=False)
     reason: str
     load_cases: str
     rests_on: RestsOn
@@ -423,6 +428,7 @@ def check(
     needs: Literal["", "roller", "face"] = "",
     part: PartName | Literal[""] = "",
     formula: str = "",
+    symbols: Mapping[str, str] = MappingProxyType({}),
     reason: str = "",
     load_cases: str = EVERY,
     rests_on: RestsOn | None = None,
@@ -466,6 +472,7 @@ def check(
             needs=needs,
             part=part,
             formula=formula,
+            symbols=symbols,
             reason=reason,
             load_cases=load_cases,
             rests_on=rests_on,

@@ -374,6 +374,9 @@ contact_pressure = check(
     formula="p0 <= p_E / S; p0: greatest contact pressure over all load cases and angles, p_E:"
     " least endurance pressure of cam and follower, of rolling for a roller and of rolling with"
     " sliding for a flat face, S: limits.contact_safety",
+    symbols={
+        "p0": "p0_fe",
+    },
     reason="above the endurance pressure the track pits",
     values=(*given.CONTACT, *given.bodies("*endurance_pressure")),
     levers=(levers.RECROWNED, *levers.ENDURANCE),
@@ -401,6 +404,9 @@ contact_pressure = check(
     error="contact",
     formula="sigma_v <= Y / S; sigma_v: greatest von Mises stress with traction, stresses along the"
     " surface included, Y: least yield strength of cam and follower, S: limits.yield_safety",
+    symbols={
+        "sigma_v": "von_mises_with_traction",
+    },
     reason="a contact above first yield may shake down, see shakedown_traction",
     values=(*given.CONTACT, *given.bodies("yield_strength")),
     page="Contact",
@@ -435,6 +441,9 @@ shakedown = check(
     kept_as="shakedown pressure",
     formula="p0 <= 4 k / S; k = Y/sqrt(3): least shear yield strength of cam and follower, S:"
     " limits.shakedown_safety",
+    symbols={
+        "p0": "p0_fe",
+    },
     reason="above the limit every passage adds plastic strain",
     values=(*given.CONTACT, *given.bodies("yield_strength")),
     levers=(levers.RECROWNED, *levers.YIELD),
@@ -635,6 +644,9 @@ def shakedown_traction(solution: Solution) -> Demand:
     needs="roller",
     formula="e <= |w_c - w_r| / 2; e: roller.axial_offset, w_c: width of the cam, w_r: of the"
     " roller, both without ends",
+    symbols={
+        "e": "roller.axial_offset",
+    },
     reason="beyond it the contact is shorter and beside the middle of both bodies",
     load_cases=NONE,
     values=("roller.axial_offset",),

@@ -282,6 +282,11 @@ def _guide_pv(side: Side) -> Declaration:
         formula="mean(|R v|) / (d L) <= PV; R: sum of the pushes on both sides of the bore, v:"
         " sliding speed, mean over the turn, d, L: diameter and length of the guide; PV:"
         " guides.*.pv_limit, or the limit of nylon by guides.*.lubrication.",
+        symbols={
+            "mean(|R v|)": f"mean(|guide_normal_load_{side} follower_velocity|) [N m/s]",
+            "d": f"{table_of(side)}.diameter",
+            "L": f"{table_of(side)}.length",
+        },
         reason="the heat that a bush can carry off and its wear rate are stated by its"
         " maker as a PV value.",
         values=(*given.LOADS, *given.of_guide(side, "pv_limit")),
@@ -345,6 +350,7 @@ def _guide_edge_pressure(side: Side) -> Declaration:
         kept_as=f"line load of guide {side} at the yield strength",
         formula="p <= R(T); p: greatest pressure between stem and bore, where the line load along"
         " the guide is greatest, R: yield strength of the bush at its temperature T.",
+        symbols={"p": f"guide_edge_pressure_{side}"},
         reason="an edge above the yield strength is pressed out, and the guide loses its"
         " length and its clearance.",
         values=(
@@ -453,6 +459,7 @@ def _guide_speed(side: Side) -> Declaration:
         part="guides",
         kept_as=f"lift per radian at the maximum sliding speed in guide {side}",
         formula="max |v| <= v_max; v: speed of the stem in the bush, v_max: guides.*.speed_limit.",
+        symbols={"v": "follower_velocity"},
         reason="a PV limit holds up to the greatest speed of the bush; above it the"
         " rubbing surface overheats at any load.",
         values=(*given.LOADS, *given.of_guide(side, "speed_limit")),
@@ -488,6 +495,12 @@ guide_speed_a, guide_speed_b = _guide_speed("A"), _guide_speed("B")
     part="guides",
     formula="(b + (L_A + L_B) / 2) / a >= n; b: spacing of guides, L: their lengths, a: overhang"
     " of the roller centre or face at minimum lift, n: limits.guide_length.",
+    symbols={
+        "b": "guides.spacing",
+        "L_A": "guides.a.length",
+        "L_B": "guides.b.length",
+        "a": "follower.overhang_at_max_lift + lift_highest [mm]",
+    },
     reason="a rule of proportion; the reactions, jam index and pressures that it"
     " guards on the drawing board are computed, and are must-have.",
     load_cases=NONE,

@@ -146,9 +146,15 @@ def _guide_wear(side: Side) -> Declaration:
         tier=Tier.SCREENING,
         part="guides",
         kept_as=f"PV of guide {side} at its wear depth",
-        formula="K t sum q_i PV_i <= h; K: guides.*.wear_rate, volume per load and distance, PV_i:"
-        " mean PV value of the guide in a load case, q_i: load_case.duty, t: limits.target_life, h:"
-        " limits.wear_depth. Without a duty the greatest PV_i counts for the whole life.",
+        formula="K t PV <= h; K: guides.*.wear_rate, volume per load and distance, PV: sum of q_i"
+        " PV_i, PV_i: mean PV value of the guide in a load case, q_i: load_case.duty, t:"
+        " limits.target_life, h: limits.wear_depth. Without a duty PV is the greatest PV_i.",
+        symbols={
+            "K": rate,
+            "t": life,
+            "PV": f"mean(|guide_normal_load_{side} follower_velocity|)"
+            f"/({table_of(side)}.diameter {table_of(side)}.length) [MPa m/s]",
+        },
         reason="wear opens the clearance that jamming and edge pressure are computed"
         " with, and no other check limits it over the life.",
         values=(*given.LOADS, *given.of_guide(side, "wear_rate"), "limits.target_life"),

@@ -100,6 +100,12 @@ def contact_force_margin(cam: LoadedCam) -> Array:
     formula="max(-m w^2 s'' / F_c) <= limits.jump over all load cases and angles; m: moving mass,"
     " w: cam speed, s'': second derivative of the lift, F_c: closing force, of the spring with"
     " weight and external force",
+    symbols={
+        "m": "follower.mass",
+        "w": "cam.speed",
+        "s''": "lift_bend",
+        "F_c": "closing_force",
+    },
     reason="At 1 the inertia of the follower lifts it off the cam.",
     rests_on="",
     values=given.MOTION,
@@ -133,6 +139,13 @@ def _on_points(demand: Demand, solution: Solution) -> Demand:
     part="guides",
     formula="max((mu_A R_A + mu_B R_B) / F_a) <= j on the rise; R: sum of the pushes on both sides"
     " of a guide, mu: its nominal friction, F_a: axial force of the cam, j: limits.jam_index.",
+    symbols={
+        "mu_A": "guides.a.friction",
+        "mu_B": "guides.b.friction",
+        "R_A": "guide_normal_load_A",
+        "R_B": "guide_normal_load_B",
+        "F_a": "axial_force",
+    },
     reason="at 1 the follower locks on the rise and the cam or the stem breaks.",
     rests_on="contact",
     values=given.LOADS,
@@ -218,9 +231,15 @@ def _at_no_load_case(demand: Demand, _: Solution) -> Demand:
     lift_can_help=True,
     tier=Tier.SCREENING,
     kept_as="cam speed without follower jump",
-    formula="min(w sqrt(F_c / (-m w^2 s''))) >= limits.jump_speed times limits.overspeed; w: crank"
-    " speed, F_c: closing force, of the spring with weight and external force, m: moving mass, s'':"
-    " second derivative of the lift",
+    formula="min(i sqrt(F_c / (-m s''))) >= limits.jump_speed times limits.overspeed; i:"
+    " mechanism.gear_ratio, F_c: closing force, of the spring with weight and external force, m:"
+    " moving mass, s'': second derivative of the lift",
+    symbols={
+        "i": "mechanism.gear_ratio",
+        "m": "follower.mass",
+        "s''": "lift_bend",
+        "F_c": "closing_force",
+    },
     reason="An engine exceeds its governed speed, and damping and tolerances are not known"
     " closely.",
     load_cases=SPEED_RANGE,
@@ -266,6 +285,13 @@ def _force_at(cam: LoadedCam, speed: Value) -> Array:
     formula="min(F_c + m w^2 s'') / F_0 >= limits.contact_force_margin at w of limits.overspeed;"
     " F_c: closing force, of the spring with weight and external force, m: moving mass, s'': second"
     " derivative of the lift, F_0: spring force at minimum lift",
+    symbols={
+        "m": "follower.mass",
+        "w": "limits.overspeed/mechanism.gear_ratio [rad/s]",
+        "s''": "lift_bend",
+        "F_c": "closing_force",
+        "F_0": "least_spring_force",
+    },
     reason="The synthesis keeps the contact by this closed form; the sweep adds friction"
     " and surge.",
     load_cases=SPEED_RANGE,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
 from typing import NamedTuple
 
@@ -98,6 +98,7 @@ def _key_check(
     mate_of: Callable[[Case], _Mate | None],
     *,
     kept_as: str,
+    symbols: Mapping[str, str],
     factor: float = 1.0,
 ) -> Declaration:
     """Stress of the key against the yield strength of the weaker of the key and its mate.
@@ -145,6 +146,13 @@ def _key_check(
         part="key",
         kept_as=kept_as,
         formula=formula,
+        symbols={
+            "K_A": "cam.key.application_factor",
+            "T": "|cam_torque| [N m]",
+            "d": "2 cam.bore_radius [mm]",
+            "l_tr": "cam.key.bearing_length [mm]",
+            **symbols,
+        },
         reason=LOOSE,
         values=given.KEY,
         levers=(levers.Scaled(("cam.key.length", "cam.width"), 1), *levers.GENTLER),
@@ -176,6 +184,7 @@ def _shaft_beside(case: Case) -> _Mate | None:
     return _Mate(card, () if card is not None else ("camshaft.material",))
 
 
+_DEPTH = {"t1": "cam.key_data.shaft_depth [mm]", "s": "cam.key_data.chamfer [mm]"}
 key_pressure = _key_check(
     "key_pressure",
     "Key flank pressure on the cam",
@@ -185,6 +194,7 @@ key_pressure = _key_check(
     lambda stress: stress.hub,
     lambda case: _Mate(case.cam.material),
     kept_as="cam torque at the maximum pressure of the key on the cam",
+    symbols={"h": "cam.key_data.height [mm]", **_DEPTH},
 )
 key_pressure_shaft = _key_check(
     "key_pressure_shaft",
@@ -194,6 +204,7 @@ key_pressure_shaft = _key_check(
     lambda stress: stress.shaft,
     _shaft_beside,
     kept_as="cam torque at the maximum pressure of the key on the camshaft",
+    symbols=_DEPTH,
 )
 key_shear = _key_check(
     "key_shear",
@@ -203,6 +214,7 @@ key_shear = _key_check(
     lambda stress: stress.shear,
     lambda _: _Mate(None),
     kept_as="cam torque at the maximum shear stress of the key",
+    symbols={"b": "cam.keyway.width"},
     factor=1.0 / np.sqrt(3.0),
 )
 _SLIP = "camshaft.slip_torque"
@@ -247,6 +259,11 @@ cam_slip = check(
     " its least interference, least radius and greatest speed, mu, a, b: friction, radius and width"
     " of the seat, or the stated camshaft.slip_torque, 0 for a sliding fit, T: greatest cam torque,"
     " K_A: application factor of the key, or 1 without one",
+    symbols={
+        "T_slip": "camshaft.slip_torque",
+        "K_A": "cam.key.application_factor",
+        "T": "|cam_torque| [N m]",
+    },
     reason="where the torque reverses, a seat that slips within the clearance of its key"
     " frets, and fretting starts fatigue cracks",
     values=(*given.KEY, "camshaft.slip_torque", "cam.fit.*"),
@@ -289,6 +306,13 @@ def _wall_in_words(demand: Demand, solution: Solution) -> Demand:
     formula="sqrt(t^2 + t p + p^2) <= R_e; p: pressure of cam.fit at its greatest interference on"
     " the ring of the least radius, t = p (b^2 + a^2)/(b^2 - a^2), a, b: radius of the bore and"
     " least radius of the contour, R_e: core yield strength of the cam",
+    symbols={
+        "p": "cam.fit.ring_pressure [MPa]",
+        "t": "[MPa]",
+        "a": "cam.bore_radius",
+        "b": "cam.prime_radius - roller.radius [mm]",
+        "?": "follower.kind roller",
+    },
     reason="a wall that yields loses its fit",
     values=("cam.material.E", "cam.material.nu", "cam.material.*yield_strength", "cam.fit.*"),
     levers=(levers.one(FIT[1], -1),),

@@ -44,6 +44,13 @@ def _gap_left(cam: LoadedCam, limit: float) -> Array:
     formula="min(h - max|P|, l - x) >= g; h: end of guide A over the cam axis, P: contour, l: end"
     " of guide A over the roller centre at maximum lift, x: extent of the follower or its fork,"
     " g: limits.guide_gap",
+    symbols={
+        "?": "follower.kind roller",
+        "h": "pitch_height + lift_highest + guides.a.mouth [mm]",
+        "P": "contour_radius_greatest",
+        "l": "guides.a.mouth [mm]",
+        "x": "follower.extent [mm]",
+    },
     reason="Cam, roller or fork would strike the guide.",
     method="end of guide A less maximum contour radius, and less the follower, at maximum lift",
     lift_can_help=True,
@@ -73,6 +80,9 @@ cam_radius = check(
     title="Maximum cam radius",
     tier=Tier.SCREENING,
     formula="max |P| <= R; P: contour, R: limits.cam_radius",
+    symbols={
+        "P": "contour_radius",
+    },
     reason="The cam must fit into its space.",
     method="greatest radius of the contour, refined between samples",
     lift_can_help=True,
@@ -114,6 +124,13 @@ def _waves_in_words(demand: Demand, solution: Solution) -> Demand:
     " else of that of cam.process at lambda and at most of cam.profile_tolerance, v: speed of the"
     " contact along the contour, lambda: cam.waviness_length, N: contact force, at least 1 % of the"
     " least spring force, c: limits.waviness",
+    symbols={
+        "m": "follower.mass",
+        "a": "cam.waviness/2 [um]",
+        "v": "cam.speed contour_speed [m/s]",
+        "lambda": "cam.waviness_length",
+        "N": "normal_force",
+    },
     reason="Waves of the surface unload the contact and mark it.",
     method="m a (2 pi v/lambda)^2 of sine waves",
     values=(*given.LOADS, "cam.process", "cam.waviness_*", "cam.profile_tolerance"),

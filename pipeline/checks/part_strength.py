@@ -91,6 +91,11 @@ roller_pin = check(
     formula="32 M/(pi d^3) <= x Y; M: N (l/4 - b/8) of a pin held at both ends, N l of an overhung"
     " one, N: greatest normal force over all load cases and angles, l: span, b: roller width, d:"
     " pin diameter, Y: yield strength, x: limits.pin_share. Fatigue: roller_pin_fatigue.",
+    symbols={
+        "?": "roller.pin.mounting straddled",
+        "M": "normal_force (roller.pin.span/4 - roller.width/8) [N m]",
+        "d": "roller.pin.diameter",
+    },
     reason="a bent pin drops the roller",
     values=(*given.LOADS, "roller.pin.material.yield_strength"),
     levers=(levers.one("roller.pin.diameter", most=2.0), *levers.LOAD),
@@ -188,6 +193,11 @@ roller_pin_shear = check(
     formula="4 Q/(3 A) <= x Y/sqrt(3); Q: N/2 of a pin held at both ends, N of an overhung one, N:"
     " greatest normal force over all load cases and angles, A: section, Y: yield strength, x:"
     " limits.pin_share.",
+    symbols={
+        "?": "roller.pin.mounting straddled",
+        "Q": "normal_force/2 [N]",
+        "A": "pi roller.pin.diameter^2/4 [mm^2]",
+    },
     reason="a short pin shears before it bends",
     values=(*given.LOADS, "roller.pin.material.yield_strength"),
     levers=(levers.one("roller.pin.diameter", most=2.0), *levers.LOAD),
@@ -229,6 +239,11 @@ roller_pin_pressure = check(
     formula="N/(d b) <= x R_m; N: greatest normal force over all load cases and angles, d: pin"
     " diameter, b: roller width, R_m: tensile strength of the pin, softer than the ring, x:"
     " limits.pin_pressure_share.",
+    symbols={
+        "N": "normal_force",
+        "d": "roller.pin.diameter",
+        "b": "roller.width",
+    },
     reason="a seat that yields comes loose and frets",
     values=(
         *given.LOADS,
@@ -301,6 +316,10 @@ cheek_pressure = check(
     " ends, N (6 l + 4 t)/(d t^2) beside an overhung one, N: greatest normal force over all load"
     " cases and angles, d: pin diameter, t: cheek width, l: cheek to bearing centre, R_m: lower"
     " tensile strength of fork and pin, x: limits.pin_pressure_share.",
+    symbols={
+        "?": "roller.pin.mounting straddled",
+        "p": "normal_force/(2 roller.pin.diameter roller.fork.cheek_width) [MPa]",
+    },
     reason="a seat that yields lets the pin tilt and the roller run on its edge",
     values=(
         *given.LOADS,
@@ -447,6 +466,11 @@ roller_ring_fatigue = check(
     formula="s_a/(1 - s_m/R_m) <= s_W; s_a, s_m: amplitude and mean of the stress at the groove per"
     " newton, times the greatest normal force over all load cases and angles, R_m, s_W: tensile and"
     " fatigue strength of the ring. A ring in a roller of its own is held by it: not judged.",
+    symbols={
+        "s_a": "ring_stress_amplitude",
+        "s_m": "ring_stress_mean",
+        "R_m": "roller.bearing.ring.tensile_strength",
+    },
     reason="the ring without a housing bends at every ball",
     values=(
         *given.LOADS,
@@ -516,6 +540,11 @@ bore_pressure = check(
     formula="F_n/(d b) <= limits.bore_share R_m - p; F_n: greatest normal force over all load cases"
     " and angles, d: bore diameter, b: cam width, R_m: lower tensile strength of cam and camshaft,"
     " p: pressure of cam.fit at its greatest interference, 0 without one",
+    symbols={
+        "F_n": "normal_force",
+        "d": "2 cam.bore_radius [mm]",
+        "b": "cam.width",
+    },
     reason="a widened bore loosens the cam on its shaft",
     values=(
         *given.LOADS,
@@ -566,6 +595,12 @@ def torque_reversals(solution: Solution) -> Demand:
     formula="e w <= limits.unbalance; e = U/m, U: unbalance of cam and counterweight, or"
     " camshaft.counterweight.residual, m: camshaft.rotor_mass, or the mass of the cam alone, w:"
     " greatest cam speed of all load cases",
+    symbols={
+        "U": "camshaft.counterweight.residual",
+        "e": "[um]",
+        "m": "camshaft.rotor_mass",
+        "w": "cam.fastest [rad/s]",
+    },
     reason="the force m e w^2 loads shaft, bearings and frame at every speed",
     rests_on="",
     values=(

@@ -197,6 +197,10 @@ roller_static = check(
     kept_as="static load rating of the roller",
     formula="C0/N >= S; C0: static rating, N: greatest normal force over all load cases and angles,"
     " S: limits.roller_static_safety",
+    symbols={
+        "N": "normal_force",
+        "C0": "roller.bearing.C0",
+    },
     reason="beyond it the balls dent the raceways",
     values=(*given.LOADS, "roller.bearing.C0"),
     levers=(levers.Catalogued(levers.BEARING, "C0", inverse=True), *levers.LOAD),
@@ -224,6 +228,10 @@ roller_load_share = check(
     kept_as="share of the dynamic load rating of the roller",
     formula="N/C <= x; N: greatest normal force over all load cases and angles, C: dynamic rating,"
     " x: limits.roller_load_share",
+    symbols={
+        "N": "normal_force",
+        "C": "roller.bearing.C",
+    },
     reason="beyond it the balls yield in their raceways and no rating life is valid",
     values=(*given.LOADS, "roller.bearing.C"),
     levers=(levers.Catalogued(levers.BEARING, "C", inverse=True), *levers.LOAD),
@@ -253,6 +261,15 @@ roller_life = check(
     formula="(C/P_m)^3 10^6/n >= L; C: dynamic rating, P_m: cube mean of the normal force over the"
     " revolutions of the roller, n: its mean speed, L: limits.roller_life. Over the load cases"
     f" {BY_DUTY}.",
+    symbols={
+        "C": "roller.bearing.C",
+        "P_m": (
+            "(mean((normal_force + spring_surge_force/((1 - "
+            "sign(follower_velocity) jam_index) cos(pressure_angle)))^3 "
+            "|roller_speed|)/mean(|roller_speed|))^(1/3) [N]"
+        ),
+        "n": "mean(|roller_speed|)/(2 pi) [1/s]",
+    },
     reason="the bearing has to last; a clean bearing that lasts longer is not credited",
     values=(
         *given.LOADS,
@@ -335,8 +352,13 @@ roller_modified_life = check(
     needs="roller",
     part="roller_bearing",
     kept_as="limiting speed of the roller",
-    formula="w (|dP/dtheta| - r)/r <= x n_g; P: pitch curve, r: roller radius, n_g: limiting speed,"
-    " x: limits.roller_speed_share",
+    formula="w (|P'| - r)/r <= x n_g; P': pitch curve by cam angle, r: roller radius, n_g: limiting"
+    " speed, x: limits.roller_speed_share",
+    symbols={
+        "w": "cam.speed",
+        "P'": "pitch_speed",
+        "r": "roller.radius",
+    },
     reason="beyond it seals and grease overheat",
     values=("roller.bearing.speed_limit", "limits.overspeed"),
     levers=(
@@ -375,6 +397,7 @@ def _outer_ring(
         kept_as=f"maximum {kept} load of the roller's outer ring",
         formula=f"N <= {symbol}; N: greatest normal force over all load cases and angles, {symbol}:"
         f" maximum {words} load of an outer ring without a housing",
+        symbols={"N": "normal_force"},
         reason=reason,
         values=(*given.LOADS, f"roller.bearing.{key}"),
         levers=(levers.Catalogued(levers.BEARING, key, inverse=True), *levers.LOAD),

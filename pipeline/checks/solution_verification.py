@@ -142,6 +142,10 @@ def bore_stress(solution: Solution) -> Demand | None:
 @check(
     title="Depth of maximum von Mises stress / half-width",
     formula="min z/a >= 0.3; z: depth of the maximum von Mises stress, a: half-width",
+    symbols={
+        "z": "von_mises_depth",
+        "a": "half_width_fe",
+    },
     reason="A maximum at the surface is that of an element, not of the contact.",
     unit="-",
     sense="at_least",
@@ -248,6 +252,10 @@ RESIDUALS = tuple(
 @check(
     title="Peak pressure, finite elements vs. Hertz",
     formula="max |p_FE/p_H - 1| <= 0.03; p_FE, p_H: peak pressure by finite elements and by Hertz",
+    symbols={
+        "p_FE": "p0_fe",
+        "p_H": "p0_hertz",
+    },
     reason="Does not decide: the bending of real bodies is a true difference; benchmarks and"
     " certificate decide.",
     unit="%",

@@ -69,6 +69,12 @@ _SAMPLES = 720  # of the turn, among which the rises of the lift are counted
 _AT_REST = 1e-6  # of the greatest slope of the lift: a dwell
 
 
+_HIGH = "spring.preload (1 + spring.preload_tolerance)"
+_STIFF = "spring.design.rate (1 + spring.rate_tolerance)"
+_SOLID_LENGTH = "spring.design.wire_diameter (spring.design.coils + 2) [mm]"
+"""Preload high, rate high and solid length in the symbols of a formula."""
+
+
 def _design(solution: Solution) -> HelicalSpring:
     design = solution.machine.spring.design
     if design is None:
@@ -254,6 +260,14 @@ spring_solid = check(
     part="spring",
     formula="(L0 - Lc - s_max) / s_max >= limits.spring_solid; L0, Lc: free and solid length,"
     " s_max = P/k + h: deflection at maximum lift h, preload P high",
+    symbols={
+        "L0": "spring.design.free_length",
+        "Lc": _SOLID_LENGTH,
+        "P": f"{_HIGH} [N]",
+        "k": "spring.design.rate [N/mm]",
+        "h": "lift_highest",
+        "s_max": "[mm]",
+    },
     reason="A spring that goes solid stops the follower.",
     load_cases=NONE,
     values=(*given.SPRING, *given.RATE),
@@ -281,6 +295,11 @@ spring_coil_gap = check(
     part="spring",
     formula="L0 - Lc - s_max >= 1.5 n (0.0015 D^2/d + 0.1 d); L0, Lc: free and solid length, s_max:"
     " deflection at maximum lift with the preload high, n: active coils, D: mean diameter, d: wire",
+    symbols={
+        "L0": "spring.design.free_length",
+        "Lc": _SOLID_LENGTH,
+        "s_max": f"{_HIGH}/spring.design.rate + lift_highest [mm]",
+    },
     reason="Below it coils touch before the solid length, the rate rises and the wire wears.",
     load_cases=NONE,
     values=(*given.SPRING, *given.RATE),
@@ -307,6 +326,14 @@ spring_solid_stress = check(
     part="spring",
     formula="tau_c = 8 D F_c / (pi d^3) <= 0.56 R_m; F_c = k (L0 - Lc): force at solid length with"
     " the rate high, R_m: tensile strength of the wire",
+    symbols={
+        "k": f"{_STIFF} [N/mm]",
+        "F_c": "[N]",
+        "L0": "spring.design.free_length",
+        "Lc": _SOLID_LENGTH,
+        "D": "spring.design.mean_diameter",
+        "d": "spring.design.wire_diameter",
+    },
     reason="A spring is pressed solid when it is coiled, mounted and over-run, and sets"
     " beyond this stress.",
     load_cases=NONE,
@@ -358,6 +385,13 @@ spring_buckling = check(
     moved_by_tolerance=False,
     part="spring",
     formula="|G d^4 / (8 D^3 n) / k - 1| <= tolerance of the rate; k: spring.rate",
+    symbols={
+        "G": "spring.design.shear_modulus",
+        "d": "spring.design.wire_diameter",
+        "D": "spring.design.mean_diameter",
+        "n": "spring.design.coils",
+        "k": "spring.rate",
+    },
     reason="All loads are those of spring.rate, all stresses those of the design.",
     load_cases=NONE,
     values=("spring.rate", *given.RATE),
@@ -379,6 +413,15 @@ def spring_rate(cam: LoadedCam) -> Array:
     part="spring",
     formula="f1 / f_cam >= limits.spring_surge; f1 = sqrt(k/m)/2: first natural frequency of the"
     " active coils, f_cam: turns of the cam at over-speed, at least at the fastest load case",
+    symbols={
+        "k": "spring.design.rate [N/mm]",
+        "m": (
+            "spring.design.density pi^2 spring.design.wire_diameter^2 "
+            "spring.design.mean_diameter spring.design.coils/4 [g]"
+        ),
+        "f_cam": "cam.fastest/(2 pi) [Hz]",
+        "f1": "[Hz]",
+    },
     reason="Below it strong harmonics of the lift drive the coils. A rule of thumb: the sweep over"
     " the speeds decides, with the least damping, in contact_over_speed, spring_stress and"
     " spring_fatigue.",
@@ -403,6 +446,11 @@ spring_relaxation = check(
     part="spring",
     formula="R F_max / P <= tolerance of the preload; R: spring.design.relaxation, share of the"
     " force lost in 48 h at spring.design.temperature, F_max: force at maximum lift, P: preload",
+    symbols={
+        "R": "spring.design.relaxation",
+        "F_max": f"{_HIGH} + {_STIFF} lift_highest [N]",
+        "P": f"{_HIGH} [N]",
+    },
     reason="A relaxed spring no longer has the preload on which every force is based.",
     load_cases=NONE,
     values=(

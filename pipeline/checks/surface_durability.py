@@ -72,6 +72,14 @@ def _traction_kept(cam: LoadedCam, friction: float) -> Array | None:
     return demands.over_normal_force(cam, _tangential(cam) / friction)
 
 
+_ROLLING = {
+    "?": "roller.bearing.drag_torque None; roller.bearing.friction None",
+    "T": "|roller.rotor_inertia roller_acceleration|/roller.radius [N]",
+    "N": "normal_force",
+}
+"""Symbols of a roller whose bearing has no drag."""
+
+
 traction_demand = check(
     id="traction_demand",
     title="Traction coefficient vs. friction coefficient",
@@ -84,6 +92,7 @@ traction_demand = check(
     formula="T/N <= mu; T: tangential force of rolling without slip, from the inertia of the roller"
     " and the drag of its bearing, N: normal force, at least 1 % of the least spring force, mu:"
     " roller.friction",
+    symbols=_ROLLING,
     reason="a roller that slips wears the track, and its endurance is that of sliding",
     values=given.TRACTION,
     page="Contact",
@@ -105,6 +114,7 @@ traction_reserve = check(
     tier=Tier.SCREENING,
     needs="roller",
     formula="T/N <= c mu; c: limits.traction_share, others as of traction_demand",
+    symbols=_ROLLING,
     reason="a reserve against a friction coefficient lower than stated; grip itself is"
     " traction_demand",
     values=given.TRACTION,
@@ -125,6 +135,12 @@ traction_reserve = check(
     must_have=False,
     formula="lambda = h_min / sqrt(Rq1^2 + Rq2^2) >= limits.film_ratio; h_min: film of smooth"
     " surfaces in line contact, Rq: rms roughness of cam and follower",
+    symbols={
+        "h_min": "film_thickness",
+        "Rq1": "cam.roughness",
+        "Rq2": "roller.roughness",
+        "?": "follower.kind roller",
+    },
     reason="the endurance rows hold for lubricated cams in mixed lubrication too, and at"
     " reversals of the motion no film of steady rolling exists",
     values=(
@@ -401,6 +417,9 @@ def case_depth(solution: Solution) -> Demand | None:
     lift_can_help=True,
     error="contact",
     formula="p0 <= 2.76 HB - 70 MPa; HB: hardness_brinell, at most 400",
+    symbols={
+        "p0": "p0_fe",
+    },
     reason="an estimate from the hardness alone; contact_pressure has the endurance of the card",
     values=(*given.CONTACT, "cam.material.hardness*"),
     page="Contact",
@@ -436,6 +455,9 @@ def pressure_by_hardness(solution: Solution) -> Demand | None:
     error="contact",
     formula="p0 <= sigma_Hlim; carburised 1500 MPa, induction hardened 0.541 HV + 882 MPa,"
     " through-hardened 1.313 HV + 373 MPa; HV: hardness_vickers",
+    symbols={
+        "p0": "p0_fe",
+    },
     reason="allowable stress of gear flanks, for comparison",
     values=(*given.CONTACT, "cam.material.hardness*"),
     page="Contact",

@@ -41,6 +41,12 @@ _NO_MEAN = 1e-6
     formula="min over the load cases of 1 - (1 - c)/(1 - c_i) std(T_e - T_c)/std(T_e) >= c; T_e,"
     " T_c: torque of machine and cam about their means, c_i: load_case.torque_reduction, else"
     " limits.torque_reduction, c: the greatest c_i",
+    symbols={
+        "std(T_e)": "std(torque_before) [N m]",
+        "std(T_e - T_c)": "std(torque_after) [N m]",
+        "c": "torque.greatest_reduction",
+        "c_i": "torque.required_reduction",
+    },
     reason="It is the purpose of the cam.",
     method="1 - std of the torque with the cam, friction and inertia included, over that"
     " without it",

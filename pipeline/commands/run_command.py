@@ -11,6 +11,7 @@ import typer
 
 from camwright.geometry.errors import InputError, ResultError
 from camwright.pipeline.commands.terminal import (
+    FAILED,
     PASSED,
     CaseArgument,
     DirArgument,
@@ -105,10 +106,12 @@ def run(
                 ahead=None if no_report else drawings.begin,
                 also=valve_record,
             )
-    from camwright.pipeline.results.run_reader import read_summary, read_verdict
-    from camwright.pipeline.results.verdict_summary import Places
+    from camwright.pipeline.results.run_reader import read_run, read_summary, read_verdict
+    from camwright.pipeline.results.verdict_summary import Places, trial_lines
 
     seconds = read_summary(out)["timings_s"]["total"]
+    for line in trial_lines(read_run(out)):
+        stdout.print(line, markup=False)
     show(read_verdict(out), Places(str(out), str(case), page_of(out), seconds))
     return PASSED
 
@@ -140,11 +143,22 @@ def report(
         typer.Option("--only", metavar="PART", help="Write this part only; may be repeated."),
     ] = None,
     show: Annotated[bool, typer.Option("--open", help="Open the page in the browser.")] = False,
+    check: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--check",
+            metavar="CHECK",
+            help="Print the hand-check sheet of this check, and write nothing; may be repeated.",
+        ),
+    ] = None,
 ) -> int:
     """Write the report of a finished run; nothing is solved.
 
-    Exit code 4: the run is not as recorded; nothing is written.
+    Exit code 4: the run is not as recorded; nothing is written. 1: a hand-check sheet disagrees
+    with its check.
     """
+    if check:
+        return _sheets(folder, check)
     from camwright.reports import sections
     from camwright.reports.page import PAGE
 
@@ -157,6 +171,21 @@ def report(
     if show:
         _open(folder / PAGE)
     return PASSED
+
+
+def _sheets(folder: Path, names: Sequence[str]) -> int:
+    """Print the hand-check sheets of checks."""
+    from camwright.pipeline.hand_check.hand_sheet import SheetRun
+    from camwright.pipeline.hand_check.sheet_lines import sheet_lines
+    from camwright.pipeline.results.signoff import require_recorded
+
+    require_recorded(folder)
+    run = SheetRun(folder)
+    sheets = [run.sheet(name) for name in names]
+    for sheet in sheets:
+        for line in sheet_lines(sheet):
+            stdout.print(line, markup=False)
+    return PASSED if all(sheet.agrees for sheet in sheets) else FAILED
 
 
 def _listed(files: Sequence[Path]) -> str:

@@ -251,6 +251,12 @@ class Run(WithChecks):
         return self.trials[self.summary["final_trial"] - 1]
 
     @property
+    def ripples(self) -> tuple[float | None, ...]:
+        """Std of the torque with the cam of each trial, design load case, N m; None: no torque."""
+        known = {point["trial"]: point["ripple_Nm"] for point in self.summary["trial_points"]}
+        return tuple(known.get(trial.number) for trial in self.trials)
+
+    @property
     def verdict(self) -> str | None:
         """Verdict by the checks of the final trial; None below certified."""
         return self.final.verdict

@@ -23,7 +23,7 @@ from camwright.pipeline.results.check_report import (
     reason_without_data,
     unit_text,
 )
-from camwright.pipeline.results.run_reader import load_end_words
+from camwright.pipeline.results.run_reader import Run, load_end_words
 
 WIDTH = 100
 """Columns of a line."""
@@ -32,6 +32,7 @@ LINES = 15
 WORST = 3
 """Failed checks that it names."""
 _CUT = "…"
+_TRIAL = "{:<5}  {:<26} {:<11}  {}"
 _LEAST = 24  # columns of a title
 
 
@@ -75,6 +76,28 @@ def summary_lines(document: Mapping[str, Any], places: Places) -> list[str]:
     if document["scope"]["statement"]:
         lines.append(shortened(document["scope"]["statement"]))
     return lines + place_line(document, places)
+
+
+def trial_lines(run: Run) -> list[str]:
+    """A line on each trial, under a heading: smoothing, ripple left, failed required checks.
+
+    The worst `WORST` are named by their ids. None of a single trial.
+    """
+    if len(run.trials) < 2:
+        return []
+    lines = [_TRIAL.format("trial", "smoothing", "ripple left", "failed required checks")]
+    for trial, ripple in zip(run.trials, run.ripples, strict=True):
+        width = trial.record["smoothing_width_deg"]
+        smoothing = str(trial.record["smoothing_kind"])
+        smoothing += "" if width is None else f", {width:.4g} deg"
+        left = "-" if ripple is None else f"{ripple:.3g} N m"
+        failed = failures(within_depth(trial.checks))
+        named = [f"{each['id']} {used(utilisation_of(each))}" for each in failed[:WORST]]
+        words = f"{len(failed)}: {', '.join(named)}" if failed else "none"
+        line = _TRIAL.format(f"{trial.number:>5}", smoothing, left, words)
+        cut = len(line) > WIDTH or len(failed) > WORST
+        lines.append(f"{line[: WIDTH - 2].rstrip(' ,')} {_CUT}" if cut else line)
+    return lines
 
 
 def verdict_words(document: Mapping[str, Any]) -> str:

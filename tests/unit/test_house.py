@@ -33,6 +33,7 @@ ORDER = (
     "pipeline.checks",
     "pipeline.smoothing",
     "pipeline.results",
+    "pipeline.hand_check",
     "pipeline.remedies",
     "pipeline",
     "pipeline.screening",
@@ -119,7 +120,7 @@ def test_no_import_points_upward() -> None:
 
 
 def test_reports_read_results_and_draw_nothing_else() -> None:
-    below = ("geometry", "pipeline.base", "pipeline.results")
+    below = ("geometry", "pipeline.base", "pipeline.results", "pipeline.hand_check")
     below += ("reports.drawing", "reports.painting", "reports")
     other = {(n, t) for n, t, _ in imports() if package(n) == "reports" and package(t) not in below}
     assert sorted(other) == []

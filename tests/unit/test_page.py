@@ -144,6 +144,10 @@ def test_every_figure_of_the_sheet_is_there_with_words_for_it(html):
 
 
 def test_trials_and_certificate_are_printed(html):
+    trials = html[html.index('id="trials"') : html.index('id="evidence"')]
+    table = trials[: trials.index("</table>")].replace("\u00a0", " ")
+    assert "Ripple left" in table and table.index("3.4 N m") < table.index("3.1 N m")
+    assert '<figure id="trial-contours">' in trials and '<figure id="trial-torque">' in trials
     assert "moving average of 24 values 5 deg apart" in html
     assert "\u201cPressure angle\u201d fails" in html
     evidence = html[html.index('id="evidence"') :]

@@ -20,7 +20,7 @@ from camwright.pipeline.results.run_records import fatigue_record
 from camwright.reports import figure_svg, interactive
 from camwright.reports.analysis_sheet import groups
 from camwright.reports.figures import AngleFigure, Curve, LimitLine, Panel
-from camwright.reports.report_data import read_material
+from camwright.reports.report_data import governing_turn, read_material
 from camwright.reports.sheet_turn import angle_figure
 
 ROWS = 72
@@ -159,3 +159,43 @@ def test_the_points_of_the_goodman_diagrams_give_the_safeties_of_the_checks():
         )
         assert 1.0 / worst == pytest.approx(checks[name].demand, rel=1e-9)
         assert record[part]["required_safety"] == checks[name].limit
+
+
+def test_trials_are_drawn_over_each_other_the_result_last_and_solid(turn):
+    """Contour and torque of each trial, from its own files."""
+    first, final = turn.trials
+    contours, torque = (figure_of(turn, f"trial-{name}") for name in ("contours", "torque"))
+    labels = ["trial 1, 60\u00a0deg", "trial 2, 120\u00a0deg"]
+    assert [label for label, _ in contours.contours] == labels
+    for trial, (_, points) in zip((first, final), contours.contours, strict=True):
+        assert points[1] == pytest.approx(trial.contour["contour_y_mm"])
+    named = [curve for curve in contours.curves if curve.label]
+    assert [curve.dash for curve in named] == ["dashed", "solid"]
+    assert named[0].colour != named[1].colour
+    radius = np.hypot(*contours.contours[1][1])
+    assert f"trial 2, 120\u00a0deg: {radius.min():.4g} to {radius.max():.4g} mm" in contours.alt
+    (panel,) = torque.panels
+    assert [(curve.label, curve.dashed) for curve in panel.curves] == [
+        (labels[0], True), (labels[1], False),
+    ]  # fmt: skip
+    assert panel.curves[0].values == pytest.approx(first.cycle["torque_after_Nm"])
+    for made in (contours, torque):
+        assert "trial 1" in figure_svg.svg_of(made)
+        assert [
+            t["name"] for t in interactive.specification(made)["data"] if t.get("name")
+        ] == labels
+
+
+def test_a_single_trial_is_compared_with_none(turn):
+    alone = replace(turn, trials=turn.trials[-1:])
+    shown = {each.id for _, figures in groups(alone) for each in figures}
+    assert not {"trial-contours", "trial-torque"} & shown
+
+
+def test_of_many_trials_the_first_the_latest_and_the_final_one_are_compared(tmp_path):
+    report_fixture.write_run(tmp_path / "run", positions=ROWS, field=False)
+    run = read_material(tmp_path / "run").run
+    nine = [replace(run.trials[0], number=k) for k in range(1, 10)]
+    many = replace(run, trials=tuple(nine), summary={**run.summary, "final_trial": 3})
+    compared = governing_turn(many, {}).trials
+    assert [trial.number for trial in compared] == [1, 6, 7, 8, 9, 3]

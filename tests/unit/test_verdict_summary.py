@@ -4,12 +4,17 @@ from __future__ import annotations
 
 import io
 import math
+import sys
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import pytest
 from rich.console import Console
 from small_run import check
+
+sys.path.insert(0, str(Path(__file__).parents[1]))
+import report_fixture
 
 from camwright.pipeline.base.units import used
 from camwright.pipeline.case.case_file import read_case
@@ -18,7 +23,7 @@ from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.preview import preview_case
 from camwright.pipeline.results.check_records import judgement
 from camwright.pipeline.results.check_report import table
-from camwright.pipeline.results.run_reader import read_verdict
+from camwright.pipeline.results.run_reader import read_run, read_verdict
 from camwright.pipeline.results.verdict_summary import (
     LINES,
     WIDTH,
@@ -26,6 +31,7 @@ from camwright.pipeline.results.verdict_summary import (
     failure_lines,
     missing_lines,
     summary_lines,
+    trial_lines,
 )
 from camwright.pipeline.run import run_case
 
@@ -144,6 +150,22 @@ def test_missing_keys_are_listed_once_with_the_checks_that_need_them() -> None:
         "not evaluated: c: judged elsewhere",
         "missing: 2 keys of the case, listed by camwright check x.toml --missing",
     ]
+
+
+def test_trials_stand_side_by_side(tmp_path: Path) -> None:
+    """Smoothing, ripple and the worst failures of each trial; nothing of a single one."""
+    report_fixture.write_run(tmp_path, positions=36, field=False)
+    run = read_run(tmp_path)
+    head, first, second = trial_lines(run)
+    assert max(map(len, (head, first, second))) <= WIDTH
+    assert first[:46] == "    1  moving_average, 60 deg     3.4 N m     "
+    failed = [each for each in run.trials[0].checks
+              if each["must_have"] and each["status"] == "fail"]  # fmt: skip
+    worst = max(failed, key=lambda each: each["utilisation"])
+    assert f"{len(failed)}: {worst['id']} {used(worst['utilisation'])}" in first
+    assert "moving_average, 120 deg    3.1 N m" in second
+    assert trial_lines(replace(run, trials=run.trials[1:])) == []
+    assert run.ripples == (3.4, 3.1)
 
 
 @pytest.mark.parametrize(

@@ -1,0 +1,379 @@
+"""Hand-check sheet: a check of a finished run evaluated once more from its own formula text.
+
+The symbols of the formula are those of the declaration: keys of the case, columns of the cycle,
+figures of the drawn cam, all from the run folder. What a solver gave enters as a stated number.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
+from functools import cached_property, partial
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+from camwright.geometry.arrays import Array, Value
+from camwright.geometry.errors import InputError, ResultError
+from camwright.pipeline.base import formula, units
+from camwright.pipeline.base.quantities import Count, In
+from camwright.pipeline.case.case_values import quantity_of, text_of, value_of
+from camwright.pipeline.case.machine import Machine, machines
+from camwright.pipeline.checks.check import Declaration
+from camwright.pipeline.checks.extremes import BY_DUTY
+from camwright.pipeline.checks.registry import DECLARED
+from camwright.pipeline.cycle.loaded_cam import roller_of
+from camwright.pipeline.cycle.numbers import Numbers, fitted_ring, greatest_interference
+from camwright.pipeline.cycle.solved_cam import ContourCam, in_load_case, numbers_of
+from camwright.pipeline.results.check_records import CheckRecord, utilisation_of
+from camwright.pipeline.results.check_report import place
+from camwright.pipeline.results.drawn_cam import drawn_cam
+from camwright.pipeline.results.run_reader import Run, read_run
+
+DIGITS = 6
+"""Digits of the numbers of a sheet; the demand is compared to fewer."""
+ROUNDING, BETWEEN = 1e-7, 1e-3
+"""Relative difference up to which two evaluations agree, and that of a demand which the check
+interpolates between the solved angles and the sheet evaluates there."""
+SAME_ANGLE = 1e-6  # deg, of a demand and a row of the cycle
+_UNITS = (
+    "MPa m/s", "rad/s", "rad/s^2", "m/s", "N/mm", "N m", "mm/rad^2", "mm/rad", "MPa", "mm", "um",
+    "deg", "N", "W", "rpm", "percent",
+)  # fmt: skip
+"""Units of the columns of a cycle and of the figures of a cam."""
+
+_Figure = Callable[[ContourCam], Value]
+FIGURES: Mapping[str, tuple[str, _Figure]] = {
+    "lift": ("mm", lambda cam: cam.jet.lift),
+    "lift_slope": ("mm/rad", lambda cam: cam.jet.slope),
+    "lift_bend": ("mm/rad^2", lambda cam: cam.jet.bend),
+    "lift_highest": ("mm", lambda cam: cam.highest),
+    "pitch_height": ("mm", lambda cam: cam.contour.require_roller().pitch.height_base),
+    "pitch_curvature": ("1/mm", lambda cam: roller_of(cam.motion).path_curvature),
+    "pitch_speed": ("mm/rad", lambda cam: roller_of(cam.motion).path_speed),
+    "contour_speed": ("mm/rad", lambda cam: cam.motion.contour_speed),
+    "contour_radius": ("mm", lambda cam: cam.motion.contour_radius),
+    "contour_radius_greatest": ("mm", lambda cam: cam.contour.radius_max().value),
+    "closing_force": ("N", lambda cam: cam.closing),
+    "least_spring_force": ("N", lambda cam: cam.least_spring),
+}
+"""Figures of the cam drawn and its spring at the cam angle of a demand, with their unit."""
+_CYCLE = "5_cycle.csv"
+_DEFINED = "["
+"""Begins the unit of a symbol that the formula itself defines."""
+_CLOSED_FORM = {"p0_fe": "p0_hertz"}
+"""Column in place of one that a run without finite elements leaves empty."""
+ONLY = "?"
+"""Symbol of the keys and words for which a formula holds, such as ``follower.kind roller``."""
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """A symbol of a formula with its value.
+
+    Parameters
+    ----------
+    symbol : str
+    value : float   SI
+    shown : str     value in the unit of the case or of the column
+    source : str    key, table with load case and cam angle, or the cam as drawn; expression
+    recorded : bool   one column of the cycle, as solved
+    """
+
+    symbol: str
+    value: float
+    shown: str
+    source: str
+    recorded: bool
+
+
+class SheetStep(NamedTuple):
+    """A definition, or with the name "" the demand: expression and its value in words."""
+
+    name: str
+    expression: formula.Node
+    shown: str
+
+
+@dataclass(frozen=True)
+class Sheet:
+    """A check as an engineer writes it by hand.
+
+    Parameters
+    ----------
+    record : mapping       of `6_checks.json`
+    text : str             formula of the declaration
+    limit : str            limit as the formula has it; "": it is not evaluated
+    quantities : tuple     symbols with their values, of the formula and of its definitions
+    steps : tuple          definitions, and last the demand; empty: not evaluated
+    result : float         demand by the formula, in the unit of the record; None: the demand is a
+                           result of a solver, or its formula is none of numbers: it is stated
+    """
+
+    record: CheckRecord
+    text: str
+    limit: str = ""
+    quantities: tuple[Quantity, ...] = ()
+    steps: tuple[SheetStep, ...] = ()
+    result: float | None = None
+
+    @property
+    def is_stated(self) -> bool:
+        """Whether the demand is one number of a solver, or not evaluated at all."""
+        recorded = {each.symbol for each in self.quantities if each.recorded}
+        return not self.steps or self.steps[-1].expression.text in recorded
+
+    @property
+    def agrees(self) -> bool:
+        """Whether the formula gives the demand of the record within rounding; True without it."""
+        demand = self.record["demand"]
+        if self.result is None or demand is None:
+            return self.result is None
+        measured = DECLARED[self.record["id"]].measured
+        between = measured is not None and measured.reduce == "forces"
+        share = BETWEEN if between else ROUNDING
+        return math.isclose(self.result, demand, rel_tol=share, abs_tol=1e-9)
+
+    @property
+    def known(self) -> Mapping[str, str]:
+        """Value of each symbol as it stands in a formula."""
+        defined = {step.name: step.shown for step in self.steps[:-1]}
+        return {each.symbol: each.shown for each in self.quantities} | defined
+
+
+class SheetRun:
+    """A finished run whose checks are evaluated once more.
+
+    Raises
+    ------
+    ResultError
+        If the run is unreadable.
+    """
+
+    def __init__(self, folder: Path, run: Run | None = None) -> None:
+        self.run = read_run(folder) if run is None else run
+        self.case, self.contour = drawn_cam(folder)
+
+    @cached_property
+    def machines(self) -> Mapping[str, Machine]:
+        """Machine by load case, that of the design load case first."""
+        return {each.load_case: each for each in machines(self.case)}
+
+    @cached_property
+    def records(self) -> Mapping[str, CheckRecord]:
+        """Records of the final trial by the id of their check."""
+        return {each["id"]: each for each in self.run.final.checks}
+
+    def sheet(self, name: str) -> Sheet:
+        """Sheet of a check of the final trial.
+
+        Raises
+        ------
+        InputError
+            If the run has no such check.
+        ResultError
+            If the run lacks a number of its formula.
+        """
+        if name not in self.records:
+            known = ", ".join(sorted(self.records))
+            raise InputError("--check", name, f"a check of the run: {known}")
+        record, declared = self.records[name], DECLARED.get(name)
+        if declared is None:  # of a run by another version
+            return Sheet(record, "")
+        if not declared.symbols or record["demand"] is None or not self._holds(declared):
+            return Sheet(record, declared.formula)
+        evaluation = _Evaluation(self, record, declared)
+        return Sheet(record, declared.formula) if evaluation.lacks else evaluation.sheet()
+
+    def governing(self, most: int = 12) -> tuple[Sheet, ...]:
+        """Sheets of the required checks of the design with the greatest utilisations."""
+        required = [
+            each
+            for each in self.records.values()
+            if each["must_have"] and not each["evidence"] and each["demand"] is not None
+        ]
+        ranked = sorted(required, key=lambda each: -(utilisation_of(each) or 0.0))
+        return tuple(self.sheet(each["id"]) for each in ranked[:most])
+
+    def _holds(self, declared: Declaration) -> bool:
+        """Whether the formula holds for the case as it stands: its duty, its kind of a part."""
+        by_duty = declared.measured is not None and declared.measured.reduce in BY_DUTY
+        if by_duty and any(each.duty is not None for each in self.machines.values()):
+            return False
+        only = [each.split(" ") for each in declared.symbols.get(ONLY, "").split("; ") if each]
+        return all(str(value_of(self.case, key)) == word for key, word in only)
+
+
+@dataclass(frozen=True)
+class _Evaluation:
+    """Evaluation of the formula of a check at the load case and cam angle of its demand."""
+
+    run: SheetRun
+    record: CheckRecord
+    declared: Declaration
+    quantities: dict[str, Quantity] = field(default_factory=dict)
+    steps: dict[str, SheetStep] = field(default_factory=dict)
+    values: dict[str, Value] = field(default_factory=dict)
+
+    @property
+    def lacks(self) -> bool:
+        """Whether the case leaves out a key of the symbols."""
+        texts = [each.partition(" [")[0] for name, each in self.declared.symbols.items()
+                 if name != ONLY and not each.startswith(_DEFINED)]  # fmt: skip
+        keys = {name for text in texts for name in formula.names(formula.parsed(text))
+                if "." in name}  # fmt: skip
+        return any(self._numbers.get(key) is None for key in keys)
+
+    def sheet(self) -> Sheet:
+        unit = self.record["unit"]
+        demand = float(np.asarray(self._defined("")).item())
+        last = self.steps.pop("")._replace(shown=units.shown(demand, unit, DIGITS))
+        return Sheet(
+            self.record, self.declared.formula, self.said.limit, tuple(self.quantities.values()),
+            (*self.steps.values(), last), units.in_unit(demand, unit),
+        )  # fmt: skip
+
+    @cached_property
+    def said(self) -> formula.Statement:
+        """The formula text, read."""
+        return formula.stated(self.declared.formula)
+
+    @cached_property
+    def trees(self) -> Mapping[str, formula.Node]:
+        """Expressions of the definitions by their name, and of the demand by ""."""
+        said, symbols = self.said, self.declared.symbols
+        own = {
+            name: text
+            for name, text in said.defined.items()
+            if symbols.get(name, _DEFINED).startswith(_DEFINED)
+        }
+        return {
+            name: formula.parsed(text, symbols) for name, text in ({"": said.demand} | own).items()
+        }
+
+    def _defined(self, name: str) -> Value:
+        """Value of a definition, made once."""
+        if name not in self.values:
+            tree = self.trees[name]
+            value = formula.value(tree, self._symbol)
+            self.values[name] = value
+            unit = self.declared.symbols.get(name, "").strip("[]")
+            self.steps[name] = SheetStep(name, tree, units.shown(float(value), unit, DIGITS))
+        return self.values[name]
+
+    def _symbol(self, name: str) -> Value:
+        """Value of a symbol of the formula."""
+        if name in self.trees:
+            return self._defined(name)
+        text, _, unit = self.declared.symbols.get(name, name).partition(" [")
+        tree = formula.parsed(text)
+        value = float(formula.value(tree, self._number, partial(self._number, turn=True)))
+        sources = [each for each in formula.names(tree) if each not in formula.CONSTANTS]
+        plain = tree.kind == "name"
+        where = "; ".join(dict.fromkeys(map(self._where, sources)))
+        shown = (
+            self._shown(text, value)
+            if plain and not unit
+            else units.shown(value, unit.rstrip("]"), DIGITS)
+        )
+        bare = plain and "." in text  # the key says all
+        source = where if bare else f"{where}: {text}"
+        recorded = plain and "." not in text and text not in FIGURES
+        self.quantities[name] = Quantity(name, value, shown, source, recorded)
+        return value
+
+    def _number(self, name: str, *, turn: bool = False) -> Value:
+        """Value of a key, column or figure, SI; turn: of a column at all angles."""
+        if "." in name:
+            value = self._numbers.get(name)
+            if value is None:
+                raise ResultError(f"{name}: missing in case.toml")
+            return value
+        if name in FIGURES:
+            return float(np.ravel(FIGURES[name][1](self._cam))[0])
+        unit, column = self._column(name)
+        scale = units.factor(unit) if unit else 1.0
+        return scale * (column if turn else float(column[self._row]))
+
+    def _shown(self, name: str, value: float) -> str:
+        """A value as the case states it, else in the unit of its key, column or figure."""
+        if "." not in name:
+            unit = FIGURES[name][0] if name in FIGURES else self._column(name)[0]
+            return units.shown(value, unit, DIGITS)
+        quantity = _quantity_of(name)
+        if quantity is not None and value_of(self.run.case, name) == value:
+            return text_of(self.run.case, name, DIGITS)
+        return units.shown(value, quantity.unit if isinstance(quantity, In) else "", DIGITS)
+
+    def _where(self, name: str) -> str:
+        """Source of a value: key, table with its place, or the cam as drawn."""
+        if "." in name:
+            return name
+        file = "cam as drawn" if name in FIGURES else _CYCLE
+        at = place(self.record)
+        return f"{file}, {at}" if at else file
+
+    @cached_property
+    def _machine(self) -> Machine:
+        every = self.run.machines
+        return every.get(self.record["load_case"], next(iter(every.values())))
+
+    @cached_property
+    def _numbers(self) -> Numbers:
+        shared = numbers_of(self.run.case, tuple(self.run.machines.values()))
+        ring, interference = fitted_ring(shared), greatest_interference(shared)
+        fitted = None if ring is None or interference is None else ring.pressure(interference)
+        flanks = self.run.case.cam.key_flanks
+        required = [each.torque_reduction for each in self.run.machines.values()]
+        own = {
+            "torque.required_reduction": self._machine.torque_reduction,
+            "torque.greatest_reduction": max(filter(None, required), default=None),
+            "cam.fit.ring_pressure": fitted,
+            "cam.key.bearing_length": None if flanks is None else flanks.length,
+        }
+        return in_load_case(shared, self._machine) | own
+
+    @cached_property
+    def _cam(self) -> ContourCam:
+        """Cam at the angle of the demand; at maximum lift without one."""
+        contour, angle = self.run.contour, self.record["cam_angle_deg"]
+        theta = contour.lift.highest.theta if angle is None else math.radians(angle)
+        at = np.array([theta])
+        cam = ContourCam.at(contour, self._numbers, at, 2)
+        applied, least = self._machine.system.applied_force(at), contour.lift.lowest.value
+        return replace(cam, external=applied, least_lift=least)
+
+    @cached_property
+    def _rows(self) -> Mapping[str, Array]:
+        """Columns of the cycle in the load case of the demand."""
+        cycle, name = self.run.run.final.cycle, self.record["load_case"]
+        return (cycle.of_load_case(name) if name else cycle).numbers
+
+    @property
+    def _row(self) -> int:
+        angle, solved = self.record["cam_angle_deg"], self._rows["cam_angle_deg"]
+        row = 0 if angle is None else int(np.argmin(np.abs(solved - angle)))
+        if angle is None or abs(solved[row] - angle) > SAME_ANGLE:
+            raise ResultError(f"5_cycle.csv: no row at the cam angle of {self.record['id']}")
+        return row
+
+    def _column(self, name: str) -> tuple[str, Array]:
+        """Unit and values of a column, named without its unit."""
+        for unit in ("", *_UNITS):
+            header = units.column(name, unit)
+            if header not in self._rows:
+                continue
+            if name in _CLOSED_FORM and np.isnan(self._rows[header]).all():
+                return self._column(_CLOSED_FORM[name])
+            return unit, self._rows[header]
+        raise ResultError(f"5_cycle.csv: no column {name}")
+
+
+def _quantity_of(key: str) -> In | Count | None:
+    """Unit of a key; None: a number that follows from those of the case."""
+    try:
+        return quantity_of(key)
+    except (InputError, AttributeError):  # the latter within a part, such as its flanks
+        return None

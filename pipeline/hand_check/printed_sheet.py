@@ -1,0 +1,85 @@
+"""Hand-check sheet in print: rows of words and formulas for page and PDF."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from camwright.pipeline.base import formula
+from camwright.pipeline.base.formula import PRINT, Printed
+from camwright.pipeline.base.units import used
+from camwright.pipeline.hand_check.hand_sheet import Sheet
+from camwright.pipeline.hand_check.sheet_lines import demand_words, limit_words, outcome_words
+from camwright.pipeline.results.check_records import utilisation_of
+
+Math = tuple[Printed, ...]
+_EQUAL = (Printed("sign", "="),)
+
+
+@dataclass(frozen=True)
+class PrintedSymbol:
+    """Symbol of a formula, its value with unit, and where it stands in the run."""
+
+    name: str
+    symbol: Math
+    shown: str
+    source: str
+
+
+@dataclass(frozen=True)
+class PrintedSheet:
+    """A sheet for page and PDF.
+
+    Parameters
+    ----------
+    text : str           formula of the declaration, with the meaning of its symbols
+    symbols, steps : sequence   steps: with symbols, with numbers, and the result
+    demand, outcome, limit, use : str   in words; outcome: whether the sheet agrees
+    governing : bool     one of the checks of the greatest utilisation
+    """
+
+    id: str
+    title: str
+    text: str
+    symbols: Sequence[PrintedSymbol]
+    steps: Sequence[Math]
+    demand: str
+    outcome: str
+    limit: str
+    use: str
+    governing: bool
+
+
+def printed(sheet: Sheet, *, governing: bool) -> PrintedSheet:
+    """A sheet in print."""
+    record = sheet.record
+    return PrintedSheet(
+        record["id"],
+        record["title"],
+        sheet.text,
+        [
+            PrintedSymbol(each.symbol, PRINT.name(each.symbol), each.shown, each.source)
+            for each in sheet.quantities
+        ],
+        [_step(sheet, k) for k in range(len(sheet.steps))],
+        demand_words(record),
+        outcome_words(sheet),
+        limit_words(sheet),
+        used(utilisation_of(record)),
+        governing,
+    )
+
+
+def _step(sheet: Sheet, k: int) -> Math:
+    """Definition or demand: symbols = numbers = result."""
+    step = sheet.steps[k]
+    symbols, numbers = (formula.written(step.expression, PRINT, of) for of in (None, sheet.known))
+    begins = (*PRINT.name(step.name), *_EQUAL) if step.name else ()
+    result = PRINT.number(step.shown)
+    return (
+        *begins,
+        *symbols,
+        *_EQUAL,
+        *numbers,
+        *(() if numbers == result else (*_EQUAL, *result)),
+    )

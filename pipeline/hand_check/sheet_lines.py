@@ -1,0 +1,66 @@
+"""Hand-check sheet as lines of text."""
+
+from __future__ import annotations
+
+from camwright.pipeline.base import formula
+from camwright.pipeline.base.units import used
+from camwright.pipeline.hand_check.hand_sheet import Sheet
+from camwright.pipeline.results.check_records import CheckRecord, utilisation_of
+from camwright.pipeline.results.check_report import (
+    corner,
+    number,
+    place,
+    status,
+    unit_text,
+    with_error,
+)
+
+STATED = (
+    "result of a solver or of a rule in words: stated with its error bar, not evaluated once more"
+)
+"""Words on a demand without an evaluation."""
+
+
+def demand_words(record: CheckRecord) -> str:
+    """Demand of a check with its error bar and place."""
+    at = place(record)
+    shown = f"{with_error(record['demand'], record['error'])}{unit_text(record['unit'])}"
+    return f"{shown} at {at}" if at else shown
+
+
+def limit_words(sheet: Sheet) -> str:
+    """Limit of a check, as its formula has it, with its source."""
+    record = sheet.record
+    sense = ">=" if record["sense"] == "at_least" else "<="
+    shown = f"{sense} {number(record['limit'])}{unit_text(record['unit'])}"
+    formed = "" if sheet.limit in ("", number(record["limit"])) else f" = {sheet.limit}"
+    return f"{shown}{formed}: {record['source']}"
+
+
+def outcome_words(sheet: Sheet) -> str:
+    """Whether the formula gives the demand, or why it is stated."""
+    if sheet.is_stated:
+        return STATED
+    return "agrees" if sheet.agrees else "DISAGREES with the demand of the check"
+
+
+def sheet_lines(sheet: Sheet) -> list[str]:
+    """A sheet in lines: formula, symbols, steps, result, limit with its source."""
+    record = sheet.record
+    rows = [("formula", sheet.text)]
+    rows += [(each.symbol, f"{each.shown}  [{each.source}]") for each in sheet.quantities]
+    for step in sheet.steps:
+        symbols, numbers = (
+            formula.written(step.expression, formula.TEXT, known) for known in (None, sheet.known)
+        )
+        equal = "" if numbers == step.shown else f" = {step.shown}"
+        rows.append((step.name or "demand", f"{symbols} = {numbers}{equal}"))
+    rows.append(("check", demand_words(record)))
+    rows.append(("", outcome_words(sheet)))
+    rows.append(("limit", limit_words(sheet)))
+    if worst := corner(record):
+        rows.append(("corner", f"{worst}{unit_text(record['unit'])}"))
+    rows.append(("result", f"{status(record)}, {used(utilisation_of(record))} used"))
+    width = max(len(name) for name, _ in rows) + 2
+    title = f"{record['id']}: {record['title']}"
+    return [title, *(f"  {name:<{width}}{text}" for name, text in rows)]

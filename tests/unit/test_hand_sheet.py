@@ -1,0 +1,161 @@
+"""Hand-check sheets: the formula of each check, evaluated once more on the numbers of a run."""
+
+from dataclasses import replace
+from pathlib import Path
+from types import MappingProxyType
+
+import pypdf
+import pytest
+
+from camwright.geometry.errors import InputError
+from camwright.pipeline.base.tables import Table
+from camwright.pipeline.case.case_file import parse_case, read_case
+from camwright.pipeline.checks.registry import DECLARED
+from camwright.pipeline.commands.run_command import report
+from camwright.pipeline.commands.terminal import FAILED, PASSED
+from camwright.pipeline.contact.tiers import Tier
+from camwright.pipeline.hand_check.hand_sheet import Sheet, SheetRun
+from camwright.pipeline.hand_check.sheet_lines import STATED, sheet_lines
+from camwright.pipeline.run import run_case
+from camwright.reports import sections
+from camwright.reports.documents import PDF
+from camwright.reports.page import PAGE
+
+CASES = Path(__file__).parents[2] / "cases"
+
+
+@pytest.fixture(scope="module")
+def run(tmp_path_factory):
+    """Closed forms of the smoothed GX120, whose spring, key, gear and guides are described."""
+    case = read_case(CASES / "gx120-feedback.toml").with_positions(72)
+    smoothing = case.smoothing.model_copy(update={"width": 2.5})
+    solver = case.solver.model_copy(update={"max_trials": 1})
+    case = case.model_copy(update={"smoothing": smoothing, "solver": solver})
+    folder = tmp_path_factory.mktemp("sheet") / "run"
+    run_case(case, folder, positions=72, depth=Tier.PREVIEW, jobs=1)
+    return SheetRun(folder)
+
+
+def evaluated(run):
+    return [each for each in map(run.sheet, run.records) if each.steps]
+
+
+def test_every_sheet_gives_the_demand_of_its_check(run):
+    """All but those of load cases with a duty or another kind of a part, which are stated."""
+    sheets = evaluated(run)
+    assert [each.record["id"] for each in sheets if not each.agrees] == []
+    known = {name for name, each in run.records.items() if each["demand"] is not None}
+    bound = {name for name in known if DECLARED[name].symbols}
+    assert {each.record["id"] for each in sheets} == bound
+    assert len(bound) > 50
+
+
+@pytest.mark.parametrize("name", ["pressure_angle", "jump", "guide_pv_A", "gear_bending"])
+def test_a_changed_demand_is_found(run, name):
+    record = run.records[name]
+    changed = {**run.records, name: {**record, "demand": 1.01 * record["demand"]}}
+    altered = SheetRun(run.run.path, run.run)
+    altered.__dict__["records"] = MappingProxyType(changed)
+    assert not altered.sheet(name).agrees
+    assert "DISAGREES" in "\n".join(sheet_lines(altered.sheet(name)))
+    assert altered.sheet("undercut").agrees
+
+
+@pytest.mark.parametrize(
+    ("column", "found"),
+    [
+        ("normal_force_N", {"roller_static", "roller_radial", "roller_life", "roller_pin"}),
+        ("follower_velocity_m_per_s", {"guide_speed_A", "guide_pv_B", "guide_wear_A"}),
+        ("cam_torque_Nm", {"gear_bending", "key_pressure", "cam_slip"}),
+        ("torque_after_Nm", {"torque_reduction"}),
+        ("p0_hertz_MPa", {"contact_pressure"}),
+    ],
+)
+def test_a_changed_number_of_the_cycle_is_found(run, column, found):
+    cycle = run.run.final.cycle
+    numbers = MappingProxyType({**cycle.numbers, column: 1.001 * cycle.numbers[column]})
+    final = replace(run.run.final, cycle=Table(numbers, cycle.rows_of))
+    altered = SheetRun(run.run.path, replace(run.run, trials=(final,)))
+    assert found <= {each.record["id"] for each in evaluated(altered) if not each.agrees}
+
+
+def test_a_sheet_states_formula_symbols_steps_result_and_limit(run):
+    text = "\n".join(sheet_lines(run.sheet("gear_bending")))
+    assert text.startswith("gear_bending: ")
+    for words in (
+        DECLARED["gear_bending"].formula, "[5_cycle.csv, ", "20 mm  [camshaft.gear.width]",
+        "|T + drag| / r = |", "0.154 - 0.912 / z = 0.154 - 0.912 / 40 = 0.1312", "agrees",
+        "limit    <= 215 MPa = 0.7 s_F / S: Lewis",
+    ):  # fmt: skip
+        assert words in text
+
+
+def test_a_result_of_a_solver_is_stated_and_not_passed_off_as_evaluated(run):
+    assert run.sheet("contact_pressure").is_stated  # one number of the cycle
+    assert run.sheet("shaft_slope").is_stated and not run.sheet("shaft_slope").steps
+    assert STATED in "\n".join(sheet_lines(run.sheet("shaft_slope")))
+    assert not run.sheet("pressure_angle").is_stated
+    with pytest.raises(InputError, match="--check"):
+        run.sheet("no_such_check")
+
+
+def test_a_formula_is_not_evaluated_for_a_case_of_which_it_does_not_hold(run):
+    """A duty sums the lives of the load cases; a pin held at one end bends otherwise."""
+    altered = SheetRun(run.run.path, run.run)
+    altered.__dict__["machines"] = {
+        name: replace(each, duty=0.25) for name, each in run.machines.items()
+    }
+    text = run.run.case_text
+    assert text.count('mounting = "straddled"') == 1
+    altered.case = parse_case(text.replace('mounting = "straddled"', 'mounting = "overhung"'))
+    for name in ("roller_life", "guide_wear_A", "roller_pin", "roller_pin_shear"):
+        assert run.sheet(name).steps and altered.sheet(name).is_stated, name
+    assert altered.sheet("pressure_angle").steps
+
+
+def test_the_governing_sheets_are_those_of_the_greatest_utilisations(run):
+    sheets = run.governing()
+    uses = [each.record["utilisation"] for each in sheets]
+    assert len(sheets) == 12 and uses == sorted(uses, reverse=True)
+    assert all(each.record["must_have"] and not each.record["evidence"] for each in sheets)
+
+
+@pytest.mark.slow
+def test_the_page_has_every_sheet_and_the_pdf_the_governing_ones(run):
+    folder = run.run.path
+    sections.report(folder, sections.chosen(["page", "pdf"]))
+    page = (folder / PAGE).read_text(encoding="utf-8")
+    assert page.count('<details class="sheet"') == len(run.records)
+    shown = page[page.index('id="hand-gear_bending"') :]
+    shown = shown[: shown.index("</details>")]
+    for words in (
+        "<mfrac>",
+        "<msub><mi>K</mi><mi>A</mi></msub>",
+        "camshaft.gear.width",
+        "<b>agrees",
+    ):
+        assert words in shown
+    printed = pypdf.PdfReader(folder / PDF)
+    text = " ".join("".join(each.extract_text() for each in printed.pages).split())
+    text = text[text.index("The formula of each check, evaluated once more") :]
+    for sheet in run.governing():
+        assert sheet.record["title"] in text
+    assert run.records["roller_pin_shear"]["title"] not in text
+
+
+def test_the_command_prints_the_sheets_and_fails_by_one_that_disagrees(run, capsys, monkeypatch):
+    folder = run.run.path
+    assert report(folder, check=["pressure_angle", "undercut"]) == PASSED
+    shown = capsys.readouterr().out
+    assert "pressure_angle: " in shown and "undercut: " in shown and "agrees" in shown
+    with pytest.raises(InputError, match="--check"):
+        report(folder, check=["no_such_check"])
+    monkeypatch.setattr(Sheet, "agrees", False)
+    assert report(folder, check=["undercut"]) == FAILED
+
+
+@pytest.mark.slow
+def test_the_sheets_of_the_redesigned_case_give_its_demands(tmp_path):
+    run_case(read_case(CASES / "gx120-redesign.toml"), tmp_path / "run", positions=180)
+    run = SheetRun(tmp_path / "run")
+    assert [each.record["id"] for each in evaluated(run) if not each.agrees] == []
