@@ -135,6 +135,8 @@ def _of_rows(
         last = state.grid.theta.size
         kept = [(price > _PRICE_LEAST) & (each.point < last) for each, price in own]
         point = np.concatenate([each.point[k] for (each, _), k in zip(own, kept, strict=True)])
+        if not point.size:
+            continue  # all their reversals have ended
         row = np.concatenate([each.scenario[k] for (each, _), k in zip(own, kept, strict=True)])
         starts = np.cumsum([0, *(int(k.sum()) for k in kept)])
         weights = {name: np.zeros(point.size) for name in names}

@@ -41,7 +41,8 @@ from camwright.pipeline.studies.redesign.point_store import SOLVED, Record
 
 RECORD = "design.json"
 PICTURE = "design.png"
-_SPARE = 1.001  # of the size of a design, for its tolerances
+# Of the size of a design, for its tolerances: of the space that is offered, and as printed.
+_SPARE, _SPARE_PRINTED = 1.001, 1.0005
 _BINDING = 3  # limits that the nearest design uses fully, named with those that it fails
 _OURS = re.compile(
     rf"design\.(json|png)|point_\d+\.toml|{SOLVED}|.*\.csv|cards\.toml|springs\.toml"
@@ -190,7 +191,7 @@ def _without_limit(study: PointStudy, workers: Crew, progress: Progress) -> Exch
 def _within_space(study: PointStudy, point: Solved) -> list[Solved]:
     """The design with the limit of the space, if it is small enough and passes."""
     space = study.task.space
-    if space is None or _SPARE * point.size > space:
+    if space is None or _SPARE_PRINTED * point.size > space:
         return []
     limited = study.solved(replace(point.design, task=study.task))
     return [limited] if limited.has_cam and limited.passes else []

@@ -16,11 +16,14 @@ from camwright.geometry.contour import Contour
 from camwright.geometry.errors import InputError
 from camwright.pipeline.base.units import in_unit
 from camwright.pipeline.case.case import Case
-from camwright.pipeline.case.limits import TORQUE_REDUCTION
+from camwright.pipeline.case.limits import KEYWAY_SAFETY, TORQUE_REDUCTION
 from camwright.pipeline.case.load_case_torque import engine_torques
 from camwright.pipeline.checks.check import Check, Verdict, in_order, within_depth
+from camwright.pipeline.checks.key_strength import keyway_root
+from camwright.pipeline.cycle.hub_history import hub_fatigue
 from camwright.pipeline.follower.camshaft_loads import unbalance
 from camwright.pipeline.preview import preview_case
+from camwright.pipeline.results.trial import Trial
 from camwright.pipeline.smoothing.constrained_synthesis import approached, synthesise
 from camwright.pipeline.smoothing.multistart import continued
 from camwright.pipeline.smoothing.problem_setup import problem_of
@@ -30,6 +33,8 @@ from camwright.pipeline.solver import judged_at_corners
 from camwright.pipeline.torque.torque import Torque
 
 _BINDING = 0.99  # utilisation
+# Of the safety of the keyway root: least over the limit, for tolerance corners and error bar.
+_ROOT_SPARE = 1.06
 _WORTH = 1e-3  # of the engine's ripple: progress at which a coarse search goes on
 
 
@@ -136,7 +141,9 @@ def point_of(case: Case, *, corners: bool = False) -> DesignPoint:
 
     Parameters
     ----------
-    corners : bool   judge each check at its worst tolerance corner, unless one fails nominally
+    corners : bool   judge each check at its worst tolerance corner, unless one fails nominally, and
+                     where none fails the keyway root by finite elements, if its bound does not
+                     prove it
 
     Raises
     ------
@@ -152,6 +159,10 @@ def point_of(case: Case, *, corners: bool = False) -> DesignPoint:
         raise InputError("engine", "missing", "specified: a redesign balances its torque")
     record = trial.synthesis or {"feasible": False, "prices": []}
     blocking = [check for check in in_order(within_depth(trial.checks)) if check.blocks]
+    failing = [check for check in blocking if check.status == "fail"]
+    shortfalls = tuple(_shortfall(check) for check in failing)
+    if corners and not failing:
+        shortfalls = _root_shortfall(trial)
     return DesignPoint(
         feasible=record["feasible"],
         ripple_before=float(np.std(torque)),
@@ -165,7 +176,7 @@ def point_of(case: Case, *, corners: bool = False) -> DesignPoint:
         pressure_angle_max=float(contour.pressure_angle_max().value),
         normal_force_max=max(float(c.loads.normal_force.max()) for c in trial.cycles),
         p0_max=max(float(np.max(c.contact.p0)) for c in trial.cycles),
-        shortfalls=tuple(_shortfall(check) for check in blocking if check.status == "fail"),
+        shortfalls=shortfalls,
         open=tuple(check.id for check in blocking if check.status == "not_evaluated"),
         binding=tuple(price["limit"] for price in record["prices"]),
     )
@@ -218,6 +229,30 @@ def _shortfall(check: Check) -> Shortfall:
         "unit": check.unit,
         "utilisation": used,
     }
+
+
+def _root_shortfall(trial: Trial) -> tuple[Shortfall, ...]:
+    """Of the keyway root by finite elements, where the preview leaves it to them."""
+    solved, root = trial.solution, keyway_root
+    left = [check for check in trial.checks if check.id == root.id and check.judged_at]
+    numbers = solved.numbers
+    fatigue = hub_fatigue(trial.contour, trial.cycles, numbers) if left else None
+    if fatigue is None:
+        return ()
+    least = _ROOT_SPARE * float(numbers.limit(KEYWAY_SAFETY))
+    if fatigue.governing.safety >= least:
+        return ()
+    used = least / fatigue.governing.safety
+    return (
+        {
+            "check": root.id,
+            "title": root.title,
+            "demand": fatigue.governing.safety,
+            "limit": least,
+            "unit": root.unit,
+            "utilisation": used,
+        },
+    )
 
 
 def _finite(value: object) -> float | None:
