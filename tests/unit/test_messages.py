@@ -80,7 +80,7 @@ OVERHANG = 'overhang_at_max_lift = "30 mm"'
          "cam.bore_radius = 45 mm, must be < 42 mm, the base circle: cam.prime_radius = 50 mm less "
          "roller.radius = 8 mm"),
         ([('mass = "175 g"', 'mass = "175 mm"')],
-         "follower.mass = 175 mm, must be in a unit of the dimension of g"),
+         "follower.mass = 175 mm, must be in a unit of the dimension of g: kg, g or lb"),
         ([("friction_min = 0.01 ", "friction_min = 0.05 ")],
          "guides.a.friction_min = 0.05, must be <= friction = 0.04"),
         ([('spacing = "80 mm"', 'spacing = "2 cm"')],
