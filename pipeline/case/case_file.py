@@ -20,7 +20,7 @@ from camwright.pipeline.case.cards.part_table import read_part
 from camwright.pipeline.case.case import Case, includes, kept_as
 from camwright.pipeline.case.case_values import quantity_of, refused_as_written, steps_of
 from camwright.pipeline.case.consistency import check_sections
-from camwright.pipeline.case.error_text import MissingKeysError, Written, first_error
+from camwright.pipeline.case.error_text import MissingKeysError, Written, refusal_of
 from camwright.pipeline.case.external_load import external_force
 from camwright.pipeline.case.given_lift import given_lift
 from camwright.pipeline.case.renamed_keys import with_new_keys
@@ -107,7 +107,7 @@ def validated(tables: Tables) -> Case:
     try:
         case = Case.model_validate(tables, context={"materials": _cards(tables.get("materials"))})
     except ValidationError as error:
-        raise first_error(error) from None
+        raise refusal_of(error) from None
     case._written = Written(tables)
     check_sections(case)
     return case

@@ -78,7 +78,7 @@ def check_numbers(case: Case) -> None:
     at = _values(case)
     for rule in rules(case):
         if rule.breaks(at):
-            _refuse(case, rule, at)
+            raise _refusal(case, rule, at)
 
 
 def _values(case: Case) -> At:
@@ -471,8 +471,8 @@ def _roller(case: Case) -> Iterator[Rule]:
         yield _at_least("roller.pin.span", lambda at: at("roller.width"), ">= {roller.width}")
 
 
-def _refuse(case: Case, rule: Rule, at: At) -> None:
-    """Refuse the number at the key of a broken rule, with more digits where two read alike."""
+def _refusal(case: Case, rule: Rule, at: At) -> InputError:
+    """Refusal of the number at the key of a broken rule, with more digits where two read alike."""
     for digits in _DIGITS:
         value = text_of(case, rule.key, digits)
         texts = {"": _bound_text(rule, at, digits)}
@@ -482,7 +482,7 @@ def _refuse(case: Case, rule: Rule, at: At) -> None:
             break
     texts |= {other: f"{other} = {text}" for other, text in texts.items() if other}
     limit = re.sub(r"{([^}]*)}", lambda match: texts[match[1]], rule.limit)
-    raise InputError(rule.key, value, limit)
+    return InputError(rule.key, value, limit)
 
 
 def _bound_text(rule: Rule, at: At, digits: int) -> str:

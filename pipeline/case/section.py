@@ -15,11 +15,12 @@ from pydantic import (
     ConfigDict,
     Field,
     GetCoreSchemaHandler,
+    ValidationError,
     ValidationInfo,
     create_model,
     model_validator,
 )
-from pydantic_core import CoreSchema, PydanticCustomError, core_schema
+from pydantic_core import CoreSchema, InitErrorDetails, PydanticCustomError, core_schema
 
 from camwright.geometry.errors import InputError
 from camwright.pipeline.base.material import Material
@@ -70,9 +71,16 @@ class Section(BaseModel):
     def _know_every_key(cls, table: Read) -> Read:
         """Refuse unknown keys before missing ones: a misspelt key is both."""
         known = [field.alias or name for name, field in cls.model_fields.items()]
-        for key in table if isinstance(table, dict) else ():
-            if key not in known:
-                raise refusal(f"a known key{suggestion(key, known)}", unknown_key=str(key))
+        unknown: list[InitErrorDetails] = [
+            {
+                "type": refusal(f"a known key{suggestion(key, known)}", unknown_key=str(key)),
+                "input": table,
+            }
+            for key in (table if isinstance(table, dict) else ())
+            if key not in known
+        ]
+        if unknown:
+            raise ValidationError.from_exception_data(cls.__name__, unknown)
         return table
 
 
