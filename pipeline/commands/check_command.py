@@ -461,6 +461,7 @@ def _checked_case(path: Path, remedies: bool) -> tuple[dict[str, Any], Clock]:
     from camwright.pipeline.preview import preview_case
     from camwright.pipeline.results.check_records import governing_id, judgement, to_be_confirmed
     from camwright.pipeline.results.junit_report import Clock
+    from camwright.pipeline.results.run_records import figures
 
     began = time.perf_counter()
     case = read_case(path)
@@ -487,6 +488,7 @@ def _checked_case(path: Path, remedies: bool) -> tuple[dict[str, Any], Clock]:
         "binding": list(trial.binding),
         "governing": governing_id(checks),
         "load_ends": trial.load_ends,
+        "figures": figures(trial),
         "scope": case.scope.as_record(),
         "measurement": measurement_record(case),
         "checks": checks,

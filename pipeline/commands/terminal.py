@@ -143,11 +143,14 @@ def show_failures(document: dict[str, Any], places: Places) -> None:
     _print_all(
         (
             verdict_summary.verdict_words(document),
+            *verdict_summary.figure_lines(document),
             *verdict_summary.headline_line(document),
             *verdict_summary.measured_line(document),
             *verdict_summary.governing_line(checks),
+            *verdict_summary.advisory_lines(checks),
             *filter(None, (document["scope"]["statement"],)),
             *verdict_summary.place_line(document, places),
+            *verdict_summary.next_lines(document, places),
         )
     )
 
@@ -163,8 +166,10 @@ def show_all(document: dict[str, Any], places: Places) -> None:
         table,
     )
     from camwright.pipeline.results.verdict_summary import (
+        figure_lines,
         load_end_line,
         measured_line,
+        next_lines,
         place_line,
         verdict_words,
     )
@@ -179,6 +184,7 @@ def show_all(document: dict[str, Any], places: Places) -> None:
     _print_all((*remarks(checks), *deeper_lines(document["checks"])))
     _print_all(_changes(document))
     stdout.print(verdict_words(document), markup=False)
+    _print_all(figure_lines(document))
     if document.get("statement"):
         stdout.print(document["statement"], markup=False)
     if document["to_be_confirmed"]:
@@ -190,6 +196,7 @@ def show_all(document: dict[str, Any], places: Places) -> None:
     _print_all(binding_lines(document["checks"], document["binding"]))
     _print_all(consistency_line(finding) for finding in document.get("consistency", ()))
     _print_all(place_line(document, places))
+    _print_all(next_lines(document, places))
 
 
 def _changes(document: dict[str, Any]) -> list[str]:

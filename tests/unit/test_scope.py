@@ -95,7 +95,8 @@ def test_a_required_key_is_asked_for_unless_it_is_left_out(left_out: str, missin
 @pytest.mark.parametrize(
     ("left_out", "asked"),
     [("friction", "roller.friction"), ("line_ends", "cam.end"),
-     ("requirements", "limits.overspeed"), ("spring", "spring.travel_max"), ("requirements", "limits.cam_radius")],
+     ("requirements", "limits.overspeed"), ("spring", "spring.travel_max"),
+     ("requirements", "limits.cam_radius")],
 )  # fmt: skip
 def test_a_datum_is_missing_unless_it_is_left_out(left_out: str, asked: str) -> None:
     others = [name for name in SCOPE_WORDS if name != left_out]
