@@ -137,6 +137,7 @@ def with_stand_ins(tables: Tables) -> Tables:
     - stem: 10 mm thick, of the material of the cam, 30 mm from guide A; a face 10 mm thick
     - bore: half of the base radius
     - line_ends: roller or face as wide as the cam
+    - gear: the cam on the shaft whose speed is stated, where the case has a lift and no machine
     - requirements: over-speed: the greatest speed of the load cases
 
     Only keys that the case does not state. Their sources say that they are assumed.
@@ -169,6 +170,9 @@ def with_stand_ins(tables: Tables) -> Tables:
     if "requirements" in left_out and (fastest := _fastest(tables.get("load_case"))):
         whole.tables.setdefault("limits", {})
         whole.put("requirements", "limits.overspeed", fastest)
+    if "gear" in left_out and "lift" in tables and not {"engine", "torque"} & set(tables):
+        whole.tables.setdefault("mechanism", {})
+        whole.put("gear", "mechanism.gear_ratio", 1.0)
     if "guides" in left_out and "guides" not in tables:
         whole.tables["guides"] = _guides(follower)
         whole.sources["guides.spacing"] = _STAND_IN.format(PART_WORDS["guides"])

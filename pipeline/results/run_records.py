@@ -244,6 +244,7 @@ def figures(trial: Trial) -> dict[str, Json]:
             {
                 "load_case": cycle.load_case,
                 "speed_rpm": in_unit(cycle.machine.crank_speed, "rpm"),
+                "cam_speed_rpm": in_unit(cycle.machine.cam_speed, "rpm"),
                 "normal_force_min_N": trough(loads.normal_force),
                 "normal_force_max_N": peak(loads.normal_force) if whole else None,
                 "drive_torque_min_Nm": trough(loads.cam_torque) if whole else None,

@@ -196,7 +196,9 @@ def figure_lines(document: Mapping[str, Any]) -> list[str]:
     lines = [f"figures: {_listed(known, _OF_THE_CAM)}"]
     for row in known["load_cases"]:
         words = _listed(row, _OF_A_LOAD_CASE)
-        lines.append(f"figures of {row['load_case']} at {row['speed_rpm']:.5g} rpm: {words}")
+        speed, cam = (f"{row[key]:.5g} rpm" for key in ("speed_rpm", "cam_speed_rpm"))
+        speeds = speed if speed == cam else f"{speed}, cam {cam}"
+        lines.append(f"figures of {row['load_case']} at {speeds}: {words}")
     return lines
 
 

@@ -117,6 +117,7 @@ def test_stand_ins_are_stated_as_assumed() -> None:
     case = case_of(tables())
     assert case.cam.bore_radius == pytest.approx(15e-3)
     assert case.roller.width == case.cam.width
+    assert case.mechanism.gear_ratio == 1.0
     assert case.follower.stem_material == case.cam.material
     assert case.limits.overspeed == pytest.approx(20 * 3.14159265, rel=1e-6)  # of the faster
     for key in ("cam.bore_radius", "roller.width", "follower.stem_diameter", "guides.spacing"):

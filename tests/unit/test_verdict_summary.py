@@ -212,7 +212,7 @@ def test_an_open_screen_is_followed_by_the_next_step() -> None:
 
 def test_figures_of_a_load_case_without_loads_are_left_out() -> None:
     row = {
-        "load_case": "idle", "speed_rpm": 600.0, "normal_force_min_N": -3.0,
+        "load_case": "idle", "speed_rpm": 600.0, "cam_speed_rpm": 300.0, "normal_force_min_N": -3.0,
         "normal_force_max_N": None, "drive_torque_min_Nm": None, "drive_torque_max_Nm": None,
         "p0_hertz_max_MPa": None, "half_width_max_mm": None,
     }  # fmt: skip
@@ -220,6 +220,6 @@ def test_figures_of_a_load_case_without_loads_are_left_out() -> None:
            "cam_radius_max_mm": 60.0}  # fmt: skip
     assert figure_lines({"figures": cam | {"load_cases": [row]}}) == [
         "figures: lift 20 mm, pressure angle 23.233 deg, cam radius 60 mm",
-        "figures of idle at 600 rpm: contact force -3 N",
+        "figures of idle at 600 rpm, cam 300 rpm: contact force -3 N",
     ]
     assert figure_lines({}) == []
