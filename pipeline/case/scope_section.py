@@ -67,7 +67,8 @@ _KEYS: dict[ScopeName, tuple[str, ...]] = {
     "friction": ("roller.friction", "follower.face.friction", "*.roughness", "lubricant",
                  "follower.face.pv_limit"),
     "requirements": ("limits.overspeed", "limits.target_life", "limits.cam_radius",
-                     "limits.*_life", "limits.tool_radius", "limits.curvature_rate"),
+                     "limits.*_life", "limits.tool_radius", "workshop.tool_radius",
+                     "limits.curvature_rate"),
 }  # fmt: skip
 """Keys, and tables by theirs, that a part alone needs: not missed where it is left out."""
 

@@ -229,13 +229,7 @@ def next_lines(document: Mapping[str, Any], places: Places) -> list[str]:
     """Next step after an open screen; none after a failed one or a verdict."""
     if document["screen"] != OPEN:
         return []
-    checks: Sequence[CheckRecord] = document["checks"]
-    without = [
-        check["id"]
-        for check in within_depth(checks)
-        if check["must_have"] and check["status"] == "not_evaluated"
-    ]
-    if without:
+    if document["binding"]:
         return ["so far no check fails; the missing data above decide what is left"]
     so_far = "all is well so far: every check that a preview can judge passes"
     if document["depth"] != PREVIEW:

@@ -198,13 +198,13 @@ def test_a_reason_or_need_shared_by_many_checks_stands_once() -> None:
 
 
 def test_an_open_screen_is_followed_by_the_next_step() -> None:
-    opened = {"screen": "open", "depth": "preview", "checks": [check()]}
+    opened = {"screen": "open", "depth": "preview", "binding": []}
     assert next_lines(opened, Places("runs/x", "x.toml")) == [
         "all is well so far: every check that a preview can judge passes. OPEN, as deeper ones "
         "need finite elements;",
         "next: camwright run x.toml --out runs/x",
     ]
-    lacking = opened | {"checks": [check("not_evaluated")]}
+    lacking = opened | {"binding": ["grip"]}
     assert "missing data" in next_lines(lacking, Places("", "x.toml"))[0]
     assert next_lines(opened | {"screen": "fail"}, Places("", "x.toml")) == []
     assert next_lines(opened | {"screen": None}, Places("", "x.toml")) == []
