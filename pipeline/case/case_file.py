@@ -13,6 +13,7 @@ from camwright.geometry.errors import InputError
 from camwright.pipeline.base import units
 from camwright.pipeline.base.files import inside, parse_toml
 from camwright.pipeline.base.material import Material
+from camwright.pipeline.base.missing_kinds import missing_kind
 from camwright.pipeline.base.quantities import In
 from camwright.pipeline.case.added_tables import with_added, with_examples
 from camwright.pipeline.case.cards.card_filling import fill_cards
@@ -181,6 +182,8 @@ def _read_includes(case: Case, folder: Path | None) -> dict[str, bytes]:
     for field, name in includes(case):
         if folder is None:
             raise InputError(field, name, "left out where a case has no folder")
+        if (kind := missing_kind(field, Path(name).suffix)) is not None:
+            raise InputError(field, name, f"a table; {kind.sentence}")
         content = _read(inside(folder, name, field), name, field, INCLUDE_BYTES)
         kept = kept_as(name)
         if origin.setdefault(kept, name) != name:
