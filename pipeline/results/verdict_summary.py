@@ -5,7 +5,7 @@ from __future__ import annotations
 import textwrap
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from camwright.pipeline.base.units import used
 from camwright.pipeline.results.check_records import (
@@ -27,6 +27,9 @@ from camwright.pipeline.results.check_report import (
 )
 from camwright.pipeline.results.run_reader import load_end_words
 
+if TYPE_CHECKING:
+    from camwright.pipeline.torque.torque import Torque
+
 WIDTH = 100
 """Columns of a line."""
 LINES = 15
@@ -35,6 +38,7 @@ WORST = 3
 """Failed checks that it names."""
 PREVIEW = "preview"
 """Depth of the check of a case."""
+_ROUND_OFF = 1e-9  # of a mean torque, over peak to peak
 _CUT = "…"
 _LEAST = 24  # columns of a title
 
@@ -188,11 +192,21 @@ def missing_lines(checks: Sequence[CheckRecord], case: str) -> list[str]:
     return lines + missing_count(checks, case)
 
 
-def figure_lines(document: Mapping[str, Any]) -> list[str]:
-    """Figures of the cam, and of each load case a line; none of a run."""
-    known: Mapping[str, Any] = document.get("figures") or {}
-    if not known:
-        return []
+def torque_lines(torques: Mapping[str, Torque]) -> list[str]:
+    """Torque that the cam is to balance, a line a load case; none of a stated lift."""
+    lines = []
+    for name, torque in torques.items():
+        swing = torque.peak_to_peak
+        mean = torque.mean if abs(torque.mean) > _ROUND_OFF * swing else 0.0
+        lines.append(
+            f"torque to balance, {name}: mean {mean:.4g} N m, ripple {torque.std:.4g} N m, "
+            f"peak to peak {swing:.4g} N m"
+        )
+    return lines
+
+
+def figure_lines(known: Mapping[str, Any]) -> list[str]:
+    """Figures of the cam, and of each load case a line; see `run_records.figures`."""
     lines = [f"figures: {_listed(known, _OF_THE_CAM)}"]
     for row in known["load_cases"]:
         words = _listed(row, _OF_A_LOAD_CASE)

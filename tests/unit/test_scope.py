@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import json
 import tomllib
+from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -15,6 +18,8 @@ from camwright.pipeline.checks.check import Check, within_depth
 from camwright.pipeline.checks.registry import DECLARED
 from camwright.pipeline.preview import preview_case
 from camwright.pipeline.results.check_records import governing_id
+from camwright.pipeline.results.run_records import figures
+from camwright.pipeline.results.trial import Trial
 
 BARE = """
 schema_version = 1
@@ -128,3 +133,22 @@ def test_stand_ins_are_stated_as_assumed() -> None:
 def test_words_of_parts_and_subjects_differ() -> None:
     assert not set(PART_WORDS) & set(SUBJECT_WORDS)
     assert len(set(SCOPE_WORDS.values())) == len(SCOPE_WORDS)
+
+
+def test_figures_are_known_before_the_corners() -> None:
+    early: list[Trial] = []
+    trial = preview_case(case_of(tables()), nominal=early.append)
+    (first,) = early
+    assert not first.corners and trial.corners
+    assert figures(first) == figures(trial)
+
+
+def test_check_prints_them_first(tmp_path: Path, command: Callable[..., Any]) -> None:
+    (tmp_path / "bare.toml").write_text(BARE, encoding="utf-8")
+    code, out, _ = command("check", tmp_path / "bare.toml")
+    assert code == 3
+    assert out.startswith("figures: lift 10 mm, pressure angle ")
+    assert out.index("figures of fast at 600 rpm") < out.index("screen: OPEN")
+    assert out.count("figures:") == 1
+    code, out, _ = command("check", tmp_path / "bare.toml", "--json")
+    assert json.loads(out)["figures"]["lift_max_mm"] == pytest.approx(10.0, rel=1e-6)

@@ -218,8 +218,7 @@ def test_figures_of_a_load_case_without_loads_are_left_out() -> None:
     }  # fmt: skip
     cam = {"lift_max_mm": 20.0, "pressure_angle_max_deg": 23.2333, "convex_radius_min_mm": None,
            "cam_radius_max_mm": 60.0}  # fmt: skip
-    assert figure_lines({"figures": cam | {"load_cases": [row]}}) == [
+    assert figure_lines(cam | {"load_cases": [row]}) == [
         "figures: lift 20 mm, pressure angle 23.233 deg, cam radius 60 mm",
         "figures of idle at 600 rpm, cam 300 rpm: contact force -3 N",
     ]
-    assert figure_lines({}) == []
