@@ -72,6 +72,11 @@ class SeveralInputsError(InputError):
         return (*shown, f"{more} more") if more > 0 else shown
 
 
+def as_one(errors: tuple[InputError, ...]) -> InputError:
+    """The error itself where there is one, else all in one."""
+    return errors[0] if len(errors) == 1 else SeveralInputsError(errors)
+
+
 def _shortened(text: str) -> str:
     """Ends of a long text; paths and dotted keys end in names."""
     return text if len(text) <= 80 else f"{text[:30]}...{text[-47:]}"

@@ -8,7 +8,7 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from camwright.geometry.errors import InputError, SeveralInputsError
+from camwright.geometry.errors import InputError, as_one
 from camwright.pipeline.base.missing_kinds import missing_kind
 from camwright.pipeline.base.quantities import PURE
 from camwright.pipeline.base.units import rounded
@@ -121,7 +121,7 @@ def refusal_of(error: ValidationError, section: str = "") -> InputError:
     missing = tuple(key for key in reversed(by_key) if by_key[key]["type"] == "missing")
     errors = [_refusal(by_key[key], key) for key in reversed(by_key) if key not in missing]
     errors += [MissingKeysError(missing)] if missing else []
-    return errors[0] if len(errors) == 1 else SeveralInputsError(tuple(errors))
+    return as_one(tuple(errors))
 
 
 def _refusal(entry: Mapping[str, Any], key: str) -> InputError:

@@ -101,6 +101,16 @@ def test_the_wall_around_the_bore_is_stated_with_all_that_makes_it() -> None:
     )
 
 
+def test_contradictions_are_all_named_but_not_those_that_follow() -> None:
+    """A bore is no less than the base circle where the roller is refused."""
+    text = changed(GX120, (ROLLER, 'radius = "70 mm"'),
+                   ('overspeed = "3960 rpm"', 'overspeed = "1400 rpm"'))  # fmt: skip
+    assert refused(text).split("; ") == [
+        "roller.radius = 70 mm, must be < cam.prime_radius = 50 mm",
+        "load_case[0].speed = 1500 rpm, must be <= limits.overspeed = 1400 rpm",
+    ]
+
+
 def test_values_that_would_read_alike_get_more_digits() -> None:
     text = changed(GX120, (ROLLER, 'radius = "50.00001 mm"'))
     expected = "roller.radius = 50.00001 mm, must be < cam.prime_radius = 50 mm"
