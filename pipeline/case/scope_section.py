@@ -141,7 +141,8 @@ def with_stand_ins(tables: Tables) -> Tables:
     - gear: the cam on the shaft whose speed is stated, where the case has a lift and no machine
     - requirements: over-speed: the greatest speed of the load cases
 
-    Only keys that the case does not state. Their sources say that they are assumed.
+    Only keys that the case does not state, and no value that is refused elsewhere. Their sources
+    say that they are assumed.
     """
     scope = tables.get("scope")
     left_out = scope.get("not_covered") if isinstance(scope, dict) else None
@@ -152,13 +153,16 @@ def with_stand_ins(tables: Tables) -> Tables:
     plate = whole.table("follower.face")
     if "stem" in left_out and follower:
         whole.put("stem", "follower.stem_diameter", units.format(_STEM, "mm"))
-        whole.put("stem", "follower.stem_material", cam.get("material"))
+        materials, own = whole.table("materials"), cam.get("material")
+        known = own if own in materials else next(iter(materials), None)
+        whole.put("stem", "follower.stem_material", known)
         whole.put("stem", f"follower.{_OVERHANG}", _SHORT[0])
         if plate:
             whole.put("stem", "follower.face.thickness", _SHORT[1])
     for body, key in ((plate, "follower.face.depth"), (wheel, "roller.width")):
         if "line_ends" in left_out and body:
-            whole.put("line_ends", key, cam.get("width"))
+            width = units.format(_length(cam, "width", _STEM), "mm")
+            whole.put("line_ends", key, width)
     if "roller_bearing" in left_out and wheel:
         radius = _length(wheel, "radius", 2.0 * _STEM)
         whole.put("roller_bearing", "roller.hub_radius", units.format(_HALF * radius, "mm"))

@@ -118,6 +118,14 @@ def test_what_is_stated_is_judged_though_it_could_be_left_out() -> None:
     assert judged(case)["jump_speed"].limit == pytest.approx(1.3 * 157.0796, rel=1e-6)
 
 
+def test_a_stand_in_repeats_no_refused_value() -> None:
+    wrong = {"width": "-10 mm", "material": "steal", "prime_radius": "40"}
+    with pytest.raises(InputError) as refusal:
+        case_of(tables(cam=wrong))
+    fields = [line.partition(" = ")[0] for line in refusal.value.lines]
+    assert sorted(fields) == ["cam.material", "cam.prime_radius", "cam.width"]
+
+
 def test_stand_ins_are_stated_as_assumed() -> None:
     case = case_of(tables())
     assert case.cam.bore_radius == pytest.approx(15e-3)
