@@ -171,6 +171,15 @@ def test_more_refusals_are_named() -> None:
     assert second == "spring.preload = -1 N, must be > 0 and <= 1e+09 N"
 
 
+def test_an_unknown_key_hides_no_wrong_value_of_its_table() -> None:
+    text = changed('"24.2 kN/m"', '"-1 kN/m"\nstiffness = "1 kN/m"')
+    with pytest.raises(SeveralInputsError) as error:
+        parse_case(text)
+    first, second = error.value.lines
+    assert first.startswith("spring.stiffness = unknown key")
+    assert second == "spring.rate = -1 kN/m, must be > 0 and <= 1e+06 kN/m"
+
+
 def test_every_refusal_is_listed_up_to_a_bound() -> None:
     keys = "".join(f"unknown_{k} = 1\n" for k in range(20))
     text = changed('"24.2 kN/m"', '"-1 kN/m"').replace("[cam]\n", f"[cam]\n{keys}")
