@@ -18,6 +18,11 @@ def in_millimetres(*lengths: float) -> tuple[str, ...]:
 class CamError(Exception):
     """Error that the user can correct; its message is one line."""
 
+    @property
+    def lines(self) -> tuple[str, ...]:
+        """The message, a line for each fault that it names."""
+        return (str(self),)
+
 
 class InputError(CamError):
     """Input value out of bounds.
@@ -39,6 +44,37 @@ class InputError(CamError):
         value = self.value
         text = f"{value:.4g}" if isinstance(value, float) else " ".join(str(value).split())
         return f"{_shortened(self.field)} = {_shortened(text)}, must be {self.limit}"
+
+
+class SeveralInputsError(InputError):
+    """Several input values out of bounds; field, value and limit are those of the first.
+
+    Parameters
+    ----------
+    errors : tuple   all of them, one or more; the message has at most `MOST`, and the number of
+                     the others
+    """
+
+    MOST = 12
+
+    def __init__(self, errors: tuple[InputError, ...]) -> None:
+        first, self.errors = errors[0], errors
+        super().__init__(first.field, first.value, first.limit)
+
+    def __str__(self) -> str:
+        return "; ".join(self.lines)
+
+    @property
+    def lines(self) -> tuple[str, ...]:
+        """A line each."""
+        more = len(self.errors) - self.MOST
+        shown = tuple(str(each) for each in self.errors[: self.MOST])
+        return (*shown, f"{more} more") if more > 0 else shown
+
+
+def as_one(errors: tuple[InputError, ...]) -> InputError:
+    """The error itself where there is one, else all in one."""
+    return errors[0] if len(errors) == 1 else SeveralInputsError(errors)
 
 
 def _shortened(text: str) -> str:

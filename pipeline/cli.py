@@ -107,7 +107,7 @@ _RESUMED_BY = {
 
 
 def main() -> NoReturn:
-    """Entry point: an error becomes one line and exit code 2, an altered run 4.
+    """Entry point: an error becomes a line for each fault and exit code 2, an altered run 4.
 
     A signal becomes one line and 128 + its number; one that is ignored at the start, as by
     ``nohup``, stays ignored.
@@ -137,7 +137,10 @@ def main() -> NoReturn:
     except Exception as error:  # noqa: BLE001 - every error ends in a message and its exit code
         if "--debug" in sys.argv:
             tell(traceback.format_exc())
-        say("; ".join((_describe(error), *getattr(error, "__notes__", ()))))
+        *before, last = _described(error)
+        for line in before:
+            say(line)
+        say("; ".join((last, *getattr(error, "__notes__", ()))))
         code = ALTERED if isinstance(error, AlteredError) else ERROR
     if code == INTERRUPTED:  # returned or raised by the parser
         say("interrupted" + _RESUMED_BY.get(arguments[0] if arguments else "", ""))
@@ -154,14 +157,19 @@ def main() -> NoReturn:
     sys.exit(code if isinstance(code, int) else PASSED)
 
 
+def _described(error: Exception) -> tuple[str, ...]:
+    """An error in words, a line each fault."""
+    return (
+        tuple(map(_one_line, error.lines)) if isinstance(error, CamError) else (_describe(error),)
+    )
+
+
 def _describe(error: Exception) -> str:
     usage = getattr(
         error, "format_message", None
     )  # of the parser, whose class has no stable module
     if usage is not None:
         return _one_line(f"{usage()} (--help shows the usage)")
-    if isinstance(error, CamError):
-        return _one_line(str(error))
     if isinstance(error, OSError):
         place = f"{error.filename}: " if error.filename else ""
         return _one_line(f"{place}{error.strerror or error}")

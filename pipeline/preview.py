@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -37,7 +37,12 @@ _EFFORT = 12  # convex programs, tried steps, of a search: most need fewer
 
 
 def preview_case(
-    case: Case, *, corners: bool = True, kept: bool = False, progress: Progress = SILENT
+    case: Case,
+    *,
+    corners: bool = True,
+    kept: bool = False,
+    progress: Progress = SILENT,
+    nominal: Callable[[Trial], None] = lambda _: None,
 ) -> Trial:
     """Cam of a case with the contact by closed forms; no sign-off.
 
@@ -49,6 +54,7 @@ def preview_case(
     corners : bool   judge each check at its worst tolerance corner
     kept : bool      read the cam of a constrained synthesis from the disk cache, where an earlier
                      preview of the same case by the same program has kept it
+    nominal : callable   takes the trial before it is judged at the corners
 
     Returns
     -------
@@ -60,21 +66,23 @@ def preview_case(
         If the case has no such cam.
     """
     with refused_as_written(case):
-        return _previewed(case, corners, kept, progress)
+        torques = engine_torques(case)
+        trial = _nominal(case, torques, kept, progress)
+        nominal(trial)
+        return judged_at_corners(trial, torques) if corners else trial
 
 
-def _previewed(case: Case, corners: bool, kept: bool, progress: Progress) -> Trial:
-    torques = engine_torques(case)
+def _nominal(case: Case, torques: Mapping[str, Torque], kept: bool, progress: Progress) -> Trial:
+    """Trial of a case without tolerance corners."""
     if case.smoothing.kind != "constrained":
         contour = case.contour(cam_lift(case, torques))
         trial = solve(
-            case, contour, tier=Tier.PREVIEW, torques=torques, corners=corners, progress=progress
+            case, contour, tier=Tier.PREVIEW, torques=torques, corners=False, progress=progress
         )
         smoother = Smoother.from_case(case.smoothing, case.period) if case.balances else None
         return replace(trial, smoothing=smoothing_record(smoother))
     made = _kept if kept else _synthesised
-    trial = made(case, torques, progress)
-    return judged_at_corners(trial, torques) if corners else trial
+    return made(case, torques, progress)
 
 
 def _kept(case: Case, torques: Mapping[str, Torque], progress: Progress) -> Trial:

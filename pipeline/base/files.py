@@ -161,13 +161,64 @@ def parse_toml(content: bytes | str, field: str) -> dict[str, Any]:
         long = None if nested else _long_integer(tables)
     except RecursionError:
         nested = True
-    except ValueError as error:  # UnicodeDecodeError and TOMLDecodeError alike
-        raise InputError(field, " ".join(str(error).split()), "UTF-8 text in TOML") from None
+    except UnicodeDecodeError as error:
+        line, column = _place(error.object[: error.start].decode("utf-8", "replace"))
+        where = f"byte 0x{error.object[error.start]:02x} in line {line}, column {column}"
+        raise InputError(field, where, "text in UTF-8: save the file in this encoding") from None
+    except ValueError as error:
+        raise InputError(field, *_slip(text, str(error))) from None
     if nested:
         raise InputError(field, "nested too deeply", f"at most {_TABLES_DEEP} tables deep")
     if long is not None:
         raise InputError(field, f"an integer of {long.bit_length()} bits", "integers of 64 bits")
     return tables
+
+
+def _place(before: str) -> tuple[int, int]:
+    """Line and column of the character after a text, from 1."""
+    return before.count("\n") + 1, len(before) - before.rfind("\n")
+
+
+_PLACE = re.compile(r"\(at (?:line (\d+), column (\d+)|end of document)\)")
+_TYPOGRAPHIC = re.compile("[\u201c\u201d\u201e\u00ab\u00bb\u2018\u2019]")
+_UNQUOTED = re.compile(r"""[^=#"'\[{]+=\s*([^\s"'\[{#][^#"]*?)\s*(?:#.*)?""")
+_RULES = (
+    ("Cannot declare", "a table that is opened once"),
+    ("Cannot overwrite", "a key that is stated once in its table"),
+    ("Expected '='", "KEY = VALUE"),
+    ("Illegal character '\\n'", "a text with its closing quote on the same line"),
+    ("Unclosed array", "an array with its closing bracket"),
+    ("Expected ']]'", "[[TABLE]] with its closing brackets"),
+    ("Expected ']'", "[TABLE] with its closing bracket"),
+)
+"""How a message of the parser starts, and what the file must have there."""
+
+
+def _slip(text: str, message: str) -> tuple[str, str]:
+    """Place with the line as written, and what TOML wants there, of a message of the parser."""
+    lines, match = text.split("\n"), _PLACE.search(message)
+    if match is not None and match[1]:
+        line, column = int(match[1]), int(match[2])
+    else:  # the parser names the end where it has read the last line
+        end = text.rstrip()
+        line, column = _place(end)
+    written = lines[line - 1].strip() if line <= len(lines) else ""
+    limit = next((rule for start, rule in _RULES if message.startswith(start)), "")
+    unquoted = _UNQUOTED.fullmatch(written)
+    if _TYPOGRAPHIC.search(written):
+        limit = 'straight quotes, "..."'
+    elif written.endswith("="):
+        limit = "KEY = VALUE"
+    elif "\\" in written:
+        limit = "a text with backslashes in single quotes, '...'"
+    elif not limit and unquoted is not None and unquoted[1].lower() in ("true", "false"):
+        limit = unquoted[1].lower()
+    elif not limit and unquoted is not None:
+        limit = f'text in quotes, "{unquoted[1]}", or a number such as 0.5'
+    reason = _PLACE.sub("", message).strip()
+    where = f"line {line}, column {column}"
+    shown = f"{where}: {written[:40]}{'...' if len(written) > 40 else ''}"
+    return shown, f"{limit or 'as TOML has it'} ({reason[:80]})"
 
 
 def _blank(literal: re.Match[str]) -> str:

@@ -44,6 +44,8 @@ class MissingKind:
 _TRANSLATING = "a translating follower of the same lift"
 _PLATE = "a plate cam with a spring"
 _BY_TABLE = '[lift] kind = "table" or "points"'
+_DRAWINGS = ("dxf", "dwg", "igs", "iges", "stp", "contour", "outline", "surface_points")
+_OF_CONTOUR = f"its lift as {_BY_TABLE}"
 _AS_FORCE = "its force over the cam angle as follower.external_force_file"
 MISSING_KINDS = (
     MissingKind(
@@ -122,6 +124,14 @@ MISSING_KINDS = (
         "a snail (drop) cam with an abrupt fall", "cam",
         ("snail", "drop", "spiral", "scroll", "abrupt"),
         "a steep return, which the follower leaves: its flight and landing are calculated",
+    ),
+    MissingKind(
+        "a contour (DXF, points of the cam surface) without its lift", "cam",
+        _DRAWINGS, _OF_CONTOUR, keys=("contour", "outline", "dxf", "points"),
+    ),
+    MissingKind(
+        "a contour (DXF, points of the cam surface) in place of a lift", "lift",
+        _DRAWINGS, _OF_CONTOUR, keys=("contour", "outline", "dxf"),
     ),
     MissingKind(
         "an abrupt fall or rise", "lift",
@@ -207,6 +217,12 @@ def missing_kind(key: str, word: str) -> MissingKind | None:
                  searched among all parts
     word : str   value at the key, in any spelling: ``Knife-Edge``; "": the key itself is unknown
     """
+    kinds = missing_kinds(key, word)
+    return kinds[0] if kinds else None
+
+
+def missing_kinds(key: str, word: str) -> list[MissingKind]:
+    """As `missing_kind`: all kinds of the word, those of its longest part first."""
     area = _AREAS.get(re.split(r"[.\[]", key)[0])
     own, word = not word, word or key.rpartition(".")[2]
     sought = f"_{re.sub(r'[^a-z0-9]+', '_', word.casefold()).strip('_')}_"
@@ -216,4 +232,5 @@ def missing_kind(key: str, word: str) -> MissingKind | None:
         for each in (kind.keys if own else kind.words)
         if area in (None, kind.area) and f"_{each}_" in sought
     ]
-    return max(hits, key=lambda hit: hit[0])[1] if hits else None
+    ranked = sorted(hits, key=lambda hit: -hit[0])  # of equal ones in their order
+    return list(dict.fromkeys(kind for _, kind in ranked))

@@ -30,6 +30,10 @@ _NUMBER = (  # no digits of other scripts, of which some look like another one o
     r"|[+-]?(?:nan|inf|infinity)"
 )
 _QUANTITY = re.compile(rf"\s*({_NUMBER})\s*(.*?)\s*", re.IGNORECASE | re.DOTALL)
+_FRACTION = re.compile(  # of an inch, also mixed: 7/16, 1 3/8, 1-3/8
+    r"\s*([+-]?)(?:([0-9]{1,6})(?:\s+|\s*-\s*))?([0-9]{1,6})\s*/\s*([0-9]{1,6})\s*([A-Za-z].*?)\s*",
+    re.DOTALL,
+)
 _TERM = r"[A-Za-zµμ°Å%]+(?:\s*(?:\^|\*\*)?\s*-?[1-9]|[²³])?"
 _UNIT = re.compile(rf"(?:1\s*/\s*)?{_TERM}(?:\s*[*·/ ]\s*{_TERM})*")
 _IMPLIED_POWER = re.compile(r"(?<=[A-Za-zµμ])(-?[1-9])")
@@ -88,6 +92,26 @@ _COMMON = {
     "percent": _common("1e-2"),
 }
 """Units read without pint. Reciprocals, products and powers of them are, too."""
+_SPEEDS = {
+    **dict.fromkeys(("1/min", "/min", "min^-1", "min**-1", "min-1", "min⁻¹"), "rpm"),
+    **dict.fromkeys(("RPM", "Rpm", "r/min", "rev/min", "U/min"), "rpm"),
+    **dict.fromkeys(("Hz", "r/s", "rev/s", "U/s"), "rps"),
+}
+"""Units of a speed of rotation in turns, where a speed is wanted. 1/s is none: it may be rad/s."""
+_TORQUE = re.compile(r"(k?N)(m?m)(?![A-Za-z])")
+_ACCEPTED = {
+    "rpm": "rpm, 1/min, Hz (turns per second), rad/s or deg/s",
+    "mm": 'mm, um, cm, m or in, also "7/16 in"',
+    "N": "N, kN, kgf or lbf",
+    "N m": "N m, N mm, kN m or lbf in",
+    "N/mm": "N/mm, kN/m, N/m or lbf/in",
+    "MPa": "MPa, N/mm^2, GPa, Pa, bar or psi",
+    "kg": "kg, g or lb",
+    "K": "degC, K or degF",
+    "deg": "deg or rad",
+    "s": "s, ms, min or h",
+}
+"""Units that a refusal names, by one of their dimension."""
 _CELSIUS, _ZERO_CELSIUS = "degC", Decimal("273.15")
 """Unit with a zero of its own, K, read without pint where it stands alone."""
 _COMMON_TERM = re.compile(r"([A-Za-z]+)(?:(?:\^|\*\*)?(-?[1-9]))?")
@@ -182,12 +206,38 @@ def _angle(unit: PlainUnit) -> int:
     return int(sum(float(power) for power in angles if isinstance(power, (int, float, Decimal))))
 
 
+def _spelled(stated: str, unit: str) -> str:
+    """A unit as this module reads it: a speed in turns where one is wanted, ``Nm`` as ``N m``."""
+    if same_dimension(unit, "rpm"):
+        return _SPEEDS.get(stated, stated)
+    torque = _TORQUE.match(stated)
+    return f"{torque[1]} {torque[2]}{stated[torque.end() :]}" if torque else stated
+
+
+def _accepted(unit: str) -> str:
+    """Units of the dimension of `unit` in words, after a colon; "" where none are listed."""
+    words = (each for known, each in _ACCEPTED.items() if same_dimension(known, unit))
+    return next((f": {each}" for each in words), "")
+
+
+def _number_and_unit(text: str) -> tuple[Decimal, str] | None:
+    """Number and unit of a text; a fraction, ``1 3/8 in``, counts as one number. None: neither."""
+    if len(text) > _LONGEST:
+        return None
+    if fraction := _FRACTION.fullmatch(text):
+        sign, whole, above, below, unit = fraction.groups()
+        number = Decimal(whole or 0) + Decimal(above) / (Decimal(below) or Decimal("nan"))
+        return -number if sign == "-" else number, unit
+    match = _QUANTITY.fullmatch(text)
+    return (Decimal(match[1]), match[2]) if match and match[2] else None
+
+
 def parse(text: object, unit: str, field: str) -> float:
     """The SI value of a unit string.
 
     Parameters
     ----------
-    text : object   such as ``"24.2 kN/m"``; anything but a string is refused
+    text : object   such as ``"24.2 kN/m"`` or ``"7/16 in"``; anything but a string is refused
     unit : str      any unit of the wanted dimension, such as ``"kN/m"``
     field : str     dotted name for the message
 
@@ -203,18 +253,22 @@ def parse(text: object, unit: str, field: str) -> float:
     example = f'a number with a unit, such as "1 {unit}"'
     if not isinstance(text, str):
         raise InputError(field, repr(text), example)
-    match = _QUANTITY.fullmatch(text) if len(text) <= _LONGEST else None
-    if match is None or not match.group(2):
+    read = _number_and_unit(text)
+    if read is None:
         raise InputError(field, text, example)
-    number, stated = match.group(1), match.group(2)
+    number, stated = read
     try:
+        stated = _spelled(stated, unit)
         known = same_dimension(stated, unit)
     except ValueError:
-        raise InputError(field, text, f"in a known unit, such as {unit}") from None
+        limit = f"in a known unit, such as {unit}{_accepted(unit)}"
+        if re.match(r"[,'][0-9]", stated):
+            limit = f"written with a decimal point and without separators, such as 1500.5 {unit}"
+        raise InputError(field, text, limit) from None
     if not known:
-        raise InputError(field, text, f"in a unit of the dimension of {unit}")
+        raise InputError(field, text, f"in a unit of the dimension of {unit}{_accepted(unit)}")
     try:
-        value = float(_to_si(Decimal(number), stated, unit))
+        value = float(_to_si(number, stated, unit))
     except (InvalidOperation, OverflowError, ValueError):
         value = float("nan")
     if not isfinite(value):
@@ -245,6 +299,7 @@ def rounded(text: str, digits: int = 4) -> str:
     number = Decimal(match.group(1)) if match else Decimal("NaN")
     if (
         match is None
+        or _FRACTION.fullmatch(text)
         or not number.is_finite()
         or len(number.normalize().as_tuple().digits) <= digits
     ):

@@ -20,7 +20,7 @@ from camwright.pipeline.base.files import hash_inputs
 from camwright.pipeline.base.material import Material
 from camwright.pipeline.base.units import shown
 from camwright.pipeline.case.engine_section import Engine, engine_files
-from camwright.pipeline.case.error_text import Written, first_error
+from camwright.pipeline.case.error_text import Written, refusal_of
 from camwright.pipeline.case.given_lift import given_lift
 from camwright.pipeline.case.lift_section import GivenLift, LiftTable
 from camwright.pipeline.case.limits import TOOL_RADIUS, Limits
@@ -190,7 +190,7 @@ class Case(Displayed, Section):
         try:
             solver = Solver.model_validate(values)
         except ValidationError as error:
-            raise first_error(error, "solver") from None
+            raise refusal_of(error, "solver") from None
         return self.model_copy(update={"solver": solver})
 
     @property

@@ -13,6 +13,7 @@ from camwright.geometry.errors import InputError
 from camwright.pipeline.base import units
 from camwright.pipeline.base.files import inside, parse_toml
 from camwright.pipeline.base.material import Material
+from camwright.pipeline.base.missing_kinds import missing_kind
 from camwright.pipeline.base.quantities import In
 from camwright.pipeline.case.added_tables import with_added, with_examples
 from camwright.pipeline.case.cards.card_filling import fill_cards
@@ -20,11 +21,11 @@ from camwright.pipeline.case.cards.part_table import read_part
 from camwright.pipeline.case.case import Case, includes, kept_as
 from camwright.pipeline.case.case_values import quantity_of, refused_as_written, steps_of
 from camwright.pipeline.case.consistency import check_sections
-from camwright.pipeline.case.error_text import MissingKeysError, Written, first_error
+from camwright.pipeline.case.error_text import MissingKeysError, Written, refusal_of
 from camwright.pipeline.case.external_load import external_force
 from camwright.pipeline.case.given_lift import given_lift
 from camwright.pipeline.case.renamed_keys import with_new_keys
-from camwright.pipeline.case.scope_section import with_stand_ins
+from camwright.pipeline.case.scope_section import with_every_name, with_stand_ins
 from camwright.pipeline.case.section import named
 from camwright.pipeline.case.toml_text import Tables, TomlValue, tables_of
 
@@ -97,7 +98,7 @@ def case_of(data: Tables, folder: Path | None = None) -> Case:
 
 def resolved(data: Tables, folder: Path | None = None) -> Tables:
     """Tables of a case with those added, stand-ins of parts out of scope and keys of its cards."""
-    tables = with_stand_ins(with_new_keys(with_added(data)))
+    tables = with_stand_ins(with_every_name(with_new_keys(with_added(data))))
     fill_cards(tables, folder)
     return tables
 
@@ -107,7 +108,7 @@ def validated(tables: Tables) -> Case:
     try:
         case = Case.model_validate(tables, context={"materials": _cards(tables.get("materials"))})
     except ValidationError as error:
-        raise first_error(error) from None
+        raise refusal_of(error) from None
     case._written = Written(tables)
     check_sections(case)
     return case
@@ -181,6 +182,8 @@ def _read_includes(case: Case, folder: Path | None) -> dict[str, bytes]:
     for field, name in includes(case):
         if folder is None:
             raise InputError(field, name, "left out where a case has no folder")
+        if (kind := missing_kind(field, Path(name).suffix)) is not None:
+            raise InputError(field, name, f"a table; {kind.sentence}")
         content = _read(inside(folder, name, field), name, field, INCLUDE_BYTES)
         kept = kept_as(name)
         if origin.setdefault(kept, name) != name:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from camwright.geometry.arrays import FULL_TURN
-from camwright.geometry.errors import InputError
+from camwright.geometry.errors import InputError, as_one
 from camwright.pipeline.base.quantities import In
 from camwright.pipeline.base.units import shown
 from camwright.pipeline.case.case_values import quantity_of, text_of, value_of, wound_spring
@@ -34,6 +34,7 @@ if TYPE_CHECKING:
     from camwright.pipeline.case.case import Case
 
 
+_NAMED = re.compile(r"{([^}]+)}")  # keys in the words of a limit
 _KEYWAY_WIDTH = 1.8  # greatest, over the bore radius
 _DIGITS = (4, 8, 17)  # more where a value and its limit would read alike
 _ROUND_OFF = 1e-9  # of a share of the friction, and of an angle
@@ -67,18 +68,30 @@ def check_sections(case: Case) -> None:
     Raises
     ------
     InputError
-        For the first contradiction, by its dotted name.
+        For all contradictions of numbers, else for the first other one, by its dotted name.
     """
     check_numbers(case)
     _check_values(case)
 
 
 def check_numbers(case: Case) -> None:
-    """As `check_sections`, but for the names of the values with a source or a confirmation."""
+    """As `check_sections`, but for the names of the values with a source or a confirmation.
+
+    A relation of a number that an earlier one refuses, or names, is not tried: it may be right.
+    """
     at = _values(case)
-    for rule in rules(case):
-        if rule.breaks(at):
-            _refuse(case, rule, at)
+    refused: list[InputError] = []
+    doubtful: set[str] = set()
+    try:
+        for rule in rules(case):
+            keys = {rule.key, *_NAMED.findall(rule.limit)}
+            if not keys & doubtful and rule.breaks(at):
+                refused.append(_refusal(case, rule, at))
+                doubtful |= keys
+    except InputError as error:
+        refused += [] if error.field in doubtful else [error]
+    if refused:
+        raise as_one(tuple(refused))
 
 
 def _values(case: Case) -> At:
@@ -471,18 +484,18 @@ def _roller(case: Case) -> Iterator[Rule]:
         yield _at_least("roller.pin.span", lambda at: at("roller.width"), ">= {roller.width}")
 
 
-def _refuse(case: Case, rule: Rule, at: At) -> None:
-    """Refuse the number at the key of a broken rule, with more digits where two read alike."""
+def _refusal(case: Case, rule: Rule, at: At) -> InputError:
+    """Refusal of the number at the key of a broken rule, with more digits where two read alike."""
     for digits in _DIGITS:
         value = text_of(case, rule.key, digits)
         texts = {"": _bound_text(rule, at, digits)}
-        for other in re.findall(r"{([^}]+)}", rule.limit):
+        for other in _NAMED.findall(rule.limit):
             texts[other] = text_of(case, other, digits)
         if value not in texts.values():
             break
     texts |= {other: f"{other} = {text}" for other, text in texts.items() if other}
     limit = re.sub(r"{([^}]*)}", lambda match: texts[match[1]], rule.limit)
-    raise InputError(rule.key, value, limit)
+    return InputError(rule.key, value, limit)
 
 
 def _bound_text(rule: Rule, at: At, digits: int) -> str:

@@ -1,4 +1,4 @@
-"""First error of a case file in one line, its value as written: field, value, limit."""
+"""Errors of a case file, each in one line, its value as written: field, value, limit."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from camwright.geometry.errors import InputError
+from camwright.geometry.errors import InputError, as_one
 from camwright.pipeline.base.missing_kinds import missing_kind
 from camwright.pipeline.base.quantities import PURE
 from camwright.pipeline.base.units import rounded
@@ -107,42 +107,46 @@ def grouped(texts: Mapping[str, str]) -> str:
     return "; ".join(f"{table}{each}" for table, each in parts)
 
 
-def first_error(error: ValidationError, section: str = "") -> InputError:
-    """First error in one line, with the keys of the others.
+def refusal_of(error: ValidationError, section: str = "") -> InputError:
+    """All errors of a section, one each key; the keys that are missing are one.
 
     An unknown key comes before a missing one, often its misspelling.
     """
-    errors = error.errors(include_url=False)
-    within = {entry["loc"][:k] for entry in errors for k in range(len(entry["loc"]))}
+    entries = error.errors(include_url=False)
+    within = {entry["loc"][:k] for entry in entries for k in range(len(entry["loc"]))}
     # a list without its refused rows is too short, too
-    errors = [each for each in errors if each["type"] != "too_short" or each["loc"] not in within]
-    errors.sort(key=lambda entry: "unknown_key" not in entry.get("ctx", {}))
-    keys = tuple(dict.fromkeys(_key_of(entry, section) for entry in errors))
-    if all(entry["type"] == "missing" for entry in errors):
-        return MissingKeysError(keys)
-    first, key = errors[0], keys[0]
-    context, value = dict(first.get("ctx", {})), first["input"]
+    entries = [each for each in entries if each["type"] != "too_short" or each["loc"] not in within]
+    entries.sort(key=lambda entry: "unknown_key" not in entry.get("ctx", {}))
+    by_key = {_key_of(entry, section): entry for entry in reversed(entries)}
+    missing = tuple(key for key in reversed(by_key) if by_key[key]["type"] == "missing")
+    errors = [_refusal(by_key[key], key) for key in reversed(by_key) if key not in missing]
+    errors += [MissingKeysError(missing)] if missing else []
+    return as_one(tuple(errors))
+
+
+def _refusal(entry: Mapping[str, Any], key: str) -> InputError:
+    """Error of one key."""
+    context, value = dict(entry.get("ctx", {})), entry["input"]
     word = value if isinstance(value, str) else ""
     if "field" in context:
-        value = _stated(first["input"], context)
+        value = _stated(entry["input"], context)
         word = str(value)
     elif "unknown_key" in context:
         word = str(value.get("kind", "")) if context["unknown_key"] == "kind" else ""
         value = "unknown key"
-    elif first["type"] == "union_tag_invalid":
+    elif entry["type"] == "union_tag_invalid":
         value = word = context["tag"]
-    if first["type"] == "union_tag_not_found":
-        context["kinds"] = " or ".join(f'"{kind}"' for kind in _kinds(first["loc"]))
+    if entry["type"] == "union_tag_not_found":
+        context["kinds"] = " or ".join(f'"{kind}"' for kind in _kinds(entry["loc"]))
     quoted = isinstance(value, str)
     if isinstance(value, (dict, list)):
         value = "a table" if isinstance(value, dict) else "an array"
-    limit = _WORDS.get(first["type"], first["msg"]).format_map(context)
+    limit = _WORDS.get(entry["type"], entry["msg"]).format_map(context)
     if quoted and limit in _NUMBERS:
         value, limit = f'"{value}"', f"{limit}, not in quotes"
     named = key.rpartition(".")[2] in _NAMING or value == "unknown key"
     kind = missing_kind(key, word) if named else None
     limit += f"; {kind.sentence}" if kind is not None else ""
-    limit += f" (and {', '.join(keys[1:])})" if keys[1:] else ""
     return InputError(key or "case", as_written(value), limit)
 
 

@@ -367,6 +367,10 @@ TORQUE_REDUCTION = Limit(
     "torque_reduction", "torque ripple reduction", _INNER_SHARE, 0.4,
     _REQUIREMENT, "at_least",
 )  # fmt: skip
+DRIVE_TORQUE = OpenLimit(
+    "drive_torque", "torque that drives the cam", In("N m", above=0, at_most=1e8),
+    "torque of the drive", found="drive or motor data sheet", example="10 N m",
+)  # fmt: skip
 SPEED_REDUCTION = OpenLimit(
     "speed_reduction", "speed ripple reduction", _INNER_SHARE,
     _REQUIREMENT, "at_least",

@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal, Self
+from collections.abc import Mapping
+from copy import deepcopy
+from fnmatch import fnmatchcase
+from types import MappingProxyType
+from typing import Annotated, Literal, NamedTuple, Self
 
 from pydantic import Field, model_validator
 
@@ -15,6 +19,9 @@ PartName = Literal[
     "roller_bearing", "pin", "fork", "spring", "gas_spring", "torsion_spring", "guides",
     "camshaft", "camshaft_bearings", "key", "gear",
 ]  # fmt: skip
+Subject = Literal["stem", "bore", "line_ends", "friction", "requirements"]
+"""What is left out besides parts: data that a part which is judged would need as well."""
+ScopeName = PartName | Subject
 PART_WORDS: dict[PartName, str] = {
     "roller_bearing": "bearing of the roller",
     "pin": "pin of the roller",
@@ -29,18 +36,53 @@ PART_WORDS: dict[PartName, str] = {
     "gear": "driving gear",
 }
 """Parts that a sign-off may leave out, in the order of the flow of force."""
+SUBJECT_WORDS: dict[Subject, str] = {
+    "stem": "stem of the follower",
+    "bore": "bore of the cam",
+    "line_ends": "ends of the line of contact",
+    "friction": "friction, film and finish of the contact",
+    "requirements": "life, over-speed and room",
+}
+SCOPE_WORDS: Mapping[ScopeName, str] = MappingProxyType(
+    dict((*PART_WORDS.items(), *SUBJECT_WORDS.items()))
+)
+EVERY = "all"
+"""Word of a case file for all that a sign-off may leave out."""
+_KEYS: dict[ScopeName, tuple[str, ...]] = {
+    "roller_bearing": ("roller.bearing", "roller.hub_radius"),
+    "pin": ("roller.pin",),
+    "fork": ("roller.fork",),
+    "spring": ("spring.design", "spring.travel_max"),
+    "gas_spring": ("spring.gas",),
+    "torsion_spring": ("spring.torsion",),
+    "guides": ("guides", "follower.overhang_at_max_lift", "follower.anti_rotation"),
+    "camshaft": ("camshaft",),
+    "key": ("cam.keyway", "cam.key"),
+    "gear": ("camshaft.gear",),
+    "stem": ("follower.stem_*", "follower.overhang_at_max_lift", "follower.anti_rotation",
+             "follower.face.thickness"),
+    "bore": ("cam.bore_radius", "cam.fit"),
+    "line_ends": ("cam.end", "roller.end", "follower.face.end", "roller.axial_offset",
+                  "roller.width", "follower.face.depth"),
+    "friction": ("roller.friction", "follower.face.friction", "*.roughness", "lubricant",
+                 "follower.face.pv_limit"),
+    "requirements": ("limits.overspeed", "limits.target_life", "limits.cam_radius",
+                     "limits.*_life", "limits.tool_radius", "workshop.tool_radius",
+                     "limits.curvature_rate"),
+}  # fmt: skip
+"""Keys, and tables by theirs, that a part alone needs: not missed where it is left out."""
 
 
 class Scope(Section):
     """Parts that the sign-off does not cover, and why; every other part has to be described."""
 
-    not_covered: Annotated[tuple[PartName, ...], Field(strict=False, max_length=16)] = ()
+    not_covered: Annotated[tuple[ScopeName, ...], Field(strict=False, max_length=16)] = ()
     reason: Text = ""
 
     @property
     def statement(self) -> str:
         """The parts left out and the reason on one line; "" without any."""
-        parts = ", ".join(words for part, words in PART_WORDS.items() if not self.covers(part))
+        parts = ", ".join(words for part, words in SCOPE_WORDS.items() if not self.covers(part))
         reason = " ".join(self.reason.split())
         return f"Not covered by this sign-off: {parts}: {reason}" if parts else ""
 
@@ -52,9 +94,17 @@ class Scope(Section):
             "statement": self.statement,
         }
 
-    def covers(self, part: PartName) -> bool:
-        """Whether the sign-off covers a part."""
+    def covers(self, part: ScopeName) -> bool:
+        """Whether the sign-off covers a part or subject."""
         return part not in self.not_covered
+
+    def leaves_out(self, key: str) -> bool:
+        """Whether a key belongs to what the sign-off does not cover, and is not asked for."""
+        return any(
+            fnmatchcase(key, pattern) or fnmatchcase(key, f"{pattern}.*")
+            for part in self.not_covered
+            for pattern in _KEYS.get(part, ())
+        )
 
     @model_validator(mode="after")
     def _says_why(self) -> Self:
@@ -66,31 +116,120 @@ class Scope(Section):
 _STAND_IN = "assumed, as the scope leaves out the {}"
 _OVERHANG = "overhang_at_max_lift"
 _STEM = 10e-3  # m, where the case does not state its diameter
+_SHORT = "30 mm", "10 mm"  # overhang of a stem, thickness of a face, that are left out
+_HALF = 0.5  # radius of a bore and of a hub over that of the body around it
+
+
+def with_every_name(tables: Tables) -> Tables:
+    """Tables of a case with the names for `EVERY` in the scope."""
+    scope = tables.get("scope")
+    if not isinstance(scope, dict) or scope.get("not_covered") not in (EVERY, [EVERY]):
+        return tables
+    names: list[TomlValue] = list(SCOPE_WORDS)
+    return tables | {"scope": scope | {"not_covered": names}}
 
 
 def with_stand_ins(tables: Tables) -> Tables:
-    """Tables of a case with stand-ins for required parts that it leaves out and does not cover.
+    """Tables of a case with stand-ins for required values of what it leaves out.
 
-    Guides without friction and clearance, of the bore of the stem: four diameters apart, one
-    diameter long, at most twice the overhang. A roller bearing without data. Their sources say
-    that they are assumed.
+    - guides: without friction and clearance, of the bore of the stem: four diameters apart, one
+      diameter long, at most twice the overhang
+    - roller_bearing: without data, on a hub of half the radius of the roller
+    - stem: 10 mm thick, of the material of the cam, 30 mm from guide A; a face 10 mm thick
+    - bore: half of the base radius
+    - line_ends: roller or face as wide as the cam
+    - gear: the cam on the shaft whose speed is stated, where the case has a lift and no machine
+    - requirements: over-speed: the greatest speed of the load cases
+
+    Only keys that the case does not state, and no value that is refused elsewhere. Their sources
+    say that they are assumed.
     """
-    scope, roller = tables.get("scope"), tables.get("roller")
+    scope = tables.get("scope")
     left_out = scope.get("not_covered") if isinstance(scope, dict) else None
     if not isinstance(left_out, list):
         return tables
-    if "roller_bearing" in left_out and isinstance(roller, dict) and "bearing" not in roller:
-        words = _STAND_IN.format(PART_WORDS["roller_bearing"])
-        own: Tables = dict(roller)
-        own["bearing"] = {"name": "none", "source": words}
-        tables = tables | {"roller": own}
+    whole = _StandIns(deepcopy(tables), {})
+    follower, cam, wheel = (whole.table(name) for name in ("follower", "cam", "roller"))
+    plate = whole.table("follower.face")
+    if "stem" in left_out and follower:
+        whole.put("stem", "follower.stem_diameter", units.format(_STEM, "mm"))
+        materials, own = whole.table("materials"), cam.get("material")
+        known = own if own in materials else next(iter(materials), None)
+        whole.put("stem", "follower.stem_material", known)
+        whole.put("stem", f"follower.{_OVERHANG}", _SHORT[0])
+        if plate:
+            whole.put("stem", "follower.face.thickness", _SHORT[1])
+    for body, key in ((plate, "follower.face.depth"), (wheel, "roller.width")):
+        if "line_ends" in left_out and body:
+            width = units.format(_length(cam, "width", _STEM), "mm")
+            whole.put("line_ends", key, width)
+    if "roller_bearing" in left_out and wheel:
+        radius = _length(wheel, "radius", 2.0 * _STEM)
+        whole.put("roller_bearing", "roller.hub_radius", units.format(_HALF * radius, "mm"))
+        if "bearing" not in wheel:
+            words = _STAND_IN.format(PART_WORDS["roller_bearing"])
+            wheel["bearing"] = {"name": "none", "source": words}
+    if "bore" in left_out and cam:
+        base = _length(cam, "prime_radius", 2.0 * _STEM) - _length(wheel, "radius", 0.0)
+        whole.put("bore", "cam.bore_radius", units.format(_HALF * abs(base), "mm"))
+    if "requirements" in left_out and (fastest := _fastest(tables.get("load_case"))):
+        whole.tables.setdefault("limits", {})
+        whole.put("requirements", "limits.overspeed", fastest)
+    if "gear" in left_out and "lift" in tables and not {"engine", "torque"} & set(tables):
+        whole.tables.setdefault("mechanism", {})
+        whole.put("gear", "mechanism.gear_ratio", 1.0)
     if "guides" in left_out and "guides" not in tables:
-        tables = tables | {"guides": _guides(tables.get("follower"))}
-        sources, words = tables.get("sources", {}), _STAND_IN.format(PART_WORDS["guides"])
-        if isinstance(sources, dict):
-            stated: Tables = {"guides.spacing": words}
-            tables["sources"] = stated | sources
-    return tables
+        whole.tables["guides"] = _guides(follower)
+        whole.sources["guides.spacing"] = _STAND_IN.format(PART_WORDS["guides"])
+    return whole.with_sources()
+
+
+class _StandIns(NamedTuple):
+    """Tables of a case with the stand-ins so far, and their sources by key."""
+
+    tables: Tables
+    sources: dict[str, str]
+
+    def table(self, name: str) -> Tables:
+        """A table of the case; an empty one where there is none."""
+        node: TomlValue = self.tables
+        for step in name.split("."):
+            node = node.get(step, {}) if isinstance(node, dict) else {}
+        return node if isinstance(node, dict) else {}
+
+    def put(self, part: ScopeName, key: str, value: TomlValue | None) -> None:
+        """Enter a value that the case does not state."""
+        path, _, name = key.rpartition(".")
+        table = self.table(path)
+        if name not in table and value is not None:
+            table[name] = value
+            self.sources[key] = _STAND_IN.format(SCOPE_WORDS[part])
+
+    def with_sources(self) -> Tables:
+        """The tables with the sources; those of limits stand below them."""
+        limits = {key: text for key, text in self.sources.items() if key.startswith("limits.")}
+        others = {key: text for key, text in self.sources.items() if key not in limits}
+        if others and isinstance(stated := self.tables.get("sources", {}), dict):
+            self.tables["sources"] = {**others, **stated}
+        for key, text in limits.items():
+            sources = self.table("limits").setdefault("sources", {})
+            if isinstance(sources, dict):
+                sources.setdefault(key.removeprefix("limits."), text)
+        return self.tables
+
+
+def _fastest(load_cases: TomlValue | None) -> str:
+    """Greatest speed of load cases as written; "" where none can be read."""
+    fastest, words = 0.0, ""
+    for each in load_cases if isinstance(load_cases, list) else ():
+        text = each.get("speed") if isinstance(each, dict) else None
+        try:
+            speed = units.parse(text, "rpm", "speed")
+        except InputError:
+            continue
+        if isinstance(text, str) and speed > fastest:
+            fastest, words = speed, text
+    return words
 
 
 def is_stand_in(tables: Tables, key: str) -> bool:
@@ -101,9 +240,8 @@ def is_stand_in(tables: Tables, key: str) -> bool:
     return isinstance(side, dict) and side.get("source") == _STAND_IN.format(PART_WORDS["guides"])
 
 
-def _guides(follower: TomlValue | None) -> Tables:
+def _guides(stem: Tables) -> Tables:
     """Guides that neither rub nor tilt, on the stem of a follower."""
-    stem = follower if isinstance(follower, dict) else {}
     diameter, overhang = _length(stem, "stem_diameter", _STEM), _length(stem, _OVERHANG, _STEM)
     guide: Tables = {
         "length": units.format(min(diameter, 2.0 * overhang), "mm"),

@@ -7,7 +7,17 @@ import re
 from collections.abc import Iterable, Mapping
 from dataclasses import MISSING, dataclass, fields, replace
 from types import UnionType
-from typing import Annotated, Any, ClassVar, TypeVar, Union, get_args, get_origin, get_type_hints
+from typing import (
+    Annotated,
+    Any,
+    ClassVar,
+    Self,
+    TypeVar,
+    Union,
+    get_args,
+    get_origin,
+    get_type_hints,
+)
 
 from pydantic import (
     AfterValidator,
@@ -15,11 +25,13 @@ from pydantic import (
     ConfigDict,
     Field,
     GetCoreSchemaHandler,
+    ModelWrapValidatorHandler,
+    ValidationError,
     ValidationInfo,
     create_model,
     model_validator,
 )
-from pydantic_core import CoreSchema, PydanticCustomError, core_schema
+from pydantic_core import CoreSchema, InitErrorDetails, PydanticCustomError, core_schema
 
 from camwright.geometry.errors import InputError
 from camwright.pipeline.base.material import Material
@@ -28,7 +40,6 @@ from camwright.pipeline.base.quantities import Characters, Part
 SAFE_NAME = re.compile(r"[A-Za-z0-9](?:[A-Za-z0-9_.-]{0,38}[A-Za-z0-9_-])?")
 
 PartType = TypeVar("PartType", bound=Part)
-Read = TypeVar("Read")  # what a validator reads and returns unchanged
 
 
 def refusal(limit: str, **context: str) -> PydanticCustomError:
@@ -65,15 +76,36 @@ class Section(BaseModel):
             if getattr(self, name) is None and name not in self.defaults
         )
 
-    @model_validator(mode="before")
+    @model_validator(mode="wrap")
     @classmethod
-    def _know_every_key(cls, table: Read) -> Read:
-        """Refuse unknown keys before missing ones: a misspelt key is both."""
+    def _know_every_key(cls, table: Any, handler: ModelWrapValidatorHandler[Self]) -> Self:
+        """Refuse unknown keys beside wrong values; missing ones later: a misspelt key is both."""
         known = [field.alias or name for name, field in cls.model_fields.items()]
-        for key in table if isinstance(table, dict) else ():
-            if key not in known:
-                raise refusal(f"a known key{suggestion(key, known)}", unknown_key=str(key))
-        return table
+        unknown: list[InitErrorDetails] = [
+            {
+                "type": refusal(f"a known key{suggestion(key, known)}", unknown_key=str(key)),
+                "input": table,
+            }
+            for key in (table if isinstance(table, dict) else ())
+            if key not in known
+        ]
+        if not unknown:
+            return handler(table)
+        try:
+            handler({key: value for key, value in table.items() if key in known})
+        except ValidationError as error:
+            unknown += [
+                {
+                    "type": PydanticCustomError(each["type"], each["msg"], each.get("ctx")),
+                    "loc": each["loc"],
+                    "input": each["input"],
+                }
+                for each in error.errors(include_url=False)
+                if each["type"] != "missing"
+            ]
+        except InputError:  # of values that contradict one another: the unknown key may be one
+            pass
+        raise ValidationError.from_exception_data(cls.__name__, unknown)
 
 
 def suggestion(word: str, known: Iterable[str]) -> str:

@@ -380,6 +380,7 @@ minimum_wall = check(
     },
     reason="A thinner ring bursts at the keyway or opens on the shaft.",
     method="least contour radius over bore radius plus keyway depth",
+    within=("bore",),
     load_cases=NONE,
     levers=(levers.SEAT, *levers.SHAPE),
     page="Cam",

@@ -20,7 +20,7 @@ from camwright.pipeline.base.levers import Lever
 from camwright.pipeline.base.units import in_unit, shown
 from camwright.pipeline.case.limits import TORQUE_REDUCTION, AnyLimit, Sense
 from camwright.pipeline.case.machine import Machine
-from camwright.pipeline.case.scope_section import PartName
+from camwright.pipeline.case.scope_section import PartName, ScopeName
 from camwright.pipeline.checks.extremes import Extreme, Measure, Reduce, worst_measure
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.loaded_cam import LoadedCam
@@ -286,6 +286,9 @@ class Declaration:
     error : str                origin of the error bar of the demand
     needs : str                kind of follower; "": any
     part : str                 part of the scope that it judges; "": cam or follower
+    if_limited : bool          it is made only where the case sets its limit
+    within : tuple             parts and subjects of the scope, without all of which it is not
+                               judged; (): none
     formula : str              demand and limit with their symbols, for the documentation
     symbols : mapping          where the symbols of the formula stand in a run, for the hand-check
                                sheet: dotted keys, columns of the cycle, figures of the cam, or
@@ -327,6 +330,8 @@ class Declaration:
     error: Error
     needs: Literal["", "roller", "face"]
     part: PartName | Literal[""]
+    within: tuple[ScopeName, ...]
+    if_limited: bool
     formula: str
     symbols: Mapping[str, str] = field(repr=False, hash=False)
     reason: str
@@ -345,7 +350,8 @@ class Declaration:
     def __call__(self, solution: Solution) -> Check | None:
         """Check of a solution.
 
-        None where it does not apply, its part is not described, or its tier is a deeper one.
+        None where it does not apply, its part is not described, its tier is a deeper one, or it
+        lacks a key of what the scope leaves out.
         Whether a part is described has a check of its own, see `part_data`.
         """
         if solution.tier < self.fails_from or not self.concerns(solution.machine):
@@ -354,6 +360,9 @@ class Declaration:
         if demand is None:
             return None
         made = self.judged(solution.machine, demand)
+        scope = solution.machine.scope
+        if made.status == "not_evaluated" and any(map(scope.leaves_out, made.missing)):
+            return None
         # a lower bound within the limit says nothing
         return made if made.status == "fail" or not self.is_bound(solution.tier) else None
 
@@ -380,7 +389,19 @@ class Declaration:
         """Whether a machine has the kind of follower and describes the part of the check."""
         if self.needs not in ("", machine.follower.word):
             return False
+        if self.if_limited and self.limit is not None and machine.limits[self.limit] is None:
+            return False
+        if self.within and not any(map(machine.scope.covers, self.within)):
+            return False
         return not self.part or (machine.scope.covers(self.part) and machine.describes(self.part))
+
+    def lacks_left_out(self, machine: Machine, numbers: Numbers) -> bool:
+        """Whether the numbers lack a key of what the scope leaves out."""
+        if self.measured is None:
+            return False
+        needed = (key for key in self.measured.needed if numbers.get(key) is None)
+        missing = (*self.measured.allowed(numbers).missing, *needed)
+        return any(map(machine.scope.leaves_out, missing))
 
     def judged(self, machine: Machine, demand: Demand) -> Check:
         """Check of a demand on a machine."""
@@ -427,6 +448,8 @@ def check(
     error: Error = "sampling",
     needs: Literal["", "roller", "face"] = "",
     part: PartName | Literal[""] = "",
+    within: tuple[ScopeName, ...] = (),
+    if_limited: bool = False,
     formula: str = "",
     symbols: Mapping[str, str] = MappingProxyType({}),
     reason: str = "",
@@ -471,6 +494,8 @@ def check(
             error=error,
             needs=needs,
             part=part,
+            within=within,
+            if_limited=if_limited,
             formula=formula,
             symbols=symbols,
             reason=reason,

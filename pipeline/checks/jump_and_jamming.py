@@ -349,6 +349,7 @@ def contact_over_speed(solution: Solution) -> Demand:
     method="one mass on the stiffness of the stem, without friction",
     lift_can_help=True,
     tier=Tier.PREVIEW,
+    within=("stem",),
     formula="min N(w, theta) / F_0 >= limits.contact_force_margin over all speeds from standstill"
     " to over-speed and over the load cases at their varying speed; N: contact force of one mass on"
     " the stiffness between cam and mass, on the spring with its surge, F_0: spring force at"

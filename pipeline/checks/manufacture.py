@@ -54,6 +54,7 @@ def _gap_left(cam: LoadedCam, limit: float) -> Array:
     reason="Cam, roller or fork would strike the guide.",
     method="end of guide A less maximum contour radius, and less the follower, at maximum lift",
     lift_can_help=True,
+    part="guides",
     load_cases=NONE,
     levers=(levers.one("follower.overhang_at_max_lift", most=2.0),),
     page="Guides",

@@ -61,6 +61,7 @@ def _data(
                 return Demand(None, 0.0, missing=described_by, note=note)
         known = {path: part for path, part in tables(solution.case).items() if part is not None}
         missing = tuple(f"{path}.{key}" for path, part in known.items() for key in part.lacking)
+        missing = tuple(key for key in missing if not machine.scope.leaves_out(key))
         return Demand(None if missing else 0.0, 0.0, missing=missing)
 
     return data

@@ -537,6 +537,7 @@ bore_pressure = check(
     lift_can_help=True,
     tier=Tier.SCREENING,
     kept_as="normal force at the maximum pressure of the cam's bore",
+    within=("bore",),
     formula="F_n/(d b) <= limits.bore_share R_m - p; F_n: greatest normal force over all load cases"
     " and angles, d: bore diameter, b: cam width, R_m: lower tensile strength of cam and camshaft,"
     " p: pressure of cam.fit at its greatest interference, 0 without one",
@@ -571,6 +572,7 @@ bore_pressure = check(
     source="crossover shock, Rothbart, Cam Design Handbook (2004)",
     method="sign changes of cam torque plus drag",
     must_have=False,
+    within=("key", "gear"),
     formula="n <= 0; n: sign changes of T + drag over the turn, greatest over the load cases",
     reason="not a must-have: the torque of a balancing cam reverses by its purpose; the effects"
     " decide: key_pressure, key_shear, cam_slip, gear_bending, pinion_bending",
@@ -603,6 +605,7 @@ def torque_reversals(solution: Solution) -> Demand:
     },
     reason="the force m e w^2 loads shaft, bearings and frame at every speed",
     rests_on="",
+    within=("camshaft",),
     values=(
         "cam.material.density",
         "camshaft.rotor_mass",

@@ -111,6 +111,7 @@ def excluded_zone(solution: Solution) -> Demand | None:
     must_have=False,
     lift_can_help=True,
     tier=Tier.CYCLE,
+    within=("bore",),
     error="bore",
     values=(
         *given.CONTACT,

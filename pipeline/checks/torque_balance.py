@@ -14,6 +14,7 @@ from camwright.pipeline.base.cooling import housing_area
 from camwright.pipeline.base.units import celsius, shown
 from camwright.pipeline.case.limits import (
     CONTACT_TORQUE,
+    DRIVE_TORQUE,
     FRICTION_BALANCE,
     FRICTION_POWER,
     SPEED_REDUCTION,
@@ -101,6 +102,27 @@ def least_reduction(
         return float(demands.common_reduction(reduction(cycle), own, common))
 
     return worst_case(cycles, comparable, at_least=True), common
+
+
+drive_torque = check(
+    DRIVE_TORQUE,
+    id="drive_torque",
+    title="Torque that drives the cam",
+    unit="N m",
+    formula="max |T_c| <= T; T_c: torque of the cam, friction and inertia included, T:"
+    " limits.drive_torque",
+    reason="A drive of less torque stalls.",
+    method="greatest magnitude of the cam torque",
+    tier=Tier.SCREENING,
+    lift_can_help=True,
+    if_limited=True,
+    values=given.LOADS,
+    levers=levers.LOAD,
+    page="Torque",
+).measured(
+    "angles",
+    deviation=0.005,
+)(demands.cam_torque)
 
 
 @check(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
 
@@ -23,6 +23,7 @@ from camwright.pipeline.commands.terminal import (
     show_all,
     show_failures,
     show_json,
+    show_lines,
     show_text,
     stdout,
 )
@@ -132,7 +133,8 @@ def check(
         record = _recorded(targets[0], keys)
         if record.faults or (recompute and not _recomputed(targets[0], angles, seed)):
             return ALTERED
-        one = _judged(targets[0], patterns, fail_on, baseline, remedies=remedies)
+        early = show_lines if not (as_json or missing) else _unshown
+        one = _judged(targets[0], patterns, fail_on, baseline, remedies=remedies, early=early)
         one.document.update(record.entries)
         judged, signatures = [one], record.signatures or ()
     else:
@@ -149,6 +151,10 @@ def check(
     else:
         _show_overview(judged)
     return max((each.code for each in judged), key=SEVERITY.index)
+
+
+def _unshown(_: Iterable[str]) -> None:
+    """Show no lines."""
 
 
 def _require_known(fail_on: str) -> None:
@@ -279,6 +285,7 @@ def _judged(
     suite: str = "",
     *,
     remedies: bool = False,
+    early: Callable[[Iterable[str]], None] = _unshown,
 ) -> _Judged:
     """Checks of a run folder or of a preview of a case file.
 
@@ -286,6 +293,7 @@ def _judged(
     ----------
     suite : str       name of the JUnit suite; "": that of the case
     remedies : bool   seek the remedies of a case
+    early : callable  takes lines on what is known of a case before its checks
 
     Raises
     ------
@@ -298,7 +306,8 @@ def _judged(
 
     if not target.exists():
         raise ResultError(f"{target}: no such case file or run folder")
-    document, clock = _checked_case(target, remedies) if target.is_file() else _checked_run(target)
+    made = _checked_case(target, remedies, early) if target.is_file() else _checked_run(target)
+    document, clock = made
     document["checks"] = list(selected(document["checks"], only))
     decided = outcome(document["checks"], fail_on)
     if not only and fail_on != "never":
@@ -448,7 +457,9 @@ def _checked_run(folder: Path) -> tuple[dict[str, Any], Clock]:
     return read_verdict(folder) | limitations(), Clock.of(read_summary(folder))
 
 
-def _checked_case(path: Path, remedies: bool) -> tuple[dict[str, Any], Clock]:
+def _checked_case(
+    path: Path, remedies: bool, early: Callable[[Iterable[str]], None]
+) -> tuple[dict[str, Any], Clock]:
     """Checks of the preview of a case, with the clock of the preview."""
     from camwright.pipeline.base.progress import utc
     from camwright.pipeline.case.case_file import read_case
@@ -461,16 +472,25 @@ def _checked_case(path: Path, remedies: bool) -> tuple[dict[str, Any], Clock]:
     from camwright.pipeline.preview import preview_case
     from camwright.pipeline.results.check_records import governing_id, judgement, to_be_confirmed
     from camwright.pipeline.results.junit_report import Clock
+    from camwright.pipeline.results.run_records import figures
+    from camwright.pipeline.results.verdict_summary import figure_lines, torque_lines
 
     began = time.perf_counter()
     case = read_case(path)
-    for finding in implausible(case, engine_torques(case)):
+    torques = engine_torques(case)
+    early(torque_lines(torques))
+    for finding in implausible(case, torques):
         say(f"warning: {finding.how}")
     for line in measurement_words(case):
         say(line)
     with progress_shown() as progress:
         progress.stage(f"preview of {case.name}")
-        trial = preview_case(case, kept=True, progress=progress)
+        trial = preview_case(
+            case,
+            kept=True,
+            progress=progress,
+            nominal=lambda first: early(figure_lines(figures(first))),
+        )
     made = trial.checks
     if remedies:
         from camwright.pipeline.remedies.remedy_search import remedies_of, with_remedies
@@ -487,6 +507,7 @@ def _checked_case(path: Path, remedies: bool) -> tuple[dict[str, Any], Clock]:
         "binding": list(trial.binding),
         "governing": governing_id(checks),
         "load_ends": trial.load_ends,
+        "figures": figures(trial),
         "scope": case.scope.as_record(),
         "measurement": measurement_record(case),
         "checks": checks,

@@ -24,10 +24,10 @@ from camwright.pipeline.commands.terminal import (
 def contact(
     r1: Annotated[str, typer.Option(help="Radius of body 1, mm; inf: flat, negative: concave.")],
     r2: Annotated[str, typer.Option(help="Radius of body 2, mm.")],
-    e1: Annotated[str, typer.Option(help="Young's modulus of body 1, MPa.")],
+    e1: Annotated[str, typer.Option(help='Young\'s modulus of body 1, such as "210 GPa".')],
     nu1: Annotated[float, typer.Option(help="Poisson ratio of body 1.")],
     e2: Annotated[
-        str | None, typer.Option(help="Young's modulus of body 2, MPa; default: of body 1.")
+        str | None, typer.Option(help="Young's modulus of body 2; default: of body 1.")
     ] = None,
     nu2: Annotated[
         float | None, typer.Option(help="Poisson ratio of body 2; default: of body 1.")

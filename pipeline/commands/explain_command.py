@@ -38,7 +38,7 @@ def explain(
 
 
 def _explained(word: str) -> str:
-    from camwright.pipeline.base.missing_kinds import missing_kind
+    from camwright.pipeline.base.missing_kinds import missing_kinds
     from camwright.pipeline.case.keys import keys_at
     from camwright.pipeline.checks.registry import DECLARED
 
@@ -46,9 +46,8 @@ def _explained(word: str) -> str:
     if word in DECLARED:
         parts.append(_of_check(word))
     if not parts:
-        missing = missing_kind("", word)
-        if missing is not None:
-            return _text(f"{word}: {missing.sentence}", ())
+        if missing := missing_kinds("", word):
+            return "\n".join(_text(f"{word}: {kind.sentence}", ()) for kind in missing)
         raise InputError("KEY", word, f"a key or table of a case file, or a check{_closest(word)}")
     return "\n\n".join(parts)
 

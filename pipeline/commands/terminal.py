@@ -136,18 +136,20 @@ def show_failures(document: dict[str, Any], places: Places) -> None:
     from camwright.pipeline.results.check_records import within_depth
 
     checks = within_depth(document["checks"])
-    _print_all(verdict_summary.load_end_line(document))
-    _print_all(verdict_summary.failure_lines(checks))
-    _print_all(verdict_summary.missing_lines(checks, places.case))
-    _print_all(_changes(document))
-    _print_all(
+    show_lines(verdict_summary.load_end_line(document))
+    show_lines(verdict_summary.failure_lines(checks))
+    show_lines(verdict_summary.missing_lines(checks, places.case))
+    show_lines(_changes(document))
+    show_lines(
         (
             verdict_summary.verdict_words(document),
             *verdict_summary.headline_line(document),
             *verdict_summary.measured_line(document),
             *verdict_summary.governing_line(checks),
+            *verdict_summary.advisory_lines(checks),
             *filter(None, (document["scope"]["statement"],)),
             *verdict_summary.place_line(document, places),
+            *verdict_summary.next_lines(document, places),
         )
     )
 
@@ -165,19 +167,20 @@ def show_all(document: dict[str, Any], places: Places) -> None:
     from camwright.pipeline.results.verdict_summary import (
         load_end_line,
         measured_line,
+        next_lines,
         place_line,
         verdict_words,
     )
 
     checks = within_depth(document["checks"])
-    _print_all(load_end_line(document))
+    show_lines(load_end_line(document))
     stdout.print(table(check for check in checks if not check["evidence"]))
     evidence = [check for check in checks if check["evidence"]]
     if evidence:
         stdout.print("evidence, which never governs:", markup=False)
         stdout.print(table(evidence))
-    _print_all((*remarks(checks), *deeper_lines(document["checks"])))
-    _print_all(_changes(document))
+    show_lines((*remarks(checks), *deeper_lines(document["checks"])))
+    show_lines(_changes(document))
     stdout.print(verdict_words(document), markup=False)
     if document.get("statement"):
         stdout.print(document["statement"], markup=False)
@@ -186,10 +189,11 @@ def show_all(document: dict[str, Any], places: Places) -> None:
         stdout.print(f"values to be confirmed: {values}", markup=False)
     if document["scope"]["statement"]:
         stdout.print(document["scope"]["statement"], markup=False)
-    _print_all(measured_line(document))
-    _print_all(binding_lines(document["checks"], document["binding"]))
-    _print_all(consistency_line(finding) for finding in document.get("consistency", ()))
-    _print_all(place_line(document, places))
+    show_lines(measured_line(document))
+    show_lines(binding_lines(document["checks"], document["binding"]))
+    show_lines(consistency_line(finding) for finding in document.get("consistency", ()))
+    show_lines(place_line(document, places))
+    show_lines(next_lines(document, places))
 
 
 def _changes(document: dict[str, Any]) -> list[str]:
@@ -201,6 +205,7 @@ def _changes(document: dict[str, Any]) -> list[str]:
     return [f"baseline: {line}" for line in lines(document["changes"])]
 
 
-def _print_all(lines: Iterable[str]) -> None:
+def show_lines(lines: Iterable[str]) -> None:
+    """Print lines on the output stream at once."""
     for line in lines:
         stdout.print(line, markup=False)

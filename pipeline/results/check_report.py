@@ -148,6 +148,14 @@ def reason_without_data(record: AnyCheck) -> str:
     return str(record["note"]) or "a number is missing"
 
 
+def ids_by_reason(records: Iterable[CheckRecord]) -> dict[str, list[str]]:
+    """Ids of checks that are not evaluated by their reason, each reason once."""
+    ids: dict[str, list[str]] = {}
+    for record in records:
+        ids.setdefault(reason_without_data(record), []).append(record["id"])
+    return ids
+
+
 def status(record: CheckRecord) -> str:
     """Status of a check in words."""
     words = record["status"] + (", not proven" if record["not_proven"] else "")
@@ -210,10 +218,11 @@ def remarks(records: Iterable[CheckRecord]) -> list[str]:
     waived = [f"{_waived(r)}: {r['id']}: {waiver_words(r)}" for r in records if r["waiver"]]
     unproven = [f"{r['id']}: {not_proven(r)}" for r in records if r["not_proven"]]
     still_open = [
-        f"missing data{'' if r['must_have'] else ' (optional)'}: {r['id']}: "
-        f"{reason_without_data(r)}"
-        for r in records
-        if r["status"] == "not_evaluated"
+        f"missing data{'' if must_have else ' (optional)'}: {', '.join(ids)}: {reason}"
+        for must_have in (True, False)
+        for reason, ids in ids_by_reason(
+            r for r in records if r["status"] == "not_evaluated" and r["must_have"] is must_have
+        ).items()
     ]
     remedies = [f"remedy: {r['id']}: {r['remedy']}" for r in records if r.get("remedy")]
     return [*still_open, *unproven, *waived, *remedies]

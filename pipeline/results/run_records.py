@@ -10,7 +10,7 @@ import numpy as np
 from camwright.geometry.arrays import Array, uniform_turn
 from camwright.geometry.contour import Contour
 from camwright.geometry.errors import CamError
-from camwright.geometry.extrema import first_greatest
+from camwright.geometry.extrema import first_greatest, greatest, sampled_peak
 from camwright.geometry.lift import Lift
 from camwright.pipeline.base.files import Json
 from camwright.pipeline.base.tables import CAM_ANGLE, CRANK_ANGLE, Cells, Column, Values
@@ -19,6 +19,7 @@ from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.limits import SHAFT_SAFETY, SPRING_FATIGUE
 from camwright.pipeline.case.plausibility import implausible
 from camwright.pipeline.checks.camshaft_strength import shaft_fatigue_points
+from camwright.pipeline.checks.extremes import steady
 from camwright.pipeline.checks.spring_strength import spring_fatigue_points
 from camwright.pipeline.contact.contact_history import CertificatePoint, ContactHistory
 from camwright.pipeline.contact.elasticity.mesh_convergence import Convergence
@@ -215,6 +216,49 @@ def headline(torques: Mapping[str, Torque], trial: Trial) -> dict[str, float | N
         if trial.depth >= Tier.CYCLE
         else None,
         "residual_equilibrium_max": _residual_max(trial),
+    }
+
+
+def figures(trial: Trial) -> dict[str, Json]:
+    """Figures of a cam and of its stated load cases, in mm, deg, rpm, N, N m and MPa.
+
+    Extremes are refined between the samples. Of a load case in which the follower leaves the cam
+    or locks the speed and the least contact force alone are stated, the others are None.
+    """
+    contour = trial.contour
+    convex = greatest(contour.curvature, contour.lift.search_count).value
+
+    def peak(values: Array, scale: float = 1.0) -> float | None:
+        value = scale * sampled_peak(values).value
+        return value if np.isfinite(value) else None
+
+    def trough(values: Array) -> float | None:
+        lowest = peak(-values)
+        return None if lowest is None else -lowest
+
+    rows: list[Json] = []
+    for cycle in steady(trial.solution):
+        loads, contact = cycle.loads, cycle.contact
+        whole = cycle.end is None
+        rows.append(
+            {
+                "load_case": cycle.load_case,
+                "speed_rpm": in_unit(cycle.machine.crank_speed, "rpm"),
+                "cam_speed_rpm": in_unit(cycle.machine.cam_speed, "rpm"),
+                "normal_force_min_N": trough(loads.normal_force),
+                "normal_force_max_N": peak(loads.normal_force) if whole else None,
+                "drive_torque_min_Nm": trough(loads.cam_torque) if whole else None,
+                "drive_torque_max_Nm": peak(loads.cam_torque) if whole else None,
+                "p0_hertz_max_MPa": peak(contact.p0_hertz, _MPA) if whole else None,
+                "half_width_max_mm": peak(contact.half_width, _MM) if whole else None,
+            }
+        )
+    return {
+        "lift_max_mm": _MM * trial.lift.highest.value,
+        "pressure_angle_max_deg": float(np.degrees(contour.pressure_angle_max().value)),
+        "convex_radius_min_mm": _MM / convex if convex > 0.0 else None,
+        "cam_radius_max_mm": _MM * contour.radius_max().value,
+        "load_cases": rows,
     }
 
 

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import textwrap
 from collections.abc import Iterable, Mapping, Sequence
-from typing import Any, NamedTuple
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from camwright.pipeline.base.units import used
 from camwright.pipeline.results.check_records import (
+    OPEN,
     CheckRecord,
     governing_id,
     governing_of,
@@ -17,13 +19,16 @@ from camwright.pipeline.results.check_records import (
 )
 from camwright.pipeline.results.check_report import (
     corner,
+    ids_by_reason,
     not_proven,
     number,
     place,
-    reason_without_data,
     unit_text,
 )
 from camwright.pipeline.results.run_reader import Run, load_end_words
+
+if TYPE_CHECKING:
+    from camwright.pipeline.torque.torque import Torque
 
 WIDTH = 100
 """Columns of a line."""
@@ -31,6 +36,9 @@ LINES = 15
 """Most lines of `summary_lines`."""
 WORST = 3
 """Failed checks that it names."""
+PREVIEW = "preview"
+"""Depth of the check of a case."""
+_ROUND_OFF = 1e-9  # of a mean torque, over peak to peak
 _CUT = "…"
 _TRIAL = "{:<5}  {:<26} {:<11}  {}"
 _LEAST = 24  # columns of a title
@@ -167,12 +175,19 @@ def missing_count(checks: Iterable[CheckRecord], case: str) -> list[str]:
 
 
 def failure_lines(checks: Iterable[CheckRecord]) -> list[str]:
-    """Lines on every failed check: required ones, then optional ones, with id and remedy."""
-    checks = tuple(checks)
-    optional = [c for c in checks if not c["must_have"] and c["status"] == "fail"]
+    """Lines on every failed required check, with id and remedy."""
+    return _failed_lines("fails", failures(checks))
+
+
+def advisory_lines(checks: Iterable[CheckRecord]) -> list[str]:
+    """Lines on every failed optional check, with id and remedy: they decide nothing."""
+    failed = [check for check in checks if not check["must_have"] and check["status"] == "fail"]
+    return _failed_lines("beyond its limit, decides nothing", sorted(failed, key=_severity))
+
+
+def _failed_lines(word: str, failed: Iterable[CheckRecord]) -> list[str]:
     lines = []
-    for check in (*failures(checks), *sorted(optional, key=_severity)):
-        word = "fails" if check["must_have"] else "fails (optional)"
+    for check in failed:
         lines.append(f"{word}: {failure_words(check)}")
         remarks = (not_proven(check), corner(check), check["note"])
         lines.append(f"    {check['id']}: {'; '.join(filter(None, remarks))}".rstrip(": "))
@@ -184,13 +199,83 @@ def failure_lines(checks: Iterable[CheckRecord]) -> list[str]:
 def missing_lines(checks: Sequence[CheckRecord], case: str) -> list[str]:
     """Lines on the missing keys and the required checks that need them, and on other data."""
     keys = missing_keys(checks)
-    lines = [f"missing: {key}, for {', '.join(ids)}" for key, ids in keys.items()]
-    lines += [
-        f"not evaluated: {check['id']}: {reason_without_data(check)}"
+    by_ids: dict[str, list[str]] = {}
+    for key, ids in keys.items():
+        by_ids.setdefault(", ".join(ids), []).append(key)
+    lines = [f"missing: {', '.join(keys)}, for {ids}" for ids, keys in by_ids.items()]
+    without = (
+        check
         for check in checks
         if check["must_have"] and check["status"] == "not_evaluated" and not check.get("missing")
+    )
+    lines += [
+        f"not evaluated: {', '.join(ids)}: {reason}"
+        for reason, ids in ids_by_reason(without).items()
     ]
     return lines + missing_count(checks, case)
+
+
+def torque_lines(torques: Mapping[str, Torque]) -> list[str]:
+    """Torque that the cam is to balance, a line a load case; none of a stated lift."""
+    lines = []
+    for name, torque in torques.items():
+        swing = torque.peak_to_peak
+        mean = torque.mean if abs(torque.mean) > _ROUND_OFF * swing else 0.0
+        lines.append(
+            f"torque to balance, {name}: mean {mean:.4g} N m, ripple {torque.std:.4g} N m, "
+            f"peak to peak {swing:.4g} N m"
+        )
+    return lines
+
+
+def figure_lines(known: Mapping[str, Any]) -> list[str]:
+    """Figures of the cam, and of each load case a line; see `run_records.figures`."""
+    lines = [f"figures: {_listed(known, _OF_THE_CAM)}"]
+    for row in known["load_cases"]:
+        words = _listed(row, _OF_A_LOAD_CASE)
+        speed, cam = (f"{row[key]:.5g} rpm" for key in ("speed_rpm", "cam_speed_rpm"))
+        speeds = speed if speed == cam else f"{speed}, cam {cam}"
+        lines.append(f"figures of {row['load_case']} at {speeds}: {words}")
+    return lines
+
+
+_OF_THE_CAM = (
+    ("lift", ("lift_max_mm",), "mm"),
+    ("pressure angle", ("pressure_angle_max_deg",), "deg"),
+    ("least convex radius of the contour", ("convex_radius_min_mm",), "mm"),
+    ("cam radius", ("cam_radius_max_mm",), "mm"),
+)
+_OF_A_LOAD_CASE = (
+    ("contact force", ("normal_force_min_N", "normal_force_max_N"), "N"),
+    ("torque on the cam", ("drive_torque_min_Nm", "drive_torque_max_Nm"), "N m"),
+    ("Hertz pressure", ("p0_hertz_max_MPa",), "MPa"),
+    ("half-width", ("half_width_max_mm",), "mm"),
+)
+
+
+def _listed(row: Mapping[str, Any], titles: Iterable[tuple[str, tuple[str, ...], str]]) -> str:
+    """Figures of a row in words, to five digits; those that are not known left out."""
+    parts = []
+    for title, keys, unit in titles:
+        known = [f"{row[key]:.5g}" for key in keys if row[key] is not None]
+        parts += [f"{title} {' to '.join(known)} {unit}"] if known else []
+    return ", ".join(parts)
+
+
+def next_lines(document: Mapping[str, Any], places: Places) -> list[str]:
+    """Next step after an open screen; none after a failed one or a verdict."""
+    if document["screen"] != OPEN:
+        return []
+    if document["binding"]:
+        return ["so far no check fails; the missing data above decide what is left"]
+    so_far = "all is well so far: every check that a preview can judge passes"
+    if document["depth"] != PREVIEW:
+        so_far = f"all is well so far: every check at the depth {document['depth']} passes"
+    name = Path(places.case).stem
+    return [
+        f"{so_far}. OPEN, as deeper ones need finite elements;",
+        f"next: camwright run {places.case} --out runs/{name}",
+    ]
 
 
 def headline_line(document: Mapping[str, Any]) -> list[str]:

@@ -37,8 +37,10 @@ def _by_measure(declared: Declaration, measure: Measure, how: Measured) -> Scree
     def applies(demand: Array, designs: Designs) -> NDArray[np.bool_]:
         return np.ravel(how.applies(demand[:, None], numbers_of(designs)))
 
-    def judged(designs: Designs) -> Judged:
+    def judged(designs: Designs) -> Judged | None:
         numbers, shape = numbers_of(designs), (designs.count, 1)
+        if declared.lacks_left_out(designs.machine, numbers):
+            return None
         allowed, _, if_exceeded = how.allowed(numbers)
         demand = _demand(measure, how, designs, numbers)
         limit = np.nan if allowed is None else allowed

@@ -45,12 +45,15 @@ _WORTH = 1e-3
 _ALIKE = 1e-12
 Document = dict[str, Any]
 
+# Young's moduli of solids from soft rubber to diamond, Pa.
+_MODULI = 1e6, 1.2e12
 _OPTIONS = {"radius_1": "--r1", "radius_2": "--r2", "friction": "--friction"}
 
 
 @dataclass(frozen=True)
 class ContactOptions:
-    """Options of the command as text; numbers without unit in mm, MPa, N/mm or N."""
+    """Options of the command as text; numbers without unit in mm, N/mm or N, or MPa if no other
+    unit of a modulus is plausible."""
 
     r1: str
     r2: str
@@ -74,9 +77,9 @@ class ContactOptions:
         InputError
             Naming the option.
         """
-        first = Elastic(quantity(self.e1, "MPa", "--e1"), self.nu1)
+        first = Elastic(_modulus(self.e1, "--e1"), self.nu1)
         second = Elastic(
-            first.modulus if self.e2 is None else quantity(self.e2, "MPa", "--e2"),
+            first.modulus if self.e2 is None else _modulus(self.e2, "--e2"),
             self.nu1 if self.nu2 is None else self.nu2,
         )
         for number, body in ((1, first), (2, second)):
@@ -227,6 +230,23 @@ def _as_read(text: str, unit: str) -> str:
     except ValueError:
         return units.rounded(text)
     return f"{units.rounded(text)} {unit}"
+
+
+def _modulus(text: str, option: str) -> float:
+    """Young's modulus, Pa; a number without a unit is in MPa where no other unit is plausible."""
+    modulus = quantity(text, "MPa", option)
+    try:
+        number = float(text)
+    except ValueError:
+        return modulus
+    readings = [
+        each for each in ("MPa", "Pa", "GPa")
+        if _MODULI[0] <= number * units.factor(each) <= _MODULI[1]
+    ]  # fmt: skip
+    if number > 0.0 and readings not in ([], ["MPa"]):
+        shown_ = " or ".join(f'"{text.strip()} {each}"' for each in readings)
+        raise InputError(option, text, f"stated with its unit, {shown_}")
+    return modulus
 
 
 def _radius(text: str, option: str) -> float:

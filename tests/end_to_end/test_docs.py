@@ -32,6 +32,8 @@ PAGES = {
 }
 SECONDS = 540.0
 STUDIES = "docs/studies.md"
+QUESTIONS = "docs/questions.md"
+"""Whole cases with their commands: run by `test_questions`."""
 
 
 def blocks(page: str, language: str) -> list[str]:
@@ -109,7 +111,7 @@ def made_small(folder: Path) -> None:
 
 def test_commands_of_other_pages_are_in_readme_or_tutorial() -> None:
     for page in PAGES:
-        if page not in ("README.md", "docs/tutorial.md"):
+        if page not in ("README.md", "docs/tutorial.md", QUESTIONS):
             assert commands(page, "camwright") == [], page
 
 
@@ -158,7 +160,12 @@ def test_readme_lists_every_command() -> None:
 
 @pytest.mark.parametrize(
     ("page", "block"),
-    [(page, block) for page in PAGES if page != STUDIES for block in blocks(page, "toml")],
+    [
+        (page, block)
+        for page in PAGES
+        if page not in (STUDIES, QUESTIONS)
+        for block in blocks(page, "toml")
+    ],
 )
 def test_toml_snippets_fit_into_a_case(page: str, block: str) -> None:
     given = tomllib.loads(block)

@@ -41,6 +41,7 @@ _BY_TEST: dict[tuple[str, str], tuple[str, ...]] = {
     (_SHAPE, "test_ripple_reduction_at_the_phase_tolerance_by_a_shifted_series"): (
         "phase_tolerance",
     ),
+    (_SHAPE, "test_drive_torque_by_the_moment_of_the_contact_force"): ("drive_torque",),
     (_SHAPE, "test_friction_balance_by_reactions_and_travel"): ("friction_balance",),
     (_SHAPE, "test_friction_power_by_the_way_of_stem_and_roller"): (
         "friction_power", "mechanism_temperature",

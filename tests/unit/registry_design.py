@@ -81,6 +81,14 @@ by_limit(
     missing=without_power,
 )
 tried(
+    "drive_torque",
+    limited("drive_torque", lambda torque: with_limits(drive_torque=torque)),
+    None,  # without a limit in the case there is no check
+    lambda: with_loads(cam_torque=NAN),
+    float(np.max(np.abs(made.solution().cycles[0].loads.cam_torque))),
+    "greatest of the table of the turn",
+)
+tried(
     "mechanism_temperature",
     limited("mechanism_temperature", lambda oil: with_part("lubricant", temperature=oil + 273.15)),
     lambda: cooled(conductance=None, heat=1e4),

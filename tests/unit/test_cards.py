@@ -102,7 +102,7 @@ def test_a_users_card_beside_the_case_goes_first(tmp_path):
     [
         ("[materials.x]\nE = 1\n", "materials.x.source = missing"),
         ("[pets.x]\nsource = 'y'\n", "must be one of: materials"),
-        ("[materials\n", "UTF-8 text in TOML"),
+        ("[materials\n", "closing bracket"),
     ],
 )
 def test_a_users_card_that_is_none(tmp_path, written, message):

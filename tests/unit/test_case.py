@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from camwright.geometry.errors import InputError
+from camwright.geometry.errors import InputError, SeveralInputsError
 from camwright.pipeline.case.case_file import CASE_BYTES, parse_case, read_case
 from camwright.pipeline.case.limits import (
     CURVATURE_RATE,
@@ -122,7 +122,7 @@ def test_positions_can_be_given_again() -> None:
         ("positions = 720", "positions = 7201", "solver.positions = 7201, must be <= 7200"),
         ("positions = 720", "positions = 72.0", "solver.positions = 72.0, must be a whole number"),
         ('"1500 rpm" ', '"-1 rpm" ', "load_case[0].speed = -1 rpm, must be >= 0 and < 20000 rpm"),
-        ('"1500 rpm" ', '"25 Hz" ', "load_case[0].speed = 25 Hz, must be in a unit of"),
+        ('"1500 rpm" ', '"25 1/s" ', "load_case[0].speed = 25 1/s, must be in a unit of"),
         ('name = "idle"', 'name = "../idle"', "load_case[0].name = ../idle, must be 1 to 40"),
         ('name = "gx120"', 'name = "gx/120"', "name = gx/120, must be 1 to 40"),
         ('radius = "8 mm" ', 'radius = "51 mm" ',
@@ -166,7 +166,29 @@ def test_refusals_name_field_value_and_limit(old: str, new: str, message: str) -
 
 def test_more_refusals_are_named() -> None:
     text = changed('"24.2 kN/m"', '"-1 kN/m"').replace('"242 N"', '"-1 N"')
-    assert refused(text).endswith("(and spring.preload)")
+    first, second = refused(text).split("; ")
+    assert first == "spring.rate = -1 kN/m, must be > 0 and <= 1e+06 kN/m"
+    assert second == "spring.preload = -1 N, must be > 0 and <= 1e+09 N"
+
+
+def test_an_unknown_key_hides_no_wrong_value_of_its_table() -> None:
+    text = changed('"24.2 kN/m"', '"-1 kN/m"\nstiffness = "1 kN/m"')
+    with pytest.raises(SeveralInputsError) as error:
+        parse_case(text)
+    first, second = error.value.lines
+    assert first.startswith("spring.stiffness = unknown key")
+    assert second == "spring.rate = -1 kN/m, must be > 0 and <= 1e+06 kN/m"
+
+
+def test_every_refusal_is_listed_up_to_a_bound() -> None:
+    keys = "".join(f"unknown_{k} = 1\n" for k in range(20))
+    text = changed('"24.2 kN/m"', '"-1 kN/m"').replace("[cam]\n", f"[cam]\n{keys}")
+    with pytest.raises(SeveralInputsError) as error:
+        parse_case(text)
+    assert len(error.value.errors) == 21
+    assert error.value.field == "cam.unknown_0"
+    *shown, last = error.value.lines
+    assert (len(shown), last) == (SeveralInputsError.MOST, "9 more")
 
 
 def test_load_case_names_differ() -> None:

@@ -77,7 +77,7 @@ def test_contact_jump_and_shape_are_judged_as_they_are() -> None:
     made = checks(trial())
     contact = made["contact_force_margin"]
     assert (contact.status, contact.demand, contact.load_case) == ("fail", 0.0, "over-speed")
-    for name in ("jump", "jump_speed", "contact_at_overspeed", "pressure_angle", "cam_unbalance"):
+    for name in ("jump", "jump_speed", "contact_at_overspeed", "pressure_angle", "undercut"):
         assert made[name].evaluated and not made[name].without
 
 

@@ -80,7 +80,7 @@ OVERHANG = 'overhang_at_max_lift = "30 mm"'
          "cam.bore_radius = 45 mm, must be < 42 mm, the base circle: cam.prime_radius = 50 mm less "
          "roller.radius = 8 mm"),
         ([('mass = "175 g"', 'mass = "175 mm"')],
-         "follower.mass = 175 mm, must be in a unit of the dimension of g"),
+         "follower.mass = 175 mm, must be in a unit of the dimension of g: kg, g or lb"),
         ([("friction_min = 0.01 ", "friction_min = 0.05 ")],
          "guides.a.friction_min = 0.05, must be <= friction = 0.04"),
         ([('spacing = "80 mm"', 'spacing = "2 cm"')],
@@ -99,6 +99,16 @@ def test_the_wall_around_the_bore_is_stated_with_all_that_makes_it() -> None:
         "cam.keyway.depth = 3.3 mm, must be < 2.5 mm, the wall around the bore: "
         "cam.prime_radius = 56 mm less roller.radius = 23.5 mm less cam.bore_radius = 30 mm"
     )
+
+
+def test_contradictions_are_all_named_but_not_those_that_follow() -> None:
+    """A bore is no less than the base circle where the roller is refused."""
+    text = changed(GX120, (ROLLER, 'radius = "70 mm"'),
+                   ('overspeed = "3960 rpm"', 'overspeed = "1400 rpm"'))  # fmt: skip
+    assert refused(text).split("; ") == [
+        "roller.radius = 70 mm, must be < cam.prime_radius = 50 mm",
+        "load_case[0].speed = 1500 rpm, must be <= limits.overspeed = 1400 rpm",
+    ]
 
 
 def test_values_that_would_read_alike_get_more_digits() -> None:

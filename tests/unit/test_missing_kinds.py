@@ -57,6 +57,18 @@ def test_kinds_of_strangers_are_refused_by_name(name: str, start: str, kind: str
     assert "is not done" in sentence and LISTED in sentence
 
 
+@pytest.mark.parametrize("name", ["cam.dxf", "CAM.DXF", "cam.v2.igs", "cam.stp"])
+def test_a_drawing_is_no_lift(tmp_path: Path, name: str) -> None:
+    (tmp_path / name).write_text("0\nSECTION\n", encoding="utf-8")
+    text = small_machine("part")
+    start, end = text.index("[engine]"), text.index("[mechanism]")
+    text = f'{text[:start]}[lift]\nfile = "{name}"\n\n{text[end:]}'
+    with pytest.raises(InputError) as error:
+        parse_case(text, tmp_path)
+    assert str(error.value).startswith(f"lift.file = {name}, must be a table; a contour (DXF")
+    assert LISTED in str(error.value)
+
+
 def written(area: str, word: str) -> str:
     """The small machine with a word as the kind of a part."""
     text = small_machine("part")
@@ -85,10 +97,12 @@ def test_every_word_of_every_kind_is_refused_by_its_sentence(kind) -> None:
 def test_keys_and_tables_of_a_kind_are_refused_by_its_sentence(kind) -> None:
     tables = {"follower": "[follower]", "cam": "[cam]", "spring": "[spring]", "guides": "[guides]"}
     for key in kind.keys:
-        table = tables[kind.area]
-        assert kind.sentence in refused(
-            small_machine("part").replace(f"{table}\n", f'{table}\n{key} = "5 mm"\n', 1)
-        ), key
+        if kind.area == "lift":
+            text = written("lift", "cycloidal").replace("[lift]\n", f'[lift]\n{key} = "5 mm"\n', 1)
+        else:
+            table = tables[kind.area]
+            text = small_machine("part").replace(f"{table}\n", f'{table}\n{key} = "5 mm"\n', 1)
+        assert kind.sentence in refused(text), key
         assert missing_kind(key, "") is not None
 
 
@@ -107,6 +121,10 @@ def test_the_first_case_and_explain_know_them(command: Callable[..., tuple[int, 
     code, out, _ = command("explain", "desmodromic")
     assert code == 0
     assert "desmodromic (positively driven) cam is not done" in out
+    code, out, _ = command("explain", "barrel")
+    assert code == 0
+    for words in ("curved face", "a barrel (cylindrical, drum) cam", "barrel-shaped spring"):
+        assert words in " ".join(out.split())
 
 
 def test_the_list_in_the_documents_is_this_one() -> None:

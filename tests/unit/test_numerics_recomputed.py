@@ -211,6 +211,18 @@ def test_ripple_reduction_at_the_phase_tolerance_by_a_shifted_series():
     assert demand("phase_tolerance", solution) == pytest.approx(min(reductions), rel=5e-3)
 
 
+def test_drive_torque_by_the_moment_of_the_contact_force():
+    """Force at the contact, towards the cam along the line to the roller centre, about the axis."""
+    solution = solved()
+    moments = []
+    for cycle in solution.cycles:
+        touched, centre = cycle.contour.points(cycle.theta), cycle.contour.pitch.points(cycle.theta)
+        x, y = touched
+        way_x, way_y = (touched - centre) / np.hypot(*(touched - centre))
+        moments.append(np.max(np.abs(cycle.loads.normal_force * (x * way_y - y * way_x))))
+    assert demand("drive_torque", solution) == pytest.approx(max(moments), rel=5e-3)
+
+
 def test_friction_balance_by_reactions_and_travel():
     """Work of the cam less that of spring and inertia, against mu |R| ds of the bores."""
     cycle = solved().cycles[0]

@@ -16,7 +16,7 @@ from camwright.pipeline.base import units
 from camwright.pipeline.base.quantities import Count, In, Part, marks_of
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_file import read_case
-from camwright.pipeline.case.error_text import first_error
+from camwright.pipeline.case.error_text import refusal_of
 from camwright.pipeline.case.section import section_of
 from camwright.pipeline.case.toml_text import tables_of
 from camwright.pipeline.contact.axial_shape import AxialCrown
@@ -183,7 +183,7 @@ def refused_as_text(part: Part, name: str, value: float | str) -> InputError:
     tables = tables_of(part) | {name: value}
     with pytest.raises(ValidationError) as refusal:
         section_of(type(part)).model_validate(tables, context={"materials": case().materials})
-    return first_error(refusal.value)
+    return refusal_of(refusal.value)
 
 
 def test_the_made_up_case_and_the_rest_are_all_parts_of_a_case() -> None:

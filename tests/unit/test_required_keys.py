@@ -84,7 +84,8 @@ def test_check_prints_them_as_toml(
 
 def test_parts_out_of_scope_are_not_asked_for() -> None:
     error = lacking(FIRST.replace("[[load_case]]", f"{SCOPE}[[load_case]]"))
-    left = [key for key in LACKING if not key.startswith(("guides", "roller.bearing"))]
+    out = ("guides", "roller.bearing", "roller.hub_radius")
+    left = [key for key in LACKING if not key.startswith(out)]
     assert sorted(error.keys) == sorted(left)
     own = f"{SCOPE}[mechanism]\ngear_ratio = 1\n\n[[load_case]]"
     case = parse_case(f"{FIRST.replace('[[load_case]]', own)}\n{error.toml}")
@@ -135,7 +136,9 @@ def test_wrong_and_missing_keys_are_all_named() -> None:
     text = FIRST.replace('"100 N/m"', '"-1 N/m"')
     with pytest.raises(Exception, match=r"spring\.rate = -1 N/m, must be > 0") as error:
         parse_case(text)
-    assert all(key in str(error.value) for key in ("cam.width", "follower.stem_material", "guides"))
+    listed = str(error.value).partition("; ")[2]
+    for name in ("[cam]", "width", "[follower]", "stem_material", "guides"):
+        assert name in listed, name
 
 
 def test_json_of_a_case_that_cannot_be_read_is_no_document(

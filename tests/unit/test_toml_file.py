@@ -22,8 +22,8 @@ def test_a_small_file_is_read(tmp_path):
     ("content", "limit"),
     [
         (b"a = 1 #" + b"x" * 1018, "at most 1 KiB"),
-        (b"a = ", "UTF-8 text in TOML"),
-        (b"a = '\xff'", "UTF-8 text in TOML"),
+        (b"a = ", "KEY = VALUE"),
+        (b"a = '\xff'", "text in UTF-8"),
         (None, "a readable TOML file"),
     ],
 )
@@ -65,3 +65,35 @@ d = [1.5, 2.5, 1979-05-27T07:32:00.5Z]
 "e.{dotted}".{"a" * 10_000}.f = 1
 """
     assert parse_toml(text, "given") == tomllib.loads(text)
+
+
+@pytest.mark.parametrize(
+    ("text", "place", "limit"),
+    [
+        ('a = 1\nname = "x\n[cam]\n', 'line 2, column 10: name = "x', "closing quote"),
+        ("a = 1\n\nname = x\n", "line 3, column 8: name = x", 'in quotes, "x"'),
+        ("[cam]\nwidth = 10 mm  # c\n", "line 2, column 12: width = 10 mm", '"10 mm"'),
+        ("[cam]\nwidth = 10,5\n", "line 2, column 11: width = 10,5", "number such as 0.5"),
+        ("a = True\n", "line 1, column 5: a = True", "must be true"),
+        ("[cam]\na = 1\n[cam]\n", "line 3, column 5: [cam]", "opened once"),
+        ("[cam]\na = 1\na = 2", "line 3, column 6: a = 2", "stated once"),
+        ("a = 1\nname = \u201cx\u201d\n", "line 2, column 8", "straight quotes"),
+        ('name : "a"\n', "line 1, column 6", "KEY = VALUE"),
+        ("name =\n", "line 1, column 7: name =", "KEY = VALUE"),
+        ("a = 1\n[cam\n", "line 2, column 5: [cam", "closing bracket"),
+        ("[[cam]\n", "line 1, column 6: [[cam]", "closing brackets"),
+        ('file = "C:\\users"\n', "line 1", "single quotes"),
+        ("a = [1, 2\n", "line 1", "must be"),
+    ],
+)
+def test_a_slip_is_named_with_its_place(text: str, place: str, limit: str) -> None:
+    with pytest.raises(InputError) as caught:
+        parse_toml(text, "case")
+    assert str(caught.value).startswith(f"case = {place}"), caught.value
+    assert limit in str(caught.value)
+    assert "\n" not in str(caught.value)
+
+
+def test_a_byte_of_another_encoding_is_named_with_its_place() -> None:
+    with pytest.raises(InputError, match=r"byte 0xe4 in line 2, column 9, must be text in UTF-8"):
+        parse_toml(b'"\xc3\xa4" = 1\nname = "\xe4"\n', "case")

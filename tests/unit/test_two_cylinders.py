@@ -60,6 +60,29 @@ def test_units_are_read_and_bare_numbers_are_mm_mpa_newton():
     assert worded == pytest.approx(bare, rel=1e-12)
 
 
+@pytest.mark.parametrize(
+    ("text", "readings"),
+    [("210", '"210 MPa" or "210 GPa"'), ("1e6", '"1e6 MPa" or "1e6 Pa"'),
+     ("2.1e11", '"2.1e11 Pa"'), ("0.01", '"0.01 GPa"')],
+)  # fmt: skip
+@pytest.mark.parametrize("option", ["e1", "e2"])
+def test_a_modulus_that_may_be_in_another_unit_is_refused(option, text, readings):
+    refused = run(**{option: text})
+    assert (
+        str(refused.exception) == f"--{option} = {text}, must be stated with its unit, {readings}"
+    )
+    with_unit = ContactOptions("10", "inf", f"{text} MPa", None, 0.3, None, "100").pair()
+    assert with_unit.body_1.modulus == pytest.approx(1e6 * float(text), rel=1e-15)
+
+
+@pytest.mark.parametrize("text", ["1300", "70000", "210000", "999999"])
+def test_a_modulus_of_one_reading_is_in_mpa(text):
+    assert (
+        ContactOptions("10", "inf", text, None, 0.3, None, "100").pair()
+        == ContactOptions("10", "inf", f"{text} MPa", None, 0.3, None, "100").pair()
+    )
+
+
 def test_the_second_body_is_like_the_first_unless_told():
     assert figures()["hertz"] == figures(e2="210000", nu2="0.3")["hertz"]
     assert figures(e2="70000")["hertz"]["p0_MPa"] < figures()["hertz"]["p0_MPa"]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from decimal import Decimal
 
 import pytest
@@ -76,10 +77,57 @@ def test_refuses_what_is_not_a_length(text: object, limit: str) -> None:
     assert "\n" not in str(caught.value)
 
 
-@pytest.mark.parametrize("text", ["25 Hz", "25 1/s", "25 s^-1"])
-def test_a_frequency_is_no_angular_speed(text: str) -> None:
-    with pytest.raises(InputError, match="dimension of rpm"):
+@pytest.mark.parametrize(
+    "text",
+    ["1500 rpm", "1500 RPM", "1500 1/min", "1500 min^-1", "1500 min-1", "1500 /min", "1500 r/min",
+     "1500 rev/min", "1500 U/min", "25 Hz", "25 rev/s", "25 r/s"],
+)  # fmt: skip
+def test_a_speed_of_rotation_in_turns(text: str) -> None:
+    assert units.parse(text, "rpm", "speed") == pytest.approx(2.0 * math.pi * 25.0, rel=1e-15)
+
+
+@pytest.mark.parametrize("text", ["25 1/s", "25 s^-1", "25 kW"])
+def test_what_may_be_radians_is_no_speed(text: str) -> None:
+    with pytest.raises(InputError, match=r"rpm: rpm, 1/min, Hz \(turns per second\), rad/s"):
         units.parse(text, "rpm", "speed")
+
+
+def test_turns_are_those_of_a_speed_alone() -> None:
+    assert units.parse("25 Hz", "Hz", "frequency") == 25.0
+    assert units.parse("60 1/min", "Hz", "frequency") == pytest.approx(1.0, rel=1e-15)
+
+
+@pytest.mark.parametrize(
+    ("text", "inches"),
+    [("7/16 in", 0.4375), ("1 3/8 in", 1.375), ("1-3/8 in", 1.375), ("-3/4 in", -0.75),
+     (" 1  1/2  inch ", 1.5), ("0/8 in", 0.0), ("5/64in", 0.078125)],
+)  # fmt: skip
+def test_fractions_of_an_inch(text: str, inches: float) -> None:
+    assert units.parse(text, "mm", "length") == pytest.approx(inches * 25.4e-3, rel=1e-15)
+    assert units.rounded(text) == " ".join(text.split())
+
+
+@pytest.mark.parametrize("text", ["1/0 in", "7/16", "1 3/8", "1/2/3 in", "1e3/4 in", "1.5 3/8 in"])
+def test_refuses_other_fractions(text: str) -> None:
+    with pytest.raises(InputError, match="length = "):
+        units.parse(text, "mm", "length")
+
+
+@pytest.mark.parametrize("text", ["0,5 mm", "1'500 mm", "1,500.0 mm"])
+def test_a_separator_is_named(text: str) -> None:
+    with pytest.raises(InputError, match="decimal point and without separators"):
+        units.parse(text, "mm", "length")
+
+
+def test_a_torque_is_written_in_either_way() -> None:
+    for text in ("5 N m", "5 Nm", "5000 Nmm", "0.005 kNm", "5 N*m"):
+        assert units.parse(text, "N m", "torque") == 5.0
+
+
+def test_every_unit_that_a_refusal_names_is_read() -> None:
+    for wanted, words in units._ACCEPTED.items():
+        for each in re.split(r", | or ", re.sub(r' \(.*?\)|, also ".*"', "", words)):
+            assert units.same_dimension(wanted, units._spelled(each, wanted)), each
 
 
 @pytest.mark.parametrize("unit", ["mm", "GPa", "deg", "rpm", "kN/m", "K", "MPa m/s", "kg mm^2"])

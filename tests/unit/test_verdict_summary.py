@@ -22,14 +22,17 @@ from camwright.pipeline.checks.registry import DECLARED
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.preview import preview_case
 from camwright.pipeline.results.check_records import judgement
-from camwright.pipeline.results.check_report import table
+from camwright.pipeline.results.check_report import remarks, table
 from camwright.pipeline.results.run_reader import read_run, read_verdict
 from camwright.pipeline.results.verdict_summary import (
     LINES,
     WIDTH,
     Places,
+    advisory_lines,
     failure_lines,
+    figure_lines,
     missing_lines,
+    next_lines,
     summary_lines,
     trial_lines,
 )
@@ -111,7 +114,8 @@ def test_the_worst_three_of_the_design_come_before_evidence() -> None:
     ]
     assert lines[6] == "headline: torque ripple 6.34 to 1.85 N m (-71 %)"
     every = "\n".join(failure_lines(checks))
-    assert "fails: Mesh: 90 deg" in every and "fails (optional): O: 99 deg" in every
+    assert "fails: Mesh: 90 deg" in every and "O: 99 deg" not in every
+    assert advisory_lines(checks)[0].startswith("beyond its limit, decides nothing: O: 99 deg")
 
 
 def test_a_pass_names_what_governs() -> None:
@@ -196,3 +200,47 @@ def test_the_summary_of_a_run_of_a_shipped_case_fits(case: Path, tmp_path: Path)
     run_case(read_case(case), tmp_path / "run", positions=72, depth=Tier.CYCLE)
     places = Places("runs/x", str(case.name), "runs/x/8_report.html", 100.0)
     assert fits(summary_lines(read_verdict(tmp_path / "run"), places))
+
+
+def test_a_reason_or_need_shared_by_many_checks_stands_once() -> None:
+    keys: dict[str, Any] = {"missing": ["cam.end", "roller.end"], "note": "missing: both"}
+    checks: list[Any] = [
+        *(check("not_evaluated", id=name, **keys) for name in ("a", "b", "c")),
+        *(check("not_evaluated", id=name, note="the follower leaves the cam") for name in "de"),
+    ]
+    assert missing_lines(checks, "x.toml") == [
+        "missing: cam.end, roller.end, for a, b, c",
+        "not evaluated: d, e: the follower leaves the cam",
+        "missing: 2 keys of the case, listed by camwright check x.toml --missing",
+    ]
+    assert remarks(checks) == [
+        "missing data: a, b, c: missing: both",
+        "missing data: d, e: the follower leaves the cam",
+    ]
+
+
+def test_an_open_screen_is_followed_by_the_next_step() -> None:
+    opened = {"screen": "open", "depth": "preview", "binding": []}
+    assert next_lines(opened, Places("runs/x", "x.toml")) == [
+        "all is well so far: every check that a preview can judge passes. OPEN, as deeper ones "
+        "need finite elements;",
+        "next: camwright run x.toml --out runs/x",
+    ]
+    lacking = opened | {"binding": ["grip"]}
+    assert "missing data" in next_lines(lacking, Places("", "x.toml"))[0]
+    assert next_lines(opened | {"screen": "fail"}, Places("", "x.toml")) == []
+    assert next_lines(opened | {"screen": None}, Places("", "x.toml")) == []
+
+
+def test_figures_of_a_load_case_without_loads_are_left_out() -> None:
+    row = {
+        "load_case": "idle", "speed_rpm": 600.0, "cam_speed_rpm": 300.0, "normal_force_min_N": -3.0,
+        "normal_force_max_N": None, "drive_torque_min_Nm": None, "drive_torque_max_Nm": None,
+        "p0_hertz_max_MPa": None, "half_width_max_mm": None,
+    }  # fmt: skip
+    cam = {"lift_max_mm": 20.0, "pressure_angle_max_deg": 23.2333, "convex_radius_min_mm": None,
+           "cam_radius_max_mm": 60.0}  # fmt: skip
+    assert figure_lines(cam | {"load_cases": [row]}) == [
+        "figures: lift 20 mm, pressure angle 23.233 deg, cam radius 60 mm",
+        "figures of idle at 600 rpm, cam 300 rpm: contact force -3 N",
+    ]

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pydantic import ValidationError
 
 from camwright.geometry.errors import InputError
-from camwright.pipeline.case.error_text import first_error
+from camwright.pipeline.case.error_text import refusal_of
 from camwright.pipeline.case.section import PartType, part_of, section_of
 from camwright.pipeline.case.toml_text import TomlValue
 
@@ -26,7 +26,7 @@ def read_part(part: type[PartType], table: TomlValue, field: str) -> PartType:
     try:
         section = section_of(part).model_validate(table)
     except ValidationError as error:
-        raise first_error(error, field) from None
+        raise refusal_of(error, field) from None
     try:
         return part_of(part, section)
     except InputError as error:

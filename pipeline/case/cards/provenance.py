@@ -18,7 +18,7 @@ from pydantic import ValidationError
 
 from camwright.geometry.errors import InputError
 from camwright.pipeline.base.files import read_toml
-from camwright.pipeline.case.error_text import first_error
+from camwright.pipeline.case.error_text import refusal_of
 from camwright.pipeline.case.section import Section, Text
 from camwright.pipeline.case.toml_text import Tables, TomlValue
 
@@ -99,4 +99,4 @@ def _read(entry: TomlValue, field: str) -> Provenance:
     try:
         return Provenance.model_validate(entry)
     except ValidationError as error:
-        raise first_error(error, field) from None
+        raise refusal_of(error, field) from None

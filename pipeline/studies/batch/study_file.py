@@ -14,7 +14,7 @@ from pydantic import Field, PlainValidator, ValidationError, model_validator
 from camwright.geometry.errors import InputError
 from camwright.pipeline.base.files import read_toml
 from camwright.pipeline.base.quantities import Characters, In
-from camwright.pipeline.case.error_text import first_error
+from camwright.pipeline.case.error_text import refusal_of
 from camwright.pipeline.case.section import Name, Section, Text, refusal
 from camwright.pipeline.contact.tiers import Tier
 
@@ -321,7 +321,7 @@ def study_of(tables: dict[str, object]) -> Study:
     try:
         return Study.model_validate(tables)
     except ValidationError as error:
-        raise first_error(error) from None
+        raise refusal_of(error) from None
 
 
 def read_study_tables(path: Path) -> dict[str, object]:

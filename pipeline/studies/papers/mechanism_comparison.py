@@ -15,7 +15,7 @@ from camwright.geometry.errors import InputError
 from camwright.pipeline.base.files import read_toml
 from camwright.pipeline.base.quantities import FileName, Force, In, Length, Mass
 from camwright.pipeline.case.case_file import CASE_BYTES
-from camwright.pipeline.case.error_text import first_error
+from camwright.pipeline.case.error_text import refusal_of
 from camwright.pipeline.case.section import Name, Section, Text
 from camwright.pipeline.studies.papers.friction_identification import (
     Pendulum,
@@ -187,7 +187,7 @@ def load_comparison(path: Path) -> ComparisonCase:
     try:
         return ComparisonCase.model_validate(data)
     except ValidationError as error:
-        raise first_error(error) from None
+        raise refusal_of(error) from None
 
 
 def compared(path: Path) -> Document:
