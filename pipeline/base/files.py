@@ -195,7 +195,10 @@ _RULES = (
 
 
 def _slip(text: str, message: str) -> tuple[str, str]:
-    """Place with the line as written, and what TOML wants there, of a message of the parser."""
+    """Place, and what TOML wants there, of a message of the parser.
+
+    Nothing of the text is repeated: a link may make any file of the machine an input.
+    """
     lines, match = text.split("\n"), _PLACE.search(message)
     if match is not None and match[1]:
         line, column = int(match[1]), int(match[2])
@@ -214,11 +217,10 @@ def _slip(text: str, message: str) -> tuple[str, str]:
     elif not limit and unquoted is not None and unquoted[1].lower() in ("true", "false"):
         limit = unquoted[1].lower()
     elif not limit and unquoted is not None:
-        limit = f'text in quotes, "{unquoted[1]}", or a number such as 0.5'
+        limit = 'text in quotes, "...", or a number such as 0.5'
     reason = _PLACE.sub("", message).strip()
     where = f"line {line}, column {column}"
-    shown = f"{where}: {written[:40]}{'...' if len(written) > 40 else ''}"
-    return shown, f"{limit or 'as TOML has it'} ({reason[:80]})"
+    return where, f"{limit or 'as TOML has it'} ({reason[:80]})"
 
 
 def _blank(literal: re.Match[str]) -> str:

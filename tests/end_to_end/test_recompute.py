@@ -22,7 +22,7 @@ from test_run import small
 
 from camwright.geometry.errors import InputError
 from camwright.pipeline.base.files import files_in, npz_bytes, sha256_of
-from camwright.pipeline.case.case_file import read_case
+from camwright.pipeline.case.case_file import read_case, with_values
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.recomputation import MOST_ANGLES, Recomputation, recompute
 from camwright.pipeline.results import check_records, run_reader, signoff
@@ -144,9 +144,10 @@ def recomputed(run: Path, **options: Any) -> Recomputation:
 
 @pytest.fixture(scope="module")
 def quick(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A screening of the shortest shipped case."""
+    """A screening of the shortest shipped case, with a limit that it exceeds."""
     out = tmp_path_factory.mktemp("quick") / "run"
     case = read_case(ROOT / "cases" / "papers" / "eccentric.toml").with_positions(36)
+    case = with_values(case, {"limits.pressure_angle": "1 deg"})
     run_case(case, out, depth=Tier.SCREENING, jobs=1)
     return out
 

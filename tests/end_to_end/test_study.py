@@ -98,7 +98,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     written(folder, 21)
     made = run(folder, "study.toml", "--out", "one", "--jobs", "1")
     assert made.returncode == 0, made.stderr
-    assert "21 designs" in made.stdout and "screen: fail 21" in made.stdout
+    assert "21 designs" in made.stdout and "screen: fail 6, open 15" in made.stdout
     return folder
 
 
@@ -526,7 +526,7 @@ def test_a_kept_preview_is_solved_once(folder: Path, monkeypatch: pytest.MonkeyP
     plan = study_run.planned(study, templates)
     task = next(plan.tasks(study.tier)).alone(0)
     designs, sent = DesignSolver(templates, plan.settings), list[Any]()
-    designs.solved_and_run(task, 0, Wanted("fail"), sent.append)
+    designs.solved_and_run(task, 0, Wanted("open"), sent.append)
     row, files = sent
     assert row == designs.solved(task, 0) and solved == ["solve"] * 2
     assert "run.json" in files and "8_report.html" not in files

@@ -53,7 +53,8 @@ def drawn(case: Case) -> Trial:
     """Trial of a cam, as if drawn by a synthesis."""
     averaged = preview.preview_case(parse_case(GX120).with_positions(72), corners=False)
     lift = averaged.contour.pitch.lift
-    return preview._trial_of(case, lift, 1e-7, RECORD, engine_torques(case), preview.SILENT)
+    solved = preview._solved(case, lift, 1e-7, engine_torques(case), preview.SILENT)
+    return preview._trial_of(solved, RECORD, preview.SILENT)
 
 
 @pytest.fixture

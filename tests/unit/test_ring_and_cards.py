@@ -205,5 +205,5 @@ def test_refuses_what_is_no_card(tmp_path):
     with pytest.raises(InputError, match="a table"):
         read_cards(path)
     path.write_text("a = ")
-    with pytest.raises(InputError, match="TOML"):
+    with pytest.raises(InputError, match="KEY = VALUE"):
         read_cards(path)

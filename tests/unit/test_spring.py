@@ -253,7 +253,7 @@ def test_lightest_of_the_shipped_catalogue():
 @pytest.mark.parametrize(
     ("text", "match"),
     [
-        ("nonsense", "TOML"),
+        ("nonsense", "KEY = VALUE"),
         ("[wires.a]\nstrength_exponent = 0.1", "missing"),
         ("[[spring]]\nname = 'a'\ncolour = 'red'", "unknown key"),
         (
