@@ -30,10 +30,10 @@ if TYPE_CHECKING:
     from camwright.pipeline.smoothing.fe_correction import SynthesisRecord
 
 _CONVERGENCE = 2.0  # of a preview over that of a run
-_ROUNDS = 4  # of synthesis and correction
+_ROUNDS = 3  # of synthesis and correction
 _ENDED_ROUNDS = 2  # of them, where the effort ends the search
 _ENDED = "the preview ends the search for the cam before it has converged; a run goes on"
-_EFFORT = 12  # convex programs, tried steps, of a search: most need fewer
+_EFFORT = 16  # tried steps of a search: most need fewer
 
 
 def preview_case(
@@ -158,7 +158,8 @@ def _synthesised(case: Case, torques: Mapping[str, Torque], progress: Progress) 
     comparisons: list[Comparison] = []
     tried: list[tuple[Solution, SynthesisRecord]] = []
     while True:
-        if not refined and (comparisons or not (design.feasible or design.stuck)):
+        given_up = design.stuck or design.ended
+        if not refined and (comparisons or not (design.feasible or given_up)):
             rising = replace(problem, convergence=convergence)
             design, refined = resolved(rising, design)[0][-1], True
             problem = replace(problem, coefficients=design.coefficients.size)
@@ -176,11 +177,11 @@ def _synthesised(case: Case, torques: Mapping[str, Torque], progress: Progress) 
         problem = corrected(problem, design, comparisons)
     if design.ended:
         progress.note(_ENDED)
-    # Of equal ones the last.
-    best = min(
-        reversed(tried), key=lambda one: rank(checks_of(one[0]), solved_ripple(one[0].cycles))
-    )
-    return _trial_of(*best, progress)
+    if comparisons[-1].settled or len(tried) == 1:
+        return _trial_of(*tried[-1], progress)
+    ranks = [rank(checks_of(each), solved_ripple(each.cycles)) for each, _ in tried]
+    best = max(k for k, each in enumerate(ranks) if each == min(ranks))
+    return _trial_of(*tried[best], progress)
 
 
 def smoothing_record(smoother: Smoother | None) -> SmoothingRecord:

@@ -62,7 +62,7 @@ def synthesise(
 
 def approached(problem: Problem) -> State:
     """End of a search at the points alone: a start for more splines."""
-    return descended(started(problem), 1.0, draft=True).state
+    return descended(started(problem), 1.0).state
 
 
 def started(problem: Problem, ripple_weight: float = 1.0) -> Search:

@@ -56,8 +56,7 @@ class Problem:
                                     and the end of the error bar, over that of the scenarios, by
                                     limit; of a limit that is not named 1
     seed : array (coefficients,)    start, J; None: convex optimum or exact energy
-    effort : int                    convex programs after which a search within the limits ends;
-                                    None: it ends at an optimum
+    effort : int                    tried steps after which a search ends; None: at an optimum
     """
 
     scenarios: tuple[Scenario, ...]

@@ -62,8 +62,6 @@ def descended(
     earlier: Descent | None = None,
     enough: float | None = None,
     worth: float = 0.0,
-    *,
-    draft: bool = False,
 ) -> Descent:
     """Local optimum of a search from its start.
 
@@ -81,8 +79,6 @@ def descended(
     worth : float           least decrease of the merit over `_PATIENCE` steps within the limits:
                             means of loads that jump at the reversals of an offset follower are
                             rough functions of the cam, on which the search creeps
-    draft : bool            a start for another search: the effort of the problem ends it outside
-                            the limits, too
 
     References
     ----------
@@ -109,7 +105,7 @@ def descended(
             return Descent(state, before, priced, step, worth, penalty)
         if enough is not None and state.ripple <= enough and _within(state):
             return Descent(state, before, priced, step, np.inf, penalty)
-        if tries >= effort and (draft or _within(state)):
+        if tries >= effort:
             return Descent(state, None, None, step, np.inf, penalty, ended=True)
         model = search.model(state)
         if before is not None and priced is not None:
@@ -158,6 +154,7 @@ def descended(
                     penalty,
                     ripple_weight,
                 )
+                tries += 1
                 if other[0] is not None:
                     gain = now - other[1].merit(penalty, ripple_weight)
                     if gain > actual:

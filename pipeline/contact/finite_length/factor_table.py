@@ -40,7 +40,7 @@ Index = NDArray[np.intp]
 
 # Ratios of the half-widths, without and with a crown, and of the line loads of neighbouring nodes;
 # nodes of ladder index 0.
-_WIDTH_RATIO, _CROWNED_WIDTH_RATIO, _LOAD_RATIO = 2.0, 3.0, 2.5
+_WIDTH_RATIO, _CROWNED_WIDTH_RATIO, _LOAD_RATIO = 2.0, 3.0, 3.0
 _WIDTH, _LOAD = 1e-4, 1e5  # m, N/m
 _LIGHT = 0.24  # greatest light moment over force and length
 _FEW = 3000  # rows of an interpolation: those of a turn, untilted and tilted to both sides
