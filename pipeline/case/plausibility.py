@@ -73,6 +73,7 @@ def implausible(case: Case, torques: Mapping[str, Torque]) -> tuple[Implied, ...
     judged += _motor_findings(case, torques)
     judged.append(_oil_finding(case))
     judged += _temperature_findings(case)
+    judged += _bush_findings(case)
     findings = [one for one in judged if one is not None]
     if not {one.title for one in findings} & {"spring.rate", "spring.preload", *_TORQUES}:
         findings += _spring_findings(case, torques)
@@ -168,6 +169,21 @@ def _temperature_findings(case: Case) -> Iterator[Implied | None]:
         words = f"{key} = {text_of(case, key)}, but {warmest} = {text_of(case, warmest)}: in"
         words += " operation no part is colder than its surroundings"
         made = Implied(PLAUSIBILITY, key, stated, least, "degC", words)
+        yield made if made.flagged else None
+
+
+def _bush_findings(case: Case) -> Iterator[Implied | None]:
+    """Bushes of another diameter than the stem that runs in them."""
+    stem = "follower.stem_diameter"
+    through = value_of(case, stem)
+    for key in ("guides.a.diameter", "guides.b.diameter"):
+        value = value_of(case, key)
+        if value is None or through is None:
+            continue
+        stated, least = (in_unit(each, "mm") for each in (value, through))
+        words = f"{key} = {text_of(case, key)}, but {stem} = {text_of(case, stem)}: the stem bends"
+        words += " as one of a single diameter, and does not touch a wider bush"
+        made = Implied(PLAUSIBILITY, key, stated, least, "mm", words)
         yield made if made.flagged else None
 
 

@@ -1,5 +1,7 @@
 """Cards: shipped and the user's own, filled in, with their sources, refused when unknown."""
 
+import re
+
 import made_trial as made
 import pytest
 from small_machine import small_machine
@@ -232,6 +234,33 @@ def test_a_wire_beyond_the_diameters_of_its_card_is_refused(name):
         with pytest.raises(InputError, match=f"for which card {name} has the strength") as found:
             wound(name, beyond)
         assert found.value.field == "spring.design.wire_diameter"
+
+
+HOTTEST = {
+    "music_wire": 120, "hard_drawn": 120, "oil_tempered": 180, "chrome_vanadium": 220,
+    "chrome_silicon": 250,
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", HOTTEST)
+def test_a_wire_hotter_than_its_card_holds_is_refused(name):
+    assert set(HOTTEST) == set(WIRES)
+    stated = re.search(r'(?m)^temperature = "60 degC".*$', first_case("wound", "lift").text)
+    assert stated is not None
+
+    def at(temperature):
+        return (
+            first_case("wound", "lift")
+            .text.replace(stated[0], f'temperature = "{temperature} degC"')
+            .replace('card = "chrome_silicon"', f'card = "{name}"')
+            .replace('wire_diameter = "8 mm"', 'wire_diameter = "6 mm"')
+            .replace('free_length = "86 mm"', 'free_length = "100 mm"')
+        )
+
+    assert parse_case(at(HOTTEST[name])).spring.design.temperature
+    with pytest.raises(InputError, match=f"up to which card {name} has the strength") as found:
+        parse_case(at(HOTTEST[name] + 1))
+    assert found.value.field == "spring.design.temperature"
 
 
 def test_a_thick_wire_with_a_strength_of_its_own_is_read():

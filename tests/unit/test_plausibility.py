@@ -91,6 +91,14 @@ def test_no_part_in_operation_is_colder_than_its_surroundings() -> None:
     assert "cooling.ambient_temperature = 100 degC" in warnings(parse_case(hot_day))[0]
 
 
+def test_a_bush_of_another_diameter_than_the_stem_is_told() -> None:
+    text = (ROOT / "cases" / "machines" / "compressor.toml").read_text(encoding="utf-8")
+    head, after = text.split("[guides.b]")
+    wide = head + "[guides.b]" + changed(after, 'diameter = "20 mm"', 'diameter = "24 mm"')
+    (one,) = warnings(parse_case(wide))
+    assert one.startswith("guides.b.diameter = 24 mm, but follower.stem_diameter = 20 mm")
+
+
 def test_a_rate_a_thousand_times_too_low_contradicts_the_torque() -> None:
     text = changed(REDESIGN, 'rate = "180 kN/m"', 'rate = "180 N/m"')
     text = text[: text.index("[spring.design]")] + text[text.index("[cam]") :]

@@ -27,7 +27,7 @@ from camwright.pipeline.case.cards.spring_selection import put_force, put_spring
 from camwright.pipeline.case.toml_text import Tables, TomlValue, tables_of
 from camwright.pipeline.case.value_sources import UNSTATED, put_sources
 
-_RANGE = ("diameter_least", "diameter_most")
+_RANGE = ("diameter_least", "diameter_most", "temperature_most")
 KINDS = ("materials", "bushes", "oils", "wires", "gas_springs", "bearings")
 FOLDER = Path(__file__).parent
 USER_FILE = "cards.toml"
@@ -215,33 +215,45 @@ def _oil(card: Tables, table: Tables, source: str, field: str) -> Tables:
 
 
 def _wire(card: Tables, table: Tables, name: str, field: str) -> Tables:
-    """The values of a wire's card, which hold for its diameters.
+    """The values of a wire's card, which hold for its diameters and up to its temperature.
 
     Raises
     ------
     InputError
-        If the wire is thinner or thicker, and its strength is not stated.
+        If the wire is thinner, thicker or hotter, and its strength is not stated.
     """
     known = wire_values(card)
-    if "wire_diameter" not in table or {"strength_at_1mm", "strength_exponent"} <= table.keys():
+    if {"strength_at_1mm", "strength_exponent"} <= table.keys():
         return known
-    key, own = f"{field}.wire_diameter", table["wire_diameter"]
-    diameter = units.parse(own, "m", key)
-    least, most = (
-        units.parse(card[end], "m", f"cards.wires.{name}.{end}") if end in card else open_end
-        for end, open_end in zip(_RANGE, (0.0, math.inf), strict=True)
-    )
-    if not least <= diameter <= most:
+
+    def stated(key: str, unit: str) -> float | None:
+        return units.parse(table[key], unit, f"{field}.{key}") if key in table else None
+
+    def end(key: str, unit: str, otherwise: float) -> float:
+        return (
+            units.parse(card[key], unit, f"cards.wires.{name}.{key}") if key in card else otherwise
+        )
+
+    own = "; or with strength_at_1mm and strength_exponent of the wire"
+    diameter, temperature = stated("wire_diameter", "m"), stated("temperature", "K")
+    least, most = end("diameter_least", "m", 0.0), end("diameter_most", "m", math.inf)
+    if diameter is not None and not least <= diameter <= most:
         limit = (
             f"from {units.shown(least, 'mm')} to {units.shown(most, 'mm')}, for which card {name}"
         )
-        limit += " has the strength; or with strength_at_1mm and strength_exponent of the wire"
-        raise InputError(key, units.rounded(str(own)), limit)
+        limit += f" has the strength{own}"
+        raise InputError(
+            f"{field}.wire_diameter", units.rounded(str(table["wire_diameter"])), limit
+        )
+    hottest = end("temperature_most", "K", math.inf)
+    if temperature is not None and temperature > hottest:
+        limit = f"<= {units.shown(hottest, 'degC')}, up to which card {name} has the strength{own}"
+        raise InputError(f"{field}.temperature", units.rounded(str(table["temperature"])), limit)
     return known
 
 
 def wire_values(card: Tables) -> Tables:
-    """A wire's card without the diameters for which its values hold."""
+    """A wire's card without the diameters and the temperature for which its values hold."""
     return {key: value for key, value in card.items() if key not in _RANGE}
 
 
