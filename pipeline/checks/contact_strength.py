@@ -564,7 +564,7 @@ _SIGNED = (
     "angles",
     allowed=_endurance_allowed,
     remark=_ends_in_words,
-    deviation=0.02,  # the friction of the guides, which holds a tilt, is interpolated
+    deviation=0.01,  # the friction of the guides, which holds a tilt, is interpolated
     bounded="line",
 )
 def edge_pressure(cam: LoadedCam) -> Array:

@@ -26,8 +26,8 @@ from camwright.pipeline.follower.guide_reactions import (
 )
 from camwright.pipeline.follower.stem_beam import Stem
 
-_FORCES = np.geomspace(0.1, 1e6, 106)
-"""Nodes of the load, N: 15 a decade. Below the first the stem only tilts in its clearance."""
+_FORCES = np.geomspace(0.1, 1e6, 155)
+"""Nodes of the load, N: 22 a decade. Below the first the stem only tilts in its clearance."""
 _OVERHANG_STEP = 0.03  # of the overhang over the spacing
 _DIRECTION_STEP = np.pi / 120.0  # of the angle of moment over spacing against side force
 _SPACING_STEP = 0.03  # of the logarithm of the spacing

@@ -158,10 +158,10 @@ def test_a_chamfered_end_is_solved_down_to_vanishing_loads_under_the_heaviest_ti
     solved = factor_range(pair, 1e-4, loads)
     assert (solved.moment <= GREATEST_MOMENT * couple).all()
     assert (solved.tilted > solved.level).all()
-    # The lightest load has the factor of a hundredth of the greatest.
+    # The lightest load has the factor of a thousandth of the greatest.
     light = ContactLoads(
-        curvature[:1], 30.0 * force[1:2], tilt[:1], none[:1], none[:1],
-        30.0 * couple[1:2], np.ones(1),
+        curvature[:1], 3.0 * force[1:2], tilt[:1], none[:1], none[:1],
+        3.0 * couple[1:2], np.ones(1),
     )  # fmt: skip
     least = factor_range(pair, 1e-4, light)
     assert solved.tilted[0] == pytest.approx(least.tilted[0], rel=1e-9)

@@ -206,12 +206,12 @@ def test_too_few_positions_a_lobe_are_refused() -> None:
 
 @pytest.mark.parametrize("name", [*SMOOTHED, *CONSTRAINED])
 def test_four_stroke_cases_are_those_of_the_time_when_a_cycle_had_720_degrees(name):
-    """Within round-off, which differences of the closed forms of the pressure cells make 1e-10."""
+    """Bitwise equal where they were stored; another processor may round differently."""
     stored = json.loads(STORED.read_text(encoding="utf-8"))[name]
     figures = lifts(name) if name in SMOOTHED else utilisations(name)
     assert figures.keys() == stored.keys()
     for key, value in figures.items():
-        np.testing.assert_allclose(value, stored[key], rtol=1e-9, atol=1e-12, err_msg=key)
+        np.testing.assert_allclose(value, stored[key], rtol=1e-11, atol=1e-12, err_msg=key)
 
 
 @pytest.mark.slow
