@@ -43,7 +43,7 @@ from camwright.pipeline.follower.shaft_strength import slope_of
 _ANY_CURVATURE = 1.0  # 1/m: a table has every curvature
 _ROUND_OFF = 1e-9
 _TOGETHER = 1000  # contacts evaluated at once: the interpolation of more takes a sparse matrix
-_LIGHTEST = 1e-2  # of the greatest force: a tenth of its pressure
+_LIGHTEST = 1e-3  # of the greatest force: a thirtieth of its pressure
 
 CORNER_ERROR, BOUNDED_ERROR = 0.05, 0.02
 """Stated difference of the half-spaces from finite elements, where these are not solved: of a mean
