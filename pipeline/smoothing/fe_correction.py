@@ -46,7 +46,8 @@ _SUM = 1e3  # weight of the sum of the shares in their least squares
 class SynthesisRecord(TypedDict):
     """JSON record of a synthesis.
 
-    ``infeasible`` where its limits conflict; ``machine_prices`` of a run.
+    ``infeasible`` where its limits conflict; ``ended`` where the effort of a preview ended the
+    search; ``machine_prices`` of a run.
     """
 
     feasible: bool
@@ -66,6 +67,7 @@ class SynthesisRecord(TypedDict):
     prices: list[PriceRecord]
     machine_prices: NotRequired[list[MachinePriceRecord]]
     infeasible: NotRequired[ConflictRecord]
+    ended: NotRequired[bool]
 
 
 class LimitShift(NamedTuple):
@@ -455,13 +457,13 @@ def design_record(
     """
     least = float(design.lift().lowest.value)
     variables = design.variables
-    return {
+    record: SynthesisRecord = {
         "feasible": design.feasible,
         "converged": design.converged,
         "steps": design.steps,
         "ripple_left": design.ripple,
-        "initial_energy_J": float(
-            spring_energy(variables.closing, variables.rate, least, variables.shape)
+        "initial_energy_J": max(
+            0.0, float(spring_energy(variables.closing, variables.rate, least, variables.shape))
         ),
         "spring_rate_N_per_mm": in_unit(variables.rate, "N/mm"),
         "preload_N": variables.preload,
@@ -474,3 +476,6 @@ def design_record(
         "utilisation": dict(sorted(design.utilisation.items(), key=lambda item: -item[1])),
         "prices": prices(design, problem) if design.feasible else [],
     }
+    if design.ended:
+        record["ended"] = True
+    return record

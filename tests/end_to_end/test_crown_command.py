@@ -30,8 +30,8 @@ def test_a_pasted_crown_is_that_of_the_drop_table(kind, ratio, tmp_path, capsys)
     assert record["ratio"] <= ratio < record["ratio_straight"]
     assert record["centre"]["crowned"] > record["centre"]["straight"]
     ratios = [each["ratio"] for each in record["tilt"]]
-    # Rising within the error of the interpolation in the table of half-spaces.
-    assert ratios[-1] > ratios[0] and (np.diff(ratios) >= -5e-3 * ratios[0]).all()
+    # A circular crown lets the contact move along it: light moments change next to nothing.
+    assert ratios[-1] > 1.05 * ratios[0] and (np.diff(ratios) >= -1e-3 * ratios[0]).all()
     assert max(each["ratio"] for each in record["tolerance"]) > record["ratio"]
     assert (out / "crown.png").stat().st_size > 10_000
 
