@@ -42,6 +42,7 @@ def preview_case(
     corners: bool = True,
     kept: bool = False,
     progress: Progress = SILENT,
+    torques: Mapping[str, Torque] | None = None,
     nominal: Callable[[Trial], None] = lambda _: None,
 ) -> Trial:
     """Cam of a case with the contact by closed forms; no sign-off.
@@ -54,6 +55,7 @@ def preview_case(
     corners : bool   judge each check at its worst tolerance corner
     kept : bool      read the cam of a constrained synthesis from the disk cache, where an earlier
                      preview of the same case by the same program has kept it
+    torques : mapping    engine torque by load case; None: computed from the case
     nominal : callable   takes the trial before it is judged at the corners
 
     Returns
@@ -66,10 +68,10 @@ def preview_case(
         If the case has no such cam.
     """
     with refused_as_written(case):
-        torques = engine_torques(case)
-        trial = _nominal(case, torques, kept, progress)
+        known = engine_torques(case) if torques is None else torques
+        trial = _nominal(case, known, kept, progress)
         nominal(trial)
-        return judged_at_corners(trial, torques) if corners else trial
+        return judged_at_corners(trial, known) if corners else trial
 
 
 def _nominal(case: Case, torques: Mapping[str, Torque], kept: bool, progress: Progress) -> Trial:
@@ -128,6 +130,8 @@ def _solved(
 
 def _trial_of(solved: Solution, record: SynthesisRecord, progress: Progress) -> Trial:
     """Trial of the cam of a synthesis, without tolerance corners."""
+    if record.get("ended"):
+        progress.note(_ENDED)
     progress.stage(CHECKS)
     return replace(checked(solved), smoothing=CONSTRAINED, synthesis=record)
 
@@ -151,9 +155,9 @@ def _synthesised(case: Case, torques: Mapping[str, Torque], progress: Progress) 
     from camwright.pipeline.smoothing.multistart import explored, resolved
     from camwright.pipeline.smoothing.problem_setup import problem_of
 
-    asked = problem_of(case, torques)
-    problem = replace(asked, convergence=None, effort=_EFFORT)
-    convergence = None if asked.convergence is None else _CONVERGENCE * asked.convergence
+    whole = problem_of(case, torques)
+    problem = replace(whole, convergence=None, effort=_EFFORT)
+    convergence = None if whole.convergence is None else _CONVERGENCE * whole.convergence
     design, refined = explored(problem, 1).design, convergence is None
     comparisons: list[Comparison] = []
     tried: list[tuple[Solution, SynthesisRecord]] = []
@@ -175,8 +179,6 @@ def _synthesised(case: Case, torques: Mapping[str, Torque], progress: Progress) 
         if last or (refined and comparisons[-1].settled):
             break
         problem = corrected(problem, design, comparisons)
-    if design.ended:
-        progress.note(_ENDED)
     if comparisons[-1].settled or len(tried) == 1:
         return _trial_of(*tried[-1], progress)
     ranks = [rank(checks_of(each), solved_ripple(each.cycles)) for each, _ in tried]

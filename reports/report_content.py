@@ -487,7 +487,7 @@ def _sheets(material: ReportMaterial) -> ReportSection:
     title = "Hand-check sheets"
     try:
         run = SheetRun(material.run.path, material.run)
-        governing = {each.record["id"] for each in run.governing()}
+        governing = run.governing()
         made = [printed(run.sheet(name), governing=name in governing) for name in run.records]
     except CamError as error:
         note = SectionBlock(Note(f"The sheets are not available: {error}"))

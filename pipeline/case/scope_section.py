@@ -99,7 +99,7 @@ class Scope(Section):
         return part not in self.not_covered
 
     def leaves_out(self, key: str) -> bool:
-        """Whether a key belongs to what the sign-off does not cover, and is not asked for."""
+        """Whether a key belongs to what the sign-off does not cover: it need not be stated."""
         return any(
             fnmatchcase(key, pattern) or fnmatchcase(key, f"{pattern}.*")
             for part in self.not_covered

@@ -489,6 +489,7 @@ def _checked_case(
             case,
             kept=True,
             progress=progress,
+            torques=torques,
             nominal=lambda first: early(figure_lines(figures(first))),
         )
     made = trial.checks

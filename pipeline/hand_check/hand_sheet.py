@@ -187,15 +187,15 @@ class SheetRun:
         evaluation = _Evaluation(self, record, declared)
         return Sheet(record, declared.formula) if evaluation.lacks else evaluation.sheet()
 
-    def governing(self, most: int = 12) -> tuple[Sheet, ...]:
-        """Sheets of the required checks of the design with the greatest utilisations."""
+    def governing(self, most: int = 12) -> tuple[str, ...]:
+        """Ids of the required checks of the design with the greatest utilisations."""
         required = [
             each
             for each in self.records.values()
             if each["must_have"] and not each["evidence"] and each["demand"] is not None
         ]
         ranked = sorted(required, key=lambda each: -(utilisation_of(each) or 0.0))
-        return tuple(self.sheet(each["id"]) for each in ranked[:most])
+        return tuple(each["id"] for each in ranked[:most])
 
     def _holds(self, declared: Declaration) -> bool:
         """Whether the formula holds for the case as it stands: its duty, its kind of a part."""

@@ -137,16 +137,16 @@ def test_a_limit_dearer_than_the_first_penalty_is_kept_all_the_same():
 
 def test_a_search_does_not_fall_to_and_fro_across_a_valley(programs):
     """Ripple and loss trade: 15 programs where steps that are not shortened take 40."""
-    found = explored(replace(problem(*ACROSS_A_VALLEY), convergence=None), 1).design
+    design = explored(replace(problem(*ACROSS_A_VALLEY), convergence=None), 1).design
     assert len(programs) < 25
-    assert found.converged and found.feasible
-    assert found.objective == pytest.approx(0.25896, rel=3e-4)
+    assert design.converged and design.feasible
+    assert design.objective == pytest.approx(0.25896, rel=3e-4)
 
 
 def test_the_effort_ends_a_rough_search_within_the_limits(programs):
     """Near the ripple of the search to its end, 0.7807."""
-    asked = replace(problem(*ROUGH), convergence=None, effort=12)
-    found = explored(asked, 1).design
-    assert found.ended and found.feasible and not found.converged
-    assert found.ripple == pytest.approx(0.7807, rel=0.002)
-    assert found.lagrangian is None and found.ripple_gain
+    limited = replace(problem(*ROUGH), convergence=None, effort=12)
+    design = explored(limited, 1).design
+    assert design.ended and design.feasible and not design.converged
+    assert design.ripple == pytest.approx(0.7807, rel=0.002)
+    assert design.lagrangian is None and design.ripple_gain

@@ -1,4 +1,4 @@
-"""What the scope leaves out is not asked for, judged or governing; what is stated is judged."""
+"""What the scope leaves out is not required, judged or governing; what is stated is judged."""
 
 from __future__ import annotations
 

@@ -135,7 +135,7 @@ GOOD: tuple[tuple[dict[str, Any], str], ...] = (
     ({"limits.shaft_bearing_life": "900 h"}, "a shorter life"),
     ({"limits.cam_radius": "95 mm"}, "more room"),
     ({"limits.tool_radius": "20 mm"}, "a smaller wheel"),
-    ({"limits.torque_reduction": 0.4}, "less asked for"),
+    ({"limits.torque_reduction": 0.4}, "a lower requirement"),
     ({"load_case[1].speed": "3500 rpm"}, "governed lower"),
     ({"smoothing.width": "133 deg"}, "smoothed a little more"),
 )  # fmt: skip
@@ -158,23 +158,23 @@ def judged(changes: dict[str, Any]) -> dict[str, str]:
 
 
 def named(row: tuple[Any, ...]) -> str:
-    return "; ".join(f"{key} = {value}" for key, value in row[0].items()) or "as it is"
+    return "; ".join(f"{key} = {value}" for key, value in row[0].items()) or "unchanged"
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("row", WRONG, ids=named)
 def test_what_is_wrong_does_not_pass(row: tuple[dict[str, Any], str, str]) -> None:
     changes, finder, _ = row
-    found = judged(changes)
-    assert finder in found
-    assert finder == REFUSED or found[finder] in ("fail", "not_evaluated")
+    statuses = judged(changes)
+    assert finder in statuses
+    assert finder == REFUSED or statuses[finder] in ("fail", "not_evaluated")
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("row", GOOD, ids=named)
 def test_what_is_good_does_not_fail(row: tuple[dict[str, Any], str]) -> None:
-    found = judged(row[0])
-    assert {name for name, status in found.items() if status != "pass"} == set()
+    statuses = judged(row[0])
+    assert {name for name, status in statuses.items() if status != "pass"} == set()
 
 
 def test_fifty_of_each() -> None:

@@ -233,25 +233,14 @@ def _shortfall(check: Check) -> Shortfall:
 
 def _root_shortfall(trial: Trial) -> tuple[Shortfall, ...]:
     """Of the keyway root by finite elements, where the preview leaves it to them."""
-    solved, root = trial.solution, keyway_root
-    left = [check for check in trial.checks if check.id == root.id and check.judged_at]
-    numbers = solved.numbers
-    fatigue = hub_fatigue(trial.contour, trial.cycles, numbers) if left else None
-    if fatigue is None:
-        return ()
+    numbers = trial.solution.numbers
+    left = [check for check in trial.checks if check.id == keyway_root.id and check.judged_at]
+    solved = hub_fatigue(trial.contour, trial.cycles, numbers) if left else None
     least = _ROOT_SPARE * float(numbers.limit(KEYWAY_SAFETY))
-    if fatigue.governing.safety >= least:
+    if solved is None or solved.governing.safety >= least:
         return ()
-    used = least / fatigue.governing.safety
-    return (
-        {
-            "check": root.id,
-            "title": root.title,
-            "demand": fatigue.governing.safety,
-            "limit": least,
-            "unit": root.unit,
-            "utilisation": used,
-        },
+    return tuple(
+        _shortfall(replace(check, demand=solved.governing.safety, limit=least)) for check in left
     )
 
 
