@@ -83,6 +83,7 @@ BACKING = {"facecolor": COLOURS["card"], "alpha": 0.75, "linewidth": 0, "pad": 0
 FIGURE_WIDTH = 5.6
 LEFT, RIGHT, TOP, BOTTOM, GAP = 0.68, 0.16, 0.66, 0.42, 0.14
 LEGEND_ROW = 5
+LETTER, HANDLE = 0.058, 0.39  # in, of a legend: mean letter, line with its gaps
 Dash: TypeAlias = str | tuple[float, tuple[float, ...]]
 DASHES: dict[str, Dash] = {"solid": "-", "dashed": "--", "dashdot": (0, (6, 2, 1, 2))}
 MARKERS = {"dot": "o", "cross": "+"}
@@ -300,7 +301,7 @@ def _canvas(height: float) -> Canvas:
 
 def _stacked(figure: AngleFigure | LineFigure) -> tuple[Canvas, list[Axes]]:
     """Axes of the panels, one below the other."""
-    rows = -(-max(panel.legend_entries for panel in figure.panels) // LEGEND_ROW)
+    rows = max(-(-panel.legend_entries // _legend_columns(panel)) for panel in figure.panels)
     heights = [panel.height * 1.62 for panel in figure.panels]
     gaps = [GAP + (0.2 if legend else 0.0) for legend in figure.legends]
     named_above = isinstance(figure, AngleFigure)
@@ -327,9 +328,19 @@ def _legends(figure: AngleFigure | LineFigure, axes: Sequence[Axes]) -> None:
             _legend(ax, panel, 1 + above)
 
 
+def _legend_columns(panel: Panel) -> int:
+    """Most columns of a legend, up to `LEGEND_ROW`, that the figure is wide enough for."""
+    labels = [curve.label for curve in panel.curves if curve.label]
+    for columns in range(min(len(labels), LEGEND_ROW), 1, -1):
+        longest = sum(max(map(len, part)) for part in np.array_split(labels, columns))
+        if longest * LETTER + columns * HANDLE <= FIGURE_WIDTH - LEFT:
+            return columns
+    return 1
+
+
 def _legend(ax: Axes, panel: Panel, height: float) -> None:
     ax.legend(
-        loc="lower left", bbox_to_anchor=(-0.012, height), ncols=min(len(panel.curves), LEGEND_ROW),
+        loc="lower left", bbox_to_anchor=(-0.012, height), ncols=_legend_columns(panel),
         frameon=False, borderaxespad=0.0, borderpad=0.0, handlelength=1.7, handletextpad=0.5,
         columnspacing=1.3, labelspacing=0.25,
     )  # fmt: skip

@@ -5,8 +5,9 @@ from __future__ import annotations
 import sys
 from dataclasses import replace
 from pathlib import Path
-from types import MappingProxyType
+from types import MappingProxyType, SimpleNamespace
 
+import matplotlib as mpl
 import numpy as np
 import pytest
 
@@ -199,3 +200,18 @@ def test_of_many_trials_the_first_the_latest_and_the_final_one_are_compared(tmp_
     many = replace(run, trials=tuple(nine), summary={**run.summary, "final_trial": 3})
     compared = governing_turn(many, {}).trials
     assert [trial.number for trial in compared] == [1, 6, 7, 8, 9, 3]
+
+
+@pytest.mark.parametrize("count", range(2, 10))
+def test_a_legend_stays_within_its_figure(count):
+    labels = ("Goodman line", "safety 1.5", "cam", "gear seat", "bearing seat 1", "bearing seat 2",
+              "counterweight", "a long name of a section", "seat")[:count]  # fmt: skip
+    panel = SimpleNamespace(curves=[SimpleNamespace(label=label) for label in labels])
+    with mpl.rc_context(figure_svg.STYLE):
+        canvas = figure_svg._canvas(2.0)
+        ax = canvas.add_axes((figure_svg.LEFT / figure_svg.FIGURE_WIDTH, 0.2, 0.8, 0.5))
+        for label in labels:
+            ax.plot([0.0, 1.0], [0.0, 1.0], label=label)
+        figure_svg._legend(ax, panel, 1.02)
+        canvas.draw_without_rendering()
+        assert ax.get_legend().get_window_extent().x1 <= canvas.bbox.x1
