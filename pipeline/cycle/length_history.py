@@ -275,8 +275,9 @@ def _parts(turns: Sequence[TurnOfLine], members: Sequence[int]) -> Iterator[list
 def _together(machine: Machine, loads: Sequence[ContactLoads]) -> FactorRange:
     """Factors of the contacts of several turns, the worse of both ends."""
     whole = ContactLoads(*(np.concatenate(parts) for parts in zip(*loads, strict=True)))
-    mean_length = machine.limits[END_MEAN_LENGTH]
-    return worst_of([factor_range(pair, mean_length, whole) for pair in machine.finite_pairs])
+    pairs, mean_length = machine.finite_pairs, machine.limits[END_MEAN_LENGTH]
+    fill_together([length_table(pair, mean_length) for pair in pairs])
+    return worst_of([factor_range(pair, mean_length, whole) for pair in pairs])
 
 
 class ContactLoads(NamedTuple):

@@ -64,11 +64,17 @@ def crown(load=LINE_LOAD):
     return johns_gohar(load, 5e-3, modulus, half_width)
 
 
+def by_cells(pairs):
+    """Rows of displaced and columns of loaded cells, from pairs along and across."""
+    m, _, k, _ = pairs.shape
+    return pairs.transpose(0, 2, 1, 3).reshape(m * k, m * k)
+
+
 @pytest.mark.parametrize("mirrored", [False, True])
 @pytest.mark.parametrize("shift", [0.0, 1.3, 9.0])
 def test_influence_is_the_integral_of_one_over_r(shift, mirrored):
     cells = PressureCells(np.array([0.0, 0.1, 0.3, 0.4]), np.array([-0.5, -0.2, 0.2, 0.5]))
-    matrix = influence(cells, shift, mirrored=mirrored)
+    matrix = by_cells(influence(cells, shift, mirrored=mirrored))
     nodes, weights = np.polynomial.legendre.leggauss(14)
     (x, y), half = cells.centres, [0.05, 0.1, 0.05]
     across, along = np.tile(half, 3), np.repeat([0.15, 0.2, 0.15], 3)
@@ -134,7 +140,7 @@ def test_images_without_end_are_plane_strain():
     half_width, p0 = 0.112299308e-3, 1133.7911e6
     step = half_width / 16
     cells = PressureCells(step * np.arange(19), length * np.linspace(-0.5, 0.5, 9))
-    kernel = sum(influence(cells, k * length, mirrored=False) for k in range(-100, 101))
+    kernel = by_cells(sum(influence(cells, k * length, mirrored=False) for k in range(-100, 101)))
     compliance = 2 * kernel / (np.pi * STEEL.plane_strain_modulus)
     contact = length_contact.solve(
         cells, compliance, cells.integrated_gap(finite), LINE_LOAD * length

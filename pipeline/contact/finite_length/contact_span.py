@@ -7,6 +7,7 @@ cells on which half-spaces are solved; it enters no result.
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -14,7 +15,7 @@ import numpy as np
 from camwright.geometry.arrays import Array
 from camwright.geometry.errors import ContactError
 from camwright.pipeline.contact import hertz
-from camwright.pipeline.contact.finite_length.axial_drop import FinitePair, Straight
+from camwright.pipeline.contact.finite_length.axial_drop import Crown, FinitePair, Straight
 from camwright.pipeline.contact.finite_length.pressure_cells import (
     CellSizes,
     PressureCells,
@@ -90,29 +91,35 @@ def contact_span(pair: FinitePair, force: float, moment: float) -> ContactSpan:
     ContactError
         If force and moment cannot be balanced on the line.
     """
-    low, high = -0.5 * pair.contact_length, 0.5 * pair.contact_length
-    length = pair.contact_length
+    return _span(
+        pair.contact_length, pair.curvature, pair.contact_modulus, pair.crown, force, moment
+    )
+
+
+@lru_cache(maxsize=16)
+def _span(
+    whole: float, curvature: float, modulus: float, crown: Crown, force: float, moment: float
+) -> ContactSpan:
+    """Extent of a contact of a whole length, m; kept for bodies of other lengths."""
+    low, high, length = -0.5 * whole, 0.5 * whole, whole
     pressed = np.empty(0)
     edges = np.empty(0)
     for _ in range(_REFINEMENTS):
         edges = np.linspace(low, high, _STRIPS + 1)
         y = 0.5 * (edges[1:] + edges[:-1])
-        half_width, _ = hertz.line_contact(
-            force / length, 1.0 / pair.curvature, pair.contact_modulus
-        )
+        half_width, _ = hertz.line_contact(force / length, 1.0 / curvature, modulus)
         # Indentation of a line contact of that length by its line load, in its middle.
         softness = 2.0 * max(np.log(4.0 * length / float(half_width)) + 0.5, 1.0)
-        stiffness = np.pi * pair.contact_modulus / softness
+        stiffness = np.pi * modulus / softness
         pressed = stiffness * _pressed(
-            y, pair.crown.drop(y), force / (stiffness * (edges[1] - edges[0])), moment / force
+            y, crown.drop(y), force / (stiffness * (edges[1] - edges[0])), moment / force
         )
         touching = np.flatnonzero(pressed > 0)
         start, end = edges[touching[0]], edges[touching[-1] + 1]
         length = end - start
         reach = 0.5 * length
-        low = max(start - reach, -0.5 * pair.contact_length)
-        high = min(end + reach, 0.5 * pair.contact_length)
-    return ContactSpan(float(start), float(end), float(pressed.max()) * pair.contact_length / force)
+        low, high = max(start - reach, -0.5 * whole), min(end + reach, 0.5 * whole)
+    return ContactSpan(float(start), float(end), float(pressed.max()) * whole / force)
 
 
 def _pressed(y: Array, drop: Array, total: float, lever: float) -> Array:

@@ -9,9 +9,10 @@ from node to node: their edges are interpolated as their pressures are.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property, lru_cache
+from itertools import combinations, pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -38,10 +39,10 @@ from camwright.pipeline.contact.finite_length.pressure_cells import CellSizes
 
 Index = NDArray[np.intp]
 
-# Ratios of the half-widths, without and with a crown, and of the line loads of neighbouring nodes;
-# nodes of ladder index 0.
-_WIDTH_RATIO, _CROWNED_WIDTH_RATIO, _LOAD_RATIO = 2.0, 3.0, 3.0
-_WIDTH, _LOAD = 1e-4, 1e5  # m, N/m
+# Ratios of neighbouring nodes: of half-widths; where the load matters of line loads and curvatures,
+# with straight lines between rounded ends and with a crown. Nodes of ladder index 0.
+_WIDTH_RATIO, _LOAD_RATIO, _ROUNDED_CURVATURE_RATIO, _CROWNED_CURVATURE_RATIO = 2.0, 3.0, 4.0, 9.0
+_WIDTH, _CURVATURE, _LOAD = 1e-4, 40.0, 1e5  # m, 1/m, N/m
 _LIGHT = 0.24  # greatest light moment over force and length
 _FEW = 3000  # rows of an interpolation: those of a turn, untilted and tilted to both sides
 
@@ -89,6 +90,7 @@ class FactorTable:
     pair: FinitePair
     mean_length: float
     _nodes: dict[tuple[int, int], _Node] = field(default_factory=dict, repr=False)
+    _beside: list[FactorTable] = field(default_factory=list, repr=False)
 
     @property
     def interpolation_error(self) -> float:
@@ -199,8 +201,9 @@ class FactorTable:
         return rounded or not isinstance(self.pair.crown, Straight)
 
     @property
-    def _width_ratio(self) -> float:
-        return _WIDTH_RATIO if isinstance(self.pair.crown, Straight) else _CROWNED_WIDTH_RATIO
+    def _curvature_ratio(self) -> float:
+        is_straight = isinstance(self.pair.crown, Straight)
+        return _ROUNDED_CURVATURE_RATIO if is_straight else _CROWNED_CURVATURE_RATIO
 
     def _hertz(self, curvature: Array, force: Array) -> tuple[Array, Array]:
         return hertz.line_contact(
@@ -209,17 +212,14 @@ class FactorTable:
 
     def _place(self, curvature: Array, force: Array, count: Index) -> _Place:
         """Nodes, their columns and weights of contacts that need `count` (count,) moments."""
-        half_width, _ = self._hertz(curvature, force)
-        across = np.log(half_width / _WIDTH) / np.log(self._width_ratio)
-        along = np.zeros_like(across)
         if self._depends_on_load:
             line_load = force / self.pair.contact_length
-            along = np.log(line_load / _LOAD) / np.log(_LOAD_RATIO)
-        first, width_weights = _uniform_stencil(across)
-        if self._depends_on_load:
-            second, load_weights = _uniform_stencil(along)
+            first, first_weights = _uniform_stencil(curvature, _CURVATURE, self._curvature_ratio)
+            second, load_weights = _uniform_stencil(line_load, _LOAD, _LOAD_RATIO)
         else:
-            second, load_weights = np.zeros_like(first), np.ones((across.size, 1))
+            half_width, _ = self._hertz(curvature, force)
+            first, first_weights = _uniform_stencil(half_width, _WIDTH, _WIDTH_RATIO)
+            second, load_weights = np.zeros_like(first), np.ones((force.size, 1))
         size = load_weights.shape[1]
         least, span = second.min(), np.ptp(second) + 1
         corners, inverse = np.unique(first * span + (second - least), return_inverse=True)
@@ -235,24 +235,36 @@ class FactorTable:
         nodes = [self._node(key, needed[key]) for key in keys]
         number = {key: index for index, key in enumerate(keys)}
         columns = np.array([[number[key] for key in cells] for cells in reach])[inverse]
-        weights = (width_weights[:, :, None] * load_weights[:, None, :]).reshape(columns.shape)
+        weights = (first_weights[:, :, None] * load_weights[:, None, :]).reshape(columns.shape)
         return _Place(nodes, columns, weights)
 
     def _node(self, key: tuple[int, int], count: int) -> _Node:
         """Node with `count` moments from zero at least."""
-        before = self._nodes[key].count if key in self._nodes else 0
-        for after in self._ladder.batches:
-            if before < min(count, after):
-                computed = self._computed(key, self._ladder.moments[before:after])
-                known = self._nodes.get(key)
-                self._nodes[key] = computed if known is None else known.joined(computed)
-                before = after
+        for before, after in pairwise((0, *self._ladder.batches)):
+            if self._count(key) == before < count:
+                for table in (self, *self._beside):
+                    if table._count(key) == before:
+                        table._extend(key, table._computed(key, table._ladder.moments[before:after]))
         return self._nodes[key]
+
+    def _count(self, key: tuple[int, int]) -> int:
+        """Number of moments of a node that are computed."""
+        return self._nodes[key].count if key in self._nodes else 0
+
+    def _extend(self, key: tuple[int, int], computed: _Node) -> None:
+        known = self._nodes.get(key)
+        self._nodes[key] = computed if known is None else known.joined(computed)
 
     def _computed(self, key: tuple[int, int], moments: Array) -> _Node:
         """Pressures of one half-width and line load at moments, from the disk cache or computed."""
-        half_width, line_load = _WIDTH * self._width_ratio ** key[0], _LOAD * _LOAD_RATIO ** key[1]
-        curvature = 4.0 * line_load / (np.pi * self.pair.contact_modulus * half_width**2)
+        line_load = _LOAD * _LOAD_RATIO ** key[1]
+        per_curvature = 4.0 * line_load / (np.pi * self.pair.contact_modulus)
+        if self._depends_on_load:
+            curvature = _CURVATURE * self._curvature_ratio ** key[0]
+            half_width = float(np.sqrt(per_curvature / curvature))
+        else:
+            half_width = _WIDTH * _WIDTH_RATIO ** key[0]
+            curvature = per_curvature / half_width**2
         here = replace(self.pair, curvature=curvature)
         if not self.pair.is_symmetric:
             moments = np.concatenate([-moments[moments > 0][::-1], moments])
@@ -381,6 +393,17 @@ def factor_table(pair: FinitePair, mean_length: float) -> FactorTable:
     return FactorTable(pair, mean_length)
 
 
+def fill_together(tables: Sequence[FactorTable]) -> None:
+    """Let tables of pairs that differ in lengths alone compute a node one after the other.
+
+    Their cells are the same there: so is what does not depend on the lengths, see `half_space`.
+    """
+    for one, other in combinations(tables, 2):
+        if one.pair.crown == other.pair.crown and other not in one._beside:
+            one._beside.append(other)
+            other._beside.append(one)
+
+
 @lru_cache(maxsize=16)
 def _lines(nodes: tuple[_Node, ...]) -> Array:
     """Edges and pressures of nodes side by side as rows."""
@@ -399,8 +422,9 @@ def _alike(*values: ArrayLike) -> list[Array]:
     return [kappa, load, third]
 
 
-def _uniform_stencil(position: Array) -> tuple[Index, Array]:
-    """First index (count,) and Lagrange weights (count, 4) at positions on a uniform ladder."""
+def _uniform_stencil(values: Array, start: float, ratio: float) -> tuple[Index, Array]:
+    """First index (count,) and Lagrange weights (count, 4) of values on a geometric ladder."""
+    position = np.log(values / start) / np.log(ratio)
     base = np.floor(position).astype(np.intp)
     return base - 1, _lagrange(
         position - base, np.broadcast_to(np.arange(-1.0, 3.0), (base.size, 4))

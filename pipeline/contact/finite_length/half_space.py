@@ -8,13 +8,14 @@ the end; the remainder, of the other end, is smooth.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from camwright.geometry.arrays import Array
+from camwright.geometry.arrays import Array, readonly
 from camwright.pipeline.contact.finite_length.axial_drop import FiniteBody
 from camwright.pipeline.contact.finite_length.pressure_cells import PressureCells
 
@@ -54,18 +55,17 @@ def half_space_compliance(cells: PressureCells, bodies: tuple[FiniteBody, Finite
 
     Symmetric; of the half x > 0 under pressures symmetric about x = 0.
     """
-    direct = influence(cells, 0.0, mirrored=False)
-    total = np.zeros_like(direct)
-    ends: dict[tuple[float, float], Array] = {}
-    for body in bodies:
-        whole = direct
+    softness = [1.0 / (np.pi * body.material.plane_strain_modulus) for body in bodies]
+    pairs = sum(softness) * _between_cells(cells.x.tobytes(), cells.y.tobytes())
+    free: dict[tuple[float, float], float] = {}  # softness of the bodies with the same ends
+    for body, soft in zip(bodies, softness, strict=True):
         if np.isfinite(body.length):
             key = body.length, body.material.poisson
-            if key not in ends:
-                ends[key] = _free_ends(cells, *key)
-            whole = direct + ends[key]
-        total += whole / (np.pi * body.material.plane_strain_modulus)
-    return total
+            free[key] = free.get(key, 0.0) + soft
+    if free:
+        _add_free_ends(pairs, cells, free)
+    m, k = cells.shape
+    return np.asarray(pairs.transpose(0, 2, 1, 3).reshape(m * k, m * k))
 
 
 class _Image(NamedTuple):
@@ -76,7 +76,7 @@ class _Image(NamedTuple):
     mean, bend : array (m, m)   of distant cells along the line: over the areas of both mean, 1/m,
                                 plus bend, 1/m3, times their second moments across; 0 of the near
     first : int                 number of the first cell along the line that is near the end
-    near : array (n, k, n, k)   influence of the n cells near it, m3
+    near : array (n, n, k, k)   influence of the n cells near it, m3
     """
 
     mean: Array
@@ -88,28 +88,34 @@ class _Image(NamedTuple):
     def mirrored(self) -> _Image:
         """That of the other end of symmetric cells."""
         first = len(self.mean) - self.first - len(self.near)
-        return _Image(self.mean[::-1, ::-1], self.bend[::-1, ::-1], first, self.near[::-1, :, ::-1])
+        return _Image(self.mean[::-1, ::-1], self.bend[::-1, ::-1], first, self.near[::-1, ::-1])
 
 
-def _free_ends(cells: PressureCells, length: float, poisson: float) -> Array:
-    """What both ends of a length add to the influence, m3."""
-    half, (m, k), end = 0.5 * length, cells.shape, _image(cells, length, poisson)
-    is_even = np.allclose(cells.y, -cells.y[::-1], rtol=0.0, atol=_SYMMETRIC * length)
-    other = end.mirrored if is_even else _image(cells, -length, poisson)
-    place = cells.centres_along / half
-    squares = np.add.outer(place**2, place**2)
-    smooth = (_SQUARES + _ODD * np.outer(place, place)) * squares * (2.0 / half)
+def _add_free_ends(
+    pairs: Array, cells: PressureCells, free: Mapping[tuple[float, float], float]
+) -> None:
+    """Add what the ends of bodies of a length, m, and Poisson's ratio add, times a softness, 1/Pa.
+
+    To displacements over pressures of pairs of cells (m, m, k, k), as those of `influence`.
+    """
+    m, k = cells.shape
+    place, mean, bend = cells.centres_along, np.zeros((m, m)), np.zeros((m, m))
+    for (length, poisson), soft in free.items():
+        half, end = 0.5 * length, _image(cells, length, poisson)
+        is_even = np.allclose(cells.y, -cells.y[::-1], rtol=0.0, atol=_SYMMETRIC * length)
+        other = end.mirrored if is_even else _image(cells, -length, poisson)
+        at = place / half
+        smooth = (_SQUARES + _ODD * np.outer(at, at)) * np.add.outer(at**2, at**2) * (2.0 / half)
+        mean += soft * (end.mean + other.mean + smooth)
+        bend += soft * (end.bend + other.bend)
+        for each in (end, other):
+            near = slice(each.first, each.first + len(each.near))
+            pairs[near, near] += soft * each.near
     x_squares = 0.25 * (cells.x[1:] + cells.x[:-1]) ** 2 + np.diff(cells.x) ** 2 / 12.0
     along, across = (np.outer(size, size) for size in (np.diff(cells.y), np.diff(cells.x)))
-    mean, bend = end.mean + other.mean + smooth, end.bend + other.bend
     by_length = np.stack([mean * along, bend * along])
     by_width = np.stack([across, np.add.outer(x_squares, x_squares) * across])
-    products = by_length.reshape(2, -1).T @ by_width.reshape(2, -1)
-    whole = products.reshape(m, m, k, k).transpose(0, 2, 1, 3).copy()
-    for each in (end, other):
-        near = slice(each.first, each.first + len(each.near))
-        whole[near, :, near] += each.near
-    return whole.reshape(m * k, m * k)
+    pairs += (by_length.reshape(2, -1).T @ by_width.reshape(2, -1)).reshape(m, m, k, k)
 
 
 def _image(cells: PressureCells, shift: float, poisson: float) -> _Image:
@@ -128,14 +134,12 @@ def _image(cells: PressureCells, shift: float, poisson: float) -> _Image:
     beside = np.flatnonzero(apart < _FAR_IMAGE * cells.x[-1])
     if not beside.size:
         width = cells.x.size - 1
-        return _Image(mean * factor, bend * factor, 0, np.zeros((0, width, 0, width)))
+        return _Image(mean * factor, bend * factor, 0, np.zeros((0, 0, width, width)))
     near = np.s_[beside[0] : beside[-1] + 1]
     block = PressureCells(cells.x, cells.y[beside[0] : beside[-1] + 2])
-    values = influence(block, shift, mirrored=True).reshape(*block.shape, *block.shape)
     mean[near, near] = bend[near, near] = 0.0
-    return _Image(
-        mean * factor, bend * factor, int(beside[0]), values * factor[near, None, near, None]
-    )
+    values = influence(block, shift, mirrored=True) * factor[near, near, None, None]
+    return _Image(mean * factor, bend * factor, int(beside[0]), values)
 
 
 def shared_compliance(cells: PressureCells, bodies: tuple[FiniteBody, FiniteBody]) -> Array:
@@ -148,10 +152,18 @@ def _of_edges(x: bytes, y: bytes, bodies: tuple[FiniteBody, FiniteBody]) -> Arra
     return half_space_compliance(PressureCells(np.frombuffer(x), np.frombuffer(y)), bodies)
 
 
-def influence(cells: PressureCells, shift: float, *, mirrored: bool) -> Array:
-    """Integral of 1/r over each cell and each loaded cell, (n, n), m3.
+@lru_cache(maxsize=16)
+def _between_cells(x: bytes, y: bytes) -> Array:
+    """Influence of cells on half-spaces without ends, kept for bodies of other lengths."""
+    cells = PressureCells(np.frombuffer(x), np.frombuffer(y))
+    return readonly(influence(cells, 0.0, mirrored=False))
 
-    The loads of x < 0 are included.
+
+def influence(cells: PressureCells, shift: float, *, mirrored: bool) -> Array:
+    """Integral of 1/r over each cell and each loaded cell, m3.
+
+    (m, m, k, k): displaced and loaded cell along the line, displaced and loaded cell across. The
+    loads of x < 0 are included.
 
     Parameters
     ----------
@@ -162,8 +174,9 @@ def influence(cells: PressureCells, shift: float, *, mirrored: bool) -> Array:
     right, left = (_Pairs(cells.x, sign) for sign in (1.0, -1.0))
     values = _double_integral(right, along) + _double_integral(left, along)
     across, lengthwise = (_places(edges.size - 1) for edges in (cells.x, cells.y))
-    full = values[across].transpose(2, 0, 1)[lengthwise]
-    return np.asarray(full.transpose(0, 2, 1, 3).reshape(cells.areas.size, -1))
+    # Whole blocks across are gathered for each pair along the line.
+    blocks = np.ascontiguousarray(values.T[:, across])
+    return np.asarray(blocks[lengthwise])
 
 
 def _places(count: int) -> NDArray[np.intp]:
