@@ -30,6 +30,7 @@ from camwright.pipeline.contact.finite_length.factor_table import (
     GREATEST_MOMENT,
     FactorTable,
     factor_table,
+    fill_together,
 )
 from camwright.pipeline.contact.finite_length.length_certificate import EndCorrection
 from camwright.pipeline.contact.finite_length.length_contact import (

@@ -242,9 +242,10 @@ class FactorTable:
         """Node with `count` moments from zero at least."""
         for before, after in pairwise((0, *self._ladder.batches)):
             if self._count(key) == before < count:
+                moments = self._ladder.moments[before:after]
                 for table in (self, *self._beside):
                     if table._count(key) == before:
-                        table._extend(key, table._computed(key, table._ladder.moments[before:after]))
+                        table._extend(key, table._computed(key, moments))
         return self._nodes[key]
 
     def _count(self, key: tuple[int, int]) -> int:
