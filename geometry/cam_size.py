@@ -36,6 +36,8 @@ _CLEAR = 1e-9
 _OFFSET_SHARE = 0.999
 """Greatest offset over the prime radius."""
 _SAMPLES = 721
+# Share of a radius of curvature left for the rounding of an offset; use of an offset beyond it.
+_ROUNDING, _BEYOND = 1e-3, 100.0
 
 
 @dataclass(frozen=True)
@@ -134,17 +136,34 @@ class RollerCam(ABC):
         )
 
     def best_offset(self, prime_radius: float, limits: PitchLimits) -> float:
-        """Offset (m) of the least pressure angle over its limit, of rise against return."""
+        """Offset (m) of the least pressure angle over its limit, of rise against return.
 
+        Within the limits of the curvature, less a thousandth for a rounded offset; where no offset
+        keeps them that of the least curvature.
+        """
         positive("cam.prime_radius", prime_radius, "m")
+        most = _OFFSET_SHARE * prime_radius
 
         def use(offset: float) -> float:
             height = float(np.sqrt(prime_radius**2 - offset**2))
             rise, back = _angles(self.parts(prime_radius, offset), height, offset)
             return max(rise.value / limits.rise, back.value / limits.back)
 
-        most = _OFFSET_SHARE * prime_radius
-        return _balanced(least_argument(use, -most, most), most)
+        def curved(offset: float) -> float:
+            pitch = self.extremes(prime_radius, offset)
+            least = limits.convex_radius, limits.concave_radius
+            radii = pitch.convex_radius.value, pitch.concave_radius.value
+            return max(bound / radius for bound, radius in zip(least, radii, strict=True))
+
+        offset = _balanced(least_argument(use, -most, most), most)
+        if not max(limits.convex_radius, limits.concave_radius) > 0.0 or curved(offset) <= 1.0:
+            return offset
+
+        def within(offset: float) -> float:
+            share = curved(offset)
+            return use(offset) if share <= 1.0 - _ROUNDING else _BEYOND + share
+
+        return _balanced(least_argument(within, -most, most), most)
 
     def smallest(self, limits: PitchLimits) -> RollerSize:
         """Smallest prime radius of any offset, and that offset, m."""

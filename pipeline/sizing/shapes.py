@@ -123,8 +123,8 @@ class RollerShapes:
             If a given prime radius is too small for any.
         """
         if PRIME not in self.gaps:
-            prime = self.case.cam.prime_radius
-            return Shape(prime, self._offset(prime), self._least_roller, 0.0, "given")
+            prime, roller = self.case.cam.prime_radius, self._least_roller
+            return Shape(prime, self._offset(prime, roller), roller, 0.0, "given")
         roller = self._roller_of_tool()
         limits = self.limits(roller)
         offset = rounded(self._smallest(limits).offset)
@@ -138,7 +138,7 @@ class RollerShapes:
         wall = least_base_circle(self.case) + roller
         if wall > prime:
             prime, governs = wall, "wall around the bore"
-            offset, by_offset = self._offset(prime), BALANCE
+            offset, by_offset = self._offset(prime, roller), BALANCE
         return Shape(prime, offset, roller, 0.0, governs, by_offset)
 
     def _smallest(self, limits: PitchLimits) -> RollerSize:
@@ -169,14 +169,14 @@ class RollerShapes:
             low, high = (middle, high) if hinders(middle) else (low, middle)
         return high
 
-    def _offset(self, prime: float) -> float:
+    def _offset(self, prime: float, roller: float) -> float:
         if OFFSET not in self.gaps:
             return self.case.cam.offset
-        return rounded(self.cam.best_offset(prime, self.angle_limits))
+        return rounded(self.cam.best_offset(prime, self.limits(roller)))
 
     def enlarged(self, shape: Shape, prime: float, governs: str) -> Shape:
         """A shape with a larger prime radius, m, and the offset that fits it."""
-        offset = self._offset(prime)
+        offset = self._offset(prime, shape.roller_radius)
         return Shape(prime, offset, shape.roller_radius, shape.face_width, governs, BALANCE)
 
     def parts(self, shape: Shape) -> LiftParts:

@@ -75,8 +75,9 @@ def spring_of(
 ) -> ChosenSpring:
     """Spring of the open keys: its least energy at full lift, or the least preload or rate.
 
-    A stated preload stays: the rate is the least one that holds the follower beside it. The rate
-    of a spring with a design is that of the design.
+    What is stated stays: the preload is the least one that holds the follower beside a stated
+    rate, or the rate beside a stated preload. The rate of a spring with a design is that of the
+    design.
 
     Parameters
     ----------
@@ -108,13 +109,15 @@ def spring_of(
     if PRELOAD not in gaps:
         return ChosenSpring(rate, case.spring.preload, rate_by)
     spring = smallest_spring(lift, conditions, rate=rate, force=force)
-    share = spring.preload > preload_needed(lift, rate, conditions, force).value
-    preload_by = (
-        f"share of {PRELOAD_SHARE:g} of the force at full lift"
-        if share
-        else "no follower jump over the speed range"
-    )
-    return ChosenSpring(rate, _up_to_digits(spring.preload), rate_by, preload_by)
+    needed = preload_needed(lift, rate, conditions, force).value
+    # A rule of thumb beside an open rate, or where the rate alone holds the follower.
+    if spring.preload > needed and ((RATE in gaps and design is None) or not needed > 0.0):
+        preload_by = f"share of {PRELOAD_SHARE:g} of the force at full lift"
+        if not needed > 0.0:
+            preload_by += "; the rate alone holds the follower"
+        return ChosenSpring(rate, _up_to_digits(spring.preload), rate_by, preload_by)
+    preload_by = "no follower jump over the speed range"
+    return ChosenSpring(rate, _up_to_digits(needed), rate_by, preload_by)
 
 
 def more_preload(spring: ChosenSpring, factor: float, reason: str) -> ChosenSpring:

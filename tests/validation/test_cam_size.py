@@ -192,6 +192,26 @@ def test_best_offset_balances_rise_and_return() -> None:
     assert cam.smallest(THIRTY).prime_radius < 0.93 * cam.least_prime_radius(THIRTY)
 
 
+@pytest.mark.parametrize("prime", [8.0, 9.0, 12.0])
+def test_best_offset_keeps_the_curvature(prime: float) -> None:
+    """A scan of offsets finds no smaller angle within the curvature, which moves the best one."""
+    segments = (Segment("cycloidal", 80 * DEG, 3.0), Segment("dwell", 20 * DEG),
+                Segment("harmonic", 170 * DEG, -3.0), Segment("dwell", 90 * DEG))  # fmt: skip
+    cam = GivenLiftCam(LiftParts.of_motion(SegmentMotion(segments)))
+    free = cam.best_offset(prime, THIRTY)
+    least = 1.002 * cam.extremes(prime, free).convex_radius.value
+    limits = PitchLimits(30 * DEG, 30 * DEG, convex_radius=least)
+    offset = cam.best_offset(prime, limits)
+    assert abs(offset - free) > 1e-3
+    best = cam.extremes(prime, offset)
+    assert best.convex_radius.value >= least
+    for each in np.linspace(-0.9, 0.9, 181) * prime:
+        pitch = cam.extremes(prime, float(each))
+        # A thousandth of the radius is left for a rounded offset.
+        if pitch.convex_radius.value >= 1.001 * least:
+            assert pitch.pressure_angle.value >= best.pressure_angle.value - ROUND_OFF
+
+
 def test_a_symmetric_lift_needs_no_offset() -> None:
     assert GivenLiftCam(double_rise("harmonic")).smallest(THIRTY).offset == 0.0
 
