@@ -352,14 +352,15 @@ _STATED = (
     id="mechanism_temperature",
     title="Temperature of the mechanism vs. that at which its parts are judged",
     unit="degC",
-    source="balance of heat; temperatures stated for oil, bearing and wire",
+    source="balance of heat; temperatures stated for oil, bearing and wire, of the cards of metals",
     formula="T_amb + (P_f + Q)/G <= least temperature stated for oil, roller bearing and wire, and"
-    " limit of the steels; P_f: mean power of the friction in guides, contact and"
-    " roller bearing, sum of q_i P_i of the load cases by load_case.duty, else the greatest P_i,"
-    " T_amb, Q, G: cooling.ambient_temperature, .heat, .conductance; without G that"
-    " of the box around cam and follower in still air, 10 W/(m^2 K)",
-    reason="Viscosity, grease and relaxation of the wire are those of the stated temperatures: a"
-    " machine that runs hotter is not the one that is judged.",
+    " to which limit and full strength of the metals hold by their cards; P_f: mean power of the"
+    " friction in guides, contact and roller bearing, sum of q_i P_i of the load cases by"
+    " load_case.duty, else the greatest P_i, T_amb, Q, G: cooling.ambient_temperature, .heat,"
+    " .conductance; without G that of the box around cam and follower in still air, 10 W/(m^2 K)",
+    reason="Viscosity, grease and relaxation of the wire are those of the stated temperatures,"
+    " endurance and strength of the steels those of their cards: a machine that runs hotter is not"
+    " the one that is judged.",
     method="mean friction power over the load cases by their duty, without a duty the greatest,"
     " over-speed left out, at the mean friction coefficients; the shaft's own bearings and the gear"
     " count in cooling.heat",
@@ -373,7 +374,12 @@ def mechanism_temperature(solution: Solution) -> Demand | None:
     machine, contour = solution.machine, solution.contour
     numbers, cooling = solution.numbers, machine.cooling
     named = {key: numbers.get(key) for key in _STATED}
-    named |= {card.name: card.temperature_limit for card in machine.bodies.values()}
+    bushes = {guide.material.name for _, guide in machine.guides.both}  # at their own temperature
+    named |= {
+        name: card.holds_to
+        for name, card in solution.case.materials.items()
+        if card.is_metal and name not in bushes
+    }
     stated = {key: float(value) for key, value in named.items() if value is not None}
     if not stated:
         return None

@@ -119,6 +119,24 @@ def test_heat_of_the_mechanism_is_the_mean_over_the_duty():
     assert check(of_duty(cycles, None)).demand == pytest.approx(alone, rel=1e-12)
 
 
+def test_without_stated_temperatures_the_steels_limit_that_of_the_mechanism():
+    """The cards of the made-up case state no strength above 100 degC."""
+    case = made.case(
+        lubricant=None, guides=made.changed(made.case().guides, ambient_temperature=None)
+    )
+    roller, spring = case.roller, case.spring
+    bearing = made.changed(roller.bearing, temperature=None)
+    case = case.model_copy(
+        update={
+            "roller_given": made.changed(roller, bearing=bearing),
+            "spring": made.changed(spring, design=None),
+        }
+    )
+    check = torque_balance.mechanism_temperature(made.solution(case=case))
+    assert check.limit == pytest.approx(100.0)
+    assert "least stated: steel" in check.note
+
+
 def test_load_cycles_of_the_contact_are_those_of_the_mean_speed():
     """Crank at 160 rad/s for 0.7 and 100 rad/s for 0.3 of the life: the cam at 71 rad/s."""
     text = TEXT.replace('name = "idle"\n', 'name = "idle"\nduty = 0.7\n', 1) + RATED.format(0.3)
