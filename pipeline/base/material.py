@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from itertools import pairwise
+from itertools import pairwise, takewhile
 from typing import Annotated, ClassVar, Literal, NamedTuple
 
 import numpy as np
@@ -145,6 +145,17 @@ class Material(Part):
         at = [ROOM, *(each.temperature for each in self.strength_at)]
         strengths = [self.yield_strength, *(each.yield_strength for each in self.strength_at)]
         return float(np.interp(temperature, at, strengths, right=np.nan))
+
+    @property
+    def holds_to(self) -> float:
+        """Temperature to which limit and yield strength at 20 degC of the card hold, K."""
+        warm = STRENGTH_HOLDS_TO[self.is_metal]
+        if self.strength_at:
+            kept = takewhile(
+                lambda each: each.yield_strength >= self.yield_strength, self.strength_at
+            )
+            warm = max((each.temperature for each in kept), default=ROOM)
+        return warm if self.temperature_limit is None else min(warm, self.temperature_limit)
 
     @property
     def surface_hardened(self) -> bool | None:

@@ -18,7 +18,7 @@ from camwright.pipeline.checks.contact_strength import line_pressure
 from camwright.pipeline.checks.extremes import worst_case
 from camwright.pipeline.checks.missing_keys import lacking, lacking_of_card, no_friction
 from camwright.pipeline.contact.flash_temperature import bulk_rise
-from camwright.pipeline.contact.oil_film import Lubricant
+from camwright.pipeline.contact.oil_film import Lubricant, scuffing_limit
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.cycle import Cycle
 from camwright.pipeline.cycle.loaded_cam import LoadedCam, face_of
@@ -26,7 +26,7 @@ from camwright.pipeline.cycle.solution import Solution
 from camwright.pipeline.follower.flat_face_motion import MEAN_SHARE
 
 _HEAT_PATH = ("conductivity", "specific_heat")
-_OF_OIL = ("temperature", "scuffing_temperature")
+_OF_OIL = ("temperature", "scuffing_temperature", "boundary_temperature")
 
 
 @check(
@@ -88,35 +88,44 @@ def face_pv(cam: LoadedCam) -> Array:
 @check(
     title="Temperature of the sliding contact vs. scuffing temperature of the oil",
     unit="degC",
-    source="criterion of Blok (1937) for scuffing, ISO/TS 6336-20: verify",
-    method="oil, bulk by the mean flash temperature of the turn, and the greatest flash temperature"
-    " of a band source, at the mean friction coefficient",
+    source="criterion of Blok (1937) for scuffing, ISO/TS 6336-20, regimes of AGMA 925-A03: verify",
+    method="oil, bulk by the mean flash temperature of the turn, and flash temperature of a band"
+    " source, at the mean friction coefficient, where they are nearest to the limit by the film"
+    " there; a film of unknown roughness counts as none",
     lift_can_help=True,
     needs="face",
-    formula="T_oil + 0.47 1.2 mean(T_f) + T_f <= T_s; T_f = 1.11 mu w |u1 - u2| / ((B1 sqrt|u1| +"
+    formula="T_oil + 0.47 1.2 mean(T_f) + T_f <= T_b + c (T_s - T_b), c = (lambda - 0.4)/(1 - 0.4)"
+    " within 0 and 1; T_f = 1.11 mu w |u1 - u2| / ((B1 sqrt|u1| +"
     " B2 sqrt|u2|) sqrt(2 a)), u1 = omega (r + s + s''), u2 = omega s''; mu: friction of the face,"
     " w: line load, B: root of conductivity times density times specific heat, a: half-width of"
-    " the contact, r: base radius, s: lift, T_oil: lubricant.temperature, T_s:"
-    " lubricant.scuffing_temperature",
-    reason="above it the film breaks down and the surfaces weld, within seconds",
+    " the contact, r: base radius, s: lift, T_oil: lubricant.temperature, T_s, T_b:"
+    " lubricant.scuffing_temperature, .boundary_temperature, lambda: film over roughness, as of"
+    " film_ratio, at the same angle",
+    reason="above it film or adsorbed layer breaks down and the surfaces weld, within seconds",
     values=(
         *given.CONTACT,
         "follower.face.friction",
         "lubricant.temperature",
         "lubricant.scuffing_temperature",
+        "lubricant.boundary_temperature",
+        "lubricant.*viscosity",
+        "cam.roughness",
+        "follower.face.roughness",
         *(f"{part}.material.{key}" for part in ("cam", "follower.face") for key in _HEAT_PATH),
     ),
     levers=(levers.one("follower.face.depth"), *levers.GENTLER),
     page="Flat face",
 )
 def contact_temperature(solution: Solution) -> Demand:
-    """Greatest temperature of the contact, degC; at standstill that of the oil."""
+    """Temperature of the contact nearest to its limit, degC; at standstill that of the oil."""
     oil, missing = solution.machine.lubricant, _heat_missing(solution, *_OF_OIL)
-    cold = None if oil is None else oil.temperature
-    allowed = None if oil is None else oil.scuffing_temperature
-    limit = None if allowed is None else celsius(allowed)
-    if missing or cold is None:
-        return Demand(None, limit, missing=missing)
+    cold, top, bare = (
+        (None,) * 3
+        if oil is None
+        else (oil.temperature, oil.scuffing_temperature, oil.boundary_temperature)
+    )
+    if missing or oil is None or cold is None or top is None or bare is None:
+        return Demand(None, None if top is None else celsius(top), missing=missing)
 
     def flash(cycle: Cycle) -> Array:
         rise = cycle.rolling.flash
@@ -124,18 +133,31 @@ def contact_temperature(solution: Solution) -> Demand:
         return np.full(cycle.theta.size, np.nan) if rise is None else rise
 
     # by the solved angles: a parabola would overshoot the cusp of a reversal
-    peaks = {cycle.load_case: float(flash(cycle).max()) for cycle in solution.cycles}
-
-    def hottest(cycle: Cycle) -> float:
-        return float(celsius(cold + bulk_rise(flash(cycle)) + peaks[cycle.load_case]))
-
-    worst, note = worst_case(solution.cycles, hottest), ""
-    if np.isfinite(worst.value):
-        cycle = next(each for each in solution.cycles if each.load_case == worst.load_case)
+    places: dict[str, tuple[int, float, float]] = {}
+    for cycle in solution.cycles:
         rise = flash(cycle)
-        worst = worst._replace(cam_angle=float(cycle.theta[first_greatest(rise)]))
-        note = f"flash temperature up to {shown(float(rise.max()), 'K', 3)}"
-    return Demand(worst.value, limit, worst, note=note, figures=(oil.source,) if oil else ())
+        # without contact there is neither film nor heat
+        limits = celsius(scuffing_limit(_film(cycle), min(bare, top), top))
+        limits = np.where(np.isnan(limits), celsius(top), limits)
+        k = first_greatest(celsius(cold + bulk_rise(rise) + rise) / limits)
+        places[cycle.load_case] = k, float(rise[k]), float(limits[k])
+
+    def use(cycle: Cycle) -> float:
+        _, hot, limit = places[cycle.load_case]
+        return float(celsius(cold + bulk_rise(flash(cycle)) + hot)) / limit
+
+    worst = worst_case(solution.cycles, use)
+    k, hot, limit = places[worst.load_case]
+    cycle = next(each for each in solution.cycles if each.load_case == worst.load_case)
+    worst = worst._replace(value=worst.value * limit, cam_angle=float(cycle.theta[k]))
+    note = f"flash temperature of {shown(hot, 'K', 3)} on {_film(cycle)[k]:.2g} of the roughness"
+    return Demand(worst.value, limit, worst, note=note, figures=(oil.source,))
+
+
+def _film(cycle: Cycle) -> Array:
+    """Film over roughness (n,); 0 where the roughness is not known, NaN without contact."""
+    film = cycle.rolling.film
+    return np.zeros(cycle.theta.size) if film is None or film.ratio is None else film.ratio
 
 
 @check(

@@ -34,7 +34,7 @@ from camwright.pipeline.checks.check import (
     of_key,
 )
 from camwright.pipeline.checks.demands import FatiguePoint, follower_speed, slope_at, slope_over
-from camwright.pipeline.checks.extremes import Extreme, Measure, steady, worst_case
+from camwright.pipeline.checks.extremes import Extreme, Measure, over_duty, steady
 from camwright.pipeline.checks.missing_keys import lacking
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.cycle import Cycle
@@ -644,7 +644,7 @@ def _strokes(solution: Solution) -> int:
 
 
 def _self_heating(solution: Solution) -> Demand:
-    """Temperature of the gas by the friction of its seals, degC, in the fastest load case."""
+    """Temperature of the gas by the friction of its seals, degC."""
     machine, spring = solution.machine, solution.machine.spring
     gas = spring.gas
     if gas is None:
@@ -658,7 +658,7 @@ def _self_heating(solution: Solution) -> Demand:
         rate = _strokes(solution) * cycle.cam_speed / FULL_TURN
         return float(celsius(cooling.temperature(2.0 * gas.friction * work * rate, gas.surface)))
 
-    worst = worst_case(steady(solution), warm, integral=False)
+    worst = over_duty(steady(solution), warm)
     return _of_gas(Demand(worst.value, float(celsius(gas.warm)), worst), solution)
 
 
@@ -668,12 +668,14 @@ gas_heating = _gas_check(
     unit="degC",
     method="friction of the seals over each stroke to and fro, given off by the cylinder",
     formula="T_amb + 2 f W z n/G <= spring.gas.temperature; f: spring.gas.friction, W: energy of"
-    " the spring at maximum lift, z n: strokes per time, T_amb: cooling.ambient_temperature, G:"
+    " the spring at maximum lift, z n: strokes per time, sum of q_i z n_i of the load cases by"
+    " load_case.duty, else the greatest z n_i, T_amb: cooling.ambient_temperature, G:"
     " spring.gas.conductance, else 10 W/(m^2 K) of the surface of the cylinder",
     reason="pressure and force are those of the stated temperature, and a hotter seal leaks.",
     tier=Tier.PREVIEW,
     values=(
         "load_case.speed",
+        "load_case.duty",
         "spring.gas.*temperature",
         "spring.gas.friction",
         "spring.gas.conductance",

@@ -22,7 +22,14 @@ from camwright.pipeline.case.limits import (
 )
 from camwright.pipeline.checks import demands
 from camwright.pipeline.checks.check import RIPPLE, Demand, check
-from camwright.pipeline.checks.extremes import Extreme, cam_of, greatest, steady, worst_case
+from camwright.pipeline.checks.extremes import (
+    Extreme,
+    cam_of,
+    greatest,
+    over_duty,
+    steady,
+    worst_case,
+)
 from camwright.pipeline.checks.missing_keys import unset
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.cycle import Cycle
@@ -345,17 +352,20 @@ _STATED = (
     id="mechanism_temperature",
     title="Temperature of the mechanism vs. that at which its parts are judged",
     unit="degC",
-    source="balance of heat; temperatures stated for oil, bearing and wire",
+    source="balance of heat; temperatures stated for oil, bearing and wire, of the cards of metals",
     formula="T_amb + (P_f + Q)/G <= least temperature stated for oil, roller bearing and wire, and"
-    " limit of the steels; P_f: mean power of the friction in guides, contact and"
-    " roller bearing, T_amb, Q, G: cooling.ambient_temperature, .heat, .conductance; without G that"
-    " of the box around cam and follower in still air, 10 W/(m^2 K)",
-    reason="Viscosity, grease and relaxation of the wire are those of the stated temperatures: a"
-    " machine that runs hotter is not the one that is judged.",
-    method="greatest friction power of the load cases, over-speed left out, at the mean friction"
-    " coefficients; the shaft's own bearings and the gear count in cooling.heat",
+    " to which limit and full strength of the metals hold by their cards; P_f: mean power of the"
+    " friction in guides, contact and roller bearing, sum of q_i P_i of the load cases by"
+    " load_case.duty, else the greatest P_i, T_amb, Q, G: cooling.ambient_temperature, .heat,"
+    " .conductance; without G that of the box around cam and follower in still air, 10 W/(m^2 K)",
+    reason="Viscosity, grease and relaxation of the wire are those of the stated temperatures,"
+    " endurance and strength of the steels those of their cards: a machine that runs hotter is not"
+    " the one that is judged.",
+    method="mean friction power over the load cases by their duty, without a duty the greatest,"
+    " over-speed left out, at the mean friction coefficients; the shaft's own bearings and the gear"
+    " count in cooling.heat",
     lift_can_help=True,
-    values=(*given.LOADS, "cooling.*"),
+    values=(*given.LOADS, "load_case.duty", "cooling.*"),
     levers=(levers.one("cooling.conductance"), *levers.GENTLER),
     page="Torque",
 )
@@ -364,23 +374,30 @@ def mechanism_temperature(solution: Solution) -> Demand | None:
     machine, contour = solution.machine, solution.contour
     numbers, cooling = solution.numbers, machine.cooling
     named = {key: numbers.get(key) for key in _STATED}
-    named |= {card.name: card.temperature_limit for card in machine.bodies.values()}
+    bushes = {guide.material.name for _, guide in machine.guides.both}  # at their own temperature
+    named |= {
+        name: card.holds_to
+        for name, card in solution.case.materials.items()
+        if card.is_metal and name not in bushes
+    }
     stated = {key: float(value) for key, value in named.items() if value is not None}
-    running = [cycle for cycle in steady(solution) if cycle.cam_speed > 0]
-    if not stated or not running:
+    if not stated:
         return None
     across = 2.0 * contour.radius_max().value
     height = across + float(numbers.get("follower.stem_length") or 0.0)
     area = housing_area(across, height, machine.cam.width)
+    running = steady(solution)
     # in degrees Celsius, of which the error bar is a share
-    worst = worst_case(
+    worst = over_duty(
         running,
         lambda cycle: float(celsius(cooling.temperature(_friction_power(solution, cycle), area))),
     )
     least = min(stated, key=stated.__getitem__)
     warm, allowed = worst.value, celsius(stated[least])
-    lost = shown(max(_friction_power(solution, cycle) for cycle in running), "W", 3)
-    note = f"{lost} of friction; least stated: {least}"
+    words = [
+        f"{each.load_case}: {shown(_friction_power(solution, each), 'W', 3)}" for each in running
+    ]
+    note = f"friction of {', of '.join(words)}; least stated: {least}"
     if cooling.conductance is None and warm > allowed:
         still = f"{warm:.3g} degC"
         note += f"; {still} in still air around the box of cam and follower"

@@ -35,11 +35,14 @@ class Lubricant(Part):
 
     film "mixed" adds the film of rough surfaces by a regression with unverified source. thinning:
     slope B of log log (v + 0.7) = A - B log T, v in mm2/s; the default is that of a mineral oil.
+    scuffing_temperature holds for a film that carries, boundary_temperature for the layer adsorbed
+    on the surfaces, which alone keeps them apart without one.
     """
 
     table: ClassVar[str] = "lubricant"
     defaults: ClassVar[Mapping[str, str]] = {
         "scuffing_temperature": "unknown: needed under a flat face, which slides",
+        "boundary_temperature": "unknown: needed under a flat face, which slides",
     }
 
     viscosity: Annotated[float, In("mPa s", above=0, at_most=1e5)]
@@ -48,6 +51,7 @@ class Lubricant(Part):
     temperature: Temperature | None = None
     thinning: Annotated[float, In(above=0, at_most=10)] = 3.6
     scuffing_temperature: Temperature | None = None
+    boundary_temperature: Temperature | None = None
     source: str = ""
 
     def warmer(self, rise: float) -> Lubricant:
@@ -131,6 +135,23 @@ def minimum_film(film: LineFilm) -> Array:
     load = np.where(loaded, film.load, 1.0)
     film_ratio = 2.65 * film.speed**0.70 * film.material**0.54 * load**-0.13
     return np.where(loaded, film_ratio * film.radius, np.nan)
+
+
+BOUNDARY, CARRYING = 0.4, 1.0
+"""Film over roughness below which the surfaces bear on each other, and above which the film carries
+them: regimes I and III of AGMA 925-A03, recalled: verify."""
+
+
+def scuffing_limit(ratio: Array, boundary: float, carrying: float) -> Array:
+    """Temperature (...) of a sliding contact at which it scuffs, by film over roughness (...).
+
+    Parameters
+    ----------
+    boundary : float   limit of the adsorbed layer, K, up to the ratio `BOUNDARY`
+    carrying : float   limit of the oil, K, from `CARRYING` on; between them the line
+    """
+    carried = np.interp(ratio, (BOUNDARY, CARRYING), (0.0, 1.0))
+    return np.asarray(boundary + carried * (carrying - boundary))
 
 
 def lambda_ratio(thickness: ArrayLike, roughness_1: float, roughness_2: float) -> Array:

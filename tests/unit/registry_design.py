@@ -90,7 +90,10 @@ tried(
 )
 tried(
     "mechanism_temperature",
-    limited("mechanism_temperature", lambda oil: with_part("lubricant", temperature=oil + 273.15)),
+    limited(
+        "mechanism_temperature",
+        lambda oil: with_part("lubricant", temperature=oil + 273.15),
+    ),
     lambda: cooled(conductance=None, heat=1e4),
     lambda: with_loads(axial_force=NAN),
     25.0 + 0.5 * 100.0 * 0.5 * made.STROKE * 80.0 + 5.0,

@@ -244,7 +244,7 @@ tried(
 tried(
     "contact_temperature",
     limited("contact_temperature", lambda top: oiled(scuffing_temperature=top + 273.15), faced),
-    lambda: oiled(scuffing_temperature=None),
+    lambda: oiled(boundary_temperature=None),
     lambda: faced(cycle_with("rolling", made.cycle(made.face_contour()), flash=NAN)),
     by_hand.contact_temperature(),
     "80 degC, mean and greatest flash temperature of Blok",

@@ -10,7 +10,12 @@ from trial_variants import cycle_with
 from camwright.geometry.errors import InputError
 from camwright.pipeline.case.case_file import parse_case
 from camwright.pipeline.case.machine import machines
-from camwright.pipeline.checks import camshaft_strength, contact_strength, roller_bearing
+from camwright.pipeline.checks import (
+    camshaft_strength,
+    contact_strength,
+    roller_bearing,
+    torque_balance,
+)
 from camwright.pipeline.checks.guide_wear import guide_wear_a
 from camwright.pipeline.follower import bearing_life
 
@@ -97,6 +102,39 @@ def test_wear_of_a_guide_is_the_mean_over_the_duty():
     assert guide_wear_a(of_duty(cycles, None, target_life=life)).demand == pytest.approx(
         rate * 1.0e6 * life, rel=1e-6
     )
+
+
+def test_heat_of_the_mechanism_is_the_mean_over_the_duty():
+    """20 W at idle and 60 W when rated: 28 W with 5 W of other parts over 1 W/K, 25 degC around."""
+    idle = made.cycle()
+    rated = cycle_with(
+        "loads", made.cycle(load_case="rated"), axial_force=3.0 * idle.loads.axial_force
+    )
+    check, cycles = torque_balance.mechanism_temperature, (idle, rated)
+    warm = check(of_duty(cycles))
+    assert warm.demand == pytest.approx(25.0 + 0.8 * 20.0 + 0.2 * 60.0 + 5.0, rel=1e-3)
+    assert warm.note.startswith("friction of idle: 20 W, of rated: 60 W; ")
+    alone = check(of_duty(cycles[1:], {"rated": 1.0})).demand
+    assert alone == pytest.approx(25.0 + 60.0 + 5.0, rel=1e-3)
+    assert check(of_duty(cycles, None)).demand == pytest.approx(alone, rel=1e-12)
+
+
+def test_without_stated_temperatures_the_steels_limit_that_of_the_mechanism():
+    """The cards of the made-up case state no strength above 100 degC."""
+    case = made.case(
+        lubricant=None, guides=made.changed(made.case().guides, ambient_temperature=None)
+    )
+    roller, spring = case.roller, case.spring
+    bearing = made.changed(roller.bearing, temperature=None)
+    case = case.model_copy(
+        update={
+            "roller_given": made.changed(roller, bearing=bearing),
+            "spring": made.changed(spring, design=None),
+        }
+    )
+    check = torque_balance.mechanism_temperature(made.solution(case=case))
+    assert check.limit == pytest.approx(100.0)
+    assert "least stated: steel" in check.note
 
 
 def test_load_cycles_of_the_contact_are_those_of_the_mean_speed():

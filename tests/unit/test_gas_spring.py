@@ -319,6 +319,14 @@ def test_limits_of_the_maker():
     fastest = max(each.speed for each in limited.load_cases) / limited.mechanism.gear_ratio
     warmer = 2.0 * 0.05 * work * peaks * fastest / (2.0 * np.pi) / 0.2
     assert checks["gas_heating"].demand == pytest.approx(20.0 + warmer, rel=1e-4)
+    slow = limited.load_cases[0].model_copy(
+        update={"name": "slow", "speed": 0.25 * limited.load_cases[0].speed, "duty": 0.6}
+    )
+    states = (limited.load_cases[0].model_copy(update={"duty": 0.4}), slow)
+    by_duty = preview_case(limited.model_copy(update={"load_cases": states}), corners=False)
+    heating = next(each for each in by_duty.checks if each.id == "gas_heating")
+    mean = 0.4 + 0.6 * 0.25
+    assert heating.demand == pytest.approx(20.0 + mean * warmer, rel=1e-4)
     ends = {"gas left": volume[-1] / 113e-6}
     state = machines(limited)[0]
     ends["stem"] = 0.2 - (state.overhang_at_max_lift + state.guides.spacing)

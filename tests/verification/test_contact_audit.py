@@ -608,6 +608,32 @@ def test_temperature_of_the_sliding_face():
     assert checks["bulk_temperature"].demand == pytest.approx(bulk, rel=1e-3)
 
 
+@pytest.mark.parametrize("roughness", [0.05, 0.6, 3.0])
+def test_scuffing_temperature_by_the_film(roughness):
+    """Dimensional formula, viscosity by Walther at the bulk: 230 degC on a film, 150 on none."""
+    given = tables(face=True)
+    given["cam"]["roughness"] = f"{roughness} um"
+    found = solved(face=True)[0]
+    check = checked(found, case_of(given))["contact_temperature"]
+    cycle = found.cycles[0]
+    s, bend = 0.5 * STROKE * (1.0 - np.cos(THETA)), 0.5 * STROKE * np.cos(THETA)
+    rise = cycle.rolling.flash
+    warm = 353.15 + 0.564 * rise.mean()
+    thin = 10.0 ** (np.log10(0.03 / 870.0 * 1e6 + 0.7) * (353.15 / warm) ** 3.6) - 0.7
+    u, load = OMEGA * np.abs(BASE + s + 2.0 * bend) / 2.0, cycle.loads.normal_force / WIDTH
+    film = (
+        2.65 * 20e-9**0.54 * (thin * 870e-6 * u) ** 0.7 * (BASE + s + bend) ** 0.43
+        / ((E_STEEL / 0.91) ** 0.03 * load**0.13)
+    )  # fmt: skip
+    ratio = film / np.hypot(roughness * 1e-6, 0.1e-6)
+    limit = np.clip(150.0 + 80.0 * (ratio - 0.4) / 0.6, 150.0, 230.0)
+    contact = warm - 273.15 + rise
+    worst = np.argmax(contact / limit)
+    assert check.demand == pytest.approx(contact[worst], rel=1e-6)
+    assert check.limit == pytest.approx(limit[worst], rel=1e-3)
+    assert (ratio[worst] < 0.4, ratio[worst] > 1.0) == (roughness == 3.0, roughness == 0.05)
+
+
 def test_the_recalled_cap_of_dang_van_is_marked_and_does_not_decide():
     check = solved()[1]["dang_van"]
     assert "verify" in check.method

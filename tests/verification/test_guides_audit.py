@@ -455,6 +455,13 @@ def test_strength_holds_to_30_degrees_of_a_plastic_and_to_100_of_a_metal() -> No
     assert plastic.yield_strength_at(303.15) == metal.yield_strength_at(373.15) == 60e6
     assert np.isnan(plastic.yield_strength_at(303.2))
     assert np.isnan(metal.yield_strength_at(373.2))
+    assert metal.holds_to == 353.15  # its limit
+    plastic, metal = (replace(each, temperature_limit=None) for each in (plastic, metal))
+    assert (plastic.holds_to, metal.holds_to) == (303.15, 373.15)
+    warm = [StrengthAt(temperature=each, yield_strength=60e6) for each in (373.15, 473.15)]
+    less = StrengthAt(temperature=573.15, yield_strength=50e6)
+    assert replace(metal, strength_at=(*warm, less)).holds_to == 473.15
+    assert replace(metal, strength_at=(less,)).holds_to == 293.15
     assert (card(swelling=None).moisture_growth, card(E=60e9, swelling=None).moisture_growth) == (
         None,
         0.0,

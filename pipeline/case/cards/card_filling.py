@@ -209,7 +209,11 @@ def _oil(card: Tables, table: Tables, source: str, field: str) -> Tables:
         "pressure_viscosity": _entry(card, "pressure_viscosity", source),
         "temperature": units.format(temperature, "degC"),
         "thinning": round(thinning(at_40, at_100), 3),
-        **{key: card[key] for key in ("scuffing_temperature",) if key in card},
+        **{
+            key: card[key]
+            for key in ("scuffing_temperature", "boundary_temperature")
+            if key in card
+        },
         "source": f"{card['source']}; at {units.celsius(temperature):.1f} degC by ASTM D341",
     }
 
