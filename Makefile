@@ -14,12 +14,12 @@ PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
 export OMP_NUM_THREADS ?= 1
 export OPENBLAS_NUM_THREADS ?= 1
 
-.PHONY: help setup run test verify fuzz pins lint bench clean
+.PHONY: help setup run test verify fuzz pins lint typing bench clean
 
 help:
 	@sed -n 's/^# make/make/p' Makefile
 
-setup: .venv/installed
+setup: .venv/installed typing
 
 .venv/system: scripts/system_libraries.py
 	@$(PYTHON) scripts/system_libraries.py
@@ -56,7 +56,11 @@ fuzz: .venv/developing
 pins: .venv/developing
 	$(BIN)/python tests/pins.py
 
-lint: .venv/developing
+# The package as type checkers look for it.
+typing:
+	@$(PYTHON) scripts/typing_tree.py
+
+lint: .venv/developing typing
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
@@ -65,4 +69,4 @@ bench: .venv/developing
 	@set -e; for script in benchmarks/*.py; do echo "== $$script"; $(BIN)/python $$script; done
 
 clean:
-	rm -rf .venv .pytest_cache .mypy_cache .ruff_cache .hypothesis *.egg-info
+	rm -rf .venv .typing .pytest_cache .mypy_cache .ruff_cache .hypothesis *.egg-info

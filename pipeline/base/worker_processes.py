@@ -30,6 +30,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Protocol
 
+import camwright
 from camwright.geometry.errors import InputError
 
 if TYPE_CHECKING:
@@ -39,7 +40,7 @@ _JOBS_MOST = 4
 THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
 _SAFE_PATH = "PYTHONSAFEPATH"
 _LOOK_EVERY_S = 1.0
-_HOME = str(Path(__file__).absolute().parents[3])
+_HOME = str(Path(camwright.__file__).absolute().parents[1])
 """Folder from which this package is imported."""
 
 

@@ -12,6 +12,7 @@ import shutil
 from collections.abc import Iterable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass
+from importlib import import_module
 from pathlib import Path
 from types import TracebackType
 from typing import IO, Self
@@ -19,7 +20,6 @@ from typing import IO, Self
 import numpy as np
 from numpy.typing import ArrayLike
 
-import camwright
 from camwright.geometry.arrays import Array, readonly
 from camwright.geometry.errors import CamError, ResultError
 from camwright.pipeline.base.files import (
@@ -66,6 +66,7 @@ _LIBRARIES = (
     "vtk",
     "matplotlib",
 )
+_PACKAGES = ("geometry", "meshes", "pipeline", "reports")
 _SOURCES = (".py", ".toml")
 
 
@@ -459,12 +460,12 @@ def _version(name: str) -> str:
 
 def _source_sha256() -> str:
     """SHA-256 of the modules and tables of the project, shortened."""
-    root = Path(camwright.__file__).parent
     digest = hashlib.sha256()
-    for package in ("geometry", "meshes", "pipeline", "reports"):
-        for file in sorted((root / package).rglob("*")):
+    for package in _PACKAGES:
+        folder = Path(import_module(f"camwright.{package}").__path__[0])
+        for file in sorted(folder.rglob("*")):
             if file.suffix not in _SOURCES:
                 continue
-            digest.update(f"\0{file.relative_to(root).as_posix()}\0".encode())
+            digest.update(f"\0{package}/{file.relative_to(folder).as_posix()}\0".encode())
             digest.update(file.read_bytes())
     return digest.hexdigest()[:16]

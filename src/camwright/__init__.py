@@ -34,7 +34,12 @@ if sys.argv[:1] == ["-m"] and not sys.flags.safe_path:
         del sys.path[0]
 
 from importlib import import_module
+from pathlib import Path
 from typing import TYPE_CHECKING
+
+_HERE = Path(__path__[0]).resolve()
+if not (_HERE / "geometry").is_dir():  # in a checkout the packages lie at its top
+    __path__.append(str(_HERE.parents[1]))
 
 if TYPE_CHECKING:
     from camwright.geometry.errors import CamError

@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import errno
+import hashlib
 import json
 import os
+import shutil
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -184,6 +187,23 @@ def test_resume_refuses_another_input_or_other_versions(
         with pytest.raises(ResultError, match=r"its versions \(source, numpy\) differ"):
             RunFolder(out, small_case(), resume=True)
     assert RunFolder(out, small_case(), resume=True).resumed
+
+
+@pytest.mark.parametrize("package", run_folder._PACKAGES)
+def test_the_source_of_a_version_changes_with_one_byte(
+    package: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """And is that of the files that are imported, wherever they are."""
+    source = run_folder.versions()["source"]
+    assert source != hashlib.sha256().hexdigest()[: len(source)]
+    copy = tmp_path / "copy"
+    module = sys.modules[f"camwright.{package}"]
+    shutil.copytree(module.__path__[0], copy)
+    monkeypatch.setattr(module, "__path__", [str(copy)])
+    assert run_folder.versions()["source"] == source
+    file = max(copy.rglob("*.py"), key=str)
+    file.write_bytes(file.read_bytes() + b"\n")
+    assert run_folder.versions()["source"] != source
 
 
 def test_torn_piece_is_computed_anew(tmp_path: Path) -> None:

@@ -18,7 +18,6 @@ import pytest
 from small_machine import small_machine
 from trap_folder import Traps, before_a_module
 
-import camwright
 from camwright.geometry.errors import InputError
 from camwright.pipeline.base import worker_processes
 from camwright.pipeline.base.worker_processes import import_path, module_command, pool
@@ -27,12 +26,12 @@ from camwright.pipeline.studies.batch.design_plan import study_versions
 from camwright.pipeline.studies.batch.design_task import Settings
 from camwright.pipeline.studies.batch.solver_process import SolverProcess
 
-SOURCE = Path(camwright.__file__).parent
+ROOT = Path(__file__).resolve().parents[2]
 FOLDERS = ("geometry", "meshes", "pipeline", "reports")
 FILES = {
-    ".".join(("camwright", *file.relative_to(SOURCE).with_suffix("").parts)): file
+    ".".join(("camwright", *file.relative_to(ROOT).with_suffix("").parts)): file
     for folder in FOLDERS
-    for file in sorted((SOURCE / folder).rglob("*.py"))
+    for file in sorted((ROOT / folder).rglob("*.py"))
     if "templates" not in file.parts
 }
 
@@ -114,7 +113,7 @@ def test_the_process_of_a_study_imports_none_of_the_folder(standing_in: Traps) -
 
 
 def test_the_view_of_a_run_imports_none_of_its_folder(traps: Traps) -> None:
-    shutil.copy(SOURCE / "pipeline" / "results" / "templates" / VIEW, traps.folder)
+    shutil.copy(ROOT / "pipeline" / "results" / "templates" / VIEW, traps.folder)
     done = run(traps, sys.executable, VIEW)
     assert traps.sprung() == []
     assert "stress.vtkhdf" in done.stderr  # the first that it needs of its folder, and not there
