@@ -9,12 +9,12 @@ alone are judged in every load case.
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Iterable, Sequence
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
 from camwright.pipeline.base.units import shown
-from camwright.pipeline.checks.check import Check
+from camwright.pipeline.checks.check import Check, Declaration
 from camwright.pipeline.cycle.cycle import Cycle
 from camwright.pipeline.cycle.solution import Solution
 from camwright.pipeline.follower.follower_forces import LOCKS
@@ -47,14 +47,15 @@ def _end(cycle: Cycle) -> tuple[float, str] | None:
     return cycle.end or (None if stall is None else (stall, STALLS))
 
 
-def without_lost_loads(checks: Iterable[Check], solution: Solution) -> tuple[Check, ...]:
-    """The checks, those that rest on lost loads made of the other load cases."""
+def made_of_loads(declarations: Iterable[Declaration], solution: Solution) -> Iterator[Check]:
+    """Checks of a solution, those that rest on lost loads made of the other load cases."""
     ends = load_ends(solution)
-    if not ends:
-        return tuple(checks)
     left = tuple(end for end in ends if end.why != LOCKS)
     parts = {"loads": _Parts.of(solution, ends), "contact": _Parts.of(solution, left)}
-    return tuple(_bound(one, parts.get(one.declaration.rests_on)) for one in checks)
+    for declared in declarations:
+        made = _made(declared, solution, parts.get(declared.rests_on))
+        if made is not None:
+            yield made
 
 
 class _Parts(NamedTuple):
@@ -74,17 +75,18 @@ class _Parts(NamedTuple):
         return cls(_in(solution, names), _in(solution, others) if others else None, words)
 
 
-def _bound(one: Check, parts: _Parts | None) -> Check:
+def _made(declared: Declaration, solution: Solution, parts: _Parts | None) -> Check | None:
     """Check made of the sound load cases, unless it is not made in the others."""
-    if parts is None:
-        return one
-    there = one.declaration(parts.lost)
-    if there is None or (_unknown(there) and not there.load_case):
-        return one
-    rest = None if parts.sound is None else one.declaration(parts.sound)
-    if rest is None:
-        return replace(one, demand=None, error_share=None, without=parts.words)
-    return replace(rest, without=parts.words)
+    there = None if parts is None else declared(parts.lost)
+    if parts is None or there is None or (_unknown(there) and not there.load_case):
+        return declared(solution)
+    rest = None if parts.sound is None else declared(parts.sound)
+    if rest is not None:
+        return replace(rest, without=parts.words)
+    whole = declared(solution)
+    if whole is None:
+        return None
+    return replace(whole, demand=None, error_share=None, without=parts.words)
 
 
 def _unknown(one: Check) -> bool:
