@@ -39,7 +39,7 @@ def test_redesigned_case_keeps_every_limit_at_its_corners(tmp_path):
 
 
 @pytest.mark.slow
-def test_cam_under_a_flat_face_fails_by_its_friction_alone(tmp_path):
+def test_cam_under_a_flat_face_fails_by_friction_and_heat_alone(tmp_path):
     """Certified: solved contact and guides in every load case, and the tolerance corners."""
     case = read_case(CASES / "gx120-flat-face.toml")
     summary = run_case(case, tmp_path / "run", positions=180, progress=Silent()).summary
@@ -47,10 +47,11 @@ def test_cam_under_a_flat_face_fails_by_its_friction_alone(tmp_path):
     open_or_failing = {each["id"] for each in final.checks if each["status"] != "pass"}
     assert open_or_failing == {
         "torque_reversals", "curvature_rate", "speed_reduction", "film_ratio", "friction_power",
-        "mechanism_temperature",
+        "mechanism_temperature", "contact_temperature",
     }  # fmt: skip
-    decisive = [each["id"] for each in final.checks if each["must_have"]]
-    assert open_or_failing & set(decisive) == {"friction_power", "mechanism_temperature"}
+    decisive = {each["id"] for each in final.checks if each["must_have"]}
+    heat = {"friction_power", "mechanism_temperature", "contact_temperature"}
+    assert open_or_failing & decisive == heat
     assert summary["verdict"] == "fail"
     record = final.record["synthesis"]
     assert record["feasible"] and record["starts"]["agree"]
