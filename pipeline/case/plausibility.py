@@ -74,6 +74,7 @@ def implausible(case: Case, torques: Mapping[str, Torque]) -> tuple[Implied, ...
     judged.append(_oil_finding(case))
     judged += _temperature_findings(case)
     judged += _bush_findings(case)
+    judged.append(_balance_finding(case))
     findings = [one for one in judged if one is not None]
     if not {one.title for one in findings} & {"spring.rate", "spring.preload", *_TORQUES}:
         findings += _spring_findings(case, torques)
@@ -185,6 +186,21 @@ def _bush_findings(case: Case) -> Iterator[Implied | None]:
         words += " as one of a single diameter, and does not touch a wider bush"
         made = Implied(PLAUSIBILITY, key, stated, least, "mm", words)
         yield made if made.flagged else None
+
+
+def _balance_finding(case: Case) -> Implied | None:
+    """The unbalance that a bench leaves, against the grades to which rotors are balanced."""
+    key, other = "camshaft.counterweight.residual", "camshaft.rotor_mass"
+    residual, mass = value_of(case, key), value_of(case, other)
+    if residual is None or mass is None:
+        return None
+    fastest = max(state.speed for state in case.load_cases) / case.mechanism.gear_ratio
+    grade = residual / mass * fastest
+    if not grade > 0.0:
+        return None
+    text = f"{key} = {text_of(case, key)}: at {other} = {text_of(case, other)} and"
+    text += f" {shown(fastest, 'rpm')} of the cam a grade of G {in_unit(grade, 'mm/s'):.2g}"
+    return _usual("balance_grade").finding(key, grade, text)
 
 
 _OIL_DENSITY = 870.0  # kg/m^3, of mineral oil, 850 to 900

@@ -99,6 +99,14 @@ def test_a_bush_of_another_diameter_than_the_stem_is_told() -> None:
     assert one.startswith("guides.b.diameter = 24 mm, but follower.stem_diameter = 20 mm")
 
 
+def test_an_unbalance_finer_than_any_grade_is_told() -> None:
+    """0.2 g mm over 1.8 kg is 0.111 um, at 188.5 rad/s of the cam 0.021 mm/s: below G 0.4."""
+    assert warnings(parse_case(REDESIGN)) == []
+    (one,) = warnings(parse_case(changed(REDESIGN, '"20 g mm"', '"0.2 g mm"')))
+    assert one.startswith("camshaft.counterweight.residual = 0.2 g mm: at camshaft.rotor_mass")
+    assert "a grade of G 0.021, usually 0.4 to 4000 mm/s" in one
+
+
 def test_a_rate_a_thousand_times_too_low_contradicts_the_torque() -> None:
     text = changed(REDESIGN, 'rate = "180 kN/m"', 'rate = "180 N/m"')
     text = text[: text.index("[spring.design]")] + text[text.index("[cam]") :]
