@@ -108,10 +108,17 @@ class Section(BaseModel):
         raise ValidationError.from_exception_data(cls.__name__, unknown)
 
 
+_TOLD = 6
+"""Known words that a message tells: a file may have many slips."""
+
+
 def suggestion(word: str, known: Iterable[str]) -> str:
-    """The closest known word, else all of them, for a message."""
-    close = difflib.get_close_matches(word, list(known), n=1)
-    return f"; did you mean {close[0]}?" if close else f": {', '.join(known)}"
+    """The closest known word, else all of them or the first of many, for a message."""
+    words = list(known)
+    if close := difflib.get_close_matches(word, words, n=1):
+        return f"; did you mean {close[0]}?"
+    more = f" and {len(words) - _TOLD} more" if len(words) > _TOLD + 1 else ""
+    return f": {', '.join(words[:_TOLD] if more else words)}{more}"
 
 
 @dataclass(frozen=True)
