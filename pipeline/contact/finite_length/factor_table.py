@@ -12,7 +12,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property, lru_cache
-from itertools import combinations, pairwise
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -399,10 +399,10 @@ def fill_together(tables: Sequence[FactorTable]) -> None:
 
     Their cells are the same there: so is what does not depend on the lengths, see `half_space`.
     """
-    for one, other in combinations(tables, 2):
-        if one.pair.crown == other.pair.crown and other not in one._beside:
-            one._beside.append(other)
-            other._beside.append(one)
+    for table in tables:
+        table._beside[:] = [
+            other for other in tables if other is not table and other.pair.crown == table.pair.crown
+        ]
 
 
 @lru_cache(maxsize=16)
