@@ -47,7 +47,9 @@ def _end(cycle: Cycle) -> tuple[float, str] | None:
     return cycle.end or (None if stall is None else (stall, STALLS))
 
 
-def made_of_loads(declarations: Iterable[Declaration], solution: Solution) -> Iterator[Check]:
+def checks_on_sound_loads(
+    declarations: Iterable[Declaration], solution: Solution
+) -> Iterator[Check]:
     """Checks of a solution, those that rest on lost loads made of the other load cases."""
     ends = load_ends(solution)
     left = tuple(end for end in ends if end.why != LOCKS)

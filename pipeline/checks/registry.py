@@ -41,7 +41,7 @@ from camwright.pipeline.checks.check import (
 )
 from camwright.pipeline.checks.confirmation import with_values_to_confirm
 from camwright.pipeline.checks.error_bars import with_error_bars
-from camwright.pipeline.checks.lost_loads import made_of_loads
+from camwright.pipeline.checks.lost_loads import checks_on_sound_loads
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.solution import Solution
 
@@ -127,7 +127,7 @@ def checks_of(
     Checks that do not apply, such as the torque reduction of a cam without an engine, and those
     above the tier of the solution are left out.
     """
-    made = tuple(made_of_loads(declarations, solution))
+    made = tuple(checks_on_sound_loads(declarations, solution))
     return in_order(waived(with_error_bars(solution, made), solution.case.waivers))
 
 
