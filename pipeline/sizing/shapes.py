@@ -46,7 +46,8 @@ _ALIKE = 1e-9
 """Relative difference of two radii up to which they are equal."""
 
 
-BALANCE, SMALLEST = "least pressure angle of rise against return", "smallest base radius"
+BALANCE = "least pressure angle of rise against return within the curvature"
+SMALLEST = "smallest base radius"
 NARROWEST = "narrowest face"
 
 

@@ -32,7 +32,7 @@ CLAIMS = {
     "no part can be exchanged": "test_parts_are_exchanged_until_none_passes",
     # closed forms of the size, against published values and against neighbours
     "smallest base radius": "test_published_size_of_a_roller_cam",
-    "least pressure angle of rise against return": "test_best_offset_balances_rise_and_return",
+    "least pressure angle of rise against return": "test_best_offset_keeps_the_curvature",
     "least contact pressure within curvature": "test_a_roller_has_the_least_contact_pressure",
     "least energy at full lift": "test_smallest_spring_of_a_harmonic_cam",
     "least energy of the spring at full lift": "test_smallest_spring_of_a_harmonic_cam",
