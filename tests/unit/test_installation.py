@@ -87,18 +87,17 @@ def test_a_form_of_the_program_runs(
     environment = os.environ | {"PYTHONPATH": str(home)}
     environment["CAMWRIGHT_CACHE"] = str(tmp_path / "cache")
 
-    def said(*arguments: str) -> subprocess.CompletedProcess[str]:
+    def run_python(*arguments: str) -> subprocess.CompletedProcess[str]:
         return subprocess.run(
             [sys.executable, "-P", *arguments], cwd=tmp_path, env=environment, check=False,
             capture_output=True, text=True,
         )  # fmt: skip
 
-    done = said("-c", USED, *FOLDERS)
-    used = json.loads(done.stdout)
+    used = json.loads(run_python("-c", USED, *FOLDERS).stdout)
     own = [str(home / "camwright"), *([str(place)] if form == "archive" else [])]
     assert used == {"path": own, "source": [versions()["source"]] * 2, "at_the_top": []}
-    done = said("-m", "camwright", "check", str(ROOT / "cases" / "gx120.toml"), "--json")
-    assert (done.returncode, json.loads(done.stdout)["screen"]) == (1, "fail"), done.stderr
+    check = run_python("-m", "camwright", "check", str(ROOT / "cases" / "gx120.toml"), "--json")
+    assert (check.returncode, json.loads(check.stdout)["screen"]) == (1, "fail"), check.stderr
 
 
 @pytest.mark.parametrize("links", [True, False])

@@ -611,11 +611,11 @@ def test_temperature_of_the_sliding_face():
 @pytest.mark.parametrize("roughness", [0.05, 0.6, 3.0])
 def test_scuffing_temperature_by_the_film(roughness):
     """Dimensional formula, viscosity by Walther at the bulk: 230 degC on a film, 150 on none."""
-    given = tables(face=True)
-    given["cam"]["roughness"] = f"{roughness} um"
-    found = solved(face=True)[0]
-    check = checked(found, case_of(given))["contact_temperature"]
-    cycle = found.cycles[0]
+    case = tables(face=True)
+    case["cam"]["roughness"] = f"{roughness} um"
+    solution = solved(face=True)[0]
+    check = checked(solution, case_of(case))["contact_temperature"]
+    cycle = solution.cycles[0]
     s, bend = 0.5 * STROKE * (1.0 - np.cos(THETA)), 0.5 * STROKE * np.cos(THETA)
     rise = cycle.rolling.flash
     warm = 353.15 + 0.564 * rise.mean()
