@@ -15,6 +15,7 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 
 Values = TypeVar("Values", NDArray[np.float64], NDArray[np.complex128])
+Sealed = TypeVar("Sealed", NDArray[np.float64], NDArray[np.intp])
 Value = float | NDArray[np.float64]
 """Real values, or complex ones while a derivative is taken by a complex step."""
 
@@ -35,7 +36,7 @@ def readonly(values: ArrayLike) -> Array:
     return array
 
 
-def sealed(values: Array) -> Array:
+def sealed(values: Sealed) -> Sealed:
     """A new array made read-only in place: no copy, as nothing else refers to it."""
     values.setflags(write=False)
     return values

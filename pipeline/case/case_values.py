@@ -9,6 +9,7 @@ import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, fields, replace
+from functools import cache, lru_cache
 from typing import Any, TypeVar, get_args
 
 import numpy as np
@@ -26,6 +27,7 @@ _STEP = re.compile(r"([A-Za-z_0-9]+)(?:\[(0|[1-9][0-9]{0,3})\])?")
 Node = TypeVar("Node", Section, Part)
 
 
+@lru_cache(maxsize=4096)
 def steps_of(key: str) -> tuple[str | int, ...]:
     """Names and numbers of a key: ``load_case[0].speed`` is load_case, 0, speed.
 
@@ -162,12 +164,13 @@ def _refused_text(case: Case, error: InputError) -> Refused:
 
 def _attribute(node: Section | Part, key: str) -> str:
     """Name of the field with a key."""
-    if isinstance(node, Part):
-        return key
-    for name, field in type(node).model_fields.items():
-        if (field.alias or name) == key:
-            return name
-    return key
+    return key if isinstance(node, Part) else _attributes(type(node)).get(key, key)
+
+
+@cache
+def _attributes(kind: type[Section]) -> Mapping[str, str]:
+    """Names of the fields by their keys."""
+    return {field.alias or name: name for name, field in kind.model_fields.items()}
 
 
 def replaced(case: Case, values: Mapping[str, float]) -> Case:

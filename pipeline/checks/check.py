@@ -427,7 +427,7 @@ class Declaration:
             corner_demand=demand.value if demand.corner else None,
         )
         # a demand beyond its limit by what is known is judged without the rest
-        return replace(made, missing=()) if made.evaluated else made
+        return replace(made, missing=()) if missing and made.evaluated else made
 
 
 def check(

@@ -47,7 +47,11 @@ def with_error_bars(solution: Solution, checks: Iterable[Check]) -> tuple[Check,
         }
         return _share(one, meshes)
 
-    return tuple(replace(each, error_share=share(each)) for each in checks)
+    shares = [share(each) for each in checks]
+    return tuple(
+        each if each.error_share == known else replace(each, error_share=known)
+        for each, known in zip(checks, shares, strict=True)
+    )
 
 
 def contact_error(solution: Solution, figure: str | None = None) -> float | None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Literal, NamedTuple
 from weakref import WeakKeyDictionary
@@ -181,11 +182,11 @@ def _extreme(
     for cycle in cycles:
         values = np.asarray(measure(cycle), dtype=float)
         signed = sign * values
-        worst = first_greatest(signed)  # the first NaN, where there is one
         value = sign * float(signed.max())
-        if extreme.load_case and not (np.isnan(value) or _beyond(value, extreme.value, sign)):
+        if extreme.load_case and not (math.isnan(value) or _beyond(value, extreme.value, sign)):
             continue
-        theta = FULL_TURN * worst / values.size if error is None else None
+        # the first NaN, where there is one
+        theta = FULL_TURN * first_greatest(signed) / values.size if error is None else None
         share = _sampling_error(values, sign) if error is None and cycle.error_bars else 0.0
         extreme, at = Extreme(value, cycle.load_case, theta, share), cycle
     if error is None or at is None or not at.error_bars:
@@ -195,7 +196,7 @@ def _extreme(
 
 def _beyond(value: float, other: float, sign: float) -> bool:
     """Whether a value is greater than another, or less at sign -1, and not equal within `TIE`."""
-    tie = TIE * abs(other) if np.isfinite(other) else 0.0
+    tie = TIE * abs(other) if math.isfinite(other) else 0.0
     return sign * value > sign * other + tie
 
 

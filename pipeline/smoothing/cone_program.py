@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import clarabel
@@ -15,6 +15,8 @@ from camwright.geometry.arrays import Array
 from camwright.pipeline.case.limits import TORQUE_REDUCTION
 
 _ACCEPTED = ("Solved", "AlmostSolved")
+_FEW = 4  # norms that enter a program at first
+_BEYOND = 1e-7  # of a norm over its bound, ten times the tolerance of the solver
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,6 +55,10 @@ class Norm:
     weight: float = 1.0
     ceiling: float | None = None
     number: int = 0
+
+    def after(self, step: Array) -> float:
+        """Norm after a step."""
+        return float(np.linalg.norm(self.level + self.slopes @ step[: self.slopes.shape[1]]))
 
 
 @dataclass(frozen=True, eq=False)
@@ -222,6 +228,40 @@ def solved(
     ----------
     Fletcher, Practical Methods of Optimization (1987), sec. 14.3: the exact penalty.
     """
+    # Of many norms few bind, and each is a dense cone: the others enter where they are exceeded.
+    order = np.argsort([-norm.weight * np.linalg.norm(norm.level) for norm in norms], kind="stable")
+    chosen = sorted(order[:_FEW].tolist())
+    while True:
+        some = [norms[k] for k in chosen]
+        solution = _solved(some, rows, curvature, slope, box, penalty, ripple_weight, reach)
+        if solution is None:
+            return None
+        beyond = [k for k, norm in enumerate(norms) if k not in chosen and _exceeds(norm, solution)]
+        if not beyond:
+            found = dict(zip(chosen, solution.norms, strict=True))
+            return replace(solution, norms=[found.get(k, (0.0, 0.0)) for k in range(len(norms))])
+        chosen = sorted([*chosen, *beyond])
+
+
+def _exceeds(norm: Norm, solution: ConeSolution) -> bool:
+    """Whether a norm that a program left out is over its bounds after the step."""
+    value = norm.after(solution.step)
+    allowed = solution.slack.get(TORQUE_REDUCTION.id, 0.0) + _BEYOND
+    over = norm.ceiling is not None and value > norm.ceiling + allowed
+    return over or norm.weight * value > solution.ripple + _BEYOND
+
+
+def _solved(
+    norms: Sequence[Norm],
+    rows: Sequence[Linear],
+    curvature: Array,
+    slope: Array,
+    box: Array,
+    penalty: float,
+    ripple_weight: float,
+    reach: Reach | None,
+) -> ConeSolution | None:
+    """The program of `solved` with all of the norms in it."""
     size = slope.size
     costs = list(dict.fromkeys(row.name for row in rows if row.cost))
     names = costs + list(dict.fromkeys(r.name for r in rows if r.elastic and not r.cost))

@@ -15,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from camwright.geometry.arrays import Array, readonly
+from camwright.geometry.arrays import Array, sealed
 from camwright.pipeline.contact.finite_length.axial_drop import FiniteBody
 from camwright.pipeline.contact.finite_length.pressure_cells import PressureCells
 
@@ -156,7 +156,7 @@ def _of_edges(x: bytes, y: bytes, bodies: tuple[FiniteBody, FiniteBody]) -> Arra
 def _between_cells(x: bytes, y: bytes) -> Array:
     """Influence of cells on half-spaces without ends, kept for bodies of other lengths."""
     cells = PressureCells(np.frombuffer(x), np.frombuffer(y))
-    return readonly(influence(cells, 0.0, mirrored=False))
+    return sealed(influence(cells, 0.0, mirrored=False))
 
 
 def influence(cells: PressureCells, shift: float, *, mirrored: bool) -> Array:
@@ -179,12 +179,20 @@ def influence(cells: PressureCells, shift: float, *, mirrored: bool) -> Array:
     return np.asarray(blocks[lengthwise])
 
 
+@lru_cache(maxsize=64)
+def _rising(count: int) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+    """First and second numbers (p,) of the pairs in rising order."""
+    first, second = np.triu_indices(count)
+    return sealed(first), sealed(second)
+
+
+@lru_cache(maxsize=64)
 def _places(count: int) -> NDArray[np.intp]:
     """Places (count, count) of pairs in any order among those in rising order."""
-    first, second = np.triu_indices(count)
+    first, second = _rising(count)
     places = np.empty((count, count), dtype=np.intp)
     places[first, second] = places[second, first] = np.arange(first.size)
-    return places
+    return sealed(places)
 
 
 class _Pairs:
@@ -198,12 +206,12 @@ class _Pairs:
     """
 
     def __init__(self, edges: Array, sign: float, shift: float = 0.0) -> None:
-        first, second = np.triu_indices(edges.size)
+        first, second = _rising(edges.size)
         apart = np.abs(edges[first] - sign * edges[second] - shift)
         self.edges, among = np.unique(apart, return_inverse=True)
         self._sign = sign
         self._corners = among[_places(edges.size)]
-        self._cells = first, second = np.triu_indices(edges.size - 1)
+        self._cells = first, second = _rising(edges.size - 1)
         steps, centres = np.diff(edges), 0.5 * (edges[1:] + edges[:-1])
         self.centres = centres[first] - sign * centres[second] - shift
         self.squares = (steps[first] ** 2 + steps[second] ** 2) / 12.0
