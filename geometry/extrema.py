@@ -53,11 +53,10 @@ def first_greatest_of_rows(values: Array) -> NDArray[np.intp]:
     """Numbers (m,) of the greatest value of each row (m, n); see `first_greatest`."""
     top = values.max(axis=1, keepdims=True)
     size = np.maximum(top, -values.min(axis=1, keepdims=True))
-    if not np.isfinite(size).all():
-        size = np.where(np.isfinite(values), np.abs(values), 0.0).max(axis=1, keepdims=True)
-    near = values >= top - TIE * size
-    if np.isnan(top).any():
-        near = np.where(np.isnan(top), np.isnan(values), near)
+    if np.isfinite(size).all():
+        return np.asarray((values >= top - TIE * size).argmax(axis=1))
+    size = np.where(np.isfinite(values), np.abs(values), 0.0).max(axis=1, keepdims=True)
+    near = np.where(np.isnan(top), np.isnan(values), values >= top - TIE * size)
     return np.asarray(near.argmax(axis=1))
 
 
