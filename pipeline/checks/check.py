@@ -54,6 +54,8 @@ BY_DUTY = (
 )
 NONE = "none: the shape of the cam or a part as drawn"
 RIPPLE = "those with an engine torque and a required reduction"
+STEADY = "those of the case: in standstill and over-speed nothing warms up"
+FIRED = "those of the case that are fired, with a mean power of the machine"
 SPEED_RANGE = "every speed from standstill to over-speed"
 BOUNDLESS = 1e12
 """Record, SI, of a demand without bound that keeps its limit: JSON has no infinity."""
@@ -469,7 +471,7 @@ def check(
     """
 
     if rests_on is None:
-        rests_on = "loads" if load_cases in (EVERY, RIPPLE) and not evidence else ""
+        rests_on = "" if evidence or load_cases in (NONE, SPEED_RANGE) else "loads"
 
     def declared(
         name: str,

@@ -73,6 +73,19 @@ def steady(solution: Solution) -> list[Cycle]:
     return [cycle for cycle in solution.cycles if cycle.load_case in declared]
 
 
+def fired(solution: Solution) -> list[Cycle]:
+    """Cycles of the load cases of the case that are fired, where the machine has a power."""
+    states = {
+        state.name: state for state in solution.case.load_cases if state.fired and state.speed > 0
+    }
+    cycles = [cycle for cycle in solution.cycles if cycle.load_case in states]
+    return [
+        cycle
+        for cycle in cycles
+        if cycle.turn.throughput is not None or states[cycle.load_case].power is not None
+    ]
+
+
 def worst_case(
     cycles: Iterable[Cycle],
     measure: Callable[[Cycle], float],

@@ -14,7 +14,8 @@ from dataclasses import replace
 from typing import NamedTuple
 
 from camwright.pipeline.base.units import shown
-from camwright.pipeline.checks.check import Check, Declaration
+from camwright.pipeline.checks.check import FIRED, RIPPLE, STEADY, Check, Declaration
+from camwright.pipeline.checks.extremes import fired, steady
 from camwright.pipeline.cycle.cycle import Cycle
 from camwright.pipeline.cycle.solution import Solution
 from camwright.pipeline.follower.follower_forces import LOCKS
@@ -79,20 +80,28 @@ class _Parts(NamedTuple):
 
 def _made(declared: Declaration, solution: Solution, parts: _Parts | None) -> Check | None:
     """Check made of the sound load cases, unless it is not made in the others."""
-    there = None if parts is None else declared(parts.lost)
-    if parts is None or there is None or (_unknown(there) and not there.load_case):
+    if parts is None or not _judges(declared, parts.lost):
         return declared(solution)
     rest = None if parts.sound is None else declared(parts.sound)
     if rest is not None:
-        return replace(rest, without=parts.words)
+        return rest if _lacks_data(rest) else replace(rest, without=parts.words)
     whole = declared(solution)
-    if whole is None:
-        return None
+    if whole is None or _lacks_data(whole):
+        return whole
     return replace(whole, demand=None, error_share=None, without=parts.words)
 
 
-def _unknown(one: Check) -> bool:
-    return one.demand is None or math.isnan(one.demand)
+def _judges(declared: Declaration, lost: Solution) -> bool:
+    """Whether a check of a machine that it concerns judges one of its lost load cases."""
+    if declared.load_cases == RIPPLE:
+        return declared(lost) is not None
+    chosen = {STEADY: steady, FIRED: fired}.get(declared.load_cases)
+    return chosen is None or bool(chosen(lost))
+
+
+def _lacks_data(one: Check) -> bool:
+    """Whether it has no demand, for want of a value and not by a load case."""
+    return (one.demand is None or math.isnan(one.demand)) and not one.load_case
 
 
 def _in(solution: Solution, load_cases: Collection[str]) -> Solution:

@@ -21,10 +21,11 @@ from camwright.pipeline.case.limits import (
     TORQUE_REDUCTION,
 )
 from camwright.pipeline.checks import demands
-from camwright.pipeline.checks.check import RIPPLE, Demand, check
+from camwright.pipeline.checks.check import FIRED, RIPPLE, STEADY, Demand, check
 from camwright.pipeline.checks.extremes import (
     Extreme,
     cam_of,
+    fired,
     greatest,
     over_duty,
     steady,
@@ -305,6 +306,7 @@ def friction_balance(solution: Solution) -> Demand:
     method="work of the friction over the turn, at the mean friction coefficients, over that of the"
     " machine; load cases that are fired",
     lift_can_help=True,
+    load_cases=FIRED,
     values=(*given.LOADS, "load_case.power"),
     levers=levers.GENTLER,
     page="Torque",
@@ -312,14 +314,7 @@ def friction_balance(solution: Solution) -> Demand:
 def friction_power(solution: Solution) -> Demand | None:
     """Greatest share of the friction in the power of the machine; None if it has no torque."""
     states = {state.name: state for state in solution.case.load_cases}
-    running = [
-        cycle
-        for cycle in solution.cycles
-        if cycle.load_case in states
-        and states[cycle.load_case].fired
-        and states[cycle.load_case].speed > 0
-        and (cycle.turn.throughput is not None or states[cycle.load_case].power is not None)
-    ]
+    running = fired(solution)
     if not running:
         return None
     allowed = solution.machine.limits[FRICTION_POWER]
@@ -365,6 +360,7 @@ _STATED = (
     " over-speed left out, at the mean friction coefficients; the shaft's own bearings and the gear"
     " count in cooling.heat",
     lift_can_help=True,
+    load_cases=STEADY,
     values=(*given.LOADS, "load_case.duty", "cooling.*"),
     levers=(levers.one("cooling.conductance"), *levers.GENTLER),
     page="Torque",

@@ -13,11 +13,13 @@ import pytest
 from made_check import made_check
 
 from camwright.pipeline.case.case import Case
-from camwright.pipeline.case.case_file import parse_case
+from camwright.pipeline.case.case_file import parse_case, read_case
 from camwright.pipeline.case.load_case_torque import engine_torque
 from camwright.pipeline.case.machine import Corner
+from camwright.pipeline.checks import lost_loads
 from camwright.pipeline.checks.check import Check
 from camwright.pipeline.checks.lost_loads import load_ends
+from camwright.pipeline.checks.registry import CHECKS
 from camwright.pipeline.checks.tolerance_corners import NOMINAL, Outcome, governed
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.crank_speed import study_of
@@ -32,7 +34,8 @@ from camwright.pipeline.results.trial import Trial
 from camwright.pipeline.results.verdict_summary import body_stresses
 from camwright.pipeline.solver import solve
 
-TEXT = (Path(__file__).parents[2] / "cases" / "gx120.toml").read_text(encoding="utf-8")
+CASES = Path(__file__).parents[2] / "cases"
+TEXT = (CASES / "gx120.toml").read_text(encoding="utf-8")
 OVERSPEED = 'overspeed = "3960 rpm"'
 POSITIONS = 72
 
@@ -104,6 +107,36 @@ def test_loads_after_the_follower_has_left_the_cam_are_no_results() -> None:
 def test_a_check_that_is_not_made_in_that_load_case_is_judged() -> None:
     reduction = checks(trial())["torque_reduction"]
     assert (reduction.status, reduction.without) == ("pass", "")
+
+
+def test_the_line_of_contact_is_not_solved_where_the_loads_end() -> None:
+    made = trial()
+    solved = {each.load_case: "length" in each.results for each in made.cycles}
+    (end,) = load_ends(made.solution)
+    assert solved == {name: name != end.load_case for name in solved}
+
+
+@pytest.mark.parametrize("machine", ["gx120-redesign", "gx120-flat-face", "machines/press"])
+def test_a_check_judges_the_load_cases_that_it_declares(machine: str) -> None:
+    """A check of known demand is made of one load case alone, but where its words leave it out."""
+    case = read_case(CASES / f"{machine}.toml")
+    solution = solve(
+        case, preview_case(case, corners=False).contour,
+        tier=Tier.PREVIEW, positions=POSITIONS, corners=False,
+    ).solution  # fmt: skip
+    apart = {cycle.load_case: lost_loads._in(solution, {cycle.load_case})
+             for cycle in solution.cycles}  # fmt: skip
+    tried = 0
+    for declared in CHECKS:
+        whole = declared(solution)
+        if not declared.rests_on or whole is None or lost_loads._lacks_data(whole):
+            continue
+        for there in apart.values():
+            one = declared(there)
+            made = one is not None and not lost_loads._lacks_data(one)
+            assert made == lost_loads._judges(declared, there), declared.id
+            tried += 1
+    assert tried > 60
 
 
 def test_a_follower_that_locks_is_judged_by_its_jam_alone() -> None:
