@@ -11,6 +11,7 @@ from typing import Any
 
 from camwright.geometry.errors import CamError
 from camwright.pipeline.base.progress import SILENT, Progress, utc
+from camwright.pipeline.base.source import old_words
 from camwright.pipeline.base.worker_processes import ALONE, Crew, PendingCall, crew
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_values import refused_as_written
@@ -122,8 +123,11 @@ def _solved(
     if depth is Tier.CERTIFIED:
         workers.prepare(order_of.__module__)
     torques = engine_torques(case)
-    for finding in implausible(case, torques):
-        watch.note(f"warning: {finding.how}")
+    for words in (
+        *old_words(case.written.tables),
+        *(one.how for one in implausible(case, torques)),
+    ):
+        watch.note(f"warning: {words}")
     for line in measurement_words(case):
         watch.note(line)
     if torques:

@@ -11,6 +11,7 @@ from math import inf, isclose, isfinite, isnan, pi
 from typing import Any, TypeAlias
 
 from camwright.pipeline.base.files import Json
+from camwright.pipeline.base.source import source_in
 from camwright.pipeline.base.units import used
 from camwright.pipeline.results.check_records import utilisation_of
 from camwright.pipeline.results.check_report import not_proven
@@ -424,14 +425,13 @@ def _sections(case: Record, path: str = "") -> Iterator[tuple[str, Record]]:
 
 
 def _input_table(title: str, section: Record) -> InputTable:
-    source = section.get("source", section.get("sources", ""))
-    by_key = source if isinstance(source, Mapping) else {}
+    by_key = section.get("sources", {})
     rows = tuple(
-        (words(key), _value(value), str(by_key.get(key, "")))
+        (words(key), _value(value), str(source_in(by_key.get(key))))
         for key, value in section.items()
         if key not in ("source", "sources") and not _is_section(value)
     )
-    return InputTable(title, rows, "" if isinstance(source, Mapping) else str(source))
+    return InputTable(title, rows, str(source_in(section.get("source"))))
 
 
 def _is_section(value: Json) -> bool:

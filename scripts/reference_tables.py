@@ -31,7 +31,7 @@ from camwright.pipeline.cycle.axial_pressure import AXIAL_ARRAYS
 from camwright.pipeline.cycle.guide_pressure import GUIDE_ARRAYS
 from camwright.pipeline.cycle.rolling_history import ENVELOPE_ARRAYS
 from camwright.pipeline.preview import preview_case
-from camwright.pipeline.results.check_text import check_text, default_of, sentence
+from camwright.pipeline.results.check_text import check_text, default_of, open_sources, sentence
 from camwright.pipeline.results.field_output import TURN_ARRAYS
 from camwright.pipeline.results.model_limits import MODEL_LIMITS
 from camwright.pipeline.results.run_records import PRESSURE_ARRAYS, column_table
@@ -67,7 +67,7 @@ def limits() -> str:
         (
             f"`{row.id}`", row.title, row.quantity.limit.replace(" and ", ", "),
             default_of(row),
-            "maximum" if row.sense == "at_most" else "minimum", row.source,
+            "maximum" if row.sense == "at_most" else "minimum", str(row.source),
         )
         for row in LIMITS.values()
     )  # fmt: skip
@@ -83,6 +83,15 @@ def checks() -> str:
         parts.append(f"### {title[:1].upper()}{title[1:]}")
         parts += [_check(each) for each in CHECKS if each in vars(module).values()]
     return "\n\n".join(parts)
+
+
+def to_be_confirmed() -> str:
+    """Values of the program whose source is not confirmed, by their sources."""
+    rows = [
+        (text, ", ".join(f"`{name}`" for name in names)) for text, names in open_sources().items()
+    ]
+    count = sum(map(len, open_sources().values()))
+    return f"{count} values:\n\n" + markdown(("source", "values"), rows)
 
 
 def _check(one: Declaration) -> str:
@@ -252,6 +261,7 @@ def study_keys() -> str:
 
 TABLES: Mapping[str, Callable[[], str]] = {
     "limits": limits,
+    "open_sources": to_be_confirmed,
     "missing_kinds": missing_kinds,
     "checks": checks,
     "columns": columns,

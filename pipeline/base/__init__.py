@@ -8,6 +8,7 @@ In the order of use:
 | `printed_text`     | text with escapes for what steers a terminal             |                  |
 | `missing_kinds`    | kinds of cams, followers and springs that are not done   |                  |
 | `quantities`       | quantities of an input: unit and bounds of a field       | SI               |
+| `source`           | source of a value, and whether it confirms the value     |                  |
 | `material`         | material card: elastic constants, strengths, source      | E, Pa; nu; S, Pa |
 | `cooling`          | heat that the mechanism gives to its surroundings        | G, W/K; T, K     |
 | `external_force`   | force over the cam angle, linear between samples         | F_e, N           |

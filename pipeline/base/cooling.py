@@ -7,6 +7,7 @@ from typing import Annotated, ClassVar
 
 from camwright.pipeline.base.material import ROOM
 from camwright.pipeline.base.quantities import In, Part, Temperature
+from camwright.pipeline.base.source import NO_SOURCE, Source
 
 STILL_AIR = 10.0
 """Heat that a housing in still air gives to it, W/(m^2 K): 10 to 18 of gear cases, ISO/TR 14179-2,
@@ -25,7 +26,7 @@ class Cooling(Part):
     ambient_temperature: Temperature = ROOM
     conductance: Annotated[float, In("W/K", above=0, at_most=1e6)] | None = None
     heat: Annotated[float, In("W", at_least=0, at_most=1e9)] = 0.0
-    source: str = ""
+    source: Source = NO_SOURCE
 
     def temperature(self, loss: float, area: float) -> float:
         """Steady temperature of the mechanism, K.

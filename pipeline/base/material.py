@@ -11,6 +11,7 @@ import numpy as np
 
 from camwright.geometry.errors import InputError
 from camwright.pipeline.base.quantities import In, Length, Part, Pressure, Temperature
+from camwright.pipeline.base.source import Source
 
 ROOM = 293.15
 """Temperature of cards and drawings, K: 20 degC, ISO 1."""
@@ -115,7 +116,7 @@ class Material(Part):
     ) = None
     density: Annotated[float, In("kg/m^3", above=0, at_most=1e5)]
     condition: str = ""
-    source: str
+    source: Source
     name: str = ""
 
     def __post_init__(self) -> None:

@@ -172,7 +172,7 @@ def _card_of(table: str, materials: Mapping[str, Material]) -> str:
     """Card of a material that a bush brings; a table of added keys has to name it. "": none."""
     *parents, name = table.split(".")
     card = materials.get(name) if parents == ["materials"] else None
-    return name if card is not None and card.source.startswith(f"card {name}: ") else ""
+    return name if card is not None and card.source.text.startswith(f"card {name}: ") else ""
 
 
 _WORTH = 2  # least number of required keys that a card spares

@@ -35,7 +35,7 @@ from camwright.pipeline.case.requirements_section import (
     Waiver,
 )
 from camwright.pipeline.case.scope_section import Scope
-from camwright.pipeline.case.section import Name, Section, Table, Text, named
+from camwright.pipeline.case.section import Name, Section, StatedSource, Table, Text, named
 from camwright.pipeline.case.toml_text import Tables, tables_of, to_toml
 from camwright.pipeline.case.torque_section import ShaftTorque, torque_files
 from camwright.pipeline.case.workshop_section import Document, Workshop, WorkshopOrder
@@ -93,7 +93,7 @@ class Case(Displayed, Section):
     tolerances: Tolerances = Tolerances()
     workshop: Workshop = Workshop()
     waivers: Annotated[tuple[Waiver, ...], Field(strict=False, max_length=64)] = ()
-    sources: Annotated[dict[str, Text], Field(default_factory=dict, max_length=1024)]
+    sources: Annotated[dict[str, StatedSource], Field(default_factory=dict, max_length=1024)]
     confirmed: Annotated[tuple[Confirmation, ...], Field(strict=False, max_length=1024)] = ()
     load_cases: Annotated[
         tuple[LoadCase, ...], Field(alias="load_case", strict=False, min_length=1, max_length=64)

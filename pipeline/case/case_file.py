@@ -15,6 +15,7 @@ from camwright.pipeline.base.files import inside, parse_toml
 from camwright.pipeline.base.material import Material
 from camwright.pipeline.base.missing_kinds import missing_kind
 from camwright.pipeline.base.quantities import In
+from camwright.pipeline.base.source import NO_SOURCE
 from camwright.pipeline.case.added_tables import with_added, with_examples
 from camwright.pipeline.case.cards.card_filling import fill_cards
 from camwright.pipeline.case.cards.part_table import read_part
@@ -32,7 +33,7 @@ from camwright.pipeline.case.toml_text import Tables, TomlValue, tables_of
 CASE_BYTES = 256 * 1024
 INCLUDE_BYTES = 16 * 1024 * 1024
 SCHEMA_VERSION = 1
-_REFUSED = Material(E=1.0, nu=0.0, yield_strength=1.0, density=1.0, source="refused")
+_REFUSED = Material(E=1.0, nu=0.0, yield_strength=1.0, density=1.0, source=NO_SOURCE)
 
 
 def read_case(path: str | Path) -> Case:

@@ -296,12 +296,12 @@ def tightened_tolerances(case: Case) -> dict[str, tuple[str, str]]:
 
 def _tolerances(case: Case) -> Iterator[Rule]:
     """A tolerance is tighter than its default only with a source."""
-    if case.tolerances.source.strip():
+    if case.tolerances.source:
         return
     for rule in _no_tighter():
         part = rule.key.rpartition(".")[0]
         guide = value_of(case, part) if part.startswith("guides.") else None
-        if guide is None or not guide.source.strip():
+        if guide is None or not guide.source:
             yield rule._replace(limit=f"{rule.limit} without tolerances.source")
 
 

@@ -16,6 +16,7 @@ from pydantic_core import PydanticUndefined
 
 from camwright.pipeline.base.material import Material
 from camwright.pipeline.base.quantities import Count, In, Part
+from camwright.pipeline.base.source import NO_SOURCE, Source
 from camwright.pipeline.base.units import shown
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.limits import LIMITS, Limit
@@ -28,6 +29,7 @@ REQUIRED = "required"
 TABLE = "table"
 """What a key that is a table accepts."""
 MATERIAL = "name of a material"
+SOURCE = "text, or `{ text, confirmed }`"
 """What the key of a material accepts."""
 DIGITS = 6
 """Digits of a default."""
@@ -150,7 +152,7 @@ def _key(table: TableKeys, name: str, words: str, default: str, used: str) -> Ke
         row = LIMITS[name]
         if isinstance(row, Limit):
             value = written(row.default, row.quantity.unit)
-            return Key(path, table.header, words, default, row.title, row.source, value, used)
+            return Key(path, table.header, words, default, row.title, str(row.source), value, used)
         return Key(path, table.header, words, "", row.title, row.found, row.example, used)
     text = _text(table.path, name)
     field = table.section.model_fields.get(name)
@@ -235,14 +237,16 @@ def accepted(field: FieldInfo) -> str:
     if words:
         return " or ".join(f"`{word}`" for word in words)
     names = {
-        str: "text", bool: "`true` or `false`", float: "number", int: "whole number",
-        Material: MATERIAL,
+        str: "text", Source: SOURCE, bool: "`true` or `false`", float: "number",
+        int: "whole number", Material: MATERIAL,
     }  # fmt: skip
     leaves = [
         names.get(hint, getattr(hint, "__name__", ""))
         for hint in _leaves(field.annotation)
         if isinstance(hint, type)
     ]
+    if SOURCE in leaves:
+        return SOURCE  # of a table of sources: the name of each is a text, too
     listed = "list of " if get_origin(field.annotation) in (tuple, list) else ""
     return listed + " or ".join(
         dict.fromkeys(word for word in leaves if word and word != "NoneType")
@@ -280,7 +284,7 @@ def default(field: FieldInfo) -> str:
     if field.is_required():
         return REQUIRED
     value = field.default
-    if value is None or value is PydanticUndefined or value == "":
+    if value is None or value is PydanticUndefined or value in ("", NO_SOURCE):
         return ""
     unit = _unit_of(field)
     if isinstance(value, float):

@@ -17,7 +17,8 @@ from pydantic import Field, create_model, field_validator
 
 from camwright.geometry.lift import CLOSURE_LIMIT
 from camwright.pipeline.base.quantities import In
-from camwright.pipeline.case.section import Section, Text, refusal, suggestion
+from camwright.pipeline.base.source import Source
+from camwright.pipeline.case.section import Section, StatedSource, refusal, suggestion
 
 Sense = Literal["at_most", "at_least"]
 Slope = Literal["whole", "rest", "square", "unit"]
@@ -30,7 +31,7 @@ _INNER_SHARE = In(above=0, below=1)
 _RATIO = In(at_least=1, at_most=100)
 _LIFE = In("h", above=0, at_most=1e6)
 _RESIDUAL = In(above=0, at_most=1e-3)
-_REQUIREMENT = "requirement of the case"
+_REQUIREMENT = Source("requirement of the case", confirmed=True)
 _ROUND_OFF = 1e-9  # of units
 
 
@@ -44,7 +45,7 @@ class Limit:
     title : str        words for shadow prices and conflicts
     quantity : In      unit as written, and bounds
     default : float    SI
-    source : str       clause or book behind the default
+    source : Source       clause or book behind the default
     sense : str        "at_most": a demand at or below it passes; "at_least": at or above it
     slope : str        fall of a utilisation with the limit: "whole" 1/limit, "rest" 1/(1 - limit)
                        for a share that is left, "square" 2/limit where the demand grows with the
@@ -55,7 +56,7 @@ class Limit:
     title: str
     quantity: In
     default: float
-    source: str
+    source: Source
     sense: Sense = "at_most"
     slope: Slope = "whole"
 
@@ -71,7 +72,7 @@ class OpenLimit:
     id: str
     title: str
     quantity: In
-    source: str
+    source: Source
     sense: Sense = "at_most"
     slope: Slope = "whole"
     _: KW_ONLY
@@ -100,268 +101,341 @@ def utilisation_slope(limit: AnyLimit, value: float) -> float:
 
 CLOSURE = Limit(  # as the reader of tables: the last digit of a table in mm with three decimals
     "closure", "lift closure", In("mm", above=0, at_most=1), CLOSURE_LIMIT,
-    "1 um, the resolution of a lift table; fundamental law of cam design, Norton (2009) ch. 2",
+    Source(
+        "1 um, the resolution of a lift table; fundamental law of cam design, Norton (2009) ch. 2",
+        confirmed=True,
+    ),
 )  # fmt: skip
 PRESSURE_ANGLE = Limit(
     "pressure_angle", "pressure angle", In("deg", above=0, below=90), radians(30.0),
-    "30 deg for a translating follower, Rothbart (2004) ch. 6",
+    Source("30 deg for a translating follower, Rothbart (2004) ch. 6", confirmed=True),
 )  # fmt: skip
 RETURN_PRESSURE_ANGLE = OpenLimit(  # friction cannot lock a follower that the spring drives
     "return_pressure_angle", "pressure angle on the return", In("deg", above=0, below=90),
-    "45 deg on the return, where the cam does not drive the follower, textbooks of mechanisms:"
-    " verify; without it that of pressure_angle",
+    Source(
+        "45 deg on the return, where the cam does not drive the follower, textbooks of"
+        " mechanisms; without it that of pressure_angle",
+        confirmed=False,
+    ),
     found="textbooks: the return may be steeper than the rise", example="45 deg",
 )  # fmt: skip
 CURVATURE_RATIO = Limit(
     "curvature_ratio", "convex pitch radius over roller radius", _RATIO, 1.5,
-    "1.5 to 3 roller radii, Norton (2009) ch. 7", "at_least",
+    Source("1.5 to 3 roller radii, Norton (2009) ch. 7", confirmed=True), "at_least",
 )  # fmt: skip
 UNDERCUT_FACTOR = Limit(
     "undercut_factor", "undercut factor", _INNER_SHARE, 0.3,
-    "0: cusp, Rothbart (2004) ch. 6; flat face: Norton (2009) ch. 7", "at_least", "rest",
+    Source(
+        "0: cusp, Rothbart (2004) ch. 6; flat face: Norton (2009) ch. 7",
+        confirmed=True,
+    ), "at_least", "rest",
 )  # fmt: skip
 SECOND_CONTACT_DEPTH = Limit(  # below the form error of ground cams
     "second_contact_depth", "depth of a second contact", In("mm", above=0, at_most=1), 1e-6,
-    "one contact at a time, Rothbart (2004) ch. 6",
+    Source("one contact at a time, Rothbart (2004) ch. 6", confirmed=True),
 )  # fmt: skip
 TOOL_RADIUS = OpenLimit(
     "tool_radius", "tool radius for concave flanks", _LENGTH,
-    "concave radius at least 1.1 tool radii, Rothbart (2004) ch. 6", "at_least",
+    Source(
+        "concave radius at least 1.1 tool radii, Rothbart (2004) ch. 6",
+        confirmed=True,
+    ), "at_least",
     found="machine tool", example="25 mm",
 )  # fmt: skip
 CURVATURE_RATE = OpenLimit(
     "curvature_rate", "rate of change of curvature along the contour",
     In("1/mm^2", above=0, at_most=1e9),
-    "limit of the case, for grinding and wear",
+    Source("limit of the case, for grinding and wear", confirmed=True),
     found="grinding machine", example="0.02 1/mm^2",
 )  # fmt: skip
 MINIMUM_WALL = Limit(  # outer over inner radius of the ring about the bore
     "minimum_wall", "contour radius over bore radius", _RATIO, 1.75,
-    "hub of 1.75 shaft diameters, common practice", "at_least",
+    Source("hub of 1.75 shaft diameters, common practice", confirmed=True), "at_least",
 )  # fmt: skip
 CONTACT_SAFETY = Limit(
     "contact_safety", "safety of the contact pressure", _SAFETY, 1.0,
-    "surface endurance of cam and follower",
+    Source("surface endurance of cam and follower", confirmed=True),
 )  # fmt: skip
 YIELD_SAFETY = Limit(
     "yield_safety", "safety against first yield", _SAFETY, 1.0,
-    "yield strength; p0 = 1.79 Y, Johnson (1985) sec. 6.1",
+    Source("yield strength; p0 = 1.79 Y, Johnson (1985) sec. 6.1", confirmed=True),
 )  # fmt: skip
 SHAKEDOWN_SAFETY = Limit(
     "shakedown_safety", "safety against shakedown", _SAFETY, 1.0,
-    "elastic shakedown, Johnson (1985) sec. 9.2",
+    Source("elastic shakedown, Johnson (1985) sec. 9.2", confirmed=True),
 )  # fmt: skip
 CONTACT_FORCE_MARGIN = Limit(
     "contact_force_margin", "minimum contact force over least spring force", _INNER_SHARE, 0.2,
-    "0.2 to 0.3 of the preload at the highest speed, Norton (2009)", "at_least", "unit",
+    Source(
+        "0.2 to 0.3 of the preload at the highest speed, Norton (2009)",
+        confirmed=True,
+    ), "at_least", "unit",
 )  # fmt: skip
 JUMP = Limit(
     "jump", "inertia over spring force", _SAFETY, 1.0,
-    "F_s + m w^2 s'' > 0, follower jump, Norton (2009) and Rothbart (2004)",
+    Source("F_s + m w^2 s'' > 0, follower jump, Norton (2009) and Rothbart (2004)", confirmed=True),
 )  # fmt: skip
 OVERSPEED = OpenLimit(
-    "overspeed", "overspeed", In("rpm", above=0, below=20_000), "overspeed of the case",
+    "overspeed", "overspeed", In("rpm", above=0, below=20_000),
+    Source("overspeed of the case", confirmed=True),
     found="governor, or engine data sheet: 1.1 times the rated speed", example="3960 rpm",
 )  # fmt: skip
 JUMP_SPEED = Limit(
     "jump_speed", "jump speed over overspeed", _RATIO, 1.3,
-    "1.3 times the overspeed, Norton (2009), Rothbart (2004): verify", "at_least", "square",
+    Source(
+        "1.3 times the overspeed, Norton (2009), Rothbart (2004)",
+        confirmed=False,
+    ), "at_least", "square",
 )  # fmt: skip
 GUIDE_GAP = Limit(
     "guide_gap", "gap at guide A", In("mm", above=0, at_most=1000), 0.001,
-    "1 to 2 mm, shop practice: verify", "at_least",
+    Source("1 to 2 mm, shop practice", confirmed=False), "at_least",
 )  # fmt: skip
 ASSEMBLY_GAP = Limit(
     "assembly_gap", "gap between parts that pass one another",
     In("mm", above=0, at_most=1000), 2e-4,
-    "0.2 mm, tolerance of lengths from 6 to 30 mm, ISO 2768-1 medium: verify", "at_least",
+    Source(
+        "0.2 mm, tolerance of lengths from 6 to 30 mm, ISO 2768-1 medium",
+        confirmed=False,
+    ), "at_least",
 )  # fmt: skip
 CAM_RADIUS = OpenLimit(
-    "cam_radius", "cam radius", _LENGTH, "installation space of the case",
+    "cam_radius", "cam radius", _LENGTH, Source("installation space of the case", confirmed=True),
     found="installation space", example="90 mm",
 )  # fmt: skip
 TARGET_LIFE = OpenLimit(
-    "target_life", "target life", _LIFE, "log10 K = (B - log10 n)/A, Rothbart (2004) eq. 9.15",
+    "target_life", "target life", _LIFE,
+    Source("log10 K = (B - log10 n)/A, Rothbart (2004) eq. 9.15", confirmed=True),
     found="requirement of the machine", example="1000 h",
 )  # fmt: skip
 END_MEAN_LENGTH = Limit(
     "end_mean_length", "length of the mean pressure at an end with a corner",
     In("mm", at_least=0.02, at_most=10), 1e-4,
-    "0.1 mm, about a half-width of contact: the mean over it does not depend on the mesh",
+    Source(
+        "0.1 mm, about a half-width of contact: the mean over it does not depend on the mesh",
+        confirmed=True,
+    ),
 )  # fmt: skip
 AXIS_PARALLELISM = Limit(
     "axis_parallelism", "tilt of the cam axis to that of the follower as made",
     In("mrad", at_least=0, at_most=100), 1e-4,
-    "0.01 mm over 100 mm, bores machined in one setting, ISO 1101, recalled: verify", "at_least",
+    Source(
+        "0.01 mm over 100 mm, bores machined in one setting, ISO 1101",
+        confirmed=False,
+    ), "at_least",
 )  # fmt: skip
 CAM_RUN_OUT = Limit(
     "cam_run_out", "axial run-out of the cam on its shaft at the base circle, full reading",
     In("um", at_least=0, at_most=1000), 5e-6,
-    "5 um, ground seat and shoulder, shop practice, recalled: verify", "at_least",
+    Source("5 um, ground seat and shoulder, shop practice", confirmed=False), "at_least",
 )  # fmt: skip
 ROLLER_CLEARANCE = Limit(  # at either end of it the contact turns the roller back: nothing holds it
     "roller_clearance", "radial clearance in which the roller tilts on its bearing, over its width",
     In("um", at_least=0, at_most=1000), 0.0,
-    "0 um, the contact force seats the roller on its bearing; one that is not seated has that of"
-    " its catalogue, 3 to 18 um of group N at bores of 10 to 18 mm, ISO 5753-1, recalled: verify",
+    Source(
+        "0 um, the contact force seats the roller on its bearing; one that is not seated has"
+        " that of its catalogue, 3 to 18 um of group N at bores of 10 to 18 mm, ISO 5753-1",
+        confirmed=False,
+    ),
     "at_least",
 )  # fmt: skip
 WAVINESS = Limit(
     "waviness", "waviness force over contact force", _SHARE, 0.2,
-    "10 to 20 % of the force, Rothbart (2004) sec. 10.4",
+    Source("10 to 20 % of the force, Rothbart (2004) sec. 10.4", confirmed=True),
 )  # fmt: skip
 CHORD_SHARE = Limit(
     "chord_share", "chord error over profile tolerance", _SHARE, 0.25,
-    "a quarter of the profile tolerance, geometry",
+    Source("a quarter of the profile tolerance, geometry", confirmed=True),
 )  # fmt: skip
 JAM_INDEX = Limit(
     "jam_index", "jam index", _INNER_SHARE, 0.5,
-    "self-locking at 1, Rothbart (2004) eq. 6.8; safety factor 2",
+    Source("self-locking at 1, Rothbart (2004) eq. 6.8; safety factor 2", confirmed=True),
 )  # fmt: skip
 ROLLER_STATIC_SAFETY = Limit(
     "roller_static_safety", "static safety of the roller bearing", _SAFETY, 1.5,
-    "s0 = C0/P0 >= 1.5 with shocks, makers' guides after ISO 76: a roller that leaves the cam or"
-    " crosses its backlash lands with a shock", "at_least",
+    Source(
+        "s0 = C0/P0 >= 1.5 with shocks, makers' guides after ISO 76: a roller that leaves the"
+        " cam or crosses its backlash lands with a shock",
+        confirmed=True,
+    ), "at_least",
 )  # fmt: skip
 ROLLER_LIFE = OpenLimit(
-    "roller_life", "rating life of the roller bearing", _LIFE, "ISO 281", "at_least",
+    "roller_life", "rating life of the roller bearing", _LIFE,
+    Source("ISO 281", confirmed=True), "at_least",
     found="requirement of the machine", example="1000 h",
 )  # fmt: skip
 ROLLER_RELIABILITY = Limit(
     "roller_reliability", "reliability of the rating life", In(at_least=0.9, at_most=0.9995), 0.9,
-    "90 %: rating life of ISO 281:2007, table 12", "at_least",
+    Source("90 %: rating life of ISO 281:2007, table 12", confirmed=True), "at_least",
 )  # fmt: skip
 ROLLER_LOAD_SHARE = Limit(
     "roller_load_share", "roller load over dynamic rating", _SHARE, 0.5,
-    "rating life holds up to P = 0.5 C, ISO 281:2007, 1: verify",
+    Source("rating life holds up to P = 0.5 C, ISO 281:2007, 1", confirmed=False),
 )  # fmt: skip
 ROLLER_SPEED_SHARE = Limit(
     "roller_speed_share", "roller speed over limiting speed", _SHARE, 0.7,
-    "share of the limiting speed",
+    Source("share of the limiting speed", confirmed=True),
 )  # fmt: skip
 PIN_SHARE = Limit(
-    "pin_share", "pin stress over yield strength", _SHARE, 0.6, "0.6 of the yield strength",
+    "pin_share", "pin stress over yield strength", _SHARE, 0.6,
+    Source("0.6 of the yield strength", confirmed=True),
 )  # fmt: skip
 PIN_FATIGUE_SAFETY = Limit(
     "pin_fatigue_safety", "fatigue safety of the roller pin", _SAFETY, 1.5,
-    "Goodman, Shigley ch. 6; 1.5 covers size and surface of a ground pin: verify", "at_least",
+    Source(
+        "Goodman, Shigley ch. 6; 1.5 covers size and surface of a ground pin",
+        confirmed=False,
+    ), "at_least",
 )  # fmt: skip
 PIN_PRESSURE_SHARE = Limit(
     "pin_pressure_share", "pressure in the pin's seats over tensile strength", _SHARE, 0.25,
-    "0.25 R_m under pulsating load in a seat without sliding, Roloff/Matek, table of pins: verify",
+    Source(
+        "0.25 R_m under pulsating load in a seat without sliding, Roloff/Matek, table of pins",
+        confirmed=False,
+    ),
 )  # fmt: skip
 FOLLOWER_MASS_RATIO = Limit(
     "follower_mass_ratio", "drawn mass over stated mass of the follower", In(above=0, at_most=2),
-    1.03, "3 %, scatter of weighed parts, shop practice: verify",
+    1.03, Source("3 %, scatter of weighed parts, shop practice", confirmed=False),
 )  # fmt: skip
 SPRING_FATIGUE = Limit(
     "spring_fatigue", "fatigue safety of the spring", _SAFETY, 1.2,
-    "Goodman line through Zimmerli's point, infinite life, Shigley ch. 10", "at_least",
+    Source(
+        "Goodman line through Zimmerli's point, infinite life, Shigley ch. 10",
+        confirmed=True,
+    ), "at_least",
 )  # fmt: skip
 SPRING_SOLID = Limit(
     "spring_solid", "solid-height clearance of the spring", In(above=0, at_most=10), 0.1,
-    "10 to 15 % of the greatest working deflection, Shigley ch. 10", "at_least",
+    Source(
+        "10 to 15 % of the greatest working deflection, Shigley ch. 10",
+        confirmed=True,
+    ), "at_least",
 )  # fmt: skip
 SPRING_SURGE = Limit(
     "spring_surge", "surge frequency over cam frequency", In(above=0, at_most=1e4), 13.0,
-    "13 to 20 times the cam's frequency, Norton (2009), Shigley ch. 10", "at_least",
+    Source(
+        "13 to 20 times the cam's frequency, Norton (2009), Shigley ch. 10",
+        confirmed=True,
+    ), "at_least",
 )  # fmt: skip
 KEY_SHARE = Limit(
     "key_share", "key stress over yield strength", _SHARE, 0.9,
-    "0.9 R_e of the weaker part, DIN 6892 method C: verify",
+    Source("0.9 R_e of the weaker part, DIN 6892 method C", confirmed=False),
 )  # fmt: skip
 KEY_REVERSAL = Limit(
     "key_reversal", "share of the key stress under reversed torque", _SHARE, 0.5,
-    "half under alternating torque, textbooks of machine elements; DIN 6892 has a curve by the"
-    " number of reversals: verify",
+    Source(
+        "half under alternating torque, textbooks of machine elements; DIN 6892 has a curve by"
+        " the number of reversals",
+        confirmed=False,
+    ),
 )  # fmt: skip
 KEYWAY_SAFETY = Limit(
     "keyway_safety", "fatigue safety of the keyway root in the cam", _SAFETY, 1.5,
-    "Goodman, Shigley sec. 6-12: verify", "at_least",
+    Source("Goodman, Shigley sec. 6-12", confirmed=False), "at_least",
 )  # fmt: skip
 CAM_SLIP = Limit(
     "cam_slip", "slip torque of the cam seat over its torque", _SAFETY, 1.5,
-    "1.5 against slip under alternating torque, DIN 7190: verify", "at_least",
+    Source("1.5 against slip under alternating torque, DIN 7190", confirmed=False), "at_least",
 )  # fmt: skip
 BORE_SHARE = Limit(
     "bore_share", "bore pressure over tensile strength", _SHARE, 0.25,
-    "0.25 R_m of a pulsating joint without sliding, Roloff/Matek, bolts and pins: verify",
+    Source(
+        "0.25 R_m of a pulsating joint without sliding, Roloff/Matek, bolts and pins",
+        confirmed=False,
+    ),
 )  # fmt: skip
 SHAFT_SAFETY = Limit(
     "shaft_safety", "fatigue safety of the camshaft", _SAFETY, 1.5,
-    "Goodman, Shigley sec. 7-4; notch factors, table 7-1: verify", "at_least",
+    Source("Goodman, Shigley sec. 7-4; notch factors, table 7-1", confirmed=False), "at_least",
 )  # fmt: skip
 SHAFT_RELIABILITY = Limit(
     "shaft_reliability", "reliability of the fatigue strength of the camshaft",
-    In(at_least=0.5, below=1), 0.99, "99 %, Shigley table 6-5: verify", "at_least", "rest",
+    In(at_least=0.5, below=1), 0.99,
+    Source("99 %, Shigley table 6-5", confirmed=False), "at_least", "rest",
 )  # fmt: skip
 SHAFT_YIELD_SAFETY = Limit(
     "shaft_yield_safety", "safety of the camshaft against yield", _SAFETY, 1.2,
-    "1.2, DIN 743-1: verify",
+    Source("1.2, DIN 743-1", confirmed=False),
 )  # fmt: skip
 SHAFT_DEFLECTION = Limit(
     "shaft_deflection", "deflection at the cam over bearing spacing", _SHARE, 1.0 / 3000.0,
-    "l/3000, general machinery, Roloff/Matek: verify",
+    Source("l/3000, general machinery, Roloff/Matek", confirmed=False),
 )  # fmt: skip
 SHAFT_SLOPE = Limit(
     "shaft_slope", "slope of the camshaft at a bearing", In("mrad", above=0, at_most=100), 1e-3,
-    "0.001 to 0.003 rad of deep-groove ball bearings, Shigley table 7-2: verify",
+    Source("0.001 to 0.003 rad of deep-groove ball bearings, Shigley table 7-2", confirmed=False),
 )  # fmt: skip
 SHAFT_BEARING_STATIC_SAFETY = Limit(
     "shaft_bearing_static_safety", "static safety of the camshaft bearings", _SAFETY, 1.5,
-    "s0 = C0/P0, ISO 76; 1.5 under shocks, bearing makers: verify", "at_least",
+    Source("s0 = C0/P0, ISO 76; 1.5 under shocks, bearing makers", confirmed=False), "at_least",
 )  # fmt: skip
 SHAFT_BEARING_LIFE = OpenLimit(
-    "shaft_bearing_life", "rating life of the camshaft bearings", _LIFE, "ISO 281", "at_least",
+    "shaft_bearing_life", "rating life of the camshaft bearings", _LIFE,
+    Source("ISO 281", confirmed=True), "at_least",
     found="requirement of the machine", example="1000 h",
 )  # fmt: skip
 GEAR_BENDING_SAFETY = Limit(
     "gear_bending_safety", "safety of tooth root bending", _SAFETY, 1.4,
-    "Lewis (1892); 0.7 for a reversed load, ISO 6336-3: verify",
+    Source("Lewis (1892); 0.7 for a reversed load, ISO 6336-3", confirmed=False),
 )  # fmt: skip
 GEAR_CONTACT_SAFETY = Limit(
-    "gear_contact_safety", "safety of tooth contact", _SAFETY, 1.0, "ISO 6336-2: verify",
+    "gear_contact_safety", "safety of tooth contact", _SAFETY, 1.0,
+    Source("ISO 6336-2", confirmed=False),
 )  # fmt: skip
 UNBALANCE = Limit(
     "unbalance", "unbalance of the camshaft", In("mm/s", above=0, at_most=1e4), 6.3e-3,
-    "e w of grade G 6.3, general machinery, ISO 21940-11: verify",
+    Source("e w of grade G 6.3, general machinery, ISO 21940-11", confirmed=False),
 )  # fmt: skip
 FILM_RATIO = Limit(
     "film_ratio", "lambda ratio", In(above=0, at_most=100), 1.0,
-    "below 1 boundary, 1 to 3 mixed, above 3 full film", "at_least",
+    Source("below 1 boundary, 1 to 3 mixed, above 3 full film", confirmed=True), "at_least",
 )  # fmt: skip
 TRACTION_SHARE = Limit(
     "traction_share", "traction demand over friction", In(above=0, at_most=1), 0.5,
-    "half of friction, Rothbart, Cam Design Handbook (2004), eq. 10.7: verify",
+    Source("half of friction, Rothbart, Cam Design Handbook (2004), eq. 10.7", confirmed=False),
 )  # fmt: skip
 FATIGUE_SAFETY = Limit(
     "fatigue_safety", "safety against subsurface fatigue", _SAFETY, 1.0,
-    "fatigue limit in torsion",
+    Source("fatigue limit in torsion", confirmed=True),
 )  # fmt: skip
 CASE_SAFETY = Limit(
-    "case_safety", "safety of case and core", _SAFETY, 1.0, "yield strengths of case and core",
+    "case_safety", "safety of case and core", _SAFETY, 1.0,
+    Source("yield strengths of case and core", confirmed=True),
 )  # fmt: skip
 CASE_DEPTH_RATIO = Limit(
     "case_depth_ratio", "case depth over depth of maximum shear", _SAFETY, 2.0,
-    "2 to 3 times the depth, shop practice: verify", "at_least",
+    Source("2 to 3 times the depth, shop practice", confirmed=False), "at_least",
 )  # fmt: skip
 BORE_SAFETY = Limit(
-    "bore_safety", "safety of the bore", _SAFETY, 1.0, "yield strength of the core",
+    "bore_safety", "safety of the bore", _SAFETY, 1.0,
+    Source("yield strength of the core", confirmed=True),
 )  # fmt: skip
 VISCOSITY_RATIO = Limit(
     "viscosity_ratio", "viscosity ratio", _SAFETY, 0.1,
-    "ISO 281: a_ISO holds from kappa = 0.1 on, and counts a thin film", "at_least",
+    Source(
+        "ISO 281: a_ISO holds from kappa = 0.1 on, and counts a thin film",
+        confirmed=True,
+    ), "at_least",
 )  # fmt: skip
 WEAR_DEPTH = Limit(
-    "wear_depth", "wear depth", _LENGTH, 5e-5, "0.05 mm, shop practice: verify; Archard (1953)",
+    "wear_depth", "wear depth", _LENGTH, 5e-5,
+    Source("0.05 mm, shop practice; Archard (1953)", confirmed=False),
 )  # fmt: skip
 ACCELERATION_STEP = Limit(  # of the range: less may be rounding of a table to 1 um
     "acceleration_step", "acceleration step", _SHARE, 0.2,
-    "finite jerk, fundamental law of cam design, Norton (2009) ch. 2; resolution of a table",
+    Source(
+        "finite jerk, fundamental law of cam design, Norton (2009) ch. 2; resolution of a table",
+        confirmed=True,
+    ),
 )  # fmt: skip
 GUIDE_LENGTH = Limit(
     "guide_length", "guided length over overhang", _SAFETY, 2.0,
-    "bearing length at least twice the overhang, Rothbart (2004) ch. 6", "at_least",
+    Source(
+        "bearing length at least twice the overhang, Rothbart (2004) ch. 6",
+        confirmed=True,
+    ), "at_least",
 )  # fmt: skip
 TORQUE_REDUCTION = Limit(
     "torque_reduction", "torque ripple reduction", _INNER_SHARE, 0.4,
@@ -369,7 +443,10 @@ TORQUE_REDUCTION = Limit(
 )  # fmt: skip
 DRIVE_TORQUE = OpenLimit(
     "drive_torque", "torque that drives the cam", In("N m", above=0, at_most=1e8),
-    "torque of the drive", found="drive or motor data sheet", example="10 N m",
+    Source(
+        "torque of the drive",
+        confirmed=True,
+    ), found="drive or motor data sheet", example="10 N m",
 )  # fmt: skip
 SPEED_REDUCTION = OpenLimit(
     "speed_reduction", "speed ripple reduction", _INNER_SHARE,
@@ -378,33 +455,49 @@ SPEED_REDUCTION = OpenLimit(
 )  # fmt: skip
 CONTACT_TORQUE = Limit(
     "contact_torque", "cam torque from contact pressures", In(above=0, at_most=0.01), 1e-4,
-    "sum of moments, at most 1 % from contact pressures, ASME V&V 10-2019; flat patch: 1e-4",
+    Source(
+        "sum of moments, at most 1 % from contact pressures, ASME V&V 10-2019; flat patch: 1e-4",
+        confirmed=True,
+    ),
 )  # fmt: skip
 FRICTION_POWER = Limit(
     "friction_power", "friction power", _SHARE, 0.2,
-    "a fifth of the power that an engine indicates at idle, all of it friction, goes into its valve"
-    " train, Wong and Tung, Friction 4 (2016) 1: verify",
+    Source(
+        "a fifth of the power that an engine indicates at idle, all of it friction, goes into"
+        " its valve train, Wong and Tung, Friction 4 (2016) 1",
+        confirmed=False,
+    ),
 )  # fmt: skip
 SURFACE_TEMPERATURE = Limit(
     "surface_temperature", "temperature of the surfaces", In("K", above=0, at_most=5000), 423.15,
-    "150 degC: hardened steel is tempered from 150 to 180 degC, and the adsorbed layer of a mineral"
-    " oil without additives, on which a contact without a full film rests, is lost at 120 to 150"
-    " degC, textbooks, recalled: verify",
+    Source(
+        "150 degC: hardened steel is tempered from 150 to 180 degC, and the adsorbed layer of a"
+        " mineral oil without additives, on which a contact without a full film rests, is lost"
+        " at 120 to 150 degC, textbooks",
+        confirmed=False,
+    ),
 )  # fmt: skip
 FRICTION_BALANCE = Limit(
-    "friction_balance", "friction balance", _RESIDUAL, 1e-6, "conservation of energy over one turn",
+    "friction_balance", "friction balance", _RESIDUAL, 1e-6,
+    Source("conservation of energy over one turn", confirmed=True),
 )  # fmt: skip
 EQUILIBRIUM = Limit(
     "equilibrium", "equilibrium residual", _RESIDUAL, 1e-9,
-    "equilibrium and contact conditions, ASME V&V 10-2019, solution verification",
+    Source(
+        "equilibrium and contact conditions, ASME V&V 10-2019, solution verification",
+        confirmed=True,
+    ),
 )  # fmt: skip
 COMPLEMENTARITY = Limit(
     "complementarity", "contact law residual", _RESIDUAL, 1e-9,
-    "equilibrium and contact conditions, ASME V&V 10-2019, solution verification",
+    Source(
+        "equilibrium and contact conditions, ASME V&V 10-2019, solution verification",
+        confirmed=True,
+    ),
 )  # fmt: skip
 MESH_UNCERTAINTY = Limit(
     "mesh_uncertainty", "discretisation uncertainty", In(above=0, at_most=1), 0.03,
-    "grid convergence index, ASME V&V 20-2009, sec. 2-4; <= 3 %",
+    Source("grid convergence index, ASME V&V 20-2009, sec. 2-4; <= 3 %", confirmed=True),
 )  # fmt: skip
 
 LIMITS: Mapping[str, AnyLimit] = MappingProxyType(
@@ -434,7 +527,7 @@ def is_weaker(limit: AnyLimit, value: float | None) -> bool:
 class LimitValues(Section):
     """Limits of the checks."""
 
-    sources: dict[str, Text] = Field(default_factory=dict)
+    sources: dict[str, StatedSource] = Field(default_factory=dict)
 
     @overload
     def __getitem__(self, limit: Limit) -> float: ...
@@ -445,13 +538,13 @@ class LimitValues(Section):
         value: float | None = getattr(self, limit.id)
         return value
 
-    def source(self, limit: AnyLimit) -> str:
+    def source(self, limit: AnyLimit) -> Source:
         """Source of a value: that of the case, else of the default."""
         return self.sources.get(limit.id) or limit.source
 
     @field_validator("sources")
     @classmethod
-    def _name_limits(cls, sources: dict[str, str]) -> dict[str, str]:
+    def _name_limits(cls, sources: dict[str, Source]) -> dict[str, Source]:
         for key in sources:
             if key not in LIMITS:
                 raise refusal(f"a known limit{suggestion(key, LIMITS)}", unknown_key=key)

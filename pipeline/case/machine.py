@@ -12,6 +12,7 @@ from camwright.geometry.errors import InputError
 from camwright.pipeline.base.cooling import Cooling
 from camwright.pipeline.base.external_force import ExternalForce
 from camwright.pipeline.base.material import Material
+from camwright.pipeline.base.source import NO_SOURCE
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.external_load import external_force
 from camwright.pipeline.case.limits import (
@@ -259,7 +260,7 @@ class Machine(Displayed):
             reach = high if side > 0 else -low
             bodies = []
             for part, depth, middle in zip(parts, depths, (0.0, offset), strict=True):
-                end = replace(part.end or BodyEnd(), source="")
+                end = replace(part.end or BodyEnd(), source=NO_SOURCE)
                 overhang = 0.5 * part.line_width + side * middle - reach
                 whole = length + 2.0 * (overhang + end.size)
                 material = Elastic(part.material.E, part.material.nu)

@@ -13,7 +13,8 @@ from camwright.pipeline.base import units
 from camwright.pipeline.base.external_force import STANDARD_GRAVITY
 from camwright.pipeline.base.material import Material
 from camwright.pipeline.base.quantities import FileName, In, Length, Mass, Share
-from camwright.pipeline.case.section import MaterialName, Section, Table, Text
+from camwright.pipeline.base.source import NO_SOURCE
+from camwright.pipeline.case.section import MaterialName, Section, StatedSource, Table
 from camwright.pipeline.follower.flat_face import FlatFace
 
 
@@ -21,7 +22,7 @@ class ValveTrain(Section):
     """Requests the machine motion of a valve cam; the cam mass is taken as that of a disc."""
 
     cam_mass: Mass
-    source: Text = ""
+    source: StatedSource = NO_SOURCE
 
 
 class Follower(Section):
@@ -58,7 +59,7 @@ class Follower(Section):
     external_force: Annotated[float, In("N", at_least=-1e9, at_most=1e9)] | None = None
     external_force_file: FileName | None = None
     gravity_angle: Annotated[float, In("deg", at_least=0, at_most=180)] | None = None
-    source: Text = ""
+    source: StatedSource = NO_SOURCE
 
     @model_validator(mode="after")
     def _has_its_face(self) -> Self:

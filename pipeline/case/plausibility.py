@@ -14,6 +14,7 @@ from typing import Any
 
 import numpy as np
 
+from camwright.pipeline.base.source import Source, source_in
 from camwright.pipeline.base.units import celsius, in_unit, shown
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_values import text_of, value_of
@@ -38,7 +39,7 @@ class Usual:
     unit: str
     low: float
     high: float
-    source: str
+    source: Source
     keys: Sequence[str] = ()
 
     def finding(self, title: str, value: float, text: str) -> Implied | None:
@@ -46,7 +47,7 @@ class Usual:
         stated = in_unit(value, self.unit)
         nearest = min(max(stated, self.low), self.high)
         unit = f" {self.unit}".replace(" -", "")
-        words = f"{text}, usually {self.low:g} to {self.high:g}{unit} ({self.source})"
+        words = f"{text}, usually {self.low:g} to {self.high:g}{unit} ({self.source.text})"
         made = Implied(PLAUSIBILITY, title, stated, nearest, self.unit, words)
         return made if made.flagged else None
 
@@ -269,9 +270,22 @@ def _table() -> Mapping[str, Any]:
 
 
 def _usual(name: str) -> Usual:
-    return Usual(**_table()[name])
+    return _range(_table()[name])
 
 
 @cache
 def _ranges() -> tuple[Usual, ...]:
-    return tuple(Usual(**row) for row in _table()["usual"])
+    return tuple(map(_range, _table()["usual"]))
+
+
+def _range(row: Mapping[str, Any]) -> Usual:
+    return Usual(**{**row, "source": source_in(row["source"])})
+
+
+def usual_sources() -> Iterator[tuple[str, Source]]:
+    """Name and source of each usual range, by its first key or its own name."""
+    for row in _ranges():
+        yield f"usual_ranges.{row.keys[0]}", row.source
+    for name, row in _table().items():
+        if name != "usual":
+            yield f"usual_ranges.{name}", _range(row).source

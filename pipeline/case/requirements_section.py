@@ -21,8 +21,8 @@ from camwright.pipeline.base.quantities import (
     Rate,
     Ratio,
 )
-from camwright.pipeline.case.section import Name, Section, Text
-from camwright.pipeline.case.value_sources import confirms
+from camwright.pipeline.base.source import NO_SOURCE
+from camwright.pipeline.case.section import Name, Section, StatedSource, Text
 
 
 class Mechanism(Section):
@@ -111,7 +111,7 @@ class Smoothing(Section):
     jerk_weight: Annotated[float, In(at_least=0, at_most=1e3)] = 1e-5
     correction_margin: Annotated[float, In(at_least=0, at_most=1)] = 0.03
     corners: bool = False
-    source: Text = ""
+    source: StatedSource = NO_SOURCE
 
     @property
     def of_spring(self) -> set[str]:
@@ -184,22 +184,22 @@ class Waiver(Section):
 
 
 class Confirmation(Section):
-    """A value with a recalled source that a source, or a named person on a date, confirms.
+    """A value to be confirmed that a source, or a named person on a date, confirms.
 
     value is its dotted name, such as ``materials.s355.endurance_pressure``.
     """
 
     value: Annotated[str, Characters(1, 200)]
-    source: Text = ""
+    source: StatedSource = NO_SOURCE
     name: Text = ""
     date: dt.date | None = None
 
     @model_validator(mode="after")
     def _confirms(self) -> Self:
         signed = bool(self.name.strip()) and self.date is not None
-        if not signed and not confirms(self.source):
-            shown = self.source or "missing"
-            limit = "a source that is neither recalled nor assumed, or a name and a date"
+        if not signed and not self.source.confirmed:
+            shown = str(self.source) or "missing"
+            limit = "a source that confirms the value, or a name and a date"
             raise InputError(f"confirmed.{self.value}.source", shown, limit)
         return self
 
@@ -219,7 +219,7 @@ class Tolerances(Section):
     phase: Annotated[float, In("deg", above=0, at_most=90)] = radians(1.0)
     samples: Annotated[int, Field(ge=0, le=1000)] = 16
     seed: Annotated[int, Field(ge=0, le=2**31)] = 1
-    source: Text = ""
+    source: StatedSource = NO_SOURCE
 
 
 STANDSTILL, OVER_SPEED = "standstill", "over-speed"
@@ -252,4 +252,4 @@ class LoadCase(Section):
     speed_reduction: Annotated[float, In(at_least=0, below=1)] | None = None
     duty: Annotated[float, In(at_least=0, at_most=1)] | None = None
     power: Annotated[float, In("W", above=0, at_most=1e9)] | None = None
-    source: Text = ""
+    source: StatedSource = NO_SOURCE

@@ -12,6 +12,7 @@ from pydantic import Field, model_validator
 
 from camwright.geometry.errors import InputError
 from camwright.pipeline.base import units
+from camwright.pipeline.base.source import Source, entry_of
 from camwright.pipeline.case.section import Section, Text
 from camwright.pipeline.case.toml_text import Tables, TomlValue
 
@@ -114,6 +115,14 @@ class Scope(Section):
 
 
 _STAND_IN = "assumed, as the scope leaves out the {}"
+
+
+def _stand_in(words: str) -> TomlValue:
+    """Source of a value that stands in for what the scope leaves out."""
+    stated: TomlValue = entry_of(Source(_STAND_IN.format(words), confirmed=False))
+    return stated
+
+
 _OVERHANG = "overhang_at_max_lift"
 _STEM = 10e-3  # m, where the case does not state its diameter
 _SHORT = "30 mm", "10 mm"  # overhang of a stem, thickness of a face, that are left out
@@ -167,8 +176,7 @@ def with_stand_ins(tables: Tables) -> Tables:
         radius = _length(wheel, "radius", 2.0 * _STEM)
         whole.put("roller_bearing", "roller.hub_radius", units.format(_HALF * radius, "mm"))
         if "bearing" not in wheel:
-            words = _STAND_IN.format(PART_WORDS["roller_bearing"])
-            wheel["bearing"] = {"name": "none", "source": words}
+            wheel["bearing"] = {"name": "none", "source": _stand_in(PART_WORDS["roller_bearing"])}
     if "bore" in left_out and cam:
         base = _length(cam, "prime_radius", 2.0 * _STEM) - _length(wheel, "radius", 0.0)
         whole.put("bore", "cam.bore_radius", units.format(_HALF * abs(base), "mm"))
@@ -180,7 +188,7 @@ def with_stand_ins(tables: Tables) -> Tables:
         whole.put("gear", "mechanism.gear_ratio", 1.0)
     if "guides" in left_out and "guides" not in tables:
         whole.tables["guides"] = _guides(follower)
-        whole.sources["guides.spacing"] = _STAND_IN.format(PART_WORDS["guides"])
+        whole.sources["guides.spacing"] = _stand_in(PART_WORDS["guides"])
     return whole.with_sources()
 
 
@@ -188,7 +196,7 @@ class _StandIns(NamedTuple):
     """Tables of a case with the stand-ins so far, and their sources by key."""
 
     tables: Tables
-    sources: dict[str, str]
+    sources: Tables
 
     def table(self, name: str) -> Tables:
         """A table of the case; an empty one where there is none."""
@@ -203,7 +211,7 @@ class _StandIns(NamedTuple):
         table = self.table(path)
         if name not in table and value is not None:
             table[name] = value
-            self.sources[key] = _STAND_IN.format(SCOPE_WORDS[part])
+            self.sources[key] = _stand_in(SCOPE_WORDS[part])
 
     def with_sources(self) -> Tables:
         """The tables with the sources; those of limits stand below them."""
@@ -237,7 +245,7 @@ def is_stand_in(tables: Tables, key: str) -> bool:
     first, _, rest = key.partition(".")
     guides = tables.get(first) if first == "guides" else None
     side = guides.get(rest.partition(".")[0]) if isinstance(guides, dict) else None
-    return isinstance(side, dict) and side.get("source") == _STAND_IN.format(PART_WORDS["guides"])
+    return isinstance(side, dict) and side.get("source") == _stand_in(PART_WORDS["guides"])
 
 
 def _guides(stem: Tables) -> Tables:
@@ -247,7 +255,7 @@ def _guides(stem: Tables) -> Tables:
         "length": units.format(min(diameter, 2.0 * overhang), "mm"),
         "diameter": stem.get("stem_diameter", units.format(_STEM, "mm")),
         "friction": 0.0,
-        "source": _STAND_IN.format(PART_WORDS["guides"]),
+        "source": _stand_in(PART_WORDS["guides"]),
     }
     if "stem_material" in stem:
         guide["material"] = stem["stem_material"]

@@ -28,6 +28,7 @@ from pydantic import (
     ModelWrapValidatorHandler,
     ValidationError,
     ValidationInfo,
+    ValidatorFunctionWrapHandler,
     create_model,
     model_validator,
 )
@@ -36,6 +37,7 @@ from pydantic_core import CoreSchema, InitErrorDetails, PydanticCustomError, cor
 from camwright.geometry.errors import InputError
 from camwright.pipeline.base.material import Material
 from camwright.pipeline.base.quantities import Characters, Part
+from camwright.pipeline.base.source import FORM, Source, source_in
 
 SAFE_NAME = re.compile(r"[A-Za-z0-9](?:[A-Za-z0-9_.-]{0,38}[A-Za-z0-9_-])?")
 
@@ -55,6 +57,27 @@ def _safe_name(name: str) -> str:
 
 Name = Annotated[str, AfterValidator(_safe_name)]
 Text = Annotated[str, Characters(0, 10_000)]
+
+
+@dataclass(frozen=True)
+class FromText:
+    """Marks a `Source` that is written as a text, or as a table of text and confirmation."""
+
+    def __get_pydantic_core_schema__(
+        self, source: type[Source], handler: GetCoreSchemaHandler
+    ) -> CoreSchema:
+        def made(entry: object, text: ValidatorFunctionWrapHandler) -> Source:
+            read = entry if isinstance(entry, Source) else source_in(entry)
+            if isinstance(entry, dict) and not read:
+                raise refusal(FORM)
+            text(entry if isinstance(entry, str) or not read else read.text)
+            return read
+
+        return core_schema.no_info_wrap_validator_function(made, handler.generate_schema(Text))
+
+
+StatedSource = Annotated[Source, FromText()]
+"""A field with the source of the values of its table."""
 
 
 class Section(BaseModel):
@@ -185,6 +208,8 @@ def _in_section(hint: Any) -> Any:
     """The type of a part's field as a section reads it."""
     if hint is str:
         return Text
+    if hint is Source:
+        return StatedSource
     if hint is Material:
         return Annotated[Material, MaterialName()]
     if isinstance(hint, type) and issubclass(hint, Part):

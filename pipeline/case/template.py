@@ -337,7 +337,7 @@ contact_limit = "1500 MPa"
 pinion_bending_limit = "430 MPa"
 pinion_contact_limit = "1500 MPa"
 machine_shaft_diameter = "16 mm"      # beside the cam; 0 mm where it ends at its pinion
-source = "ISO 6336-5, case-hardened steel, quality MQ, recalled: verify"
+source = { text = "ISO 6336-5, case-hardened steel, quality MQ", confirmed = false }
 
 [roller]
 radius = "23.5 mm"

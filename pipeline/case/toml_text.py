@@ -12,6 +12,7 @@ from camwright.geometry.errors import InputError
 from camwright.pipeline.base import units
 from camwright.pipeline.base.material import Material
 from camwright.pipeline.base.quantities import In, Part
+from camwright.pipeline.base.source import Source, entry_of
 from camwright.pipeline.case.section import Section, section_of
 
 TomlValue: TypeAlias = (
@@ -21,7 +22,7 @@ TomlValue: TypeAlias = (
 Tables: TypeAlias = dict[str, TomlValue]
 """A table of a TOML file, or the tables of a whole file."""
 _FieldValue: TypeAlias = (
-    "str | int | float | bool | dt.date | Section | Part | tuple[_FieldValue, ...]"
+    "str | int | float | bool | dt.date | Source | Section | Part | tuple[_FieldValue, ...]"
     " | Mapping[str, _FieldValue]"
 )
 
@@ -66,6 +67,9 @@ def table_in(tables: Tables, name: str) -> Tables:
 def _written(value: _FieldValue, unit: str | None, renamed: Mapping[str, str] | None) -> TomlValue:
     if isinstance(value, Material):
         return value.name
+    if isinstance(value, Source):
+        stated: TomlValue = entry_of(value)
+        return stated
     if isinstance(value, (Section, Part)):
         return tables_of(value, renamed)
     if isinstance(value, Mapping):

@@ -7,18 +7,18 @@ entry of ``[sources]`` under that name, else that of its limit, else the ``sourc
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from difflib import get_close_matches
 from fnmatch import fnmatchcase
 
 from camwright.geometry.errors import InputError
+from camwright.pipeline.base.source import NO_SOURCE, Source, source_in
 from camwright.pipeline.case.limits import LIMITS
 from camwright.pipeline.case.toml_text import Tables, TomlValue
 
-UNSTATED = "stated without a source: verify"
+UNSTATED = Source("stated without a source", confirmed=False)
 OF_A_CHECK = "checks."
 """Prefix of a value that the program holds: the limit that a check declares."""
-_OPEN = re.compile(r"\b(recalled|verify|assum\w*|estimat\w*)\b", re.IGNORECASE)
 _WILD = re.compile(r"[*?[]")
 _WORDS = ("source", "sources", "name", "condition")
 _NO_VALUES = (
@@ -31,11 +31,6 @@ _NO_VALUES = (
     "scope",
     "document",
 )
-
-
-def confirms(source: str) -> bool:
-    """Whether a text names a source: neither empty, nor recalled, assumed, estimated or open."""
-    return bool(source.strip()) and _OPEN.search(source) is None
 
 
 def values_in(entry: TomlValue, name: str = "") -> Iterator[str]:
@@ -76,17 +71,17 @@ def values_at(tables: Tables, path: str) -> tuple[str, ...]:
     )
 
 
-def source_of(tables: Tables, value: str) -> str:
-    """Source of a value by its dotted name; empty if none is stated."""
+def source_of(tables: Tables, value: str) -> Source:
+    """Source of a value by its dotted name; none if none is stated."""
     *parents, key = value.split(".")
     table: TomlValue = tables
     for part in parents:
         table = table.get(part, {}) if isinstance(table, dict) else {}
-    stated: list[TomlValue] = [_entry(tables.get("sources"), value)]
+    stated = [source_in(_entry(tables.get("sources"), value))]
     if parents == ["limits"]:
-        stated += [_entry(_entry(table, "sources"), key), LIMITS[key].source]
-    stated.append(_entry(table, "source"))
-    return next((text for text in stated if isinstance(text, str) and text), "")
+        stated += [source_in(_entry(_entry(table, "sources"), key)), LIMITS[key].source]
+    stated.append(source_in(_entry(table, "source")))
+    return next(filter(None, stated), NO_SOURCE)
 
 
 def _entry(table: TomlValue | None, key: str) -> TomlValue:
@@ -107,13 +102,13 @@ def require_known(tables: Tables, field: str, value: str) -> None:
         raise InputError(field, value, f"a value of the case{hint}")
 
 
-def put_sources(case: Tables, field: str, table: TomlValue, words: Mapping[str, str]) -> None:
+def put_sources(case: Tables, field: str, table: TomlValue, entries: Tables) -> None:
     """Add the sources of the numbers of a table, unless the case states them itself."""
     stated, numbers = case.setdefault("sources", {}), set(values_in(table, field))
     if isinstance(stated, dict):
-        for key, text in words.items():
+        for key, entry in entries.items():
             if f"{field}.{key}" in numbers:
-                stated.setdefault(f"{field}.{key}", text)
+                stated.setdefault(f"{field}.{key}", entry)
 
 
 def forget_sources(tables: Tables, part: str) -> None:

@@ -15,6 +15,7 @@ import numpy as np
 from camwright.geometry.arrays import Array, Value
 from camwright.geometry.errors import InputError
 from camwright.pipeline.base import levers
+from camwright.pipeline.base.source import Source
 from camwright.pipeline.base.stem_layout import SEAT_MOST, StemLayout, decided
 from camwright.pipeline.base.units import shown
 from camwright.pipeline.case.limits import ASSEMBLY_GAP
@@ -196,7 +197,7 @@ def _of_teeth(demand: Demand, solution: Solution) -> Demand:
 @check(
     title="Ratio of the teeth vs. ratio of the mechanism",
     unit="-",
-    source="kinematics of gear and pinion",
+    source=Source("kinematics of gear and pinion", confirmed=True),
     tier=Tier.SCREENING,
     method="teeth of the gear over those that the ratio needs, less 1",
     formula="|z/(i z_p) - 1| <= 1e-5; z, z_p: camshaft.gear.teeth and pinion_teeth, i:"
@@ -237,8 +238,10 @@ def _with_module(demand: Demand, solution: Solution) -> Demand:
     title="Least number of teeth against undercut",
     unit="-",
     sense="at_least",
-    source="14 teeth of 20 deg, practical limit of unshifted full-depth teeth, Roloff/Matek, gears:"
-    " verify",
+    source=Source(
+        "14 teeth of 20 deg, practical limit of unshifted full-depth teeth, Roloff/Matek, gears",
+        confirmed=False,
+    ),
     tier=Tier.SCREENING,
     method="fewer teeth of gear and pinion; the limit as 1/sin^2 of the pressure angle",
     formula="min(z_1, z_2) >= 14 (sin 20 deg/sin alpha)^2; z: teeth of gear and pinion, alpha:"

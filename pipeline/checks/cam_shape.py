@@ -12,6 +12,7 @@ from camwright.geometry.cutter_path import tool_interference
 from camwright.geometry.extrema import Extremum
 from camwright.geometry.pitch_curve import magnitude
 from camwright.pipeline.base import levers
+from camwright.pipeline.base.source import Source
 from camwright.pipeline.base.units import shown
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.limits import (
@@ -245,7 +246,7 @@ undercut = check(
     formula="number of pairs of cam angles with the same contour point = 0",
     reason="A contour that crosses itself bounds no body.",
     unit="crossings",
-    source="no undercut: the cutter removes a self-intersecting part",
+    source=Source("no undercut: the cutter removes a self-intersecting part", confirmed=True),
     method="number of crossings of the contour with itself, between samples too",
     lift_can_help=True,
     moved_by_tolerance=False,
@@ -404,7 +405,7 @@ spring_travel = check(
     },
     reason="Beyond its travel the spring is solid and the follower is blocked.",
     unit="mm",
-    source="spring travel of the case",
+    source=Source("spring travel of the case", confirmed=True),
     method="greatest lift, between samples too",
     lift_can_help=True,
     moved_by_tolerance=False,

@@ -184,7 +184,7 @@ def shaft_fatigue(solution: Solution) -> Demand:
         figures=(
             machine.limits.source(SHAFT_RELIABILITY),
             f"{card.name}: {card.source}",
-            "Shigley, 10th ed., sec. 6-9: verify",
+            "Shigley, 10th ed., sec. 6-9 (to be confirmed)",
         ),
         method="rotating bending and torsion at every section, unbalance included; Goodman line;"
         f" fatigue notch factors {section.notch_bending:g} and {section.notch_torsion:g},"

@@ -17,6 +17,7 @@ from camwright.geometry.display import Displayed
 from camwright.geometry.errors import InputError
 from camwright.geometry.extrema import to_rank
 from camwright.pipeline.base.levers import Lever
+from camwright.pipeline.base.source import NO_SOURCE, Source
 from camwright.pipeline.base.units import in_unit, shown
 from camwright.pipeline.case.limits import TORQUE_REDUCTION, AnyLimit, Sense
 from camwright.pipeline.case.machine import Machine
@@ -91,7 +92,7 @@ class Demand:
     missing : tuple     dotted keys that the case lacks and the demand or limit needs
     note : str          remark
     figures : tuple     sources of further data, such as a material card
-    method, source : str   in place of the declared ones, where they depend on the case
+    method, source   in place of the declared ones, where they depend on the case
     must_have : bool    False: optional for this solution
     corner : str        tolerance corner of the demand; "": nominal
     """
@@ -101,9 +102,9 @@ class Demand:
     at: Extreme | None = None
     missing: tuple[str, ...] = ()
     note: str = ""
-    figures: tuple[str, ...] = ()
+    figures: tuple[Source | str, ...] = ()
     method: str = ""
-    source: str = ""
+    source: Source = NO_SOURCE
     must_have: bool = True
     corner: str = ""
     judged_at: str = ""
@@ -274,7 +275,7 @@ class Declaration:
     unit : str                 of the record, such as MPa
     sense : str                "at_most": demand <= limit passes; "at_least": demand >= limit
     method : str               calculation of the demand
-    source : str               clause or book of the limit, without a row of the table
+    source : Source            clause or book of the limit, without a row of the table
     limit : Limit              row of the table; None: not set by the user
     must_have : bool           it decides the verdict
     evidence : bool            verification of the solution or of the input, which no change of
@@ -321,7 +322,7 @@ class Declaration:
     unit: str
     sense: Sense
     method: str
-    source: str
+    source: Source
     limit: AnyLimit | None
     must_have: bool
     evidence: bool
@@ -418,7 +419,9 @@ class Declaration:
             limit=demand.allowed,
             load_case="" if demand.at is None else demand.at.load_case,
             cam_angle=None if demand.at is None else demand.at.cam_angle,
-            source="; ".join(dict.fromkeys(each for each in (source, *demand.figures) if each)),
+            source="; ".join(
+                dict.fromkeys(str(each) for each in (source, *demand.figures) if each)
+            ),
             method=demand.method or self.method,
             must_have=self.must_have and demand.must_have,
             missing=missing,
@@ -440,7 +443,7 @@ def check(
     id: str = "",  # noqa: A002 - key of the record
     unit: str = "",
     sense: Sense | None = None,
-    source: str = "",
+    source: Source = NO_SOURCE,
     must_have: bool = True,
     evidence: bool = False,
     lift_can_help: bool = False,

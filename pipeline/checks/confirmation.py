@@ -17,7 +17,7 @@ from camwright.pipeline.case.case_values import text_of
 from camwright.pipeline.case.consistency import tightened_tolerances
 from camwright.pipeline.case.limits import LIMITS, is_weaker
 from camwright.pipeline.case.section import suggestion
-from camwright.pipeline.case.value_sources import OF_A_CHECK, confirms, source_of, values_at
+from camwright.pipeline.case.value_sources import OF_A_CHECK, source_of, values_at
 from camwright.pipeline.checks.check import Check
 
 _LIMIT = "limits."
@@ -30,8 +30,8 @@ def with_values_to_confirm(
 
     Limits of a check that are weaker than their defaults are named with it, evaluated or not.
     The source that a check declares for its limit counts as a value, ``checks.ID``, where it is
-    recalled. A check judged at the tolerance corners rests on every tolerance that is tighter than
-    its default, whatever its source. A check without data rests on none.
+    not confirmed. A check judged at the tolerance corners rests on every tolerance that is tighter
+    than its default, whatever its source. A check without data rests on none.
 
     Parameters
     ----------
@@ -56,7 +56,7 @@ def with_values_to_confirm(
         return tuple(
             value
             for value in values_at(tables, path)
-            if value in tight or not confirms(source_of(tables, value))
+            if value in tight or not source_of(tables, value).confirmed
         )
 
     return tuple(
@@ -105,7 +105,7 @@ def _open_values(
     if not one.evaluated or one.evidence:
         return
     declared, limit = one.declaration.source, one.declaration.limit
-    if limit is None and declared and not confirms(declared):
+    if limit is None and declared and not declared.confirmed:
         yield f"{OF_A_CHECK}{one.id}"
     own = () if limit is None else (f"limits.{limit.id}",)
     for path in (*own, *one.declaration.values):

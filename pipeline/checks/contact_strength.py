@@ -21,6 +21,7 @@ from camwright.geometry.extrema import first_least
 from camwright.pipeline.base import disk_cache, levers
 from camwright.pipeline.base import value_groups as given
 from camwright.pipeline.base.material import Endurance, Material
+from camwright.pipeline.base.source import Source
 from camwright.pipeline.base.units import shown
 from camwright.pipeline.case.limits import (
     AXIS_PARALLELISM,
@@ -638,7 +639,10 @@ def shakedown_traction(solution: Solution) -> Demand:
 @check(
     title="Axial offset of the roller vs. half of the difference of widths",
     unit="mm",
-    source="up to it the contact has the whole smaller width of cam and roller",
+    source=Source(
+        "up to it the contact has the whole smaller width of cam and roller",
+        confirmed=True,
+    ),
     method="axial offset of the case; widths of cam and roller without ends",
     moved_by_tolerance=False,
     needs="roller",

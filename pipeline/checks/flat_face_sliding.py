@@ -11,6 +11,7 @@ from camwright.geometry.extrema import first_greatest
 from camwright.geometry.pitch_curve import magnitude
 from camwright.pipeline.base import levers
 from camwright.pipeline.base import value_groups as given
+from camwright.pipeline.base.source import Source
 from camwright.pipeline.base.units import celsius, shown
 from camwright.pipeline.case.limits import SURFACE_TEMPERATURE
 from camwright.pipeline.checks.check import Demand, Kept, check, of_key
@@ -33,7 +34,7 @@ _OF_OIL = ("temperature", "scuffing_temperature", "boundary_temperature")
     title="Required face width",
     tier=Tier.SCREENING,
     unit="mm",
-    source="contact inside the face, Norton (2009) ch. 7",
+    source=Source("contact inside the face, Norton (2009) ch. 7", confirmed=True),
     method="twice the sum of |s' - e| and contact half-width, greatest over the turn",
     lift_can_help=True,
     needs="face",
@@ -62,7 +63,7 @@ def _sliding(cam: LoadedCam) -> Array:
     title="PV value of the flat face",
     tier=Tier.SCREENING,
     unit="MPa m/s",
-    source="PV limit of the face",
+    source=Source("PV limit of the face", confirmed=True),
     method="greatest pi/4 p0 w (r + s) over the turn",
     lift_can_help=True,
     needs="face",
@@ -88,7 +89,10 @@ def face_pv(cam: LoadedCam) -> Array:
 @check(
     title="Temperature of the sliding contact vs. scuffing temperature of the oil",
     unit="degC",
-    source="criterion of Blok (1937) for scuffing, ISO/TS 6336-20, regimes of AGMA 925-A03: verify",
+    source=Source(
+        "criterion of Blok (1937) for scuffing, ISO/TS 6336-20, regimes of AGMA 925-A03",
+        confirmed=False,
+    ),
     method="oil, bulk by the mean flash temperature of the turn, and flash temperature of a band"
     " source, at the mean friction coefficient, where they are nearest to the limit by the film"
     " there; a film of unknown roughness counts as none",

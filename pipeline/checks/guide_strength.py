@@ -15,6 +15,7 @@ from camwright.geometry.pitch_curve import magnitude
 from camwright.pipeline.base import levers
 from camwright.pipeline.base import value_groups as given
 from camwright.pipeline.base.material import ROOM
+from camwright.pipeline.base.source import Source
 from camwright.pipeline.base.units import celsius, shown
 from camwright.pipeline.case.limits import GUIDE_LENGTH
 from camwright.pipeline.case.machine import Machine
@@ -177,7 +178,7 @@ def _guide_pressure(side: Side) -> Declaration:
         id=f"guide_pressure_{side}",
         title=f"Mean bearing pressure in guide {side}",
         unit="MPa",
-        source="limit of the bush's maker, source of the guide",
+        source=Source("limit of the bush's maker, source of the guide", confirmed=True),
         method="greatest push on one side of the bore over diameter x loaded length; at most"
         " the limit at the temperature of the guide",
         lift_can_help=True,
@@ -214,8 +215,8 @@ def _guide_pressure(side: Side) -> Declaration:
     return pressure
 
 
-def _maker(guide: Guide) -> str:
-    return guide.source or f"{guide.material.name} bush"
+def _maker(guide: Guide) -> Source:
+    return guide.source or Source(f"{guide.material.name} bush", confirmed=True)
 
 
 def _pushes(solution: Solution, side: Side, worst: Extreme) -> str:
@@ -271,7 +272,10 @@ def _guide_pv(side: Side) -> Declaration:
         id=f"guide_pv_{side}",
         title=f"PV value in guide {side}",
         unit="MPa m/s",
-        source="limit of the bush's maker; of nylon by its lubrication, Mott, table 16-1: verify",
+        source=Source(
+            "limit of the bush's maker; of nylon by its lubrication, Mott, table 16-1",
+            confirmed=False,
+        ),
         method="mean |R v| over the turn over diameter x length; R: sum of the loads on both sides"
         " of the bore",
         lift_can_help=True,
@@ -307,13 +311,13 @@ def pv_limit(guide: Guide) -> float | None:
     return guide.pv_limit if state is None else NYLON_PV[state]
 
 
-def _pv_source(guide: Guide) -> str:
+def _pv_source(guide: Guide) -> Source:
     state = _graded_state(guide)
     if state is None:
         return _maker(guide)
     words = state.replace("_", " ")
-    graded = f"nylon, {words}: Mott, table 16-1, and a bush maker's graded limits: verify"
-    return "; ".join(each for each in (graded, guide.source) if each)
+    graded = f"nylon, {words}: Mott, table 16-1, and a bush maker's graded limits"
+    return Source("; ".join(filter(None, (graded, guide.source.text))), confirmed=False)
 
 
 def _graded_state(guide: Guide) -> str | None:
@@ -339,7 +343,10 @@ def _guide_edge_pressure(side: Side) -> Declaration:
         id=f"guide_edge_pressure_{side}",
         title=f"Guide edge pressure in guide {side} vs. yield strength",
         unit="MPa",
-        source="yield strength of the bush at its temperature, source of the material",
+        source=Source(
+            "yield strength of the bush at its temperature, source of the material",
+            confirmed=True,
+        ),
         method="pin in a bore with clearance, bush in a rigid housing, at the greatest line load of"
         " the beam; modulus at 20 degC, an upper bound; yield strength at the temperature of the"
         " guide",
@@ -372,7 +379,7 @@ def _guide_edge_pressure(side: Side) -> Declaration:
             worst,
             limit.missing,
             note="; ".join(limit.notes),
-            source=f"yield strength of {card.name}: {card.source}",
+            source=card.source.of(f"yield strength of {card.name}"),
         )
 
     return edge
@@ -395,13 +402,13 @@ def _guide_temperature(side: Side) -> Declaration:
         machine = solution.machine
         card = guide_of(machine, side).material
         missing = (*heat_path_lacks(machine, side), *lacking_of_card(card, "temperature_limit"))
-        return replace(demand, missing=missing, source=f"{card.name}: {card.source}")
+        return replace(demand, missing=missing, source=card.source.of(card.name))
 
     return check(
         id=f"guide_temperature_{side}",
         title=f"Temperature of guide {side}",
         unit="degC",
-        source="temperature limit of the bush, source of the material",
+        source=Source("temperature limit of the bush, source of the material", confirmed=True),
         method="ambient plus mean friction power at the greatest friction times the thermal"
         " resistance of wall and housing, steady state",
         lift_can_help=True,
@@ -451,7 +458,7 @@ def _guide_speed(side: Side) -> Declaration:
         id=f"guide_speed_{side}",
         title=f"Maximum sliding speed in guide {side}",
         unit="m/s",
-        source="limit of the bush's maker, source of the guide",
+        source=Source("limit of the bush's maker, source of the guide", confirmed=True),
         method="greatest speed of the follower over the turn",
         lift_can_help=True,
         tier=Tier.SCREENING,
@@ -523,8 +530,11 @@ def guide_length(cam: LoadedCam) -> Array:
     id="anti_rotation",
     title="Free rotation of the stem",
     unit="rotations",
-    source="a round stem turns freely in round guides; a cylindrical roller follows the cam only"
-    " with its axis parallel to the camshaft",
+    source=Source(
+        "a round stem turns freely in round guides; a cylindrical roller follows the cam only"
+        " with its axis parallel to the camshaft",
+        confirmed=True,
+    ),
     method="0 where the case states a means against rotation, or a flat face that needs none",
     moved_by_tolerance=False,
     part="guides",

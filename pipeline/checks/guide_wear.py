@@ -10,6 +10,7 @@ from camwright.geometry.arrays import Value
 from camwright.pipeline.base import levers
 from camwright.pipeline.base import value_groups as given
 from camwright.pipeline.base.material import ROOM, Material
+from camwright.pipeline.base.source import Source
 from camwright.pipeline.base.units import shown
 from camwright.pipeline.case.limits import TARGET_LIFE, WEAR_DEPTH
 from camwright.pipeline.checks.check import Allowed, Declaration, Demand, Kept, check, of_row
@@ -34,7 +35,10 @@ def _guide_expansion(side: Side) -> Declaration:
         id=f"guide_expansion_{side}",
         title=f"Thermal and moisture expansion vs. clearance in guide {side}",
         unit="mm",
-        source="no seizure at temperature and moisture: Lame, thick ring in a rigid housing",
+        source=Source(
+            "no seizure at temperature and moisture: Lame, thick ring in a rigid housing",
+            confirmed=True,
+        ),
         method="closure of the bore of an axially held bush in a rigid housing, and growth of the"
         " stem, at the temperature at the greatest friction",
         lift_can_help=True,

@@ -14,6 +14,7 @@ from camwright.geometry.pitch_curve import magnitude
 from camwright.pipeline.base import levers
 from camwright.pipeline.base import value_groups as given
 from camwright.pipeline.base.material import Material
+from camwright.pipeline.base.source import Source
 from camwright.pipeline.base.units import shown
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.limits import (
@@ -50,7 +51,7 @@ ALLOWED = (
 BY_ELEMENTS = (
     "plane-stress elements of the cam on a solid shaft, frictionless unilateral contact with the"
     " interference, key and contact force over the turns at least and greatest interference; the"
-    " lower of modified Goodman (Marin factors) and FKM local stress (recalled: verify)"
+    " lower of modified Goodman (Marin factors) and FKM local stress (to be confirmed)"
 )
 STEADY = 0.03
 """Relative error of the safety at the root by elements: their change with a finer mesh."""
@@ -129,7 +130,8 @@ def _key_check(
 
     def in_words(demand: Demand, solution: Solution) -> Demand:
         case, mate = solution.case, mate_of(solution.case) or _Mate(None)
-        figures = tuple(f"{card.name}: {card.source}" for card in _cards(case.cam.key, mate))
+        cards = _cards(case.cam.key, mate)
+        figures = tuple(card.source.of(card.name) for card in cards)
         if any(cam.reverses for cam in solution.cams.values()):
             figures = (solution.machine.limits.source(KEY_REVERSAL), *figures)
         judged = replace(demand, figures=figures)
@@ -297,7 +299,7 @@ def _wall_in_words(demand: Demand, solution: Solution) -> Demand:
     id="fit_yield",
     title="Von Mises stress of the cam's wall by its fit",
     unit="MPa",
-    source="yield strength of the core; elastic press fit, DIN 7190-1",
+    source=Source("yield strength of the core; elastic press fit, DIN 7190-1", confirmed=True),
     method="thick ring of the least radius at the greatest interference, at its bore",
     tier=Tier.SCREENING,
     moved_by_tolerance=False,

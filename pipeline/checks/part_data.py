@@ -6,6 +6,7 @@ from collections.abc import Callable, Mapping
 from typing import Literal
 
 from camwright.pipeline.base.quantities import Part
+from camwright.pipeline.base.source import Source
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.parts_section import Follower
 from camwright.pipeline.case.scope_section import PART_WORDS, PartName
@@ -40,7 +41,7 @@ def _data(
         id=f"data_{name}",
         title=f"Missing data of the {words}",
         unit="data",
-        source="a machine is judged whole, but for what [scope] leaves out",
+        source=Source("a machine is judged whole, but for what [scope] leaves out", confirmed=True),
         method="keys of the case without value and without default",
         formula=f"n = 0; n: data of the {words} that the case lacks",
         reason="without them the part is not judged whole",

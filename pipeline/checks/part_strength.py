@@ -12,6 +12,7 @@ from camwright.geometry.errors import InputError
 from camwright.pipeline.base import levers
 from camwright.pipeline.base import value_groups as given
 from camwright.pipeline.base.material import Material
+from camwright.pipeline.base.source import Source
 from camwright.pipeline.base.units import shown
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.limits import (
@@ -296,7 +297,7 @@ def _cheek_in_words(demand: Demand, solution: Solution) -> Demand:
         return demand
     fork, pin = both
     if fork.pressure_limit is not None:
-        return replace(demand, source=fork.source or fork.table)
+        return replace(demand, source=fork.source or Source(fork.table, confirmed=True))
     return replace(demand, figures=_sources(fork.material, pin.material))
 
 
@@ -455,7 +456,7 @@ roller_ring_fatigue = check(
     id="roller_ring_fatigue",
     title="Bending fatigue of the roller's outer ring",
     unit="MPa",
-    source="fatigue strength in bending",
+    source=Source("fatigue strength in bending", confirmed=True),
     method="stress at the groove of the turning ring, finite elements on balls without tension, all"
     " ball positions; amplitude reduced to zero mean stress by the Goodman line",
     lift_can_help=True,
@@ -569,7 +570,7 @@ bore_pressure = check(
 @check(
     title="Torque reversals per turn at gear and key",
     unit="-",
-    source="crossover shock, Rothbart, Cam Design Handbook (2004)",
+    source=Source("crossover shock, Rothbart, Cam Design Handbook (2004)", confirmed=True),
     method="sign changes of cam torque plus drag",
     must_have=False,
     within=("key", "gear"),

@@ -9,6 +9,7 @@ from types import ModuleType
 
 from camwright.geometry.errors import InputError
 from camwright.pipeline.base.quantities import In
+from camwright.pipeline.base.source import Source
 from camwright.pipeline.case.limits import TORQUE_REDUCTION
 from camwright.pipeline.case.requirements_section import Waiver
 from camwright.pipeline.checks import (
@@ -83,7 +84,10 @@ WAIVERS_WITHOUT_EFFECT = check(
     id="waivers_without_effect",
     title="Waivers without effect",
     unit="waivers",
-    source="a waiver names a check of the design; a verification check cannot be waived",
+    source=Source(
+        "a waiver names a check of the design; a verification check cannot be waived",
+        confirmed=True,
+    ),
     method="check ids of the waivers of the case against the ids of its checks",
     must_have=False,
     evidence=True,
@@ -95,7 +99,7 @@ TOLERANCE_CORNERS = check(
     id="tolerance_corners",
     title="Tolerance corners that cannot be solved",
     unit="corners",
-    source="tolerances of the case, one at a time and by a seeded sample",
+    source=Source("tolerances of the case, one at a time and by a seeded sample", confirmed=True),
     method="closed forms at the corners",
     formula="n = 0; n: corners at which loads or guides have no solution",
     reason="a cam that has no solution at a tolerance cannot be signed",

@@ -17,6 +17,7 @@ from camwright.geometry.arrays import FULL_TURN, Array, Value, Values
 from camwright.geometry.pitch_curve import magnitude
 from camwright.pipeline.base import levers
 from camwright.pipeline.base import value_groups as given
+from camwright.pipeline.base.source import Source
 from camwright.pipeline.base.units import factor
 from camwright.pipeline.case.limits import (
     ROLLER_LIFE,
@@ -388,7 +389,7 @@ def _outer_ring(
         id=name,
         title=f"Normal force vs. maximum {words} load of the outer ring",
         unit="N",
-        source=f"{symbol} of a track roller",
+        source=Source(f"{symbol} of a track roller", confirmed=True),
         method="greatest normal force over the turn",
         lift_can_help=True,
         tier=Tier.SCREENING,
@@ -488,8 +489,10 @@ def least_speed(viscosity: float, circle: float, ratio: float) -> float | None:
     title="Life of the grease in the roller bearing",
     unit="h",
     sense="at_least",
-    source="JTEKT's estimate for sealed ball bearings, with n D for a turning outer ring as SKF"
-    " does: recalled, verify",
+    source=Source(
+        "JTEKT's estimate for sealed ball bearings, with n D for a turning outer ring as SKF does",
+        confirmed=False,
+    ),
     method="of n D, P/C and temperature; the manufacturer's where it is given",
     lift_can_help=True,
     tier=Tier.SCREENING,

@@ -15,6 +15,7 @@ from camwright.meshes.mesh_quality import (
     Quality,
 )
 from camwright.pipeline.base import value_groups as given
+from camwright.pipeline.base.source import Source
 from camwright.pipeline.base.units import shown
 from camwright.pipeline.case.limits import (
     BORE_SAFETY,
@@ -33,8 +34,8 @@ from camwright.pipeline.cycle.cycle import Cycle
 from camwright.pipeline.cycle.solution import Solution
 from camwright.pipeline.follower.guide_reactions import KNOTS, guide_reactions
 
-VERIFICATION = "ASME V&V 10-2019, solution verification"
-CERTIFIED = f"{VERIFICATION}; ASME V&V 20-2009 (GCI)"
+VERIFICATION = Source("ASME V&V 10-2019, solution verification", confirmed=True)
+CERTIFIED = Source(f"{VERIFICATION}; ASME V&V 20-2009 (GCI)", confirmed=True)
 # Limits that no case can change.
 HELD_DISTANCE = 10.0  # half-widths, beyond which the supports do not affect the contact
 EXCLUDED_SHARE = 0.5  # of the keyway depth
@@ -57,7 +58,10 @@ NO_CERTIFICATE = "this trial has no certificate"
     reason="Nearer supports change the contact itself, and with it every pressure.",
     unit="-",
     sense="at_least",
-    source="Saint-Venant: the stress at a fixed boundary is that of the model, not of the part",
+    source=Source(
+        "Saint-Venant: the stress at a fixed boundary is that of the model, not of the part",
+        confirmed=True,
+    ),
     method="least wall of the cam to bore or keyway, and thickness of the outer ring or of the"
     " roller to its hub, over the greatest half-width",
     evidence=True,
@@ -83,7 +87,10 @@ def held_distance(solution: Solution) -> Demand:
     formula="1.5 h <= t/2; h: element length at the keyway, t: depth of the keyway",
     reason="A larger zone would hide the stress of the keyway.",
     unit="mm",
-    source="singular stress at an edge: at most half of the keyway depth is excluded",
+    source=Source(
+        "singular stress at an edge: at most half of the keyway depth is excluded",
+        confirmed=True,
+    ),
     method="1.5 element lengths at the keyway; the stress within is stated separately",
     evidence=True,
     tier=Tier.CYCLE,
@@ -150,7 +157,10 @@ def bore_stress(solution: Solution) -> Demand | None:
     reason="A maximum at the surface is that of an element, not of the contact.",
     unit="-",
     sense="at_least",
-    source="0.70 half-widths under a frictionless line contact, Johnson (1985) sec. 4.2(c)",
+    source=Source(
+        "0.70 half-widths under a frictionless line contact, Johnson (1985) sec. 4.2(c)",
+        confirmed=True,
+    ),
     method="least depth over the turn; a maximum at the surface is a singularity or element error",
     evidence=True,
     tier=Tier.CYCLE,
@@ -187,7 +197,7 @@ def _residual(
         id=name,
         title=title,
         unit="-",
-        source=f"equilibrium and contact conditions, {VERIFICATION}",
+        source=Source(f"equilibrium and contact conditions, {VERIFICATION}", confirmed=True),
         method=method,
         formula=formula,
         reason="Forces that are not in equilibrium are no solution.",
@@ -260,7 +270,7 @@ RESIDUALS = tuple(
     reason="Does not decide: the bending of real bodies is a true difference; benchmarks and"
     " certificate decide.",
     unit="%",
-    source="Johnson (1985) sec. 4.2(c); 2 to 3 % usual",
+    source=Source("Johnson (1985) sec. 4.2(c); 2 to 3 % usual", confirmed=True),
     method="greatest |p0 by finite elements / p0 by Hertz - 1| over the turn",
     must_have=False,
     evidence=True,
@@ -368,7 +378,7 @@ def _mesh(
     formula: str,
     unit: str = "-",
     method: str = "worst over all elements of cam and follower",
-    source: str = VERIFICATION,
+    source: Source = VERIFICATION,
 ) -> Declaration:
     """Check of the mesh quality."""
 
@@ -415,7 +425,10 @@ mesh_edges = _mesh(
     title="Node spacings across the contact half-width",
     formula="2 a/h >= 10; a: half-width of the contact, h: longest edge in it",
     method="two spacings a quadratic edge, of the longest edge in the contact of cam and follower",
-    source="10 to 20 linear edges across the half-width, usual for line contact: verify",
+    source=Source(
+        "10 to 20 linear edges across the half-width, usual for line contact",
+        confirmed=False,
+    ),
 )
 
 
@@ -496,7 +509,7 @@ def _benchmark(name: str, *, title: str, source: str) -> Declaration:
         id=f"benchmark_{name}",
         title=title,
         unit="%",
-        source=f"{source}; 2 to 3 % usual",
+        source=Source(f"{source}; 2 to 3 % usual", confirmed=True),
         formula="max(|p0/p_r - 1|, |a/a_r - 1|) <= 0.03; p0, a: peak pressure and half-width by"
         " finite elements, p_r, a_r: of the reference",
         reason="The libraries of this run must solve a known contact.",

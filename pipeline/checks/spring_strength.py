@@ -19,6 +19,7 @@ from camwright.pipeline.base import levers
 from camwright.pipeline.base import value_groups as given
 from camwright.pipeline.base.cooling import Cooling
 from camwright.pipeline.base.levers import Lever
+from camwright.pipeline.base.source import Source
 from camwright.pipeline.base.units import celsius, shown
 from camwright.pipeline.case.limits import SPRING_FATIGUE, SPRING_SOLID, SPRING_SURGE
 from camwright.pipeline.checks.cam_shape import lift
@@ -178,7 +179,7 @@ spring_stress = check(
     id="spring_stress",
     title="Spring shear stress / static strength",
     unit="-",
-    source="0.56 R_m, EN 13906-1: verify",
+    source=Source("0.56 R_m, EN 13906-1", confirmed=False),
     method="Wahl factor, greatest force at either end of the spring over the speed range, surge"
     " included",
     lift_can_help=True,
@@ -287,7 +288,7 @@ spring_coil_gap = check(
     title="Sum of the gaps between the coils at maximum lift",
     sense="at_least",
     unit="mm",
-    source="1.5 S_a, dynamic load, cold coiled, EN 13906-1:2013, 9.9: verify",
+    source=Source("1.5 S_a, dynamic load, cold coiled, EN 13906-1:2013, 9.9", confirmed=False),
     method="free length less solid length less deflection at maximum lift",
     lift_can_help=True,
     tier=Tier.SCREENING,
@@ -319,7 +320,7 @@ spring_solid_stress = check(
     id="spring_solid_stress",
     title="Shear stress of the spring at its solid length",
     unit="MPa",
-    source="0.56 R_m, cold coiled, EN 13906-1:2013, 10.1.1: verify",
+    source=Source("0.56 R_m, cold coiled, EN 13906-1:2013, 10.1.1", confirmed=False),
     method="rate times free less solid length, without correction factor, rate high",
     tier=Tier.SCREENING,
     moved_by_tolerance=False,
@@ -350,7 +351,7 @@ spring_buckling = check(
     id="spring_buckling",
     unit="-",
     title="Spring deflection / buckling deflection",
-    source="EN 13906-1:2013, 9.14, after Haringx: verify",
+    source=Source("EN 13906-1:2013, 9.14, after Haringx", confirmed=False),
     method="deflection at maximum lift over s_K with the seating coefficient"
     " spring.design.end_factor; 0: stable at any deflection",
     lift_can_help=True,
@@ -379,7 +380,7 @@ spring_buckling = check(
 @check(
     title="Deviation of the spring design from the spring rate",
     unit="-",
-    source="tolerance of the rate in the case, else 5 %",
+    source=Source("tolerance of the rate in the case, else 5 %", confirmed=True),
     method="G d^4/(8 D^3 n) of the spring design against spring.rate",
     tier=Tier.SCREENING,
     moved_by_tolerance=False,
@@ -438,7 +439,7 @@ spring_relaxation = check(
     id="spring_relaxation",
     title="Loss of preload by relaxation / preload",
     unit="-",
-    source="tolerance of the preload in the case, else 5 %",
+    source=Source("tolerance of the preload in the case, else 5 %", confirmed=True),
     method="spring.design.relaxation of the greatest force, lost at every deflection",
     lift_can_help=True,
     tier=Tier.SCREENING,
@@ -498,7 +499,7 @@ def _gas_check(
         id=name,
         title=title,
         unit=unit,
-        source="data sheet of the maker",
+        source=Source("data sheet of the maker", confirmed=True),
         method=method,
         lift_can_help=lift_can_help,
         tier=tier,
@@ -735,7 +736,7 @@ def _of_torsion(demand: Demand, solution: Solution) -> Demand:
 
 
 def _torsion_check(
-    name: str, measure: Measure, key: str, share: float, *, title: str, source: str, method: str,
+    name: str, measure: Measure, key: str, share: float, *, title: str, source: Source, method: str,
     formula: str, reason: str,
 ) -> Declaration:  # fmt: skip
     """Check of the bending stress of a torsion spring against a share of the value at a key."""
@@ -771,7 +772,7 @@ torsion_stress = _torsion_check(
     "spring.torsion.tensile_strength",
     BENDING_STRENGTH,
     title="Maximum bending stress of the torsion spring",
-    source="0.7 R_m, DIN EN 13906-3: verify",
+    source=Source("0.7 R_m, DIN EN 13906-3", confirmed=False),
     method="q 32 M/(pi d^3) at maximum lift, preload and rise of the force high",
     formula="q 32 M / (pi d^3) <= 0.7 R_m; M: moment at maximum lift with the tolerances high,"
     " q = (w + 0.07)/(w - 0.75), w = D/d, R_m: tensile strength of the wire",
@@ -784,7 +785,10 @@ torsion_fatigue = _torsion_check(
     "spring.torsion.stress_range",
     1.0,
     title="Range of the bending stress of the torsion spring",
-    source="spring.torsion.stress_range: fatigue diagram of DIN EN 13906-3, or of the maker",
+    source=Source(
+        "spring.torsion.stress_range: fatigue diagram of DIN EN 13906-3, or of the maker",
+        confirmed=True,
+    ),
     method="difference of q 32 M/(pi d^3) at maximum and zero lift, preload and rise high",
     formula="q 32 (M_h - M_0) / (pi d^3) <= spring.torsion.stress_range; M_h, M_0: moments at"
     " maximum and zero lift with the tolerances high, q: as of `torsion_stress`",

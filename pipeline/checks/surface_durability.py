@@ -14,6 +14,7 @@ from camwright.geometry.pitch_curve import magnitude
 from camwright.pipeline.base import levers
 from camwright.pipeline.base import value_groups as given
 from camwright.pipeline.base.material import Material
+from camwright.pipeline.base.source import Source
 from camwright.pipeline.base.units import shown
 from camwright.pipeline.case.limits import (
     CASE_DEPTH_RATIO,
@@ -83,7 +84,10 @@ _ROLLING = {
 traction_demand = check(
     id="traction_demand",
     title="Traction coefficient vs. friction coefficient",
-    source="rolling without slip, Rothbart, Cam Design Handbook (2004), eq. 10.7: verify",
+    source=Source(
+        "rolling without slip, Rothbart, Cam Design Handbook (2004), eq. 10.7",
+        confirmed=False,
+    ),
     method="(roller inertia + bearing drag) over roller radius and normal force",
     lift_can_help=True,
     tier=Tier.SCREENING,
@@ -217,7 +221,7 @@ def surface_fatigue(solution: Solution) -> Demand:
     title="Subsurface fatigue, Dang Van criterion",
     unit="MPa",
     method="Dang Van (1993): shear amplitude plus weighted hydrostatic stress, no credit for"
-    " compression (Desimone 2006, recalled: verify), the load travelling along the contour",
+    " compression (Desimone 2006, to be confirmed), the load travelling along the contour",
     must_have=False,
     lift_can_help=True,
     error="contact",
@@ -410,7 +414,10 @@ def case_depth(solution: Solution) -> Demand | None:
 @check(
     title="Peak contact pressure vs. Buckingham estimate",
     unit="MPa",
-    source="2.76 HB - 70 MPa at 1e8 cycles up to 400 HB, Buckingham, Shigley ch. 6: verify",
+    source=Source(
+        "2.76 HB - 70 MPa at 1e8 cycles up to 400 HB, Buckingham, Shigley ch. 6",
+        confirmed=False,
+    ),
     method="greatest contact pressure over the turn; an estimate for steel without a hardened case;"
     " least of the bodies of a stated Brinell hardness up to 400",
     must_have=False,
@@ -447,7 +454,7 @@ def pressure_by_hardness(solution: Solution) -> Demand | None:
 @check(
     title="Peak contact pressure vs. gear flank allowable",
     unit="MPa",
-    source="ISO 6336-5, quality MQ, recalled: verify",
+    source=Source("ISO 6336-5, quality MQ", confirmed=False),
     method="greatest contact pressure over the turn; for comparison only; least of the bodies of a"
     " stated treatment and Vickers hardness",
     must_have=False,
@@ -512,7 +519,10 @@ def _estimate(
 @check(
     title="Greatest ratio of two endurance rules for one material",
     unit="-",
-    source="two rules for one material that differ by 1.5 or more need a reason",
+    source=Source(
+        "two rules for one material that differ by 1.5 or more need a reason",
+        confirmed=True,
+    ),
     method="endurance pressure of the card, Buckingham estimate and gear flank allowable, of cam"
     " and follower",
     must_have=False,

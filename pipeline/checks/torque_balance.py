@@ -11,6 +11,7 @@ from camwright.geometry.extrema import first_least
 from camwright.pipeline.base import levers
 from camwright.pipeline.base import value_groups as given
 from camwright.pipeline.base.cooling import housing_area
+from camwright.pipeline.base.source import Source
 from camwright.pipeline.base.units import celsius, shown
 from camwright.pipeline.case.limits import (
     CONTACT_TORQUE,
@@ -347,7 +348,10 @@ _STATED = (
     id="mechanism_temperature",
     title="Temperature of the mechanism vs. that at which its parts are judged",
     unit="degC",
-    source="balance of heat; temperatures stated for oil, bearing and wire, of the cards of metals",
+    source=Source(
+        "balance of heat; temperatures stated for oil, bearing and wire, of the cards of metals",
+        confirmed=True,
+    ),
     formula="T_amb + (P_f + Q)/G <= least temperature stated for oil, roller bearing and wire, and"
     " to which limit and full strength of the metals hold by their cards; P_f: mean power of the"
     " friction in guides, contact and roller bearing, sum of q_i P_i of the load cases by"

@@ -462,6 +462,7 @@ def _checked_case(
 ) -> tuple[dict[str, Any], Clock]:
     """Checks of the preview of a case, with the clock of the preview."""
     from camwright.pipeline.base.progress import utc
+    from camwright.pipeline.base.source import old_words
     from camwright.pipeline.case.case_file import read_case
     from camwright.pipeline.case.load_case_torque import (
         engine_torques,
@@ -479,8 +480,11 @@ def _checked_case(
     case = read_case(path)
     torques = engine_torques(case)
     early(torque_lines(torques))
-    for finding in implausible(case, torques):
-        say(f"warning: {finding.how}")
+    for words in (
+        *old_words(case.written.tables),
+        *(one.how for one in implausible(case, torques)),
+    ):
+        say(f"warning: {words}")
     for line in measurement_words(case):
         say(line)
     with progress_shown() as progress:

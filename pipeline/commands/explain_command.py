@@ -23,18 +23,35 @@ CLOSEST = 6
 
 def explain(
     words: Annotated[
-        list[str],
+        list[str] | None,
         typer.Argument(metavar="KEY...", help="Keys or tables of a case file, or check ids."),
-    ],
+    ] = None,
+    sources: Annotated[
+        bool,
+        typer.Option("--sources", help="List the values of the program that are to be confirmed."),
+    ] = False,
 ) -> int:
     """Explain keys of the case file, such as guides.a.wall, tables such as spring, and checks.
 
     Of a key meaning, unit, range, default, example, source of the value and what uses it; of a
     check formula, limit, source, load cases and the values on which it rests.
     """
-    texts = [_explained(word) for word in words]
+    if not words and not sources:
+        raise InputError("KEY", "missing", "a key, a table, a check, or --sources")
+    texts = [_explained(word) for word in words or ()]
+    texts += [_open_sources()] if sources else []
     stdout.print("\n\n".join(texts), markup=False)
     return PASSED
+
+
+def _open_sources() -> str:
+    """Values of the program that are to be confirmed, by their sources."""
+    from camwright.pipeline.results.check_text import open_sources
+
+    by_text = open_sources()
+    count = sum(map(len, by_text.values()))
+    listed = "\n".join(_text(text, [("", ", ".join(names))]) for text, names in by_text.items())
+    return f"{count} values of the program are to be confirmed\n{listed}"
 
 
 def _explained(word: str) -> str:

@@ -11,6 +11,7 @@ import numpy as np
 from camwright.geometry.arrays import Array
 from camwright.geometry.errors import InputError
 from camwright.pipeline.base.quantities import FileName, In, Length, Part
+from camwright.pipeline.base.source import NO_SOURCE, Source
 
 EndKind = Literal["sharp", "chamfer", "radius"]
 CrownKind = Literal["circular", "lundberg", "johns_gohar", "iso16281", "table"]
@@ -36,7 +37,7 @@ class BodyEnd(Part):
 
     kind: EndKind = "sharp"
     size: Annotated[float, In("mm", at_least=0, at_most=1000)] = 0.0
-    source: str = ""
+    source: Source = NO_SOURCE
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -80,7 +81,7 @@ class AxialCrown(Part):
     line_load: Annotated[float, In("N/mm", above=0, at_most=1e6)] | None = None
     length: Length | None = None
     file: FileName | None = None
-    source: str = ""
+    source: Source = NO_SOURCE
 
     def __post_init__(self) -> None:
         super().__post_init__()

@@ -9,6 +9,7 @@ from typing import Annotated, ClassVar, Literal, NamedTuple
 
 from camwright.pipeline.base.material import Material
 from camwright.pipeline.base.quantities import Angle, In, Length, Part
+from camwright.pipeline.base.source import NO_SOURCE, Source
 from camwright.pipeline.contact.axial_shape import AxialCrown, BodyEnd, flat_width
 from camwright.pipeline.contact.shrink_fit import SeatFit
 
@@ -78,7 +79,7 @@ class ParallelKey(Part):
     form: Literal["A", "B"] = "A"
     material: Material | None = None
     application_factor: Annotated[float, In(at_least=1, at_most=10)] = 1.5
-    source: str = ""
+    source: Source = NO_SOURCE
 
 
 class KeyFlanks(NamedTuple):
@@ -145,7 +146,7 @@ class CamBody(Part):
     end: BodyEnd | None = None
     crown: AxialCrown | None = None
     counter_hole: BalanceHole | None = None
-    source: str = ""
+    source: Source = NO_SOURCE
 
     @property
     def line_width(self) -> float:

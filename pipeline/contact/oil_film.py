@@ -12,10 +12,11 @@ from numpy.typing import ArrayLike, NDArray
 from camwright.geometry.arrays import Array, finite, freeze, positive
 from camwright.geometry.errors import InputError
 from camwright.pipeline.base.quantities import In, Part, Temperature
+from camwright.pipeline.base.source import NO_SOURCE, Source
 from camwright.pipeline.base.units import shown
 
-UNVERIFIED = (
-    "regression of Masjedi and Khonsari (2012) as recalled, not checked against the paper: verify"
+UNVERIFIED = Source(
+    "regression of Masjedi and Khonsari (2012), not checked against the paper", confirmed=False
 )
 _WALTHER = 1e-6  # m2/s, unit of the viscosity in Walther's equation
 _DENSITY = 870.0  # kg/m3 of a mineral oil; its thinning is not sensitive to it
@@ -52,7 +53,7 @@ class Lubricant(Part):
     thinning: Annotated[float, In(above=0, at_most=10)] = 3.6
     scuffing_temperature: Temperature | None = None
     boundary_temperature: Temperature | None = None
-    source: str = ""
+    source: Source = NO_SOURCE
 
     def warmer(self, rise: float) -> Lubricant:
         """The oil warmer by a rise, K; unchanged where its temperature is not stated.
@@ -176,7 +177,7 @@ class MixedFilm:
     central: Array
     minimum: Array
     asperity_share: Array
-    source: str = UNVERIFIED
+    source: Source = UNVERIFIED
 
     def __post_init__(self) -> None:
         freeze(

@@ -14,6 +14,7 @@ from camwright.geometry.arrays import Value
 from camwright.geometry.errors import InputError
 from camwright.pipeline.base.material import ROOM, Material
 from camwright.pipeline.base.quantities import In, Part, Temperature
+from camwright.pipeline.base.source import NO_SOURCE, Source
 from camwright.pipeline.base.units import shown
 
 Interference = Annotated[float, In("um", above=-1000, below=1000)]
@@ -40,7 +41,7 @@ class SeatFit(Part):
     friction: Annotated[float, In(above=0, at_most=1)] = 0.12
     cam_temperature: Temperature = ROOM
     shaft_temperature: Temperature = ROOM
-    source: str = ""
+    source: Source = NO_SOURCE
 
     def __post_init__(self) -> None:
         super().__post_init__()

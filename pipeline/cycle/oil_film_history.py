@@ -81,7 +81,7 @@ class FilmHistory:
             "minimum_um": minimum,
             "positions_refused": int((~known & np.isfinite(self.thickness)).sum()),
             "refusal": self.refusal,
-            "source": self.mixed.source,
+            "source": str(self.mixed.source),
         }
 
 

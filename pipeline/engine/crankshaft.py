@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike
 from camwright.geometry.arrays import Array, finite, freeze, positive, readonly
 from camwright.geometry.errors import CamError, InputError
 from camwright.pipeline.base.quantities import In, Part
+from camwright.pipeline.base.source import NO_SOURCE, Source
 from camwright.pipeline.base.units import shown
 from camwright.pipeline.engine.cylinder import CYCLE_ANGLE
 from camwright.pipeline.torque.motor_line import MotorLine, MotorPoint
@@ -59,7 +60,7 @@ class Crankshaft(Part):
     load_exponent: Annotated[float, In(at_least=0, at_most=4)] = 0.0
     measured_speed_std: Annotated[float, In("rad/s", above=0, at_most=1e3)] | None = None
     motor_line: tuple[MotorPoint, ...] = ()
-    source: str = ""
+    source: Source = NO_SOURCE
 
     def __post_init__(self) -> None:
         super().__post_init__()

@@ -9,6 +9,7 @@ import numpy as np
 
 from camwright.geometry.arrays import Array, Value, Values
 from camwright.geometry.errors import InputError
+from camwright.pipeline.base.source import Source
 from camwright.pipeline.base.units import celsius
 from camwright.pipeline.follower.roller_motion import BALL_LIFE_EXPONENT
 from camwright.pipeline.follower.roller_parts import Cleanliness
@@ -29,7 +30,7 @@ CONTAMINATION: MappingProxyType[Cleanliness, tuple[float, float]] = MappingProxy
 )
 """e_C below and from 100 mm of pitch diameter, lower ends of ISO 281:2007, table 13: verify."""
 
-SOURCE = "v1, e_C and a_ISO of ISO 281:2007, recalled: verify"
+SOURCE = Source("v1, e_C and a_ISO of ISO 281:2007", confirmed=False)
 
 
 _ROLLER_FACTOR = 1.15 * 89.0  # b_m f_c of radial roller bearings, greatest

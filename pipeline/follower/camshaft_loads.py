@@ -27,6 +27,7 @@ from camwright.pipeline.base.quantities import (
     Part,
     Pressure,
 )
+from camwright.pipeline.base.source import NO_SOURCE, Source
 from camwright.pipeline.base.units import shown
 from camwright.pipeline.contact.cam_body import KeyFlanks
 
@@ -139,7 +140,7 @@ class CamshaftGear(Part):
     pinion_bending_limit: Pressure | None = None
     pinion_contact_limit: Pressure | None = None
     machine_shaft_diameter: Annotated[float, In("mm", at_least=0, at_most=10_000)] | None = None
-    source: str = ""
+    source: Source = NO_SOURCE
 
 
 Surface = Literal["ground", "machined", "hot_rolled", "forged"]
@@ -180,7 +181,7 @@ class Counterweight(Part):
     angle: Angle | None = None
     residual: MassMoment | None = None
     position: Place
-    source: str = ""
+    source: Source = NO_SOURCE
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -254,7 +255,7 @@ class Camshaft(Part):
     slip_torque: Annotated[float, In("N m", at_least=0, at_most=1e6)] | None = None
     gear: CamshaftGear | None = None
     counterweight: Counterweight | None = None
-    source: str = ""
+    source: Source = NO_SOURCE
 
     @property
     def widest(self) -> float | None:

@@ -12,6 +12,7 @@ from camwright.geometry.flat_face_contour import FacePath, FlatFaceContour
 from camwright.geometry.lift import Lift
 from camwright.pipeline.base.material import Material
 from camwright.pipeline.base.quantities import In, Length, Part
+from camwright.pipeline.base.source import NO_SOURCE, Source
 from camwright.pipeline.contact.axial_shape import AxialCrown, BodyEnd, flat_width
 from camwright.pipeline.contact.cam_body import CamBody
 from camwright.pipeline.contact.contact_history import ContactHistory
@@ -51,7 +52,7 @@ class FlatFace(Part):
     material: Material
     end: BodyEnd | None = None
     crown: AxialCrown | None = None
-    source: str = ""
+    source: Source = NO_SOURCE
 
     @property
     def line_width(self) -> float:

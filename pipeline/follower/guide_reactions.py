@@ -16,6 +16,7 @@ from camwright.geometry.display import Displayed
 from camwright.geometry.errors import ContactError, InputError
 from camwright.pipeline.base.material import ROOM, Material
 from camwright.pipeline.base.quantities import In, Length, Part, Pressure, Temperature
+from camwright.pipeline.base.source import NO_SOURCE, Source
 from camwright.pipeline.base.units import shown
 from camwright.pipeline.follower.guide_contact import BearingLine, settle
 from camwright.pipeline.follower.stem_beam import Stem, end_flexibility, stem_compliance
@@ -75,7 +76,7 @@ class Guide(Part):
     housing_resistance: Annotated[float, In("K/W", above=0, at_most=1e6)] | None = None
     thermal_resistance: Annotated[float, In("K/W", above=0, at_most=1e6)] | None = None
     wear_rate: Annotated[float, In("mm^3/N/m", above=0, at_most=1e3)] | None = None
-    source: str = ""
+    source: Source = NO_SOURCE
 
     def __post_init__(self) -> None:
         super().__post_init__()

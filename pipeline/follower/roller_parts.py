@@ -18,6 +18,7 @@ from camwright.pipeline.base.quantities import (
     Pressure,
     Temperature,
 )
+from camwright.pipeline.base.source import NO_SOURCE, Source
 from camwright.pipeline.base.units import shown
 
 Cleanliness = Literal[
@@ -47,7 +48,7 @@ class OuterRing(Part):
     rows: Annotated[int, Count(1, 4)] = 1
     fatigue_bending: Pressure | None = None
     tensile_strength: Pressure | None = None
-    source: str = ""
+    source: Source = NO_SOURCE
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -110,7 +111,7 @@ class Bearing(Part):
     relubrication_interval: Hours | None = None
     pitch_diameter: Length | None = None
     ring: OuterRing | None = None
-    source: str = ""
+    source: Source = NO_SOURCE
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -123,7 +124,7 @@ class Pin(Part):
     span: Length
     mounting: Literal["straddled", "overhung"] = "straddled"
     material: Material
-    source: str = ""
+    source: Source = NO_SOURCE
 
     @property
     def overhung(self) -> bool:
@@ -160,7 +161,7 @@ class Fork(Part):
     bridge_length: Length | None = None
     material: Material
     pressure_limit: Pressure | None = None
-    source: str = ""
+    source: Source = NO_SOURCE
 
     def cheeks(self, pin: Pin) -> int:
         """Number of cheeks: one beside an overhung pin, else two."""

@@ -24,6 +24,7 @@ from camwright.pipeline.base.quantities import (
     Share,
     Temperature,
 )
+from camwright.pipeline.base.source import NO_SOURCE, Source
 from camwright.pipeline.base.units import shown
 from camwright.pipeline.follower.spring_kinds import (
     GasSpring,
@@ -419,7 +420,7 @@ class HelicalSpring(WoundWire[float], Part):
         {
             "elastic_modulus": "2.6 times the shear modulus: isotropic, Poisson ratio 0.3",
             "damping_ratio": "0.01 with an error bar down to 0.002: 0.002 to 0.02 without damper"
-            " coil or friction insert, practice of valve springs, recalled: verify",
+            " coil or friction insert, practice of valve springs (to be confirmed)",
         }
     )
 
@@ -437,7 +438,7 @@ class HelicalSpring(WoundWire[float], Part):
     damping_ratio: Annotated[float, In(at_least=1e-4, at_most=0.5)] | None = None
     temperature: Temperature | None = None
     relaxation: Share | None = None
-    source: str = ""
+    source: Source = NO_SOURCE
     name: str = ""
 
     def __post_init__(self) -> None:
@@ -494,7 +495,7 @@ class Spring(Part):
     design: HelicalSpring | None = None
     gas: GasSpring | None = None
     torsion: TorsionSpring | None = None
-    source: str = ""
+    source: Source = NO_SOURCE
 
     def __post_init__(self) -> None:
         super().__post_init__()

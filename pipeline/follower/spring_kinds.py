@@ -19,6 +19,7 @@ from numpy.typing import ArrayLike
 from camwright.geometry.arrays import Array
 from camwright.geometry.errors import ContactError, InputError
 from camwright.pipeline.base.quantities import In, Length, Part, Pressure, Temperature
+from camwright.pipeline.base.source import NO_SOURCE, Source
 from camwright.pipeline.base.units import shown
 
 ATMOSPHERE = 101_325.0
@@ -157,7 +158,7 @@ class GasSpring(Part):
     speed_limit: Annotated[float, In("m/s", above=0, at_most=1000)] | None = None
     stroke_rate_limit: Annotated[float, In("1/min", above=0, at_most=1e5)] | None = None
     stroke: Length | None = None
-    source: str = ""
+    source: Source = NO_SOURCE
 
     @property
     def column(self) -> float:
@@ -249,7 +250,7 @@ class TorsionSpring(Part):
     mean_diameter: Length | None = None
     tensile_strength: Pressure | None = None
     stress_range: Pressure | None = None
-    source: str = ""
+    source: Source = NO_SOURCE
 
     def __post_init__(self) -> None:
         super().__post_init__()

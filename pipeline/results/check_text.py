@@ -3,14 +3,21 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
 from fnmatch import fnmatchcase
 from typing import NamedTuple, get_args
 
+from camwright.pipeline.base.source import Source
 from camwright.pipeline.base.units import shown
+from camwright.pipeline.case.cards.card_filling import KINDS, known_cards
+from camwright.pipeline.case.cards.provenance import numbers_of, source_in_card
+from camwright.pipeline.case.cards.shaft_seats import seat_source
+from camwright.pipeline.case.cards.spring_catalogue import wire_sources
 from camwright.pipeline.case.keys import DIGITS, NAME, Key
-from camwright.pipeline.case.limits import AnyLimit
+from camwright.pipeline.case.limits import LIMITS, AnyLimit
+from camwright.pipeline.case.plausibility import usual_sources
 from camwright.pipeline.checks.check import Declaration, Page
-from camwright.pipeline.checks.registry import DECLARED
+from camwright.pipeline.checks.registry import CHECKS, DECLARED
 from camwright.pipeline.results.check_report import sentence
 
 
@@ -83,7 +90,7 @@ def default_of(row: AnyLimit) -> str:
 
 def _limit(one: Declaration) -> str:
     if one.limit is None:
-        return one.source
+        return str(one.source)
     value = default_of(one.limit)
     stated = f", default {value}" if value else ", without a default"
     return f"`limits.{one.limit.id}`{stated}; {one.limit.source}"
@@ -109,3 +116,30 @@ def _of_card(rest: str) -> str:
 def _named(path: str, formula: str) -> bool:
     words = re.escape(re.sub(r"^guides\.[ab]\.", "guides.*.", path))
     return "." in path and re.search(rf"(?<![\w.]){words}(?![\w])", formula) is not None
+
+
+def program_sources() -> Iterator[tuple[str, Source]]:
+    """Name and source of each value that the program holds; a card number by number."""
+    for key, row in LIMITS.items():
+        yield f"limits.{key}", row.source
+    for one in CHECKS:
+        if one.limit is None and one.source:
+            yield f"checks.{one.id}", one.source
+    cards = known_cards(None)
+    for kind in KINDS:
+        for name, card in cards[kind].items():
+            place = f"{kind}.{name}"
+            for key in numbers_of(card):
+                yield f"{place}.{key}", source_in_card(card, key, f"cards.{place}")
+    yield from wire_sources()
+    yield "shaft_seats", seat_source()
+    yield from usual_sources()
+
+
+def open_sources() -> dict[str, list[str]]:
+    """Names of the values of the program that are to be confirmed, by the text of their source."""
+    by_text: dict[str, list[str]] = {}
+    for name, source in program_sources():
+        if not source.confirmed:
+            by_text.setdefault(source.text, []).append(name)
+    return by_text

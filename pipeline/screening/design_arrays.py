@@ -35,7 +35,7 @@ Judged = tuple[Array, Array | float | None]
 
 
 @dataclass(frozen=True, eq=False)
-class Source:
+class LiftOrigin:
     """What the lifts of a group of designs follow from.
 
     torque (1 or m, N): smoothed engine torque, crank N m; energy (N,): stored over the turn, J,
@@ -55,7 +55,7 @@ class Designs:
     ----------
     case : Case          with the values that all designs share
     columns : mapping    by key of an array path, SI, each (m, 1)
-    source : Source      of the lift
+    source : LiftOrigin      of the lift
     torques : mapping    engine torque by number of the load case, less its mean, (m or 1, N)
     count : int          designs m
     step : int           every `step`-th sample of the lift is a cam angle of the loads
@@ -64,7 +64,7 @@ class Designs:
 
     case: Case
     columns: Mapping[str, Array]
-    source: Source
+    source: LiftOrigin
     torques: Mapping[int, Array]
     count: int
     step: int

@@ -26,7 +26,7 @@ from camwright.pipeline.checks.registry import DECLARED, accepted
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.follower.spring import spring_energy
 from camwright.pipeline.preview import preview_case
-from camwright.pipeline.screening.design_arrays import Designs, Screened, Source, TorqueOfSpeed
+from camwright.pipeline.screening.design_arrays import Designs, LiftOrigin, Screened, TorqueOfSpeed
 from camwright.pipeline.screening.design_factors import Factor, Group, count_of, groups, refusals
 from camwright.pipeline.screening.screened_cam import ScreenedCam
 from camwright.pipeline.screening.screened_checks import SCREENED, torque_after
@@ -201,11 +201,11 @@ class _Blocks:
         torques = {
             k: each.at(values.get(f"load_case[{k}].speed")) for k, each in self.torques.items()
         }
-        source = Source(energy=self.synthesised)
+        source = LiftOrigin(energy=self.synthesised)
         if case.lift is not None:
-            source = Source(lift=given_lift(case).values)
+            source = LiftOrigin(lift=given_lift(case).values)
         elif self.synthesised is None:
-            source = Source(torque=_smoothed(case, values, torques[0], count))
+            source = LiftOrigin(torque=_smoothed(case, values, torques[0], count))
         samples = next(
             each.shape[-1]
             for each in (source.torque, source.energy, source.lift)

@@ -138,5 +138,5 @@ def test_traction_of_rolling_never_eases_the_stress(cycle):
 def test_mixed_film_says_what_it_is_worth(run):
     trial = json.loads((run / "trial_1" / "trial.json").read_text(encoding="utf-8"))
     film = trial["rolling"]["idle"]["film_thickness_mixed"]
-    assert "verify" in film["source"]
+    assert "(to be confirmed)" in film["source"]
     assert bool(film["refusal"]) == bool(film["positions_refused"])

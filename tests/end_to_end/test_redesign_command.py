@@ -44,7 +44,7 @@ SCOPED = (
 PUBLISHED = (
     ('not_covered = ["pin",', 'not_covered = ["spring", "guides", "pin",'),
     ('overspeed = "3960 rpm" ', 'unbalance = "9999 mm/s"\nwaviness = 1.0 '),
-    ('overspeed = "manufacturer', 'unbalance = "manufacturer'),
+    ('overspeed = { text = "manufacturer', 'unbalance = { text = "manufacturer'),
     ('material = "s355"', 'profile_tolerance = "8 um"\nmaterial = "hardened"'),
 )
 HARDENED = '\n[materials.hardened]\ncard = "case_hardened"\n'

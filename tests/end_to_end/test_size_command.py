@@ -122,7 +122,7 @@ def test_a_steep_cam_is_sized_whole(tmp_path: Path, capsys: pytest.CaptureFixtur
     text = out.read_text(encoding="utf-8")
     assert text.startswith("# kept")
     case = cw.read_case(out)
-    assert case.sources["cam.prime_radius"] == "sized: curvature of the pitch curve"
+    assert case.sources["cam.prime_radius"].text == "sized: curvature of the pitch curve"
     # the complete case passes the checks by which it is sized, and none is far from its limit
     checks = {each.id: each for each in cw.preview_case(case).checks}
     for name in ("pressure_angle", "curvature_ratio", "undercut", "jump", "jump_speed",

@@ -325,7 +325,9 @@ def test_limits_are_looked_up_by_their_rows() -> None:
     assert limits[JAM_INDEX] == 0.5
     assert limits[PRESSURE_ANGLE] == pytest.approx(radians(30.0), rel=1e-15)
     assert limits[CURVATURE_RATE] is None  # it has no default, and the case sets none
-    assert limits.source(PRESSURE_ANGLE).startswith("Rothbart, Cam Design Handbook (2004), ch. 6")
+    assert limits.source(PRESSURE_ANGLE).text.startswith(
+        "Rothbart, Cam Design Handbook (2004), ch. 6"
+    )
     assert limits.source(JAM_INDEX) == JAM_INDEX.source  # the case has no words of its own
 
 

@@ -4,6 +4,7 @@ import pytest
 from small_machine import small_machine
 
 from camwright.geometry.errors import InputError
+from camwright.pipeline.base.source import old_words
 from camwright.pipeline.case.cards.spring_catalogue import CATALOGUE, SpringDemand, read_catalogue
 from camwright.pipeline.case.case_file import parse_case, read_case
 
@@ -53,8 +54,8 @@ def test_the_lightest_of_the_shipped_springs_becomes_the_design():
     will_do = [each for each in read_catalogue() if not demand.shortfalls(each)]
     assert spring.mass == pytest.approx(min(each.mass for each in will_do), rel=1e-12)
     assert len(will_do) > 1
-    assert "lightest of" in case.spring.design.source
-    assert "verify" in case.spring.design.source
+    assert "lightest of" in case.spring.design.source.text
+    assert not case.spring.design.source.confirmed
     assert parse_case(case.to_toml()) == case
 
 
@@ -92,7 +93,13 @@ def test_a_catalogue_beside_the_case(tmp_path):
     path.write_text(case_text('catalogue = "own.toml"', 'travel_max = "25 mm"'))
     case = read_case(path)
     assert case.spring.design.wire_diameter == pytest.approx(5e-3)
-    assert "light" in case.spring.design.source
+    assert "light" in case.spring.design.source.text
+    assert case.spring.design.source.confirmed and not old_words(case.written.tables)
+    (tmp_path / "own.toml").write_text(WIRE.replace("a test", "mill: verify") + "".join(rows))
+    case = read_case(path)
+    assert not case.spring.design.source.confirmed
+    (warning,) = old_words(case.written.tables)
+    assert "mill: verify" in warning
     path.write_text(case_text('catalogue = "own.toml"', 'travel_max = "60 mm"'))
     with pytest.raises(InputError, match=r"spring\.catalogue = own\.toml.*light: goes solid"):
         read_case(path)

@@ -274,7 +274,10 @@ def test_a_case_file_is_previewed_and_never_passes(tmp_path: Path, command: Comm
             assert record["judged_at"] in ("cycle", "certified")
         elif record["id"] != "tolerance_corners":
             assert record["method"].startswith("preview: ")
-    text = command("check", file, "--all")[1]
+    made_up = "made up for this template: replace by the maker's table"
+    file.write_text(small_machine("early").replace(made_up, "maker: verify"))
+    _, text, told = command("check", file, "--all")
+    assert 'warning: source "maker: verify" is to be confirmed by its words' in told
     assert "no verdict below the certified depth" in text
     assert "judged at the depth certified: " in text
 

@@ -109,7 +109,7 @@ def test_a_tolerance_is_tightened_with_a_source_and_never_dropped(table, line):
         with pytest.raises(InputError, match="> 0"):
             parse_case(text)
     else:
-        assert parse_case(text).tolerances.source == "measured on ten parts"
+        assert parse_case(text).tolerances.source.text == "measured on ten parts"
 
 
 def test_every_case_has_corners():

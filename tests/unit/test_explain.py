@@ -9,7 +9,7 @@ from camwright.geometry.errors import InputError
 from camwright.pipeline.case.keys import case_keys, keys_at
 from camwright.pipeline.commands.explain_command import WIDTH, explain
 from camwright.pipeline.results.check_report import sentence
-from camwright.pipeline.results.check_text import checks_with
+from camwright.pipeline.results.check_text import checks_with, program_sources
 
 
 def explained(capsys: pytest.CaptureFixture[str], *words: str) -> str:
@@ -84,6 +84,42 @@ def test_every_limit_names_the_checks_that_have_it():
         if one.limit is not None:
             (key,) = keys_at(f"limits.{one.limit.id}")
             assert one.id in checks_with(key)
+
+
+def test_the_values_to_be_confirmed_are_listed_by_their_sources(capsys):
+    """Each once, under the text of its source; a value that was read is not."""
+    assert explain(sources=True) == 0
+    text = capsys.readouterr().out
+    first, *lines = text.splitlines()
+    assert max(map(len, lines)) <= WIDTH
+    listed = [name for line in lines if line.startswith(" ") for name in line.split()]
+    names = [name.rstrip(",") for name in listed]
+    open_ = [name for name, source in program_sources() if not source.confirmed]
+    assert sorted(names) == sorted(open_)
+    assert len(set(names)) == len(names)
+    assert first == f"{len(names)} values of the program are to be confirmed"
+    for name in (
+        "limits.jump_speed",
+        "checks.spring_stress",
+        "oils.iso_vg_100.viscosity_100",
+        "wires.music_wire.strength_at_1mm",
+        "shaft_seats",
+        "usual_ranges.torque",
+    ):
+        assert name in names  # fmt: skip
+    assert "limits.closure" not in names
+
+
+def test_keys_and_sources_are_explained_together(capsys):
+    assert explain(["cam.width"], sources=True) == 0
+    text = capsys.readouterr().out
+    assert text.startswith("cam.width: ")
+    assert "values of the program are to be confirmed\n" in text
+
+
+def test_nothing_to_explain_is_refused():
+    with pytest.raises(InputError, match="a key, a table, a check, or --sources"):
+        explain()
 
 
 @pytest.mark.parametrize(

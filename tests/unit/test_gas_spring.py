@@ -263,7 +263,7 @@ def test_card_of_a_gas_spring_has_its_rod_and_its_rise_of_force(name):
     assert gas.volume / (gas.volume - gas.area * stroke) == pytest.approx(1.5, rel=3e-3)
     assert gas.preload == pytest.approx(90e5 * gas.area, rel=1e-12)
     assert (gas.pressure_limit, gas.temperature_limit, gas.speed_limit) == (250e5, 353.15, 1.6)
-    assert "verify" in gas.source
+    assert not gas.source.confirmed
 
 
 def test_a_users_card_of_a_gas_spring(tmp_path):

@@ -242,7 +242,7 @@ def places(table: Any, path: tuple[str | int, ...] = ()) -> Iterator[tuple[str |
     """Paths of the numbers of a case, with their units."""
     for key, value in table.items() if isinstance(table, dict) else enumerate(table):
         if isinstance(value, (dict, list)):
-            if key != "sources":
+            if key not in ("source", "sources"):
                 yield from places(value, (*path, key))
         elif not isinstance(value, str) or value[:1] in "-0123456789":
             yield (*path, key)

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from small_machine import small_machine
 
 from camwright.pipeline.base.progress import Progress
 from camwright.pipeline.case.case import Case
@@ -185,6 +186,15 @@ def test_a_run_warns_goes_on_and_records_it(tmp_path: Path) -> None:
     assert (finding["given"], finding["implied"], finding["flagged"]) == (0.0, 0.1, True)
     assert finding["title"] == "engine.file"
     assert consistency_line(finding) == f"plausibility: {finding['how']}"
+
+
+def test_a_run_warns_of_a_source_that_is_open_by_its_words(tmp_path: Path) -> None:
+    made_up = "made up for this template: replace by the maker's table"
+    text, notes = changed(small_machine("words"), made_up, "maker: verify"), Notes()
+    case = parse_case(text).with_positions(36)
+    run_case(case, tmp_path / "run", depth=Tier.SCREENING, progress=notes)
+    (warning,) = (note for note in notes.notes if "version 0.1" in note)
+    assert warning.startswith('warning: source "maker: verify" is to be confirmed by its words')
 
 
 def test_a_curve_that_overshoots_its_table_is_told(tmp_path: Path) -> None:

@@ -84,8 +84,8 @@ def test_a_case_file_of_version_0_1_is_the_case_of_today() -> None:
     assert case.cam.prime_radius == 0.060
     assert case.workshop.table_step == parse_case(small_machine("new")).workshop.table_step
     assert (case.limits[TRACTION_SHARE], case.limits[GUIDE_GAP]) == (0.25, 0.002)
-    assert case.limits.source(TRACTION_SHARE) == "dry"
-    assert case.limits.source(GUIDE_GAP) == "room for a finger"
+    assert case.limits.source(TRACTION_SHARE).text == "dry"
+    assert case.limits.source(GUIDE_GAP).text == "room for a finger"
     assert case.smoothing.free == ("initial_energy", "prime_radius")
     assert case.smoothing.prime_radius_range == (0.055, 0.065)
     assert [waiver.check for waiver in case.waivers] == ["guide_pv_A", "shakedown"]

@@ -90,7 +90,7 @@ def test_parts_out_of_scope_are_not_asked_for() -> None:
     own = f"{SCOPE}[mechanism]\ngear_ratio = 1\n\n[[load_case]]"
     case = parse_case(f"{FIRST.replace('[[load_case]]', own)}\n{error.toml}")
     assert case.guides.a.friction == case.guides.b.friction == 0.0
-    assert "assumed" in case.guides.a.source
+    assert "assumed" in case.guides.a.source.text
     assert "16.471 N keeps it on the cam" in checks(case)["contact_force_margin"].note
 
 

@@ -148,7 +148,7 @@ def test_shipped_cards():
         ball = card.outer_diameter - card.pitch_diameter - 2 * card.ring_thickness
         assert 3e-3 < ball < card.pitch_diameter * np.sin(np.pi / card.balls)
     assert all(card.source for card in cards.values())
-    assert all("verify" in card.source for card in cards.values())
+    assert all(not card.source.confirmed for card in cards.values())
     assert all(isinstance(card, BearingCard) for card in cards.values())
 
 

@@ -134,8 +134,8 @@ def test_stand_ins_are_stated_as_assumed() -> None:
     assert case.follower.stem_material == case.cam.material
     assert case.limits.overspeed == pytest.approx(20 * 3.14159265, rel=1e-6)  # of the faster
     for key in ("cam.bore_radius", "roller.width", "follower.stem_diameter", "guides.spacing"):
-        assert case.sources[key].startswith("assumed, as the scope leaves out"), key
-    assert "assumed" in case.limits.sources["overspeed"]
+        assert case.sources[key].text.startswith("assumed, as the scope leaves out"), key
+    assert "assumed" in case.limits.sources["overspeed"].text
 
 
 def test_words_of_parts_and_subjects_differ() -> None:

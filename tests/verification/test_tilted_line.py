@@ -20,7 +20,7 @@ from camwright.pipeline.cycle.cycle import turn_of_line
 from camwright.pipeline.cycle.length_history import length_table, signed_factor
 from camwright.pipeline.follower.camshaft_loads import unbalance
 from camwright.pipeline.preview import preview_case
-from camwright.pipeline.screening.design_arrays import Designs, Source
+from camwright.pipeline.screening.design_arrays import Designs, LiftOrigin
 from camwright.pipeline.screening.design_screening import screen_designs
 from camwright.pipeline.sizing.solved_lines import SolvedLines, signed_range
 
@@ -178,7 +178,7 @@ def test_the_screening_has_the_tilt_of_the_cycle(values):
 def test_the_screening_has_the_unbalance_of_the_contour(name):
     """Area integrals of the polygon through the contacts against those of the contour."""
     case = read_case(Path(__file__).parents[2] / "cases" / name)
-    made = Designs(case, {}, Source(lift=LIFT), {}, 1, 1)
+    made = Designs(case, {}, LiftOrigin(lift=LIFT), {}, 1, 1)
     cam = replace(case.cam, counter_hole=None)
     known = unbalance(
         case.contour(Lift(uniform_turn(LIFT.size), LIFT)), cam.bore_radius, cam.keyway,

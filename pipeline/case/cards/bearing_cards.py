@@ -8,6 +8,7 @@ from typing import Annotated, ClassVar
 
 from camwright.geometry.errors import InputError
 from camwright.pipeline.base.quantities import Count, In, Length, Part, Pressure
+from camwright.pipeline.base.source import Source
 from camwright.pipeline.follower.roller_parts import Bearing, OuterRing
 
 _Rating = Annotated[float, In("N", above=0, at_most=1e9)]
@@ -48,7 +49,7 @@ class BearingCard(Part):
     bore: Length
     outer_diameter: Length
     width: Length
-    source: str
+    source: Source
     fatigue_load_limit: _Rating | None = None
     radial_limit: _Rating | None = None
     static_radial_limit: _Rating | None = None
@@ -101,7 +102,7 @@ class BearingCard(Part):
         )
 
 
-def bearing_keys(words: Mapping[str, str]) -> dict[str, str]:
-    """Texts by the keys of a card, by those of ``roller.bearing``."""
+def bearing_keys(words: Mapping[str, Source]) -> dict[str, Source]:
+    """Sources by the keys of a card, by those of ``roller.bearing``."""
     of_ring = {f"ring.{_OF_THE_RING[key]}": words[key] for key in words if key in _OF_THE_RING}
     return dict(words) | of_ring

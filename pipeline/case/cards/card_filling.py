@@ -11,16 +11,18 @@ import math
 from collections.abc import Iterator, Mapping
 from functools import cache
 from pathlib import Path
+from typing import cast
 
 from camwright.geometry.errors import InputError
 from camwright.pipeline.base import units
 from camwright.pipeline.base.files import read_toml
 from camwright.pipeline.base.missing_kinds import missing_kind
+from camwright.pipeline.base.source import Source, entry_of, reworded, source_in
 from camwright.pipeline.case.cards.bearing_cards import BearingCard, bearing_keys
 from camwright.pipeline.case.cards.part_table import read_part
 from camwright.pipeline.case.cards.provenance import (
     numbers_of,
-    source_words,
+    source_in_card,
     without_provenance,
 )
 from camwright.pipeline.case.cards.spring_selection import put_force, put_spring
@@ -69,27 +71,30 @@ def _fill_places(case: Tables, folder: Path | None) -> None:
             listed = f"; {missing.sentence}" if missing is not None else ""
             limit = f"one of: {', '.join(sorted(cards[kind]))}{listed}"
             raise InputError(f"{field}.card", str(name), limit)
-        place = f"cards.{kind}.{name}"
-        words = {key: source_words(card, key, place) for key in numbers_of(card)}
+        place, raw = f"cards.{kind}.{name}", card["source"]
+        words = {key: source_in_card(card, key, place) for key in numbers_of(card)}
         if kind == "oils":
             words = _oil_words(words)
             card = _oil(card, table, place, field)
         elif kind == "wires":
             card = _wire(card, table, str(name), field)
-            words = {key: text for key, text in words.items() if key not in _RANGE}
+            words = {key: source for key, source in words.items() if key not in _RANGE}
         elif kind == "bearings":
             words = bearing_keys(words)
             part = read_part(BearingCard, without_provenance(card), f"cards.{name}")
             card = tables_of(part.bearing)
-        own = dict(table)
+        own, stated = dict(table), card["source"] if kind == "oils" else raw
         table.update(without_provenance(card))
         table.update(own)
         if "source" not in own:
-            table["source"] = f"card {name}: {card['source']}"
+            table["source"] = _from_card(str(name), stated)
             words |= dict.fromkeys(numbers_of(own), UNSTATED)
         else:
-            words = {key: text for key, text in words.items() if key not in own}
-        put_sources(case, field, table, words)
+            words = {key: source for key, source in words.items() if key not in own}
+        entries = {key: entry_of(source) for key, source in words.items()}
+        if "source" in own:  # a plain source of the card stays plain where it is read, as in a case
+            entries |= {key: raw for key, source in words.items() if source == source_in(raw)}
+        put_sources(case, field, table, entries)
         if kind == "bushes":
             material = _entry(table, "material", field)
             _with_material(case, material, cards["materials"])
@@ -143,8 +148,7 @@ def _sourced(card: TomlValue, field: str) -> Tables:
     """A card; refused without the source of its values."""
     if not isinstance(card, dict):
         raise InputError(field, str(card), "a table")
-    source = card.get("source")
-    if not isinstance(source, str) or not source.strip():
+    if not source_in(card.get("source")):
         raise InputError(f"{field}.source", "missing", "given: the source of its values")
     return card
 
@@ -178,18 +182,26 @@ def _with_material(case: Tables, name: TomlValue, cards: Mapping[str, Tables]) -
     if isinstance(materials, dict) and isinstance(name, str) and name not in materials:
         card = cards.get(name)
         if card is not None:
-            place, source = f"cards.materials.{name}", f"card {name}: {card['source']}"
-            words = {key: source_words(card, key, place) for key in numbers_of(card)}
+            place = f"cards.materials.{name}"
+            source = _from_card(name, card["source"])
+            words = {key: entry_of(source_in_card(card, key, place)) for key in numbers_of(card)}
             materials[name] = {**without_provenance(card), "source": source}
             put_sources(case, f"materials.{name}", materials[name], words)
 
 
-def _oil_words(words: Mapping[str, str]) -> dict[str, str]:
+def _from_card(name: str, source: TomlValue) -> TomlValue:
+    """Source of a table that a card of that name fills, from the one of the card."""
+    return cast("TomlValue", reworded(source, lambda text: f"card {name}: {text}"))
+
+
+def _oil_words(words: Mapping[str, Source]) -> dict[str, Source]:
     """Sources of the values of a lubricant, from those of its oil."""
     made_of = ("viscosity_40", "viscosity_100", "density")
-    texts = dict.fromkeys(words[key] for key in made_of if key in words)
-    kept = {key: text for key, text in words.items() if key not in made_of}
-    return kept | {"viscosity": "; ".join(texts)}
+    used = dict.fromkeys(words[key] for key in made_of if key in words)
+    text = "; ".join(dict.fromkeys(source.text for source in used))
+    viscosity = Source(text, confirmed=all(source.confirmed for source in used))
+    kept = {key: source for key, source in words.items() if key not in made_of}
+    return kept | {"viscosity": viscosity}
 
 
 def _oil(card: Tables, table: Tables, source: str, field: str) -> Tables:
@@ -204,6 +216,7 @@ def _oil(card: Tables, table: Tables, source: str, field: str) -> Tables:
     density = units.parse(_entry(card, "density", source), "kg/m^3", f"{source}.density")
     at_40, at_100 = (_positive(card, f"viscosity_{celsius}", source) for celsius in (40, 100))
     dynamic = 1e-6 * viscosity(at_40, at_100, temperature) * density
+    converted = f"; at {units.celsius(temperature):.1f} degC by ASTM D341"
     return {
         "viscosity": units.format(dynamic, "mPa s"),
         "pressure_viscosity": _entry(card, "pressure_viscosity", source),
@@ -214,7 +227,7 @@ def _oil(card: Tables, table: Tables, source: str, field: str) -> Tables:
             for key in ("scuffing_temperature", "boundary_temperature")
             if key in card
         },
-        "source": f"{card['source']}; at {units.celsius(temperature):.1f} degC by ASTM D341",
+        "source": reworded(card["source"], lambda text: text + converted),
     }
 
 

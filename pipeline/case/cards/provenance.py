@@ -18,6 +18,7 @@ from pydantic import ValidationError
 
 from camwright.geometry.errors import InputError
 from camwright.pipeline.base.files import read_toml
+from camwright.pipeline.base.source import Source, source_in
 from camwright.pipeline.case.error_text import refusal_of
 from camwright.pipeline.case.section import Section, Text
 from camwright.pipeline.case.toml_text import Tables, TomlValue
@@ -38,12 +39,12 @@ class Provenance(Section):
     known: Literal["read", "recalled"]
 
     @property
-    def words(self) -> str:
-        """Title, place and condition; a number that is recalled says so."""
+    def stated(self) -> Source:
+        """Title, place and condition; confirmed if the number was read in the source."""
         title = titles().get(self.source, self.source)
         placed = ", ".join(each for each in (title, self.at) if each)
-        known = "recalled, verify" if self.known == "recalled" else ""
-        return "; ".join(each for each in (placed, self.condition, known) if each)
+        words = "; ".join(each for each in (placed, self.condition) if each)
+        return Source(words, confirmed=self.known == "read")
 
 
 @cache
@@ -84,10 +85,10 @@ def provenance_of(card: Tables, key: str, field: str) -> Provenance | None:
     raise InputError(f"{field}.{key}", "missing", "given, as other numbers of the card have theirs")
 
 
-def source_words(card: Tables, key: str, field: str) -> str:
-    """Source of a number of a card in words: its provenance, else the source of the card."""
+def source_in_card(card: Tables, key: str, field: str) -> Source:
+    """Source of a number of a card: its provenance, else the source of the card."""
     known = provenance_of(card, key, field)
-    return str(card.get("source", "")) if known is None else known.words
+    return source_in(card.get("source", "")) if known is None else known.stated
 
 
 def without_provenance(card: Tables) -> Tables:

@@ -8,6 +8,7 @@ from typing import ClassVar
 
 from camwright.pipeline.base.files import read_toml
 from camwright.pipeline.base.quantities import Force, Length, Part
+from camwright.pipeline.base.source import Source, source_in
 from camwright.pipeline.case.cards.part_table import read_part
 from camwright.pipeline.case.toml_text import Tables
 
@@ -39,6 +40,6 @@ def seats() -> tuple[Seat, ...]:
     return tuple(sorted(read, key=lambda seat: seat.bore))
 
 
-def seat_source() -> str:
+def seat_source() -> Source:
     """Source of the seats."""
-    return str(read_toml(_FILE, _FILE.name, _BYTES_MAX)["source"])
+    return source_in(read_toml(_FILE, _FILE.name, _BYTES_MAX)["source"])

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, fields, replace
 from pathlib import Path
 from typing import ClassVar, Generic, NamedTuple
@@ -13,10 +13,11 @@ from numpy.typing import NDArray
 from camwright.geometry.errors import InputError
 from camwright.pipeline.base.files import read_toml
 from camwright.pipeline.base.quantities import Part, Pressure
+from camwright.pipeline.base.source import Source, entry_of
 from camwright.pipeline.case.cards.part_table import read_part
 from camwright.pipeline.case.cards.provenance import (
     numbers_of,
-    source_words,
+    source_in_card,
     without_provenance,
 )
 from camwright.pipeline.case.limits import SPRING_FATIGUE, SPRING_SOLID, SPRING_SURGE
@@ -155,20 +156,35 @@ def read_catalogue(path: str | Path = CATALOGUE) -> tuple[HelicalSpring, ...]:
     return tuple(springs)
 
 
-def sources_in(path: Path, name: str) -> dict[str, str]:
-    """Sources of the numbers of a spring of a catalogue, those of its wire by their provenance."""
+def wire_sources() -> Iterator[tuple[str, Source]]:
+    """Name and source of each number of the wires of the shipped catalogue."""
+    wires = read_toml(CATALOGUE, CATALOGUE.name, _BYTES).get("wires")
+    for name, wire in wires.items() if isinstance(wires, dict) else ():
+        card = with_new_wire_keys(wire, f"catalogue.wires.{name}")
+        for key in numbers_of(card):
+            yield f"springs.{name}.{key}", source_in_card(card, key, f"catalogue.wires.{name}")
+
+
+def sources_in(path: Path, name: str) -> tuple[TomlValue, Tables]:
+    """Source of the wire of a spring of a catalogue, and those of the numbers, as entries.
+
+    The numbers of its wire have those of their provenance.
+    """
     catalogue = read_toml(path, "catalogue", _BYTES)
     entries, wires = catalogue.get("spring"), catalogue.get("wires")
-    words: dict[str, str] = {}
+    stated: TomlValue = ""
+    words: Tables = {}
     for entry in entries if isinstance(entries, list) else ():
         if not isinstance(entry, dict) or entry.get("name") != name:
             continue
         wire = wires.get(str(entry.get("wire"))) if isinstance(wires, dict) else None
         field = f"catalogue.wires.{entry.get('wire')}"
         card = with_new_wire_keys(wire or {}, field)
-        words = {key: source_words(card, key, field) for key in numbers_of(card)}
-        words |= dict.fromkeys(numbers_of(entry), f"chosen: spring {name} of the catalogue")
-    return words
+        stated = card.get("source", "")
+        words = {key: entry_of(source_in_card(card, key, field)) for key in numbers_of(card)}
+        chosen = Source(f"chosen: spring {name} of the catalogue", confirmed=True)
+        words |= dict.fromkeys(numbers_of(entry), entry_of(chosen))
+    return stated, words
 
 
 def lightest(
@@ -192,7 +208,7 @@ class _Wire(Part):
     strength_at_1mm: Pressure
     strength_exponent: WireExponent
     treatment: Treatment = "plain"
-    source: str
+    source: Source
 
 
 def _wire(field: str, entry: TomlValue) -> _Wire:

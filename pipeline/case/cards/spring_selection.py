@@ -6,12 +6,12 @@ preload of a spring that is not linear follow from its table.
 
 from __future__ import annotations
 
-from dataclasses import replace
 from pathlib import Path
 
 from camwright.geometry.errors import InputError
 from camwright.pipeline.base import units
 from camwright.pipeline.base.files import inside
+from camwright.pipeline.base.source import reworded
 from camwright.pipeline.case.cards.part_table import read_part
 from camwright.pipeline.case.cards.spring_catalogue import (
     CATALOGUE,
@@ -66,9 +66,10 @@ def put_spring(case: Tables, folder: Path | None) -> None:
         why = "; ".join(f"{each}: {', '.join(reasons[each])}" for each in nearest)
         limit = f"a catalogue with a suitable spring; nearest are {why}"
         raise InputError("spring.catalogue", str(name), limit if springs else "not empty")
-    why = f"lightest of {len(springs)} in catalogue {name}: {best.name}; {best.source}"
-    spring["design"] = tables_of(replace(best, source=why.rstrip("; ")))
-    put_sources(case, "spring.design", spring["design"], sources_in(path, best.name))
+    why = f"lightest of {len(springs)} in catalogue {name}: {best.name}; "
+    source, sources = sources_in(path, best.name)
+    spring["design"] = tables_of(best) | {"source": reworded(source, lambda text: why + text)}
+    put_sources(case, "spring.design", spring["design"], sources)
 
 
 def put_force(case: Tables) -> None:

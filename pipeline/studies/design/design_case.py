@@ -13,6 +13,7 @@ import tomli_w
 
 from camwright.pipeline.base import units
 from camwright.pipeline.base.cooling import STILL_AIR, housing_area
+from camwright.pipeline.base.source import Source, written
 from camwright.pipeline.case.cards.card_filling import known_cards, viscosity
 from camwright.pipeline.case.cards.shaft_seats import Seat, seat_source
 from camwright.pipeline.case.limits import CHORD_SHARE
@@ -31,7 +32,7 @@ from camwright.pipeline.studies.design.wound_springs import SpringPoint
 OIL_WARMER = 20.0  # K of oil and spring above the surroundings
 _KAPPA = 1.25  # viscosity ratio of the roller bearing at the least speed
 _CENTISTOKES = 1e-6
-_ROOM = "given: space less the height of the roller at maximum lift"
+_ROOM = Source("given: space less the height of the roller at maximum lift", confirmed=True)
 _BALANCED = 3e-3  # m/s, residual unbalance of the bench
 PROFILE = 8e-6  # m, tolerance of the ground contour
 SEARCHED = 72  # cam angles of a turn in the search
@@ -169,8 +170,8 @@ def case_text(
 
 _HEAD = """\
 {head}#
-# A value whose source says "assumed" or "recalled" is to be confirmed before a sign-off; the
-# verdict counts them. Numbers carry their units; a card fills in what its table leaves out.
+# A value whose source is not confirmed is to be confirmed before a sign-off; the verdict counts
+# them. Numbers carry their units; a card fills in what its table leaves out.
 
 schema_version = 1
 name = "{name}"
@@ -222,14 +223,15 @@ source = "chosen: {origin}"
 
 [spring.design]
 {rows}
-source = {_text(_spring_source(spring))}
+source = {written(_spring_source(spring))}
 """
 
 
-def _spring_source(spring: HelicalSpring) -> str:
-    if spring.name:
-        return f"spring {spring.name} of the catalogue; temperature and relaxation assumed"
-    return f"wound; wire: {spring.source}; temperature and relaxation assumed"
+def _spring_source(spring: HelicalSpring) -> Source:
+    origin = f"spring {spring.name} of the catalogue"
+    if not spring.name:
+        origin = f"wound; wire: {spring.source.text}"
+    return Source(f"{origin}; temperature and relaxation assumed", confirmed=False)
 
 
 def _cam(design: Machinery) -> str:
@@ -247,18 +249,18 @@ material = "case_hardened"
 roughness = "0.3 um"                 # ground
 profile_tolerance = "{units.format(PROFILE, "um")}"           # ground
 keyway = {{ width = "{_mm(seat.key_width)}", depth = "{_mm(seat.hub_depth)}"{_root(seat)} }}
-source = "assumed: case-hardened and ground"
+source = {_assumed("case-hardened and ground")}
 
 [cam.fit]                            # shrunk on a shaft that is ground to the bore
 least_interference = "{1e6 * least:.3g} um"
 greatest_interference = "{1e6 * greatest:.3g} um"
-source = "assumed; friction by DIN 7190-1, recalled: verify"
+source = {_assumed("friction by DIN 7190-1")}
 
 [cam.key]
 length = "{_mm(frame.key_length)}"
 form = "B"
 material = "c45"
-source = "{seat_source()}"
+source = {written(seat_source())}
 """
 
 
@@ -289,7 +291,7 @@ bearing_static_rating = "{units.format(seat.C0, "kN")}"
 bearing_width = "{_mm(seat.width)}"
 rotor_mass = "{rotor:.3g} kg"                # cam, gear and shaft
 counterweight = {{ residual = "{1e6 * residual:.3g} g mm", position = "{_mm(0.5 * spacing)}" }}
-source = "assumed: proportions; {seat_source()}"
+source = {_assumed(f"proportions; {seat_source().text}")}
 
 [camshaft.gear]
 teeth = {gear}
@@ -301,7 +303,7 @@ contact_limit = "1500 MPa"
 pinion_bending_limit = "430 MPa"
 pinion_contact_limit = "1500 MPa"
 machine_shaft_diameter = "0 mm"      # assumed: the machine shaft ends at its pinion
-source = "ISO 6336-5, case-hardened steel, quality MQ, recalled: verify"
+source = {{ text = "ISO 6336-5, case-hardened steel, quality MQ", confirmed = false }}
 """
 
 
@@ -334,7 +336,7 @@ contamination = "normal_cleanliness"
 diameter = "{_mm(card.bore)}"
 span = "{_mm(frame.pin_span)}"                   # between the middles of the cheeks
 material = "case_hardened"
-source = "assumed: the bore of the roller"
+source = {_assumed("the bore of the roller")}
 
 [roller.fork]
 cheek_width = "{_mm(frame.cheek_width)}"
@@ -342,7 +344,7 @@ cheek_height = "{_mm(frame.cheek_height)}"
 cheek_length = "{_mm(frame.cheek_length)}"
 bridge_length = "{_mm(frame.bridge)}"
 material = "c45"
-source = "assumed: proportions"
+source = {_assumed("proportions")}
 
 [lubricant]
 card = "{oil}"
@@ -352,7 +354,7 @@ temperature = "{_celsius(design)}"
 ambient_temperature = "{units.format(design.task.ambient, "K")}"
 conductance = "{design.conductance:.3g} W/K"
 heat = "{design.other_heat:.3g} W"                      # of gear and camshaft bearings
-source = "assumed: still air about a housing of cam, gear and follower"
+source = {_assumed("still air about a housing of cam, gear and follower")}
 """
 
 
@@ -367,7 +369,7 @@ wall = "{_mm(frame.bush_wall)}"
 clearance = "0.03 mm"
 housing_resistance = "1 K/W"
 wear_rate = "3e-8 mm^3/N/m"
-source = "assumed: size, clearance, housing, wear; card {design.bush}"
+source = {_assumed(f"size, clearance, housing, wear; card {design.bush}")}
 """
     return f"""\
 # --- Follower and its guides: guided length over twice the overhang, room for
@@ -379,7 +381,7 @@ stem_length = "{_mm(frame.stem_length(design.lift))}"
 stem_material = "c45"
 overhang_at_max_lift = "{_mm(frame.overhang)}"       # from guide A to the roller's centre
 anti_rotation = "guided_fork"
-source = "assumed: proportions"
+source = {_assumed("proportions")}
 
 [guides]
 spacing = "{_mm(frame.spacing(design.lift))}"
@@ -400,9 +402,9 @@ def _requirements(design: Machinery, smoothing: str, positions: int) -> str:
     task = design.task
     life = units.format(task.life, "h")
     radius = 1e-3 * np.ceil(1.15e3 * design.cam_radius) if task.space is None else design.room
-    room_words = "assumed: room for the chosen cam" if task.space is None else _ROOM
+    room = _assumed("room for the chosen cam") if task.space is None else written(_ROOM)
     tool = 1e-3 * max(2.0, np.floor(0.5e3 * design.frame.radius))
-    lived = task.source("life")
+    lived = written(task.source("life"))
     cases = [_load_case("running", task.speed, 1.0, "given")]
     for label, speed in zip(("slowest", "fastest"), task.speeds, strict=True):
         if abs(speed / task.speed - 1.0) > 1e-9:
@@ -421,19 +423,19 @@ tool_radius = "{_mm(tool)}"                # grinding wheel or cutter
 cam_radius = "{_mm(float(radius))}"
 
 [limits.sources]
-overspeed = "{task.source("overspeed", "1.2 times the greatest speed")}"
-torque_reduction = "{task.source("remove")}"
-roller_life = "{lived}"
-shaft_bearing_life = "{lived}"
-target_life = "{lived}"
-tool_radius = "assumed"
-cam_radius = "{room_words}"
+overspeed = {written(task.source("overspeed", "1.2 times the greatest speed"))}
+torque_reduction = {written(task.source("remove"))}
+roller_life = {lived}
+shaft_bearing_life = {lived}
+target_life = {lived}
+tool_radius = {_assumed("")}
+cam_radius = {room}
 
 [sources]
-"guides.ambient_temperature" = "{task.source("ambient")}"
+"guides.ambient_temperature" = {written(task.source("ambient"))}
 
 [tolerances]
-source = "assumed: ground profile; the rest: defaults"
+source = {_assumed("ground profile; the rest: defaults")}
 
 [workshop]
 table_step = "{_table_step(design):g} deg"              # chords within a quarter of the tolerance
@@ -471,6 +473,11 @@ def _round(value: float, unit: str, digits: int = 7) -> str:
 
 def _celsius(design: Machinery) -> str:
     return f"{design.oil_temperature - 273.15:g} degC"
+
+
+def _assumed(what: str) -> str:
+    """Source of an assumption, to be confirmed."""
+    return written(Source(f"assumed: {what}".removesuffix(": "), confirmed=False))
 
 
 def _text(text: str) -> str:

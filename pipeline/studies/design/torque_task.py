@@ -13,6 +13,7 @@ import numpy as np
 from camwright.geometry.arrays import FULL_TURN, Array, readonly
 from camwright.geometry.errors import InputError
 from camwright.pipeline.base import units
+from camwright.pipeline.base.source import Source
 from camwright.pipeline.torque.angle_trace import guard_order
 from camwright.pipeline.torque.period import Period
 from camwright.pipeline.torque.tabled_torque import TabledTorqueFile, tabled_torque
@@ -124,11 +125,11 @@ class DesignTask:
         """Torque ripple that may be left, standard deviation, N m."""
         return (1.0 - self.remove) * self.demand.ripple
 
-    def source(self, name: str, reason: str = "") -> str:
+    def source(self, name: str, reason: str = "") -> Source:
         """Source of a requirement for the case file."""
         if name not in self.assumed:
-            return "given"
-        return f"assumed: {reason}" if reason else "assumed"
+            return Source("given", confirmed=True)
+        return Source(f"assumed: {reason}" if reason else "assumed", confirmed=False)
 
     @property
     def ratio(self) -> float:

@@ -1,0 +1,111 @@
+"""Source of a value: its text, and whether it confirms the value; its forms in a case file.
+
+A text is a source. ``{ text = "...", confirmed = false }`` says that the value is yet to be
+confirmed. Files of version 0.1 said so in words: a plain text with one of them is read as
+unconfirmed, with a warning, and ``confirmed = true`` keeps the words of a text that is a source.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, replace
+from typing import Any
+
+import tomli_w
+
+_TO_BE_CONFIRMED = " (to be confirmed)"
+FORM = 'a text, or { text = "...", confirmed = false }'
+"""Forms of a source in a case file."""
+_WORDS_OF_0_1 = re.compile(r"\b(recalled|verify|assum\w*|estimat\w*)\b", re.IGNORECASE)
+_KEYS = ("source", "sources")
+_STATED = {"text", "confirmed"}
+
+
+@dataclass(frozen=True)
+class Source:
+    """Source of a value; false without a text, shown with a mark where it confirms nothing.
+
+    Parameters
+    ----------
+    text : str         title, edition and place, drawing, test report
+    confirmed : bool   False: recalled, assumed or estimated, whatever the words of the text
+    """
+
+    text: str
+    confirmed: bool
+
+    def __bool__(self) -> bool:
+        return bool(self.text.strip())
+
+    def of(self, name: str) -> Source:
+        """The source with the name of what it states."""
+        return replace(self, text=f"{name}: {self.text}")
+
+    def __str__(self) -> str:
+        return self.text if self.confirmed or not self else f"{self.text}{_TO_BE_CONFIRMED}"
+
+
+NO_SOURCE = Source("", confirmed=False)
+"""Source of a value that is stated without one."""
+
+
+def source_in(entry: object) -> Source:
+    """The source that an entry of a table states; none if it is of no form of a source."""
+    if isinstance(entry, str):
+        return Source(entry, confirmed=bool(entry.strip()) and not _of_0_1(entry))
+    if not isinstance(entry, Mapping) or set(entry) != _STATED:
+        return NO_SOURCE
+    text, confirmed = entry["text"], entry["confirmed"]
+    if not isinstance(text, str) or not isinstance(confirmed, bool):
+        return NO_SOURCE
+    return Source(text, confirmed and bool(text.strip()))
+
+
+def entry_of(source: Source) -> Any:
+    """A source as an entry of a table: its text, where `source_in` reads that as the source."""
+    if not _of_0_1(source.text) and source_in(source.text) == source:
+        return source.text
+    return {"text": source.text, "confirmed": source.confirmed}
+
+
+def reworded(entry: Any, words: Callable[[str], str]) -> Any:
+    """An entry with other words for its text, in the form that it has, confirmed as it is."""
+    source = source_in(entry)
+    new = replace(source, text=words(source.text))
+    plain = isinstance(entry, str) and source_in(new.text) == new
+    return new.text if plain else entry_of(new)
+
+
+def written(source: Source) -> str:
+    """A source as the value of a key in the text of a case file."""
+    entry = entry_of(source)
+    lines = tomli_w.dumps(entry if isinstance(entry, dict) else {"text": entry}).splitlines()
+    text = lines[0].removeprefix("text = ")
+    return text if isinstance(entry, str) else f"{{ {', '.join(lines)} }}"
+
+
+def old_words(tables: Mapping[str, Any]) -> tuple[str, ...]:
+    """A warning for each plain text that is read as unconfirmed for its words."""
+    return tuple(
+        f'source "{text}" is to be confirmed by its words, as in version 0.1; written as'
+        " { text = ..., confirmed = false }, or with confirmed = true if it confirms the value"
+        for text in dict.fromkeys(filter(_of_0_1, _plain(tables)))
+    )
+
+
+def _plain(table: object, key: str = "") -> Iterator[str]:
+    """Plain texts of the sources within a table of that key."""
+    if isinstance(table, str) and key in _KEYS:
+        yield table
+    elif isinstance(table, Mapping) and set(table) != _STATED:
+        of_values = key == "sources"
+        for name, entry in table.items():
+            yield from _plain(entry, key if of_values else name)
+    elif isinstance(table, list):
+        for entry in table:
+            yield from _plain(entry)
+
+
+def _of_0_1(text: str) -> bool:
+    return _WORDS_OF_0_1.search(text) is not None
