@@ -4,7 +4,7 @@ import pytest
 
 from camwright.pipeline.base import units
 from camwright.pipeline.case.cards.card_filling import known_cards
-from camwright.pipeline.case.cards.provenance import source_words
+from camwright.pipeline.case.cards.provenance import source_in_card
 
 CARDS = known_cards(None)
 PSI, FOOT, MINUTE = 6894.757, 0.3048, 60.0
@@ -60,7 +60,7 @@ def test_porous_and_solid_bronze_have_their_own_limits():
         {"bronze": 25e6, "wrapped_bronze": 40e6, "sintered_bronze": 5e6}, rel=1e-12
     )
     words = {
-        name: source_words(CARDS["bushes"][name], "pv_limit", name)
+        name: source_in_card(CARDS["bushes"][name], "pv_limit", name).text
         for name in ("bronze", "sintered_bronze")
     }
     assert "porous" in words["sintered_bronze"]
@@ -78,7 +78,9 @@ def test_nylon_bushes_end_where_their_maker_ends_them():
     for name in ("pa6", "pa66"):
         limit = value("materials", name, "temperature_limit", "K")
         assert limit == pytest.approx(338.15, rel=1e-12)
-        assert "static, 20 degC" in source_words(CARDS["bushes"][name], "pressure_limit", name)
+        assert (
+            "static, 20 degC" in source_in_card(CARDS["bushes"][name], "pressure_limit", name).text
+        )
 
 
 @pytest.mark.parametrize("name", sorted(CARDS["bearings"]))
