@@ -1,6 +1,7 @@
 """Plausibility: values of a case beyond their usual ranges, which stand in `usual_ranges.toml`.
 
-Such a value is allowed; it is stated with the consistency of the inputs.
+Such a value is allowed; it is stated with the consistency of the inputs, and that of a single
+key is to be confirmed.
 """
 
 from __future__ import annotations
@@ -62,24 +63,31 @@ def implausible(case: Case, torques: Mapping[str, Torque]) -> tuple[Implied, ...
     ----------
     torques : mapping   engine torque by load case
     """
-    judged: list[Implied | None] = []
-    for usual in _ranges():
-        for key in _keys_in(case, usual.keys):
-            value = value_of(case, key)
-            if isinstance(value, float):
-                judged.append(usual.finding(key, value, f"{key} = {text_of(case, key)}"))
-    judged.append(_lift_finding(case))
+    judged: list[Implied | None] = [*beyond_ranges(case), _lift_finding(case)]
     judged += _torque_findings(case, torques)
     judged += _pressure_findings(case)
     judged += _motor_findings(case, torques)
     judged.append(_oil_finding(case))
     judged += _temperature_findings(case)
     judged += _bush_findings(case)
-    judged.append(_balance_finding(case))
     findings = [one for one in judged if one is not None]
     if not {one.title for one in findings} & {"spring.rate", "spring.preload", *_TORQUES}:
         findings += _spring_findings(case, torques)
     return tuple(findings)
+
+
+def beyond_ranges(case: Case) -> tuple[Implied, ...]:
+    """Values of single keys beyond their usual ranges, and an unbalance finer than any grade.
+
+    They are to be confirmed, whatever their source.
+    """
+    judged = [_balance_finding(case)]
+    for usual in _ranges():
+        for key in _keys_in(case, usual.keys):
+            value = value_of(case, key)
+            if isinstance(value, float):
+                judged.append(usual.finding(key, value, f"{key} = {text_of(case, key)}"))
+    return tuple(one for one in judged if one is not None)
 
 
 _OVERSHOOT = 0.01

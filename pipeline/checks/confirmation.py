@@ -1,7 +1,7 @@
 """Values on which each check rests, and those of them that no source confirms.
 
 A value is confirmed by its source, or by an entry ``[[confirmed]]`` of the case; a tolerance
-tighter than its default by such an entry alone.
+tighter than its default, and a value beyond its usual range, by such an entry alone.
 """
 
 from __future__ import annotations
@@ -16,6 +16,7 @@ from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_values import text_of
 from camwright.pipeline.case.consistency import tightened_tolerances
 from camwright.pipeline.case.limits import LIMITS, is_weaker
+from camwright.pipeline.case.plausibility import beyond_ranges
 from camwright.pipeline.case.section import suggestion
 from camwright.pipeline.case.value_sources import OF_A_CHECK, source_of, values_at
 from camwright.pipeline.checks.check import Check
@@ -44,6 +45,7 @@ def with_values_to_confirm(
     """
     weaker = _weaker(case)
     tables, tight = case.tables(), tuple(tightened_tolerances(case))
+    unusual = {*tight, *(each.title for each in beyond_ranges(case))}
     confirmed = {each.value for each in case.confirmed}
     for value in confirmed:
         if value.startswith(OF_A_CHECK) and value.removeprefix(OF_A_CHECK) not in known:
@@ -56,7 +58,7 @@ def with_values_to_confirm(
         return tuple(
             value
             for value in values_at(tables, path)
-            if value in tight or not source_of(tables, value).confirmed
+            if value in unusual or not source_of(tables, value).confirmed
         )
 
     return tuple(

@@ -11,10 +11,10 @@ import pytest
 
 from camwright.geometry.errors import InputError
 from camwright.pipeline.case.case import Case
-from camwright.pipeline.case.case_file import case_of, read_case
+from camwright.pipeline.case.case_file import case_of, enter, read_case
 from camwright.pipeline.case.limits import LIMITS, is_weaker
 from camwright.pipeline.case.value_sources import values_at
-from camwright.pipeline.checks.check import Check
+from camwright.pipeline.checks.check import Check, Demand
 from camwright.pipeline.checks.confirmation import with_values_to_confirm
 from camwright.pipeline.checks.registry import CHECKS, DECLARED, OF_THE_DESIGN
 from camwright.pipeline.preview import preview_case
@@ -309,3 +309,39 @@ def test_every_check_that_moves_with_a_value_states_so(value):
     """By one per cent more of it; a check that moves rests on it, whatever its formula."""
     assert moved(value)
     assert moved(value) <= resting_on(value)
+
+
+BY = {"name": "A. Engineer", "date": date(2025, 1, 2), "source": "test bench"}
+
+
+@pytest.mark.parametrize(
+    ("key", "usual", "beyond", "check"),
+    [
+        ("spring.rate", "24.2 kN/m", "0.02 kN/m", "contact_force_margin"),
+        ("follower.mass", "0.2 kg", "60 kg", "contact_force_margin"),
+        ("camshaft.counterweight.residual", "20 g mm", "0.2 g mm", "cam_unbalance"),
+    ],
+)
+def test_a_value_beyond_its_usual_range_is_to_be_confirmed(
+    key: str, usual: str, beyond: str, check: str
+) -> None:
+    """Whatever its source; by name and date alone."""
+
+    def is_open(value: str, **more: Any) -> bool:
+        changed = tables() | more
+        for name in ("cam", "camshaft", "spring", "follower"):
+            changed[name]["source"] = "drawing 4711"
+        changed["camshaft"]["counterweight"] = {
+            "position": "35 mm",
+            "residual": "20 g mm",
+            "source": "bench",
+        }
+        enter(changed, key, value)
+        case = case_of(changed)
+        judged = DECLARED[check].judged(made.solution(case=case).machine, Demand(1.0, 2.0))
+        (one,) = with_values_to_confirm([judged], case, OF_THE_DESIGN)
+        return key in one.unconfirmed
+
+    assert not is_open(usual)
+    assert is_open(beyond)
+    assert not is_open(beyond, confirmed=[{"value": key} | BY])
