@@ -10,6 +10,7 @@ In the order of use:
 | `quantities`       | quantities of an input: unit and bounds of a field       | SI               |
 | `source`           | source of a value, and whether it confirms the value     |                  |
 | `material`         | material card: elastic constants, strengths, source      | E, Pa; nu; S, Pa |
+| `hardness_rules`   | endurance of a steel surface estimated from its hardness | HB, HV; p, Pa    |
 | `cooling`          | heat that the mechanism gives to its surroundings        | G, W/K; T, K     |
 | `external_force`   | force over the cam angle, linear between samples         | F_e, N           |
 | `stem_layout`      | guides, seats and spring along the stem                  | z, m             |

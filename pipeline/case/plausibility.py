@@ -15,6 +15,7 @@ from typing import Any
 
 import numpy as np
 
+from camwright.pipeline.base.hardness_rules import buckingham, gear_limit
 from camwright.pipeline.base.source import Source, source_in
 from camwright.pipeline.base.units import celsius, in_unit, shown
 from camwright.pipeline.case.case import Case
@@ -77,17 +78,45 @@ def implausible(case: Case, torques: Mapping[str, Torque]) -> tuple[Implied, ...
 
 
 def beyond_ranges(case: Case) -> tuple[Implied, ...]:
-    """Values of single keys beyond their usual ranges, and an unbalance finer than any grade.
+    """Values of single keys beyond their usual ranges: as such, by hardness, by balance grade.
 
     They are to be confirmed, whatever their source.
     """
-    judged = [_balance_finding(case)]
+    judged = [_balance_finding(case), *_endurance_findings(case)]
     for usual in _ranges():
         for key in _keys_in(case, usual.keys):
             value = value_of(case, key)
             if isinstance(value, float):
                 judged.append(usual.finding(key, value, f"{key} = {text_of(case, key)}"))
     return tuple(one for one in judged if one is not None)
+
+
+_OF_RULE = 2.0
+"""Endurance of a card over the greatest that its hardness lets expect: 1.9 is in Rothbart's table
+9.3 for AISI 1020 of 130 to 150 HB against Buckingham's estimate."""
+
+
+def _endurance_findings(case: Case) -> Iterator[Implied | None]:
+    """Endurance of the surface of a card, against the rules for a steel of its hardness."""
+    for name, card in case.materials.items():
+        rules = {
+            "Buckingham's estimate": None if card.surface_hardened else buckingham(card),
+            "that of gear flanks, ISO 6336-5": gear_limit(card),
+        }
+        known = {words: value for words, value in rules.items() if value}
+        for field in ("endurance_pressure", "sliding_endurance_pressure"):
+            key = f"materials.{name}.{field}"
+            value = value_of(case, key)
+            if value is None or not known:
+                continue
+            most = max(known, key=known.__getitem__)
+            words = f"{key} = {text_of(case, key)}: {value / known[most]:.3g} times {most} by its"
+            words += f" hardness, {shown(known[most], 'MPa')}, usually up to {_OF_RULE:g} times"
+            stated, kept = (
+                in_unit(each, "MPa") for each in (value, min(value, _OF_RULE * known[most]))
+            )
+            made = Implied(PLAUSIBILITY, key, stated, kept, "MPa", words)
+            yield made if made.flagged else None
 
 
 _OVERSHOOT = 0.01

@@ -100,6 +100,38 @@ def test_a_bush_of_another_diameter_than_the_stem_is_told() -> None:
     assert one.startswith("guides.b.diameter = 24 mm, but follower.stem_diameter = 20 mm")
 
 
+def test_an_endurance_beyond_that_of_the_hardness_is_told() -> None:
+    """2.76 x 200 - 70 = 482 MPa of Buckingham; 1.313 x 210 + 373 = 649 MPa of gear flanks."""
+    card = """
+[materials.mine]
+E = "210 GPa"
+nu = 0.3
+treatment = "{treatment}"
+hardness_brinell = 200
+hardness_vickers = 210
+yield_strength = "370 MPa"
+density = "7850 kg/m^3"
+endurance_pressure = "{pressure}"
+source = "test"
+"""
+
+    def found(treatment: str, pressure: str) -> list[str]:
+        text = card.format(treatment=treatment, pressure=pressure)
+        return warnings(parse_case(f"{GX120}\n{text}"))
+
+    assert found("not_hardened", "960 MPa") == []
+    (one,) = found("not_hardened", "1500 MPa")
+    assert one.startswith("materials.mine.endurance_pressure = 1500 MPa: 3.11 times Buckingham")
+    assert "482 MPa, usually up to 2 times" in one
+    assert found("through_hardened", "1290 MPa") == []
+    (one,) = found("through_hardened", "2000 MPa")
+    assert "gear flanks, ISO 6336-5 by its hardness, 648.7 MPa" in one
+    # no rule for a card without hardness
+    bare = card.replace("hardness_brinell = 200\nhardness_vickers = 210\n", "")
+    text = bare.format(treatment="not_hardened", pressure="5000 MPa")
+    assert warnings(parse_case(f"{GX120}\n{text}")) == []
+
+
 def test_an_unbalance_finer_than_any_grade_is_told() -> None:
     """0.2 g mm over 1.8 kg is 0.111 um, at 188.5 rad/s of the cam 0.021 mm/s: below G 0.4."""
     assert warnings(parse_case(REDESIGN)) == []

@@ -636,7 +636,7 @@ def test_scuffing_temperature_by_the_film(roughness):
 
 def test_the_recalled_cap_of_dang_van_is_marked_and_does_not_decide():
     check = solved()[1]["dang_van"]
-    assert "verify" in check.method
+    assert "to be confirmed" in check.method
     assert not check.must_have
 
 
