@@ -345,6 +345,12 @@ class Machine(Displayed):
         return in_series(self.compliances.values()) if self.stiffness is None else self.stiffness
 
     @property
+    def follower_frequency(self) -> float:
+        """Natural frequency of the mass on stem and spring, the cam held, rad/s."""
+        stiffness = self.axial_stiffness + self.spring.rate
+        return float(np.sqrt(stiffness / self.mass_without_spring))
+
+    @property
     def system(self) -> FollowerSystem:
         """Spring, mass, friction and external force of the follower."""
         return FollowerSystem(

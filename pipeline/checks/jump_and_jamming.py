@@ -8,10 +8,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from camwright.geometry.arrays import Array, Value
+from camwright.geometry.arrays import FULL_TURN, Array, Value
 from camwright.geometry.extrema import first_greatest, first_least
 from camwright.pipeline.base import levers
 from camwright.pipeline.base import value_groups as given
+from camwright.pipeline.base.source import Source
 from camwright.pipeline.base.units import shown, shown_up
 from camwright.pipeline.case.limits import (
     CONTACT_FORCE_MARGIN,
@@ -392,6 +393,51 @@ def elastic_contact(solution: Solution) -> Demand:
         note="; ".join(each for each in (note, _flights(histories)) if each),
         method="one mass on the stiffness of the stem, without friction: harmonic response with the"
         f" surge of a coil spring over the speed range; load cases by {methods}",
+    )
+
+
+_RIGID = 10.0
+
+
+@check(
+    title="Natural frequency of the follower / rotational frequency of the cam",
+    unit="-",
+    sense="at_least",
+    source=Source(
+        "VDI 2149-1, abstract of the publisher: rigid where the lowest natural frequency is at"
+        " least ten times the rotational frequency of the driving crank",
+        confirmed=True,
+    ),
+    method="one mass on the stiffness of stem and spring, at the greatest speed of the cam",
+    must_have=False,
+    lift_can_help=False,
+    tier=Tier.PREVIEW,
+    within=("stem",),
+    formula="sqrt((k_s + k)/m)/w >= 10; k_s: follower.stiffness, else that of the parts between cam"
+    " and mass in series, k: spring.rate, m: mass of the follower without its share of the spring,"
+    " w: greatest cam speed of all load cases",
+    reason="The rule for a mechanism that may be taken as rigid. elastic_contact computes what the"
+    " vibration does, and decides.",
+    load_cases=SPEED_RANGE,
+    values=(
+        "follower.stiffness",
+        "follower.mass",
+        "spring.rate",
+        "load_case.speed",
+        "limits.overspeed",
+    ),
+    levers=(levers.one("follower.stiffness"), levers.one("follower.mass", -1)),
+    page="Follower",
+)
+def rigid_follower(solution: Solution) -> Demand:
+    """Natural frequency of the follower over the greatest speed of the cam."""
+    machine, fastest = solution.machine, float(solution.numbers["cam.fastest"])
+    frequency = shown(machine.follower_frequency / FULL_TURN, "Hz")
+    stem = shown(machine.axial_stiffness, "kN/m")
+    return Demand(
+        machine.follower_frequency / fastest if fastest > 0.0 else np.inf,
+        _RIGID,
+        note=f"{frequency} at {stem} of the stem",
     )
 
 

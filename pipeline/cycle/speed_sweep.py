@@ -269,7 +269,7 @@ class _Resonant:
         total = machine.axial_stiffness + self.spring.rate
         damping = max(machine.damping_ratio, 1e-3)
         peak = total * self.amplitude / (2.0 * damping)
-        own = np.array([np.sqrt(total / machine.mass_without_spring)])
+        own = np.array([machine.follower_frequency])
         speeds.append(_about(_met(own, peak, enough, top), damping))
         return distinct(np.clip(np.concatenate(speeds), 0.0, top))
 

@@ -59,6 +59,9 @@ _BY_TEST: dict[tuple[str, str], tuple[str, ...]] = {
     ),
     (_SPRING, "test_first_frequency_is_that_of_the_chain"): ("spring_surge",),
     (_SPRING, "test_elastic_contact_is_that_of_coils_mass_and_stem_in_time"): ("elastic_contact",),
+    (_SPRING, "test_the_follower_swings_on_its_stem_as_the_chain_with_its_mass"): (
+        "rigid_follower",
+    ),
     (_SPRING, "test_strength_and_fatigue_take_the_force_at_the_ends_of_the_coils"): (
         "spring_stress", "spring_fatigue",
     ),

@@ -10,6 +10,7 @@ from trial_variants import (
     frictionless,
     geared,
     reversing,
+    stiffened,
     unknown,
     unknown_beside,
     with_bearing,
@@ -402,6 +403,15 @@ tried(
     lambda: with_worst_friction(jam_index=NAN),
     0.4,
     "0.3 + 0.1 sin",
+)
+tried(
+    "rigid_follower",
+    loaded("rigid_follower", stiffened),
+    None,
+    lambda: with_part("follower", stiffness=float("nan")),
+    np.sqrt(124_200.0 / 0.1181013358435438) / 80.0,
+    "100 kN/m of the stem and 24.2 kN/m, 118.1 g without the share of the coils, at 80 rad/s",
+    base=lambda: with_part("follower", stiffness=100e3),
 )
 tried(
     "elastic_contact",

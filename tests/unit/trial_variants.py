@@ -227,6 +227,13 @@ def with_worst_friction(**values: Any) -> Solution:
     return with_parts(friction=replace(bounds, greatest=replace(bounds.greatest, **values)))
 
 
+def stiffened(ratio: float) -> Solution:
+    """Natural frequency of the follower over the speed of the cam by the stiffness of its stem."""
+    machine = made.solution().machine
+    total = machine.mass_without_spring * (ratio * machine.cam_speed) ** 2
+    return with_part("follower", stiffness=total - machine.spring.rate)
+
+
 def with_elastic_force(force: Any) -> Solution:
     elastic = made.cycle().elastic
     response = replace(elastic.response, contact_force=force)

@@ -222,6 +222,23 @@ def test_elastic_contact_is_that_of_coils_mass_and_stem_in_time(solved):
     assert check.must_have
 
 
+def test_the_follower_swings_on_its_stem_as_the_chain_with_its_mass(solved):
+    """The mode in which the mass moves most; its coils add a share of their mass: 1 %."""
+    machine = solved.machine
+    M, K = (
+        each[1:, 1:].copy() for each in chain(*wire(machine.spring.design, machine.spring.rate))
+    )
+    M[-1, -1] += machine.mass_without_spring
+    K[-1, -1] += machine.axial_stiffness
+    squares, modes = eigh(K, M)
+    moved = np.abs(modes[-1]) * np.sqrt(M[-1, -1])
+    frequency = float(np.sqrt(squares[np.argmax(moved)]))
+    check = jump_and_jamming.rigid_follower(solved)
+    fastest = max(each.cam_speed for each in solved.machines)
+    assert check.demand == pytest.approx(frequency / fastest, rel=0.01)
+    assert not check.must_have
+
+
 def test_strength_and_fatigue_take_the_force_at_the_ends_of_the_coils(solved):
     """Preload and rate 5 % high; the rate's square root moves the resonance by 2.5 %."""
     machine = solved.machine
