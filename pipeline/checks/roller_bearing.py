@@ -490,7 +490,8 @@ def least_speed(viscosity: float, circle: float, ratio: float) -> float | None:
     unit="h",
     sense="at_least",
     source=Source(
-        "JTEKT's estimate for sealed ball bearings, with n D for a turning outer ring as SKF does",
+        "JTEKT's estimate for sealed ball bearings, with n D for a turning outer ring as SKF does;"
+        " SKF states its own for a turning inner ring and P <= 0.05 C, NSK for P up to about 0.1 C",
         confirmed=False,
     ),
     method="of n D, P/C and temperature; the manufacturer's where it is given",

@@ -413,8 +413,9 @@ def case_depth(solution: Solution) -> Demand | None:
     title="Peak contact pressure vs. Buckingham estimate",
     unit="MPa",
     source=Source(
-        "2.76 HB - 70 MPa at 1e8 cycles up to 400 HB, Buckingham, Shigley ch. 6",
-        confirmed=False,
+        "2.76 HB - 70 MPa at 1e8 cycles, Shigley's Mechanical Engineering Design, 9th ed., p. 329,"
+        " eq. 6-68; up to 400 HB alone here",
+        confirmed=True,
     ),
     method="greatest contact pressure over the turn; an estimate for steel without a hardened case;"
     " least of the bodies of a stated Brinell hardness up to 400",

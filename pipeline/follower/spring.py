@@ -186,7 +186,7 @@ class WoundWire(Generic[Number]):
 
         References
         ----------
-        EN 13906-1:2013, 10.1.1 (recalled, verify): at most 0.56 R_m, cold coiled.
+        EN 13906-1:2013, read second-hand: at most 0.56 R_m, cold coiled, uncorrected.
         """
         return self._stress_per_newton * rate * (self.free_length - self.solid_length)
 
@@ -200,7 +200,8 @@ class WoundWire(Generic[Number]):
 
         References
         ----------
-        EN 13906-1 (recalled, verify); Shigley's Mechanical Engineering Design, ch. 10.
+        0.56 R_m of EN 13906-1 is that of the uncorrected stress at solid length; the corrected one
+        here is greater. Shigley's Mechanical Engineering Design, ch. 10.
         """
         return self.stress(force) / self.static_strength
 

@@ -312,7 +312,7 @@ class TorsionSpring(Part):
 
         References
         ----------
-        DIN EN 13906-3 (recalled, verify).
+        DIN EN 13906-3; q read second-hand.
         """
         if self.wire_diameter is None or self.mean_diameter is None:
             return np.full_like(moment, np.nan)

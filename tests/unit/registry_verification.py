@@ -188,7 +188,7 @@ tried(
     "torsion_stress",
     limited(
         "torsion_stress",
-        lambda s: with_torsion_spring(tensile_strength=s / 0.7),
+        lambda s: with_torsion_spring(tensile_strength=s / 0.54),
         with_torsion_spring,
     ),
     lambda: with_torsion_spring(tensile_strength=None),

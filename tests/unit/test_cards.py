@@ -237,7 +237,7 @@ def test_a_wire_beyond_the_diameters_of_its_card_is_refused(name):
 
 
 HOTTEST = {
-    "music_wire": 120, "hard_drawn": 120, "oil_tempered": 180, "chrome_vanadium": 220,
+    "music_wire": 120, "hard_drawn": 120, "oil_tempered": 150, "chrome_vanadium": 210,
     "chrome_silicon": 250,
 }  # fmt: skip
 
@@ -258,7 +258,8 @@ def test_a_wire_hotter_than_its_card_holds_is_refused(name):
         )
 
     assert parse_case(at(HOTTEST[name])).spring.design.temperature
-    with pytest.raises(InputError, match=f"up to which card {name} has the strength") as found:
+    words = f"<= {HOTTEST[name]} degC, up to which card {name} has the strength"
+    with pytest.raises(InputError, match=words) as found:
         parse_case(at(HOTTEST[name] + 1))
     assert found.value.field == "spring.design.temperature"
 

@@ -101,7 +101,7 @@ def test_the_values_to_be_confirmed_are_listed_by_their_sources(capsys):
     for name in (
         "limits.jump_speed",
         "checks.spring_stress",
-        "oils.iso_vg_100.viscosity_100",
+        "oils.iso_vg_100.density",
         "wires.music_wire.strength_at_1mm",
         "shaft_seats",
         "usual_ranges.torque",

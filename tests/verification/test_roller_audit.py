@@ -480,4 +480,4 @@ def test_the_card_of_a_625_has_its_fatigue_limit_and_no_rating_on_a_cam():
 
 
 def test_static_safety_of_a_cam_roller_is_that_of_shocks():
-    assert type(case().limits).model_fields["roller_static_safety"].default == 1.5
+    assert type(case().limits).model_fields["roller_static_safety"].default == 2.0

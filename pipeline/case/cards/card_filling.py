@@ -264,7 +264,7 @@ def _wire(card: Tables, table: Tables, name: str, field: str) -> Tables:
         )
     hottest = end("temperature_most", "K", math.inf)
     if temperature is not None and temperature > hottest:
-        limit = f"<= {units.shown(hottest, 'degC')}, up to which card {name} has the strength{own}"
+        limit = f"<= {units.celsius(hottest):g} degC, up to which card {name} has the strength{own}"
         raise InputError(f"{field}.temperature", units.rounded(str(table["temperature"])), limit)
     return known
 
