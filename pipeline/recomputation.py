@@ -85,7 +85,7 @@ _ELSEWHERE = "rests on more than the run holds and cannot be made again; make it
 PAGE = "8_report.html"
 _LISTED = 5
 """Differences of a record that are listed."""
-_OF_A_CHECK = ("demand", "corner_demand", "error", "utilisation", "margin")
+_OF_A_CHECK = ("demand", "corner_demand", "error", "utilisation", "margin", "stated")
 """Numbers of a check that have its error bar."""
 
 
@@ -324,6 +324,7 @@ def _check_differences(final: TrialRecord, checks: Sequence[Mapping[str, Any]]) 
             yield f"{file}: {name} {what}"
             continue
         one, two = dict(stored[name]), dict(again[name])
+        one.setdefault("stated", two.get("stated"))  # none in a record of an earlier version
         share = SAME
         if two["demand"] and two["error"]:
             share = max(share, abs(two["error"] / two["demand"]))

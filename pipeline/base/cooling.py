@@ -37,8 +37,11 @@ class Cooling(Part):
         area : float   of the housing at least, m^2: gives heat to still air where no conductance
                        is stated
         """
-        carried = STILL_AIR * area if self.conductance is None else self.conductance
-        return self.ambient_temperature + (loss + self.heat) / carried
+        return self.ambient_temperature + (loss + self.heat) / self.carried(area)
+
+    def carried(self, area: float) -> float:
+        """Heat that leaves per kelvin, W/K; area as of `temperature`."""
+        return STILL_AIR * area if self.conductance is None else self.conductance
 
 
 def housing_area(diameter: float, height: float, width: float) -> float:

@@ -14,7 +14,7 @@ from typing import Generic, NamedTuple, TypeVar
 
 import numpy as np
 
-from camwright.geometry.arrays import Value
+from camwright.geometry.arrays import Array, Value
 from camwright.geometry.errors import InputError
 from camwright.pipeline.base.units import factor
 
@@ -26,14 +26,20 @@ FUNCTIONS: Mapping[str, Callable[..., Value]] = {
     "sin": np.sin,
     "cos": np.cos,
     "atan": np.arctan,
+    "ln": np.log,
     "sign": np.sign,
+    "step": lambda value: np.where(np.asarray(value) < 0.0, 0.0, 1.0)[()],
+    "changes": lambda values: _changes(np.asarray(values)),
     "mean": np.mean,
     "std": np.std,
     "max": lambda *values: np.max(values),
     "min": lambda *values: np.min(values),
 }
-OVER_THE_TURN = ("mean", "std")
-"""Functions of the values at all angles of a load case; any other is made at one place."""
+OVER_THE_TURN = ("mean", "std", "changes")
+"""Functions of the values at all angles of a load case; any other is made at one place.
+
+``changes``: of sign, ``step``: 0 below zero, else 1.
+"""
 _UNITS = ("deg", "MPa")
 """Units that follow a number of a formula text."""
 _SUM, _PRODUCT, _POWER, _ATOM = range(4)  # how strongly a node binds
@@ -46,10 +52,20 @@ _HEAD = re.compile(
     r"(?: over | on the | at (?=[a-z])|, |; |\.?$)"
 )
 _WORST = re.compile(r"^(?:max|min) over the load cases of ")
+_PLACES = re.compile(
+    r"(?P<name>\b[A-Za-z][\w']*): (?P<key>[a-z]\w*(?:\.[a-z]\w*)+)"
+    r"(?=$|;|\.(?: |$)|,(?! else| on | or))"
+)
 _DEFINED = re.compile(
     r"(?:(?<=^)|(?<=[;,:] )|(?<=with )|(?<=and ))(?P<name>[A-Za-z]\w*'*) = (?P<text>.+?)"
     r"(?=: |;|, (?:with )?[A-Za-z][\w']*(?:, [A-Za-z][\w']*)*(?: =|:)|\. |\.?$)"
 )
+
+
+def _changes(values: Array) -> int:
+    """Changes of the sign of values over a whole turn; a zero has none of its own."""
+    signs = np.sign(values[values != 0.0])
+    return int(np.sum(signs != np.roll(signs, 1)))
 
 
 class Node(NamedTuple):
@@ -68,11 +84,13 @@ class Statement(NamedTuple):
     ----------
     demand, limit : str
     defined : mapping      text by name, such as ``y``: ``0.154 - 0.912/z``
+    keys : mapping         dotted key by name, such as ``S``: ``limits.gear_bending_safety``
     """
 
     demand: str
     limit: str
     defined: Mapping[str, str]
+    keys: Mapping[str, str]
 
 
 def stated(text: str) -> Statement:
@@ -92,7 +110,8 @@ def stated(text: str) -> Statement:
     named = re.fullmatch(r"([A-Za-z]\w*) = (.+)", demand)
     if named is not None:
         demand = named[2]
-    return Statement(demand, match["limit"], defined)
+    keys = {each["name"]: each["key"] for each in _PLACES.finditer(after)}
+    return Statement(demand, match["limit"], defined, keys)
 
 
 def parsed(text: str, known: Collection[str] = ()) -> Node:
@@ -144,7 +163,7 @@ _SIGNS: Mapping[str, Callable[..., Value]] = {
     "+": lambda one, other: one + other,
     "-": lambda one, other: one - other,
     "*": lambda one, other: one * other,
-    "/": lambda one, other: one / other,
+    "/": np.divide,
     "^": lambda one, other: one**other,
 }
 
@@ -309,8 +328,10 @@ def written(node: Node, style: Style[Text], known: Mapping[str, str] | None = No
     def of(each: Node, least: int) -> Text:
         """Text of a part that has to bind at least so strongly."""
         text = written(each, style, known)
-        negative = known is not None and known.get(each.text, "").startswith("-")
-        binds = _SUM if negative else _binds(each, style.divides)
+        value = "" if known is None or each.kind != "name" else known.get(each.text, "")
+        binds = _SUM if value.startswith("-") else _binds(each, style.divides)
+        if " " in value and least == _ATOM:  # a number with its unit
+            binds = _PRODUCT
         return style.group(text) if binds < least else text
 
     if node.kind == "number":

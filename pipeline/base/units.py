@@ -13,7 +13,7 @@ from __future__ import annotations
 import re
 from decimal import ROUND_CEILING, Decimal, InvalidOperation
 from functools import lru_cache
-from math import ceil, degrees, isfinite, isnan, log10
+from math import ceil, degrees, isfinite, isnan, log10, radians
 from typing import TYPE_CHECKING, NamedTuple, TypeVar
 
 from camwright.geometry.errors import InputError
@@ -346,6 +346,15 @@ def in_unit(value: float, unit: str) -> float:
     if unit == "%":
         return 100.0 * value
     return value / factor(unit)
+
+
+def from_unit(value: float, unit: str) -> float:
+    """A value in the unit of a record in SI: the inverse of `in_unit`."""
+    if unit in _PURE:
+        return value
+    if unit == "deg":
+        return radians(value)
+    return value * (0.01 if unit == "%" else factor(unit))
 
 
 def celsius(temperature: _Temperature) -> _Temperature:

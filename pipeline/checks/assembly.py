@@ -22,7 +22,7 @@ from camwright.pipeline.case.limits import ASSEMBLY_GAP
 from camwright.pipeline.case.machine import Machine
 from camwright.pipeline.checks.cam_shape import contour_radius, lift
 from camwright.pipeline.checks.camshaft_strength import camshaft_of, gear_of
-from camwright.pipeline.checks.check import NONE, ROUNDING, Allowed, Demand, check
+from camwright.pipeline.checks.check import NONE, ROUNDING, STATED, Allowed, Demand, check
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.loaded_cam import LoadedCam
 from camwright.pipeline.cycle.machine_envelope import stem_layout
@@ -40,9 +40,14 @@ def _least(gaps: Gaps) -> Value:
     return reduce(np.minimum, gaps.values())
 
 
+def _one(value: Value) -> float:
+    """Number of a machine."""
+    return float(np.ravel(value)[0])
+
+
 def _narrowest(gaps: Gaps) -> str:
     """Name of the least gap of a machine."""
-    return min(gaps, key=lambda name: float(np.ravel(gaps[name])[0]))
+    return min(gaps, key=lambda name: _one(gaps[name]))
 
 
 def _between(one: tuple[Value, Value], other: tuple[Value, Value]) -> Value:
@@ -74,18 +79,24 @@ def _gear(numbers: Numbers) -> tuple[float, float]:
     return shaft.gear_position, 0.5 * gear_of(shaft).width
 
 
-def _beside_bearings(numbers: Numbers) -> Gaps:
-    """Gaps beside bearings of no width, m."""
+def _pairs_at_bearings(numbers: Numbers) -> dict[str, tuple[tuple[Value, Value], float]]:
+    """Parts on the camshaft with the place of a bearing, m, by both names."""
     case, parts = numbers.known_case, _on_the_shaft(numbers)
     shaft = camshaft_of(case)
     if shaft.gear is not None and case.scope.covers("gear"):
         parts |= {"gear": _gear(numbers)}
     places = {1: 0.0, 2: shaft.bearing_spacing}
     return {
-        f"{name} to bearing {number}": _between(part, (place, 0.0))
+        f"{name} to bearing {number}": (part, place)
         for number, place in places.items()
         for name, part in parts.items()
     }
+
+
+def _beside_bearings(numbers: Numbers) -> Gaps:
+    """Gaps beside bearings of no width, m."""
+    pairs = _pairs_at_bearings(numbers)
+    return {name: _between(part, (place, 0.0)) for name, (part, place) in pairs.items()}
 
 
 def _with_bearings(gap: Value, numbers: Numbers) -> Value:
@@ -103,13 +114,17 @@ def _of_bearings(demand: Demand, solution: Solution) -> Demand:
     if demand.value is None or isnan(demand.value):
         lacks = () if shaft.bearing_width is not None else ("camshaft.bearing_width",)
         return replace(demand, at=None, missing=lacks)
-    how = ""
-    if shaft.bearing_width is None:
-        wide = "" if shaft.widest is None else shown(shaft.widest, "mm")
+    how, taken = "", shaft.bearing_width
+    if taken is None:
+        taken = shaft.widest
+        wide = "" if taken is None else shown(taken, "mm")
         how = f", bearings taken as {wide} wide, as their bore, an upper bound"
         if demand.allowed is not None and demand.value < demand.allowed:
-            how = ", even with bearings of no width"
-    return replace(demand, at=None, note=f"{_narrowest(_beside_bearings(solution.numbers))}{how}")
+            how, taken = ", even with bearings of no width", 0.0
+    nearest = _narrowest(_beside_bearings(solution.numbers))
+    (middle, half), place = _pairs_at_bearings(solution.numbers)[nearest]
+    stated = {"z_i": _one(middle), "z_b": place, "w_i": 2.0 * _one(half), "B": taken or 0.0}
+    return replace(demand, at=None, note=f"{nearest}{how}", stated=stated)
 
 
 @check(
@@ -119,6 +134,7 @@ def _of_bearings(demand: Demand, solution: Solution) -> Demand:
     formula="min |z_i - z_b| - (w_i + B)/2 >= g; z_i, w_i: place and width along the camshaft of"
     " cam, gear, and roller with pin and fork, or face, z_b, B: place and width of a bearing,"
     " camshaft.bearing_width, else at most camshaft.diameter, g: limits.assembly_gap",
+    symbols=dict.fromkeys(("z_i", "z_b", "w_i", "B"), f"{STATED} [mm]"),
     reason="Cam, gear or follower within a bearing cannot be assembled.",
     method="distance of the faces of cam, gear and follower from those of both bearings; the"
     " follower is not passed over a bearing, whose housing is not in the case",
@@ -244,7 +260,7 @@ def _with_module(demand: Demand, solution: Solution) -> Demand:
     ),
     tier=Tier.SCREENING,
     method="fewer teeth of gear and pinion; the limit as 1/sin^2 of the pressure angle",
-    formula="min(z_1, z_2) >= 14 (sin 20 deg/sin alpha)^2; z: teeth of gear and pinion, alpha:"
+    formula="min(z_1, z_2) >= 14 (sin(20 deg)/sin(alpha))^2; z: teeth of gear and pinion, alpha:"
     " camshaft.pressure_angle",
     symbols={
         "z_1": "camshaft.gear.teeth",
@@ -337,12 +353,19 @@ def _of_shaft(demand: Demand, solution: Solution) -> Demand:
         note = f"at most a radius of {most}; 0 mm if it ends at its pinion"
         return replace(demand, missing=(_DIAMETER,), note=note)
     centre = shown(_centre_distance(shaft), "mm")
-    how = ""
+    how, thin = "", demand.value < limit
     if stated is None:
-        thin = demand.value < limit
         how = ", even with a shaft of no diameter" if thin else ", the shaft as wide as its pinion"
     words = f"{_narrowest(gaps)} to machine shaft, centre distance {centre}{how}"
-    return replace(demand, at=None, note=words)
+    radius = 0.5 * (stated or 0.0)
+    if stated is None and not thin:
+        radius = _centre_distance(shaft) - shaft.gear_radius
+    numbers_of_gap = {
+        "a": _centre_distance(shaft),
+        "b": _one(gaps[solution.case.facing.word]),
+        "r": radius,
+    }
+    return replace(demand, at=None, note=words, stated=numbers_of_gap)
 
 
 machine_shaft_gap = check(
@@ -354,6 +377,10 @@ machine_shaft_gap = check(
     " b: distance of the machine shaft, at camshaft.mesh_angle, from the follower at its lowest, r:"
     " half of camshaft.gear.machine_shaft_diameter, else at most the pinion radius, g:"
     " limits.assembly_gap; none where the diameter is 0, as the shaft ends at its pinion",
+    symbols={
+        **dict.fromkeys(("a", "b", "r"), f"{STATED} [mm]"),
+        "P": "contour_radius_greatest",
+    },
     reason="A cam that strikes the machine shaft does not turn.",
     method="centre distance less maximum contour radius, and distance from roller or face with"
     " fork, less the radius of the machine shaft",
@@ -493,8 +520,11 @@ def _of_seat(demand: Demand, solution: Solution) -> Demand:
         how = f", taken as {shown(float(taken), 'mm')} thick, an upper bound"
         how = ", even of no thickness" if taken == 0.0 else how
     place = layout.seated(taken, limit, height)
-    where = f"moving seat at {shown(float(np.ravel(place.height)[0]), 'mm')}"
-    return replace(demand, at=None, note=f"{where} at maximum lift{how}")
+    high, below = _one(place.height), _one(layout.guide_a[1])
+    where = f"moving seat at {shown(high, 'mm')}"
+    between = high <= _one(layout.guide_b[0]) and below < high
+    stated = {"s": high, "t": float(taken), "a": below} if between else {}
+    return replace(demand, at=None, note=f"{where} at maximum lift{how}", stated=stated)
 
 
 def _seat_gap(lift: Value, numbers: Numbers) -> Value:
@@ -517,12 +547,19 @@ spring_gap = check(
     id="spring_gap",
     title="Gap between the spring with its seats and guides or stem",
     tier=Tier.SCREENING,
-    formula="between the guides min(s - h - t - a, (D - d - d_s)/2) >= g, s: height of the moving"
+    formula="min(s - h - t - a, (D - d - d_s)/2) >= g; between the guides s: height of the moving"
     " seat over roller centre or face at maximum lift, spring.seat_height, else b - L + h, under"
     " guide B, h: maximum lift, t: spring.seat_thickness, else at most d_s/2, a, b: upper end of"
-    " guide A, lower end of guide B, L = L_0 - P/k: length of the spring at zero lift, D, d: mean"
+    " guide A, lower end of guide B, L: L_0 - P/k, length of the spring at zero lift, D, d: mean"
     " and wire diameter, d_s: of the stem; else above guide B, s - h - t - c >= g, c: its upper"
     " end, s: at most follower.stem_length; g: limits.assembly_gap",
+    symbols={
+        **dict.fromkeys(("s", "t", "a"), f"{STATED} [mm]"),
+        "h": "lift_highest",
+        "D": "spring.design.mean_diameter",
+        "d": "spring.design.wire_diameter",
+        "d_s": "follower.stem_diameter",
+    },
     reason="A spring or seat within a guide cannot be assembled, or stops the follower.",
     method="seats and spring, longest at the least preload, from the ends of the guides at zero"
     " lift, and coils from the stem; the length at maximum lift is that of spring_coil_gap",
@@ -546,6 +583,13 @@ gas_gap = check(
     formula="min(l - h - c, V/A - h) >= g; l: follower.stem_length, on whose end the rod rests, h:"
     " maximum lift, c: upper end of guide B over roller centre or face at maximum lift, V, A:"
     " volume and area of spring.gas, g: limits.assembly_gap",
+    symbols={
+        "l": "follower.stem_length",
+        "h": "lift_highest",
+        "c": "follower.overhang_at_max_lift + guides.spacing + guides.b.length/2 [mm]",
+        "V": "spring.gas.volume",
+        "A": "spring.gas.area",
+    },
     reason="A rod that strikes guide B, or a piston the end of its cylinder, stops the follower.",
     method="end of the stem over guide B at zero lift, and column of the gas left at maximum lift;"
     " the stroke that the maker permits is that of gas_stroke",

@@ -27,7 +27,16 @@ from camwright.pipeline.case.limits import (
     TOOL_RADIUS,
     UNDERCUT_FACTOR,
 )
-from camwright.pipeline.checks.check import NONE, Allowed, Demand, Kept, Stroke, check, of_key
+from camwright.pipeline.checks.check import (
+    NONE,
+    STATED,
+    Allowed,
+    Demand,
+    Kept,
+    Stroke,
+    check,
+    of_key,
+)
 from camwright.pipeline.checks.extremes import Extreme
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.loaded_cam import LoadedCam, not_negative
@@ -52,7 +61,9 @@ def _at(extremum: Extremum) -> Extreme:
 @check(
     CLOSURE,
     title="Lift closure over one turn",
-    formula="|s(2 pi) - s(0)| <= c; s: lift as its source gives it, c: limits.closure",
+    formula="d <= c; d: |s(2 pi) - s(0)| of the lift s as its source gives it, before closing, c:"
+    " limits.closure",
+    symbols={"d": f"{STATED} [um]"},
     reason="A step of the lift at the end of the turn is a step of the cam surface.",
     unit="um",
     method="difference of the lift between the ends of the turn, before closing",
@@ -63,7 +74,8 @@ def _at(extremum: Extremum) -> Extreme:
 def closure(solution: Solution) -> Demand:
     """Difference of the lift between the ends of the turn, m."""
     lift = solution.contour.pitch.lift
-    return Demand(float(lift.closure), solution.machine.limits[CLOSURE])
+    open_by = float(lift.closure)
+    return Demand(open_by, solution.machine.limits[CLOSURE], stated={"d": open_by})
 
 
 @check(
@@ -73,8 +85,9 @@ def closure(solution: Solution) -> Demand:
     " range of s''",
     lift_can_help=True,
     moved_by_tolerance=False,
-    formula="|s''(theta+) - s''(theta-)| / (max s'' - min s'') <= c; s'': second derivative of the"
-    " lift by the cam angle on either side of theta, c: limits.acceleration_step",
+    formula="J / R <= c; J: |s''(theta+) - s''(theta-)|, s'': second derivative of the lift by the"
+    " cam angle on either side of theta, R: max s'' - min s'', c: limits.acceleration_step",
+    symbols=dict.fromkeys("JR", f"{STATED} [mm/rad^2]"),
     reason="A jump of the acceleration is a jump of the contact force and excites the follower at"
     " every frequency.",
     load_cases=NONE,
@@ -86,12 +99,14 @@ def acceleration_step(solution: Solution) -> Demand:
     lift = solution.contour.pitch.lift
     jump = lift.acceleration_jump
     coarse = "the table is too coarse or too rough to tell a step from a bend of the acceleration"
+    rests = jump.span <= AT_REST * lift.highest.value
     return Demand(
         # round-off of a cam at rest is no step
-        0.0 if jump.span <= AT_REST * lift.highest.value else jump.size / jump.span,
+        0.0 if rests else jump.size / jump.span,
         solution.machine.limits[ACCELERATION_STEP],
         _place(jump.theta),
         note="" if jump.resolved else coarse,
+        stated={} if rests else {"J": jump.size, "R": jump.span},
     )
 
 
@@ -243,7 +258,8 @@ undercut = check(
 
 @check(
     title="Contour self-intersections",
-    formula="number of pairs of cam angles with the same contour point = 0",
+    formula="n = 0; n: number of pairs of cam angles with the same contour point",
+    symbols={"n": STATED},
     reason="A contour that crosses itself bounds no body.",
     unit="crossings",
     source=Source("no undercut: the cutter removes a self-intersecting part", confirmed=True),
@@ -257,15 +273,17 @@ undercut = check(
 def self_intersection(solution: Solution) -> Demand:
     """Number of crossings of the contour with itself."""
     crossings = solution.contour.self_intersections()
-    return Demand(float(len(crossings)), 0.0, _place(crossings[0][0]) if crossings else None)
+    count, place = float(len(crossings)), _place(crossings[0][0]) if crossings else None
+    return Demand(count, 0.0, place, stated={"n": count})
 
 
 @check(
     SECOND_CONTACT_DEPTH,
     id="second_contact",
     title="Interference of the {follower} outside the contact",
-    formula="max(-g) <= d; g: gap between the follower and any other point of the contour, d:"
-    " limits.second_contact_depth",
+    formula="max(-g, 0) <= d; g: least gap between the follower and any other point of the contour,"
+    " d: limits.second_contact_depth",
+    symbols={"g": f"{STATED} [mm]"},
     reason="A follower with two contacts does not follow the lift.",
     method="greatest penetration of the follower into the contour outside the contact",
     lift_can_help=True,
@@ -278,8 +296,9 @@ def second_contact(solution: Solution) -> Demand:
     """Penetration of the follower into the contour outside the contact, m."""
     nearest = solution.contour.second_contact()
     depth = float(np.maximum(0.0, -nearest.clearance))  # NaN stays, infinite clearance is 0
-    place = _place(float(nearest.theta))
-    return Demand(depth, solution.machine.limits[SECOND_CONTACT_DEPTH], place)
+    place, gap = _place(float(nearest.theta)), float(nearest.clearance)
+    limit = solution.machine.limits[SECOND_CONTACT_DEPTH]
+    return Demand(depth, limit, place, stated={"g": gap})
 
 
 @check(
@@ -287,8 +306,10 @@ def second_contact(solution: Solution) -> Demand:
     id="concave_radius",
     title="Minimum concave radius",
     tier=Tier.SCREENING,
-    formula="min rho_c >= 1.1 R; rho_c: concave radius of the contour, R: limits.tool_radius or"
+    formula="min(r - 1/kappa_p) >= 1.1 R; the concave radius of the contour: r: roller radius,"
+    " kappa_p: curvature of the pitch curve, negative in a hollow, R: limits.tool_radius or"
     " workshop.tool_radius",
+    symbols={"r": "roller.radius", "kappa_p": "pitch_curvature"},
     reason="A larger wheel or cutter cannot make the contour.",
     method="least concave pitch radius plus the roller radius, refined between samples",
     lift_can_help=True,
@@ -319,8 +340,11 @@ def concave_radius(cam: LoadedCam) -> Array:
     " every point of the contour",
     lift_can_help=True,
     moved_by_tolerance=False,
-    formula="max(R - |Q - P - R n|) <= d; P, n: point and outward normal of the contour, Q: any"
-    " other point of it, R: radius of cutter or grinding wheel, d: limits.second_contact_depth",
+    formula="max(R - D, 0) <= d; D: least |Q - P - R n|, the distance of the middle of the tool"
+    " from the contour beside their contact, P, n: point and outward normal of the contour, Q: any"
+    " other point of it, R of a convex cam, R: radius of cutter or grinding wheel, d:"
+    " limits.second_contact_depth",
+    symbols=dict.fromkeys("RD", f"{STATED} [mm]"),
     reason="A wheel that fits the concave radius can still cut a flank across it.",
     load_cases=NONE,
     levers=(levers.TOOL, *levers.SHAPE),
@@ -332,12 +356,20 @@ def tool_gouge(solution: Solution) -> Demand:
     allowed = solution.machine.limits[SECOND_CONTACT_DEPTH]
     concave = contour.concave_radius_min().value
     if np.isposinf(concave):
-        return Demand(0.0, allowed, note="the cam is convex: no tool cuts it twice")
+        touching = {} if tool is None else dict.fromkeys("RD", tool)
+        note = "the cam is convex: no tool cuts it twice"
+        return Demand(0.0, allowed, note=note, stated=touching)
     if tool is None or np.isnan(concave):
         return Demand(None, allowed, missing=(_TOOL,) if tool is None else ())
     nearest = tool_interference(contour, tool)
     depth = float(np.maximum(0.0, -nearest.clearance))  # NaN stays, infinite clearance is 0
-    return Demand(depth, allowed, _place(float(nearest.theta)), note=f"tool of {shown(tool, 'mm')}")
+    return Demand(
+        depth,
+        allowed,
+        _place(float(nearest.theta)),
+        note=f"tool of {shown(tool, 'mm')}",
+        stated={"R": tool, "D": tool + float(nearest.clearance)},
+    )
 
 
 def least_concave_radius(case: Case) -> float | None:
@@ -351,8 +383,17 @@ def least_concave_radius(case: Case) -> float | None:
     title="Maximum change of contour curvature per length",
     method="greatest |d kappa/ds| along the contour, refined between samples",
     lift_can_help=True,
-    formula="max |d kappa/ds| <= c; kappa: curvature of the contour, s: length along it, c:"
-    " limits.curvature_rate",
+    formula="max |kappa_p'| / (v (1 - r kappa_p)^3) <= c; d kappa/ds of the contour: kappa_p,"
+    " kappa_p': curvature of the pitch curve and its derivative by the cam angle, v: speed along"
+    " the pitch curve by the cam angle, r: roller radius, c: limits.curvature_rate; flat face:"
+    " |s' + s'''|/(R + s + s'')^3, R: base radius",
+    symbols={
+        "kappa_p'": "pitch_curvature_slope",
+        "v": "pitch_speed",
+        "r": "roller.radius",
+        "kappa_p": "pitch_curvature",
+        "?": "follower.kind roller",
+    },
     reason="Decides where the case sets the limit: its value depends on the grinding machine.",
     load_cases=NONE,
     page="Cam",

@@ -30,6 +30,7 @@ from camwright.pipeline.case.limits import (
 from camwright.pipeline.case.machine import Machine
 from camwright.pipeline.checks.check import (
     BY_DUTY,
+    STATED,
     Allowed,
     Declaration,
     Demand,
@@ -43,7 +44,14 @@ from camwright.pipeline.checks.demands import (
     PerLoad,
     tooth_torque,
 )
-from camwright.pipeline.checks.extremes import Extreme, greatest, over_duty, worst_case
+from camwright.pipeline.checks.extremes import (
+    Extreme,
+    cycle_of,
+    greatest,
+    over_duty,
+    row_of,
+    worst_case,
+)
 from camwright.pipeline.checks.missing_keys import lacking, lacking_of_card, unset
 from camwright.pipeline.contact.hertz import contact_modulus
 from camwright.pipeline.contact.tiers import Tier
@@ -115,7 +123,7 @@ def _described(machine: Machine) -> _Shaft | tuple[str, ...]:
     return _Shaft(shaft, shaft.material, shaft.thinnest, sections)
 
 
-def _by_value(each: tuple[Extreme, ShaftSection]) -> float:
+def _by_value(each: tuple[Extreme, int]) -> float:
     return each[0].value
 
 
@@ -135,6 +143,13 @@ def _place(section: ShaftSection) -> str:
     " and torsion K_fs (T + drag) of the turning fibre, S_e = k_a k_b k_e S_e': endurance with"
     " factors of surface, size and reliability, S: limits.shaft_safety. Least over cam, gear, both"
     " bearings and camshaft.sections, and over all load cases",
+    symbols={
+        **dict.fromkeys(("s_a", "s_m"), f"{STATED} [MPa]"),
+        **dict.fromkeys(("k_a", "k_b", "k_e"), STATED),
+        "S_e'": "camshaft.material.fatigue_bending",
+        "R_m": "camshaft.material.tensile_strength",
+        "S_e": "[MPa]",
+    },
     reason=BREAKS,
     values=(
         *given.SHAFT,
@@ -164,18 +179,24 @@ def shaft_fatigue(solution: Solution) -> Demand:
     sections, strength = Sections.of(shaft.sections), _endurance(shaft, finish * rest * endurance)
 
     @cache
-    def safety(cycle: Cycle) -> Array:
-        fibres = fibre_stresses(cycle.theta, *_at_sections(cycle, shaft, sections), sections)
-        return fatigue_safety(*fibres, strength, tensile)
+    def fibres(cycle: Cycle) -> tuple[Array, Array]:
+        return fibre_stresses(cycle.theta, *_at_sections(cycle, shaft, sections), sections)
 
-    worst, section = min(
+    @cache
+    def safety(cycle: Cycle) -> Array:
+        return fatigue_safety(*fibres(cycle), strength, tensile)
+
+    worst, number = min(
         (
-            (worst_case(solution.cycles, _entry(safety, k), at_least=True), section)
-            for k, section in enumerate(shaft.sections)
+            (worst_case(solution.cycles, _entry(safety, k), at_least=True), k)
+            for k in range(len(shaft.sections))
         ),
         key=_by_value,
     )
+    section = shaft.sections[number]
     size = size_factor(section.diameter)
+    amplitude, mean = (each[number] for each in fibres(cycle_of(solution.cycles, worst)))
+    most = first_greatest(amplitude / strength[number] + mean / tensile)
     return Demand(
         worst.value,
         limit,
@@ -189,6 +210,13 @@ def shaft_fatigue(solution: Solution) -> Demand:
         method="rotating bending and torsion at every section, unbalance included; Goodman line;"
         f" fatigue notch factors {section.notch_bending:g} and {section.notch_torsion:g},"
         f" k_a {finish:.3f} ({shaft.camshaft.surface}), k_b {size:.3f}, k_e {rest:.3f}",
+        stated={
+            "s_a": float(amplitude[most]),
+            "s_m": float(mean[most]),
+            "k_a": finish,
+            "k_b": size,
+            "k_e": rest,
+        },
     )
 
 
@@ -246,9 +274,16 @@ def shaft_fatigue_points(solution: Solution) -> list[FatiguePoint]:
     lift_can_help=True,
     part="camshaft",
     kept_as="normal force at the yield of the camshaft",
-    formula="sqrt((K_f M/W)^2 + 3 (K_fs (T + drag)/(2 W))^2) <= R_p / S; M, T: bending moment and"
-    " torque at one angle, W = pi d^3/32, R_p: yield strength of the core, S:"
-    " limits.shaft_yield_safety. Greatest over all sections, angles and load cases",
+    formula="sqrt((K_f M/W)^2 + 3 (K_fs T/(2 W))^2) <= R_p / S; M, T: bending moment and torque of"
+    " the section at one angle, the drag included, K_f, K_fs: its fatigue notch factors, W ="
+    " pi d^3/32, d: its diameter, R_p: yield strength of the core, S: limits.shaft_yield_safety."
+    " Greatest over all sections, angles and load cases",
+    symbols={
+        **dict.fromkeys(("M", "T"), f"{STATED} [N m]"),
+        **dict.fromkeys(("K_f", "K_fs"), STATED),
+        "d": f"{STATED} [mm]",
+        "W": "[mm^3]",
+    },
     reason=f"a bent camshaft turns out of true; {BREAKS}",
     values=(*given.SHAFT, "camshaft.material.*yield_strength", "camshaft.*notch_*"),
     levers=(levers.one("camshaft.diameter", most=2.0), *levers.LOAD),
@@ -270,16 +305,23 @@ def shaft_yield(solution: Solution) -> Demand:
     def at_section(k: int) -> Extreme:
         return greatest(solution.cycles, lambda cycle: stress(cycle)[k])
 
-    worst, section = max(
-        ((at_section(k), section) for k, section in enumerate(shaft.sections)), key=_by_value
-    )
-    card = shaft.material
+    worst, number = max(((at_section(k), k) for k in range(len(shaft.sections))), key=_by_value)
+    section, card = shaft.sections[number], shaft.material
+    cycle, at = row_of(solution.cycles, worst)
+    moment, torque = (each[number] for each in _at_sections(cycle, shaft, sections))
     return Demand(
         worst.value,
         (card.core_yield_strength or card.yield_strength) / safety,
         worst,
         note=f"governing section: {_place(section)}",
         figures=(f"{card.name}: {card.source}",),
+        stated={
+            "M": float(np.hypot(*moment[:, at])),
+            "T": float(torque[at]),
+            "K_f": section.notch_bending,
+            "K_fs": section.notch_torsion,
+            "d": section.diameter,
+        },
     )
 
 
@@ -293,6 +335,7 @@ def shaft_yield(solution: Solution) -> Demand:
     kept_as="normal force at the maximum deflection of the camshaft",
     formula="f/l <= limits.shaft_deflection; f: greatest deflection at the cam by the unit-load"
     " method, l: bearing spacing",
+    symbols={"f": f"{STATED} [um]", "l": "camshaft.bearing_spacing"},
     reason="the deflection is an error of the lift and tilts the contact line",
     values=(*given.SHAFT, "camshaft.material.E"),
     levers=(levers.one("camshaft.diameter", most=2.0), *levers.LOAD),
@@ -306,12 +349,14 @@ def shaft_deflection(solution: Solution) -> Demand:
         return Demand(None, limit, missing=shaft)
     spacing = shaft.camshaft.bearing_spacing
 
-    def share(cycle: Cycle) -> Array:
-        return np.asarray(np.hypot(*_bending(cycle, shaft).deflection) / spacing)
+    def bent(cycle: Cycle) -> Array:
+        return np.asarray(np.hypot(*_bending(cycle, shaft).deflection))
 
-    worst = greatest(solution.cycles, share)
+    worst = greatest(solution.cycles, lambda cycle: bent(cycle) / spacing)
     amount = shown(worst.value * spacing, "um", 3)
-    return Demand(worst.value, limit, worst, note=f"{amount} at the cam")
+    cycle, k = row_of(solution.cycles, worst)
+    stated = {"f": float(bent(cycle)[k])}
+    return Demand(worst.value, limit, worst, note=f"{amount} at the cam", stated=stated)
 
 
 @check(
@@ -323,6 +368,7 @@ def shaft_deflection(solution: Solution) -> Demand:
     kept_as="normal force at the maximum slope of the camshaft",
     formula="phi <= limits.shaft_slope; phi: greatest slope at either bearing by the unit-load"
     " method",
+    symbols={"phi": f"{STATED} [mrad]"},
     reason="beyond their slope the balls run on the edge of the groove, and the rating"
     " life does not hold",
     values=(*given.SHAFT, "camshaft.material.E"),
@@ -341,7 +387,7 @@ def shaft_slope(solution: Solution) -> Demand:
         return np.asarray(np.maximum(np.hypot(*bent.slope_1), np.hypot(*bent.slope_2)))
 
     worst = greatest(solution.cycles, slope)
-    return Demand(worst.value, limit, worst)
+    return Demand(worst.value, limit, worst, stated={"phi": worst.value})
 
 
 @check(
@@ -504,6 +550,8 @@ def _tooth_bending(
             "m": "2 camshaft.gear_radius/camshaft.gear.teeth [mm]",
             "z": teeth,
             "F": "[N]",
+            "s_F": key,
+            "S": f"limits.{GEAR_BENDING_SAFETY.id}",
         },
         reason=reason,
         values=(

@@ -47,7 +47,7 @@ Page = Literal[
     "Camshaft",
 ]
 """Parts of the mechanism in the order of the flow of force; "": of evidence."""
-Record = dict[str, str | float | bool | list[str] | None]
+Record = dict[str, str | float | bool | list[str] | dict[str, float] | None]
 EVERY = "all, standstill and over-speed included"
 BY_DUTY = (
     "by load_case.duty, 1/L = sum q_i/L_i with q_i the shares; without a duty the worst load case"
@@ -59,9 +59,12 @@ STEADY = "those of the case: in standstill and over-speed nothing warms up"
 FIRED = "those of the case that are fired, with a mean power of the machine"
 SPEED_RANGE = "every speed from standstill to over-speed"
 BOUNDLESS = 1e12
-"""Record, SI, of a demand without bound that keeps its limit: JSON has no infinity."""
+"""Record, SI, of a demand without bound that keeps its limit, and of a stated number without one:
+JSON has no infinity."""
 FACTOR_MAX = 4.0
 """Maximum factor of a relaxation of a limit."""
+STATED = "stated"
+"""Place of a symbol of a formula whose number the check states, as in ``stated [MPa]``."""
 ROUNDING = 1e-9
 """Relative error of closed forms and exact integrals: no uncertainty of a demand."""
 
@@ -95,6 +98,7 @@ class Demand:
     method, source   in place of the declared ones, where they depend on the case
     must_have : bool    False: optional for this solution
     corner : str        tolerance corner of the demand; "": nominal
+    stated : mapping    numbers of solvers and reductions in the formula by their symbol, SI
     """
 
     value: float | None
@@ -108,6 +112,7 @@ class Demand:
     must_have: bool = True
     corner: str = ""
     judged_at: str = ""
+    stated: Mapping[str, float] = field(default_factory=dict, hash=False)
 
 
 class Allowed(NamedTuple):
@@ -295,7 +300,8 @@ class Declaration:
     formula : str              demand and limit with their symbols, for the documentation
     symbols : mapping          where the symbols of the formula stand in a run, for the hand-check
                                sheet: dotted keys, columns of the cycle, figures of the cam, or
-                               expressions of them; empty: the demand is stated, not evaluated
+                               expressions of them, numbers that the check states (`STATED`);
+                               empty: the demand is stated, not evaluated
     reason : str               why it decides the verdict, or why it does not
     load_cases : str           load cases in which it is made, in words
     rests_on : str             "loads": of the cam, none where the follower has left it or locked;
@@ -429,6 +435,7 @@ class Declaration:
             error_share=None if demand.at is None else demand.at.error_share,
             corner=demand.corner,
             judged_at=demand.judged_at,
+            stated=demand.stated,
             corner_demand=demand.value if demand.corner else None,
         )
         # a demand beyond its limit by what is known is judged without the rest
@@ -669,6 +676,7 @@ class Check(Displayed):
     without : str            load cases without loads, as the follower has left the cam or locked:
                              the demand is that of the others, by which it can only fail; "": none
     remedy : str             smallest change of the case that cures it, in one line; "": none known
+    stated : mapping         numbers in its formula of solvers and reductions, see `Demand`
     """
 
     declaration: Declaration
@@ -691,6 +699,7 @@ class Check(Displayed):
     judged_at: str = ""
     without: str = ""
     remedy: str = ""
+    stated: Mapping[str, float] = field(default_factory=dict, hash=False)
 
     def __str__(self) -> str:
         """Title, worst demand, limit and status in one line, in `unit`."""
@@ -882,7 +891,18 @@ class Check(Displayed):
             "relaxed": list(self.relaxed),
             "judged_at": self.judged_at,
             "remedy": self.remedy,
+            "stated": {} if bound else self._stated,
         }
+
+    @property
+    def _stated(self) -> dict[str, float]:
+        """Stated numbers in the units of the symbols of the formula; those known."""
+        symbols = self.declaration.symbols
+        known = {
+            name: _shown(min(value, BOUNDLESS), symbols[name].removeprefix(STATED).strip(" []"))
+            for name, value in self.stated.items()
+        }
+        return {name: value for name, value in known.items() if value is not None}
 
 
 def verdict(checks: Iterable[Check]) -> Verdict:

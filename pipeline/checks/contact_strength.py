@@ -34,9 +34,9 @@ from camwright.pipeline.case.limits import (
     YIELD_SAFETY,
 )
 from camwright.pipeline.case.machine import Machine
-from camwright.pipeline.checks.check import NONE, Allowed, Demand, Kept, check
+from camwright.pipeline.checks.check import NONE, STATED, Allowed, Demand, Kept, check
 from camwright.pipeline.checks.demands import PRESSURE
-from camwright.pipeline.checks.extremes import Extreme, greatest
+from camwright.pipeline.checks.extremes import Extreme, cycle_of, greatest, row_of
 from camwright.pipeline.checks.missing_keys import (
     lacking,
     lacking_along_line,
@@ -58,6 +58,8 @@ PSI = 6894.757293168  # Pa
 SHAKEDOWN = 4.0  # p0 / k, free rolling line contact
 FIRST_YIELD = 1.79  # p0 / Y, von Mises, line contact, nu = 0.3
 FACE_PASSES = 2.0  # of the contact over a point of a flat face in a cam turn, at most
+_ALONG_THE_LINE = {"K": "length_factor", "r": STATED, "p0": "p0_fe"}
+_EQUIVALENT = {"p0": "p0_fe", "lambda": STATED}
 _TRACTIONS = 17  # nodes of the traction coefficient from 0 to that of full sliding
 _STATIONS = 720
 
@@ -310,6 +312,7 @@ def _ends_in_words(demand: Demand, solution: Solution) -> Demand:
         demand,
         missing=(*demand.missing, *lacking_along_line(machine)),
         note="" if worst is None else signed_sentence(solution, worst),
+        stated={} if worst is None else of_elements(solution, worst),
         figures=(
             _least_endurance(machine).source,
             *(f"limits.{row.id}: {machine.limits.source(row)}" for row in rows),
@@ -471,10 +474,11 @@ shakedown = check(
     lift_can_help=True,
     error="ends",
     kept_as="contact pressure at the target life",
-    formula="p <= sqrt(K E*/pi) / S; p: signed contact pressure as of edge_pressure,"
-    " log10 K = (B - log10 n)/A with K in psi, n: load cycles of"
+    formula="r K p0 <= sqrt(H E*/pi) / S; r, K, p0: as of edge_pressure, in operation,"
+    " log10 H = (B - log10 n)/A with H in psi, n: load cycles of"
     " the body in limits.target_life; a body without A and B keeps its endurance pressure up to its"
     " endurance_cycles",
+    symbols=_ALONG_THE_LINE,
     reason="the target life may need more load cycles than the endurance pressure",
     values=(
         *given.LENGTH,
@@ -499,7 +503,15 @@ def contact_pressure_at_life(solution: Solution) -> Demand:
         figures = tuple(f"{card.name}: {card.source}" for card in machine.bodies.values())
         return Demand(worst.value, None, worst, (*missing, *lacks), figures=figures)
     limit = _life_limit(machine, load_cycles(solution.machines, solution.contour))
-    return _judged(worst, limit, missing=lacks, note=signed_sentence(solution, worst))
+    judged = _judged(worst, limit, missing=lacks, note=signed_sentence(solution, worst))
+    return replace(judged, stated=of_elements(solution, worst))
+
+
+def of_elements(solution: Solution, worst: Extreme) -> dict[str, float]:
+    """Ratio of finite elements to half-spaces in the signed pressure where it is greatest."""
+    length = cycle_of(solution.cycles, worst).length
+    correction = None if length is None else length.correction
+    return {"r": 1.0 if correction is None else correction.signed}
 
 
 def signed_sentence(solution: Solution, worst: Extreme) -> str:
@@ -550,11 +562,13 @@ _SIGNED = (
     tier=Tier.SCREENING,
     error="ends",
     kept_as="edge pressure at the endurance limit",
-    formula="K p0 <= p_E / S; p0: contact pressure of plane strain, K: signed pressure over it, at"
-    " the tilt phi + t_p + t_r/(2 r_b) + c/b + g, or, forced, at phi + t_p + t_r/(2 r_b) - g;"
-    " phi: slope of the camshaft at the cam, t_p: limits.axis_parallelism, t_r: limits.cam_run_out,"
-    " r_b: base radius, c: limits.roller_clearance, b: width of the roller, g: tilt of the stem in"
-    " its guides, p_E and S as of contact_pressure",
+    formula="r K p0 <= p_E / S; p0: contact pressure of plane strain, r: greatest ratio of finite"
+    " elements to half-spaces at the certified angles, 1 without, K: signed pressure over p0 by"
+    " half-spaces, at the tilt phi + t_p + t_r/(2 r_b) + c/b + g, or, forced, at phi + t_p +"
+    " t_r/(2 r_b) - g; phi: slope of the camshaft at the cam, t_p: limits.axis_parallelism, t_r:"
+    " limits.cam_run_out, r_b: base radius, c: limits.roller_clearance, b: width of the roller, g:"
+    " tilt of the stem in its guides, p_E and S as of contact_pressure",
+    symbols=_ALONG_THE_LINE,
     reason="a line contact fails at its ends first, and most where it is tilted",
     values=(*given.LENGTH, *given.bodies("*endurance_pressure"), "limits.contact_safety"),
     levers=(levers.CROWNED, levers.NARROWER, *levers.STIFFER_SHAFT, *levers.ENDURANCE),
@@ -582,8 +596,9 @@ def edge_pressure(cam: LoadedCam) -> Array:
     lift_can_help=True,
     error="ends",
     kept_as="edge pressure at shakedown with sliding",
-    formula="K p_eq <= 4 k / S; K: as of edge_pressure, p_eq: equivalent pressure of plane strain,"
-    " see shakedown_traction",
+    formula="r K p_eq <= 4 k / S; r, K: as of edge_pressure, p_eq = 4 p0 / lambda: equivalent"
+    " pressure of plane strain, see shakedown_traction",
+    symbols={**_ALONG_THE_LINE, **_EQUIVALENT, "p_eq": "[MPa]"},
     reason="the ends yield first, and an end that does not shake down is rolled out",
     values=(
         *given.LENGTH,
@@ -602,7 +617,15 @@ def edge_shakedown(solution: Solution) -> Demand:
     worst = greatest(solution.cycles, lambda each: each.signed_pressure * _traction_factor(each))
     limit = _times(shear_yield(machine), SHAKEDOWN)
     missing = (*lacking_along_line(machine), *no_friction(machine))
-    return _judged(worst, limit, missing=missing, note=signed_sentence(solution, worst))
+    judged = _judged(worst, limit, missing=missing, note=signed_sentence(solution, worst))
+    stated = _shakedown_stated(solution, worst) | of_elements(solution, worst)
+    return replace(judged, stated=stated)
+
+
+def _shakedown_stated(solution: Solution, worst: Extreme) -> dict[str, float]:
+    """p0/k at shakedown where an equivalent pressure is greatest."""
+    cycle, k = row_of(solution.cycles, worst)
+    return {"lambda": SHAKEDOWN / float(_traction_factor(cycle)[k])}
 
 
 @check(
@@ -615,8 +638,10 @@ def edge_shakedown(solution: Solution) -> Demand:
     lift_can_help=True,
     error="contact",
     kept_as="shakedown pressure with sliding",
-    formula="p_eq = 4 p0 / lambda(t) <= 4 k / S; t: traction coefficient, lambda = p0/k at"
-    " shakedown: 1/max|tau_xz| below the surface, von Mises at the surface above about 0.3",
+    formula="p_eq = 4 p0 / lambda <= 4 k / S; lambda: p0/k at shakedown under the traction"
+    " coefficient of the angle, 1/max|tau_xz| below the surface, von Mises at the surface above a"
+    " traction of about 0.3",
+    symbols=_EQUIVALENT,
     reason="traction brings the plastic strain to the surface and lowers the limit",
     values=(
         *given.CONTACT,
@@ -633,7 +658,8 @@ def shakedown_traction(solution: Solution) -> Demand:
     machine = solution.machine
     worst = greatest(solution.cycles, equivalent_pressure)
     limit = _times(shear_yield(machine), SHAKEDOWN)
-    return _judged(worst, limit, missing=no_friction(machine))
+    judged = _judged(worst, limit, missing=no_friction(machine))
+    return replace(judged, stated=_shakedown_stated(solution, worst))
 
 
 @check(

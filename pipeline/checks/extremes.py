@@ -12,7 +12,7 @@ import numpy as np
 from camwright.geometry import extrema
 from camwright.geometry.arrays import FULL_TURN, Array
 from camwright.geometry.contour import Contour
-from camwright.geometry.extrema import TIE, first_greatest
+from camwright.geometry.extrema import TIE, first_greatest, first_least
 from camwright.pipeline.cycle.cycle import Cycle
 from camwright.pipeline.cycle.loaded_cam import LoadedCam
 from camwright.pipeline.cycle.solution import Solution
@@ -40,6 +40,18 @@ NOWHERE = Extreme(np.nan)
 _LEAST = 5  # samples, for the bends on either side of a peak
 _KINK = 3.0  # bend at a kink over those two samples away; 1 on a parabola
 _SAFETY = 1.25
+
+
+def cycle_of(cycles: Iterable[Cycle], worst: Extreme) -> Cycle:
+    """Cycle of the load case of an extreme; without one the first."""
+    every = tuple(cycles)
+    return next((each for each in every if each.load_case == worst.load_case), every[0])
+
+
+def row_of(cycles: Iterable[Cycle], worst: Extreme) -> tuple[Cycle, int]:
+    """Cycle of an extreme, and the number of its solved angle."""
+    cycle = cycle_of(cycles, worst)
+    return cycle, first_least(np.abs(cycle.theta - (worst.cam_angle or 0.0)))
 
 
 def greatest(cycles: Iterable[Cycle], measure: Callable[[Cycle], Array]) -> Extreme:

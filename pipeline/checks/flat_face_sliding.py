@@ -14,9 +14,9 @@ from camwright.pipeline.base import value_groups as given
 from camwright.pipeline.base.source import Source
 from camwright.pipeline.base.units import celsius, shown
 from camwright.pipeline.case.limits import SURFACE_TEMPERATURE
-from camwright.pipeline.checks.check import Demand, Kept, check, of_key
+from camwright.pipeline.checks.check import STATED, Demand, Kept, check, of_key
 from camwright.pipeline.checks.contact_strength import line_pressure
-from camwright.pipeline.checks.extremes import worst_case
+from camwright.pipeline.checks.extremes import cycle_of, worst_case
 from camwright.pipeline.checks.missing_keys import lacking, lacking_of_card, no_friction
 from camwright.pipeline.contact.flash_temperature import bulk_rise
 from camwright.pipeline.contact.oil_film import Lubricant, scuffing_limit
@@ -28,6 +28,12 @@ from camwright.pipeline.follower.flat_face_motion import MEAN_SHARE
 
 _HEAT_PATH = ("conductivity", "specific_heat")
 _OF_OIL = ("temperature", "scuffing_temperature", "boundary_temperature")
+_FLASH = {
+    "T_oil": "lubricant.temperature - 273.15 [degC]",
+    "T_m": f"{STATED} [K]",
+    "T_f": f"{STATED} [K]",
+}
+"""Temperature of the oil and rises of the face in the symbols of a formula."""
 
 
 @check(
@@ -41,6 +47,7 @@ _OF_OIL = ("temperature", "scuffing_temperature", "boundary_temperature")
     kept_as="width of the flat face",
     formula="2 (|s' - e| + a) <= w; s': slope of the lift, e: cam.offset, a: half-width of the"
     " contact, w: follower.face.width",
+    symbols={"s'": "lift_slope", "e": "cam.offset", "a": "half_width_fe"},
     reason="beyond the face the contact runs on its edge",
     levers=(levers.one("follower.face.width"), *levers.GENTLER),
     page="Flat face",
@@ -70,6 +77,7 @@ def _sliding(cam: LoadedCam) -> Array:
     kept_as="PV of the flat face",
     formula="pi/4 p0 omega (r + s) <= PV; p0: contact pressure, omega: speed of the cam, r: base"
     " radius, s: lift, PV: follower.face.pv_limit",
+    symbols={"p0": "p0_fe", "omega": "cam.speed", "r": "cam.prime_radius", "s": "lift"},
     reason="a face slides at all angles, and beyond its PV limit it seizes or melts",
     values=(*given.CONTACT, "follower.face.pv_limit"),
     levers=(levers.one("follower.face.depth"), *levers.GENTLER),
@@ -98,13 +106,14 @@ def face_pv(cam: LoadedCam) -> Array:
     " there; a film of unknown roughness counts as none",
     lift_can_help=True,
     needs="face",
-    formula="T_oil + 0.47 1.2 mean(T_f) + T_f <= T_b + c (T_s - T_b), c = (lambda - 0.4)/(1 - 0.4)"
-    " within 0 and 1; T_f = 1.11 mu w |u1 - u2| / ((B1 sqrt|u1| +"
-    " B2 sqrt|u2|) sqrt(2 a)), u1 = omega (r + s + s''), u2 = omega s''; mu: friction of the face,"
+    formula="T_oil + 0.47 1.2 T_m + T_f <= T_b + c (T_s - T_b); c: (lambda - 0.4)/(1 - 0.4) within"
+    " 0 and 1, T_m: mean of T_f over the turn, T_f: 1.11 mu w |u1 - u2| / ((B1 sqrt|u1| +"
+    " B2 sqrt|u2|) sqrt(2 a)), u1: omega (r + s + s''), u2: omega s'', mu: friction of the face,"
     " w: line load, B: root of conductivity times density times specific heat, a: half-width of"
     " the contact, r: base radius, s: lift, T_oil: lubricant.temperature, T_s, T_b:"
     " lubricant.scuffing_temperature, .boundary_temperature, lambda: film over roughness, as of"
     " film_ratio, at the same angle",
+    symbols=_FLASH,
     reason="above it film or adsorbed layer breaks down and the surfaces weld, within seconds",
     values=(
         *given.CONTACT,
@@ -155,7 +164,8 @@ def contact_temperature(solution: Solution) -> Demand:
     cycle = next(each for each in solution.cycles if each.load_case == worst.load_case)
     worst = worst._replace(value=worst.value * limit, cam_angle=float(cycle.theta[k]))
     note = f"flash temperature of {shown(hot, 'K', 3)} on {_film(cycle)[k]:.2g} of the roughness"
-    return Demand(worst.value, limit, worst, note=note, figures=(oil.source,))
+    stated = {"T_m": float(np.mean(flash(cycle))), "T_f": hot}
+    return Demand(worst.value, limit, worst, note=note, figures=(oil.source,), stated=stated)
 
 
 def _film(cycle: Cycle) -> Array:
@@ -173,9 +183,10 @@ def _film(cycle: Cycle) -> Array:
     " coefficient",
     lift_can_help=True,
     needs="face",
-    formula="T_oil + 0.47 1.2 mean(T_f) <= limits.surface_temperature, and that of the cards of cam"
-    " and face where they state one; T_oil: lubricant.temperature, T_f: flash temperature, as of"
+    formula="T_oil + 0.47 1.2 T_m <= limits.surface_temperature, and that of the cards of cam and"
+    " face where they state one; T_oil: lubricant.temperature, T_m: mean flash temperature, as of"
     " contact_temperature",
+    symbols={name: _FLASH[name] for name in ("T_oil", "T_m")},
     reason="above it hardened surfaces are tempered, and a contact without a full film loses the"
     " layer that keeps the steels apart",
     values=(
@@ -203,7 +214,9 @@ def bulk_temperature(solution: Solution) -> Demand:
         return np.nan if flash is None else float(celsius(cold + bulk_rise(flash)))
 
     worst = worst_case(solution.cycles, bulk)
-    return Demand(worst.value, allowed, worst, figures=(oil.source,))
+    rise = cycle_of(solution.cycles, worst).rolling.flash
+    of_turn = {} if rise is None else {"T_m": float(np.mean(rise))}
+    return Demand(worst.value, allowed, worst, figures=(oil.source,), stated=of_turn)
 
 
 def _heat_missing(solution: Solution, *of_oil: str) -> tuple[str, ...]:

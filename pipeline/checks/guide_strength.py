@@ -19,13 +19,25 @@ from camwright.pipeline.base.source import Source
 from camwright.pipeline.base.units import celsius, shown
 from camwright.pipeline.case.limits import GUIDE_LENGTH
 from camwright.pipeline.case.machine import Machine
-from camwright.pipeline.checks.check import NONE, Allowed, Declaration, Demand, Kept, check, of_key
+from camwright.pipeline.checks.check import (
+    NONE,
+    STATED,
+    Allowed,
+    Declaration,
+    Demand,
+    Kept,
+    check,
+    of_key,
+)
 from camwright.pipeline.checks.demands import follower_speed, slope_at, slope_over
 from camwright.pipeline.checks.extremes import (
     NOWHERE,
     Extreme,
     Measure,
+    cycle_of,
     greatest,
+    mean_of,
+    row_of,
     worst_case,
     worst_measure,
 )
@@ -172,6 +184,7 @@ def _guide_pressure(side: Side) -> Declaration:
             missing=(*demand.missing, *limit.missing),
             note="; ".join((*limit.notes, _pushes(solution, side, worst))),
             source=_maker(guide),
+            stated=_loaded_side(solution, side, worst),
         )
 
     @check(
@@ -190,6 +203,11 @@ def _guide_pressure(side: Side) -> Declaration:
         " line load, l: loaded length of that side, d: diameter of the bore, of the side and angle"
         " with the greatest quotient; p: guides.*.pressure_limit, R: yield strength of the bush at"
         " its temperature T and at T_p, guides.*.pressure_limit_temperature.",
+        symbols={
+            "F": f"{STATED} [N]",
+            "d": f"{table_of(side)}.diameter",
+            "l": f"{STATED} [mm]",
+        },
         reason="a bush above the pressure of its maker creeps and wears; opposite pushes"
         " at both ends of a guide load it although they cancel in the reaction.",
         values=(
@@ -217,6 +235,13 @@ def _guide_pressure(side: Side) -> Declaration:
 
 def _maker(guide: Guide) -> Source:
     return guide.source or Source(f"{guide.material.name} bush", confirmed=True)
+
+
+def _loaded_side(solution: Solution, side: Side, worst: Extreme) -> dict[str, float]:
+    """Push on the side of the bore that governs, N, and its loaded length, m."""
+    cycle, k = row_of(solution.cycles, worst)
+    push, length = cycle.guides.loaded_side(GUIDES.index(side), k)
+    return {"F": push, "l": length}
 
 
 def _pushes(solution: Solution, side: Side, worst: Extreme) -> str:
@@ -402,7 +427,11 @@ def _guide_temperature(side: Side) -> Declaration:
         machine = solution.machine
         card = guide_of(machine, side).material
         missing = (*heat_path_lacks(machine, side), *lacking_of_card(card, "temperature_limit"))
-        return replace(demand, missing=missing, source=card.source.of(card.name))
+        made = replace(demand, missing=missing, source=card.source.of(card.name))
+        if demand.at is None or not demand.at.load_case:
+            return made
+        cycle = cycle_of(solution.cycles, demand.at)
+        return replace(made, stated={"Q": mean_of(solution, HEAT[side], cycle)})
 
     return check(
         id=f"guide_temperature_{side}",
@@ -415,9 +444,20 @@ def _guide_temperature(side: Side) -> Declaration:
         part="guides",
         kept_as=f"friction power of guide {side} at its greatest temperature",
         formula="T_amb + Q (R_wall + R_housing) <= T_max; Q: mean friction power over the turn at"
-        " the greatest friction, R_wall: ln(1 + 2 t/d) / (2 pi lambda L) of a wall t:"
+        " the greatest friction, R_wall = ln(1 + 2 t/d) / (2 pi lambda L): of a wall t:"
         " guides.*.wall, R_housing: guides.*.housing_resistance; guides.*.thermal_resistance in"
         " place of both; T_amb: guides.ambient_temperature; T_max: temperature limit of the bush.",
+        symbols={
+            "?": f"{table_of(side)}.thermal_resistance None",
+            "T_amb": "guides.ambient_temperature - 273.15 [degC]",
+            "Q": f"{STATED} [W]",
+            "R_wall": "[K/W]",
+            "R_housing": f"{table_of(side)}.housing_resistance",
+            "t": f"{table_of(side)}.wall",
+            "d": f"{table_of(side)}.diameter",
+            "L": f"{table_of(side)}.length",
+            "lambda": f"{table_of(side)}.material.conductivity",
+        },
         reason="strength, clearance and wear of a bush depend on its temperature.",
         values=(
             *given.LOADS,
@@ -466,7 +506,7 @@ def _guide_speed(side: Side) -> Declaration:
         part="guides",
         kept_as=f"lift per radian at the maximum sliding speed in guide {side}",
         formula="max |v| <= v_max; v: speed of the stem in the bush, v_max: guides.*.speed_limit.",
-        symbols={"v": "follower_velocity"},
+        symbols={"v": "follower_velocity", "v_max": f"{table_of(side)}.speed_limit"},
         reason="a PV limit holds up to the greatest speed of the bush; above it the"
         " rubbing surface overheats at any load.",
         values=(*given.LOADS, *given.of_guide(side, "speed_limit")),
@@ -540,6 +580,7 @@ def guide_length(cam: LoadedCam) -> Array:
     part="guides",
     formula="n <= 0; n: rotations of the stem about its axis that nothing prevents, by"
     ' follower.anti_rotation; "not_needed" holds for a flat face alone.',
+    symbols={"n": STATED},
     reason="a roller that turns about the stem runs on its edge, and no other check sees it.",
     load_cases=NONE,
     page="Follower",
@@ -551,4 +592,4 @@ def anti_rotation(solution: Solution) -> Demand:
         return Demand(None, 0.0, missing=("follower.anti_rotation",))
     free = means == "not_needed" and solution.machine.follower.contact_radius is not None
     note = "a roller needs a means against rotation" if free else means.replace("_", " ")
-    return Demand(float(free), 0.0, note=note)
+    return Demand(float(free), 0.0, note=note, stated={"n": float(free)})

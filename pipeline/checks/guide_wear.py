@@ -11,9 +11,17 @@ from camwright.pipeline.base import levers
 from camwright.pipeline.base import value_groups as given
 from camwright.pipeline.base.material import ROOM, Material
 from camwright.pipeline.base.source import Source
-from camwright.pipeline.base.units import shown
+from camwright.pipeline.base.units import celsius, shown
 from camwright.pipeline.case.limits import TARGET_LIFE, WEAR_DEPTH
-from camwright.pipeline.checks.check import Allowed, Declaration, Demand, Kept, check, of_row
+from camwright.pipeline.checks.check import (
+    STATED,
+    Allowed,
+    Declaration,
+    Demand,
+    Kept,
+    check,
+    of_row,
+)
 from camwright.pipeline.checks.guide_strength import (
     PV,
     Side,
@@ -44,11 +52,24 @@ def _guide_expansion(side: Side) -> Declaration:
         lift_can_help=True,
         part="guides",
         kept_as=f"friction power of guide {side} at its least clearance",
-        formula="c d e + d a_s (T - 20 degC) <= C; e = a_b (T - 20 degC) + w: free strain of the"
-        " bush by heat and moisture, c = (k - 1)(1 + nu) / (1 + (1 - 2 nu) k) with"
-        " k = (1 + 2 t/d)^2: Lame's closure of the bore of a wall t, guides.*.wall, held axially,"
-        " the greater of the bounds, d: bore, a_b, a_s: thermal expansion of bush and stem, T:"
-        " temperature of the guide, C: guides.*.clearance.",
+        formula="max(c, c_f) d e + d a_s (T - T_0) <= C; e = a_b (T - T_0) + w: free strain of the"
+        " bush by heat and moisture, k = (1 + 2 t/d)^2, c = (k - 1) (1 + nu) / (1 + (1 - 2 nu) k):"
+        " Lame's closure of the bore of a wall t, guides.*.wall, held axially,"
+        " c_f = (k - 1) (1 + nu) / (1 + nu + (1 - nu) k): free to lengthen, d: bore, a_b, a_s:"
+        " thermal expansion of bush and stem, w: growth by moisture, T: temperature of the guide,"
+        " T_0: 20 degC, C: guides.*.clearance.",
+        symbols={
+            "T": f"{STATED} [degC]",
+            "T_0": "20 [degC]",
+            "a_b": f"{table_of(side)}.material.expansion",
+            "a_s": "follower.stem_material.expansion",
+            "w": STATED,
+            "nu": f"{table_of(side)}.material.nu",
+            "t": f"{table_of(side)}.wall",
+            "d": f"{table_of(side)}.diameter",
+            "C": f"{table_of(side)}.clearance",
+            **dict.fromkeys(("c", "c_f", "k", "e"), "[-]"),
+        },
         reason="a stem that binds in a hot or wet bush jams, whatever its loads.",
         values=(
             *given.LOADS,
@@ -87,6 +108,7 @@ def _guide_expansion(side: Side) -> Declaration:
             missing,
             note="" if missing else f"{shown(free, 'mm', 3)} with a bush free to lengthen",
             figures=(bush.source, stem.source),
+            stated={"T": float(celsius(hot.value)), "w": moisture},
         )
 
     return expansion

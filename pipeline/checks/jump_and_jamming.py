@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
 
 from camwright.geometry.arrays import FULL_TURN, Array, Value
-from camwright.geometry.extrema import first_greatest, first_least
+from camwright.geometry.extrema import first_greatest, first_least, sampled_least
 from camwright.pipeline.base import levers
 from camwright.pipeline.base import value_groups as given
 from camwright.pipeline.base.source import Source
@@ -26,6 +26,7 @@ from camwright.pipeline.checks import demands
 from camwright.pipeline.checks.check import (
     FACTOR_MAX,
     SPEED_RANGE,
+    STATED,
     Allowed,
     Demand,
     Kept,
@@ -33,8 +34,10 @@ from camwright.pipeline.checks.check import (
 )
 from camwright.pipeline.checks.extremes import (
     Extreme,
+    cycle_of,
     greatest,
     least,
+    row_of,
     worst_measure,
 )
 from camwright.pipeline.contact.tiers import Tier
@@ -48,14 +51,19 @@ from camwright.pipeline.follower.follower_flight import LONGEST, Flight
 
 _DIGITS = 5  # of the force and of the preload of a follower that leaves the cam
 _TIE = 1e-9  # relative difference up to which two forces are equal, and one is none
+_LEAST_FORCE = dict.fromkeys(("N", "F_0"), f"{STATED} [N]")
 
 
 def _with_lift_off(demand: Demand, solution: Solution) -> Demand:
     """With the force and the preload of a follower that leaves the cam, and where it does."""
     lowest = worst_measure(solution, _required, "forces", float, at_least=True, order=2)
-    if not lowest.value < 0.0:
+    if lowest.value < 0.0:
+        note, stated = _lifts_off(solution.cycles, lowest), {"N": 0.0}
+        return replace(demand, value=0.0, at=lowest, note=note, stated=stated)
+    if demand.at is None or not demand.at.load_case:
         return demand
-    return replace(demand, value=0.0, at=lowest, note=_lifts_off(solution.cycles, lowest))
+    cam = solution.cams_between[cycle_of(solution.cycles, demand.at)]
+    return replace(demand, stated={"N": float(sampled_least(cam.normal))})
 
 
 def _required(cam: LoadedCam) -> Array:
@@ -70,9 +78,10 @@ def _required(cam: LoadedCam) -> Array:
     " samples",
     lift_can_help=True,
     tier=Tier.SCREENING,
-    formula="N_min / F_0 >= limits.contact_force_margin; N_min: least normal force over all load"
-    " cases and angles with guide friction and inertia, without surge, F_0: spring force at minimum"
-    " lift",
+    formula="N / F_0 >= limits.contact_force_margin; N: least normal force over all load cases and"
+    " angles with guide friction and inertia, without surge, 0 where the follower leaves the cam,"
+    " F_0: spring force at minimum lift",
+    symbols={"N": f"{STATED} [N]", "F_0": "least_spring_force"},
     reason="A follower that leaves the cam lands on it with an impact.",
     rests_on="",
     values=given.LOADS,
@@ -163,6 +172,20 @@ def _outward(cam: LoadedCam, index: Array) -> Array:
     return np.where(np.real(cam.slope) > 0, index, 0.0 * index)
 
 
+def _at_greatest_friction(demand: Demand, solution: Solution) -> Demand:
+    """With forces and friction at the angle of the demand."""
+    if demand.at is None or not demand.at.load_case:
+        return demand
+    cycle, k = row_of(solution.cycles, demand.at)
+    loads, (mu_a, mu_b) = cycle.parts.friction.greatest, cycle.machine.friction.greatest
+    if not loads.lift_slope[k] > 0.0:
+        return demand
+    rubbed = (loads.friction_force_a[k], mu_a), (loads.friction_force_b[k], mu_b)
+    pushes = [float(force) / mu if mu else 0.0 for force, mu in rubbed]
+    stated = {"mu_A": mu_a, "mu_B": mu_b, "R_A": pushes[0], "R_B": pushes[1]}
+    return replace(demand, stated=stated | {"F_a": float(loads.axial_force[k])})
+
+
 def _worst_friction_kept(cam: LoadedCam, limit: float) -> Array | None:
     """No constraint where the maximum friction is not known."""
     worst = cam.jam_worst
@@ -180,15 +203,20 @@ def _worst_friction_kept(cam: LoadedCam, limit: float) -> Array | None:
     moved_by_tolerance=False,
     part="guides",
     formula="max((mu_A R_A + mu_B R_B) / F_a) <= j on the rise, at guides.*.friction_max or the"
-    " tolerance of friction; R: sum of the pushes on both sides of a guide, F_a: axial force of the"
-    " cam, j: limits.jam_index.",
+    " tolerance of friction; mu: that friction, R: sum of the pushes on both sides of a guide under"
+    " it, F_a: axial force of the cam, j: limits.jam_index.",
+    symbols={
+        "mu_A": STATED,
+        "mu_B": STATED,
+        **dict.fromkeys(("R_A", "R_B", "F_a"), f"{STATED} [N]"),
+    },
     reason="friction of bushes scatters by a factor, and it is the greatest that locks"
     " the follower.",
     rests_on="contact",
     values=given.LOADS,
     levers=levers.JAM,
     page="Guides",
-).measured("angles", deviation=0.01, kept=Kept(_worst_friction_kept))
+).measured("angles", remark=_at_greatest_friction, deviation=0.01, kept=Kept(_worst_friction_kept))
 def jam_index_friction_max(cam: LoadedCam) -> Array:
     """Jam index at the maximum friction coefficients of both guides."""
     worst = cam.jam_worst
@@ -320,12 +348,13 @@ def contact_at_overspeed(cam: LoadedCam) -> Array:
     " spring by the wave equation, at each speed from standstill to over-speed",
     lift_can_help=True,
     part="spring",
-    formula="min N(w, theta) / F_0 >= limits.contact_force_margin over all speeds from standstill"
-    " to over-speed; N = (P + k s + F_e + m w^2 s'' + c w s' + F_w) / ((1 - j) cos(alpha)), F_e:"
-    " weight and external force, F_0: spring force at minimum lift, F_w: sum over the harmonics of"
+    formula="N / F_0 >= limits.contact_force_margin over all speeds from standstill to over-speed;"
+    " N: least of (P + k s + F_e + m w^2 s'' + c w s' + F_w) / ((1 - j) cos(alpha)), F_e: weight"
+    " and external force, F_0: spring force at minimum lift, F_w: sum over the harmonics of"
     " k (phi cot phi - 1) s_h, phi = pi h w / w_1 sqrt(1 - 2 i zeta), j: jam index with the sign of"
     " the motion, w_1: first natural frequency of the spring, zeta: spring.design.damping_ratio; if"
     " the case does not state it, 0.01 with an error bar down to 0.002",
+    symbols=_LEAST_FORCE,
     reason="Between the load cases a harmonic of the lift may meet a natural frequency of"
     " the spring and lift the follower off the cam.",
     load_cases=SPEED_RANGE,
@@ -340,7 +369,7 @@ def contact_over_speed(solution: Solution) -> Demand:
         lambda sweep: (sweep.contact_force_min, sweep.contact_angle, sweep.contact_error),
     )
     worst, limit = swept.barred(swept.worst), solution.machine.limits[CONTACT_FORCE_MARGIN]
-    return Demand(worst.value, limit, worst, note=swept.words)
+    return Demand(worst.value, limit, worst, note=swept.words, stated=swept.stated)
 
 
 @check(
@@ -351,10 +380,11 @@ def contact_over_speed(solution: Solution) -> Demand:
     lift_can_help=True,
     tier=Tier.PREVIEW,
     within=("stem",),
-    formula="min N(w, theta) / F_0 >= limits.contact_force_margin over all speeds from standstill"
-    " to over-speed and over the load cases at their varying speed; N: contact force of one mass on"
-    " the stiffness between cam and mass, on the spring with its surge, F_0: spring force at"
-    " minimum lift",
+    formula="N / F_0 >= limits.contact_force_margin over all speeds from standstill to over-speed"
+    " and over the load cases at their varying speed; N: least contact force of one mass on the"
+    " stiffness between cam and mass, on the spring with its surge, F_0: spring force at minimum"
+    " lift",
+    symbols=_LEAST_FORCE,
     reason="The resonance of the follower on its own stiffness unloads the contact more"
     " than the rigid follower shows.",
     load_cases=SPEED_RANGE,
@@ -381,10 +411,14 @@ def elastic_contact(solution: Solution) -> Demand:
     )
     histories = [cycle.elastic for cycle in solution.cycles]
     methods = "; ".join(dict.fromkeys(history.method for history in histories))
-    note = ""
+    note, (cycle, k) = "", row_of(solution.cycles, worst)
+    stated = {
+        "N": float(cycle.elastic.response.contact_force[k]),
+        "F_0": cycle.least_spring_force,
+    }
     # A load case at constant speed is in the sweep, too: equal but for round-off.
     if np.isnan(swept.worst.value) or swept.worst.value < worst.value + _TIE * abs(worst.value):
-        worst, note = swept.worst, swept.words
+        worst, note, stated = swept.worst, swept.words, dict(swept.stated)
     worst = swept.barred(worst)
     return Demand(
         worst.value,
@@ -393,6 +427,7 @@ def elastic_contact(solution: Solution) -> Demand:
         note="; ".join(each for each in (note, _flights(histories)) if each),
         method="one mass on the stiffness of the stem, without friction: harmonic response with the"
         f" surge of a coil spring over the speed range; load cases by {methods}",
+        stated=stated,
     )
 
 
@@ -452,11 +487,15 @@ def _lifts_off(cycles: Sequence[Cycle], worst: Extreme) -> str:
 
 
 class Swept(NamedTuple):
-    """Least force over that of the spring over the speed; `least_damped`: at the least damping."""
+    """Least force over that of the spring over the speed; `least_damped`: at the least damping.
+
+    stated: both forces by their symbol, N
+    """
 
     worst: Extreme
     least_damped: float
     words: str
+    stated: Mapping[str, float]
 
     def barred(self, worst: Extreme) -> Extreme:
         """An extreme whose error bar reaches down to the least damping of the surge."""
@@ -476,6 +515,7 @@ def _least_over_speed(
     measure : callable   sweep -> force, N, cam angle and sampling error of the force, (m,)
     """
     worst, at, spring = Extreme(np.inf), 0.0, solution.machine.spring
+    forces = dict[str, float]()
 
     def held(sweep: SpeedSweep) -> float:
         return least_spring_force(replace(spring, preload=sweep.preload), solution.contour)
@@ -488,6 +528,7 @@ def _least_over_speed(
             share = float(error[k] / abs(force[k])) if force[k] else 0.0
             worst = Extreme(value, "", float(angle[k]), share)
             at = float(sweep.crank_speed[k])
+            forces = {"N": float(force[k]), "F_0": held(sweep)}
         if np.isnan(value):
             break
     damped = solution.least_damped
@@ -499,7 +540,7 @@ def _least_over_speed(
         "" if stated else ", the fastest load case, without limits.overspeed"
     )
     words = f"at {shown(at, 'rpm', 4)} of the machine; swept from standstill to {end}"
-    return Swept(worst, least_damped, words)
+    return Swept(worst, least_damped, words, forces)
 
 
 def _flights(histories: list[ElasticHistory]) -> str:

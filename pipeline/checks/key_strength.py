@@ -24,9 +24,17 @@ from camwright.pipeline.case.limits import (
     KEYWAY_SAFETY,
     SHAFT_RELIABILITY,
 )
-from camwright.pipeline.checks.check import NONE, Allowed, Declaration, Demand, Kept, check
+from camwright.pipeline.checks.check import (
+    NONE,
+    STATED,
+    Allowed,
+    Declaration,
+    Demand,
+    Kept,
+    check,
+)
 from camwright.pipeline.checks.demands import CAM_TORQUE, PerLoad, cam_torque, rating_over
-from camwright.pipeline.checks.extremes import Extreme, worst_measure
+from camwright.pipeline.checks.extremes import NOWHERE, Extreme, row_of, worst_measure
 from camwright.pipeline.checks.missing_keys import lacking, lacking_of_card
 from camwright.pipeline.contact.cam_body import CamBody, ParallelKey
 from camwright.pipeline.contact.tiers import Tier
@@ -368,8 +376,20 @@ def _root_in_words(demand: Demand, solution: Solution) -> Demand:
     reliability = solution.machine.limits.source(SHAFT_RELIABILITY)
     judged = replace(demand, note=note, figures=(reliability, f"{card.name}: {card.source}"))
     if cam.fit is None:
-        return judged
+        return replace(judged, stated=_loose_root(solution, root, demand.at or NOWHERE, wall))
     return _with_fit(replace(judged, figures=(*judged.figures, cam.fit.source)), solution)
+
+
+def _loose_root(
+    solution: Solution, root: KeywayRoot, worst: Extreme, wall: float
+) -> dict[str, float]:
+    """Half of the pulsating stress at the root of a keyway without a fit, and its strength."""
+    cycle, k = row_of(solution.cycles, worst)
+    torque, force = abs(cycle.loads.cam_torque[k]), abs(cycle.loads.normal_force[k])
+    counted = min(wall, float(root.thick))
+    stress = root.by_torque * torque + root.by_force * force * (root.thick / counted)
+    half = float(0.5 * np.ravel(stress)[0])
+    return _strengths(solution) | {"a": half, "m": half, "u": 0.0}
 
 
 def _bound_says(demand: Value, numbers: Numbers) -> NDArray[np.bool_]:
@@ -413,7 +433,18 @@ def _with_fit(demand: Demand, solution: Solution) -> Demand:
     note = f"{demand.note}; {ends}"
     note += f"; a part of the seat opens at {opens:.0%} of the angles" if opens else ""
     at = Extreme(worst.safety, worst.load_case, worst.cam_angle, STEADY)
-    return replace(demand, value=worst.safety, at=at, note=note, method=BY_ELEMENTS)
+    amplitude, mean = 0.5 * (worst.greatest - worst.least), 0.5 * (worst.greatest + worst.least)
+    stated = _strengths(solution) | {"a": amplitude, "m": mean, "u": 1.0 / worst.fkm}
+    return replace(demand, value=worst.safety, at=at, note=note, method=BY_ELEMENTS, stated=stated)
+
+
+def _strengths(solution: Solution) -> dict[str, float]:
+    """Factors of the endurance of the cam's material."""
+    tensile = solution.machine.cam.material.tensile_strength
+    if tensile is None:
+        return {}
+    rest = reliability_factor(solution.machine.limits[SHAFT_RELIABILITY])
+    return {"k_a": surface_factor("machined", tensile), "k_e": rest}
 
 
 @check(
@@ -426,15 +457,23 @@ def _with_fit(demand: Demand, solution: Solution) -> Demand:
     lift_can_help=True,
     tier=Tier.SCREENING,
     part="key",
-    formula="1/(s/(2 S_e) + s/(2 R_m)) >= limits.keyway_safety; s = (0.70 p + 4.1 F_n/(b h))"
-    " (t2/r)^0.4555: greatest over the turn, p: key_pressure, F_n: normal force, b: cam width, h:"
-    " least wall beyond the keyway, from 0.75 and counted up to 4 times the radius of its floor,"
-    " t2, r: depth and root radius of the keyway, S_e = k_a k_e S_e':"
-    " endurance of the cam's material with factors of surface and limits.shaft_reliability. With"
-    " cam.fit: 1/max(a/S_e + m/R_m, u_FKM), a, m: amplitude and mean at the root by the finite"
-    " elements, the lower at least and greatest interference, u_FKM: use by the FKM guideline; in a"
-    " preview a bound, a = (1.775 F_n/(2 t2 b) + 0.635 p) q, m = (3 s_f + 0.515 p) q, q ="
-    " (t2/r)^0.3, s_f: hoop stress of the fit at the floor of the keyway",
+    formula="1/max(a/S_e + max(m, 0)/R_m, u) >= limits.keyway_safety; a, m: amplitude and mean of"
+    " the stress at the root, S_e = k_a k_e S_e': endurance of the cam's material with factors of"
+    " surface and limits.shaft_reliability, R_m: its tensile strength, u: 0. Without cam.fit a and"
+    " m are half of (0.70 p + 4.1 F_n/(b h)) (t2/r)^0.4555, greatest over the turn, p:"
+    " key_pressure, F_n: normal force, b: cam width, h: least wall beyond the keyway, from 0.75 and"
+    " counted up to 4 times the radius of its floor, t2, r: depth and root radius of the keyway."
+    " With cam.fit a and m are by the finite elements, u: use by the FKM guideline, the worse at"
+    " least and greatest interference; in a preview a bound, (1.775 F_n/(2 t2 b) + 0.635 p) q and"
+    " (3 s_f + 0.515 p) q, q: (t2/r)^0.3, s_f: hoop stress of the fit at the floor of the keyway,"
+    " S_e and R_m: the lower strength by both",
+    symbols={
+        **dict.fromkeys(("a", "m"), f"{STATED} [MPa]"),
+        **dict.fromkeys(("k_a", "k_e", "u"), STATED),
+        "S_e'": "cam.material.fatigue_bending",
+        "R_m": "cam.material.tensile_strength",
+        "S_e": "[MPa]",
+    },
     reason="a crack from the root of the keyway splits the cam",
     values=(
         *given.KEY,

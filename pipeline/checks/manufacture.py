@@ -20,8 +20,8 @@ from camwright.pipeline.case.limits import (
 )
 from camwright.pipeline.checks import demands
 from camwright.pipeline.checks.cam_shape import contour_radius
-from camwright.pipeline.checks.check import FACTOR_MAX, NONE, RIPPLE, Demand, Kept, check
-from camwright.pipeline.checks.extremes import Extreme
+from camwright.pipeline.checks.check import FACTOR_MAX, NONE, RIPPLE, STATED, Demand, Kept, check
+from camwright.pipeline.checks.extremes import Extreme, cycle_of
 from camwright.pipeline.checks.missing_keys import lacking
 from camwright.pipeline.checks.torque_balance import least_reduction
 from camwright.pipeline.contact.tiers import Tier
@@ -154,8 +154,9 @@ def profile_waviness(cam: LoadedCam) -> Array:
     CHORD_SHARE,
     id="chord_error",
     title="Chord error of the contour table",
-    formula="max step^2/(8 rho) <= c t; step: distance of neighbouring points, rho: radius of"
+    formula="max l^2/(8 rho) <= c t; l: distance of neighbouring points, rho: radius of"
     " curvature, c: limits.chord_share, t: cam.profile_tolerance",
+    symbols=dict.fromkeys(("l", "rho"), f"{STATED} [mm]"),
     reason="A machine that joins the points by lines makes the error.",
     unit="um",
     method="greatest step^2/(8 rho) between the points of workshop/contour.csv",
@@ -171,7 +172,8 @@ def chord_error(solution: Solution) -> Demand:
     points = contour.points(theta)
     step = np.hypot(*(np.roll(points, -1, axis=1) - points))
     bend = np.abs(1.0 / contour.radius_of_curvature(theta))
-    sag = step**2 * np.maximum(bend, np.roll(bend, -1)) / 8.0
+    bend = np.maximum(bend, np.roll(bend, -1))
+    sag = step**2 * bend / 8.0
     worst = first_greatest(sag)
     return Demand(
         float(sag[worst]),
@@ -179,6 +181,7 @@ def chord_error(solution: Solution) -> Demand:
         Extreme(float(sag[worst]), "", float(theta[worst])),
         lacking(solution.machine.cam.table, solution.machine.cam, "profile_tolerance"),
         note=f"{theta.size} points",
+        stated={"l": float(step[worst]), "rho": 1.0 / float(bend[worst])} if bend[worst] else {},
     )
 
 
@@ -186,8 +189,15 @@ def chord_error(solution: Solution) -> Demand:
     TORQUE_REDUCTION,
     id="phase_tolerance",
     title="Torque ripple reduction at phase tolerance",
-    formula="min over +-d of 1 - std(T_e(phi + d) - T_c)/std(T_e) >= c; T_e, T_c: torque of"
-    " machine and cam, d: tolerances.phase, c: of torque_reduction, as its load cases",
+    formula="min over the load cases of 1 - (1 - c)/(1 - c_i) std(T_e' - T_c)/std(T_e) >= c; T_e,"
+    " T_c: torque of machine and cam, T_e': that of the machine at phi + d or phi - d, whichever is"
+    " worse, d: tolerances.phase, c, c_i: as of torque_reduction",
+    symbols={
+        "std(T_e)": "std(torque_before) [N m]",
+        "std(T_e' - T_c)": f"{STATED} [N m]",
+        "c": "torque.greatest_reduction",
+        "c_i": "torque.required_reduction",
+    },
     reason="Does not decide: the tolerance corners judge torque_reduction at the phase tolerance"
     " too.",
     method="torque shifted by plus and minus the phase tolerance; the lesser",
@@ -204,26 +214,36 @@ def phase_tolerance(solution: Solution) -> Demand | None:
     if least is None:
         return None
     worst, required = least
+    shifted = _shifted(cycle_of(solution.cycles, worst), phase)
     return Demand(
         worst.value if phase > 0 else None,
         required,
         worst,
         () if phase > 0 else ("tolerances.phase",),
         note=f"{shown(phase, 'deg')} of the shaft" if phase > 0 else "",
+        stated={"std(T_e' - T_c)": float(max(map(np.std, shifted)))},
     )
 
 
 def _reduction(cycle: Cycle, phase: float) -> float:
     """Lesser ripple reduction with the engine torque advanced and delayed by a crank angle."""
+    before = cycle.turn.torque_before
+    if before is None:
+        return np.nan
+    shifted = _shifted(cycle, phase)
+    return float(np.min([demands.ripple_reduction(before, each) for each in shifted]))
+
+
+def _shifted(cycle: Cycle, phase: float) -> list[Array]:
+    """Torque with the cam, N m, of an engine torque advanced and delayed by a crank angle."""
     before, after = cycle.turn.torque_before, cycle.turn.torque_after
     if before is None or after is None:
-        return np.nan
+        return [np.full(cycle.theta.size, np.nan)]
     # A shift of the harmonics is exact.
     waves = np.fft.rfft(before)
     order, cam_torque = np.arange(waves.size), before - after
     advance = phase / cycle.machine.gear_ratio
-    shifted = [
+    return [
         np.fft.irfft(waves * np.exp(1j * order * angle), before.size) - cam_torque
         for angle in (-advance, advance)
     ]
-    return float(np.min([demands.ripple_reduction(before, each) for each in shifted]))

@@ -10,7 +10,7 @@ from camwright.pipeline.base.source import Source
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.parts_section import Follower
 from camwright.pipeline.case.scope_section import PART_WORDS, PartName
-from camwright.pipeline.checks.check import NONE, Declaration, Demand, Page, check
+from camwright.pipeline.checks.check import NONE, STATED, Declaration, Demand, Page, check
 from camwright.pipeline.cycle.solution import Solution
 
 Tables = Mapping[str, Part | Follower | None]
@@ -44,6 +44,7 @@ def _data(
         source=Source("a machine is judged whole, but for what [scope] leaves out", confirmed=True),
         method="keys of the case without value and without default",
         formula=f"n = 0; n: data of the {words} that the case lacks",
+        symbols={"n": STATED},
         reason="without them the part is not judged whole",
         moved_by_tolerance=False,
         load_cases=NONE,
@@ -63,7 +64,8 @@ def _data(
         known = {path: part for path, part in tables(solution.case).items() if part is not None}
         missing = tuple(f"{path}.{key}" for path, part in known.items() for key in part.lacking)
         missing = tuple(key for key in missing if not machine.scope.leaves_out(key))
-        return Demand(None if missing else 0.0, 0.0, missing=missing)
+        lacking = {"n": float(len(missing))}
+        return Demand(None if missing else 0.0, 0.0, missing=missing, stated=lacking)
 
     return data
 

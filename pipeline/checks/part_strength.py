@@ -7,8 +7,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from camwright.geometry.arrays import Value, uniform_turn
+from camwright.geometry.arrays import Array, Value, uniform_turn
 from camwright.geometry.errors import InputError
+from camwright.geometry.extrema import first_greatest
 from camwright.pipeline.base import levers
 from camwright.pipeline.base import value_groups as given
 from camwright.pipeline.base.material import Material
@@ -24,9 +25,9 @@ from camwright.pipeline.case.limits import (
     UNBALANCE,
     Limit,
 )
-from camwright.pipeline.checks.check import NONE, Allowed, Demand, Kept, check, of_key
+from camwright.pipeline.checks.check import NONE, STATED, Allowed, Demand, Kept, check, of_key
 from camwright.pipeline.checks.demands import NORMAL_FORCE, PerLoad, normal_force
-from camwright.pipeline.checks.extremes import worst_case
+from camwright.pipeline.checks.extremes import cycle_of, worst_case
 from camwright.pipeline.checks.missing_keys import lacking_of_card
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.cam_balance import Balance, balance, rotor_unbalance
@@ -96,6 +97,7 @@ roller_pin = check(
         "?": "roller.pin.mounting straddled",
         "M": "normal_force (roller.pin.span/4 - roller.width/8) [N m]",
         "d": "roller.pin.diameter",
+        "Y": "roller.pin.material.yield_strength",
     },
     reason="a bent pin drops the roller",
     values=(*given.LOADS, "roller.pin.material.yield_strength"),
@@ -133,9 +135,14 @@ def _with_card_of_pin(demand: Demand, solution: Solution) -> Demand:
     needs="roller",
     part="pin",
     kept_as="normal force at the bending fatigue of the roller pin",
-    formula="s_W (1 - s_m/R_m)/s_a >= S; s_a, s_m: amplitude and mean of the bending stress of a"
-    " fibre over a turn, s_W: fatigue strength in bending, R_m: tensile strength, S:"
+    formula="s_W (1 - max(s_m, 0)/R_m)/s_a >= S; s_a, s_m: amplitude and mean of the bending stress"
+    " of a fibre over a turn, s_W: fatigue strength in bending, R_m: tensile strength, S:"
     " limits.pin_fatigue_safety; worst fibre and load case.",
+    symbols={
+        **dict.fromkeys(("s_a", "s_m"), f"{STATED} [MPa]"),
+        "s_W": "roller.pin.material.fatigue_bending",
+        "R_m": "roller.pin.material.tensile_strength",
+    },
     reason="force and direction change with each turn of the cam, and bend the pin to and fro",
     values=(
         *given.LOADS,
@@ -154,18 +161,27 @@ def roller_pin_fatigue(solution: Solution) -> Demand:
     missing = lacking_of_card(card, "fatigue_bending", "tensile_strength")
     along, across = np.cos(uniform_turn(_FIBRES)), np.sin(uniform_turn(_FIBRES))
 
+    def of_fibres(cycle: Cycle) -> tuple[Array, Array]:
+        """Amplitude and mean of the stress, Pa."""
+        loads = cycle.loads
+        force = np.outer(loads.axial_force, along) + np.outer(loads.tangential_force, across)
+        stress = (np.nan if per_newton is None else per_newton) * force
+        high, low = stress.max(axis=0), stress.min(axis=0)
+        return 0.5 * (high - low), 0.5 * (high + low)
+
     def safety(cycle: Cycle) -> float:
         if tensile is None or endured is None or per_newton is None:
             return np.nan
-        loads = cycle.loads
-        force = np.outer(loads.axial_force, along) + np.outer(loads.tangential_force, across)
-        high, low = per_newton * force.max(axis=0), per_newton * force.min(axis=0)
-        worst = float(np.max(goodman(0.5 * (high - low), 0.5 * (high + low), tensile)))
+        worst = float(np.max(goodman(*of_fibres(cycle), tensile)))
         return np.inf if worst == 0.0 else endured / worst
 
     worst = worst_case(solution.cycles, safety, at_least=True)
-    limit = solution.machine.limits[PIN_FATIGUE_SAFETY]
-    return Demand(worst.value, limit, worst, missing, figures=_sources(card))
+    limit, stated = solution.machine.limits[PIN_FATIGUE_SAFETY], dict[str, float]()
+    if tensile is not None and np.isfinite(worst.value):
+        fibres = of_fibres(cycle_of(solution.cycles, worst))
+        k = first_greatest(goodman(*fibres, tensile))
+        stated = {"s_a": float(fibres[0][k]), "s_m": float(fibres[1][k])}
+    return Demand(worst.value, limit, worst, missing, figures=_sources(card), stated=stated)
 
 
 def _shear(numbers: Numbers) -> float:
@@ -198,6 +214,7 @@ roller_pin_shear = check(
         "?": "roller.pin.mounting straddled",
         "Q": "normal_force/2 [N]",
         "A": "pi roller.pin.diameter^2/4 [mm^2]",
+        "Y": "roller.pin.material.yield_strength",
     },
     reason="a short pin shears before it bends",
     values=(*given.LOADS, "roller.pin.material.yield_strength"),
@@ -244,6 +261,7 @@ roller_pin_pressure = check(
         "N": "normal_force",
         "d": "roller.pin.diameter",
         "b": "roller.width",
+        "R_m": "roller.pin.material.tensile_strength",
     },
     reason="a seat that yields comes loose and frets",
     values=(
@@ -349,9 +367,10 @@ cheek_pressure = check(
     unit="g",
     method="volumes times densities, and a share of the spring",
     moved_by_tolerance=False,
-    formula="m_d <= x m; m_d: roller with bearing, or face, pin, fork, stem and"
-    " follower.spring_share of the spring, of the parts that the scope covers, m: follower.mass,"
-    " x: limits.follower_mass_ratio.",
+    formula="m_r + m_p + m_f + m_s + m_c <= x m; m_r: mass of roller with bearing, or face, m_p:"
+    " pin, m_f: fork, m_s: stem, m_c: follower.spring_share of the spring, of the parts that the"
+    " scope covers, m: follower.mass, x: limits.follower_mass_ratio.",
+    symbols=dict.fromkeys(("m_r", "m_p", "m_f", "m_s", "m_c"), f"{STATED} [g]"),
     reason="every force of inertia and the jump speed rest on a mass that the parts exceed",
     load_cases=NONE,
     values=(
@@ -372,7 +391,11 @@ def follower_mass(solution: Solution) -> Demand:
     total = sum(masses.values())
     parts = ", ".join(f"{name} {shown(mass, 'g')}" for name, mass in masses.items())
     note = f"at least {shown(total, 'g')}: {parts}" if missing else parts
-    return Demand(None if missing else total, allowed, missing=missing, note=note)
+    named = {"pin": "m_p", "fork": "m_f", "stem": "m_s", "spring": "m_c"}
+    stated = {symbol: masses.get(name, 0.0) for name, symbol in named.items()}
+    stated["m_r"] = sum(mass for name, mass in masses.items() if name not in named)
+    value = None if missing else total
+    return Demand(value, allowed, missing=missing, note=note, stated=stated)
 
 
 def moving_masses(solution: Solution) -> tuple[dict[str, float], tuple[str, ...]]:
@@ -471,6 +494,7 @@ roller_ring_fatigue = check(
         "s_a": "ring_stress_amplitude",
         "s_m": "ring_stress_mean",
         "R_m": "roller.bearing.ring.tensile_strength",
+        "s_W": "roller.bearing.ring.fatigue_bending",
     },
     reason="the ring without a housing bends at every ball",
     values=(
@@ -575,6 +599,7 @@ bore_pressure = check(
     must_have=False,
     within=("key", "gear"),
     formula="n <= 0; n: sign changes of T + drag over the turn, greatest over the load cases",
+    symbols={"n": "changes(cam_torque + camshaft.drag)"},
     reason="not a must-have: the torque of a balancing cam reverses by its purpose; the effects"
     " decide: key_pressure, key_shear, cam_slip, gear_bending, pinion_bending",
     values=given.LOADS,

@@ -32,6 +32,7 @@ from camwright.pipeline.checks import (
     torque_balance,
 )
 from camwright.pipeline.checks.check import (
+    STATED,
     Check,
     Declaration,
     Demand,
@@ -93,6 +94,7 @@ WAIVERS_WITHOUT_EFFECT = check(
     evidence=True,
     tier=Tier.SCREENING,
     formula="n <= 0; n: waivers that name no check of the design",
+    symbols={"n": STATED},
     reason="a waiver without effect improves no check.",
 )(made_from_others)
 TOLERANCE_CORNERS = check(
@@ -102,6 +104,7 @@ TOLERANCE_CORNERS = check(
     source=Source("tolerances of the case, one at a time and by a seeded sample", confirmed=True),
     method="closed forms at the corners",
     formula="n = 0; n: corners at which loads or guides have no solution",
+    symbols={"n": STATED},
     reason="a cam that has no solution at a tolerance cannot be signed",
     evidence=True,
     tier=Tier.PREVIEW,
@@ -150,7 +153,8 @@ def all_checks(solution: Solution) -> tuple[Check, ...]:
     known = {one.id for one in made if not one.evidence}
     idle = [waiver.check for waiver in solution.case.waivers if waiver.check not in known]
     if idle:
-        demand = Demand(float(len(idle)), 0.0, note=", ".join(idle))
+        count = float(len(idle))
+        demand = Demand(count, 0.0, note=", ".join(idle), stated={"n": count})
         made = (*made, WAIVERS_WITHOUT_EFFECT.judged(solution.machine, demand))
     return in_order(made)
 

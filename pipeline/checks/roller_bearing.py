@@ -32,6 +32,7 @@ from camwright.pipeline.case.machine import Machine
 from camwright.pipeline.checks.check import (
     BY_DUTY,
     NONE,
+    STATED,
     Declaration,
     Demand,
     Kept,
@@ -44,6 +45,7 @@ from camwright.pipeline.checks.extremes import (
     Extreme,
     Measure,
     cam_of,
+    cycle_of,
     duty_parts,
     mean_of,
     over_duty,
@@ -71,6 +73,16 @@ _LEAST_FORCE = 1.0  # N, of a force that damages a bearing
 _AMPLE = 100.0  # times the least mean speed, of a roller at rest, which needs no film
 _RATING, _STATIC = "roller.bearing.C", "roller.bearing.C0"
 _VISCOSITY, _CIRCLE = "roller.bearing.viscosity", "roller.bearing.pitch_diameter"
+_CUBE_MEAN = {
+    "C": _RATING,
+    "P_m": (
+        "(mean((normal_force + spring_surge_force/((1 - "
+        "sign(follower_velocity) jam_index) cos(pressure_angle)))^3 "
+        "|roller_speed|)/mean(|roller_speed|))^(1/3) [N]"
+    ),
+    "n": "mean(|roller_speed|)/(2 pi) [1/s]",
+}
+"""Dynamic rating, cube mean of the force and mean speed of a roller in the symbols of a formula."""
 
 
 def _with_card(demand: Demand, solution: Solution) -> Demand:
@@ -148,7 +160,13 @@ def _with_modified_damage(demand: Demand, solution: Solution) -> Demand:
         notes = _damage_note(solution, _modified_damage, _modified_life)
     reliability, card = limits.source(ROLLER_RELIABILITY), _card(solution.machine.roller.bearing)
     figures = reliability, bearing_life.SOURCE, *card
-    return replace(demand, note="; ".join(notes), figures=figures)
+    made = replace(demand, note="; ".join(notes), figures=figures)
+    if demand.value is None or demand.at is None:
+        return made
+    cycle = cycle_of(solution.cycles, demand.at)
+    plain, used = (mean_of(solution, each, cycle) for each in (_damage, _modified_damage))
+    rating = float(solution.numbers[_RATING]) ** BALL_LIFE_EXPONENT
+    return replace(made, stated={"a_ISO": plain / rating / used} if used > 0.0 else {})
 
 
 def _viscosity_ratio(mean: Value, numbers: Numbers) -> Array:
@@ -161,6 +179,16 @@ def _viscosity_ratio(mean: Value, numbers: Numbers) -> Array:
 def _film_ratio(mean: Value, numbers: Numbers) -> Value:
     """Viscosity ratio (...) at a mean speed of the roller, rad/s; infinite at rest."""
     return np.where(mean < STANDSTILL, np.inf, _viscosity_ratio(mean, numbers))[()]
+
+
+def _with_line_of_viscosity(demand: Demand, solution: Solution) -> Demand:
+    """With the factor and the power of the rated viscosity at the mean speed of the roller."""
+    made = replace(demand, figures=(bearing_life.SOURCE, solution.machine.roller.bearing.source))
+    if demand.at is None or not demand.at.load_case:
+        return made
+    mean = mean_of(solution, lambda cam: magnitude(cam.spin), cycle_of(solution.cycles, demand.at))
+    line = bearing_life.viscosity_line(mean / factor("rpm"))
+    return replace(made, stated=dict(zip("ab", line, strict=True)))
 
 
 def _film_kept(cam: LoadedCam, limit: float) -> Array:
@@ -262,15 +290,7 @@ roller_life = check(
     formula="(C/P_m)^3 10^6/n >= L; C: dynamic rating, P_m: cube mean of the normal force over the"
     " revolutions of the roller, n: its mean speed, L: limits.roller_life. Over the load cases"
     f" {BY_DUTY}.",
-    symbols={
-        "C": "roller.bearing.C",
-        "P_m": (
-            "(mean((normal_force + spring_surge_force/((1 - "
-            "sign(follower_velocity) jam_index) cos(pressure_angle)))^3 "
-            "|roller_speed|)/mean(|roller_speed|))^(1/3) [N]"
-        ),
-        "n": "mean(|roller_speed|)/(2 pi) [1/s]",
-    },
+    symbols=_CUBE_MEAN,
     reason="the bearing has to last; a clean bearing that lasts longer is not credited",
     values=(
         *given.LOADS,
@@ -304,9 +324,17 @@ roller_modified_life = check(
     needs="roller",
     part="roller_bearing",
     kept_as="dynamic load rating of the roller at its modified life",
-    formula="a1 a_ISO (C/P)^3 10^6/n >= L; a1: of limits.roller_reliability, a_ISO: of the"
-    " viscosity ratio and of e_C P_u/P, e_C: of roller.bearing.contamination, P_u: fatigue load"
+    formula="a1 a_ISO (C/P_m)^3 10^6/n >= L; a1 = 0.05 + 0.95 (ln(1/R)/ln(1/0.9))^(1/1.5): of"
+    " the reliability R, limits.roller_reliability, C, P_m, n: as of roller_life, a_ISO: of the"
+    " viscosity ratio and of e_C P_u/P, mean over the damage of the turn, e_C: of"
+    " roller.bearing.contamination, P_u: fatigue load"
     f" limit, L: limits.roller_life. Over the load cases {BY_DUTY}.",
+    symbols={
+        **_CUBE_MEAN,
+        "R": f"limits.{ROLLER_RELIABILITY.id}",
+        "a1": "[-]",
+        "a_ISO": STATED,
+    },
     reason="a thin or dirty film shortens the life to a tenth",
     values=(
         *given.LOADS,
@@ -359,6 +387,7 @@ roller_modified_life = check(
         "w": "cam.speed",
         "P'": "pitch_speed",
         "r": "roller.radius",
+        "n_g": "roller.bearing.speed_limit",
     },
     reason="beyond it seals and grease overheat",
     values=("roller.bearing.speed_limit", "limits.overspeed"),
@@ -398,7 +427,7 @@ def _outer_ring(
         kept_as=f"maximum {kept} load of the roller's outer ring",
         formula=f"N <= {symbol}; N: greatest normal force over all load cases and angles, {symbol}:"
         f" maximum {words} load of an outer ring without a housing",
-        symbols={"N": "normal_force"},
+        symbols={"N": "normal_force", symbol: f"roller.bearing.{key}"},
         reason=reason,
         values=(*given.LOADS, f"roller.bearing.{key}"),
         levers=(levers.Catalogued(levers.BEARING, key, inverse=True), *levers.LOAD),
@@ -439,8 +468,17 @@ roller_static_radial = _outer_ring(
     needs="roller",
     part="roller_bearing",
     kept_as="mean speed of the roller at the least viscosity ratio",
-    formula="v/v1 >= k; v: viscosity in operation, v1: rated viscosity of ISO 281 at the mean speed"
-    " of the roller and the pitch diameter of its balls, k: limits.viscosity_ratio",
+    formula="v/v1 >= k; v1 = a n^b / sqrt(D): rated viscosity of ISO 281, n: mean speed of the"
+    " roller in rpm, D: pitch diameter of its balls in mm, a, b: 45000 and -0.83 below 1000 rpm,"
+    " else 4500 and -0.5, v: viscosity in operation, both in mm2/s, k: limits.viscosity_ratio",
+    symbols={
+        "v": "1000000 roller.bearing.viscosity",
+        "D": "1000 roller.bearing.pitch_diameter",
+        "n": "60 mean(|roller_speed|)/(2 pi)",
+        "a": STATED,
+        "b": STATED,
+        "v1": "[-]",
+    },
     reason="below it ISO 281 gives no modified life; above, roller_modified_life counts the film",
     values=("roller.bearing.viscosity", "roller.bearing.*pitch_diameter"),
     levers=(levers.one("roller.bearing.viscosity"),),
@@ -453,9 +491,7 @@ roller_static_radial = _outer_ring(
         float(numbers[_VISCOSITY]), float(numbers[_CIRCLE]), limit
     ),
     needed=(_VISCOSITY, _CIRCLE),
-    remark=lambda demand, solution: replace(
-        demand, figures=(bearing_life.SOURCE, solution.machine.roller.bearing.source)
-    ),
+    remark=_with_line_of_viscosity,
     deviation=0.0001,
     kept=Kept(_film_kept, power=-1.0, unit="rpm", falls=-1.0),
 )

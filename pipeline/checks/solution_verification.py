@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from math import radians
 
 import numpy as np
@@ -24,14 +24,14 @@ from camwright.pipeline.case.limits import (
     MESH_UNCERTAINTY,
     Limit,
 )
-from camwright.pipeline.checks.check import NONE, Declaration, Demand, check
+from camwright.pipeline.checks.check import NONE, STATED, Declaration, Demand, check
 from camwright.pipeline.checks.extremes import Extreme, greatest, least
 from camwright.pipeline.contact.bore_stress import BoreStress
 from camwright.pipeline.contact.contact_history import QUANTITIES, CertificatePoint
 from camwright.pipeline.contact.elasticity.mesh_convergence import Convergence, converged
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.cycle import Cycle
-from camwright.pipeline.cycle.solution import Solution
+from camwright.pipeline.cycle.solution import ContactMesh, Solution
 from camwright.pipeline.follower.guide_reactions import KNOTS, guide_reactions
 
 VERIFICATION = Source("ASME V&V 10-2019, solution verification", confirmed=True)
@@ -39,6 +39,7 @@ CERTIFIED = Source(f"{VERIFICATION}; ASME V&V 20-2009 (GCI)", confirmed=True)
 # Limits that no case can change.
 HELD_DISTANCE = 10.0  # half-widths, beyond which the supports do not affect the contact
 EXCLUDED_SHARE = 0.5  # of the keyway depth
+ZONE = 1.5  # element lengths, radius of an excluded zone
 SUBSURFACE = 0.3  # half-widths: a shallower maximum is a singularity or an element error
 CONTACT_EQUILIBRIUM = 1e-6  # of the load
 HERTZ_DIFFERENCE = 0.03  # of p0: 2 to 3 % usual
@@ -49,12 +50,29 @@ BENCHMARK = 0.03  # of the reference: 2 to 3 % usual
 KNOTS_TRIED = (7, 13, 25)  # twice as many each time, the ends counted once
 SYNTHESIS_GAIN = 1e-5  # of the engine's ripple; a converged search foresees at most a fifth
 NO_CERTIFICATE = "this trial has no certificate"
+_INDEX = "max F_s D/(|f1| (r^p - 1)) + g <= c"
+_TERMS = (
+    "D: |f1 - f2|, p: observed order, from 0.5 to 3, F_s: 1.25, 3 at p < 1; of values that scatter"
+    " D: their range, r^p: 2, F_s: 3; g: of two meshes the greatest index of three, else 0, c:"
+    " limits.mesh_uncertainty"
+)
+"""Grid convergence index in a formula, and its symbols."""
+
+
+def _terms_of(unit: str) -> dict[str, str]:
+    """Symbols of the grid convergence index of a quantity in a unit."""
+    return {
+        **dict.fromkeys(("f1", "D"), f"{STATED} [{unit}]"),
+        **dict.fromkeys(("F_s", "r", "p"), STATED),
+        "g": f"{STATED} [%]",
+    }
 
 
 @check(
     title="Distance of the contact from fixed boundaries / half-width",
     formula="min(w, t)/max a >= 10; w: least wall from contour to bore or keyway, t: thickness of"
-    " the outer ring, or of the roller to its hub, a: half-width of the contact",
+    " the outer ring, or of the roller to its hub, at most w, a: half-width of the contact",
+    symbols={**dict.fromkeys("wt", f"{STATED} [mm]"), "a": "half_width_fe"},
     reason="Nearer supports change the contact itself, and with it every pressure.",
     unit="-",
     sense="at_least",
@@ -75,16 +93,18 @@ def held_distance(solution: Solution) -> Demand:
     machine = solution.machine
     wall = solution.contour.radius_min().value - machine.cam.held_radius
     depth = machine.follower.held_depth
-    if depth is not None:
-        wall = min(wall, depth)
+    stated = {"w": float(wall), "t": float(wall if depth is None else min(wall, depth))}
+    wall = stated["t"]
     worst = greatest(solution.cycles, lambda cycle: cycle.contact.half_width)
     loaded = worst.value > 0 or np.isnan(worst.value)
-    return Demand(float(wall / worst.value) if loaded else None, HELD_DISTANCE, worst)
+    share = float(wall / worst.value) if loaded else None
+    return Demand(share, HELD_DISTANCE, worst, stated=stated)
 
 
 @check(
     title="Radius of the excluded zone at keyway edges",
-    formula="1.5 h <= t/2; h: element length at the keyway, t: depth of the keyway",
+    formula="1.5 h <= t/2; h: greatest element length at the keyway, t: depth of the keyway",
+    symbols={"h": f"{STATED} [mm]", "t": "cam.keyway.depth"},
     reason="A larger zone would hide the stress of the keyway.",
     unit="mm",
     source=Source(
@@ -102,7 +122,8 @@ def excluded_zone(solution: Solution) -> Demand | None:
     if key is None or not bores:
         return None
     radius = max(bore.excluded for bore in bores)
-    return Demand(radius if radius > 0 else None, EXCLUDED_SHARE * key.depth)
+    limit = EXCLUDED_SHARE * key.depth
+    return Demand(radius if radius > 0 else None, limit, stated={"h": radius / ZONE})
 
 
 @check(
@@ -111,6 +132,7 @@ def excluded_zone(solution: Solution) -> Demand | None:
     title="Von Mises stress at bore and keyway vs. yield strength",
     formula="max sigma <= Y / S; sigma: von Mises stress on bore and keyway outside the excluded"
     " zones, Y: yield strength of the core, S: limits.bore_safety",
+    symbols={"sigma": "bore_stress_off_edges"},
     reason="Does not decide: the shaft is taken as rigid and bonded, which overestimates the"
     " stress beside the keyway and omits the fit.",
     unit="MPa",
@@ -200,6 +222,7 @@ def _residual(
         source=Source(f"equilibrium and contact conditions, {VERIFICATION}", confirmed=True),
         method=method,
         formula=formula,
+        symbols={"d": STATED},
         reason="Forces that are not in equilibrium are no solution.",
         evidence=True,
         tier=Tier.CYCLE,
@@ -207,7 +230,8 @@ def _residual(
     def residual(solution: Solution) -> Demand:
         worst = greatest(solution.cycles, measure)
         limit = CONTACT_EQUILIBRIUM if row is None else solution.machine.limits[row]
-        return Demand(worst.value, limit, Extreme(worst.value) if worst.value <= limit else worst)
+        at = Extreme(worst.value) if worst.value <= limit else worst
+        return Demand(worst.value, limit, at, stated={"d": worst.value})
 
     return residual
 
@@ -217,8 +241,9 @@ guide_equilibrium_force = _residual(
     lambda cycle: np.maximum(np.abs(cycle.guides.force_residual), cycle.turn.friction_residual),
     EQUILIBRIUM,
     title="Force equilibrium residual of the guides",
-    formula="max |sum F| / sum |F| <= c; F: guide and side forces across the stem, c:"
-    " limits.equilibrium; likewise the forces along the stem over the axial force",
+    formula="d <= c; d: greatest |sum F| / sum |F| of the solved angles, F: guide and side forces"
+    " across the stem, c: limits.equilibrium; likewise the forces along the stem over the axial"
+    " force",
     method="greatest sum of guide and side forces over the sum of their magnitudes, beam on elastic"
     " supports; or of cam, spring, inertia and friction forces over the cam force",
 )
@@ -227,15 +252,16 @@ guide_equilibrium_moment = _residual(
     lambda cycle: np.abs(cycle.guides.moment_residual),
     EQUILIBRIUM,
     title="Moment equilibrium residual of the guides",
-    formula="max |sum M| / sum |M| <= c; M: moments on the stem about the roller, c:"
-    " limits.equilibrium",
+    formula="d <= c; d: greatest |sum M| / sum |M| of the solved angles, M: moments on the stem"
+    " about the roller, c: limits.equilibrium",
     method="greatest sum of moments over the sum of their magnitudes, beam on elastic supports",
 )
 contact_equilibrium = _residual(
     "contact_equilibrium",
     lambda cycle: np.abs(cycle.contact.residual_equilibrium),
     title="Force equilibrium residual of the contact",
-    formula="max |integral of p - P| / P <= 1e-6; p: contact pressure, P: line load",
+    formula="d <= 1e-6; d: greatest |integral of p - P| / P of the solved angles, p: contact"
+    " pressure, P: line load",
     method="greatest relative difference of the integrated pressure from the load",
 )
 contact_complementarity = _residual(
@@ -243,8 +269,8 @@ contact_complementarity = _residual(
     lambda cycle: np.abs(cycle.contact.residual_complementarity),
     COMPLEMENTARITY,
     title="Complementarity residual of the contact",
-    formula="max of -p/p0, -g/d and p g/(p0 d) <= c; p: pressure, g: gap, p0, d: peak pressure"
-    " and approach, c: limits.complementarity",
+    formula="d <= c; d: greatest of -p/p0, -g/h and p g/(p0 h) of the solved angles, p: pressure,"
+    " g: gap, p0, h: peak pressure and approach, c: limits.complementarity",
     method="greatest relative tension, penetration or gap under pressure",
 )
 
@@ -286,6 +312,7 @@ def hertz_difference(solution: Solution) -> Demand:
     title="Convergence of the constrained synthesis",
     formula="d <= 1e-5; d: ripple and costs that another step of the synthesis foresees to gain,"
     " over the ripple of the engine",
+    symbols={"d": STATED},
     reason="An unconverged search gives a cam with more ripple than the limits require.",
     unit="-",
     source=VERIFICATION,
@@ -296,7 +323,7 @@ def hertz_difference(solution: Solution) -> Demand:
 def synthesis_converged(solution: Solution) -> Demand | None:
     """Gain that another step of the synthesis foresees, over the ripple of the engine."""
     gain = solution.synthesis_gain
-    return None if gain is None else Demand(gain, SYNTHESIS_GAIN)
+    return None if gain is None else Demand(gain, SYNTHESIS_GAIN, stated={"d": gain})
 
 
 def _certified(
@@ -304,6 +331,7 @@ def _certified(
     share: Callable[[CertificatePoint], float],
     allowed: float,
     method: Callable[[CertificatePoint], str],
+    stated: Callable[[CertificatePoint], dict[str, float]],
 ) -> Demand:
     """Greatest value over the certified cam angles; the method names its quantity."""
     points = solution.certificate
@@ -313,14 +341,15 @@ def _certified(
     k = first_greatest(values)
     worst = points[k]
     at = Extreme(values[k], "", worst.theta)
-    return Demand(float(values[k]), allowed, at, method=method(worst))
+    return Demand(float(values[k]), allowed, at, method=method(worst), stated=stated(worst))
 
 
 @check(
     title="Greatest deviation of the cycle from the certificate",
     formula="max |f_c/f - 1| <= 0.01 over p0, half-width, von Mises and maximum shear stress;"
     " f_c: of the cycle, f: of both bodies by finite elements, extrapolated to zero"
-    " element size",
+    " element size, in SI",
+    symbols=dict.fromkeys(("f_c", "f"), STATED),
     reason="The pressures of the cycle rest on a two-scale model.",
     unit="%",
     source=CERTIFIED,
@@ -338,15 +367,19 @@ def certificate_spread(solution: Solution) -> Demand:
             " against the finite-element solution of both bodies"
         )
 
-    return _certified(solution, lambda point: point.spread, SPREAD, method)
+    def stated(point: CertificatePoint) -> dict[str, float]:
+        figure, of_cycle = point.figures[point.spread_of]
+        return {"f_c": of_cycle, "f": figure.extrapolated}
+
+    return _certified(solution, lambda point: point.spread, SPREAD, method, stated)
 
 
 @check(
     MESH_UNCERTAINTY,
     id="certificate_gci",
     title="Greatest grid convergence index of the certificate",
-    formula="max F_s |f1 - f2|/(f1 (r^p - 1)) <= c; f1, f2: fine and middle mesh, r: their ratio"
-    " of size, p: observed order, F_s: 1.25, 3 at p < 1, c: limits.mesh_uncertainty",
+    formula=f"{_INDEX}; f1, f2: fine and middle mesh, in SI, r: their ratio of size, {_TERMS}",
+    symbols=_terms_of(""),
     reason="A solution that depends on its mesh proves nothing.",
     unit="%",
     method="greatest of p0, half-width, von Mises and maximum shear stress: at the two worst angles"
@@ -366,7 +399,10 @@ def certificate_gci(solution: Solution) -> Demand:
             f" {len(figure.values)} meshes; {_order(figure)}"
         )
 
-    return _certified(solution, lambda point: point.gci, allowed, method)
+    def stated(point: CertificatePoint) -> dict[str, float]:
+        return _stated_terms(point.figures[point.gci_of][0])
+
+    return _certified(solution, lambda point: point.gci, allowed, method, stated)
 
 
 def _mesh(
@@ -374,6 +410,8 @@ def _mesh(
     figure: Callable[[Quality], float],
     allowed: float,
     *,
+    symbols: Mapping[str, str],
+    stated: Callable[[ContactMesh], dict[str, float]],
     title: str,
     formula: str,
     unit: str = "-",
@@ -390,6 +428,7 @@ def _mesh(
         source=source,
         method=method,
         formula=formula,
+        symbols=symbols,
         reason="Poor elements give stresses of no known error.",
         evidence=True,
         tier=Tier.CYCLE,
@@ -398,7 +437,7 @@ def _mesh(
         if solution.mesh is None:
             note = "this trial has no mesh"
             return Demand(None, allowed, note=note, must_have=solution.tier is Tier.CERTIFIED)
-        return Demand(figure(solution.mesh.quality), allowed)
+        return Demand(figure(solution.mesh.quality), allowed, stated=stated(solution.mesh))
 
     return quality
 
@@ -407,14 +446,18 @@ mesh_angle = _mesh(
     "mesh_angle",
     lambda mesh: radians(mesh.min_angle_deg),
     radians(LEAST_ANGLE_DEG),
+    symbols={"phi": f"{STATED} [deg]"},
+    stated=lambda mesh: {"phi": radians(mesh.quality.min_angle_deg)},
     title="Minimum element angle",
-    formula="min angle >= 20 deg; angle: corner of a curved triangle",
+    formula="min phi >= 20 deg; phi: corner of a curved triangle",
     unit="deg",
 )
 mesh_jacobian = _mesh(
     "mesh_jacobian",
     lambda mesh: mesh.min_scaled_jacobian,
     LEAST_SCALED_JACOBIAN,
+    symbols={"J": STATED},
+    stated=lambda mesh: {"J": mesh.quality.min_scaled_jacobian},
     title="Minimum scaled Jacobian",
     formula="min J >= 0.3; J: Jacobian over the two longer edges at a node, 1 if equilateral",
 )
@@ -422,6 +465,8 @@ mesh_edges = _mesh(
     "mesh_edges",
     lambda mesh: SPACINGS_PER_EDGE * mesh.edges_across_half_width,
     LEAST_SPACINGS,
+    symbols=dict.fromkeys("ah", f"{STATED} [mm]"),
+    stated=lambda mesh: {"a": mesh.half_width, "h": mesh.longest_edge},
     title="Node spacings across the contact half-width",
     formula="2 a/h >= 10; a: half-width of the contact, h: longest edge in it",
     method="two spacings a quadratic edge, of the longest edge in the contact of cam and follower",
@@ -432,7 +477,9 @@ mesh_edges = _mesh(
 )
 
 
-def _uncertainty(name: str, figure: Callable[[CertificatePoint], Convergence]) -> Declaration:
+def _uncertainty(
+    name: str, figure: Callable[[CertificatePoint], Convergence], unit: str = "MPa"
+) -> Declaration:
     """Check of the discretisation uncertainty of a certified quantity."""
     words = QUANTITIES[name]
     meshes = "three meshes of both bodies at the two worst certified angles, two at the others"
@@ -443,9 +490,9 @@ def _uncertainty(name: str, figure: Callable[[CertificatePoint], Convergence]) -
         title=f"Discretisation uncertainty of the {words}",
         unit="%",
         method=meshes,
-        formula="max F_s |f1 - f2|/(f1 (r^p - 1)) <= c over the certified angles; f1, f2: "
-        f"{words} of fine and middle mesh, r = 2, p: observed order, F_s: 1.25, 3 at p < 1, "
-        "c: limits.mesh_uncertainty",
+        formula=f"{_INDEX} over the certified angles; f1, f2: {words} of fine and middle mesh,"
+        f" r: their ratio of size, 2, {_TERMS}",
+        symbols=_terms_of(unit),
         reason="It is the error bar of every demand on this quantity.",
         evidence=True,
         tier=Tier.CERTIFIED,
@@ -457,13 +504,14 @@ def _uncertainty(name: str, figure: Callable[[CertificatePoint], Convergence]) -
         worst = points[first_greatest([_gci(figure(point)) for point in points])]
         gci = figure(worst).gci
         method = f"{meshes}; {_order(figure(worst))}"
-        return Demand(gci, allowed, Extreme(gci, "", worst.theta), method=method)
+        at, stated = Extreme(gci, "", worst.theta), _stated_terms(figure(worst))
+        return Demand(gci, allowed, at, method=method, stated=stated)
 
     return uncertainty
 
 
 mesh_p0 = _uncertainty("p0", lambda point: point.p0)
-mesh_half_width = _uncertainty("half_width", lambda point: point.half_width)
+mesh_half_width = _uncertainty("half_width", lambda point: point.half_width, "mm")
 mesh_von_mises = _uncertainty("von_mises", lambda point: point.von_mises)
 mesh_tau_max = _uncertainty("tau_max", lambda point: point.tau_max)
 
@@ -472,8 +520,8 @@ mesh_tau_max = _uncertainty("tau_max", lambda point: point.tau_max)
     MESH_UNCERTAINTY,
     id="mesh_reaction",
     title="Discretisation uncertainty of the reaction in guide A",
-    formula="F_s |f1 - f2|/(f1 (r^p - 1)) <= c; f1, f2: greatest reaction by 25 and 13 knots, r ="
-    " 2, p: observed order, F_s: 1.25, 3 at p < 1, c: limits.mesh_uncertainty",
+    formula=f"{_INDEX}; f1, f2: greatest reaction by 25 and 13 knots, r: their ratio, 2, {_TERMS}",
+    symbols=_terms_of("N"),
     reason="Every demand on a guide has this error.",
     unit="%",
     method=f"beam in guides of {', '.join(map(str, KNOTS_TRIED))} knots",
@@ -499,6 +547,7 @@ def mesh_reaction(solution: Solution) -> Demand:
         machine.limits[MESH_UNCERTAINTY],
         Extreme(figure.gci, cycle.load_case, float(cycle.theta[k])),
         method=f"beam in guides of {knots} knots; {_order(figure)}; the turn has {KNOTS}",
+        stated=_stated_terms(figure),
     )
 
 
@@ -510,8 +559,9 @@ def _benchmark(name: str, *, title: str, source: str) -> Declaration:
         title=title,
         unit="%",
         source=Source(f"{source}; 2 to 3 % usual", confirmed=True),
-        formula="max(|p0/p_r - 1|, |a/a_r - 1|) <= 0.03; p0, a: peak pressure and half-width by"
-        " finite elements, p_r, a_r: of the reference",
+        formula="max(|d_p|, |d_a|) <= 0.03; d_p: p0/p_r - 1, d_a: a/a_r - 1, p0, a: peak pressure"
+        " and half-width by finite elements, p_r, a_r: of the reference",
+        symbols=dict.fromkeys(("d_p", "d_a"), f"{STATED} [%]"),
         reason="The libraries of this run must solve a known contact.",
         method="greater difference of p0 and half-width from the reference, by the libraries"
         " of this run",
@@ -524,7 +574,8 @@ def _benchmark(name: str, *, title: str, source: str) -> Declaration:
             note = "no benchmark was solved with this trial"
             return Demand(None, BENCHMARK, note=note)
         values = [known[f"{name}_p0"], known[f"{name}_half_width"]]
-        return Demand(float(np.max(np.abs(values))), BENCHMARK)
+        stated = dict(zip(("d_p", "d_a"), values, strict=True))
+        return Demand(float(np.max(np.abs(values))), BENCHMARK, stated=stated)
 
     return benchmark
 
@@ -539,6 +590,14 @@ benchmark_hertz = _benchmark(
     title="Benchmark Hertz, roller of the case on a block",
     source="Johnson (1985) sec. 4.2(c)",
 )
+
+
+def _stated_terms(figure: Convergence) -> dict[str, float]:
+    """Numbers of the grid convergence index."""
+    if (terms := figure.terms) is None:
+        return {}
+    stated = {"f1": figure.values[-1] or 1.0, "D": terms.difference, "F_s": terms.safety}
+    return stated | {"r": terms.ratio, "p": terms.order, "g": terms.added}
 
 
 def _gci(figure: Convergence) -> float:

@@ -6,7 +6,7 @@ leakage, self-heating; of a torsion spring: bending stress.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from typing import NamedTuple
 
@@ -26,6 +26,7 @@ from camwright.pipeline.checks.cam_shape import lift
 from camwright.pipeline.checks.check import (
     NONE,
     SPEED_RANGE,
+    STATED,
     Allowed,
     Declaration,
     Declaring,
@@ -42,6 +43,7 @@ from camwright.pipeline.cycle.cycle import Cycle
 from camwright.pipeline.cycle.loaded_cam import LoadedCam, wire_of
 from camwright.pipeline.cycle.numbers import Numbers
 from camwright.pipeline.cycle.solution import Solution
+from camwright.pipeline.cycle.solved_cam import ContourCam
 from camwright.pipeline.cycle.speed_sweep import SpringSweep
 from camwright.pipeline.follower.spring import (
     BUCKLING,
@@ -51,6 +53,7 @@ from camwright.pipeline.follower.spring import (
     SOLID,
     SOLID_STRESS,
     STRESS,
+    ZIMMERLI,
     HelicalSpring,
     SpringWork,
     WireLimit,
@@ -73,7 +76,16 @@ _AT_REST = 1e-6  # of the greatest slope of the lift: a dwell
 _HIGH = "spring.preload (1 + spring.preload_tolerance)"
 _STIFF = "spring.design.rate (1 + spring.rate_tolerance)"
 _SOLID_LENGTH = "spring.design.wire_diameter (spring.design.coils + 2) [mm]"
-"""Preload high, rate high and solid length in the symbols of a formula."""
+_WIRE = {
+    "R_m": "spring.design.strength_at_1mm"
+    " (1000 spring.design.wire_diameter)^(-spring.design.strength_exponent) [MPa]",
+    "D": "spring.design.mean_diameter",
+    "d": "spring.design.wire_diameter",
+    "C": "[-]",
+    "K_w": "[-]",
+}
+_WAHL = "K_w = (4 C - 1)/(4 C - 4) + 0.615/C: Wahl factor, C = D/d"
+"""Preload high, rate high, solid length, wire and Wahl factor in the symbols of a formula."""
 
 
 def _design(solution: Solution) -> HelicalSpring:
@@ -112,8 +124,10 @@ def _at_rest(demand: Demand, solution: Solution) -> Demand:
 
 
 def _stable(demand: Demand, solution: Solution) -> Demand:
-    note = STABLE if np.isinf(_design(solution).buckling_deflection) else ""
-    return replace(_of_wire(demand, solution), note=note)
+    design = _design(solution)
+    note = STABLE if np.isinf(design.buckling_deflection) else ""
+    stated = {"E": design.known_modulus}
+    return replace(_of_wire(demand, solution), note=note, stated=stated)
 
 
 def _surge_over_speed(demand: Demand, solution: Solution) -> Demand:
@@ -134,25 +148,31 @@ def _surge_over_speed(demand: Demand, solution: Solution) -> Demand:
 
 
 class OverSpeed(NamedTuple):
-    """Greatest value over the speed, the same at the least damping of the surge, the speed."""
+    """Greatest value over the speed, the same at the least damping of the surge, the speed.
+
+    low, high: least and greatest force, N, at the end of the spring with that value
+    """
 
     value: float
     least_damped: float
     words: str
+    low: float
+    high: float
 
 
 def _over_speed(solution: Solution, use: Callable[[SpringSweep], Array]) -> OverSpeed:
     """Greatest value (2, m) over both ends of the spring and all speeds."""
     sweep, damped = solution.hardest_spring, solution.least_damped
     if sweep is None:
-        return OverSpeed(np.nan, np.nan, "")
-    values = np.max(use(sweep), axis=0)
+        return OverSpeed(np.nan, np.nan, "", np.nan, np.nan)
+    of_ends = use(sweep)
+    values = np.max(of_ends, axis=0)
     k = first_greatest(values)  # the first NaN, where there is one
+    end = first_greatest(of_ends[:, k])
     value, further = float(values[k]), None if damped is None else damped.hardest_spring
     most = value if further is None else max(float(np.max(use(further))), value)
-    return OverSpeed(
-        value, most, f"at {shown(float(sweep.crank_speed[k]), 'rpm', 4)} of the machine"
-    )
+    words = f"at {shown(float(sweep.crank_speed[k]), 'rpm', 4)} of the machine"
+    return OverSpeed(value, most, words, float(sweep.least[end, k]), float(sweep.greatest[end, k]))
 
 
 def _stress_over_speed(solution: Solution) -> Demand:
@@ -161,7 +181,8 @@ def _stress_over_speed(solution: Solution) -> Demand:
     worst = _over_speed(solution, lambda sweep: design.static_use(sweep.greatest))
     share = worst.least_damped / worst.value - 1.0
     at = Extreme(worst.value, error_share=share)
-    return _of_wire(Demand(worst.value, 1.0, at, note=worst.words), solution)
+    stated = {"F": worst.high}
+    return _of_wire(Demand(worst.value, 1.0, at, note=worst.words, stated=stated), solution)
 
 
 def _fatigue_over_speed(solution: Solution) -> Demand:
@@ -172,7 +193,9 @@ def _fatigue_over_speed(solution: Solution) -> Demand:
     share = 0.0 if safety == 0.0 else 1.0 - worst.value / worst.least_damped
     allowed = solution.machine.limits[SPRING_FATIGUE]
     at = Extreme(safety, error_share=share)
-    return _of_wire(Demand(safety, allowed, at, note=worst.words), solution)
+    amplitude, mean = ZIMMERLI[design.treatment]
+    stated = {"F_1": worst.low, "F_2": worst.high, "s_a": amplitude, "s_m": mean}
+    return _of_wire(Demand(safety, allowed, at, note=worst.words, stated=stated), solution)
 
 
 spring_stress = check(
@@ -190,9 +213,10 @@ spring_stress = check(
     fails_from=Tier.SCREENING,
     moved_by_tolerance=False,
     part="spring",
-    formula="tau_max / (0.56 R_m) <= 1, tau = K_w 8 D F / (pi d^3); F: greatest force in the coils"
+    formula="tau / (0.56 R_m) <= 1; tau = K_w 8 D F / (pi d^3), F: greatest force in the coils"
     " from standstill to over-speed with preload and rate high, resonances of any rate in tolerance"
-    " included, K_w: Wahl factor, R_m: tensile strength of the wire",
+    f" included, {_WAHL}, R_m: tensile strength of the wire",
+    symbols={**_WIRE, "F": f"{STATED} [N]", "tau": "[MPa]"},
     reason="A spring beyond its yield strength sets and loses the preload that keeps the"
     " follower on the cam.",
     load_cases=SPEED_RANGE,
@@ -220,9 +244,18 @@ spring_fatigue = check(
     fails_from=Tier.SCREENING,
     moved_by_tolerance=False,
     part="spring",
-    formula="1 / (tau_a / S_e + tau_m / S_su) >= limits.spring_fatigue; tau_a, tau_m: amplitude and"
-    " mean at the end of the spring with the greater range, over all speeds from standstill to"
-    " over-speed, S_su = 0.67 R_m, S_e: endurance by Zimmerli's point",
+    formula="1 / (tau_a / S_e + tau_m / S_su) >= limits.spring_fatigue; tau_a = K_w 4 D (F_2 - F_1)"
+    " / (pi d^3), tau_m = K_w 4 D max(F_2 + F_1, 0) / (pi d^3): amplitude and mean, F_1, F_2: least"
+    " and greatest force at the end of the spring with the greater use, over all speeds from"
+    f" standstill to over-speed, {_WAHL}, S_e = s_a / (1 - s_m / S_su): endurance by Zimmerli's"
+    " point, s_a, s_m: its amplitude and mean, S_su = 0.67 R_m: shear strength, R_m: tensile"
+    " strength of the wire",
+    symbols={
+        **_WIRE,
+        **dict.fromkeys(("F_1", "F_2"), f"{STATED} [N]"),
+        **dict.fromkeys(("s_a", "s_m"), f"{STATED} [MPa]"),
+        **dict.fromkeys(("tau_a", "tau_m", "S_e", "S_su"), "[MPa]"),
+    },
     reason="A broken spring releases the follower.",
     load_cases=SPEED_RANGE,
     rests_on="loads",
@@ -307,6 +340,9 @@ spring_coil_gap = check(
         "L0": "spring.design.free_length",
         "Lc": _SOLID_LENGTH,
         "s_max": f"{_HIGH}/spring.design.rate + lift_highest [mm]",
+        "n": "spring.design.coils",
+        "D": "spring.design.mean_diameter",
+        "d": "spring.design.wire_diameter",
     },
     reason="Below it coils touch before the solid length, the rate rises and the wire wears.",
     load_cases=NONE,
@@ -345,6 +381,7 @@ spring_solid_stress = check(
         "Lc": _SOLID_LENGTH,
         "D": "spring.design.mean_diameter",
         "d": "spring.design.wire_diameter",
+        "R_m": _WIRE["R_m"],
     },
     reason="A spring is pressed solid when it is coiled, mounted and over-run, and sets"
     " beyond this stress.",
@@ -371,9 +408,21 @@ spring_buckling = check(
     tier=Tier.SCREENING,
     moved_by_tolerance=False,
     part="spring",
-    formula="s_max / s_K <= 1, s_K = L0 / (2 (1 - G/E)) (1 - sqrt(1 - (1 - G/E) / (0.5 + G/E)"
-    " (pi D / (nu L0))^2)); s_max: deflection at maximum lift with the preload high, nu: seating"
+    formula="step(1 - x) s_max / s_K <= 1; s_K = L0 / (2 (1 - G/E)) (1 - sqrt(max(1 - x, 0))): of"
+    " buckling, x = (1 - G/E) / (0.5 + G/E) (pi D / (nu L0))^2: above 1 the spring is stable at any"
+    " deflection, step: 0 below zero, else 1, s_max: deflection at maximum lift with the preload"
+    " high, L0: free length, D: mean diameter, G, E: shear and elastic modulus, nu: seating"
     " coefficient",
+    symbols={
+        "L0": "spring.design.free_length",
+        "D": "spring.design.mean_diameter",
+        "G": "spring.design.shear_modulus",
+        "E": f"{STATED} [GPa]",
+        "nu": "spring.design.end_factor",
+        "s_max": f"{_HIGH}/spring.design.rate + lift_highest [mm]",
+        "s_K": "[mm]",
+        "x": "[-]",
+    },
     reason="A spring that buckles rubs on the stem and loses its force.",
     load_cases=NONE,
     levers=(
@@ -490,7 +539,9 @@ def _of_gas(demand: Demand, solution: Solution) -> Demand:
 
 
 def _of_hard_gas(demand: Demand, solution: Solution) -> Demand:
-    return replace(_of_gas(demand, solution), corner=HARDEST)
+    force = ContourCam.at_top(solution.contour, solution.numbers).hardest.greatest
+    made = replace(_of_gas(demand, solution), corner=HARDEST)
+    return replace(made, stated={"F": float(np.ravel(force)[0])})
 
 
 def _gas_check(
@@ -500,6 +551,7 @@ def _gas_check(
     unit: str,
     method: str,
     formula: str,
+    symbols: Mapping[str, str],
     reason: str,
     lift_can_help: bool = True,
     tier: Tier = Tier.SCREENING,
@@ -520,6 +572,7 @@ def _gas_check(
         part="gas_spring",
         kept_as=kept_as,
         formula=formula,
+        symbols=symbols,
         reason=reason,
         load_cases=NONE,
         values=values,
@@ -550,6 +603,7 @@ gas_pressure = _gas_check(
     method="force at maximum lift over the area, preload and rise of the force high",
     formula="F / A <= spring.gas.pressure_limit; F: force at maximum lift, preload and rise high in"
     " tolerance, A: area; above the pressure of the surroundings",
+    symbols={"F": f"{STATED} [N]", "A": "spring.gas.area"},
     reason="beyond it seals and cylinder of the spring fail.",
     values=given.SPRING,
     cured_by=(
@@ -569,6 +623,7 @@ gas_stroke = _gas_check(
     unit="mm",
     method="greatest lift, between samples too",
     formula="h <= spring.gas.stroke; h: maximum lift",
+    symbols={"h": "lift_highest"},
     reason="a gas spring that strikes its stop breaks.",
     values=("spring.gas.stroke",),
     cured_by=(
@@ -584,8 +639,9 @@ gas_speed = _gas_check(
     unit="m/s",
     method="greatest speed of the follower over the load cases",
     kept_as="lift per radian at the maximum speed of the gas spring",
-    formula="max|w s'| <= spring.gas.speed_limit over all load cases; w: cam speed, s': slope of"
-    " the lift",
+    formula="max |v| <= spring.gas.speed_limit over all load cases; v: w s', w: cam speed, s':"
+    " slope of the lift",
+    symbols={"v": "follower_velocity"},
     reason="a faster seal overheats and wears.",
     values=(*given.MOTION, "spring.gas.speed_limit"),
     cured_by=(
@@ -606,6 +662,7 @@ gas_temperature = _gas_check(
     unit="degC",
     method="spring.gas.temperature, at which the pressure is computed",
     formula="T <= spring.gas.temperature_limit; T: spring.gas.temperature",
+    symbols={"T": "spring.gas.temperature - 273.15 [degC]"},
     reason="seals and oil of the spring age above it.",
     lift_can_help=False,
     values=("spring.gas.*temperature*",),
@@ -628,6 +685,12 @@ def _lost_force(cam: LoadedCam) -> Array:
     return np.asarray((absolute - left) / (absolute - ATMOSPHERE))
 
 
+def _of_warm_gas(demand: Demand, solution: Solution) -> Demand:
+    warm = solution.numbers.get("spring.gas.temperature")
+    stated = {"T": CHARGED_AT if warm is None else float(warm)}
+    return replace(_of_gas(demand, solution), stated=stated)
+
+
 gas_force_lost = _gas_check(
     "gas_force_lost",
     title="Force of the gas spring lost by cold and leakage",
@@ -636,6 +699,13 @@ gas_force_lost = _gas_check(
     formula="(p - p (1 - c) T_c/T)/(p - p_0) <= spring.preload_tolerance; p: absolute pressure at"
     " zero lift and T, spring.gas.temperature, p_0: of the surroundings, T_c:"
     " spring.gas.cold_temperature, c: spring.gas.loss",
+    symbols={
+        "p": "spring.preload/spring.gas.area + 101325 [MPa]",
+        "c": "spring.gas.loss",
+        "T_c": "spring.gas.cold_temperature",
+        "T": f"{STATED} [K]",
+        "p_0": "101325 [MPa]",
+    },
     reason="a cold spring, and one that has lost gas, is weaker than the tolerance at which all"
     " else is judged, and the follower leaves the cam.",
     lift_can_help=False,
@@ -645,7 +715,7 @@ gas_force_lost = _gas_check(
     "case",
     allowed=of_key("spring.preload_tolerance"),
     needed=("spring.gas.cold_temperature", "spring.gas.loss"),
-    remark=_of_gas,
+    remark=_of_warm_gas,
     deviation=1e-6,
 )(_lost_force)
 
@@ -668,12 +738,17 @@ def _self_heating(solution: Solution) -> Demand:
         ambient_temperature=machine.cooling.ambient_temperature, conductance=gas.conductance
     )
 
-    def warm(cycle: Cycle) -> float:
-        rate = _strokes(solution) * cycle.cam_speed / FULL_TURN
-        return float(celsius(cooling.temperature(2.0 * gas.friction * work * rate, gas.surface)))
+    def rate(cycle: Cycle) -> float:
+        return _strokes(solution) * cycle.cam_speed / FULL_TURN
 
-    worst = over_duty(steady(solution), warm)
-    return _of_gas(Demand(worst.value, float(celsius(gas.warm)), worst), solution)
+    def warm(cycle: Cycle) -> float:
+        loss = 2.0 * gas.friction * work * rate(cycle)
+        return float(celsius(cooling.temperature(loss, gas.surface)))
+
+    worst, often = (over_duty(steady(solution), each) for each in (warm, rate))
+    stated = {"W": work, "m": often.value, "G": cooling.carried(gas.surface)}
+    limit = float(celsius(gas.warm))
+    return _of_gas(Demand(worst.value, limit, worst, stated=stated), solution)
 
 
 gas_heating = _gas_check(
@@ -681,10 +756,17 @@ gas_heating = _gas_check(
     title="Temperature of the gas by its own friction vs. that stated",
     unit="degC",
     method="friction of the seals over each stroke to and fro, given off by the cylinder",
-    formula="T_amb + 2 f W z n/G <= spring.gas.temperature; f: spring.gas.friction, W: energy of"
-    " the spring at maximum lift, z n: strokes per time, sum of q_i z n_i of the load cases by"
+    formula="T_amb + 2 f W m/G <= spring.gas.temperature; f: spring.gas.friction, W: energy of"
+    " the spring at maximum lift, m: strokes per time, sum of q_i z n_i of the load cases by"
     " load_case.duty, else the greatest z n_i, T_amb: cooling.ambient_temperature, G:"
     " spring.gas.conductance, else 10 W/(m^2 K) of the surface of the cylinder",
+    symbols={
+        "T_amb": "cooling.ambient_temperature - 273.15 [degC]",
+        "f": "spring.gas.friction",
+        "W": f"{STATED} [J]",
+        "m": f"{STATED} [1/s]",
+        "G": f"{STATED} [W/K]",
+    },
     reason="pressure and force are those of the stated temperature, and a hotter seal leaks.",
     tier=Tier.PREVIEW,
     values=(
@@ -702,10 +784,12 @@ gas_heating = _gas_check(
 def _stroke_rate(solution: Solution) -> Demand:
     """Greatest number of strokes of the gas spring per time, 1/s."""
     gas = solution.machine.spring.gas
-    rate = _strokes(solution) * float(solution.numbers["cam.fastest"]) / FULL_TURN
+    strokes = _strokes(solution)
+    rate = strokes * float(solution.numbers["cam.fastest"]) / FULL_TURN
     limit = None if gas is None else gas.stroke_rate_limit
     lacks = () if gas is None else lacking(GasSpring.table, gas, "stroke_rate_limit")
-    return _of_gas(Demand(rate, limit, missing=lacks), solution)
+    stated = {"z": float(strokes)}
+    return _of_gas(Demand(rate, limit, missing=lacks, stated=stated), solution)
 
 
 gas_stroke_rate = _gas_check(
@@ -715,6 +799,7 @@ gas_stroke_rate = _gas_check(
     method="rises of the lift in a turn times the greatest speed of the cam",
     formula="z n <= spring.gas.stroke_rate_limit; z: rises of the lift in a turn, n: greatest speed"
     " of the cam",
+    symbols={"z": STATED, "n": "cam.fastest/(2 pi) [1/s]"},
     reason="each stroke heats gas and seal, which cool between the strokes alone.",
     lift_can_help=False,
     tier=Tier.PREVIEW,

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from math import inf
+from typing import NamedTuple
 
 import numpy as np
 
@@ -26,9 +27,9 @@ from camwright.pipeline.case.limits import (
 )
 from camwright.pipeline.case.machine import Machine
 from camwright.pipeline.checks import demands
-from camwright.pipeline.checks.check import NONE, Demand, Kept, check, of_key
-from camwright.pipeline.checks.contact_strength import endurance_of
-from camwright.pipeline.checks.extremes import greatest, least, worst_case
+from camwright.pipeline.checks.check import NONE, STATED, Demand, Kept, check, of_key
+from camwright.pipeline.checks.contact_strength import endurance_of, of_elements
+from camwright.pipeline.checks.extremes import cycle_of, greatest, least, worst_case
 from camwright.pipeline.checks.missing_keys import (
     lacking,
     lacking_along_line,
@@ -116,7 +117,7 @@ traction_reserve = check(
     tier=Tier.SCREENING,
     needs="roller",
     formula="T/N <= c mu; c: limits.traction_share, others as of traction_demand",
-    symbols=_ROLLING,
+    symbols={**_ROLLING, "mu": "roller.friction"},
     reason="a reserve against a friction coefficient lower than stated; grip itself is"
     " traction_demand",
     values=given.TRACTION,
@@ -174,7 +175,9 @@ def film_ratio(solution: Solution) -> Demand:
     )
 
 
-def _torsion_demand(solution: Solution, measure: Callable[[Envelope], float]) -> Demand:
+def _torsion_demand(
+    solution: Solution, symbol: str, measure: Callable[[Envelope], float]
+) -> Demand:
     """Equivalent fatigue stress against the fatigue limit in torsion of the cam, Pa."""
     card = solution.machine.cam.material
     endured, safety = card.fatigue_torsion, solution.machine.limits[FATIGUE_SAFETY]
@@ -188,6 +191,7 @@ def _torsion_demand(solution: Solution, measure: Callable[[Envelope], float]) ->
         worst,
         lacking_of_card(card, "fatigue_torsion", "fatigue_bending"),
         figures=(f"{card.name}: {card.source}",),
+        stated={symbol: worst.value},
     )
 
 
@@ -201,8 +205,10 @@ def _torsion_demand(solution: Solution, measure: Callable[[Envelope], float]) ->
     must_have=False,
     lift_can_help=True,
     error="contact",
-    formula="sqrt(J2a) + a_C max(sigma_h, 0) <= t / S; a_C = 3 t/f - sqrt(3); t, f: fully reversed"
-    " fatigue limits of the cam in torsion and bending, S: limits.fatigue_safety",
+    formula="tau_C <= t / S; tau_C: greatest sqrt(J2a) + a_C max(sigma_h, 0) below the contour, of"
+    " the solved stresses of a passage, a_C: 3 t/f - sqrt(3), t, f: fully reversed fatigue limits"
+    " of the cam in torsion and bending, S: limits.fatigue_safety",
+    symbols={"tau_C": f"{STATED} [MPa]", "t": "cam.material.fatigue_torsion"},
     reason="the endurance pressure is measured, this criterion is transferred from"
     " torsion and bending",
     values=(*given.CONTACT, *given.CAM_FATIGUE),
@@ -210,7 +216,7 @@ def _torsion_demand(solution: Solution, measure: Callable[[Envelope], float]) ->
 )
 def surface_fatigue(solution: Solution) -> Demand:
     """Maximum Crossland stress of a passage of the contact, Pa."""
-    return _torsion_demand(solution, lambda swept: _greatest_of(swept.crossland))
+    return _torsion_demand(solution, "tau_C", lambda swept: _greatest_of(swept.crossland))
 
 
 @check(
@@ -223,8 +229,13 @@ def surface_fatigue(solution: Solution) -> Demand:
     must_have=False,
     lift_can_help=True,
     error="contact",
-    formula="tau_a + a_DV max(sigma_h, 0) <= t / S; a_DV = 3 (t/f - 1/2); t, f, S as of"
-    " surface_fatigue",
+    formula="tau_D <= t / S; tau_D: greatest tau_a + a_DV max(sigma_h, 0) below the contour, of the"
+    " solved stresses of a passage, a_DV: 3 (t/f - 1/2), t, f, S: as of surface_fatigue",
+    symbols={
+        "tau_D": f"{STATED} [MPa]",
+        "t": "cam.material.fatigue_torsion",
+        "S": f"limits.{FATIGUE_SAFETY.id}",
+    },
     reason="without credit for compression the criterion is on the safe side, but the"
     " published form of the cap is recalled, not read",
     values=(*given.CONTACT, *given.CAM_FATIGUE),
@@ -232,7 +243,7 @@ def surface_fatigue(solution: Solution) -> Demand:
 )
 def dang_van(solution: Solution) -> Demand:
     """Maximum Dang Van stress of a passage of the contact, Pa."""
-    return _torsion_demand(solution, lambda swept: _greatest_of(swept.dang_van))
+    return _torsion_demand(solution, "tau_D", lambda swept: _greatest_of(swept.dang_van))
 
 
 @check(
@@ -244,8 +255,14 @@ def dang_van(solution: Solution) -> Demand:
     lift_can_help=True,
     error="contact",
     kept_as="contact pressure at the strength of case and core",
-    formula="max sigma_v(z)/Y(z) <= 1 / S; Y(z): yield strength, linear from surface to core over"
-    " the case depth, S: limits.case_safety",
+    formula="max sigma_v/Y <= 1 / S; Y = Y_s + (Y_c - Y_s) min(z/d, 1): yield strength, linear from"
+    " surface, Y_s, to core, Y_c, over the case depth d, sigma_v: von Mises stress at the depth z"
+    " of the greatest quotient, S: limits.case_safety",
+    symbols={
+        **dict.fromkeys(("sigma_v", "Y_s", "Y_c"), f"{STATED} [MPa]"),
+        **dict.fromkeys("zd", f"{STATED} [mm]"),
+        "Y": "[MPa]",
+    },
     reason="of a hardened surface: a core that yields lets the case break in",
     values=(
         *given.CONTACT,
@@ -261,12 +278,13 @@ def dang_van(solution: Solution) -> Demand:
 def hardened_case(solution: Solution) -> Demand | None:
     """Maximum von Mises stress over the yield strength at its depth; None if not hardened."""
 
-    def use(swept: SweptStress, card: Material) -> float:
+    def use(swept: SweptStress, card: Material) -> _StrengthUse:
         strengths = card.yield_strength, card.core_yield_strength
         return _use_of_strength(swept, lambda at: at.von_mises, card.case_depth, strengths)
 
     allowed = 1.0 / solution.machine.limits[CASE_SAFETY]
-    return _hardened_demand(solution, use, allowed, ("case_depth", "core_yield_strength"))
+    keys, symbols = ("case_depth", "core_yield_strength"), ("sigma_v", "Y_s", "Y_c", "z", "d")
+    return _hardened_demand(solution, use, allowed, keys, symbols)
 
 
 @check(
@@ -280,9 +298,15 @@ def hardened_case(solution: Solution) -> Demand | None:
     lift_can_help=True,
     error="contact",
     kept_as="contact pressure at the shear fatigue of case and core",
-    formula="max (range of tau_xz(z) / 2)/t(z) <= 1 / S; t(z): fully reversed fatigue limit in"
-    " torsion, linear from fatigue_torsion to core_fatigue_torsion over the case depth, S:"
+    formula="max tau_a/t <= 1 / S; t = t_s + (t_c - t_s) min(z/d, 1): fully reversed fatigue limit"
+    " in torsion, linear from fatigue_torsion, t_s, to core_fatigue_torsion, t_c, over the case"
+    " depth d, tau_a: half of the range of tau_xz at the depth z of the greatest quotient, S:"
     " limits.fatigue_safety",
+    symbols={
+        **dict.fromkeys(("tau_a", "t_s", "t_c"), f"{STATED} [MPa]"),
+        **dict.fromkeys("zd", f"{STATED} [mm]"),
+        "t": "[MPa]",
+    },
     reason="of a hardened surface: cracks start below the case, where the strength has"
     " fallen and the shear has not",
     values=(
@@ -300,13 +324,13 @@ def hardened_case(solution: Solution) -> Demand | None:
 def case_shear(solution: Solution) -> Demand | None:
     """Maximum shear amplitude over the fatigue limit at its depth; None if not hardened."""
 
-    def use(swept: SweptStress, card: Material) -> float:
+    def use(swept: SweptStress, card: Material) -> _StrengthUse:
         strengths = card.fatigue_torsion, card.core_fatigue_torsion
         return _use_of_strength(swept, lambda at: 0.5 * at.shear_range, card.case_depth, strengths)
 
     allowed = 1.0 / solution.machine.limits[FATIGUE_SAFETY]
     keys = "case_depth", "fatigue_torsion", "core_fatigue_torsion"
-    return _hardened_demand(solution, use, allowed, keys)
+    return _hardened_demand(solution, use, allowed, keys, ("tau_a", "t_s", "t_c", "z", "d"))
 
 
 def hardened_bodies(solution: Solution) -> dict[str, Material]:
@@ -326,11 +350,14 @@ def _untreated(card: Material) -> tuple[str, ...]:
 
 def _hardened_demand(
     solution: Solution,
-    use: Callable[[SweptStress, Material], float],
+    use: Callable[[SweptStress, Material], _StrengthUse],
     allowed: float,
     keys: tuple[str, ...],
+    symbols: tuple[str, ...],
 ) -> Demand | None:
     """Greatest use of the strength by depth over the hardened bodies, which needs some keys.
+
+    symbols: of stress, strengths of surface and core, depth and case depth in the formula.
 
     Every point of the follower meets the greatest stress of the turn: the maximum over the contour
     is that of both bodies.
@@ -340,7 +367,7 @@ def _hardened_demand(
         return None
 
     def of_turn(card: Material) -> Callable[[Cycle], float]:
-        return lambda cycle: use(cycle.rolling.swept, card)
+        return lambda cycle: use(cycle.rolling.swept, card).share
 
     worst = {body: worst_case(solution.cycles, of_turn(card)) for body, card in bodies.items()}
     incomplete = [body for body, card in bodies.items() if math.isnan(_probe(use, card))]
@@ -348,19 +375,21 @@ def _hardened_demand(
     judged = known or list(bodies)
     governing = judged[first_greatest([worst[body].value for body in judged])]
     extreme = worst[governing]
+    swept = cycle_of(solution.cycles, extreme).rolling.swept
     return Demand(
         None if incomplete and not extreme.value > allowed else extreme.value,
         allowed,
         extreme,
         tuple(key for body in incomplete for key in _lacks(bodies[body], *keys)),
         figures=tuple(f"{card.name}: {card.source}" for card in bodies.values()),
+        stated=dict(zip(symbols, use(swept, bodies[governing])[1:], strict=True)),
     )
 
 
-def _probe(use: Callable[[SweptStress, Material], float], card: Material) -> float:
+def _probe(use: Callable[[SweptStress, Material], _StrengthUse], card: Material) -> float:
     """Use of the strength in an envelope without stress: NaN where the card lacks data."""
     one = np.zeros((1, 1))
-    return use(SweptStress(lambda: Envelope(one[0], one[0], one, one, one, one)), card)
+    return use(SweptStress(lambda: Envelope(one[0], one[0], one, one, one, one)), card).share
 
 
 def _signed_depth(cycle: Cycle) -> Array:
@@ -378,8 +407,10 @@ def _signed_depth(cycle: Cycle) -> Array:
     " at the signed contact pressure of edge_pressure; least of cam and follower, where hardened",
     lift_can_help=True,
     kept_as="normal force at the least case depth",
-    formula="d / z >= limits.case_depth_ratio; d: case_depth, z: greatest depth of the maximum"
-    " shear stress over all load cases, of plane strain times the factor of edge_pressure",
+    formula="d / (r K z) >= limits.case_depth_ratio; d: case_depth, least of the hardened bodies,"
+    " z: depth of the maximum shear stress of plane strain, r, K: factors of edge_pressure, of the"
+    " greatest product over all load cases",
+    symbols={"d": f"{STATED} [mm]", "r": STATED, "K": "length_factor", "z": "tau_depth"},
     reason="of a hardened surface: the maximum shear stress must lie within the case",
     values=(*given.LENGTH, "cam.material.case_depth"),
     levers=levers.CASE,
@@ -392,6 +423,7 @@ def case_depth(solution: Solution) -> Demand | None:
     if not bodies:
         return None
     worst = greatest(solution.cycles, _signed_depth)
+    stated = {"d": min((card.case_depth or np.nan for card in bodies.values()), default=np.nan)}
     loaded = worst.value > 0 or np.isnan(worst.value)
     limit = solution.machine.limits[CASE_DEPTH_RATIO]
     depths = [card.case_depth for card in bodies.values() if card.case_depth is not None]
@@ -406,6 +438,7 @@ def case_depth(solution: Solution) -> Demand | None:
             *lacking_along_line(solution.machine),
         ),
         figures=tuple(f"{card.name}: {card.source}" for card in bodies.values()),
+        stated=stated | of_elements(solution, worst),
     )
 
 
@@ -527,8 +560,9 @@ def _estimate(
     must_have=False,
     evidence=True,
     moved_by_tolerance=False,
-    formula="max p_i / min p_i <= 1.5; p_i: endurance pressure of the card in this contact, 2.76 HB"
-    " - 70 MPa, ISO 6336-5, where they apply",
+    formula="p_1 / p_2 <= 1.5; p_1, p_2: greatest and least for one body of the endurance pressure"
+    " of the card in this contact, 2.76 HB - 70 MPa, ISO 6336-5, where they apply",
+    symbols=dict.fromkeys(("p_1", "p_2"), f"{STATED} [MPa]"),
     reason="rules for different tests may differ; a greater ratio shows that one of them"
     " does not hold for this card",
     load_cases=NONE,
@@ -537,17 +571,18 @@ def _estimate(
 def endurance_rules(solution: Solution) -> Demand:
     """Greatest ratio of the endurance rules for the material of cam or follower."""
     machine = solution.machine
-    spread, notes = None, []
+    spread, notes, stated = None, [], dict[str, float]()
     for body, card in machine.bodies.items():
         rules = _rules(machine, card)
         if len(rules) < 2:
             notes.append(f"the {body}, {card.name}, has fewer than two rules")
             continue
-        ratio = max(rules.values()) / min(rules.values())
-        spread = ratio if spread is None else max(spread, ratio)
+        most, least_one = max(rules.values()), min(rules.values())
+        if spread is None or most / least_one > spread:
+            spread, stated = most / least_one, {"p_1": most, "p_2": least_one}
         words = ", ".join(f"{name} {shown(value, 'MPa')}" for name, value in rules.items())
         notes.append(f"{body}, {card.name}: {words}")
-    return Demand(spread, RULE_RATIO, note="; ".join(notes))
+    return Demand(spread, RULE_RATIO, note="; ".join(notes), stated=stated)
 
 
 def _rules(machine: Machine, card: Material) -> dict[str, float]:
@@ -578,11 +613,25 @@ def _use_of_strength(
     stress: Callable[[Envelope], Array],
     case: float | None,
     strengths: tuple[float | None, float | None],
-) -> float:
+) -> _StrengthUse:
     """Greatest stress over the strength at its depth; NaN without case depth or a strength."""
     surface, core = strengths
     if case is None or surface is None or core is None:
-        return np.nan
+        return _StrengthUse(*(6 * [np.nan]))
     at = swept.governing if core <= surface else swept.envelope
     inward = np.clip(at.depth / case, 0.0, 1.0)
-    return float((stress(at) / (surface + (core - surface) * inward)).max())
+    share = stress(at) / (surface + (core - surface) * inward)
+    place = np.unravel_index(first_greatest(share.ravel()), share.shape)
+    values = float(share.max()), float(stress(at)[place])
+    return _StrengthUse(*values, surface, core, float(at.depth[place]), case)
+
+
+class _StrengthUse(NamedTuple):
+    """Greatest stress over the strength at its depth, and what it is made of, SI."""
+
+    share: float
+    stress: float
+    surface: float
+    core: float
+    depth: float
+    case_depth: float

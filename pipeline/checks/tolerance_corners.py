@@ -157,6 +157,7 @@ def unsolved(machine: Machine, tried: Sequence[Outcome]) -> Check:
         0.0,
         note="; ".join(refused),
         method=f"closed forms at {len(tried) - 1} corners",
+        stated={"n": float(len(refused))},
     )
     return TOLERANCE_CORNERS.judged(machine, demand)
 

@@ -22,13 +22,15 @@ from camwright.pipeline.case.limits import (
     TORQUE_REDUCTION,
 )
 from camwright.pipeline.checks import demands
-from camwright.pipeline.checks.check import FIRED, RIPPLE, STEADY, Demand, check
+from camwright.pipeline.checks.check import FIRED, RIPPLE, STATED, STEADY, Demand, check
 from camwright.pipeline.checks.extremes import (
     Extreme,
     cam_of,
+    cycle_of,
     fired,
     greatest,
     over_duty,
+    row_of,
     steady,
     worst_case,
 )
@@ -120,6 +122,7 @@ drive_torque = check(
     unit="N m",
     formula="max |T_c| <= T; T_c: torque of the cam, friction and inertia included, T:"
     " limits.drive_torque",
+    symbols={"T_c": "cam_torque"},
     reason="A drive of less torque stalls.",
     method="greatest magnitude of the cam torque",
     tier=Tier.SCREENING,
@@ -139,7 +142,13 @@ drive_torque = check(
     title="Speed ripple reduction",
     formula="min over the load cases of 1 - (1 - c)/(1 - c_i) std(w_c)/std(w_e) >= c; w_c, w_e:"
     " crank speed with and without the cam, c_i: load_case.speed_reduction, else"
-    " limits.speed_reduction, c: the greatest c_i",
+    " limits.speed_reduction, c: the greatest c_i, both 0 where none is required",
+    symbols={
+        "std(w_c)": f"{STATED} [rad/s]",
+        "std(w_e)": f"{STATED} [rad/s]",
+        "c": STATED,
+        "c_i": STATED,
+    },
     reason="Decides where the case requires it.",
     method="1 - std of the speed with the cam over that of the machine alone,"
     " inertia of shaft and follower included",
@@ -173,12 +182,19 @@ def speed_reduction(solution: Solution) -> Demand | None:
     value, halved = shares[worst], solution.crank_speed_halved.get(worst)
     # change with every second crank angle alone
     error = 0.0 if halved is None else _relative(share(worst, halved) - value, abs(value))
+    without, with_cam = solution.crank_speed[worst]
     return Demand(
         value,
         common,
         Extreme(value, worst, None, error),
         () if common is not None else unset(solution.machine.limits, SPEED_REDUCTION),
         must_have=common is not None,
+        stated={
+            "std(w_c)": with_cam,
+            "std(w_e)": without,
+            "c": common or 0.0,
+            "c_i": judged[worst],
+        },
     )
 
 
@@ -201,9 +217,11 @@ def _reduction(cycle: Cycle) -> float:
     evidence=True,
     tier=Tier.CYCLE,
     moved_by_tolerance=False,
-    formula="|sum r x f - (F_a s' + T_s)| / max|T| <= c; r: points of the contour in the contact,"
-    " f: solved pressure and face friction on them, F_a: axial force, s': slope of the lift, T_s:"
-    " sliding torque of a face, c: limits.contact_torque",
+    formula="|T_p - T| / T_max <= c; T_p: sum of r x f, r: points of the contour in the contact, f:"
+    " solved pressure and face friction on them, T: F_a s' + T_s, F_a: axial force, s': slope of"
+    " the lift, T_s: sliding torque of a face, T_max: greatest |T| over the turn, without one the"
+    " greatest normal force times the greatest radius, c: limits.contact_torque",
+    symbols=dict.fromkeys(("T_p", "T", "T_max"), f"{STATED} [N m]"),
     reason="Contact, contour and forces on the follower are solved apart: an error in one of them"
     " shows in no other balance.",
 )
@@ -212,12 +230,21 @@ def contact_torque(solution: Solution) -> Demand:
 
     def share(cycle: Cycle) -> Array:
         torque = cycle.loads.cam_torque
-        return np.abs(pressure_torque(cycle) - torque) / (
-            float(np.max(np.abs(torque))) or _force_moment(cycle)
-        )
+        return np.abs(pressure_torque(cycle) - torque) / _greatest_torque(cycle)
 
     worst = greatest(solution.cycles, share)
-    return Demand(worst.value, solution.machine.limits[CONTACT_TORQUE], worst)
+    cycle, k = row_of(solution.cycles, worst)
+    stated = {
+        "T_p": float(pressure_torque(cycle)[k]),
+        "T": float(cycle.loads.cam_torque[k]),
+        "T_max": _greatest_torque(cycle),
+    }
+    return Demand(worst.value, solution.machine.limits[CONTACT_TORQUE], worst, stated=stated)
+
+
+def _greatest_torque(cycle: Cycle) -> float:
+    """Greatest magnitude of the cam torque, N m, or that to compare one of zero with."""
+    return float(np.max(np.abs(cycle.loads.cam_torque))) or _force_moment(cycle)
 
 
 @check(
@@ -229,22 +256,30 @@ def contact_torque(solution: Solution) -> Demand:
     evidence=True,
     tier=Tier.CYCLE,
     moved_by_tolerance=False,
-    formula="|integral of (T_p - (F_c + F_i) s') - Q| / (integral of |T| / 2) <= c; T_p: cam torque"
+    formula="|W - Q| / E <= c; W: integral of T_p - (F_c + F_i) s' over a turn, T_p: cam torque"
     " of the contact pressures, F_c: spring force, weight and external force, F_i: inertia force,"
-    " Q: friction heat of guides and face over a turn, c: limits.contact_torque",
+    " s': slope of the lift, Q: friction heat of guides and face over a turn, E: half of the"
+    " integral of |T|, T: cam torque, c: limits.contact_torque",
+    symbols=dict.fromkeys("WQE", f"{STATED} [J]"),
     reason="Energy must not appear or vanish between the contact and the guides.",
 )
 def contact_work(solution: Solution) -> Demand:
     """Difference of the cam work by pressures from the friction heat, over the work exchanged."""
 
-    def share(cycle: Cycle) -> float:
+    def works(cycle: Cycle) -> tuple[float, float, float]:
+        """Work of the pressures, heat, and work exchanged, J."""
         step = FULL_TURN / cycle.theta.size
         exchanged = 0.5 * step * float(np.sum(np.abs(cycle.loads.cam_torque)))
         exchanged = exchanged or FULL_TURN * _force_moment(cycle)
-        return _relative(_friction_loss(cycle, pressure_torque(cycle)) - _heat(cycle), exchanged)
+        return _friction_loss(cycle, pressure_torque(cycle)), _heat(cycle), exchanged
+
+    def share(cycle: Cycle) -> float:
+        work, heat, exchanged = works(cycle)
+        return _relative(work - heat, exchanged)
 
     worst = worst_case(solution.cycles, share, integral=False)
-    return Demand(worst.value, solution.machine.limits[CONTACT_TORQUE], worst)
+    stated = dict(zip("WQE", works(cycle_of(solution.cycles, worst)), strict=True))
+    return Demand(worst.value, solution.machine.limits[CONTACT_TORQUE], worst, stated=stated)
 
 
 def pressure_torque(cycle: Cycle) -> Array:
@@ -279,9 +314,11 @@ def _integral(values: Array, at: Array) -> Array:
 @check(
     FRICTION_BALANCE,
     title="Friction work vs. heat in guides and face",
-    formula="|integral of (T - (F_c + F_i) s') - Q| / Q <= c; T: cam torque, F_c: spring force,"
-    " weight and external force, F_i: inertia force, s': slope of the lift, Q: friction heat of"
-    " guides and face over a turn, c: limits.friction_balance",
+    formula="|W - Q| / max(Q, 1e-9 E) <= c; W: integral of T - (F_c + F_i) s' over a turn, T: cam"
+    " torque, F_c: spring force, weight and external force, F_i: inertia force, s': slope of the"
+    " lift, Q: friction heat of guides and face over a turn, E: energy of the spring at maximum"
+    " lift, c: limits.friction_balance",
+    symbols=dict.fromkeys("WQE", f"{STATED} [J]"),
     reason="Work that the guides do not dissipate would be an error of the forces.",
     method="cam work less work of spring, inertia, weight and external force, against friction"
     " force times sliding distance of guides and face, relative",
@@ -293,7 +330,13 @@ def friction_balance(solution: Solution) -> Demand:
     worst = worst_case(solution.cycles, _heat_mismatch, integral=False)
     allowed = solution.machine.limits[FRICTION_BALANCE]
     words = (*map(_loss, solution.cycles), *_applied_work(solution.cycles))
-    return Demand(worst.value, allowed, worst, note="; ".join(words))
+    cycle = cycle_of(solution.cycles, worst)
+    stated = {
+        "W": _friction_loss(cycle, cycle.loads.cam_torque),
+        "Q": _heat(cycle),
+        "E": _stored(cycle),
+    }
+    return Demand(worst.value, allowed, worst, note="; ".join(words), stated=stated)
 
 
 @check(
@@ -302,6 +345,7 @@ def friction_balance(solution: Solution) -> Demand:
     formula="max over the load cases of P_f/P <= c; P_f: mean power of the friction in guides,"
     " contact and roller bearing, P: load_case.power, else mean torque that drives or loads the"
     " machine's shaft, the greater, times its speed, c: limits.friction_power",
+    symbols=dict.fromkeys(("P_f", "P"), f"{STATED} [W]"),
     reason="A cam that turns a good part of the machine's power into heat is no gain, and its"
     " parts run hot.",
     method="work of the friction over the turn, at the mean friction coefficients, over that of the"
@@ -333,7 +377,9 @@ def friction_power(solution: Solution) -> Demand | None:
             shown(each, "W", 3) for each in (_friction_power(solution, cycle), powers[name])
         )
         words.append(f"{name}: {lost} of {whole}")
-    return Demand(worst.value, allowed, worst, note="; ".join(words))
+    lossy = _friction_power(solution, cycle_of(running, worst))
+    stated = {"P_f": lossy, "P": powers[worst.load_case]}
+    return Demand(worst.value, allowed, worst, note="; ".join(words), stated=stated)
 
 
 _BALANCED = 1e-12  # of the heat: round-off of the works that cancel
@@ -357,6 +403,12 @@ _STATED = (
     " friction in guides, contact and roller bearing, sum of q_i P_i of the load cases by"
     " load_case.duty, else the greatest P_i, T_amb, Q, G: cooling.ambient_temperature, .heat,"
     " .conductance; without G that of the box around cam and follower in still air, 10 W/(m^2 K)",
+    symbols={
+        "T_amb": "cooling.ambient_temperature - 273.15 [degC]",
+        "P_f": f"{STATED} [W]",
+        "Q": "cooling.heat",
+        "G": f"{STATED} [W/K]",
+    },
     reason="Viscosity, grease and relaxation of the wire are those of the stated temperatures,"
     " endurance and strength of the steels those of their cards: a machine that runs hotter is not"
     " the one that is judged.",
@@ -404,7 +456,9 @@ def mechanism_temperature(solution: Solution) -> Demand | None:
         return Demand(None, allowed, note=note, missing=("cooling.conductance",))
     if cooling.conductance is None:
         note += "; no cooling is stated: still air on the box around cam and follower"
-    return Demand(warm, float(allowed), worst, note=note)
+    loss = over_duty(running, lambda cycle: _friction_power(solution, cycle)).value
+    stated = {"P_f": loss, "G": cooling.carried(area)}
+    return Demand(warm, float(allowed), worst, note=note, stated=stated)
 
 
 def _friction_power(solution: Solution, cycle: Cycle) -> float:

@@ -74,6 +74,11 @@ class ContactMesh(Displayed):
     name: str
     quality: Quality
 
+    @property
+    def longest_edge(self) -> float:
+        """Longest edge in the contact of both bodies, m."""
+        return self.half_width / self.quality.edges_across_half_width
+
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Solution(Displayed):

@@ -70,6 +70,15 @@ def static_rating_bound(outer_diameter: Value, width: Value) -> Value:
     return area * (_BEYOND * _STATIC_FACTOR * pi)
 
 
+_VISCOSITY_LINES = (45_000.0, -0.83), (4500.0, -0.5)
+_FAST = 1000.0  # rpm, from which the second line of the rated viscosity holds
+
+
+def viscosity_line(speed: float) -> tuple[float, float]:
+    """Factor and power of the speed in `rated_viscosity` at a speed, rpm."""
+    return _VISCOSITY_LINES[speed >= _FAST]
+
+
 def rated_viscosity(speed: Values, pitch_diameter: float) -> Values:
     """Rated kinematic viscosity v1 of a bearing (...), m2/s, at a speed, rpm, > 0; diameter in m.
 
@@ -78,8 +87,8 @@ def rated_viscosity(speed: Values, pitch_diameter: float) -> Values:
     ISO 281:2007, 9.3.3.2: 45000 n^-0.83 D^-0.5 below 1000 rpm, 4500 n^-0.5 D^-0.5 above, in
     mm2/s and mm; recalled: verify.
     """
-    slow, fast = 45_000.0 * speed**-0.83, 4500.0 * speed**-0.5
-    rated: Values = np.where(np.real(speed) < 1000.0, slow, fast)
+    (slow, of_slow), (fast, of_fast) = _VISCOSITY_LINES
+    rated: Values = np.where(np.real(speed) < _FAST, slow * speed**of_slow, fast * speed**of_fast)
     return rated * (1e-6 / float(np.sqrt(1e3 * pitch_diameter)))
 
 

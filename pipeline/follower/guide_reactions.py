@@ -254,6 +254,17 @@ class GuideReactions(Displayed):
         """Push on one side of guide B over the loaded share of its length, (n,), N."""
         return np.asarray(np.ptp(self.knots_b) * mean_line_load(self.line_pressure_b, self.knots_b))
 
+    def loaded_side(self, guide: int, position: int) -> tuple[float, float]:
+        """Push on the side of a guide (0: A, 1: B) with the greater mean line load, N, its length.
+
+        At the number of a position; the loaded length, m, is that of `mean_line_load`.
+        """
+        lines = (self.line_pressure_a, self.knots_a), (self.line_pressure_b, self.knots_b)
+        load, knots = lines[guide]
+        push, length = _pushes(load[:, [position]], np.asarray(knots))
+        side = int(_mean(push, length)[:, 0].argmax())
+        return float(push[side, 0]), float(length[side, 0])
+
     @property
     def pressure_max_a(self) -> Array:
         """Maximum projected pressure in guide A (n,), Pa: line pressure over stem diameter."""
@@ -280,13 +291,22 @@ def mean_line_load(line_load: ArrayLike, knots: ArrayLike) -> Array:
     -------
     array (n,)   N/m; 0 without load, NaN where a line load is NaN
     """
-    load, at = np.asarray(line_load, dtype=float), np.asarray(knots, dtype=float)
+    push, length = _pushes(np.asarray(line_load, dtype=float), np.asarray(knots, dtype=float))
+    return np.asarray(_mean(push, length).max(axis=0))
+
+
+def _pushes(load: Array, at: Array) -> tuple[Array, Array]:
+    """Push (2, n), N, on both sides of a bore and its loaded length (2, n), m."""
     weights = at[-1] * lobatto(at.size)[1]
     sides = np.stack([load, -load])
-    push = weights @ np.maximum(sides, 0.0)
-    length = _loaded_length(sides, at, weights)
+    push: Array = weights @ np.maximum(sides, 0.0)
+    return push, _loaded_length(sides, at, weights)
+
+
+def _mean(push: Array, length: Array) -> Array:
+    """Mean line load (2, n), N/m, of pushes over their lengths; NaN where a push is."""
     mean = np.divide(push, length, out=np.zeros_like(push), where=length > 0.0)
-    return np.asarray(np.where(np.isnan(push), np.nan, mean).max(axis=0))
+    return np.where(np.isnan(push), np.nan, mean)
 
 
 def _loaded_length(sides: Array, knots: Array, weights: Array) -> Array:

@@ -257,6 +257,12 @@ class WoundWire(Generic[Number]):
         return shear_strength, 1.0 - ZIMMERLI[self.treatment][1] / shear_strength
 
     @property
+    def known_modulus(self) -> Number:
+        """Elastic modulus as stated, else that of an isotropic wire, Pa."""
+        isotropic: Number = ISOTROPIC * self.shear_modulus
+        return isotropic if self.elastic_modulus is None else self.elastic_modulus
+
+    @property
     def buckling_deflection(self) -> Number:
         """Deflection at which the spring buckles, m; infinite if it is stable at any.
 
@@ -267,9 +273,7 @@ class WoundWire(Generic[Number]):
         EN 13906-1:2013, 9.14 (by the formulas of an open implementation of it: verify); Haringx,
         Philips Research Reports 3 (1948) 401-449.
         """
-        isotropic = ISOTROPIC * self.shear_modulus
-        elastic = isotropic if self.elastic_modulus is None else self.elastic_modulus
-        ratio = self.shear_modulus / elastic
+        ratio = self.shear_modulus / self.known_modulus
         slender = np.pi * self.mean_diameter / (self.end_factor * self.free_length)
         root = 1.0 - (1.0 - ratio) / (0.5 + ratio) * slender**2
         longest = self.free_length * 0.5 / (1.0 - ratio)

@@ -1,7 +1,8 @@
 """Hand-check sheet: a check of a finished run evaluated once more from its own formula text.
 
 The symbols of the formula are those of the declaration: keys of the case, columns of the cycle,
-figures of the drawn cam, all from the run folder. What a solver gave enters as a stated number.
+figures of the drawn cam, all from the run folder. What a solver or a reduction over the turn gave
+enters as a number that the check states beside its demand.
 """
 
 from __future__ import annotations
@@ -17,11 +18,12 @@ import numpy as np
 
 from camwright.geometry.arrays import Array, Value
 from camwright.geometry.errors import InputError, ResultError
+from camwright.geometry.pitch_curve import RollerMotion, curvature_slope
 from camwright.pipeline.base import formula, units
 from camwright.pipeline.base.quantities import Count, In
 from camwright.pipeline.case.case_values import quantity_of, text_of, value_of
 from camwright.pipeline.case.machine import Machine, machines
-from camwright.pipeline.checks.check import Declaration
+from camwright.pipeline.checks.check import BOUNDLESS, STATED, Declaration
 from camwright.pipeline.checks.extremes import BY_DUTY
 from camwright.pipeline.checks.registry import DECLARED
 from camwright.pipeline.cycle.loaded_cam import roller_of
@@ -37,6 +39,8 @@ DIGITS = 6
 ROUNDING, BETWEEN = 1e-7, 1e-3
 """Relative difference up to which two evaluations agree, and that of a demand which the check
 interpolates between the solved angles and the sheet evaluates there."""
+_LEAST = 1e-9
+"""Difference of two evaluations, in the unit of the record, that is none."""
 SAME_ANGLE = 1e-6  # deg, of a demand and a row of the cycle
 _UNITS = (
     "MPa m/s", "rad/s", "rad/s^2", "m/s", "N/mm", "N m", "mm/rad^2", "mm/rad", "MPa", "mm", "um",
@@ -52,6 +56,7 @@ FIGURES: Mapping[str, tuple[str, _Figure]] = {
     "lift_highest": ("mm", lambda cam: cam.highest),
     "pitch_height": ("mm", lambda cam: cam.contour.require_roller().pitch.height_base),
     "pitch_curvature": ("1/mm", lambda cam: roller_of(cam.motion).path_curvature),
+    "pitch_curvature_slope": ("1/mm", lambda cam: _curvature_slope(roller_of(cam.motion))),
     "pitch_speed": ("mm/rad", lambda cam: roller_of(cam.motion).path_speed),
     "contour_speed": ("mm/rad", lambda cam: cam.motion.contour_speed),
     "contour_radius": ("mm", lambda cam: cam.motion.contour_radius),
@@ -60,10 +65,10 @@ FIGURES: Mapping[str, tuple[str, _Figure]] = {
     "least_spring_force": ("N", lambda cam: cam.least_spring),
 }
 """Figures of the cam drawn and its spring at the cam angle of a demand, with their unit."""
-_CYCLE = "5_cycle.csv"
+_CYCLE, _CHECKS = "5_cycle.csv", "6_checks.json"
 _DEFINED = "["
 """Begins the unit of a symbol that the formula itself defines."""
-_CLOSED_FORM = {"p0_fe": "p0_hertz"}
+_CLOSED_FORM = {"p0_fe": "p0_hertz", "half_width_fe": "half_width_hertz"}
 """Column in place of one that a run without finite elements leaves empty."""
 ONLY = "?"
 """Symbol of the keys and words for which a formula holds, such as ``follower.kind roller``."""
@@ -97,6 +102,13 @@ class SheetStep(NamedTuple):
     shown: str
 
 
+class SheetBound(NamedTuple):
+    """Limit by the formula: expression, and value in the unit of the record."""
+
+    expression: formula.Node
+    value: float
+
+
 @dataclass(frozen=True)
 class Sheet:
     """A check as an engineer writes it by hand.
@@ -110,6 +122,7 @@ class Sheet:
     steps : tuple          definitions, and last the demand; empty: not evaluated
     result : float         demand by the formula, in the unit of the record; None: the demand is a
                            result of a solver, or its formula is none of numbers: it is stated
+    bound : SheetBound     limit by the formula; None: its symbols are not all keys of the case
     """
 
     record: CheckRecord
@@ -118,6 +131,7 @@ class Sheet:
     quantities: tuple[Quantity, ...] = ()
     steps: tuple[SheetStep, ...] = ()
     result: float | None = None
+    bound: SheetBound | None = None
 
     @property
     def is_stated(self) -> bool:
@@ -126,21 +140,54 @@ class Sheet:
         return not self.steps or self.steps[-1].expression.text in recorded
 
     @property
+    def use(self) -> tuple[float, float] | None:
+        """Numerator and denominator of the utilisation, in the unit of the record.
+
+        Of the worse of the demand and that at its tolerance corner. None without one, and for a
+        quotient that has no bound.
+        """
+        demand, limit, corner = (self.record[key] for key in ("demand", "limit", "corner_demand"))
+        if demand is None or limit is None or self.record["utilisation"] is None:
+            return None
+        at_most = self.record["sense"] == "at_most"
+        both = (demand, demand if corner is None else corner)
+        parts = (max(both), limit) if at_most else (limit, min(both))
+        return parts if parts[1] > 0.0 else None
+
+    @property
     def agrees(self) -> bool:
-        """Whether the formula gives the demand of the record within rounding; True without it."""
+        """Whether formula and record give the same demand, limit and use within rounding."""
+        return not self.differs_in
+
+    @property
+    def differs_in(self) -> str:
+        """First of demand, limit and use that differs from the record; "": none."""
+        limit, stated, use = self.record["limit"], self.record["utilisation"], self.use
+        if not self._gives_the_demand:
+            return "demand"
+        if self.bound is not None and limit is not None and not _same(self.bound.value, limit):
+            return "limit"
+        differs = use is not None and stated is not None and not _same(use[0] / use[1], stated)
+        return "use" if differs else ""
+
+    @property
+    def _gives_the_demand(self) -> bool:
         demand = self.record["demand"]
         if self.result is None or demand is None:
             return self.result is None
         measured = DECLARED[self.record["id"]].measured
         between = measured is not None and measured.reduce == "forces"
-        share = BETWEEN if between else ROUNDING
-        return math.isclose(self.result, demand, rel_tol=share, abs_tol=1e-9)
+        return _same(self.result, demand, BETWEEN if between else ROUNDING)
 
     @property
     def known(self) -> Mapping[str, str]:
         """Value of each symbol as it stands in a formula."""
         defined = {step.name: step.shown for step in self.steps[:-1]}
         return {each.symbol: each.shown for each in self.quantities} | defined
+
+
+def _same(one: float, other: float, share: float = ROUNDING) -> bool:
+    return math.isclose(one, other, rel_tol=share, abs_tol=_LEAST)
 
 
 class SheetRun:
@@ -219,21 +266,62 @@ class _Evaluation:
 
     @property
     def lacks(self) -> bool:
-        """Whether the case leaves out a key of the symbols."""
-        texts = [each.partition(" [")[0] for name, each in self.declared.symbols.items()
-                 if name != ONLY and not each.startswith(_DEFINED)]  # fmt: skip
-        keys = {name for text in texts for name in formula.names(formula.parsed(text))
-                if "." in name}  # fmt: skip
+        """Whether the case leaves out a key of the symbols, or the record a stated number."""
+        used = {name for tree in self.trees.values() for name in formula.names(tree)}
+        places = {name: each.partition(" [")[0] for name, each in self.declared.symbols.items()
+                  if name in used and not each.startswith(_DEFINED)}  # fmt: skip
+        return any(self._lacks(text, name) for name, text in places.items())
+
+    def _lacks(self, text: str, name: str) -> bool:
+        """Whether the place of a symbol is a key without a value, or a number not stated."""
+        if text == STATED:
+            return name not in self._stated
+        keys = {each for each in formula.names(formula.parsed(text)) if "." in each}
         return any(self._numbers.get(key) is None for key in keys)
 
     def sheet(self) -> Sheet:
         unit = self.record["unit"]
         demand = float(np.asarray(self._defined("")).item())
         last = self.steps.pop("")._replace(shown=units.shown(demand, unit, DIGITS))
+        bound = self._bound()
         return Sheet(
             self.record, self.declared.formula, self.said.limit, tuple(self.quantities.values()),
-            (*self.steps.values(), last), units.in_unit(demand, unit),
+            (*self.steps.values(), last), units.in_unit(demand, unit), bound,
         )  # fmt: skip
+
+    def _bound(self) -> SheetBound | None:
+        """Limit by the formula; None: words, or a symbol without a number in the case."""
+        try:
+            tree = formula.parsed(self.said.limit, {**self.declared.symbols, **self.said.keys})
+        except InputError:  # words
+            return None
+        if self.record["unit"] == "degC" or not all(map(self._is_known, formula.names(tree))):
+            return None
+        value = float(np.asarray(formula.value(tree, self._of_limit)).item())
+        return SheetBound(tree, units.in_unit(value, self.record["unit"]))
+
+    def _key(self, name: str) -> str:
+        """Key of a symbol of the limit by the text of the formula; "": none."""
+        return name if "." in name else self.said.keys.get(name, "")
+
+    def _is_known(self, name: str) -> bool:
+        """Whether a symbol of the limit has a number in the case."""
+        if name in formula.CONSTANTS:
+            return True
+        if name in self.trees:
+            return all(map(self._is_known, formula.names(self.trees[name])))
+        if name in self.declared.symbols:
+            return not self._lacks(self.declared.symbols[name].partition(" [")[0], name)
+        return bool(key := self._key(name)) and self._numbers.get(key) is not None
+
+    def _of_limit(self, name: str) -> Value:
+        """Value of a symbol of the limit."""
+        if name in self.trees or name in self.declared.symbols:
+            return self._symbol(name)
+        key = self._key(name)
+        value = float(self._number(key))
+        self.quantities[name] = Quantity(name, value, self._shown(key, value), key, False)
+        return value
 
     @cached_property
     def said(self) -> formula.Statement:
@@ -268,6 +356,8 @@ class _Evaluation:
         if name in self.trees:
             return self._defined(name)
         text, _, unit = self.declared.symbols.get(name, name).partition(" [")
+        if text == STATED:
+            return self._as_stated(name, unit.rstrip("]"))
         tree = formula.parsed(text)
         value = float(formula.value(tree, self._number, partial(self._number, turn=True)))
         sources = [each for each in formula.names(tree) if each not in formula.CONSTANTS]
@@ -279,10 +369,25 @@ class _Evaluation:
             else units.shown(value, unit.rstrip("]"), DIGITS)
         )
         bare = plain and "." in text  # the key says all
-        source = where if bare else f"{where}: {text}"
+        source = where if bare else ": ".join(filter(None, (where, text)))
         recorded = plain and "." not in text and text not in FIGURES
         self.quantities[name] = Quantity(name, value, shown, source, recorded)
         return value
+
+    def _as_stated(self, name: str, unit: str) -> Value:
+        """Value of a number that the check states."""
+        value = units.from_unit(self._stated[name], unit)
+        at = place(self.record)
+        source = f"{_CHECKS}, {at}" if at else _CHECKS
+        source = f"stated, {source}"
+        shown = "infinite" if value >= BOUNDLESS else units.shown(value, unit, DIGITS)
+        self.quantities[name] = Quantity(name, value, shown, source, True)
+        return value
+
+    @property
+    def _stated(self) -> Mapping[str, float]:
+        """Numbers that the check states, in the units of its symbols."""
+        return self.record.get("stated", {})
 
     def _number(self, name: str, *, turn: bool = False) -> Value:
         """Value of a key, column or figure, SI; turn: of a column at all angles."""
@@ -341,7 +446,7 @@ class _Evaluation:
         contour, angle = self.run.contour, self.record["cam_angle_deg"]
         theta = contour.lift.highest.theta if angle is None else math.radians(angle)
         at = np.array([theta])
-        cam = ContourCam.at(contour, self._numbers, at, 2)
+        cam = ContourCam.at(contour, self._numbers, at, 3)
         applied, least = self._machine.system.applied_force(at), contour.lift.lowest.value
         return replace(cam, external=applied, least_lift=least)
 
@@ -369,6 +474,11 @@ class _Evaluation:
                 return self._column(_CLOSED_FORM[name])
             return unit, self._rows[header]
         raise ResultError(f"5_cycle.csv: no column {name}")
+
+
+def _curvature_slope(path: RollerMotion) -> Value:
+    jet = path.jet
+    return curvature_slope(path.along, path.height, jet.slope, jet.bend, jet.jerk)
 
 
 def _quantity_of(key: str) -> In | Count | None:

@@ -9,7 +9,12 @@ from camwright.pipeline.base import formula
 from camwright.pipeline.base.formula import PRINT, Printed
 from camwright.pipeline.base.units import used
 from camwright.pipeline.hand_check.hand_sheet import Sheet
-from camwright.pipeline.hand_check.sheet_lines import demand_words, limit_words, outcome_words
+from camwright.pipeline.hand_check.sheet_lines import (
+    demand_words,
+    limit_words,
+    outcome_words,
+    use_words,
+)
 from camwright.pipeline.results.check_records import utilisation_of
 
 Math = tuple[Printed, ...]
@@ -34,7 +39,7 @@ class PrintedSheet:
     ----------
     text : str           formula of the declaration, with the meaning of its symbols
     symbols, steps : sequence   steps: with symbols, with numbers, and the result
-    demand, outcome, limit, use : str   in words; outcome: whether the sheet agrees
+    demand, outcome, limit, use : str   in words; outcome: whether the sheet agrees, and the use
     governing : bool     one of the checks of the greatest utilisation
     """
 
@@ -63,7 +68,7 @@ def printed(sheet: Sheet, *, governing: bool) -> PrintedSheet:
         ],
         [_step(sheet, k) for k in range(len(sheet.steps))],
         demand_words(record),
-        outcome_words(sheet),
+        f"{outcome_words(sheet)}; {use_words(sheet)}",
         limit_words(sheet),
         used(utilisation_of(record)),
         governing,

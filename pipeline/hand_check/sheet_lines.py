@@ -15,9 +15,9 @@ from camwright.pipeline.results.check_report import (
     with_error,
 )
 
-STATED = (
-    "result of a solver or of a rule in words: stated with its error bar, not evaluated once more"
-)
+STATED = "one number of a solver or a count, stated with its error bar; its use is evaluated"
+"""Words on a demand that is one stated number."""
+IN_WORDS = "a rule in words, or a form that does not hold for this case: not evaluated"
 """Words on a demand without an evaluation."""
 
 
@@ -34,14 +34,28 @@ def limit_words(sheet: Sheet) -> str:
     sense = ">=" if record["sense"] == "at_least" else "<="
     shown = f"{sense} {number(record['limit'])}{unit_text(record['unit'])}"
     formed = "" if sheet.limit in ("", number(record["limit"])) else f" = {sheet.limit}"
+    if (bound := sheet.bound) is not None and bound.expression.kind not in ("name", "number"):
+        formed += f" = {formula.written(bound.expression, formula.TEXT, sheet.known)}"
     return f"{shown}{formed}: {record['source']}"
 
 
 def outcome_words(sheet: Sheet) -> str:
     """Whether the formula gives the demand, or why it is stated."""
-    if sheet.is_stated:
-        return STATED
-    return "agrees" if sheet.agrees else "DISAGREES with the demand of the check"
+    if not sheet.agrees:
+        return f"DISAGREES with the {sheet.differs_in} of the check"
+    if not sheet.steps:
+        return IN_WORDS
+    return STATED if sheet.is_stated else "agrees"
+
+
+def use_words(sheet: Sheet) -> str:
+    """Use of the limit as a quotient, in percent."""
+    used_words = used(utilisation_of(sheet.record))
+    if sheet.use is None:
+        return f"{used_words} used"
+    unit = unit_text(sheet.record["unit"])
+    one, other = (f"{number(each)}{unit}" for each in sheet.use)
+    return f"{one} / {other} = {used_words} used"
 
 
 def sheet_lines(sheet: Sheet) -> list[str]:
@@ -60,7 +74,7 @@ def sheet_lines(sheet: Sheet) -> list[str]:
     rows.append(("limit", limit_words(sheet)))
     if worst := corner(record):
         rows.append(("corner", f"{worst}{unit_text(record['unit'])}"))
-    rows.append(("result", f"{status(record)}, {used(utilisation_of(record))} used"))
+    rows.append(("result", f"{status(record)}, {use_words(sheet)}"))
     width = max(len(name) for name, _ in rows) + 2
     title = f"{record['id']}: {record['title']}"
     return [title, *(f"  {name:<{width}}{text}" for name, text in rows)]

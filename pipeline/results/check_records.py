@@ -65,13 +65,15 @@ class CheckRecord(CheckRecordOfAnyCheck, total=False):
     to_be_confirmed: names of the recalled values on which it rests; relaxed: its limits that are
     weaker than their defaults; missing: dotted keys that the
     case lacks and without which it is not evaluated; remedy: smallest change that cures it, "" if
-    none is known. Records of earlier versions lack them.
+    none is known; stated: numbers of solvers and reductions in its formula by their symbol. Records
+    of earlier versions lack them.
     """
 
     to_be_confirmed: list[str]
     relaxed: list[str]
     missing: list[str]
     remedy: str
+    stated: dict[str, float]
 
 
 AnyCheck = Mapping[str, object]

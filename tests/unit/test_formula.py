@@ -39,6 +39,8 @@ def value(text):
         ("70 MPa", 70e6),
         ("pi/4", 0.25 * math.pi),
         ("(a/b)^3 10^2", 337.5),
+        ("ln(a)/ln(b)", math.log(3.0, 2.0)),
+        ("step(a - b) b + step(b - a) a + step(0)", 3.0),
     ],
 )
 def test_products_bind_from_left_to_right(text, expected):
@@ -50,6 +52,27 @@ def test_a_mean_is_taken_over_the_turn_and_the_rest_at_the_place():
     at = {"v": -3.0, "d": 2.0}
     tree = formula.parsed("mean(|v| d)/d")
     assert formula.value(tree, at.__getitem__, turn.__getitem__) == pytest.approx(2.0)
+
+
+@pytest.mark.parametrize(
+    ("values", "count"),
+    [([1.0, -1.0], 2), ([1.0, 0.0, 2.0], 0), ([1.0, 0.0, -2.0, -1.0], 2), ([0.0, 0.0], 0)],
+)
+def test_changes_of_sign_are_counted_over_the_turn(values, count):
+    tree = formula.parsed("changes(T)")
+    assert formula.value(tree, {}.__getitem__, {"T": np.array(values)}.__getitem__) == count
+
+
+def test_a_number_with_its_unit_is_raised_as_a_whole():
+    shown = formula.written(formula.parsed("pi d^3/a^2"), formula.TEXT, {"d": "8 mm", "a": "3"})
+    assert shown == "pi · (8 mm)^3 / 3^2"
+
+
+def test_the_text_says_where_the_symbols_of_the_limit_stand():
+    said = formula.stated(
+        "a <= c t; c: limits.chord_share, t: cam.profile_tolerance, S: limits.a, else x, r: a.*.b"
+    )
+    assert said.keys == {"c": "limits.chord_share", "t": "cam.profile_tolerance"}
 
 
 @pytest.mark.parametrize("text", ["a +", "(a", "|a", "a b)", "", "a = b", "a ? b"])
@@ -106,4 +129,6 @@ def test_every_symbol_of_a_formula_that_is_evaluated_has_a_place(name):
             assert not bound.startswith("[") or each in texts or each in formula.CONSTANTS, each
             if bound.startswith("[") and each in texts and each != part:
                 left.add(each)
+    # a limit may be words
+    used |= {each for each in declared.symbols if each in said.limit}
     assert set(declared.symbols) - {ONLY} <= used

@@ -4,6 +4,7 @@ from dataclasses import replace
 from pathlib import Path
 from types import MappingProxyType
 
+import numpy as np
 import pypdf
 import pytest
 
@@ -11,6 +12,7 @@ from camwright.geometry.errors import InputError
 from camwright.pipeline.base.tables import Table
 from camwright.pipeline.case.case_file import parse_case, read_case
 from camwright.pipeline.checks.registry import DECLARED
+from camwright.pipeline.checks.solution_verification import RESIDUALS
 from camwright.pipeline.commands.run_command import report
 from camwright.pipeline.commands.terminal import FAILED, PASSED
 from camwright.pipeline.contact.tiers import Tier
@@ -36,6 +38,20 @@ def run(tmp_path_factory):
     return SheetRun(folder)
 
 
+ONE_NUMBER = {
+    "anti_rotation", "closure", "contact_complementarity", "contact_equilibrium",
+    "contact_pressure", "dang_van", "first_yield", "guide_edge_pressure_A",
+    "guide_edge_pressure_B", "guide_equilibrium_force", "guide_equilibrium_moment",
+    "pressure_by_gear_limits", "roller_radial", "roller_static_radial", "self_intersection",
+    "shaft_slope", "shakedown", "surface_fatigue", "synthesis_converged", "tolerance_corners",
+}  # fmt: skip
+"""Checks whose demand is one number of a solver, a residual or a count."""
+
+
+NOT_DECISIVE = {"second_contact", "spring_buckling", "spring_gap"}
+"""Checks whose stated numbers are those of a gap or mode that does not govern."""
+
+
 def evaluated(run):
     return [each for each in map(run.sheet, run.records) if each.steps]
 
@@ -57,8 +73,47 @@ def test_a_changed_demand_is_found(run, name):
     altered = SheetRun(run.run.path, run.run)
     altered.__dict__["records"] = MappingProxyType(changed)
     assert not altered.sheet(name).agrees
-    assert "DISAGREES" in "\n".join(sheet_lines(altered.sheet(name)))
+    assert "DISAGREES with the demand" in "\n".join(sheet_lines(altered.sheet(name)))
     assert altered.sheet("undercut").agrees
+
+
+@pytest.mark.parametrize(
+    ("entry", "words"),
+    [("limit", "DISAGREES with the limit"), ("utilisation", "DISAGREES with the use")],
+)
+def test_a_changed_limit_or_use_is_found(run, entry, words):
+    altered = with_record(run, "gear_bending", entry, lambda value: 1.01 * value)
+    assert words in "\n".join(sheet_lines(altered.sheet("gear_bending")))
+
+
+def with_record(run, name, entry, change):
+    """The run with an entry of the record of a check changed."""
+    record = run.records[name]
+    altered = SheetRun(run.run.path, run.run)
+    changed = {**run.records, name: {**record, entry: change(record[entry])}}
+    altered.__dict__["records"] = MappingProxyType(changed)
+    return altered
+
+
+def unmoved(run, names):
+    """Checks with numbers of a solver none of which, changed by 1 %, is found by the sheet."""
+    found = {}
+    for name in names:
+        for symbol, value in run.records[name]["stated"].items():
+            other = 1.01 * value if value else 1.0
+            altered = with_record(
+                run, name, "stated", lambda numbers, s=symbol, v=other: {**numbers, s: v}
+            )
+            found[name] = found.get(name, False) or not altered.sheet(name).agrees
+    return [name for name, moved in found.items() if not moved]
+
+
+def test_a_changed_number_of_a_solver_is_found(run):
+    """A seeded sample; the slow tests change every one."""
+    stated = {each.record["id"] for each in evaluated(run) if each.record["stated"]}
+    known = sorted(stated - NOT_DECISIVE)
+    sample = np.random.default_rng(3).choice(known, 12, replace=False)
+    assert unmoved(run, map(str, sample)) == []
 
 
 @pytest.mark.parametrize(
@@ -85,15 +140,18 @@ def test_a_sheet_states_formula_symbols_steps_result_and_limit(run):
     for words in (
         DECLARED["gear_bending"].formula, "[5_cycle.csv, ", "20 mm  [camshaft.gear.width]",
         "|T + drag| / r = |", "0.154 - 0.912 / z = 0.154 - 0.912 / 40 = 0.1312", "agrees",
-        "limit    <= 215 MPa = 0.7 s_F / S: Lewis",
+        "limit    <= 215 MPa = 0.7 s_F / S = 0.7 · 430 MPa / 1.4: Lewis", "430 MPa  [camshaft.gear",
+        "MPa / 215 MPa = ",
     ):  # fmt: skip
         assert words in text
 
 
 def test_a_result_of_a_solver_is_stated_and_not_passed_off_as_evaluated(run):
     assert run.sheet("contact_pressure").is_stated  # one number of the cycle
-    assert run.sheet("shaft_slope").is_stated and not run.sheet("shaft_slope").steps
-    assert STATED in "\n".join(sheet_lines(run.sheet("shaft_slope")))
+    slope = run.sheet("shaft_slope")
+    assert slope.is_stated and len(slope.steps) == 1  # the number, against its limit
+    text = "\n".join(sheet_lines(slope))
+    assert STATED in text and "[stated, 6_checks.json, " in text
     assert not run.sheet("pressure_angle").is_stated
     with pytest.raises(InputError, match="--check"):
         run.sheet("no_such_check")
@@ -156,6 +214,16 @@ def test_the_command_prints_the_sheets_and_fails_by_one_that_disagrees(run, caps
 
 @pytest.mark.slow
 def test_the_sheets_of_the_redesigned_case_give_its_demands(tmp_path):
+    """Each check has a formula that is evaluated, or is one number of a solver or a count."""
     run_case(read_case(CASES / "gx120-redesign.toml"), tmp_path / "run", positions=180)
     run = SheetRun(tmp_path / "run")
-    assert [each.record["id"] for each in evaluated(run) if not each.agrees] == []
+    sheets = evaluated(run)
+    assert [each.record["id"] for each in sheets if not each.agrees] == []
+    assert {each.record["id"] for each in sheets} == set(run.records)
+    counts = {each.record["id"] for each in sheets if each.record["id"].startswith("data_")}
+    assert {each.record["id"] for each in sheets if each.is_stated} - counts <= ONE_NUMBER
+    assert sum(each.bound is not None for each in sheets) > 110
+    assert set(unmoved(run, run.records)) <= {*RESIDUALS, *NOT_DECISIVE}
+    for name, record in run.records.items():
+        altered = with_record(run, name, "demand", lambda value: 1.01 * value if value else 1.0)
+        assert not altered.sheet(name).agrees, (name, record["demand"])

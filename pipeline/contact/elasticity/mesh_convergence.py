@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -16,19 +17,39 @@ _ORDER_LEAST, _ORDER_MOST = 0.5, 3.0  # bounds of the order in the error bar
 _SAFETY, _SAFETY_COARSE = 1.25, 3.0  # in and outside the asymptotic range
 
 
+class IndexTerms(NamedTuple):
+    """Terms of a grid convergence index, safety difference / (fine (ratio^order - 1)) + added.
+
+    difference: of fine and middle mesh; of values that scatter their range, at an order with which
+    it is not divided; added: greatest index of the same quantity on three meshes elsewhere.
+    """
+
+    safety: float
+    difference: float
+    ratio: float
+    order: float
+    added: float = 0.0
+
+    def over(self, fine: float) -> float:
+        """The index, relative to the value of the fine mesh, at zero absolute."""
+        gain = float(self.ratio**self.order) - 1.0
+        return self.safety * self.difference / (abs(fine) or 1.0) / gain + self.added
+
+
 @dataclass(frozen=True)
 class Convergence:
     """A quantity on meshes of decreasing element size.
 
     values, coarse to fine; extrapolated to zero element size; order, the observed one (None where
     the values scatter), or of two meshes the assumed one; gci, the grid convergence index: relative
-    error bar of the finest value.
+    error bar of the finest value, and what it is made of.
     """
 
     values: tuple[float, ...]
     extrapolated: float
     order: float | None
     gci: float
+    terms: IndexTerms | None = None
 
 
 def converged(values: Sequence[float], ratio: float) -> Convergence:
@@ -58,14 +79,19 @@ def converged(values: Sequence[float], ratio: float) -> Convergence:
     first, second = middle - coarse, fine - middle
     spread = (max(values) - min(values)) / scale
     figures = (coarse, middle, fine)
-    at_least = _SAFETY_COARSE * abs(second) / scale / (ratio**_ORDER_LEAST - 1.0)
     if first * second <= 0 or abs(second) >= abs(first) or spread < _SCATTER:
-        bar = _SAFETY_COARSE * spread
-        return Convergence(figures, fine, None, max(bar, at_least) if first * second > 0 else bar)
+        whole = float(np.log(2.0) / np.log(ratio))
+        scattered = IndexTerms(_SAFETY_COARSE, max(values) - min(values), ratio, whole)
+        least = IndexTerms(_SAFETY_COARSE, abs(second), ratio, _ORDER_LEAST)
+        of_order = first * second > 0 and least.over(fine) > scattered.over(fine)
+        terms = least if of_order else scattered
+        return Convergence(figures, fine, None, terms.over(fine), terms)
     order = float(np.log(first / second) / np.log(ratio))
-    gain = ratio ** min(max(order, _ORDER_LEAST), _ORDER_MOST) - 1.0
+    bounded = min(max(order, _ORDER_LEAST), _ORDER_MOST)
+    gain = ratio**bounded - 1.0
     safety = _SAFETY if order >= _ORDER_TRUSTED else _SAFETY_COARSE
-    return Convergence(figures, fine + second / gain, order, safety * abs(second) / scale / gain)
+    terms = IndexTerms(safety, abs(second), ratio, bounded)
+    return Convergence(figures, fine + second / gain, order, terms.over(fine), terms)
 
 
 def converged_on_two(
@@ -101,11 +127,13 @@ def converged_on_two(
     order = None
     if len(orders) == len(observed):
         order = min(max(min(orders), _ORDER_LEAST), _ORDER_MOST)
-    change = (fine - coarse) / (ratio ** (order or _ORDER_LEAST) - 1.0)
-    bar = _SAFETY_COARSE * abs(change) / (abs(fine) or 1.0)
+    assumed, added = order or _ORDER_LEAST, max(each.gci for each in observed)
+    change = (fine - coarse) / (ratio**assumed - 1.0)
+    terms = IndexTerms(_SAFETY_COARSE, abs(fine - coarse), ratio, assumed, added)
     return Convergence(
         values=(coarse, fine),
         extrapolated=fine if order is None else fine + change,
         order=order,
-        gci=bar + max(each.gci for each in observed),
+        gci=terms.over(fine),
+        terms=terms,
     )
