@@ -39,8 +39,8 @@ DIGITS = 6
 ROUNDING, BETWEEN = 1e-7, 1e-3
 """Relative difference up to which two evaluations agree, and that of a demand which the check
 interpolates between the solved angles and the sheet evaluates there."""
-_LEAST = 1e-9
-"""Difference of two evaluations, in the unit of the record, that is none."""
+_LEAST = 1e-6
+"""Share of the limit, without one of 0.001 in the unit of the record, that is no difference."""
 SAME_ANGLE = 1e-6  # deg, of a demand and a row of the cycle
 _UNITS = (
     "MPa m/s", "rad/s", "rad/s^2", "m/s", "N/mm", "N m", "mm/rad^2", "mm/rad", "MPa", "mm", "um",
@@ -177,7 +177,8 @@ class Sheet:
             return self.result is None
         measured = DECLARED[self.record["id"]].measured
         between = measured is not None and measured.reduce == "forces"
-        return _same(self.result, demand, BETWEEN if between else ROUNDING)
+        least = _LEAST * abs(self.record["limit"] or 1e-3)
+        return _same(self.result, demand, BETWEEN if between else ROUNDING, least)
 
     @property
     def known(self) -> Mapping[str, str]:
@@ -186,8 +187,8 @@ class Sheet:
         return {each.symbol: each.shown for each in self.quantities} | defined
 
 
-def _same(one: float, other: float, share: float = ROUNDING) -> bool:
-    return math.isclose(one, other, rel_tol=share, abs_tol=_LEAST)
+def _same(one: float, other: float, share: float = ROUNDING, least: float = 0.0) -> bool:
+    return math.isclose(one, other, rel_tol=share, abs_tol=least)
 
 
 class SheetRun:

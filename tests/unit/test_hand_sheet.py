@@ -225,5 +225,6 @@ def test_the_sheets_of_the_redesigned_case_give_its_demands(tmp_path):
     assert sum(each.bound is not None for each in sheets) > 110
     assert set(unmoved(run, run.records)) <= {*RESIDUALS, *NOT_DECISIVE}
     for name, record in run.records.items():
-        altered = with_record(run, name, "demand", lambda value: 1.01 * value if value else 1.0)
+        change = 0.01 * abs(record["limit"] or record["demand"] or 1.0)
+        altered = with_record(run, name, "demand", lambda value, more=change: value + more)
         assert not altered.sheet(name).agrees, (name, record["demand"])
