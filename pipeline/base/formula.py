@@ -62,6 +62,13 @@ _DEFINED = re.compile(
 )
 
 
+def _over(one: Value, other: Value) -> Value:
+    """Quotient, without a warning where it has no bound."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        quotient: Value = np.divide(one, other)
+    return quotient
+
+
 def _changes(values: Array) -> int:
     """Changes of the sign of values over a whole turn; a zero has none of its own."""
     signs = np.sign(values[values != 0.0])
@@ -163,7 +170,7 @@ _SIGNS: Mapping[str, Callable[..., Value]] = {
     "+": lambda one, other: one + other,
     "-": lambda one, other: one - other,
     "*": lambda one, other: one * other,
-    "/": np.divide,
+    "/": _over,
     "^": lambda one, other: one**other,
 }
 

@@ -34,11 +34,13 @@ from camwright.pipeline.results.check_report import place
 from camwright.pipeline.results.drawn_cam import drawn_cam
 from camwright.pipeline.results.run_reader import Run, read_run
 
-DIGITS = 6
-"""Digits of the numbers of a sheet; the demand is compared to fewer."""
+DIGITS = (6, 9, 12)
+"""Digits of the numbers of a sheet, the fewest with which they give its result, see `AS_SHOWN`."""
+AS_SHOWN = 1e-3
+"""Relative difference up to which the numbers as shown give a demand: differences cancel digits."""
 ROUNDING, BETWEEN = 1e-7, 1e-3
-"""Relative difference up to which two evaluations agree, and that of a demand which the check
-interpolates between the solved angles and the sheet evaluates there."""
+"""Relative difference up to which two evaluations agree, and that of a demand, or of its limit,
+which the check interpolates between the solved angles and the sheet evaluates there."""
 _LEAST = 1e-6
 """Share of the limit, without one of 0.001 in the unit of the record, that is no difference."""
 SAME_ANGLE = 1e-6  # deg, of a demand and a row of the cycle
@@ -177,8 +179,14 @@ class Sheet:
             return self.result is None
         measured = DECLARED[self.record["id"]].measured
         between = measured is not None and measured.reduce == "forces"
-        least = _LEAST * abs(self.record["limit"] or 1e-3)
-        return _same(self.result, demand, BETWEEN if between else ROUNDING, least)
+        if between:
+            return self.gives(demand, BETWEEN, BETWEEN)
+        return self.gives(demand, ROUNDING)
+
+    def gives(self, demand: float, share: float, of_limit: float = _LEAST) -> bool:
+        """Whether the formula gives a demand within a share of it, or of the limit."""
+        least = of_limit * abs(self.record["limit"] or 1e-3)
+        return self.result is not None and _same(self.result, demand, share, least)
 
     @property
     def known(self) -> Mapping[str, str]:
@@ -264,6 +272,7 @@ class _Evaluation:
     quantities: dict[str, Quantity] = field(default_factory=dict)
     steps: dict[str, SheetStep] = field(default_factory=dict)
     values: dict[str, Value] = field(default_factory=dict)
+    digits: int = DIGITS[0]
 
     @property
     def lacks(self) -> bool:
@@ -281,9 +290,29 @@ class _Evaluation:
         return any(self._numbers.get(key) is None for key in keys)
 
     def sheet(self) -> Sheet:
+        """The sheet with as many digits as its numbers need."""
+        for digits in DIGITS:
+            evaluation = _Evaluation(self.run, self.record, self.declared, digits=digits)
+            made, shown = evaluation._with_digits(), evaluation._as_shown("")
+            by_hand = units.in_unit(float(np.asarray(shown).item()), self.record["unit"])
+            if made.gives(by_hand, AS_SHOWN):
+                break
+        return made
+
+    def _as_shown(self, name: str) -> Value:
+        """Value of a definition, or of the demand, by the numbers as shown."""
+
+        def rounded(symbol: str) -> Value:
+            if symbol in self.trees:
+                return self._as_shown(symbol)
+            return float(f"{self.quantities[symbol].value:.{self.digits}g}")
+
+        return formula.value(self.trees[name], rounded)
+
+    def _with_digits(self) -> Sheet:
         unit = self.record["unit"]
         demand = float(np.asarray(self._defined("")).item())
-        last = self.steps.pop("")._replace(shown=units.shown(demand, unit, DIGITS))
+        last = self.steps.pop("")._replace(shown=units.shown(demand, unit, DIGITS[0]))
         bound = self._bound()
         return Sheet(
             self.record, self.declared.formula, self.said.limit, tuple(self.quantities.values()),
@@ -349,7 +378,7 @@ class _Evaluation:
             value = formula.value(tree, self._symbol)
             self.values[name] = value
             unit = self.declared.symbols.get(name, "").strip("[]")
-            self.steps[name] = SheetStep(name, tree, units.shown(float(value), unit, DIGITS))
+            self.steps[name] = SheetStep(name, tree, units.shown(float(value), unit, self.digits))
         return self.values[name]
 
     def _symbol(self, name: str) -> Value:
@@ -367,7 +396,7 @@ class _Evaluation:
         shown = (
             self._shown(text, value)
             if plain and not unit
-            else units.shown(value, unit.rstrip("]"), DIGITS)
+            else units.shown(value, unit.rstrip("]"), self.digits)
         )
         bare = plain and "." in text  # the key says all
         source = where if bare else ": ".join(filter(None, (where, text)))
@@ -381,7 +410,7 @@ class _Evaluation:
         at = place(self.record)
         source = f"{_CHECKS}, {at}" if at else _CHECKS
         source = f"stated, {source}"
-        shown = "infinite" if value >= BOUNDLESS else units.shown(value, unit, DIGITS)
+        shown = "infinite" if value >= BOUNDLESS else units.shown(value, unit, self.digits)
         self.quantities[name] = Quantity(name, value, shown, source, True)
         return value
 
@@ -407,11 +436,11 @@ class _Evaluation:
         """A value as the case states it, else in the unit of its key, column or figure."""
         if "." not in name:
             unit = FIGURES[name][0] if name in FIGURES else self._column(name)[0]
-            return units.shown(value, unit, DIGITS)
+            return units.shown(value, unit, self.digits)
         quantity = _quantity_of(name)
         if quantity is not None and value_of(self.run.case, name) == value:
-            return text_of(self.run.case, name, DIGITS)
-        return units.shown(value, quantity.unit if isinstance(quantity, In) else "", DIGITS)
+            return text_of(self.run.case, name, self.digits)
+        return units.shown(value, quantity.unit if isinstance(quantity, In) else "", self.digits)
 
     def _where(self, name: str) -> str:
         """Source of a value: key, table with its place, or the cam as drawn."""
