@@ -384,12 +384,12 @@ _SIGN = {"*": "·", "-": "\N{MINUS SIGN}", "minus": "\N{MINUS SIGN}"}
 
 
 def _letter(name: str) -> tuple[Printed, ...]:
-    """A name in print: ``rho_p`` is ρ with p below, a key or ``R(T)`` itself."""
+    """A name in print: ``rho_p'`` is ρ′ with p below, a key or ``R(T)`` itself."""
     if "." in name or "(" in name:
         return (Printed("name", name),)
-    base, _, below = name.partition("_")
-    letter = base.rstrip("'")
-    return (Printed("name", _GREEK.get(letter, letter) + "′" * (len(base) - len(letter)), below),)
+    letter, _, below = name.rstrip("'").partition("_")
+    primes = "′" * (len(name) - len(name.rstrip("'")))
+    return (Printed("name", _GREEK.get(letter, letter) + primes, below),)
 
 
 TEXT: Style[str] = Style(

@@ -624,9 +624,9 @@ def torque_reversals(solution: Solution) -> Demand:
     " camshaft.counterweight.residual, m: camshaft.rotor_mass, or the mass of the cam alone, w:"
     " greatest cam speed of all load cases",
     symbols={
-        "U": "camshaft.counterweight.residual",
+        "U": f"{STATED} [g mm]",
         "e": "[um]",
-        "m": "camshaft.rotor_mass",
+        "m": f"{STATED} [g]",
         "w": "cam.fastest [rad/s]",
     },
     reason="the force m e w^2 loads shaft, bearings and frame at every speed",
@@ -648,11 +648,13 @@ def cam_unbalance(solution: Solution) -> Demand:
     rotor = made.mass if shaft is None else max(made.mass, shaft.rotor_mass or 0.0)
     angle = f"{np.degrees(made.angle) % 360:.1f} deg"
     whole = "cam alone" if rotor == made.mass else "cam, shaft and gear"
+    unbalance = rotor_unbalance(made, shaft)
     return Demand(
-        rotor_unbalance(made, shaft) / rotor * speed,
+        unbalance / rotor * speed,
         solution.machine.limits[UNBALANCE],
         note=f"{shown(made.product, 'g mm')} of the cam at {angle}{_set(shaft)}; mass of {whole},"
         f" {shown(rotor, 'g')}{_hole(balanced)}",
+        stated={"U": unbalance, "m": rotor},
     )
 
 

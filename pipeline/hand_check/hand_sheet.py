@@ -350,6 +350,8 @@ class _Evaluation:
             return self._symbol(name)
         key = self._key(name)
         value = float(self._number(key))
+        if key == self.said.limit:  # the limit says all
+            return value
         self.quantities[name] = Quantity(name, value, self._shown(key, value), key, False)
         return value
 

@@ -68,6 +68,11 @@ def test_a_number_with_its_unit_is_raised_as_a_whole():
     assert shown == "pi · (8 mm)^3 / 3^2"
 
 
+def test_a_prime_in_print_is_that_of_the_letter():
+    assert formula.PRINT.name("S_e'") == (formula.Printed("name", "S′", "e"),)
+    assert formula.PRINT.name("s''") == (formula.Printed("name", "s′′"),)
+
+
 def test_the_text_says_where_the_symbols_of_the_limit_stand():
     said = formula.stated(
         "a <= c t; c: limits.chord_share, t: cam.profile_tolerance, S: limits.a, else x, r: a.*.b"
