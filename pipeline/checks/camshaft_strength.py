@@ -283,6 +283,7 @@ def shaft_fatigue_points(solution: Solution) -> list[FatiguePoint]:
         **dict.fromkeys(("K_f", "K_fs"), STATED),
         "d": f"{STATED} [mm]",
         "W": "[mm^3]",
+        "R_p": f"{STATED} [MPa]",
     },
     reason=f"a bent camshaft turns out of true; {BREAKS}",
     values=(*given.SHAFT, "camshaft.material.*yield_strength", "camshaft.*notch_*"),
@@ -307,11 +308,12 @@ def shaft_yield(solution: Solution) -> Demand:
 
     worst, number = max(((at_section(k), k) for k in range(len(shaft.sections))), key=_by_value)
     section, card = shaft.sections[number], shaft.material
+    strength = card.core_yield_strength or card.yield_strength
     cycle, at = row_of(solution.cycles, worst)
     moment, torque = (each[number] for each in _at_sections(cycle, shaft, sections))
     return Demand(
         worst.value,
-        (card.core_yield_strength or card.yield_strength) / safety,
+        strength / safety,
         worst,
         note=f"governing section: {_place(section)}",
         figures=(f"{card.name}: {card.source}",),
@@ -321,6 +323,7 @@ def shaft_yield(solution: Solution) -> Demand:
             "K_f": section.notch_bending,
             "K_fs": section.notch_torsion,
             "d": section.diameter,
+            "R_p": strength,
         },
     )
 
@@ -653,6 +656,7 @@ gear_contact = check(
         ),
         "b": "camshaft.gear.width",
         "d": ("2 camshaft.gear_radius min(1, camshaft.gear.pinion_teeth/camshaft.gear.teeth) [mm]"),
+        "s_H": "min(camshaft.gear.contact_limit, camshaft.gear.pinion_contact_limit) [MPa]",
     },
     reason="pitted flanks break",
     values=(

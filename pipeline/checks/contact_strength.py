@@ -59,7 +59,13 @@ SHAKEDOWN = 4.0  # p0 / k, free rolling line contact
 FIRST_YIELD = 1.79  # p0 / Y, von Mises, line contact, nu = 0.3
 FACE_PASSES = 2.0  # of the contact over a point of a flat face in a cam turn, at most
 _ALONG_THE_LINE = {"K": "length_factor", "r": STATED, "p0": "p0_fe"}
-_EQUIVALENT = {"p0": "p0_fe", "lambda": STATED}
+_EQUIVALENT = {
+    "p0": "p0_fe",
+    "lambda": STATED,
+    "k": "[MPa]",
+    "Y": f"{STATED} [MPa]",
+    "S": f"limits.{SHAKEDOWN_SAFETY.id}",
+}
 _TRACTIONS = 17  # nodes of the traction coefficient from 0 to that of full sliding
 _STATIONS = 720
 
@@ -297,12 +303,25 @@ def _pressure_in_words(demand: Demand, solution: Solution) -> Demand:
 
 
 def _with_endurance(demand: Demand, solution: Solution) -> Demand:
-    return replace(demand, figures=(_least_endurance(solution.machine).source,))
+    figures = (_least_endurance(solution.machine).source,)
+    return replace(demand, figures=figures, stated=_stated_endurance(solution.machine))
+
+
+def _stated_endurance(machine: Machine) -> dict[str, float]:
+    """Least endurance pressure of cam and follower, without safety, Pa."""
+    least = _endurance(machine.bodies, machine.follower).value
+    return {} if least is None else {"p_E": least}
+
+
+def _stated_yield(machine: Machine) -> dict[str, float]:
+    """Least yield strength of cam and follower, Pa."""
+    return {"Y": min(card.yield_strength for card in machine.bodies.values())}
 
 
 def _shakedown_in_words(demand: Demand, solution: Solution) -> Demand:
     note = "without traction; sliding at the surface lowers the limit"
-    return replace(demand, note=note, figures=(shear_yield(solution.machine).source,))
+    figures, stated = (shear_yield(solution.machine).source,), _stated_yield(solution.machine)
+    return replace(demand, note=note, figures=figures, stated=stated)
 
 
 def _ends_in_words(demand: Demand, solution: Solution) -> Demand:
@@ -312,7 +331,7 @@ def _ends_in_words(demand: Demand, solution: Solution) -> Demand:
         demand,
         missing=(*demand.missing, *lacking_along_line(machine)),
         note="" if worst is None else signed_sentence(solution, worst),
-        stated={} if worst is None else of_elements(solution, worst),
+        stated=_stated_endurance(machine) | ({} if worst is None else of_elements(solution, worst)),
         figures=(
             _least_endurance(machine).source,
             *(f"limits.{row.id}: {machine.limits.source(row)}" for row in rows),
@@ -378,9 +397,7 @@ contact_pressure = check(
     formula="p0 <= p_E / S; p0: greatest contact pressure over all load cases and angles, p_E:"
     " least endurance pressure of cam and follower, of rolling for a roller and of rolling with"
     " sliding for a flat face, S: limits.contact_safety",
-    symbols={
-        "p0": "p0_fe",
-    },
+    symbols={"p0": "p0_fe", "p_E": f"{STATED} [MPa]"},
     reason="above the endurance pressure the track pits",
     values=(*given.CONTACT, *given.bodies("*endurance_pressure")),
     levers=(levers.RECROWNED, *levers.ENDURANCE),
@@ -408,9 +425,7 @@ contact_pressure = check(
     error="contact",
     formula="sigma_v <= Y / S; sigma_v: greatest von Mises stress with traction, stresses along the"
     " surface included, Y: least yield strength of cam and follower, S: limits.yield_safety",
-    symbols={
-        "sigma_v": "von_mises_with_traction",
-    },
+    symbols={"sigma_v": "von_mises_with_traction", "Y": f"{STATED} [MPa]"},
     reason="a contact above first yield may shake down, see shakedown_traction",
     values=(*given.CONTACT, *given.bodies("yield_strength")),
     page="Contact",
@@ -424,7 +439,8 @@ def first_yield(solution: Solution) -> Demand:
     onset = shown(FIRST_YIELD * limit.card.yield_strength, "MPa")
     note = f"first yield without traction at a contact pressure of {onset}"
     worst = greatest(solution.cycles, _stress_with_traction)
-    return _judged(worst, limit, missing=no_friction(machine), note=note)
+    judged = _judged(worst, limit, missing=no_friction(machine), note=note)
+    return replace(judged, stated=_stated_yield(machine))
 
 
 def _stress_with_traction(cycle: Cycle) -> Array:
@@ -445,9 +461,7 @@ shakedown = check(
     kept_as="shakedown pressure",
     formula="p0 <= 4 k / S; k = Y/sqrt(3): least shear yield strength of cam and follower, S:"
     " limits.shakedown_safety",
-    symbols={
-        "p0": "p0_fe",
-    },
+    symbols={"p0": "p0_fe", "k": "[MPa]", "Y": f"{STATED} [MPa]"},
     reason="above the limit every passage adds plastic strain",
     values=(*given.CONTACT, *given.bodies("yield_strength")),
     levers=(levers.RECROWNED, *levers.YIELD),
@@ -568,7 +582,11 @@ _SIGNED = (
     " t_r/(2 r_b) - g; phi: slope of the camshaft at the cam, t_p: limits.axis_parallelism, t_r:"
     " limits.cam_run_out, r_b: base radius, c: limits.roller_clearance, b: width of the roller, g:"
     " tilt of the stem in its guides, p_E and S as of contact_pressure",
-    symbols=_ALONG_THE_LINE,
+    symbols={
+        **_ALONG_THE_LINE,
+        "p_E": f"{STATED} [MPa]",
+        "S": f"limits.{CONTACT_SAFETY.id}",
+    },
     reason="a line contact fails at its ends first, and most where it is tilted",
     values=(*given.LENGTH, *given.bodies("*endurance_pressure"), "limits.contact_safety"),
     levers=(levers.CROWNED, levers.NARROWER, *levers.STIFFER_SHAFT, *levers.ENDURANCE),
@@ -597,7 +615,7 @@ def edge_pressure(cam: LoadedCam) -> Array:
     error="ends",
     kept_as="edge pressure at shakedown with sliding",
     formula="r K p_eq <= 4 k / S; r, K: as of edge_pressure, p_eq = 4 p0 / lambda: equivalent"
-    " pressure of plane strain, see shakedown_traction",
+    " pressure of plane strain, see shakedown_traction, k = Y/sqrt(3), S, Y: as of shakedown",
     symbols={**_ALONG_THE_LINE, **_EQUIVALENT, "p_eq": "[MPa]"},
     reason="the ends yield first, and an end that does not shake down is rolled out",
     values=(
@@ -623,9 +641,10 @@ def edge_shakedown(solution: Solution) -> Demand:
 
 
 def _shakedown_stated(solution: Solution, worst: Extreme) -> dict[str, float]:
-    """p0/k at shakedown where an equivalent pressure is greatest."""
+    """p0/k at shakedown where an equivalent pressure is greatest, and the yield strength, Pa."""
     cycle, k = row_of(solution.cycles, worst)
-    return {"lambda": SHAKEDOWN / float(_traction_factor(cycle)[k])}
+    least = SHAKEDOWN / float(_traction_factor(cycle)[k])
+    return {"lambda": least} | _stated_yield(solution.machine)
 
 
 @check(
@@ -640,7 +659,7 @@ def _shakedown_stated(solution: Solution, worst: Extreme) -> dict[str, float]:
     kept_as="shakedown pressure with sliding",
     formula="p_eq = 4 p0 / lambda <= 4 k / S; lambda: p0/k at shakedown under the traction"
     " coefficient of the angle, 1/max|tau_xz| below the surface, von Mises at the surface above a"
-    " traction of about 0.3",
+    " traction of about 0.3, k = Y/sqrt(3), S, Y: as of shakedown",
     symbols=_EQUIVALENT,
     reason="traction brings the plastic strain to the surface and lowers the limit",
     values=(
@@ -676,6 +695,7 @@ def shakedown_traction(solution: Solution) -> Demand:
     " roller, both without ends",
     symbols={
         "e": "roller.axial_offset",
+        **dict.fromkeys(("w_c", "w_r"), f"{STATED} [mm]"),
     },
     reason="beyond it the contact is shorter and beside the middle of both bodies",
     load_cases=NONE,
@@ -690,7 +710,8 @@ def roller_overlap(solution: Solution) -> Demand:
     if offset is None:
         return Demand(None, spare, missing=lacking(roller.table, roller, "axial_offset"))
     overlap = shown(machine.contact_width, "mm")
-    return Demand(offset, spare, note=f"roller and cam overlap over {overlap}")
+    stated = {"w_c": machine.cam.line_width, "w_r": roller.line_width}
+    return Demand(offset, spare, note=f"roller and cam overlap over {overlap}", stated=stated)
 
 
 @lru_cache(maxsize=512)

@@ -315,6 +315,7 @@ def _guide_pv(side: Side) -> Declaration:
             "mean(|R v|)": f"mean(|guide_normal_load_{side} follower_velocity|) [N m/s]",
             "d": f"{table_of(side)}.diameter",
             "L": f"{table_of(side)}.length",
+            "PV": f"{table_of(side)}.pv_limit",
         },
         reason="the heat that a bush can carry off and its wear rate are stated by its"
         " maker as a PV value.",

@@ -260,14 +260,15 @@ def _at_no_load_case(demand: Demand, _: Solution) -> Demand:
     lift_can_help=True,
     tier=Tier.SCREENING,
     kept_as="cam speed without follower jump",
-    formula="min(i sqrt(F_c / (-m s''))) >= limits.jump_speed times limits.overspeed; i:"
-    " mechanism.gear_ratio, F_c: closing force, of the spring with weight and external force, m:"
-    " moving mass, s'': second derivative of the lift",
+    formula="min(i sqrt(F_c / (-m s''))) >= c w; i: mechanism.gear_ratio, F_c: closing force, of"
+    " the spring with weight and external force, m: moving mass, s'': second derivative of the"
+    " lift, c: limits.jump_speed, w: overspeed of the machine, at least its fastest load case",
     symbols={
         "i": "mechanism.gear_ratio",
         "m": "follower.mass",
         "s''": "lift_bend",
         "F_c": "closing_force",
+        "w": "cam.fastest mechanism.gear_ratio [rpm]",
     },
     reason="An engine exceeds its governed speed, and damping and tolerances are not known"
     " closely.",

@@ -138,11 +138,16 @@ def _key_check(
 
     def in_words(demand: Demand, solution: Solution) -> Demand:
         case, mate = solution.case, mate_of(solution.case) or _Mate(None)
-        cards = _cards(case.cam.key, mate)
-        figures = tuple(card.source.of(card.name) for card in cards)
-        if any(cam.reverses for cam in solution.cams.values()):
+        figures = tuple(card.source.of(card.name) for card in _cards(case.cam.key, mate))
+        reverses = any(cam.reverses for cam in solution.cams.values())
+        if reverses:
             figures = (solution.machine.limits.source(KEY_REVERSAL), *figures)
-        judged = replace(demand, figures=figures)
+        reversal = solution.machine.limits[KEY_REVERSAL] if reverses else 1.0
+        yields = [
+            card.core_yield_strength or card.yield_strength for card in _cards(case.cam.key, mate)
+        ]
+        stated = {"f": reversal, "R_e": min(yields, default=np.nan)}
+        judged = replace(demand, figures=figures, stated=stated)
         return judged if case.cam.key_flanks else replace(judged, value=None, at=None)
 
     return check(
@@ -161,6 +166,9 @@ def _key_check(
             "T": "|cam_torque| [N m]",
             "d": "2 cam.bore_radius [mm]",
             "l_tr": "cam.key.bearing_length [mm]",
+            "f": STATED,
+            "S": f"limits.{KEY_SHARE.id}",
+            "R_e": f"{STATED} [MPa]",
             **symbols,
         },
         reason=LOOSE,
@@ -300,7 +308,8 @@ def _wall_allowed(numbers: Numbers) -> Allowed:
 def _wall_in_words(demand: Demand, solution: Solution) -> Demand:
     card, pressure = solution.case.cam.material, solution.numbers.get("cam.fit.greatest_pressure")
     note = "" if pressure is None else f"pressure of the fit {shown(float(pressure), 'MPa')}"
-    return replace(demand, note=note, figures=(f"{card.name}: {card.source}",))
+    stated = {"R_e": card.core_yield_strength or card.yield_strength}
+    return replace(demand, note=note, figures=(f"{card.name}: {card.source}",), stated=stated)
 
 
 @check(
@@ -321,6 +330,7 @@ def _wall_in_words(demand: Demand, solution: Solution) -> Demand:
         "t": "[MPa]",
         "a": "cam.bore_radius",
         "b": "cam.prime_radius - roller.radius [mm]",
+        "R_e": f"{STATED} [MPa]",
         "?": "follower.kind roller",
     },
     reason="a wall that yields loses its fit",

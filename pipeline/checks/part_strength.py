@@ -541,7 +541,11 @@ def _bore_allowed(numbers: Numbers) -> Allowed:
 
 
 def _with_cards_of_bore(demand: Demand, solution: Solution) -> Demand:
-    return replace(demand, figures=tuple(dict.fromkeys(_sources(*_bore_cards(solution.case)[0]))))
+    cards = _bore_cards(solution.case)[0]
+    known = [card.tensile_strength for card in cards if card.tensile_strength is not None]
+    pressure = float(np.ravel(_fit_pressure(solution.numbers))[0])
+    stated = {"R_m": min(known, default=np.nan), "p": pressure}
+    return replace(demand, figures=tuple(dict.fromkeys(_sources(*cards))), stated=stated)
 
 
 _of_bore = PerLoad(_bore)
@@ -570,6 +574,7 @@ bore_pressure = check(
         "F_n": "normal_force",
         "d": "2 cam.bore_radius [mm]",
         "b": "cam.width",
+        **dict.fromkeys(("R_m", "p"), f"{STATED} [MPa]"),
     },
     reason="a widened bore loosens the cam on its shaft",
     values=(

@@ -132,7 +132,7 @@ def excluded_zone(solution: Solution) -> Demand | None:
     title="Von Mises stress at bore and keyway vs. yield strength",
     formula="max sigma <= Y / S; sigma: von Mises stress on bore and keyway outside the excluded"
     " zones, Y: yield strength of the core, S: limits.bore_safety",
-    symbols={"sigma": "bore_stress_off_edges"},
+    symbols={"sigma": "bore_stress_off_edges", "Y": f"{STATED} [MPa]"},
     reason="Does not decide: the shaft is taken as rigid and bonded, which overestimates the"
     " stress beside the keyway and omits the fit.",
     unit="MPa",
@@ -166,6 +166,7 @@ def bore_stress(solution: Solution) -> Demand | None:
         worst,
         note=f"{within}, where it diverges with refinement" if radius > 0 else "",
         figures=(f"{card.name}: {card.source}",),
+        stated={"Y": core},
     )
 
 

@@ -447,7 +447,7 @@ spring_buckling = check(
     tier=Tier.SCREENING,
     moved_by_tolerance=False,
     part="spring",
-    formula="|G d^4 / (8 D^3 n) / k - 1| <= tolerance of the rate; k: spring.rate",
+    formula="|G d^4 / (8 D^3 n) / k - 1| <= spring.rate_tolerance; k: spring.rate",
     symbols={
         "G": "spring.design.shear_modulus",
         "d": "spring.design.wire_diameter",
@@ -507,7 +507,7 @@ spring_relaxation = check(
     tier=Tier.SCREENING,
     moved_by_tolerance=False,
     part="spring",
-    formula="R F_max / P <= tolerance of the preload; R: spring.design.relaxation, share of the"
+    formula="R F_max / P <= spring.preload_tolerance; R: spring.design.relaxation, share of the"
     " force lost in 48 h at spring.design.temperature, F_max: force at maximum lift, P: preload",
     symbols={
         "R": "spring.design.relaxation",

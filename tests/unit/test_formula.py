@@ -134,6 +134,6 @@ def test_every_symbol_of_a_formula_that_is_evaluated_has_a_place(name):
             assert not bound.startswith("[") or each in texts or each in formula.CONSTANTS, each
             if bound.startswith("[") and each in texts and each != part:
                 left.add(each)
-    # a limit may be words
-    used |= {each for each in declared.symbols if each in said.limit}
+    limit = said.limit + "".join(f" {said.defined[each]}" for each in said.defined)
+    used |= {each for each in declared.symbols if each in limit}  # a limit may be words
     assert set(declared.symbols) - {ONLY} <= used

@@ -222,7 +222,7 @@ def test_the_sheets_of_the_redesigned_case_give_its_demands(tmp_path):
     assert {each.record["id"] for each in sheets} == set(run.records)
     counts = {each.record["id"] for each in sheets if each.record["id"].startswith("data_")}
     assert {each.record["id"] for each in sheets if each.is_stated} - counts <= ONE_NUMBER
-    assert sum(each.bound is not None for each in sheets) > 110
+    assert sum(each.bound is not None for each in sheets) > 130
     assert set(unmoved(run, run.records)) <= {*RESIDUALS, *NOT_DECISIVE}
     for name, record in run.records.items():
         change = 0.01 * abs(record["limit"] or record["demand"] or 1.0)
