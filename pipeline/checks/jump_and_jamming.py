@@ -452,6 +452,12 @@ _RIGID = 10.0
     formula="sqrt((k_s + k)/m)/w >= 10; k_s: follower.stiffness, else that of the parts between cam"
     " and mass in series, k: spring.rate, m: mass of the follower without its share of the spring,"
     " w: greatest cam speed of all load cases",
+    symbols={
+        "k_s": f"{STATED} [kN/m]",
+        "k": "spring.rate",
+        "m": f"{STATED} [g]",
+        "w": "cam.fastest [rad/s]",
+    },
     reason="The rule for a mechanism that may be taken as rigid. elastic_contact computes what the"
     " vibration does, and decides.",
     load_cases=SPEED_RANGE,
@@ -474,6 +480,7 @@ def rigid_follower(solution: Solution) -> Demand:
         machine.follower_frequency / fastest if fastest > 0.0 else np.inf,
         _RIGID,
         note=f"{frequency} at {stem} of the stem",
+        stated={"k_s": machine.axial_stiffness, "m": machine.mass_without_spring},
     )
 
 
