@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from functools import partial
 from itertools import cycle
 
@@ -264,6 +265,14 @@ def _speed(turn: SheetTurn) -> Figure | None:
 
 
 def _roller(turn: SheetTurn) -> Figure | None:
+    creepage = [
+        replace(
+            each,
+            values=1e6 * each.values,
+            band=None if each.band is None else (1e6 * each.band[0], 1e6 * each.band[1]),
+        )
+        for each in curves_of(turn, ("creepage", ""))
+    ]
     limits = lowest(*turn.limit("limit with reserve", "", "traction_reserve"),
                     *turn.limit("coefficient of friction", "", "traction_demand"))  # fmt: skip
     return angle_figure(
@@ -275,7 +284,7 @@ def _roller(turn: SheetTurn) -> Figure | None:
         Panel("acceleration", "rad/s²", curves_of(turn, ("roller_acceleration_rad_per_s2", "")),
               height=0.7),
         Panel("traction", "", curves_of(turn, ("traction_demand", "")), limits, height=0.7),
-        Panel("creepage", "", curves_of(turn, ("creepage", "")), height=0.6),
+        Panel("creepage", "um/m", tuple(creepage), height=0.6),
         Panel("slip", "m/s", curves_of(turn, ("slip_speed_m_per_s", "")), height=0.6),
     )  # fmt: skip
 
