@@ -176,7 +176,9 @@ def film_ratio(solution: Solution) -> Demand:
 
 
 def _torsion_demand(
-    solution: Solution, symbol: str, measure: Callable[[Envelope], float]
+    solution: Solution,
+    measure: Callable[[Envelope], float],
+    stated: Callable[[Envelope], dict[str, float]],
 ) -> Demand:
     """Equivalent fatigue stress against the fatigue limit in torsion of the cam, Pa."""
     card = solution.machine.cam.material
@@ -191,8 +193,16 @@ def _torsion_demand(
         worst,
         lacking_of_card(card, "fatigue_torsion", "fatigue_bending"),
         figures=(f"{card.name}: {card.source}",),
-        stated={symbol: worst.value},
+        stated=stated(cycle_of(solution.cycles, worst).rolling.swept.governing) if known else {},
     )
+
+
+def _crossland(swept: Envelope) -> dict[str, float]:
+    """Parts of the greatest Crossland stress, Pa."""
+    if swept.crossland is None or swept.root_j2 is None or swept.tension is None:
+        return {}
+    place = np.unravel_index(first_greatest(swept.crossland.ravel()), swept.crossland.shape)
+    return {"s_J": float(swept.root_j2[place]), "s_H": float(swept.tension[place])}
 
 
 @check(
@@ -205,10 +215,16 @@ def _torsion_demand(
     must_have=False,
     lift_can_help=True,
     error="contact",
-    formula="tau_C <= t / S; tau_C: greatest sqrt(J2a) + a_C max(sigma_h, 0) below the contour, of"
-    " the solved stresses of a passage, a_C: 3 t/f - sqrt(3), t, f: fully reversed fatigue limits"
-    " of the cam in torsion and bending, S: limits.fatigue_safety",
-    symbols={"tau_C": f"{STATED} [MPa]", "t": "cam.material.fatigue_torsion"},
+    formula="s_J + a_C s_H <= t / S; a_C = max(3 t/f - sqrt(3), 0), s_J: sqrt(J2a), root of the"
+    " amplitude of the second invariant of the deviator, s_H: greatest hydrostatic stress of the"
+    " passage, 0 in compression, where the sum is greatest below the contour, t, f: fully reversed"
+    " fatigue limits of the cam in torsion and bending, S: limits.fatigue_safety",
+    symbols={
+        **dict.fromkeys(("s_J", "s_H"), f"{STATED} [MPa]"),
+        "t": "cam.material.fatigue_torsion",
+        "f": "cam.material.fatigue_bending",
+        "a_C": "[-]",
+    },
     reason="the endurance pressure is measured, this criterion is transferred from"
     " torsion and bending",
     values=(*given.CONTACT, *given.CAM_FATIGUE),
@@ -216,7 +232,7 @@ def _torsion_demand(
 )
 def surface_fatigue(solution: Solution) -> Demand:
     """Maximum Crossland stress of a passage of the contact, Pa."""
-    return _torsion_demand(solution, "tau_C", lambda swept: _greatest_of(swept.crossland))
+    return _torsion_demand(solution, lambda swept: _greatest_of(swept.crossland), _crossland)
 
 
 @check(
@@ -243,7 +259,11 @@ def surface_fatigue(solution: Solution) -> Demand:
 )
 def dang_van(solution: Solution) -> Demand:
     """Maximum Dang Van stress of a passage of the contact, Pa."""
-    return _torsion_demand(solution, "tau_D", lambda swept: _greatest_of(swept.dang_van))
+    return _torsion_demand(
+        solution,
+        lambda swept: _greatest_of(swept.dang_van),
+        lambda swept: {"tau_D": _greatest_of(swept.dang_van)},
+    )
 
 
 @check(

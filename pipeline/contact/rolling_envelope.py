@@ -175,7 +175,8 @@ class Envelope:
     """Maximum stresses of one turn in a layer below the contour, Pa, (n, k).
 
     Stations at theta (n,) rad and arc length arc (n,) m; depth (n, k) m below the surface.
-    crossland and dang_van are None without fatigue limits.
+    crossland, dang_van, and of the former root_j2, its amplitude, and tension, its greatest
+    hydrostatic stress from zero, are None without fatigue limits.
     """
 
     theta: Array
@@ -186,6 +187,8 @@ class Envelope:
     shear_range: Array
     crossland: Array | None = None
     dang_van: Array | None = None
+    root_j2: Array | None = None
+    tension: Array | None = None
 
     def __post_init__(self) -> None:
         maps = {n: getattr(self, n) for n in self.__dataclass_fields__}
@@ -261,7 +264,7 @@ def swept(
         von_mises=sealed(mises),
         tau_max=sealed(shear),
         shear_range=sealed(scale * unit.shear_range),
-        crossland=None if limits is None else _crossland(unit, p0, body_hydrostatic, limits),
+        **({} if limits is None else _crossland(unit, p0, body_hydrostatic, limits)),
         dang_van=None if limits is None else _dang_van(unit, p0, body_hydrostatic, limits),
     )
 
@@ -355,14 +358,17 @@ def greatest_line(height: Array, slope: Array, at: Array) -> Array:
 
 def _crossland(
     unit: RollingPass, p0: Array, body_hydrostatic: Array, limits: FatigueLimits
-) -> Array:
-    """Crossland stress (n, k) with the hydrostatic stress (n,) of the body added."""
-    greatest = p0[:, None] * unit.hydrostatic_greatest
-    greatest += body_hydrostatic[:, None]
-    np.maximum(greatest, 0.0, out=greatest)
-    greatest *= limits.crossland
-    greatest += p0[:, None] * unit.shear_amplitude
-    return sealed(greatest)
+) -> dict[str, Array]:
+    """Crossland stress (n, k) with the hydrostatic stress (n,) of the body added, and its parts."""
+    tension = p0[:, None] * unit.hydrostatic_greatest
+    tension += body_hydrostatic[:, None]
+    np.maximum(tension, 0.0, out=tension)
+    root = p0[:, None] * unit.shear_amplitude
+    return {
+        "crossland": sealed(limits.crossland * tension + root),
+        "root_j2": sealed(root),
+        "tension": sealed(tension),
+    }
 
 
 def _dang_van(

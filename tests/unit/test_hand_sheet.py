@@ -43,7 +43,7 @@ ONE_NUMBER = {
     "contact_pressure", "dang_van", "first_yield", "guide_edge_pressure_A",
     "guide_edge_pressure_B", "guide_equilibrium_force", "guide_equilibrium_moment",
     "pressure_by_gear_limits", "roller_radial", "roller_static_radial", "self_intersection",
-    "shaft_slope", "shakedown", "surface_fatigue", "synthesis_converged", "tolerance_corners",
+    "shaft_slope", "shakedown", "synthesis_converged", "tolerance_corners",
 }  # fmt: skip
 """Checks whose demand is one number of a solver, a residual or a count."""
 
