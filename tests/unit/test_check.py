@@ -12,6 +12,7 @@ from pydantic import ValidationError
 from camwright.geometry.errors import InputError
 from camwright.pipeline.case.scope_section import Scope
 from camwright.pipeline.checks.check import (
+    BOUNDLESS,
     ROUNDING,
     Check,
     Demand,
@@ -269,6 +270,16 @@ def test_record_is_valid_json(check):
     assert json.loads(json.dumps(record, allow_nan=False)) == record
     assert record["utilisation"] is None
     assert record["status"] in ("fail", "not_evaluated")
+
+
+@pytest.mark.parametrize(
+    ("stated", "written"),
+    [(0.0025, {"g": 2.5}), (math.inf, {"g": BOUNDLESS / 1e-3}), (math.nan, {})],
+)
+def test_record_has_the_stated_numbers_in_the_units_of_their_symbols(stated, written):
+    demand = Demand(0.0, 1e-6, stated={"g": stated})
+    made = DECLARED["second_contact"].judged(made_trial.solution().machine, demand)
+    assert made.as_record()["stated"] == pytest.approx(written)
 
 
 def test_a_check_prints_as_a_line():

@@ -36,6 +36,25 @@ def test_scatter_has_no_order_and_three_times_its_spread_as_error_bar(values):
     assert found.gci == pytest.approx(3 * (max(values) - min(values)) / values[2])
 
 
+@pytest.mark.parametrize(
+    ("values", "of_pair"),
+    [
+        ((1.4, 1.1, 1.0), True),  # of an order
+        ((1.0, 1.02, 1.01), False),  # scatter: the range of all three, at a gain of 1
+        ((1.0, 1.0, 1.2), True),  # diverging: of the least order
+    ],
+)
+def test_the_terms_of_an_index_are_those_of_its_values(values, of_pair):
+    found = converged(values, 2.0)
+    terms = found.terms
+    pair = abs(values[2] - values[1])
+    assert terms.difference == pytest.approx(pair if of_pair else max(values) - min(values))
+    gain = terms.ratio**terms.order - 1.0
+    assert found.gci == pytest.approx(terms.safety * terms.difference / values[2] / gain)
+    two = converged_on_two(values[1:], 2.0, [found])
+    assert two.terms.added == found.gci and two.gci > found.gci
+
+
 @pytest.mark.parametrize("values", [(1.0, 2.0), (1.0, np.nan, 2.0), (1.0, 2.0, 3.0, 4.0)])
 def test_anything_but_three_finite_values_is_refused(values):
     with pytest.raises(InputError):

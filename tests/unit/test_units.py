@@ -153,6 +153,11 @@ def test_column_names_carry_the_unit() -> None:
     assert units.column("jam_index", "") == "jam_index"
 
 
+@pytest.mark.parametrize("unit", ["", "-", "deg", "%", "MPa", "degC", "um", "corners", "g mm"])
+def test_a_number_of_a_record_is_read_as_it_was_written(unit: str) -> None:
+    assert units.from_unit(units.in_unit(0.37, unit), unit) == pytest.approx(0.37, rel=1e-15)
+
+
 def test_factor() -> None:
     assert units.factor("mm") == 0.001
     assert units.factor("N m") == 1.0

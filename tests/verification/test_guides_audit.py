@@ -195,6 +195,10 @@ def test_opposite_pushes_of_a_guide_do_not_cancel(solved) -> None:
     assert high - low == pytest.approx(reaction, rel=1e-3)
     assert min(low, high) > 0.5 * reaction
     assert cycle.guides.bearing_load_a[k] > 1.5 * reaction
+    push, length = cycle.guides.loaded_side(0, k)  # of the greater mean line load
+    whole = np.ptp(cycle.guides.knots_a)
+    assert push == pytest.approx(high, rel=1e-3) and 0.0 < length < whole
+    assert push / length * whole == pytest.approx(cycle.guides.bearing_load_a[k])
 
 
 def test_mean_line_load_of_straight_lines() -> None:
