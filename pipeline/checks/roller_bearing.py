@@ -536,11 +536,21 @@ def least_speed(viscosity: float, circle: float, ratio: float) -> float | None:
     needs="roller",
     part="roller_bearing",
     kept_as="dynamic load rating of the roller at the life of its grease",
-    formula="log10 F = 6.10 - 4.40e-6 D n - 2.50 (P/C - 0.05) - (0.021 - 1.80e-8 D n) T; F >= L;"
-    " D: outer diameter in mm, n: mean speed in rpm, P: equivalent load, C: dynamic rating, T:"
-    " temperature in degC, L: limits.target_life of a bearing greased for life, else"
-    " roller.bearing.relubrication_interval. Oil has no such life. Over the load cases"
+    formula="h 10^(6.10 - 4.40e-6 x - 2.50 (max(P/C, 0.05) - 0.05) - (0.021 - 1.80e-8 x)"
+    " max(T, 50)) >= L; h: one hour, x = max(D n, 125000), D: outer diameter in mm, n: mean speed"
+    " in rpm, P: equivalent load, C: dynamic rating, T: temperature in degC, L: limits.target_life"
+    " of a bearing greased for life, else roller.bearing.relubrication_interval. Oil has no such"
+    " life. Over the load cases"
     f" {BY_DUTY}.",
+    symbols={
+        "h": "3600 [s]",
+        "x": "[-]",
+        "D": STATED,
+        "n": "60 mean(|roller_speed|)/(2 pi)",
+        "P": f"{STATED} [N]",
+        "C": _RATING,
+        "T": "roller.bearing.temperature - 273.15 [degC]",
+    },
     reason="a bearing greased for life ends with its grease",
     load_cases=NONE,
     rests_on="loads",
@@ -572,7 +582,7 @@ def grease_life(solution: Solution) -> Demand | None:
         stated = Extreme(bearing.grease_life)
         return Demand(stated.value, target, stated, missing, figures=_card(bearing))
     missing += lacking(bearing.table, bearing, "C", "temperature")
-    worst, note = NOWHERE, ""
+    worst, note, known = NOWHERE, "", dict[str, float]()
     if not missing:
         worst = over_duty(
             solution.cycles,
@@ -582,7 +592,12 @@ def grease_life(solution: Solution) -> Demand | None:
         if np.isnan(worst.value):
             missing = lacking(bearing.table, bearing, "grease_life")
             note = "outside the range of the estimate"
-    return Demand(worst.value, target, worst, missing, note=note, figures=_card(bearing))
+        elif all(cycle.machine.duty is None for cycle in solution.cycles):
+            cam = cam_of(solution, cycle_of(solution.cycles, worst))
+            load = float(np.ravel(equivalent_load(cam.normal, cam.spin))[0])
+            known = {"P": load, "D": 1e3 * float(_greased_diameter(solution.numbers))}
+    figures = _card(bearing)
+    return Demand(worst.value, target, worst, missing, note=note, figures=figures, stated=known)
 
 
 def greased(cam: LoadedCam) -> Array:
