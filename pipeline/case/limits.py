@@ -124,8 +124,12 @@ RETURN_PRESSURE_ANGLE = OpenLimit(  # friction cannot lock a follower that the s
     found="textbooks: the return may be steeper than the rise", example="45 deg",
 )  # fmt: skip
 CURVATURE_RATIO = Limit(
-    "curvature_ratio", "convex pitch radius over roller radius", _RATIO, 1.5,
-    Source("1.5 to 3 roller radii, Norton (2009) ch. 7", confirmed=True), "at_least",
+    "curvature_ratio", "convex pitch radius over roller radius", _RATIO, 2.0,
+    Source(
+        "2 to 3 roller radii, the safer: lecture notes on cams, read; 1.5 to 3, as recalled of"
+        " Norton (2009) ch. 7",
+        confirmed=False,
+    ), "at_least",
 )  # fmt: skip
 UNDERCUT_FACTOR = Limit(
     "undercut_factor", "undercut factor", _INNER_SHARE, 0.3,

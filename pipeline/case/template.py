@@ -70,7 +70,9 @@ def _text(name: str, kind: Kind) -> str:
     text = "\n".join(part for part in parts if part).replace("@NAME@", name)
     reduction = _REDUCTION if balances else ""
     words = _SHAFTS["shaft" if kind in _MACHINES else "crank"]
-    for mark, word in zip(("RATIO", "SHAFT", "SPEED", "MOST", "PINION"), words, strict=True):
+    for mark, word in zip(
+        ("RATIO", "SHAFT", "SPEED", "MOST", "PINION", "JERK"), words, strict=True
+    ):
         text = text.replace(f"@{mark}@", word)
     text = text.replace("@POWER@", _POWER if kind in _WITHOUT_MEAN else "")
     return text.replace("@DATA@", _data_name(name, kind)).replace("@REDUCTION@", reduction)
@@ -119,14 +121,14 @@ _MACHINES = ("torque", "harmonics", "compressor", "pump", "press")
 _SHAFTS = {
     "crank": (
         "gear_ratio = 2.0                     # crank turns per cam turn",
-        "crank", "1500 rpm", "1650 rpm", "20",
+        "crank", "1500 rpm", "1650 rpm", "20", "7.0",
     ),
     "shaft": (
         "gear_ratio = 1.0                     # shaft turns per cam turn; 2.0: two lobes",
-        "shaft", "750 rpm", "825 rpm", "40",
+        "shaft", "750 rpm", "825 rpm", "40", "2.0",
     ),
 }  # fmt: skip
-"""Drive of the cam, name of the shaft, its speed and over-speed, teeth of the pinion."""
+"""Drive of the cam, name of the shaft, speed and over-speed, teeth of the pinion, jerk weight."""
 
 
 def _torque_text(torque: Torque) -> str:
@@ -417,7 +419,7 @@ _BALANCE = """\
 [smoothing]
 kind = "constrained"                 # or a filter of the torque: moving_average, gaussian, ...
 corners = true                       # within the limits at the ends of all tolerances
-jerk_weight = 2.0                    # more: smoother lift, less ripple removed
+jerk_weight = @JERK@                    # more: smoother lift, less ripple removed
 rest_force_weight = 0.2              # more: weaker spring force, less ripple removed
 """
 

@@ -76,6 +76,7 @@ def steep() -> Case:
     case = without(first(), "cam.prime_radius", "spring.design", "spring.rate", "spring.preload")
     case["follower"]["stem_length"] = "300 mm"
     case["spring"]["travel_max"] = "30 mm"
+    case["limits"]["curvature_ratio"] = 1.5
     return motion(case, ("modified_sine", 60, 25.0), ("dwell", 30, 0.0),
                   ("modified_sine", 100, -25.0), ("dwell", 170, 0.0))  # fmt: skip
 
