@@ -537,15 +537,16 @@ def least_speed(viscosity: float, circle: float, ratio: float) -> float | None:
     part="roller_bearing",
     kept_as="dynamic load rating of the roller at the life of its grease",
     formula="h 10^(6.10 - 4.40e-6 x - 2.50 (max(P/C, 0.05) - 0.05) - (0.021 - 1.80e-8 x)"
-    " max(T, 50)) >= L; h: one hour, x = max(D n, 125000), D: outer diameter in mm, n: mean speed"
-    " in rpm, P: equivalent load, C: dynamic rating, T: temperature in degC, L: limits.target_life"
-    " of a bearing greased for life, else roller.bearing.relubrication_interval. Oil has no such"
-    " life. Over the load cases"
+    " max(T, 50)) >= L; h: one hour, x = max(D n/u, 125000), D: outer diameter, u: 1 mm, n: mean"
+    " speed in rpm, P: equivalent load, C: dynamic rating, T: temperature in degC, L:"
+    " limits.target_life of a bearing greased for life, else roller.bearing.relubrication_interval."
+    " Oil has no such life. Over the load cases"
     f" {BY_DUTY}.",
     symbols={
         "h": "3600 [s]",
         "x": "[-]",
-        "D": STATED,
+        "D": f"{STATED} [mm]",
+        "u": "0.001 [mm]",
         "n": "60 mean(|roller_speed|)/(2 pi)",
         "P": f"{STATED} [N]",
         "C": _RATING,
@@ -595,7 +596,7 @@ def grease_life(solution: Solution) -> Demand | None:
         elif all(cycle.machine.duty is None for cycle in solution.cycles):
             cam = cam_of(solution, cycle_of(solution.cycles, worst))
             load = float(np.ravel(equivalent_load(cam.normal, cam.spin))[0])
-            known = {"P": load, "D": 1e3 * float(_greased_diameter(solution.numbers))}
+            known = {"P": load, "D": float(_greased_diameter(solution.numbers))}
     figures = _card(bearing)
     return Demand(worst.value, target, worst, missing, note=note, figures=figures, stated=known)
 

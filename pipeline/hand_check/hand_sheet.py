@@ -401,7 +401,7 @@ class _Evaluation:
             else units.shown(value, unit.rstrip("]"), self.digits)
         )
         bare = plain and "." in text  # the key says all
-        source = where if bare else ": ".join(filter(None, (where, text)))
+        source = where if bare else f"{where}: {text}" if where else "constant"
         recorded = plain and "." not in text and text not in FIGURES
         self.quantities[name] = Quantity(name, value, shown, source, recorded)
         return value
