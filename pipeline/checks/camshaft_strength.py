@@ -30,6 +30,7 @@ from camwright.pipeline.case.limits import (
 from camwright.pipeline.case.machine import Machine
 from camwright.pipeline.checks.check import (
     BY_DUTY,
+    LASTING,
     STATED,
     Allowed,
     Declaration,
@@ -450,6 +451,7 @@ def shaft_bearing_static(solution: Solution) -> Demand:
         "L10": "[h]",
     },
     reason=BREAKS,
+    load_cases=LASTING,
     values=(*given.SHAFT, "camshaft.bearing_rating"),
     levers=(levers.one("camshaft.bearing_rating"), *levers.LOAD),
     page="Camshaft",

@@ -55,6 +55,7 @@ BY_DUTY = (
 )
 NONE = "none: the shape of the cam or a part as drawn"
 RIPPLE = "those with an engine torque and a required reduction"
+LASTING = "those with a share of the operating time, load_case.duty; all without one"
 STEADY = "those of the case: in standstill and over-speed nothing warms up"
 FIRED = "those of the case that are fired, with a mean power of the machine"
 SPEED_RANGE = "every speed from standstill to over-speed"

@@ -34,7 +34,7 @@ from camwright.pipeline.case.limits import (
     YIELD_SAFETY,
 )
 from camwright.pipeline.case.machine import Machine
-from camwright.pipeline.checks.check import NONE, STATED, Allowed, Demand, Kept, check
+from camwright.pipeline.checks.check import LASTING, NONE, STATED, Allowed, Demand, Kept, check
 from camwright.pipeline.checks.demands import PRESSURE
 from camwright.pipeline.checks.extremes import Extreme, cycle_of, greatest, row_of
 from camwright.pipeline.checks.missing_keys import (
@@ -494,6 +494,7 @@ shakedown = check(
     " endurance_cycles",
     symbols=_ALONG_THE_LINE,
     reason="the target life may need more load cycles than the endurance pressure",
+    load_cases=LASTING,
     values=(
         *given.LENGTH,
         *given.bodies("*endurance_slope", "*endurance_intercept"),

@@ -79,6 +79,11 @@ def _vertex(cycles: Sequence[Cycle], measure: Callable[[Cycle], Array], sign: fl
     return worst._replace(value=sign * peak.value, cam_angle=peak.theta)
 
 
+def lasting(cycles: Iterable[Cycle]) -> list[Cycle]:
+    """Cycles with a share of the operating time; those of unknown duty count."""
+    return [cycle for cycle in cycles if cycle.machine.duty is None or cycle.machine.duty > 0.0]
+
+
 def steady(solution: Solution) -> list[Cycle]:
     """Cycles of the load cases of the case: in standstill and over-speed nothing warms up."""
     declared = {state.name for state in solution.case.load_cases}

@@ -14,6 +14,7 @@ from camwright.pipeline.base.source import Source
 from camwright.pipeline.base.units import celsius, shown
 from camwright.pipeline.case.limits import TARGET_LIFE, WEAR_DEPTH
 from camwright.pipeline.checks.check import (
+    LASTING,
     STATED,
     Allowed,
     Declaration,
@@ -183,6 +184,7 @@ def _guide_wear(side: Side) -> Declaration:
         },
         reason="wear opens the clearance that jamming and edge pressure are computed"
         " with, and no other check limits it over the life.",
+        load_cases=LASTING,
         values=(*given.LOADS, *given.of_guide(side, "wear_rate"), "limits.target_life"),
         levers=(
             levers.one(f"guides.{side.lower()}.wear_rate", -1),

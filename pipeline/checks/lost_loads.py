@@ -14,8 +14,8 @@ from dataclasses import replace
 from typing import NamedTuple
 
 from camwright.pipeline.base.units import shown
-from camwright.pipeline.checks.check import FIRED, RIPPLE, STEADY, Check, Declaration
-from camwright.pipeline.checks.extremes import fired, steady
+from camwright.pipeline.checks.check import FIRED, LASTING, RIPPLE, STEADY, Check, Declaration
+from camwright.pipeline.checks.extremes import fired, lasting, steady
 from camwright.pipeline.cycle.cycle import Cycle
 from camwright.pipeline.cycle.solution import Solution
 from camwright.pipeline.follower.follower_forces import LOCKS
@@ -95,8 +95,11 @@ def _judges(declared: Declaration, lost: Solution) -> bool:
     """Whether a check of a machine that it concerns judges one of its lost load cases."""
     if declared.load_cases == RIPPLE:
         return declared(lost) is not None
-    chosen = {STEADY: steady, FIRED: fired}.get(declared.load_cases)
-    return chosen is None or bool(chosen(lost))
+    if declared.load_cases == FIRED:
+        return bool(fired(lost))
+    cycles = steady(lost) if declared.load_cases == STEADY else lost.cycles
+    by_duty = declared.load_cases in (STEADY, LASTING)
+    return bool(lasting(cycles) if by_duty else cycles)
 
 
 def _lacks_data(one: Check) -> bool:

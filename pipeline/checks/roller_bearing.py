@@ -31,7 +31,7 @@ from camwright.pipeline.case.limits import (
 from camwright.pipeline.case.machine import Machine
 from camwright.pipeline.checks.check import (
     BY_DUTY,
-    NONE,
+    LASTING,
     STATED,
     Declaration,
     Demand,
@@ -292,6 +292,7 @@ roller_life = check(
     f" {BY_DUTY}.",
     symbols=_CUBE_MEAN,
     reason="the bearing has to last; a clean bearing that lasts longer is not credited",
+    load_cases=LASTING,
     values=(
         *given.LOADS,
         *given.SURGE,
@@ -336,6 +337,7 @@ roller_modified_life = check(
         "a_ISO": STATED,
     },
     reason="a thin or dirty film shortens the life to a tenth",
+    load_cases=LASTING,
     values=(
         *given.LOADS,
         *given.SURGE,
@@ -553,8 +555,7 @@ def least_speed(viscosity: float, circle: float, ratio: float) -> float | None:
         "T": "roller.bearing.temperature - 273.15 [degC]",
     },
     reason="a bearing greased for life ends with its grease",
-    load_cases=NONE,
-    rests_on="loads",
+    load_cases=LASTING,
     values=(
         *given.LOADS,
         "roller.bearing.C",

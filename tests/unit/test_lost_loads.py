@@ -116,10 +116,16 @@ def test_the_line_of_contact_is_not_solved_where_the_loads_end() -> None:
     assert solved == {name: name != end.load_case for name in solved}
 
 
-@pytest.mark.parametrize("machine", ["gx120-redesign", "gx120-flat-face", "machines/press"])
-def test_a_check_judges_the_load_cases_that_it_declares(machine: str) -> None:
+@pytest.mark.parametrize("duty", [None, 1.0])
+@pytest.mark.parametrize("machine", ["gx120-redesign", "gx120-flat-face"])
+def test_a_check_judges_the_load_cases_that_it_declares(machine: str, duty: float | None) -> None:
     """A check of known demand is made of one load case alone, but where its words leave it out."""
     case = read_case(CASES / f"{machine}.toml")
+    first, *others = case.load_cases
+    states = (first.model_copy(update={"duty": duty}), *(
+        each.model_copy(update={"duty": None if duty is None else 0.0}) for each in others
+    ))  # fmt: skip
+    case = case.model_copy(update={"load_cases": states})
     solution = solve(
         case, preview_case(case, corners=False).contour,
         tier=Tier.PREVIEW, positions=POSITIONS, corners=False,
