@@ -11,6 +11,7 @@ import numpy as np
 from camwright.geometry.errors import ResultError
 from camwright.pipeline.base.files import read_json, write_atomic
 from camwright.pipeline.base.fits import size_of
+from camwright.pipeline.base.source import source_in
 from camwright.pipeline.base.spreadsheets import SUFFIX, Excerpt, spreadsheet
 from camwright.pipeline.base.tables import CAM_ANGLE
 from camwright.pipeline.base.units import celsius, parse
@@ -186,7 +187,7 @@ def _facts(material: ReportMaterial) -> Iterator[tuple[str, str]]:
 def _lubricant(case: Record) -> str:
     """Viscosity of the oil with its source; lubrication of the roller bearing."""
     oil = case.get("lubricant", {})
-    parts = [str(oil[key]) for key in ("viscosity", "source") if key in oil]
+    parts = [*filter(None, (str(oil.get("viscosity", "")), str(source_in(oil.get("source")))))]
     bearing = case.get("roller", {}).get("bearing", {}).get("lubrication")
     parts = [*([f"roller bearing: {words(str(bearing))}"] if bearing else []), *parts]
     return ", ".join(parts) or "not stated"

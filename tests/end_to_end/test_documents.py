@@ -90,6 +90,19 @@ def test_entries_left_out_are_fields_to_fill_and_bytes_repeat(tmp_path: Path) ->
     assert dict(stated.block)["Date"] == "2026-03-02"
 
 
+def test_a_source_to_be_confirmed_is_printed_as_such(tmp_path: Path) -> None:
+    """In words wherever a sheet names it, never as the table of the case file."""
+    folder = report_fixture.write_run(tmp_path / "run", 36, field=False)
+    stated = {"text": "ISO VG 150, a card", "confirmed": False}
+    oil = {"viscosity": "24 mPa s", "source": stated, "sources": {"viscosity": stated}}
+    material = with_document(read_material(folder), lubricant=oil)
+    facts = dict(documents.sheet_content(material).facts)
+    words = "ISO VG 150, a card (to be confirmed)"
+    assert facts["Lubricant"].endswith(f"24 mPa s, {words}")
+    table = next(each for each in input_tables(material.case) if each.title == "lubricant")
+    assert table.source == words and [row[-1] for row in table.rows] == [words]
+
+
 def test_the_report_prints_the_title_block_with_its_date(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
