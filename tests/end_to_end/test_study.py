@@ -74,7 +74,8 @@ def contents(folder: Path) -> dict[str, str]:
 
 def written(folder: Path, count: int, more: str = "", name: str = "study.toml") -> Path:
     text = (ROOT / "cases" / "papers" / "eccentric.toml").read_text()
-    (folder / "eccentric.toml").write_text(text)
+    limits = "[limits]\ncurvature_ratio = 1.5\n"  # the published cam has 1.68
+    (folder / "eccentric.toml").write_text(f"{text}\n{limits}")
     (folder / name).write_text(STUDY.format(count=count, more=more))
     return folder / name
 
