@@ -174,7 +174,8 @@ CASES = Path(__file__).parents[2] / "cases"
 def optimum_of(jerk_weight, corners=False, **tolerances):
     """The redesigned case at its nominal values by default: case, torques, problem, design.
 
-    Without speed limits of the guides: the optimum is so near them that a step would reach them.
+    Without speed limits of the guides, and with a lower limit of the curvature ratio: the optimum
+    is so near those of the case that a step would reach them.
     """
     case = read_case(CASES / "gx120-redesign.toml")
     slow, fast = case.guides, {"speed_limit": None}
@@ -182,7 +183,7 @@ def optimum_of(jerk_weight, corners=False, **tolerances):
     case = case.model_copy(update={"guides": guides})
     changed = {"corners": corners, "jerk_weight": jerk_weight, "loss_weight": 0.0}
     case = case.model_copy(update={"smoothing": case.smoothing.model_copy(update=changed)})
-    case = replaced(case, tolerances)
+    case = replaced(case, {"limits.curvature_ratio": 1.5} | tolerances)
     torques = engine_torques(case)
     problem = problem_of(case, torques)
     return case, torques, problem, synthesise(problem)
