@@ -221,6 +221,7 @@ def prices_of(problem, optimum, names):
     cubed = 3.0 * named(ratings).life_force_cubed / named(ratings).dynamic_rating
     expected = {
         "pressure_angle": spent["pressure_angle"] * np.pi / 180,  # deg
+        "curvature_ratio": spent["curvature_ratio"],
         "jump_speed": spent["jump_speed"] * np.pi / 30,  # rpm
         "roller_static": spent["normal_force"] / named(ratings).force_safety,  # N of the rating
         "roller_speed": spent["roller_spin"] * np.pi / 30,
@@ -309,10 +310,10 @@ FIXED = "guide_gap"  # at maximum lift it is that of the case, whatever the lift
 def easily_bound(points=240, **shares):
     """Signed machine at its load cases, with all parts, on few angles, and its least ripple.
 
-    shares: duty of its load cases.
+    With a curvature ratio at which its cam is hollow. shares: duty of its load cases.
     """
     problem = thinned(described(nominal(signed())), 24, points)
-    problem = replace(problem, ratings=rated(problem.ratings, gas_slope=0.03))
+    problem = replace(problem, ratings=rated(problem.ratings, gas_slope=0.03, curvature_ratio=1.5))
     problem = of_duty(problem, **shares) if shares else problem
     problem = replace(
         problem,
