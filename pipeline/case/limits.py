@@ -341,17 +341,20 @@ SPRING_FATIGUE = Limit(
 SPRING_SOLID = Limit(
     "spring_solid", "solid-height clearance of the spring", In(above=0, at_most=10), 0.1,
     Source(
-        "10 to 15 % of the greatest working deflection, as recalled of Shigley ch. 10",
+        "10 to 15 % of the greatest working deflection, as recalled of Shigley ch. 10; lecture"
+        " notes, read, have 25 %, which is safer",
         confirmed=False,
     ), "at_least",
 )  # fmt: skip
 SPRING_SURGE = Limit(
     "spring_surge", "surge frequency over cam frequency", In(above=0, at_most=1e4), 13.0,
     Source(
-        "13 to 20 times the cam's frequency, as recalled of Norton (2009) and Shigley ch. 10;"
-        " VDI 2149-1 takes a mechanism as rigid whose lowest natural frequency is at least 10"
-        " times that of its crank",
-        confirmed=False,
+        "13 times the cam's frequency: Rockford Spring, Dynamic loading of springs, and Juvinall"
+        " and Marshek, Fundamentals of Machine Component Design, 3rd ed.; safer are 15, Analysis"
+        " and Design of Machine Elements, p. 409, and 20, the end of Shigley's range, ch. 10,"
+        " read second-hand; VDI 2149-1 takes a mechanism as rigid whose lowest natural frequency"
+        " is at least 10 times that of its crank",
+        confirmed=True,
     ), "at_least",
 )  # fmt: skip
 KEY_SHARE = Limit(
@@ -434,11 +437,19 @@ SHAFT_BEARING_LIFE = OpenLimit(
 )  # fmt: skip
 GEAR_BENDING_SAFETY = Limit(
     "gear_bending_safety", "safety of tooth root bending", _SAFETY, 1.4,
-    Source("Lewis (1892); 0.7 for a reversed load, ISO 6336-3", confirmed=False),
+    Source(
+        "Lewis (1892); 1.4, and 0.7 for a reversed load, as recalled of ISO 6336-3; safer is 1.45"
+        " of IEC 61400-1:2005, sec. 9.4, for gears of wind turbines",
+        confirmed=False,
+    ),
 )  # fmt: skip
 GEAR_CONTACT_SAFETY = Limit(
     "gear_contact_safety", "safety of tooth contact", _SAFETY, 1.0,
-    Source("ISO 6336-2", confirmed=False),
+    Source(
+        "1.0, as recalled of ISO 6336-2; safer is 1.2 of IEC 61400-1:2005, sec. 9.4, for gears of"
+        " wind turbines",
+        confirmed=False,
+    ),
 )  # fmt: skip
 UNBALANCE = Limit(
     "unbalance", "unbalance of the camshaft", In("mm/s", above=0, at_most=1e4), 6.3e-3,
@@ -456,7 +467,11 @@ FILM_RATIO = Limit(
 )  # fmt: skip
 TRACTION_SHARE = Limit(
     "traction_share", "traction demand over friction", In(above=0, at_most=1), 0.5,
-    Source("half of friction, Rothbart, Cam Design Handbook (2004), eq. 10.7", confirmed=False),
+    Source(
+        "half of the friction, recalled; Rothbart (ed.), Cam Design Handbook, McGraw-Hill 2004,"
+        " p. 308, eq. 10.7, bounds the traction by the whole of it",
+        confirmed=False,
+    ),
 )  # fmt: skip
 FATIGUE_SAFETY = Limit(
     "fatigue_safety", "safety against subsurface fatigue", _SAFETY, 1.0,

@@ -84,8 +84,9 @@ traction_demand = check(
     id="traction_demand",
     title="Traction coefficient vs. friction coefficient",
     source=Source(
-        "rolling without slip, Rothbart, Cam Design Handbook (2004), eq. 10.7",
-        confirmed=False,
+        "rolling without slip, Rothbart (ed.), Cam Design Handbook, McGraw-Hill 2004, p. 308,"
+        " eq. 10.7",
+        confirmed=True,
     ),
     method="(roller inertia + bearing drag) over roller radius and normal force",
     lift_can_help=True,
@@ -506,7 +507,11 @@ def pressure_by_hardness(solution: Solution) -> Demand | None:
 @check(
     title="Peak contact pressure vs. gear flank allowable",
     unit="MPa",
-    source=Source("ISO 6336-5, quality MQ", confirmed=False),
+    source=Source(
+        "ISO 6336-5, quality MQ: 1500 MPa of case-hardened steel, read second-hand; the lines by"
+        " hardness are recalled",
+        confirmed=False,
+    ),
     method="greatest contact pressure over the turn; for comparison only; least of the bodies of a"
     " stated treatment and Vickers hardness",
     must_have=False,
