@@ -461,7 +461,8 @@ UNBALANCE = Limit(
 FILM_RATIO = Limit(
     "film_ratio", "lambda ratio", In(above=0, at_most=100), 1.0,
     Source(
-        "below 1 boundary, 1 to 3 mixed, above 3 full film, textbooks, recalled",
+        "below 1 boundary, above 3 to 4 no contact of asperities, mixed between: Norton, Machine"
+        " Design, 4th ed., text to fig. 10-13, read second-hand",
         confirmed=False,
     ), "at_least",
 )  # fmt: skip
@@ -542,7 +543,9 @@ FRICTION_POWER = Limit(
     "friction_power", "friction power", _SHARE, 0.2,
     Source(
         "a fifth of the power that an engine indicates at idle, all of it friction, goes into"
-        " its valve train, Wong and Tung, Friction 4 (2016) 1",
+        " its valve train: the crankshaft has 1.5 to 2 times its friction, the pistons as much as"
+        " both, so that a sixth to a fifth is its share, Wong and Tung, Friction 4 (2016) 1, to"
+        " fig. 2, read second-hand",
         confirmed=False,
     ),
 )  # fmt: skip

@@ -85,7 +85,7 @@ traction_demand = check(
     title="Traction coefficient vs. friction coefficient",
     source=Source(
         "rolling without slip, Rothbart (ed.), Cam Design Handbook, McGraw-Hill 2004, p. 308,"
-        " eq. 10.7",
+        " eq. 10.7, the inertia of the roller; the drag of its bearing is added",
         confirmed=True,
     ),
     method="(roller inertia + bearing drag) over roller radius and normal force",
