@@ -354,7 +354,7 @@ SPRING_SURGE = Limit(
         " and Design of Machine Elements, p. 409, and 20, the end of Shigley's range, ch. 10,"
         " read second-hand; VDI 2149-1 takes a mechanism as rigid whose lowest natural frequency"
         " is at least 10 times that of its crank",
-        confirmed=True,
+        confirmed=False,
     ), "at_least",
 )  # fmt: skip
 KEY_SHARE = Limit(
