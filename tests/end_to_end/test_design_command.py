@@ -120,7 +120,7 @@ def test_a_pump_passes_by_finite_elements(designed: Designed) -> None:
     assert all(each["why"] for each in exchanges["failing"])
     assert f"# {exchanges['claim']}." in text
     assert (folder / "design.png").read_bytes().startswith(b"\x89PNG")
-    assert 'overspeed = "assumed' in text
+    assert 'overspeed = { text = "assumed' in text
     table, speed = out.with_suffix(".csv"), MACHINES["pump"].speed
     assert design(table, speed, out, run=True) == PASSED  # from the cached points
     assert record_of(out) == document
