@@ -470,7 +470,6 @@ _RIGID = 10.0
         "roller.bearing.ring.*",
         "roller.bearing.C0",
     ),
-    levers=(levers.one("follower.stiffness"), levers.one("follower.mass", -1)),
     page="Follower",
 )
 def rigid_follower(solution: Solution) -> Demand:
