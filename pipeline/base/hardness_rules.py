@@ -14,6 +14,15 @@ BUCKINGHAM_MAX = 400.0  # HB
 THROUGH_HARDENED_MAX = 390.0  # HV
 
 
+def endurance_by_hardness(card: Material) -> dict[str, float]:
+    """Endurance of the surface of a card, Pa, by each rule that holds for it."""
+    rules = {
+        "Buckingham": None if card.surface_hardened else buckingham(card),
+        "ISO 6336-5": gear_limit(card),
+    }
+    return {name: value for name, value in rules.items() if value}
+
+
 def buckingham(card: Material) -> float | None:
     """Allowable contact pressure of steel at 1e8 load cycles, from the Brinell hardness, Pa.
 
@@ -34,7 +43,7 @@ def gear_limit(card: Material) -> float | None:
 
     References
     ----------
-    ISO 6336-5, MQ, recalled (verify): carburised 1500 MPa; induction 0.541 HV + 882 MPa;
+    ISO 6336-5, MQ, as recalled: carburised 1500 MPa; induction 0.541 HV + 882 MPa;
     through-hardened alloy steel 1.313 HV + 373 MPa, up to 390 HV.
     """
     if card.treatment == "case_hardened":

@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from camwright.pipeline.base.hardness_rules import buckingham, gear_limit
+from camwright.pipeline.base.hardness_rules import endurance_by_hardness
 from camwright.pipeline.base.source import Source, source_in
 from camwright.pipeline.base.units import celsius, in_unit, shown
 from camwright.pipeline.case.case import Case
@@ -99,19 +99,16 @@ _OF_RULE = 2.0
 def _endurance_findings(case: Case) -> Iterator[Implied | None]:
     """Endurance of the surface of a card, against the rules for a steel of its hardness."""
     for name, card in case.materials.items():
-        rules = {
-            "Buckingham's estimate": None if card.surface_hardened else buckingham(card),
-            "that of gear flanks, ISO 6336-5": gear_limit(card),
-        }
-        known = {words: value for words, value in rules.items() if value}
+        known = endurance_by_hardness(card)
         for field in ("endurance_pressure", "sliding_endurance_pressure"):
             key = f"materials.{name}.{field}"
             value = value_of(case, key)
             if value is None or not known:
                 continue
             most = max(known, key=known.__getitem__)
-            words = f"{key} = {text_of(case, key)}: {value / known[most]:.3g} times {most} by its"
-            words += f" hardness, {shown(known[most], 'MPa')}, usually up to {_OF_RULE:g} times"
+            words = f"{key} = {text_of(case, key)}: {value / known[most]:.3g} times that by its"
+            words += f" hardness, {shown(known[most], 'MPa')} by {most}, usually up to"
+            words += f" {_OF_RULE:g} times"
             stated, kept = (
                 in_unit(each, "MPa") for each in (value, min(value, _OF_RULE * known[most]))
             )

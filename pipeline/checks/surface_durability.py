@@ -14,7 +14,12 @@ from camwright.geometry.extrema import first_greatest
 from camwright.geometry.pitch_curve import magnitude
 from camwright.pipeline.base import levers
 from camwright.pipeline.base import value_groups as given
-from camwright.pipeline.base.hardness_rules import BUCKINGHAM_MAX, buckingham, gear_limit
+from camwright.pipeline.base.hardness_rules import (
+    BUCKINGHAM_MAX,
+    buckingham,
+    endurance_by_hardness,
+    gear_limit,
+)
 from camwright.pipeline.base.material import Material
 from camwright.pipeline.base.source import Source
 from camwright.pipeline.base.units import shown
@@ -612,12 +617,8 @@ def endurance_rules(solution: Solution) -> Demand:
 
 def _rules(machine: Machine, card: Material) -> dict[str, float]:
     row = endurance_of(machine, card)
-    rules = {
-        row.motion: row.pressure,
-        "Buckingham": None if card.surface_hardened else buckingham(card),
-        "ISO 6336-5": gear_limit(card),
-    }
-    return {name: value for name, value in rules.items() if value}
+    own = {row.motion: row.pressure} if row.pressure else {}
+    return own | endurance_by_hardness(card)
 
 
 def _lambda(cycle: Cycle) -> Array:
