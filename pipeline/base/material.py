@@ -148,6 +148,11 @@ class Material(Part):
         return float(np.interp(temperature, at, strengths, right=np.nan))
 
     @property
+    def core_yield(self) -> float:
+        """Yield strength of the core, Pa; of a body without a hardened case that of the card."""
+        return self.core_yield_strength or self.yield_strength
+
+    @property
     def holds_to(self) -> float:
         """Temperature to which limit and yield strength at 20 degC of the card hold, K."""
         warm = STRENGTH_HOLDS_TO[self.is_metal]

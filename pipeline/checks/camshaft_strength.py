@@ -309,7 +309,7 @@ def shaft_yield(solution: Solution) -> Demand:
 
     worst, number = max(((at_section(k), k) for k in range(len(shaft.sections))), key=_by_value)
     section, card = shaft.sections[number], shaft.material
-    strength = card.core_yield_strength or card.yield_strength
+    strength = card.core_yield
     cycle, at = row_of(solution.cycles, worst)
     moment, torque = (each[number] for each in _at_sections(cycle, shaft, sections))
     return Demand(

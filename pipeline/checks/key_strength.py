@@ -133,7 +133,7 @@ def _key_check(
         missing = (*mate.missing, *_no_key_data(case.cam), *lacking(key.table, key, "material"))
         reversal = np.where(_reverses(numbers), numbers.limit(KEY_REVERSAL), 1.0)[()]
         share = numbers.limit(KEY_SHARE) * reversal
-        yields = [card.core_yield_strength or card.yield_strength for card in _cards(key, mate)]
+        yields = [card.core_yield for card in _cards(key, mate)]
         return Allowed(None, missing) if missing else Allowed(factor * (share * min(yields)))
 
     def in_words(demand: Demand, solution: Solution) -> Demand:
@@ -143,9 +143,7 @@ def _key_check(
         if reverses:
             figures = (solution.machine.limits.source(KEY_REVERSAL), *figures)
         reversal = solution.machine.limits[KEY_REVERSAL] if reverses else 1.0
-        yields = [
-            card.core_yield_strength or card.yield_strength for card in _cards(case.cam.key, mate)
-        ]
+        yields = [card.core_yield for card in _cards(case.cam.key, mate)]
         stated = {"f": reversal, "R_e": min(yields, default=np.nan)}
         judged = replace(demand, figures=figures, stated=stated)
         return judged if case.cam.key_flanks else replace(judged, value=None, at=None)
@@ -302,13 +300,13 @@ cam_slip = check(
 
 def _wall_allowed(numbers: Numbers) -> Allowed:
     card = numbers.known_case.cam.material
-    return Allowed(card.core_yield_strength or card.yield_strength)
+    return Allowed(card.core_yield)
 
 
 def _wall_in_words(demand: Demand, solution: Solution) -> Demand:
     card, pressure = solution.case.cam.material, solution.numbers.get("cam.fit.greatest_pressure")
     note = "" if pressure is None else f"pressure of the fit {shown(float(pressure), 'MPa')}"
-    stated = {"R_e": card.core_yield_strength or card.yield_strength}
+    stated = {"R_e": card.core_yield}
     return replace(demand, note=note, figures=(f"{card.name}: {card.source}",), stated=stated)
 
 

@@ -157,7 +157,7 @@ def bore_stress(solution: Solution) -> Demand | None:
     card = solution.machine.cam.material
     worst = greatest(solution.cycles, _away_from_edges)
     at_edges = max(float(np.max(bore.von_mises)) for bore in bores)
-    core = card.core_yield_strength or card.yield_strength
+    core = card.core_yield
     radius = max(bore.excluded for bore in bores)
     within = f"{shown(at_edges, 'MPa')} within {shown(radius, 'mm', 2)} of the keyway edges"
     return Demand(
