@@ -70,7 +70,7 @@ def entry_of(source: Source) -> Any:
 
 
 def reworded(entry: Any, words: Callable[[str], str]) -> Any:
-    """An entry with other words for its text, in the form that it has, confirmed as it is."""
+    """An entry with its text changed by a function; it keeps its form and its confirmation."""
     source = source_in(entry)
     new = replace(source, text=words(source.text))
     plain = isinstance(entry, str) and source_in(new.text) == new

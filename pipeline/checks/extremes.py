@@ -158,7 +158,7 @@ def over_duty(
     turns = tuple(cycles)
     if any(cycle.machine.duty is None for cycle in turns):
         return worst_case(turns, measure, at_least=life)
-    running = [cycle for cycle in turns if cycle.machine.duty]
+    running = lasting(turns)
     if not running:
         return NOWHERE
     parts = duty_parts(running, measure, life=life)

@@ -24,6 +24,7 @@ from camwright.pipeline.base.units import in_unit
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.machine import Corner, Machine, machines
 from camwright.pipeline.checks.check import Check, Declaration, Demand
+from camwright.pipeline.checks.lost_loads import checks_on_sound_loads
 from camwright.pipeline.checks.registry import TOLERANCE_CORNERS, TOLERANCED, checks_of
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.cycle import solve_lengths
@@ -333,7 +334,7 @@ def _outcome(
     if isinstance(solved, CamError):
         return Outcome(corner, {}, str(solved))
     try:
-        checks = checks_of(solved, declarations)
+        checks = tuple(checks_on_sound_loads(declarations, solved))
     except CamError as error:
         return Outcome(corner, {}, str(error))
     known = {one.id: float(one.demand) for one in checks if one.demand is not None}

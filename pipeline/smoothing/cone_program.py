@@ -238,8 +238,8 @@ def solved(
             return None
         beyond = [k for k, norm in enumerate(norms) if k not in chosen and _exceeds(norm, solution)]
         if not beyond:
-            found = dict(zip(chosen, solution.norms, strict=True))
-            return replace(solution, norms=[found.get(k, (0.0, 0.0)) for k in range(len(norms))])
+            prices = dict(zip(chosen, solution.norms, strict=True))
+            return replace(solution, norms=[prices.get(k, (0.0, 0.0)) for k in range(len(norms))])
         chosen = sorted([*chosen, *beyond])
 
 

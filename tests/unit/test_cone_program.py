@@ -82,7 +82,7 @@ def _independent(norms: list[Norm], slope: np.ndarray) -> float:
         return float(x[SIZE] + PENALTY * x[SIZE + 1] + slope @ step + 0.05 * step @ step)
 
     start = np.append(np.zeros(SIZE), [10.0, 10.0])
-    found = scipy.optimize.minimize(
+    optimum = scipy.optimize.minimize(
         cost,
         start,
         method="SLSQP",
@@ -90,5 +90,5 @@ def _independent(norms: list[Norm], slope: np.ndarray) -> float:
         constraints={"type": "ineq", "fun": room},
         options={"maxiter": 500, "ftol": 1e-9},
     )
-    assert found.success, found.message
-    return float(found.fun)
+    assert optimum.success, optimum.message
+    return float(optimum.fun)
