@@ -15,7 +15,8 @@ from camwright.pipeline.base.progress import SILENT, Progress
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_values import refused_as_written
 from camwright.pipeline.case.load_case_torque import engine_torques
-from camwright.pipeline.checks.registry import checks_of
+from camwright.pipeline.checks.check import depends_on_lift
+from camwright.pipeline.checks.registry import DECLARED, checks_of
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.solution import Solution, solution
 from camwright.pipeline.results.run_folder import versions
@@ -33,6 +34,7 @@ _CONVERGENCE = 2.0  # of a preview over that of a run
 _ROUNDS = 3  # of synthesis and correction
 _ENDED_ROUNDS = 2  # of them, where the effort ends the search
 _ENDED = "the preview ends the search for the cam before it has converged; a run goes on"
+_REMOVABLE = 0.01  # sum of the excess of each limit that more splines may still remove
 _EFFORT = 16  # tried steps of a search: most need fewer
 
 
@@ -152,7 +154,7 @@ def _synthesised(case: Case, torques: Mapping[str, Torque], progress: Progress) 
         rank,
         solved_ripple,
     )
-    from camwright.pipeline.smoothing.multistart import explored, resolved
+    from camwright.pipeline.smoothing.multistart import continued, explored, resolved
     from camwright.pipeline.smoothing.problem_setup import problem_of
 
     whole = problem_of(case, torques)
@@ -162,10 +164,11 @@ def _synthesised(case: Case, torques: Mapping[str, Torque], progress: Progress) 
     comparisons: list[Comparison] = []
     tried: list[tuple[Solution, SynthesisRecord]] = []
     while True:
-        given_up = design.stuck or design.ended
+        given_up = design.stuck or design.ended or design.violation > _REMOVABLE
         if not refined and (comparisons or not (design.feasible or given_up)):
+            first = continued(problem, design) if comparisons else design
             rising = replace(problem, convergence=convergence)
-            design, refined = resolved(rising, design)[0][-1], True
+            design, refined = resolved(rising, first)[0][-1], True
             problem = replace(problem, coefficients=design.coefficients.size)
         elif comparisons:
             design = synthesise(problem)
@@ -181,7 +184,8 @@ def _synthesised(case: Case, torques: Mapping[str, Torque], progress: Progress) 
         problem = corrected(problem, design, comparisons)
     if comparisons[-1].settled or len(tried) == 1:
         return _trial_of(*tried[-1], progress)
-    ranks = [rank(checks_of(each), solved_ripple(each.cycles)) for each, _ in tried]
+    ranking = [each for each in DECLARED.values() if each.must_have and depends_on_lift(each)]
+    ranks = [rank(checks_of(each, ranking), solved_ripple(each.cycles)) for each, _ in tried]
     best = max(k for k, each in enumerate(ranks) if each == min(ranks))
     return _trial_of(*tried[best], progress)
 

@@ -929,7 +929,7 @@ def within_depth(checks: Iterable[Check]) -> tuple[Check, ...]:
     return tuple(each for each in checks if not each.judged_at)
 
 
-def depends_on_lift(one: Check) -> bool:
+def depends_on_lift(one: Check | Declaration) -> bool:
     """Whether a synthesis of the lift can change the demand of a check."""
     return one.lift_can_help or one.id == TORQUE_REDUCTION.id
 

@@ -408,9 +408,10 @@ def factor_at_pressure(pair: FinitePair, pressure: float, mean_length: float) ->
     """Signed factor of an untilted contact of a plane-strain pressure, Pa, at its curvature."""
     half_width = 2.0 * pressure / (pair.contact_modulus * pair.curvature)
     force = 0.5 * np.pi * half_width * pressure * pair.contact_length
-    table = length_table(pair, mean_length)
-    at = np.array([pair.curvature]), np.array([force]), np.zeros(1)
-    return float(signed_factor(table, *at).value[0])
+    edges, line = length_table(pair, mean_length).of_one(pair.curvature, force)
+    corner = pair.has_singular_end
+    flat = pair.contact_length
+    return float(signed_pressure(edges, line, flat, mean_length, has_corner=corner).value[0])
 
 
 def held_couple(machine: Machine, guides: GuideReactions) -> Array:

@@ -163,7 +163,7 @@ def explored(problem: Problem, count: int) -> Explored:
     """
     coarse = coarsened(problem)
     random = np.random.default_rng(_SEED)
-    designs, resolution = resolved(problem, approached(coarse))
+    designs, resolution = resolved(problem, continued(problem, approached(coarse)))
     fine = replace(problem, coefficients=designs[-1].coefficients.size)
     size = float(np.abs(Search(coarse).exact).max())
     others = [continued(fine, approached(_random(coarse, size, random))) for _ in range(count - 1)]
@@ -173,14 +173,14 @@ def explored(problem: Problem, count: int) -> Explored:
     return Explored(best, Starts(ripples), resolution)
 
 
-def resolved(problem: Problem, start: Design | State) -> tuple[list[Design], Resolution]:
+def resolved(problem: Problem, first: Design) -> tuple[list[Design], Resolution]:
     """Designs of rising numbers of splines, the last the finest, and the change of their ripple.
 
     Parameters
     ----------
-    start : Design or State   of fewer splines
+    first : Design   of the problem
     """
-    designs = [continued(problem, start)]
+    designs = [first]
     if problem.convergence is None:
         return designs, Resolution(problem.lobes * problem.coefficients)
     most = COEFFICIENTS_MAX // problem.lobes

@@ -63,6 +63,7 @@ _NEAR, _BEHIND = 0.05, 0.01
 _RIPPLE_BEHIND = 0.005  # of the engine's ripple: the same for the ripples of the scenarios
 _PEAKS = 0.1  # of the range of the energy, below its maximum, of peaks that may become the highest
 _FARTHEST = 1.0  # greatest step of a coefficient, of the scale
+_KEPT = 1e-6  # of the greatest slope of the energy: least slope where its sign is to be kept
 
 
 class Means(NamedTuple):
@@ -658,11 +659,14 @@ class Search:
             return []
         slope = self.turn.energy(state.coefficients)[1]
         size, side = np.abs(slope).max(), -np.sign(slope[points])
+        level = side * slope[points] / size
+        # A slope of zero, which a program meets to its tolerance, may have the other sign.
+        level += np.minimum(_KEPT, -0.5 * level)
         entries = self.scale * side[:, None] * self.turn.entries[1][points]
         none = np.full(points.size, -1)
         return [
-            Linear(KEPT_SIDE, side * slope[points] / size, entries / size,
-                   self.turn.columns[points], none, points, elastic=False)
+            Linear(KEPT_SIDE, level, entries / size, self.turn.columns[points], none, points,
+                   elastic=False)
         ]  # fmt: skip
 
     def _least_energy(self, state: State) -> list[Linear]:

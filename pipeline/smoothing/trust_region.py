@@ -33,7 +33,9 @@ _ADDITIONS = 4
 _CORRECTED = 0.9  # of the foreseen gain: below, the step is corrected
 _BENT = 0.5  # of the foreseen gain: below, the step is shortened
 _SETTLING = 10  # steps in which most searches outside the limits converge; then they may be stuck
-_STUCK = 0.01  # of the violation: greatest decrease in the linear models of a search that is stuck
+# Of the violation: greatest decrease in the linear models of a search that is stuck, and of one
+# that a greater penalty would not move.
+_STUCK, _SETTLED = 0.01, 0.003
 _VIOLATED = 1e-6
 _PATIENCE = 4  # steps over which the gain of a draft is judged
 
@@ -68,7 +70,7 @@ def descended(
     Outside the limits the search ends, `stuck`, where a step foresees next to no gain and the least
     violation of the linear models is that of the cam, or wider steps were refused: a greater
     penalty would gain nothing, and limits that jump make it creep. A search without a seed has
-    some steps before.
+    some steps before. Where the penalty is to rise it ends likewise, if the least is nearer still.
 
     Parameters
     ----------
@@ -135,14 +137,15 @@ def descended(
                 missing += ripple_weight * max(0.0, state.ripple - enough)
                 if predicted <= _HOPELESS * missing:
                     return Descent(state, model, program, step, gain, penalty)
-            creeping = ripple_weight > 0.0 and predicted <= _CREEPING * penalty * state.violation
+            creeping = predicted <= _CREEPING * penalty * state.violation
             # Beyond a limit, not beyond its reserve alone.
             beyond = any(value > 1.0 for value in state.utilisation.values())
+            priced_in = ripple_weight > 0.0 and beyond
             # A search from the end of another has no long way to go.
             settled = step > _SETTLING or search.problem.seed is not None
-            if settled and beyond and creeping and not tested:
+            if settled and priced_in and creeping and not tested:
                 tested = True
-                if trust < _PROOF or _stuck(search, state, model):
+                if trust < _PROOF or _stuck(search, state, model, _STUCK):
                     return Descent(state, model, program, step, gain, penalty, stuck=True)
             actual = now - there.merit(penalty, ripple_weight)
             if predicted > least and actual < _CORRECTED * predicted:
@@ -169,6 +172,9 @@ def descended(
                     trust, proven = _PROOF, True
                     continue
                 if raised:
+                    if priced_in and not tested and _stuck(search, state, model, _SETTLED):
+                        return Descent(state, model, program, step, gain, penalty, stuck=True)
+                    tested = True
                     penalty *= _RISE
                     trust, widest = max(trust, 0.1), 0.0
                     model = model._replace(curvature=_RISE * model.curvature)  # as the multipliers
@@ -210,13 +216,13 @@ def _nearer(
     return min(tried, key=lambda each: each.merit(penalty, ripple_weight))
 
 
-def _stuck(search: Search, state: State, model: Model) -> bool:
-    """Whether the least violation of the linear models near a state is next to its own."""
+def _stuck(search: Search, state: State, model: Model, share: float) -> bool:
+    """Whether the linear models near a state decrease its violation by less than a share."""
     linear = model._replace(
         curvature=np.zeros_like(model.curvature), slope=np.zeros_like(model.slope)
     )
     program, _, _ = _program(search, state, linear, _TRUST, penalty=1.0, ripple_weight=0.0)
-    return program is not None and program.objective >= (1.0 - _STUCK) * state.violation
+    return program is not None and program.objective >= (1.0 - share) * state.violation
 
 
 def _corrected(search: Search, model: Model, program: ConeSolution, there: State) -> Model:

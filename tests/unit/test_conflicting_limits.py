@@ -7,6 +7,7 @@ its trust region is 1e-7.
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from camwright.pipeline.case.case_file import read_case, with_values
@@ -113,6 +114,23 @@ def test_a_search_that_is_stuck_outside_the_limits_ends(variant, least, programs
     state = approached(coarsened(problem(*variant)))
     assert len(programs) < 50
     assert state.violation == pytest.approx(least, rel=0.01)
+
+
+def test_a_side_is_kept_where_a_program_meets_its_row_to_the_tolerance_of_the_solver():
+    """Else the slope may be 1e-9 of its greatest on the other side, whose loads are others."""
+    search = started(coarsened(problem(*OFFSET_PUMP)))
+    state = search.state(search.start, search.problem.variables)
+    slope = search.turn.energy(state.coefficients)[1]
+    points = np.flatnonzero(np.abs(slope) > 0.0)
+    (rows,) = search.kept_sides(state, points)
+    assert points.size > 200 and (rows.level < 0.0).all()
+    kept = []
+    for number, point in enumerate(points):
+        step, entries = np.zeros(search.size), rows.entries[number]
+        step[rows.columns[number]] = (1e-8 - rows.level[number]) * entries / (entries @ entries)
+        after = search.turn.energy(search.after(state, step)[0])[1][point]
+        kept.append(after * slope[point] > 0.0 or abs(slope[point]) < 2e-8 * np.abs(slope).max())
+    assert all(kept)
 
 
 def test_limits_that_conflict_are_not_sought_on_more_splines(programs):

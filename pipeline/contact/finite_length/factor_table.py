@@ -148,6 +148,15 @@ class FactorTable:
         ends = nodes[0].edges.shape[1]
         return interpolated[:, :ends], np.maximum(interpolated[:, ends:], 0.0)
 
+    def of_one(self, curvature: float, force: float) -> tuple[Array, Array]:
+        """As `axial_pressure` of one contact without a moment; solved where it has 16 nodes."""
+        if not self._depends_on_load:
+            return self.axial_pressure(curvature, force)
+        pair = replace(self.pair, curvature=curvature)
+        _, p0 = self._hertz(np.array([curvature]), np.array([force]))
+        edges, line, _ = _solved(pair, force, np.zeros(1))
+        return edges, line / p0
+
     def edges_of_line(self, curvature: float, force: float) -> Array:
         """Edges (m + 1,), m, of cells along the whole line at a curvature, 1/m, and force, N."""
         half_width, _ = self._hertz(np.array([curvature]), np.array([force]))
