@@ -7,8 +7,8 @@ versions compare on the same cases. A draw that the check refuses is told and re
 one of its seed, so that each seed is a case that is judged; its time counts too.
 The budget is told in rounds of `mixed_work`, measured before each check: 5 s where one takes 50 ms.
 A check beyond it is measured once more, and the less counts: other work on the machine shows in one
-of both. Beyond it the exit code is 1. With `--keep FOLDER` the checks are written there as JSON, to be
-compared with those of another version.
+of both. Beyond it the exit code is 1. With `--keep FOLDER` the checks are written there as JSON, to
+be compared with those of another version.
 """
 
 from __future__ import annotations

@@ -181,7 +181,7 @@ class Correction:
 
     def at(self, theta: Array) -> Correction:
         """Corrections at cam angles theta (m,), rad, interpolated linearly."""
-        # All fields at once: a search asks for corrections at the reversals of each of its steps.
+        # All fields at once, since each step of a search needs them at its reversals.
         rows = np.stack([getattr(self, each.name) for each in fields(self)])
         count = rows.shape[1]
         rows = np.concatenate([rows[:, -1:], rows, rows[:, :1]], axis=1)
