@@ -70,7 +70,8 @@ def descended(
     Outside the limits the search ends, `stuck`, where a step foresees next to no gain and the least
     violation of the linear models is that of the cam, or wider steps were refused: a greater
     penalty would gain nothing, and limits that jump make it creep. A search without a seed has
-    some steps before. Where the penalty is to rise it ends likewise, if the least is nearer still.
+    some steps before. One of bounded effort ends likewise where the penalty is to rise, if the
+    least is nearer still.
 
     Parameters
     ----------
@@ -172,7 +173,8 @@ def descended(
                     trust, proven = _PROOF, True
                     continue
                 if raised:
-                    if priced_in and not tested and _stuck(search, state, model, _SETTLED):
+                    hurried = priced_in and not tested and search.problem.effort is not None
+                    if hurried and _stuck(search, state, model, _SETTLED):
                         return Descent(state, model, program, step, gain, penalty, stuck=True)
                     tested = True
                     penalty *= _RISE
