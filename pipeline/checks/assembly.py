@@ -255,9 +255,9 @@ def _with_module(demand: Demand, solution: Solution) -> Demand:
     unit="-",
     sense="at_least",
     source=Source(
-        "14 teeth of 20 deg, practical limit of unshifted full-depth teeth, Roloff/Matek, gears,"
-        " read second-hand in inggo, Maschinenelemente, Grenzzaehnezahl; safer is 17, without"
-        " undercut",
+        "14 teeth of 20 deg, practical limit of unshifted full-depth teeth, whose undercut from"
+        " 17 teeth down does no harm yet, Roloff/Matek, gears, read second-hand in inggo,"
+        " Maschinenelemente, Grenzzaehnezahl",
         confirmed=False,
     ),
     tier=Tier.SCREENING,

@@ -389,7 +389,8 @@ contact_pressure = check(
     title="Peak contact pressure vs. endurance limit",
     unit="MPa",
     sense="at_most",
-    method="greatest contact pressure over the turn; least endurance of cam and follower",
+    method="greatest contact pressure over the turn, Hertz and finite elements, as by ESDU 93001;"
+    " least endurance of cam and follower",
     lift_can_help=True,
     tier=Tier.SCREENING,
     error="contact",

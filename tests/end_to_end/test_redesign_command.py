@@ -134,8 +134,8 @@ def test_a_point_is_what_its_case_file_gives(done):
     out, document = done
     point = document["points"][-1]
     case = read_case(out / point["file"])
-    checks = {check.id: check for check in preview_case(case).checks}
-    # the same case by the same functions: nothing may differ
+    # the same case by the same functions, nominal as the study judges it: nothing may differ
+    checks = {check.id: check for check in preview_case(case, corners=False).checks}
     assert checks["torque_reduction"].demand == pytest.approx(point["torque_reduction"], rel=1e-9)
     assert 1e3 * checks["cam_radius"].demand == pytest.approx(point["cam_radius_mm"], rel=1e-9)
     failing = {c.id for c in checks.values() if c.must_have and c.status == "fail"}

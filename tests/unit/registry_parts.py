@@ -252,7 +252,7 @@ for _name, _area, _strength, _how in (
         lambda: with_loads(cam_torque=NAN),
         1e-6 * by_hand.KEY_PUSH / _area,
         _how,
-        factor=1.0 / (0.5 * _strength),
+        factor=1.0 / (0.25 * _strength),
         missing=lambda: with_key(length=None),
     )
 by_limit(
@@ -339,7 +339,7 @@ by_limit(
 )
 tried(
     "gear_bending",
-    limited("gear_bending", lambda p: with_gear(bending_limit=1.4 / 0.7 * p)),
+    limited("gear_bending", lambda p: with_gear(bending_limit=1.45 / 0.7 * p)),
     lambda: with_gear(bending_limit=None),
     lambda: with_loads(cam_torque=NAN),
     1e-6 * by_hand.TOOTH / (0.01 * 1e-3 * np.pi * (0.154 - 0.912 / 40)),
@@ -347,7 +347,7 @@ tried(
 )
 tried(
     "pinion_bending",
-    limited("pinion_bending", lambda p: with_gear(pinion_bending_limit=1.4 / 0.7 * p)),
+    limited("pinion_bending", lambda p: with_gear(pinion_bending_limit=1.45 / 0.7 * p)),
     lambda: with_gear(pinion_bending_limit=None),
     lambda: with_loads(cam_torque=NAN),
     1e-6 * by_hand.TOOTH / (0.01 * 1e-3 * np.pi * (0.154 - 0.912 / 20)),
@@ -355,7 +355,9 @@ tried(
 )
 tried(
     "gear_contact",
-    limited("gear_contact", lambda p: with_gear(contact_limit=p, pinion_contact_limit=2 * p)),
+    limited(
+        "gear_contact", lambda p: with_gear(contact_limit=1.2 * p, pinion_contact_limit=2.4 * p)
+    ),
     lambda: with_gear(contact_limit=None),
     lambda: with_loads(cam_torque=NAN),
     1e-6

@@ -234,7 +234,7 @@ def test_an_objective_without_a_term_is_refused(case, torques):
 
 def test_a_search_ends_within_the_limits_where_four_steps_gain_little(case, torques):
     """One that converges is not ended; with no gain worth it the ripple is above the least."""
-    every = problem_of(replaced(case, {"cam.offset": 2e-3}), torques)
+    every = problem_of(replaced(case, {"cam.offset": 4e-3}), torques)
     problem = replace(coarsened(every), left_out=frozenset({"torque_reduction"}))
     least, same, early = (
         descended(started(problem), 1.0, worth=worth) for worth in (0.0, 1e-3, 10.0)

@@ -34,7 +34,7 @@ STROKE, BASE, ROLLER, WIDTH, OMEGA = 0.01, 0.05, 0.008, 0.01, 80.0
 E_STEEL = 210e9
 FRICTION = 0.1
 # Conductivity and specific heat of the cards of cam and face.
-THERMAL = ((45.0, 460.0), (42.0, 460.0))
+THERMAL = ((41.0, 434.0), (42.0, 434.0))
 MODULES = ("contact_strength", "surface_durability", "flat_face_sliding")
 OWN = [each for each in CHECKS if (each.measure or each.demand).__module__.endswith(MODULES)]
 FACE = {
