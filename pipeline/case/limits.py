@@ -210,7 +210,7 @@ ASSEMBLY_GAP = Limit(
     In("mm", above=0, at_most=1000), 2e-4,
     Source(
         "0.2 mm, tolerance of one length from 6 to 30 mm, DIN ISO 2768-1 medium, table 1,"
-        " read in a copy; the safer of two sources: 0.4 mm, where both parts have it",
+        " read in a copy; both parts at their worst ends close a gap by 0.4 mm",
         confirmed=False,
     ), "at_least",
 )  # fmt: skip
