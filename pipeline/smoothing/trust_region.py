@@ -141,10 +141,10 @@ def descended(
             creeping = predicted <= _CREEPING * penalty * state.violation
             # Beyond a limit, not beyond its reserve alone.
             beyond = any(value > 1.0 for value in state.utilisation.values())
-            priced_in = ripple_weight > 0.0 and beyond
+            conflict = ripple_weight > 0.0 and beyond
             # A search from the end of another has no long way to go.
             settled = step > _SETTLING or search.problem.seed is not None
-            if settled and priced_in and creeping and not tested:
+            if settled and conflict and creeping and not tested:
                 tested = True
                 if trust < _PROOF or _stuck(search, state, model, _STUCK):
                     return Descent(state, model, program, step, gain, penalty, stuck=True)
@@ -173,10 +173,10 @@ def descended(
                     trust, proven = _PROOF, True
                     continue
                 if raised:
-                    hurried = priced_in and not tested and search.problem.effort is not None
-                    if hurried and _stuck(search, state, model, _SETTLED):
-                        return Descent(state, model, program, step, gain, penalty, stuck=True)
-                    tested = True
+                    if conflict and not tested and search.problem.effort is not None:
+                        tested = True
+                        if _stuck(search, state, model, _SETTLED):
+                            return Descent(state, model, program, step, gain, penalty, stuck=True)
                     penalty *= _RISE
                     trust, widest = max(trust, 0.1), 0.0
                     model = model._replace(curvature=_RISE * model.curvature)  # as the multipliers
