@@ -158,7 +158,7 @@ def test_the_dead_centre_is_checked_by_the_motored_peak(tmp_path):
     case = case_of(tmp_path, motored)
     assert measurement_record(case)["motored_lead_deg"] == pytest.approx(2.6, abs=1e-3)
     (one,) = (line for line in warnings(case) if "motored" in line)
-    assert one.startswith("engine.motored_file: peak 2.6 deg before the dead centre, usually 0.3")
+    assert one.startswith("engine.motored_file: peak 2.6 deg before the dead centre, usually 0.4")
     case = case_of(tmp_path, f'{motored}dead_centre = "loss_angle"\n')
     assert measurement_record(case)["motored_lead_deg"] == pytest.approx(0.6, abs=1e-3)
     assert not [line for line in warnings(case) if "motored" in line]

@@ -245,6 +245,7 @@ def _put_search(data: Tables, case: Case, choice: Choice, radius: float) -> None
             "kind": "constrained",
             "free": list(dict.fromkeys([*kept, "initial_energy", "prime_radius"])),
             "prime_radius_range": [_mm(low), _mm(high)],
+            "corners": True,
             "source": "redesign: the least ripple that these parts allow",
         }
     )

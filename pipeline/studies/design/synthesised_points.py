@@ -50,7 +50,7 @@ class PointStudy:
     def solved(self, design: Machinery, smoothing: str = SYNTHESIS) -> Solved:
         """A design with its record, cached or solved, its checks judged at all tolerance ends."""
         text = self.text(design, smoothing)
-        record = solved(PointTask(text, "", self.folder, self.version, "corners"))
+        record = solved(PointTask(text, "", self.folder, self.version, "whole"))
         return Solved(design, record, smoothing)
 
     def drafted(self, design: Machinery, smoothing: str) -> Solved:

@@ -136,14 +136,11 @@ class DesignPoint:
         }
 
 
-def point_of(case: Case, *, corners: bool = False) -> DesignPoint:
+def point_of(case: Case) -> DesignPoint:
     """Point of a case by constrained synthesis and preview.
 
-    Parameters
-    ----------
-    corners : bool   judge each check at its worst tolerance corner, unless one fails nominally, and
-                     where none fails the keyway root by finite elements, if its bound does not
-                     prove it
+    Each check is judged at its worst tolerance corner, unless one fails nominally, and where none
+    fails the keyway root by finite elements, if its bound does not prove it.
 
     Raises
     ------
@@ -151,7 +148,7 @@ def point_of(case: Case, *, corners: bool = False) -> DesignPoint:
         If there is no such cam.
     """
     trial = preview_case(case, corners=False)
-    if corners and not any(check.blocks and check.status == "fail" for check in trial.checks):
+    if not any(check.blocks and check.status == "fail" for check in trial.checks):
         trial = judged_at_corners(trial, engine_torques(case))
     drawn, contour, turn = trial.case, trial.contour, trial.cycles[0].turn
     rest, torque = turn.torque_after, turn.torque_before
@@ -161,7 +158,7 @@ def point_of(case: Case, *, corners: bool = False) -> DesignPoint:
     blocking = [check for check in in_order(within_depth(trial.checks)) if check.blocks]
     failing = [check for check in blocking if check.status == "fail"]
     shortfalls = tuple(_shortfall(check) for check in failing)
-    if corners and not failing:
+    if not failing:
         shortfalls = _root_shortfall(trial)
     return DesignPoint(
         feasible=record["feasible"],

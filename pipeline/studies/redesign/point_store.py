@@ -25,8 +25,8 @@ SOLVED = "solved"
 
 @dataclass(frozen=True)
 class PointTask:
-    """A case as text, to be solved by the synthesis alone, also on few cam angles, in full, in full
-    at the worst tolerance corners, or for its conflict of limits.
+    """A case as text, to be solved by the synthesis alone, also on few cam angles, in full, or for
+    its conflict of limits.
 
     base: the original case, whose torque all variants share; folder: of the included files and of
     the cache ``solved/``; version: of the source.
@@ -36,7 +36,7 @@ class PointTask:
     base: str
     folder: Path
     version: str
-    tier: Literal["coarse", "rough", "whole", "corners", "conflict"]
+    tier: Literal["coarse", "rough", "whole", "conflict"]
 
     @property
     def path(self) -> Path:
@@ -60,7 +60,7 @@ def solved(task: PointTask) -> Record:
             problem = problem_of(case, _torques(task.base, task.folder))
             record = {"feasible": False, **infeasibility(problem).as_record()}
         else:
-            record = point_of(case, corners=task.tier == "corners").as_record()
+            record = point_of(case).as_record()
     except CamError as error:
         record = {"feasible": False, "why": str(error)}
     write_atomic(task.path, json_text(record) + "\n")

@@ -185,7 +185,7 @@ def _chosen(tried: Sequence[Tried], against: str) -> list[Choice]:
 def _solved_whole(
     search: RedesignTask, chosen: Sequence[Choice], workers: ProcessPoolExecutor, progress: Progress
 ) -> tuple[Record, list[Tried]]:
-    """Original case and choices by synthesis and preview."""
+    """Original case and choices by synthesis and preview, at their worst tolerance corners."""
     progress.stage(f"solve {len(chosen)} points of the front")
     texts = [search.case.to_toml(), *(search.text(choice) for choice in chosen)]
     futures = [workers.submit(solved, search.task(text, "whole")) for text in texts]
