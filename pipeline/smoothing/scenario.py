@@ -181,16 +181,8 @@ class Correction:
 
     def at(self, theta: Array) -> Correction:
         """Corrections at cam angles theta (m,), rad, interpolated linearly."""
-        # All fields at once, since each step of a search needs them at its reversals.
-        rows = np.stack([getattr(self, each.name) for each in fields(self)])
-        count = rows.shape[1]
-        rows = np.concatenate([rows[:, -1:], rows, rows[:, :1]], axis=1)
-        own = np.arange(count) * (FULL_TURN / count)
-        knots = np.concatenate([own[-1:] - FULL_TURN, own, [FULL_TURN]])
-        angle = theta % FULL_TURN
-        left = np.minimum(np.searchsorted(knots, angle, side="right") - 1, count)
-        rise = (rows[:, left + 1] - rows[:, left]) / (knots[left + 1] - knots[left])
-        return Correction(*(rise * (angle - knots[left]) + rows[:, left]))
+        own = np.arange(self.contact.size) * (FULL_TURN / self.contact.size)
+        return self.each(lambda one: np.interp(theta, own, one[0], period=FULL_TURN))
 
 
 @dataclass(frozen=True, eq=False)
