@@ -34,7 +34,6 @@ _CONVERGENCE = 2.0  # of a preview over that of a run
 _ROUNDS = 3  # of synthesis and correction
 _ENDED_ROUNDS = 2  # of them, where the effort ends the search
 _ENDED = "the preview ends the search for the cam before it has converged; a run goes on"
-_REMOVABLE = 0.01  # sum of the excess of each limit that more splines may still remove
 _EFFORT = 16  # tried steps of a search: most need fewer
 
 
@@ -154,7 +153,7 @@ def _synthesised(case: Case, torques: Mapping[str, Torque], progress: Progress) 
         rank,
         solved_ripple,
     )
-    from camwright.pipeline.smoothing.multistart import continued, explored, resolved
+    from camwright.pipeline.smoothing.multistart import REMOVABLE, continued, explored, resolved
     from camwright.pipeline.smoothing.problem_setup import problem_of
 
     whole = problem_of(case, torques)
@@ -164,7 +163,7 @@ def _synthesised(case: Case, torques: Mapping[str, Torque], progress: Progress) 
     comparisons: list[Comparison] = []
     tried: list[tuple[Solution, SynthesisRecord]] = []
     while True:
-        given_up = design.stuck or design.ended or design.violation > _REMOVABLE
+        given_up = design.stuck or design.ended or design.violation > REMOVABLE
         if not refined and (comparisons or not (design.feasible or given_up)):
             first = continued(problem, design) if comparisons else design
             rising = replace(problem, convergence=convergence)

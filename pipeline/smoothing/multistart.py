@@ -19,6 +19,7 @@ from camwright.pipeline.smoothing.synthesis_problem import Design, Problem, coar
 AGREE = 0.01  # relative difference of the residual ripple of equal designs
 NEGLIGIBLE = 1e-3  # of the engine's ripple: residual ripples below it are equal
 COEFFICIENTS_MAX = 240
+REMOVABLE = 0.01  # sum of the excess of each limit that more splines may still remove
 _REFINEMENT = 1.5  # of the number of splines
 _SEED = 1989
 
@@ -154,7 +155,8 @@ def explored(problem: Problem, count: int) -> Explored:
     """Best design from several starts, their agreement, and its convergence with the splines.
 
     Each start is solved on fewer splines and cam angles, and then on those of the design. The
-    number of splines rises until the ripple changes by less than `Problem.convergence`.
+    number of splines rises until the ripple changes by less than `Problem.convergence`. Where few
+    splines exceed the limits by more than others remove, a bounded effort is halved on more.
 
     Parameters
     ----------
@@ -163,7 +165,11 @@ def explored(problem: Problem, count: int) -> Explored:
     """
     coarse = coarsened(problem)
     random = np.random.default_rng(_SEED)
-    designs, resolution = resolved(problem, continued(problem, approached(coarse)))
+    start = approached(coarse)
+    first = problem
+    if problem.effort is not None and start.violation > REMOVABLE:
+        first = replace(problem, effort=problem.effort // 2)
+    designs, resolution = resolved(problem, continued(first, start))
     fine = replace(problem, coefficients=designs[-1].coefficients.size)
     size = float(np.abs(Search(coarse).exact).max())
     others = [continued(fine, approached(_random(coarse, size, random))) for _ in range(count - 1)]

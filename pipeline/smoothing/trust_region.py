@@ -18,6 +18,8 @@ from camwright.pipeline.smoothing.sampled_problem import Search
 from camwright.pipeline.smoothing.synthesis_problem import CONVERGED, FEASIBLE, RESERVE
 
 PENALTY, _PENALTY_MAX = 20.0, 2e3
+# Of a search of bounded effort: 1 % of a limit that is worth more costs twice the engine's ripple.
+_PENALTY_BOUNDED = 2e2
 _HOPELESS = 0.01  # foreseen gain over the excess, where a cam within the limits is not reached
 _CREEPING = 1e-3  # the same, at which a search that is stuck has its end
 _INSIDE = 0.9  # of the trust region
@@ -100,6 +102,7 @@ def descended(
     penalty = PENALTY if earlier is None else earlier.penalty
     merits: list[float] = []
     tries, effort = 0, search.problem.effort or np.inf
+    most = _PENALTY_MAX if search.problem.effort is None else _PENALTY_BOUNDED
     for step in range(1, _STEPS_MAX + 1):
         before, priced = model, program
         merits.append(state.merit(penalty, ripple_weight))
@@ -129,7 +132,7 @@ def descended(
             # Outside a limit the merit is next to the penalty alone.
             outside = not _within(state)
             scale = penalty / PENALTY if outside else 1.0
-            raised = outside and penalty < _PENALTY_MAX
+            raised = outside and penalty < most
             least = (_RAISED if raised else CONVERGED) * scale
             if trust >= _PROOF or gain == np.inf:
                 gain = predicted / scale
