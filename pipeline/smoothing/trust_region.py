@@ -71,8 +71,8 @@ def descended(
 
     Outside the limits the search ends, `stuck`, where a step foresees next to no gain and the least
     violation of the linear models is that of the cam, or wider steps were refused: a greater
-    penalty would gain nothing, and limits that jump make it creep. A search without a seed has
-    some steps before. One of bounded effort ends likewise where the penalty is to rise, if the
+    penalty would gain nothing, and limits that jump make it creep. A search without a seed and of
+    unbounded effort has some steps before. One of bounded effort ends likewise where the penalty is to rise, if the
     least is nearer still.
 
     Parameters
@@ -145,8 +145,8 @@ def descended(
             # Beyond a limit, not beyond its reserve alone.
             beyond = any(value > 1.0 for value in state.utilisation.values())
             conflict = ripple_weight > 0.0 and beyond
-            # A search from the end of another has no long way to go.
-            settled = step > _SETTLING or search.problem.seed is not None
+            # A search from the end of another has no long way to go, one of bounded effort no time.
+            settled = step > _SETTLING or search.problem.seed is not None or effort < np.inf
             if settled and conflict and creeping and not tested:
                 tested = True
                 if trust < _PROOF or _stuck(search, state, model, _STUCK):
