@@ -72,8 +72,8 @@ def descended(
     Outside the limits the search ends, `stuck`, where a step foresees next to no gain and the least
     violation of the linear models is that of the cam, or wider steps were refused: a greater
     penalty would gain nothing, and limits that jump make it creep. A search without a seed and of
-    unbounded effort has some steps before. One of bounded effort ends likewise where the penalty is to rise, if the
-    least is nearer still.
+    unbounded effort has some steps before. One of bounded effort ends likewise where the penalty is
+    to rise, if the least is nearer still.
 
     Parameters
     ----------
