@@ -14,7 +14,6 @@ from camwright.pipeline.base.missing_kinds import MISSING_KINDS
 from camwright.pipeline.base.tables import Column
 from camwright.pipeline.case.case_file import read_case
 from camwright.pipeline.case.keys import (
-    TABLE,
     accepted,
     case_keys,
     default,
@@ -234,11 +233,11 @@ def keys() -> str:
     parts = []
     for header, listed in groupby(case_keys(), key=lambda key: key.header):
         whole = list(listed)
-        about = "".join(f"\n\n{sentence(key.meaning)}" for key in whole if key.accepted == TABLE)
+        about = "".join(f"\n\n{sentence(key.meaning)}" for key in whole if key.is_table)
         rows = (
             (f"`{key.name}`", key.meaning, key.accepted, key.default)
             for key in whole
-            if key.accepted != TABLE
+            if not key.is_table
         )
         table = markdown(("key", "meaning", "accepted", "default"), rows)
         parts.append(f"### `{header}`{about}\n\n{table}")
@@ -248,7 +247,7 @@ def keys() -> str:
 def study_keys() -> str:
     """A table of keys for each section of a study file."""
     parts = []
-    for _, header, section in sections(Study, ""):
+    for _, header, section, *_ in sections(Study):
         rows = [
             (f"`{field.alias or name}`", accepted(field), of_field(section, name))
             for name, field in section.model_fields.items()

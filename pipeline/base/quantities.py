@@ -15,6 +15,7 @@ from types import MappingProxyType, UnionType
 from typing import (
     TYPE_CHECKING,
     Annotated,
+    Any,
     ClassVar,
     Literal,
     NamedTuple,
@@ -312,9 +313,19 @@ class _Rule(NamedTuple):
 _RULES: dict[type[Part], Mapping[str, _Rule]] = {}  # read once
 
 
+_HINTS: dict[type[Part], Mapping[str, Any]] = {}  # evaluated once
+
+
+def hints_of(part: type[Part]) -> Mapping[str, Any]:
+    """Annotations of a part and its bases with their marks, by name."""
+    if part not in _HINTS:
+        _HINTS[part] = MappingProxyType(get_type_hints(part, include_extras=True))
+    return _HINTS[part]
+
+
 def _rules_of(part: type[Part]) -> Mapping[str, _Rule]:
     if part not in _RULES:
-        hints = get_type_hints(part, include_extras=True)
+        hints = hints_of(part)
         rules = {
             field.name: rule
             for field in fields(part)  # type: ignore[arg-type]

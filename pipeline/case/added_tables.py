@@ -18,19 +18,17 @@ import tomli_w
 from camwright.geometry.errors import InputError
 from camwright.pipeline.base.material import Material
 from camwright.pipeline.case.cards.card_filling import fill_cards, known_cards
-from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_values import steps_of
 from camwright.pipeline.case.error_text import MissingKeysError, Written, grouped
 from camwright.pipeline.case.keys import (
     MATERIAL,
     NAME,
     REQUIRED,
-    TABLE,
     Key,
     case_keys,
+    case_tables,
     keys_at,
     keys_in,
-    sections,
 )
 from camwright.pipeline.case.scope_section import is_stand_in
 from camwright.pipeline.case.toml_text import Tables, TomlValue
@@ -119,7 +117,7 @@ def _rows(paths: Iterable[str]) -> list[tuple[str, Key]]:
     for path in paths:
         for key in keys_at(path)[:1]:
             listed = [each for each in keys_in(key.path) if each.needed]
-            if key.accepted == TABLE and not key.example:
+            if key.is_table and not key.example:
                 rows |= {f"{path}.{each.name}": each for each in listed}
             else:
                 rows[path] = key
@@ -199,7 +197,7 @@ def with_examples(error: MissingKeysError, tables: Tables, folder: Path | None) 
     for path, other in _SAME.items():
         if path in rows:
             like = rows[other].example if other in rows else written.value(steps_of(other))
-            rows[path] = rows[path] if like is None else replace(rows[path], example=like)
+            rows[path] = rows[path] if like is None else replace(rows[path], instead=like)
     rows |= _materials(rows, written, folder)
     order = {key.path: place for place, key in enumerate(case_keys())}
     rows = dict(sorted(rows.items(), key=lambda row: (order[row[1].path], row[0])))
@@ -210,13 +208,13 @@ def with_examples(error: MissingKeysError, tables: Tables, folder: Path | None) 
 def _within(path: str) -> Iterator[tuple[str, Key]]:
     """A key, or the required keys of a table in place of it."""
     keys = keys_at(path)
-    if not keys or keys[0].accepted != TABLE:
+    if not keys or not keys[0].is_table:
         yield from ((path, key) for key in keys[:1])
         return
     required = [key for key in keys_in(path) if key.default == REQUIRED]
     if keys[0].header.startswith("[["):
         row: TomlValue = [{key.name: key.example for key in required}]
-        yield path, replace(keys[0], example=row)
+        yield path, replace(keys[0], instead=row)
         return
     spared: Tables = {}
     for card in keys_at(f"{path}.card")[:1]:
@@ -228,7 +226,7 @@ def _within(path: str) -> Iterator[tuple[str, Key]]:
     for name, field in _section(path).model_fields.items():
         if field.is_required():
             for key in keys_at(f"{path}.{field.alias or name}")[:1]:
-                if key.accepted == TABLE:
+                if key.is_table:
                     yield from _within(key.path)
 
 
@@ -243,7 +241,7 @@ def _filled(path: str, card: Key) -> Tables:
 
 
 def _section(path: str) -> type[Any]:
-    return next(each.section for each in sections(Case, "") if each.path == path)
+    return next(each.section for each in case_tables() if each.path == path)
 
 
 def _materials(rows: Rows, written: Written, folder: Path | None) -> Rows:
@@ -256,7 +254,7 @@ def _materials(rows: Rows, written: Written, folder: Path | None) -> Rows:
     )
     (card,) = keys_at(f"materials.{NAME}.card")
     return {
-        f"materials.{name}.card": replace(card, example=name) if name in shipped else card
+        f"materials.{name}.card": replace(card, instead=name) if name in shipped else card
         for name in names
         if isinstance(name, str) and name not in known
     }

@@ -6,11 +6,11 @@ A key is that of the case file: ``spring.rate``, ``roller.bearing.C``, ``load_ca
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, fields, replace
 from functools import cache, lru_cache
-from typing import Any, TypeVar, get_args
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -20,7 +20,8 @@ from camwright.pipeline.base import units
 from camwright.pipeline.base.quantities import Count, In, Part
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.error_text import as_written
-from camwright.pipeline.case.section import Section, section_of, suggestion
+from camwright.pipeline.case.keys import MATERIAL, NAME, Key, keys_at, names_in
+from camwright.pipeline.case.section import Section, suggestion
 from camwright.pipeline.follower.spring import Number, Treatment, WoundWire
 
 _STEP = re.compile(r"([A-Za-z_0-9]+)(?:\[(0|[1-9][0-9]{0,3})\])?")
@@ -45,6 +46,7 @@ def steps_of(key: str) -> tuple[str | int, ...]:
     return tuple(steps)
 
 
+@lru_cache(maxsize=4096)
 def quantity_of(key: str) -> In | Count | None:
     """Unit and bounds of the number at a key; None: the value is no number.
 
@@ -53,57 +55,38 @@ def quantity_of(key: str) -> In | Count | None:
     InputError
         If no case has such a key; with the closest one.
     """
-    models: list[Any] = [Case]  # of one kind of a table each
-    name = ""
-    for step in steps_of(key):
-        if isinstance(step, int):
-            continue
-        if name == "materials":  # this step is the name of one
-            name = step
-            continue
-        sections = [section for model in models for section in _sections_in(model)]
-        if not sections:
-            raise InputError("factor", key, f"a key of the case file: {name} is no table")
-        known: dict[str, list[Any]] = {}
-        for section in sections:
-            for each, field in section.model_fields.items():
-                hint = _Hint(field.annotation, tuple(field.metadata))
-                known.setdefault(field.alias or each, []).append(hint)
-        if step not in known:
-            raise InputError("factor", key, f"a key of the case file{suggestion(step, known)}")
-        name, models = step, known[step]
-    return next((mark for model in models if (mark := _mark_in(model)) is not None), None)
+    names = [step for step in steps_of(key) if isinstance(step, str)]
+    keys = _fields_at(".".join(names)) or _fields_along(key, names)
+    return next((each.mark for each in keys if each.mark is not None), None)
 
 
-class _Hint:
-    """Annotation of a field, with the marks that pydantic has split off."""
-
-    def __init__(self, annotation: Any, metadata: tuple[Any, ...]) -> None:
-        self.annotation, self.metadata = annotation, metadata
+def _fields_at(path: str) -> tuple[Key, ...]:
+    return tuple(each for each in keys_at(path) if each.is_field)
 
 
-def _sections_in(hint: Any) -> tuple[type[Section], ...]:
-    """Sections that a hint holds, through unions, tuples and tables of parts."""
-    if isinstance(hint, _Hint):
-        hint = hint.annotation
-    if isinstance(hint, type) and issubclass(hint, Section):
-        return (hint,)
-    if isinstance(hint, type) and issubclass(hint, Part):
-        return (section_of(hint),)
-    return tuple(section for each in get_args(hint) for section in _sections_in(each))
+def _fields_along(key: str, names: Iterable[str]) -> tuple[Key, ...]:
+    """Keys at the end of a path that may lead through the material of a part to its card."""
+    keys: tuple[Key, ...] = ()
+    path = ""
+    for name in names:
+        if any(each.accepted == MATERIAL for each in keys):
+            path = f"materials.{NAME}"
+        known = names_in(path)
+        if path == "materials":
+            path = f"{path}.{NAME}"
+        elif name in known:
+            path = f"{path}.{name}".lstrip(".")
+        else:
+            raise InputError("factor", key, f"a key of the case file{_beside(name, path, known)}")
+        keys = _fields_at(path)
+    return keys
 
 
-def _mark_in(hint: Any) -> In | Count | None:
-    marks = hint.metadata if isinstance(hint, _Hint) else getattr(hint, "__metadata__", ())
-    for mark in marks:
-        if isinstance(mark, (In, Count)):
-            return mark
-    inner = hint.annotation if isinstance(hint, _Hint) else hint
-    for each in get_args(inner):
-        mark = _mark_in(each)
-        if mark is not None:
-            return mark
-    return None
+def _beside(name: str, table: str, known: Sequence[str]) -> str:
+    """The key that a misspelt one may be; else that its table is none."""
+    if known:
+        return suggestion(name, known)
+    return f": {table.rpartition('.')[2]} is no table"
 
 
 def value_of(case: Case, key: str) -> Any:

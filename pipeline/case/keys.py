@@ -1,4 +1,4 @@
-"""Every key of a case: unit, range and default of its field, meaning and example of `keys.toml`."""
+"""Registry of the keys of a case: unit, range, default, meaning and example of each field."""
 
 from __future__ import annotations
 
@@ -6,9 +6,9 @@ import re
 import tomllib
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, cached_property
 from importlib.resources import files
-from types import UnionType
+from types import MappingProxyType, UnionType
 from typing import Annotated, Literal, NamedTuple, Union, get_args, get_origin
 
 from pydantic.fields import FieldInfo
@@ -20,17 +20,15 @@ from camwright.pipeline.base.source import NO_SOURCE, Source
 from camwright.pipeline.base.units import shown
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.limits import LIMITS, Limit
-from camwright.pipeline.case.section import Section, section_of
+from camwright.pipeline.case.section import Section, number_in, section_of
 from camwright.pipeline.case.toml_text import TomlValue
 
 NAME = "NAME"
 """Stands in a path for a name that the case chooses: ``materials.NAME.E``."""
 REQUIRED = "required"
-TABLE = "table"
-"""What a key that is a table accepts."""
 MATERIAL = "name of a material"
 SOURCE = "text, or `{ text, confirmed }`"
-"""What the key of a material accepts."""
+"""What the key of a material, and that of a source, accepts."""
 DIGITS = 6
 """Digits of a default."""
 _SAME_TEXTS = {
@@ -49,14 +47,6 @@ _RESOLVED: Mapping[str, str] = {
 """Keys that the reader replaces by what they name: none is a field of `Case`."""
 
 
-class TableKeys(NamedTuple):
-    """Keys of a table by its dotted path; its header as in a case file, and its kind."""
-
-    path: str
-    header: str
-    section: type[Section]
-
-
 @dataclass(frozen=True)
 class Key:
     """A key of the case file, or one of its tables.
@@ -65,22 +55,18 @@ class Key:
     ----------
     path : str        dotted, with ``NAME`` for a name that the case chooses
     header : str      of its table, such as ``[cam]``
-    accepted : str    unit and bounds, words, or kind of value; of a table `TABLE`
-    default : str     value or meaning of its absence; "required", or "": a datum that is missing
-    meaning : str     what it states, in the terms of the field
-    source : str      where such a value comes from
-    example : object  value as a case file has it
-    used : str        stages that use its table
+    section : type    section that has its field
+    field : str       name of the field
+    is_table : bool   whether it is a table, with keys of its own
+    instead : object  example in place of its own; None: its own
     """
 
     path: str
     header: str
-    accepted: str
-    default: str
-    meaning: str
-    source: str
-    example: TomlValue
-    used: str
+    section: type[Section]
+    field: str
+    is_table: bool = False
+    instead: TomlValue | None = None
 
     @property
     def name(self) -> str:
@@ -88,21 +74,109 @@ class Key:
         return self.path.rpartition(".")[2]
 
     @property
+    def table(self) -> str:
+        """Path of its table; "": the top of the file."""
+        return self.path.rpartition(".")[0]
+
+    @property
     def needed(self) -> bool:
         """Whether its table is not complete without it."""
         return self.default in ("", REQUIRED) and self.name != "source"
 
+    @property
+    def is_field(self) -> bool:
+        """Whether a case has it as a field; else the reader replaces it by what it names."""
+        return self.field in self.section.model_fields
+
+    @cached_property
+    def mark(self) -> In | Count | None:
+        """Unit and bounds of its number; None: it holds none."""
+        if self.is_table or not self.is_field:
+            return None
+        return number_in(self.section.model_fields[self.field])
+
+    @cached_property
+    def accepted(self) -> str:
+        """Unit and bounds, words, or kind of value; of a table ""."""
+        if self.is_table:
+            return ""
+        if not self.is_field:
+            return _RESOLVED[self.path]
+        return accepted(self.section.model_fields[self.field])
+
+    @cached_property
+    def default(self) -> str:
+        """Value or meaning of its absence; "required", or "": a datum that is missing."""
+        if self.is_table:
+            return ""
+        return of_field(self.section, self.field) if self.is_field else "none"
+
+    @cached_property
+    def meaning(self) -> str:
+        """What it states, in the terms of the field."""
+        return LIMITS[self.name].title if self._is_limit else str(self._text["meaning"])
+
+    @cached_property
+    def source(self) -> str:
+        """Where such a value comes from; of a table ""."""
+        if not self._is_limit:
+            return str(self._text.get("source", ""))
+        row = LIMITS[self.name]
+        return str(row.source) if isinstance(row, Limit) else row.found
+
+    @property
+    def example(self) -> TomlValue:
+        """Value as a case file has it, without one of its own its default; of a table {}."""
+        return self._example if self.instead is None else self.instead
+
+    @cached_property
+    def _example(self) -> TomlValue:
+        if self._is_limit:
+            row = LIMITS[self.name]
+            return (
+                written(row.default, row.quantity.unit) if isinstance(row, Limit) else row.example
+            )
+        if self.name == "kind" and " or " not in self.accepted:
+            return self.accepted.strip("`")  # one of several tables, told apart by it
+        if self.is_table or "example" in self._text:
+            return self._text.get("example", {})
+        return _default_value(self.section.model_fields[self.field])
+
+    @cached_property
+    def used(self) -> str:
+        """Stages that use its table."""
+        return str(_text(self.path if self.is_table else self.table, "table")["used"])
+
+    @property
+    def _is_limit(self) -> bool:
+        return self.table == "limits" and self.name in LIMITS
+
+    @property
+    def _text(self) -> Mapping[str, TomlValue]:
+        if self.is_table:
+            return _text(self.path, "table")
+        return _text(self.table, self.name)
+
 
 @cache
 def case_keys() -> tuple[Key, ...]:
-    """Every key of a case file in the order of its tables, each table before its keys.
+    """Every key of a case file in the order of its tables, each table before its keys."""
+    return tuple(key for table in case_tables() for key in _keys_of(table))
 
-    Raises
-    ------
-    KeyError
-        If a key has no text in `keys.toml`.
-    """
-    return tuple(key for table in sections(Case, "") for key in _keys_of(table))
+
+@cache
+def case_tables() -> tuple[TableKeys, ...]:
+    """Every table of a case file in its order, the top of the file first."""
+    return tuple(sections(Case))
+
+
+@cache
+def registry() -> Mapping[str, tuple[Key, ...]]:
+    """Keys of a case file by path, one for each kind of its table that has it."""
+    by_path: dict[str, tuple[Key, ...]] = {}
+    for key in case_keys():
+        by_path[key.path] = (*by_path.get(key.path, ()), key)
+    return MappingProxyType(by_path)
 
 
 def keys_at(path: str) -> tuple[Key, ...]:
@@ -113,76 +187,76 @@ def keys_at(path: str) -> tuple[Key, ...]:
     path : str   ``materials.steel.E`` and ``load_case[0].speed`` are read as
                  ``materials.NAME.E`` and ``load_case.speed``
     """
+    return registry().get(".".join(_words(path)), ())
+
+
+def _words(path: str) -> list[str]:
     words = re.sub(r"\[\d*\]", "", path).split(".")
     if words[0] == "materials" and len(words) > 1:
         words[1] = NAME
-    return tuple(key for key in case_keys() if key.path == ".".join(words))
+    return words
+
+
+def names_in(table: str) -> tuple[str, ...]:
+    """Names of the fields of a table by its path, tables within it included; () if it is none."""
+    names = (
+        field.alias or name
+        for each in case_tables()
+        if each.path == table
+        for name, field in each.section.model_fields.items()
+    )
+    return tuple(dict.fromkeys(names))
 
 
 def keys_in(table: str) -> tuple[Key, ...]:
     """Keys of a table by its path, each once, tables within it left out."""
-    within = {
-        key.path: key
-        for key in case_keys()
-        if key.path.rpartition(".")[0] == table and key.accepted != TABLE
-    }
+    within = {key.path: key for key in case_keys() if key.table == table and not key.is_table}
     return tuple(within.values())
 
 
-def _keys_of(table: TableKeys) -> Iterator[Key]:
-    path, header, section = table
-    about = _text(path, TABLE)
-    used = str(about["used"])
-    if path:
-        source = str(about.get("source", ""))
-        yield Key(path, header, TABLE, "", str(about["meaning"]), source,
-                  about.get("example", {}), used)  # fmt: skip
-    for name, field in section.model_fields.items():
-        if not any(nested(field)):
-            yield _key(table, field.alias or name, accepted(field), of_field(section, name), used)
-    for resolved, words in _RESOLVED.items():
-        parent, _, name = resolved.rpartition(".")
-        if parent == path:
-            yield _key(table, name, words, "none", used)
-
-
-def _key(table: TableKeys, name: str, words: str, default: str, used: str) -> Key:
-    path = f"{table.path}.{name}".lstrip(".")
-    if table.path == "limits" and name in LIMITS:
-        row = LIMITS[name]
-        if isinstance(row, Limit):
-            value = written(row.default, row.quantity.unit)
-            return Key(path, table.header, words, default, row.title, str(row.source), value, used)
-        return Key(path, table.header, words, "", row.title, row.found, row.example, used)
-    text = _text(table.path, name)
-    field = table.section.model_fields.get(name)
-    example: TomlValue
-    if name == "kind" and " or " not in words:  # one of several tables, told apart by it
-        example = words.strip("`")
-    else:
-        example = text["example"] if "example" in text else _default_value(field)
-    return Key(path, table.header, words, default, str(text["meaning"]), str(text["source"]),
-               example, used)  # fmt: skip
-
-
 @cache
-def texts() -> Mapping[str, Mapping[str, Mapping[str, TomlValue]]]:
+def _texts() -> Mapping[str, Mapping[str, Mapping[str, TomlValue]]]:
     """Texts of `keys.toml` by table and key."""
     content = files(__package__).joinpath("keys.toml").read_text(encoding="utf-8")
     return tomllib.loads(content)
 
 
 def _text(path: str, name: str) -> Mapping[str, TomlValue]:
-    known = texts()
+    known = _texts()
     table = known[path]
     same = known[_SAME_TEXTS.get(path, path)]
     return table.get(name) or same.get(name) or known["*"][name]
 
 
-def sections(section: type[Section], path: str) -> Iterator[TableKeys]:
-    """A section and those within it, by their headers in a case file."""
-    if not path:
-        yield TableKeys("", "top of the file", section)
+class TableKeys(NamedTuple):
+    """A table of a file by its dotted path: its header and section, and the field that holds it."""
+
+    path: str
+    header: str
+    section: type[Section]
+    holder: type[Section]
+    field: str
+
+
+def _keys_of(table: TableKeys) -> Iterator[Key]:
+    path, header, section, holder, held_as = table
+    if path:
+        yield Key(path, header, holder, held_as, is_table=True)
+    for name, field in section.model_fields.items():
+        if not any(nested(field)):
+            yield Key(f"{path}.{field.alias or name}".lstrip("."), header, section, name)
+    for resolved in _RESOLVED:
+        if resolved.rpartition(".")[0] == path:
+            yield Key(resolved, header, section, resolved.rpartition(".")[2])
+
+
+def sections(section: type[Section]) -> Iterator[TableKeys]:
+    """A section and those within it, by their headers in its file."""
+    yield TableKeys("", "top of the file", section, section, "")
+    yield from _within(section, "")
+
+
+def _within(section: type[Section], path: str) -> Iterator[TableKeys]:
     for name, field in section.model_fields.items():
         for kind, inner in nested(field):
             key = f"{path}.{field.alias or name}".lstrip(".")
@@ -193,8 +267,8 @@ def sections(section: type[Section], path: str) -> Iterator[TableKeys]:
                 get_args(word.annotation) if word and get_origin(word.annotation) is Literal else ()
             )
             mark = f' kind = "{marks[0]}"' if len(marks) == 1 else ""
-            yield TableKeys(key, header + mark, inner)
-            yield from sections(inner, key)
+            yield TableKeys(key, header + mark, inner, section, name)
+            yield from _within(inner, key)
 
 
 def nested(field: FieldInfo) -> Iterator[tuple[str, type[Section]]]:
@@ -223,11 +297,11 @@ def _nested(hint: object, kind: str) -> Iterator[tuple[str, type[Section]]]:
 
 def accepted(field: FieldInfo) -> str:
     """What a key may hold: unit and bounds, words, or kind of value."""
-    for mark in _marks_of(field):
-        if isinstance(mark, In):
-            return mark.limit.replace("finite ", "any, ").replace(" and ", ", ")
-        if isinstance(mark, Count):
-            return f"whole number, {mark.at_least} to {mark.at_most}"
+    mark = number_in(field)
+    if isinstance(mark, In):
+        return mark.limit.replace("finite ", "any, ").replace(" and ", ", ")
+    if isinstance(mark, Count):
+        return f"whole number, {mark.at_least} to {mark.at_most}"
     words = [
         word
         for hint in _leaves(field.annotation)
@@ -251,16 +325,6 @@ def accepted(field: FieldInfo) -> str:
     return listed + " or ".join(
         dict.fromkeys(word for word in leaves if word and word != "NoneType")
     )
-
-
-def _marks_of(field: FieldInfo) -> list[object]:
-    return [*field.metadata, *_marks(field.annotation)]
-
-
-def _marks(hint: object) -> Iterator[object]:
-    yield from getattr(hint, "__metadata__", ())
-    for each in get_args(hint):
-        yield from _marks(each)
 
 
 def _leaves(hint: object) -> Iterator[object]:
@@ -313,7 +377,8 @@ def _default_value(field: FieldInfo | None) -> TomlValue:
 
 
 def _unit_of(field: FieldInfo) -> str | None:
-    return next((mark.unit for mark in _marks_of(field) if isinstance(mark, In)), None)
+    mark = number_in(field)
+    return mark.unit if isinstance(mark, In) else None
 
 
 def written(value: float, unit: str) -> TomlValue:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import difflib
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import MISSING, dataclass, fields, replace
 from types import UnionType
 from typing import (
@@ -16,7 +16,6 @@ from typing import (
     Union,
     get_args,
     get_origin,
-    get_type_hints,
 )
 
 from pydantic import (
@@ -32,11 +31,12 @@ from pydantic import (
     create_model,
     model_validator,
 )
+from pydantic.fields import FieldInfo
 from pydantic_core import CoreSchema, InitErrorDetails, PydanticCustomError, core_schema
 
 from camwright.geometry.errors import InputError
 from camwright.pipeline.base.material import Material
-from camwright.pipeline.base.quantities import Characters, Part
+from camwright.pipeline.base.quantities import Characters, Count, In, Part, hints_of
 from camwright.pipeline.base.source import FORM, Source, source_in
 
 SAFE_NAME = re.compile(r"[A-Za-z0-9](?:[A-Za-z0-9_.-]{0,38}[A-Za-z0-9_-])?")
@@ -192,7 +192,7 @@ def section_of(part: type[Part]) -> type[Section]:
 
 
 def _section_made_of(part: type[Part]) -> type[Section]:
-    hints = get_type_hints(part, include_extras=True)
+    hints = hints_of(part)
     described: dict[str, Any] = {}
     for field in fields(part):  # type: ignore[arg-type]
         if field.name in part.labels:
@@ -202,6 +202,23 @@ def _section_made_of(part: type[Part]) -> type[Section]:
     made = create_model(part.__name__, __base__=Section, __doc__=part.__doc__, **described)
     made.defaults = part.defaults
     return made
+
+
+def marks_in(field: FieldInfo) -> Iterator[object]:
+    """Marks of a field: of its annotation, of the kinds in a union, of the entries of a list."""
+    yield from field.metadata
+    yield from _marks(field.annotation)
+
+
+def _marks(hint: object) -> Iterator[object]:
+    yield from getattr(hint, "__metadata__", ())
+    for each in get_args(hint):
+        yield from _marks(each)
+
+
+def number_in(field: FieldInfo) -> In | Count | None:
+    """Unit and bounds of the number, or of each number, in a field; None: it holds none."""
+    return next((mark for mark in marks_in(field) if isinstance(mark, (In, Count))), None)
 
 
 def _in_section(hint: Any) -> Any:

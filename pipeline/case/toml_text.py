@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import datetime as dt
 from collections.abc import Mapping
-from typing import Any, TypeAlias, get_args
+from typing import TypeAlias
 
 import tomli_w
 
@@ -13,7 +13,7 @@ from camwright.pipeline.base import units
 from camwright.pipeline.base.material import Material
 from camwright.pipeline.base.quantities import In, Part
 from camwright.pipeline.base.source import Source, entry_of
-from camwright.pipeline.case.section import Section, section_of
+from camwright.pipeline.case.section import Section, number_in, section_of
 
 TomlValue: TypeAlias = (
     "str | int | float | bool | dt.date | dt.time | list[TomlValue] | dict[str, TomlValue]"
@@ -46,7 +46,9 @@ def tables_of(model: Section | Part, renamed: Mapping[str, str] | None = None) -
             continue
         if renamed is not None and key in _FILE_KEYS and isinstance(value, str):
             value = renamed[value]
-        tables[key] = _written(value, _unit_of(field.annotation, field.metadata), renamed)
+        number = number_in(field)
+        unit = number.unit if isinstance(number, In) else ""
+        tables[key] = _written(value, unit, renamed)
     return tables
 
 
@@ -64,7 +66,7 @@ def table_in(tables: Tables, name: str) -> Tables:
     return table
 
 
-def _written(value: _FieldValue, unit: str | None, renamed: Mapping[str, str] | None) -> TomlValue:
+def _written(value: _FieldValue, unit: str, renamed: Mapping[str, str] | None) -> TomlValue:
     if isinstance(value, Material):
         return value.name
     if isinstance(value, Source):
@@ -82,15 +84,3 @@ def _written(value: _FieldValue, unit: str | None, renamed: Mapping[str, str] | 
     if isinstance(value, tuple):
         return [_written(entry, unit, renamed) for entry in value]
     return units.format(value, unit) if unit and isinstance(value, float) else value
-
-
-def _unit_of(annotation: Any, metadata: list[Any]) -> str | None:
-    """The unit a float field is read in; looks through ``X | None``."""
-    for mark in metadata:
-        if isinstance(mark, In):
-            return mark.unit
-    for inner in get_args(annotation):
-        unit = _unit_of(inner, list(getattr(inner, "__metadata__", ())))
-        if unit is not None:
-            return unit
-    return None

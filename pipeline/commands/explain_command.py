@@ -71,13 +71,11 @@ def _explained(word: str) -> str:
 
 def _of_keys(word: str, keys: Sequence[Key]) -> list[str]:
     """Texts of the keys at a path: one where all kinds of its table agree."""
-    from camwright.pipeline.case.keys import TABLE
-
     kinds: dict[tuple[str, str], list[Key]] = {}
     for key in keys:
         kinds.setdefault((key.accepted, key.default), []).append(key)
     return [
-        _of_table(word, same) if same[0].accepted == TABLE else _of_key(word, same)
+        _of_table(word, same) if same[0].is_table else _of_key(word, same)
         for same in kinds.values()
     ]
 
@@ -104,13 +102,13 @@ def _of_key(word: str, keys: Sequence[Key]) -> str:
 
 
 def _of_table(word: str, keys: Sequence[Key]) -> str:
-    from camwright.pipeline.case.keys import TABLE, case_keys, keys_in
+    from camwright.pipeline.case.keys import case_keys, keys_in
 
     table = keys[0].path
     within = [
         each.path.removeprefix(f"{table}.")
         for each in case_keys()
-        if each.accepted == TABLE and each.path.rpartition(".")[0] == table
+        if each.is_table and each.table == table
     ]
     rows = [
         ("table", ", ".join(dict.fromkeys(each.header for each in keys))),

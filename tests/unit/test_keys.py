@@ -11,9 +11,9 @@ from camwright.pipeline.base.quantities import Count, In
 from camwright.pipeline.case import keys
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_values import quantity_of
-from camwright.pipeline.case.keys import TABLE, Key, case_keys, keys_at, keys_in
+from camwright.pipeline.case.keys import Key, case_keys, keys_at, keys_in
 
-KEYS = [key for key in case_keys() if key.accepted != TABLE]
+KEYS = [key for key in case_keys() if not key.is_table]
 RESOLVED = {key.path for key in KEYS if key.default == "none"}
 """Keys that the reader replaces by what they name."""
 
@@ -22,7 +22,7 @@ def test_every_key_of_a_case_has_a_meaning_a_source_and_an_example():
     """A key without its text raises on reading the table of keys."""
     fields = {
         f"{table.path}.{field.alias or name}".lstrip(".")
-        for table in keys.sections(Case, "")
+        for table in keys.sections(Case)
         for name, field in table.section.model_fields.items()
         if not any(keys.nested(field))
     }
@@ -35,8 +35,8 @@ def test_every_key_of_a_case_has_a_meaning_a_source_and_an_example():
 def test_no_text_is_without_a_key():
     known = {key.path for key in case_keys()} | {""}
     stated = {
-        f"{table}.{name}".lstrip(".") if name != TABLE else table
-        for table, entries in keys.texts().items()
+        f"{table}.{name}".lstrip(".") if name != "table" else table
+        for table, entries in keys._texts().items()
         if table != "*"
         for name in entries
     }
@@ -58,7 +58,7 @@ def test_an_example_is_a_value_that_its_key_accepts(key: Key):
 
 
 def test_an_example_of_a_whole_number_is_within_its_bounds():
-    for table in keys.sections(Case, ""):
+    for table in keys.sections(Case):
         for name, field in table.section.model_fields.items():
             if field.annotation is not int:
                 continue
