@@ -7,7 +7,8 @@ In the order of use:
 | `units`            | unit strings to SI and back; units of column names       |                  |
 | `printed_text`     | text with escapes for what steers a terminal             |                  |
 | `missing_kinds`    | kinds of cams, followers and springs that are not done   |                  |
-| `quantities`       | quantities of an input: unit and bounds of a field       | SI               |
+| `quantities`       | quantities of an input: unit, bounds, source, example    | SI               |
+| `field_texts`      | docstrings below the fields of a class                   |                  |
 | `source`           | source of a value, and whether it confirms the value     |                  |
 | `material`         | material card: elastic constants, strengths, source      | E, Pa; nu; S, Pa |
 | `hardness_rules`   | endurance of a steel surface estimated from its hardness | HB, HV; p, Pa    |

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Annotated, ClassVar
 
 from camwright.pipeline.base.material import ROOM
-from camwright.pipeline.base.quantities import In, Part, Temperature
+from camwright.pipeline.base.quantities import In, Known, Part, Temperature
 from camwright.pipeline.base.source import NO_SOURCE, Source
 
 STILL_AIR = 10.0
@@ -18,15 +18,25 @@ recalled: verify."""
 class Cooling(Part):
     """Heat that leaves the mechanism per kelvin above the surroundings, and heat that enters.
 
-    conductance: of housing, oil and shaft together; heat: of other parts in the same housing.
+    The conductance is that of housing, oil and shaft together.
     """
 
     table: ClassVar[str] = "cooling"
 
-    ambient_temperature: Temperature = ROOM
-    conductance: Annotated[float, In("W/K", above=0, at_most=1e6)] | None = None
-    heat: Annotated[float, In("W", at_least=0, at_most=1e9)] = 0.0
-    source: Source = NO_SOURCE
+    ambient_temperature: Annotated[Temperature, Known("place of the machine", "30 degC")] = ROOM
+    """greatest temperature around the housing"""
+    conductance: Annotated[
+        float | None,
+        In("W/K", above=0, at_most=1e6),
+        Known("measured: friction power over the rise of the oil", "4 W/K"),
+    ] = None
+    """heat that leaves the housing per kelvin above the surroundings"""
+    heat: Annotated[
+        float, In("W", at_least=0, at_most=1e9), Known("measured, or their losses", "50 W")
+    ] = 0.0
+    """heat of other parts into the same housing"""
+    source: Annotated[Source, Known("own choice", "run-in test")] = NO_SOURCE
+    """source of the values of the table"""
 
     def temperature(self, loss: float, area: float) -> float:
         """Steady temperature of the mechanism, K.

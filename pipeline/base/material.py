@@ -10,7 +10,18 @@ from typing import Annotated, ClassVar, Literal, NamedTuple
 import numpy as np
 
 from camwright.geometry.errors import InputError
-from camwright.pipeline.base.quantities import In, Length, Part, Pressure, Temperature
+from camwright.pipeline.base.quantities import (
+    In,
+    Known,
+    Length,
+    Meaning,
+    Part,
+    Pressure,
+    Resolved,
+    Temperature,
+    Used,
+    card_of,
+)
 from camwright.pipeline.base.source import Source
 
 ROOM = 293.15
@@ -34,8 +45,10 @@ class StrengthAt(Part):
 
     table: ClassVar[str] = "strength_at"
 
-    temperature: Temperature
-    yield_strength: Pressure
+    temperature: Annotated[Temperature, Known("data sheet of the plastic", "120 degC")]
+    """temperature"""
+    yield_strength: Annotated[Pressure, Known("data sheet of the plastic", "30 MPa")]
+    """yield strength at this temperature"""
 
 
 class Endurance(NamedTuple):
@@ -54,13 +67,10 @@ class Endurance(NamedTuple):
 class Material(Part):
     """Material card: elastic constants, strengths and their source.
 
-    swelling is the relative growth of a length from dry to fully moist, name that of the card in
-    the case. strength_at are yield strengths by temperature, in ascending order; the strength is
-    linear between them and from that at 20 degC. endurance_ holds for rolling,
-    sliding_endurance_ for rolling with 9 % sliding, both pressures for endurance_cycles load
-    cycles. The scales of hardness are not converted into one another: a card of both has the second
-    from a table such as ISO 18265. core_fatigue_torsion is the fully reversed fatigue limit below a
-    hardened case, fatigue_torsion that of the surface.
+    The yield strength is linear in the temperature between those of `strength_at` and from that at
+    20 degC. The endurance in rolling with sliding holds for 9 % sliding. The scales of hardness are
+    not converted into one another: a card of both has the second from a table such as ISO 18265.
+    `name` is that of the card in the case.
 
     Raises
     ------
@@ -70,6 +80,9 @@ class Material(Part):
 
     table: ClassVar[str] = "material"
     labels: ClassVar[tuple[str, ...]] = ("name",)
+    resolved: ClassVar[Mapping[str, Resolved]] = card_of(
+        "shipped card, which fills the keys left out", "materials.toml", "case_hardened"
+    )
     defaults: ClassVar[Mapping[str, str]] = {
         "endurance_pressure": "that of rolling with sliding, which is lower",
         "sliding_endurance_pressure": "needed by a flat face, or without endurance_pressure",
@@ -87,36 +100,107 @@ class Material(Part):
         "fatigue_bending": "unknown: no criteria of Crossland and Dang Van, which are advisory",
     }
 
-    E: Annotated[float, In("GPa", above=0, at_most=1e5)]
-    nu: Annotated[float, In(at_least=0, below=0.5)]
-    yield_strength: Pressure
-    tensile_strength: Pressure | None = None
-    hardness_brinell: Annotated[float, In(above=0, at_most=650)] | None = None
-    hardness_vickers: Annotated[float, In(above=0, at_most=10_000)] | None = None
-    endurance_pressure: Pressure | None = None
-    endurance_slope: Annotated[float, In(above=0, at_most=100)] | None = None
-    endurance_intercept: Annotated[float, In(above=0, at_most=1000)] | None = None
-    sliding_endurance_pressure: Pressure | None = None
-    sliding_endurance_slope: Annotated[float, In(above=0, at_most=100)] | None = None
-    sliding_endurance_intercept: Annotated[float, In(above=0, at_most=1000)] | None = None
-    endurance_cycles: Annotated[float, In(at_least=1, at_most=1e15)] = 1e8
-    conductivity: Annotated[float, In("W/m/K", above=0, at_most=1e4)] | None = None
-    specific_heat: Annotated[float, In("J/kg/K", above=0, at_most=1e5)] | None = None
-    temperature_limit: Temperature | None = None
-    fatigue_torsion: Pressure | None = None
-    fatigue_bending: Pressure | None = None
-    case_depth: Length | None = None
-    core_yield_strength: Pressure | None = None
-    core_fatigue_torsion: Pressure | None = None
-    expansion: Annotated[float, In("1/K", at_least=0, at_most=1e-2)] | None = None
-    swelling: Annotated[float, In(at_least=0, below=1)] | None = None
-    strength_at: tuple[StrengthAt, ...] = ()
-    treatment: (
-        Literal["case_hardened", "induction_hardened", "through_hardened", "not_hardened"] | None
-    ) = None
-    density: Annotated[float, In("kg/m^3", above=0, at_most=1e5)]
-    condition: str = ""
-    source: Source
+    E: Annotated[float, In("GPa", above=0, at_most=1e5), Known("material card", "210 GPa")]
+    """Young's modulus"""
+    nu: Annotated[float, In(at_least=0, below=0.5), Known("material card", 0.3)]
+    """Poisson ratio"""
+    yield_strength: Annotated[Pressure, Known("material card or certificate", "370 MPa")]
+    """yield strength at 20 degC; of a hardened case that of the surface"""
+    tensile_strength: Annotated[
+        Pressure | None, Known("material card or certificate", "630 MPa")
+    ] = None
+    """tensile strength"""
+    hardness_brinell: Annotated[
+        float | None, In(above=0, at_most=650), Known("certificate, or measured", 250)
+    ] = None
+    """Brinell hardness"""
+    hardness_vickers: Annotated[
+        float | None, In(above=0, at_most=10_000), Known("certificate, or measured", 600)
+    ] = None
+    """Vickers hardness of the surface"""
+    endurance_pressure: Annotated[
+        Pressure | None, Known("Rothbart (2004) table 9.3", "1770 MPa")
+    ] = None
+    """endurance limit of the contact pressure in rolling"""
+    endurance_slope: Annotated[
+        float | None, In(above=0, at_most=100), Known("Rothbart (2004) table 9.3", 7.39)
+    ] = None
+    """A of log10 K = (B - log10 n)/A, K in psi, in rolling"""
+    endurance_intercept: Annotated[
+        float | None, In(above=0, at_most=1000), Known("Rothbart (2004) table 9.3", 38.33)
+    ] = None
+    """B of log10 K = (B - log10 n)/A, K in psi, in rolling"""
+    sliding_endurance_pressure: Annotated[
+        Pressure | None, Known("Rothbart (2004) table 9.3", "1610 MPa")
+    ] = None
+    """endurance limit of the contact pressure in rolling with sliding"""
+    sliding_endurance_slope: Annotated[
+        float | None, In(above=0, at_most=100), Known("Rothbart (2004) table 9.3", 13.2)
+    ] = None
+    """A of log10 K = (B - log10 n)/A, K in psi, in rolling with sliding"""
+    sliding_endurance_intercept: Annotated[
+        float | None, In(above=0, at_most=1000), Known("Rothbart (2004) table 9.3", 61.06)
+    ] = None
+    """B of log10 K = (B - log10 n)/A, K in psi, in rolling with sliding"""
+    endurance_cycles: Annotated[
+        float, In(at_least=1, at_most=1e15), Known("Rothbart (2004) table 9.3")
+    ] = 1e8
+    """load cycles for which the endurance limits are stated"""
+    conductivity: Annotated[
+        float | None, In("W/m/K", above=0, at_most=1e4), Known("material card", "45 W/m/K")
+    ] = None
+    """thermal conductivity"""
+    specific_heat: Annotated[
+        float | None, In("J/kg/K", above=0, at_most=1e5), Known("material card", "460 J/kg/K")
+    ] = None
+    """specific heat, for the temperature of a sliding contact"""
+    temperature_limit: Annotated[
+        Temperature | None, Known("data sheet of the bush", "120 degC")
+    ] = None
+    """greatest temperature in continuous use"""
+    fatigue_torsion: Annotated[Pressure | None, Known("DIN 743-3, or material card", "300 MPa")] = (
+        None
+    )
+    """fully reversed fatigue limit in torsion; of a hardened case that of the surface"""
+    fatigue_bending: Annotated[
+        Pressure | None, Known("DIN 743-3, or half of the tensile strength of steel", "315 MPa")
+    ] = None
+    """fully reversed fatigue limit in bending, polished specimen"""
+    case_depth: Annotated[Length | None, Known("drawing", "1.1 mm")] = None
+    """effective case depth of a hardened surface"""
+    core_yield_strength: Annotated[Pressure | None, Known("material card", "600 MPa")] = None
+    """yield strength of the core below the case"""
+    core_fatigue_torsion: Annotated[Pressure | None, Known("DIN 743-3", "300 MPa")] = None
+    """fully reversed fatigue limit of the core in torsion"""
+    expansion: Annotated[
+        float | None, In("1/K", at_least=0, at_most=1e-2), Known("material card", "1.15e-5 1/K")
+    ] = None
+    """coefficient of thermal expansion"""
+    swelling: Annotated[
+        float | None, In(at_least=0, below=1), Known("data sheet of the plastic", 0.01)
+    ] = None
+    """relative growth of a length from dry to fully moist"""
+    strength_at: Annotated[
+        tuple[StrengthAt, ...],
+        Used("checks of the guides"),
+        Known(
+            "data sheet of the plastic", ({"temperature": "120 degC", "yield_strength": "30 MPa"},)
+        ),
+    ] = ()
+    """yield strengths above 20 degC, by ascending temperature"""
+    treatment: Annotated[
+        Literal["case_hardened", "induction_hardened", "through_hardened", "not_hardened"] | None,
+        Known("drawing", "through_hardened"),
+    ] = None
+    """heat treatment of the surface"""
+    density: Annotated[
+        float, In("kg/m^3", above=0, at_most=1e5), Known("material card", "7850 kg/m^3")
+    ]
+    """density"""
+    condition: Annotated[str, Known("certificate", "C45+QT, 16 to 40 mm")] = ""
+    """melt, size and treatment for which the values hold"""
+    source: Annotated[Source, Known("standard, certificate or textbook", "EN ISO 683-1")]
+    """source of the values of the card"""
     name: str = ""
 
     def __post_init__(self) -> None:
@@ -187,3 +271,7 @@ class Material(Part):
         return Endurance(
             "rolling", self.endurance_pressure, self.endurance_slope, self.endurance_intercept
         )
+
+
+MadeOf = Annotated[Material, Meaning("name of its material in [materials]")]
+"""A field with the material of a body."""

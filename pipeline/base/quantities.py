@@ -10,8 +10,9 @@ import re
 from collections.abc import Mapping
 from dataclasses import dataclass, fields, replace
 from functools import cache
+from inspect import get_annotations
 from math import inf, isfinite
-from types import MappingProxyType, UnionType
+from types import MappingProxyType, NoneType, UnionType
 from typing import (
     TYPE_CHECKING,
     Annotated,
@@ -23,12 +24,12 @@ from typing import (
     Union,
     get_args,
     get_origin,
-    get_type_hints,
 )
 
 from camwright.geometry.errors import InputError
 from camwright.pipeline.base import units
 from camwright.pipeline.base.printed_text import is_printed
+from camwright.pipeline.base.source import Source
 
 if TYPE_CHECKING:
     import numpy as np
@@ -66,7 +67,7 @@ class In:
                 limit = {"limit": error.limit}
                 raise PydanticCustomError("limit", "must be {limit}", limit) from None
 
-        return core_schema.no_info_plain_validator_function(read)
+        return _nullable(source, core_schema.no_info_plain_validator_function(read))
 
     def read(self, value: object) -> float:
         """SI value of a number of a case file.
@@ -137,6 +138,13 @@ class In:
         return _bounds_in_si(self)
 
 
+def _nullable(source: object, schema: CoreSchema) -> CoreSchema:
+    """A schema that lets None pass where the field may be left out."""
+    from pydantic_core import core_schema
+
+    return core_schema.nullable_schema(schema) if NoneType in get_args(source) else schema
+
+
 @dataclass(frozen=True)
 class Ratio(In):
     """As `In`: a pure number, which a case file may state by whole numbers, such as ``"3:2"``."""
@@ -171,7 +179,8 @@ class Count:
     ) -> CoreSchema:
         from pydantic_core import core_schema
 
-        return core_schema.int_schema(ge=self.at_least, le=self.at_most, strict=True)
+        number = core_schema.int_schema(ge=self.at_least, le=self.at_most, strict=True)
+        return _nullable(source, number)
 
     def read(self, value: object) -> int:
         """A whole number of a case file; see `In.read`."""
@@ -209,10 +218,10 @@ class Characters:
                 raise PydanticCustomError("limit", "must be {limit}", {"limit": "printable text"})
             return text
 
-        return core_schema.no_info_after_validator_function(
-            printable,
-            core_schema.str_schema(min_length=self.at_least, max_length=self.at_most, strict=True),
+        text = core_schema.str_schema(
+            min_length=self.at_least, max_length=self.at_most, strict=True
         )
+        return _nullable(source, core_schema.no_info_after_validator_function(printable, text))
 
     def require(self, field: str, value: object) -> None:
         """Refuse text that is too short, too long or not printable, as `In.require` does."""
@@ -245,13 +254,72 @@ def _text(value: object) -> str:
     return "missing" if value is None else str(value)
 
 
+class _Words:
+    """Base of the marks that describe a field and rule none of its values."""
+
+    def __get_pydantic_core_schema__(
+        self, source: type[object], handler: GetCoreSchemaHandler
+    ) -> CoreSchema:
+        return handler(source)
+
+
+@dataclass(frozen=True)
+class Known(_Words):
+    """Marks a field: where its value comes from, and an example.
+
+    Parameters
+    ----------
+    source : str       drawing, data sheet, measurement or choice
+    example : object   value as a case file has it, a list as a tuple; None: the default
+    """
+
+    source: str
+    example: Any = None
+
+
+@dataclass(frozen=True)
+class Used(_Words):
+    """Marks a field that holds a table, by the stages of the calculation that use it."""
+
+    stages: str
+
+
+@dataclass(frozen=True)
+class Meaning(_Words):
+    """Marks fields of one type by their meaning; that of a single field stands below it."""
+
+    text: str
+
+
+def describes(mark: object) -> bool:
+    """Whether a mark describes a field and rules none of its values."""
+    return isinstance(mark, _Words)
+
+
+@dataclass(frozen=True)
+class Resolved:
+    """A key of a table that is no field: the reader replaces it by what it names."""
+
+    accepted: str
+    meaning: str
+    known: Known
+
+
+def card_of(meaning: str, file: str, example: str) -> Mapping[str, Resolved]:
+    """Key ``card`` of a table that a card of a file completes."""
+    source = f"pipeline/case/cards/{file}, or cards.toml beside the case"
+    return {"card": Resolved("name of a card", meaning, Known(source, example))}
+
+
 class Part:
     """Base of the frozen dataclasses that describe a part of the machine, values in SI.
 
     A part is a table of a case file and a value of the physics at once: its annotations (`In`,
     `Count`, `Characters`) give unit and bounds of both. `table` names it in messages; the fields
-    of `labels` are set by the reader and stand in no table. `defaults` has, in words, what a field
-    without a value means; any other field that is None is a datum that the part lacks.
+    of `labels` are set by the reader and stand in no table, the keys of `resolved` stand in the
+    table and are no field. `defaults` has, in words, what a field without a value means; any other
+    field that is None is a datum that the part lacks. The docstring below a field is the meaning of
+    its key, `Known` its source and example.
 
     Raises
     ------
@@ -261,6 +329,7 @@ class Part:
 
     table: ClassVar[str] = ""
     labels: ClassVar[tuple[str, ...]] = ()
+    resolved: ClassVar[Mapping[str, Resolved]] = {}
     defaults: ClassVar[Mapping[str, str]] = {}
 
     @property
@@ -313,14 +382,17 @@ class _Rule(NamedTuple):
 _RULES: dict[type[Part], Mapping[str, _Rule]] = {}  # read once
 
 
-_HINTS: dict[type[Part], Mapping[str, Any]] = {}  # evaluated once
+_HINTS: dict[type, Mapping[str, Any]] = {}  # evaluated once
 
 
 def hints_of(part: type[Part]) -> Mapping[str, Any]:
     """Annotations of a part and its bases with their marks, by name."""
-    if part not in _HINTS:
-        _HINTS[part] = MappingProxyType(get_type_hints(part, include_extras=True))
-    return _HINTS[part]
+    hints: dict[str, Any] = {}
+    for kind in reversed(part.__mro__):
+        if kind not in _HINTS:
+            _HINTS[kind] = get_annotations(kind, eval_str=True)
+        hints |= _HINTS[kind]
+    return hints
 
 
 def _rules_of(part: type[Part]) -> Mapping[str, _Rule]:
@@ -337,9 +409,12 @@ def _rules_of(part: type[Part]) -> Mapping[str, _Rule]:
 
 def _rule_of(hint: object) -> _Rule | None:
     """The rule of a type hint; looks through ``X | None``, not into tuples."""
-    for mark in getattr(hint, "__metadata__", ()):
-        if isinstance(mark, (In, Count, Characters)):
-            return _Rule(mark)
+    if get_origin(hint) is Annotated:
+        inner, *marks = get_args(hint)
+        for mark in marks:
+            if isinstance(mark, (In, Count, Characters)):
+                return _Rule(mark, optional=NoneType in get_args(inner))
+        return _rule_of(inner)
     if get_origin(hint) is Literal:
         return _Rule(OneOf(get_args(hint)))
     if get_origin(hint) in (Union, UnionType):
@@ -376,3 +451,12 @@ Torsion = Annotated[float, In("N m", at_least=-1e8, at_most=1e8)]
 Cycle = Annotated[float, In("deg", above=0, at_most=7200)]
 Residual = Annotated[float, In(above=0, at_most=1e-3)]
 FileName = Annotated[str, Characters(1, 200)]
+CrankRadius = Annotated[Length, Meaning("half of the stroke")]
+RodLength = Annotated[Length, Meaning("connecting rod, centre to centre")]
+TableSource = Annotated[
+    Source,
+    Meaning(
+        'source of the values of this table; { text = "...", confirmed = false } is to be confirmed'
+    ),
+    Known("data sheet, standard, drawing or test report", "drawing 4711, rev. B"),
+]

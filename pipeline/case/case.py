@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
 
 import numpy as np
 from pydantic import AfterValidator, Field, PrivateAttr, ValidationError
@@ -18,6 +18,7 @@ from camwright.pipeline.base.columns import data_frame
 from camwright.pipeline.base.cooling import Cooling
 from camwright.pipeline.base.files import hash_inputs
 from camwright.pipeline.base.material import Material
+from camwright.pipeline.base.quantities import Known, Resolved, Used
 from camwright.pipeline.base.units import shown
 from camwright.pipeline.case.engine_section import Engine, engine_files
 from camwright.pipeline.case.error_text import Written, refusal_of
@@ -66,38 +67,92 @@ class Case(Displayed, Section):
     its defaults or is None. `docs/case-file.md` lists every key with unit, bounds and default.
     """
 
-    schema_version: Literal[1]
-    name: Name
-    title: Text = ""
-    notes: Text = ""
-    document: Document = Document()
-    engine: Engine | None = None
-    torque: ShaftTorque | None = None
-    crankshaft: Table[Crankshaft] | None = None
-    lift: GivenLift | None = None
-    mechanism: Mechanism = Mechanism()
-    spring: Table[Spring]
-    cam: Table[CamBody]
-    camshaft: Table[Camshaft] | None = None
-    valve_train: ValveTrain | None = None
-    roller_given: Annotated[Table[Roller] | None, Field(alias="roller")] = None
-    follower: Follower
-    guides: Table[GuidePair]
-    lubricant: Table[Lubricant] | None = None
-    cooling: Table[Cooling] = Cooling()
-    materials: Materials
-    scope: Scope = Scope()
-    smoothing: Smoothing = Smoothing()
-    limits: Limits = Limits()
-    solver: Solver = Solver()
-    tolerances: Tolerances = Tolerances()
-    workshop: Workshop = Workshop()
-    waivers: Annotated[tuple[Waiver, ...], Field(strict=False, max_length=64)] = ()
-    sources: Annotated[dict[str, StatedSource], Field(default_factory=dict, max_length=1024)]
-    confirmed: Annotated[tuple[Confirmation, ...], Field(strict=False, max_length=1024)] = ()
-    load_cases: Annotated[
-        tuple[LoadCase, ...], Field(alias="load_case", strict=False, min_length=1, max_length=64)
+    resolved: ClassVar[Mapping[str, Resolved]] = {
+        "added": Resolved(
+            "list of tables",
+            "further tables, each added to the one of its name: what `check --missing` prints, at"
+            " the end of the file",
+            Known("camwright check CASE --missing", ({"cam": {"roughness": "0.3 um"}},)),
+        )
+    }
+
+    schema_version: Annotated[Literal[1], Known("this program", 1)]
+    """version of the case file format"""
+    name: Annotated[Name, Known("own choice", "gx120")]
+    """short name: of files and sheets"""
+    title: Annotated[Text, Known("own choice", "Balancing cam of a Honda GX120")] = ""
+    """title of the report"""
+    notes: Annotated[Text, Known("own choice", "Torque measured on the test bench.")] = ""
+    """remarks, printed in the report"""
+    document: Annotated[Document, Used("sign-off sheet, drawing")] = Document()
+    """title block of sign-off sheet and drawing; what is left out is a field to fill by hand"""
+    engine: Annotated[Engine | None, Used("torque")] = None
+    """engine whose torque the cam balances: a model, or measured data"""
+    torque: Annotated[ShaftTorque | None, Used("torque")] = None
+    """machine whose torque the cam balances, by its torque on the shaft; positive drives the
+    shaft"""
+    crankshaft: Annotated[Table[Crankshaft] | None, Used("torque")] = None
+    """rotating parts of the engine and its load, for the crank speed"""
+    lift: Annotated[GivenLift | None, Used("lift")] = None
+    """stated lift, in place of that computed from an engine"""
+    mechanism: Annotated[Mechanism, Used("torque, lift")] = Mechanism()
+    """drive between crank and cam"""
+    spring: Annotated[Table[Spring], Used("lift, cycle, checks")]
+    """spring that holds the follower on the cam"""
+    cam: Annotated[Table[CamBody], Used("contour, contact, part loads")]
+    """the cam disc"""
+    camshaft: Annotated[Table[Camshaft] | None, Used("part loads, checks of the camshaft")] = None
+    """camshaft on two bearings, with its gear"""
+    valve_train: Annotated[ValveTrain | None, Used("valve train comparison")] = None
+    """machine motion of a valve cam"""
+    roller_given: Annotated[
+        Table[Roller] | None, Field(alias="roller"), Used("contour, contact, checks")
+    ] = None
+    """roller of the follower"""
+    follower: Annotated[Follower, Used("lift, cycle, checks")]
+    """translating follower and its stem"""
+    guides: Annotated[Table[GuidePair], Used("cycle, checks of the guides")]
+    """two guides of the stem: A next to the cam, B beyond"""
+    lubricant: Annotated[Table[Lubricant] | None, Used("oil film")] = None
+    """oil between cam and follower"""
+    cooling: Annotated[Table[Cooling], Used("temperature of the mechanism")] = Cooling()
+    """heat that the mechanism gives to its surroundings; without a conductance that of the box
+    around it in still air"""
+    materials: Annotated[Materials, Used("contact, part loads, checks")]
+    """material card of this name"""
+    scope: Annotated[Scope, Used("checks, sign-off")] = Scope()
+    """parts that the sign-off does not cover"""
+    smoothing: Annotated[Smoothing, Used("smoothing, lift")] = Smoothing()
+    """smoothing of the torque, or synthesis of the lift within the limits; keys of other filters
+    alone are refused"""
+    limits: Annotated[Limits, Used("checks, synthesis")] = Limits()
+    """limits of the checks"""
+    solver: Annotated[Solver, Used("cycle, certificate")] = Solver()
+    """resolution and number of trials"""
+    tolerances: Annotated[Tolerances, Used("tolerance corners")] = Tolerances()
+    """tolerances, solved at both ends"""
+    workshop: Annotated[Workshop, Used("workshop files, checks of manufacture")] = Workshop()
+    """workshop files"""
+    waivers: Annotated[tuple[Waiver, ...], Field(strict=False, max_length=64), Used("verdict")] = ()
+    """accepted failure of a check, up to a value"""
+    sources: Annotated[
+        dict[str, StatedSource],
+        Field(default_factory=dict, max_length=1024),
+        Known("data sheet, standard, drawing or test report", {"cam.width": "drawing 4711"}),
     ]
+    """source of single values by their dotted key"""
+    confirmed: Annotated[
+        tuple[Confirmation, ...],
+        Field(strict=False, max_length=1024),
+        Used("values to be confirmed"),
+    ] = ()
+    """confirmation of a value whose source is not confirmed"""
+    load_cases: Annotated[
+        tuple[LoadCase, ...],
+        Field(alias="load_case", strict=False, min_length=1, max_length=64),
+        Used("cycle, checks, synthesis"),
+    ]
+    """load case; the first is the design load case"""
 
     _included: Mapping[str, bytes] = PrivateAttr(default_factory=dict)
     _folder: Path | None = PrivateAttr(default=None)

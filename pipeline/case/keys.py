@@ -3,24 +3,28 @@
 from __future__ import annotations
 
 import re
-import tomllib
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cache, cached_property
-from importlib.resources import files
 from types import MappingProxyType, UnionType
-from typing import Annotated, Literal, NamedTuple, Union, get_args, get_origin
+from typing import Annotated, Literal, NamedTuple, TypeVar, Union, get_args, get_origin
 
 from pydantic.fields import FieldInfo
 from pydantic_core import PydanticUndefined
 
+from camwright.pipeline.base.field_texts import texts_below
 from camwright.pipeline.base.material import Material
-from camwright.pipeline.base.quantities import Count, In, Part
+from camwright.pipeline.base.quantities import Count, In, Known, Meaning, Part, Resolved, Used
 from camwright.pipeline.base.source import NO_SOURCE, Source
 from camwright.pipeline.base.units import shown
 from camwright.pipeline.case.case import Case
-from camwright.pipeline.case.limits import LIMITS, Limit
-from camwright.pipeline.case.section import Section, number_in, section_of
+from camwright.pipeline.case.section import (
+    Section,
+    number_in,
+    section_of,
+    words_at,
+    written_as,
+)
 from camwright.pipeline.case.toml_text import TomlValue
 
 NAME = "NAME"
@@ -31,20 +35,7 @@ SOURCE = "text, or `{ text, confirmed }`"
 """What the key of a material, and that of a source, accepts."""
 DIGITS = 6
 """Digits of a default."""
-_SAME_TEXTS = {
-    "guides.b": "guides.a",
-    **{f"{part}.{table}": f"cam.{table}"
-       for part in ("roller", "follower.face") for table in ("end", "crown")},
-}  # fmt: skip
-_RESOLVED: Mapping[str, str] = {
-    "added": "list of tables",
-    "spring.catalogue": "`shipped`, or a file name",
-    **dict.fromkeys(
-        ("spring.design.card", "spring.gas.card", "roller.bearing.card", "guides.a.card",
-         "guides.b.card", "lubricant.card", "materials.NAME.card"), "name of a card",
-    ),
-}  # fmt: skip
-"""Keys that the reader replaces by what they name: none is a field of `Case`."""
+Words = TypeVar("Words", Known, Meaning, Used)
 
 
 @dataclass(frozen=True)
@@ -86,23 +77,19 @@ class Key:
     @property
     def is_field(self) -> bool:
         """Whether a case has it as a field; else the reader replaces it by what it names."""
-        return self.field in self.section.model_fields
+        return self.field not in self.section.resolved
 
     @cached_property
     def mark(self) -> In | Count | None:
         """Unit and bounds of its number; None: it holds none."""
-        if self.is_table or not self.is_field:
-            return None
-        return number_in(self.section.model_fields[self.field])
+        return number_in(self._info) if self.is_field and not self.is_table else None
 
     @cached_property
     def accepted(self) -> str:
         """Unit and bounds, words, or kind of value; of a table ""."""
         if self.is_table:
             return ""
-        if not self.is_field:
-            return _RESOLVED[self.path]
-        return accepted(self.section.model_fields[self.field])
+        return accepted(self._info) if self.is_field else self._resolved.accepted
 
     @cached_property
     def default(self) -> str:
@@ -113,49 +100,76 @@ class Key:
 
     @cached_property
     def meaning(self) -> str:
-        """What it states, in the terms of the field."""
-        return LIMITS[self.name].title if self._is_limit else str(self._text["meaning"])
+        """What it states, in the terms of the field: the docstring below its field.
 
-    @cached_property
+        Raises
+        ------
+        KeyError
+            If no kind of its table describes it.
+        """
+        if not self.is_field:
+            return self._resolved.meaning
+        for each in self._alike:
+            text = texts_below(written_as(each.section)).get(each.field)
+            if text is not None:
+                return text
+        return self._stated(Meaning).text
+
+    @property
     def source(self) -> str:
-        """Where such a value comes from; of a table ""."""
-        if not self._is_limit:
-            return str(self._text.get("source", ""))
-        row = LIMITS[self.name]
-        return str(row.source) if isinstance(row, Limit) else row.found
+        """Where such a value comes from; "" of a table that is not stated as a value."""
+        return self._known.source
 
     @property
     def example(self) -> TomlValue:
-        """Value as a case file has it, without one of its own its default; of a table {}."""
+        """Value as a case file has it: that beside its field, else the default; of a table {}."""
         return self._example if self.instead is None else self.instead
 
     @cached_property
     def _example(self) -> TomlValue:
-        if self._is_limit:
-            row = LIMITS[self.name]
-            return (
-                written(row.default, row.quantity.unit) if isinstance(row, Limit) else row.example
-            )
         if self.name == "kind" and " or " not in self.accepted:
             return self.accepted.strip("`")  # one of several tables, told apart by it
-        if self.is_table or "example" in self._text:
-            return self._text.get("example", {})
-        return _default_value(self.section.model_fields[self.field])
+        if self._known.example is not None:
+            return _as_toml(self._known.example)
+        return {} if self.is_table else _default_value(self._info)
 
     @cached_property
     def used(self) -> str:
         """Stages that use its table."""
-        return str(_text(self.path if self.is_table else self.table, "table")["used"])
-
-    @property
-    def _is_limit(self) -> bool:
-        return self.table == "limits" and self.name in LIMITS
-
-    @property
-    def _text(self) -> Mapping[str, TomlValue]:
         if self.is_table:
-            return _text(self.path, "table")
-        return _text(self.table, self.name)
+            return self._stated(Used).stages
+        return registry()[self.table][0].used if self.table else "all stages"
+
+    @property
+    def _info(self) -> FieldInfo:
+        return self.section.model_fields[self.field]
+
+    @property
+    def _resolved(self) -> Resolved:
+        return self.section.resolved[self.field]
+
+    @property
+    def _alike(self) -> tuple[Key, ...]:
+        """Keys of its path: one that several kinds of a table have is described in one of them."""
+        return registry()[self.path]
+
+    @property
+    def _known(self) -> Known:
+        if not self.is_field:
+            return self._resolved.known
+        return self._stated(Known, Known("") if self.is_table else None)
+
+    def _stated(self, kind: type[Words], absent: Words | None = None) -> Words:
+        """The first mark of a kind on the fields of its path."""
+        marks = (mark for each in self._alike for mark in words_at(each.section, each.field))
+        words = next((mark for mark in marks if isinstance(mark, kind)), absent)
+        if words is None:
+            raise KeyError(f"{self.path} has no {kind.__name__}")
+        return words
+
+
+def _as_toml(example: TomlValue | tuple[TomlValue, ...]) -> TomlValue:
+    return list(example) if isinstance(example, tuple) else example
 
 
 @cache
@@ -187,14 +201,10 @@ def keys_at(path: str) -> tuple[Key, ...]:
     path : str   ``materials.steel.E`` and ``load_case[0].speed`` are read as
                  ``materials.NAME.E`` and ``load_case.speed``
     """
-    return registry().get(".".join(_words(path)), ())
-
-
-def _words(path: str) -> list[str]:
-    words = re.sub(r"\[\d*\]", "", path).split(".")
-    if words[0] == "materials" and len(words) > 1:
-        words[1] = NAME
-    return words
+    names = re.sub(r"\[\d*\]", "", path).split(".")
+    if names[0] == "materials" and len(names) > 1:
+        names[1] = NAME
+    return registry().get(".".join(names), ())
 
 
 def names_in(table: str) -> tuple[str, ...]:
@@ -214,20 +224,6 @@ def keys_in(table: str) -> tuple[Key, ...]:
     return tuple(within.values())
 
 
-@cache
-def _texts() -> Mapping[str, Mapping[str, Mapping[str, TomlValue]]]:
-    """Texts of `keys.toml` by table and key."""
-    content = files(__package__).joinpath("keys.toml").read_text(encoding="utf-8")
-    return tomllib.loads(content)
-
-
-def _text(path: str, name: str) -> Mapping[str, TomlValue]:
-    known = _texts()
-    table = known[path]
-    same = known[_SAME_TEXTS.get(path, path)]
-    return table.get(name) or same.get(name) or known["*"][name]
-
-
 class TableKeys(NamedTuple):
     """A table of a file by its dotted path: its header and section, and the field that holds it."""
 
@@ -245,9 +241,8 @@ def _keys_of(table: TableKeys) -> Iterator[Key]:
     for name, field in section.model_fields.items():
         if not any(nested(field)):
             yield Key(f"{path}.{field.alias or name}".lstrip("."), header, section, name)
-    for resolved in _RESOLVED:
-        if resolved.rpartition(".")[0] == path:
-            yield Key(resolved, header, section, resolved.rpartition(".")[2])
+    for name in section.resolved:
+        yield Key(f"{path}.{name}".lstrip("."), header, section, name)
 
 
 def sections(section: type[Section]) -> Iterator[TableKeys]:
@@ -366,7 +361,7 @@ def _default_value(field: FieldInfo | None) -> TomlValue:
     """Default of a field as a case file has it."""
     value = None if field is None else field.default
     if field is None or value is None or value is PydanticUndefined:
-        raise KeyError("a key without a default has its example in keys.toml")
+        raise KeyError("a key without a default has an example beside its field")
     unit = _unit_of(field) or ""
     if isinstance(value, float):
         return written(value, unit)

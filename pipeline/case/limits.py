@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Annotated, Literal, overload
 from pydantic import Field, create_model, field_validator
 
 from camwright.geometry.lift import CLOSURE_LIMIT
-from camwright.pipeline.base.quantities import In
+from camwright.pipeline.base.quantities import In, Known, Meaning
 from camwright.pipeline.base.source import Source
 from camwright.pipeline.case.section import Section, StatedSource, refusal, suggestion
 
@@ -618,7 +618,11 @@ def is_weaker(limit: AnyLimit, value: float | None) -> bool:
 class LimitValues(Section):
     """Limits of the checks."""
 
-    sources: dict[str, StatedSource] = Field(default_factory=dict)
+    sources: Annotated[
+        dict[str, StatedSource],
+        Known("requirement, standard or textbook", {"cam_radius": "room beside the crankcase"}),
+    ] = Field(default_factory=dict)
+    """source of single limits by their key"""
 
     @overload
     def __getitem__(self, limit: Limit) -> float: ...
@@ -643,7 +647,10 @@ class LimitValues(Section):
 
 
 def _field_type(limit: AnyLimit) -> object:
-    hint = Annotated[float, limit.quantity]
+    known = (
+        Known(str(limit.source)) if isinstance(limit, Limit) else Known(limit.found, limit.example)
+    )
+    hint = Annotated[float, limit.quantity, Meaning(limit.title), known]
     return hint if isinstance(limit, Limit) else hint | None
 
 

@@ -11,29 +11,28 @@ from pydantic import model_validator
 from camwright.geometry.errors import InputError
 from camwright.pipeline.base import units
 from camwright.pipeline.base.external_force import STANDARD_GRAVITY
-from camwright.pipeline.base.material import Material
-from camwright.pipeline.base.quantities import FileName, In, Length, Mass, Share
+from camwright.pipeline.base.material import MadeOf
+from camwright.pipeline.base.quantities import FileName, In, Known, Length, Mass, Share, Used
 from camwright.pipeline.base.source import NO_SOURCE
-from camwright.pipeline.case.section import MaterialName, Section, StatedSource, Table
+from camwright.pipeline.case.section import (
+    MaterialName,
+    Section,
+    SourceOfTable,
+    Table,
+)
 from camwright.pipeline.follower.flat_face import FlatFace
 
 
 class ValveTrain(Section):
-    """Requests the machine motion of a valve cam; the cam mass is taken as that of a disc."""
+    """Requests the machine motion of a valve cam."""
 
-    cam_mass: Mass
-    source: StatedSource = NO_SOURCE
+    cam_mass: Annotated[Mass, Known("drawing, or weighed", "300 g")]
+    """mass of the cam, taken as a disc"""
+    source: SourceOfTable = NO_SOURCE
 
 
 class Follower(Section):
-    """Translating follower with a roller or a flat face.
-
-    The overhang is from guide A to the roller centre, or to the face. stiffness: from cam to
-    follower mass; left out, bearing, pin, fork, stem and camshaft in series. mass: of all that
-    moves, with spring_share of the spring, a third by Rayleigh. anti_rotation: means that keeps
-    the stem from turning about its axis. External force: along the axis, positive towards the cam;
-    from a file over the cam angle. gravity_angle: of the outward stroke from the upward vertical.
-    """
+    """Translating follower with a roller or a flat face."""
 
     defaults: ClassVar[Mapping[str, str]] = {
         "face": "the follower has a roller",
@@ -44,22 +43,50 @@ class Follower(Section):
         "gravity_angle": "the weight is left out",
     }
 
-    kind: Literal["roller", "flat"] = "roller"
-    face: Table[FlatFace] | None = None
-    mass: Mass
-    stem_diameter: Length
-    stem_length: Length | None = None
-    stem_material: Annotated[Material, MaterialName()]
-    overhang_at_max_lift: Length
-    viscous_damping: Annotated[float, In("N s/m", at_least=0, at_most=1e6)] = 0.0
-    stiffness: Annotated[float, In("N/mm", above=0, at_most=1e12)] | None = None
-    damping_ratio: Annotated[float, In(at_least=0, below=1)] = 0.05
-    anti_rotation: Literal["flat", "key", "square", "guided_fork", "not_needed"] | None = None
-    spring_share: Share = 1.0 / 3.0
-    external_force: Annotated[float, In("N", at_least=-1e9, at_most=1e9)] | None = None
-    external_force_file: FileName | None = None
-    gravity_angle: Annotated[float, In("deg", at_least=0, at_most=180)] | None = None
-    source: StatedSource = NO_SOURCE
+    kind: Annotated[Literal["roller", "flat"], Known("own choice")] = "roller"
+    """roller or flat face"""
+    face: Annotated[Table[FlatFace] | None, Used("contour, contact, checks")] = None
+    """flat face of the follower"""
+    mass: Annotated[Mass, Known("weighed, or drawing", "610 g")]
+    """mass of all that moves with the follower, with its share of the spring"""
+    stem_diameter: Annotated[Length, Known("drawing", "16 mm")]
+    """diameter of the stem in its guides"""
+    stem_length: Annotated[Length | None, Known("drawing", "205 mm")] = None
+    """length of the stem from the roller centre or face to its end"""
+    stem_material: Annotated[MadeOf, MaterialName(), Known("drawing", "c45")]
+    overhang_at_max_lift: Annotated[Length, Known("drawing", "30 mm")]
+    """distance from the middle of guide A to the roller centre or face at maximum lift"""
+    viscous_damping: Annotated[float, In("N s/m", at_least=0, at_most=1e6), Known("measured")] = 0.0
+    """viscous damping of the follower"""
+    stiffness: Annotated[
+        float | None,
+        In("N/mm", above=0, at_most=1e12),
+        Known("measured, or finite elements", "20000 N/mm"),
+    ] = None
+    """stiffness from cam to follower mass"""
+    damping_ratio: Annotated[float, In(at_least=0, below=1), Known("measured; 0.03 to 0.1")] = 0.05
+    """damping of the elastic follower"""
+    anti_rotation: Annotated[
+        Literal["flat", "key", "square", "guided_fork", "not_needed"] | None,
+        Known("drawing", "guided_fork"),
+    ] = None
+    """means that keeps the stem from turning; not_needed of a flat face alone"""
+    spring_share: Annotated[Share, Known("a third by Rayleigh")] = 1.0 / 3.0
+    """share of the spring mass that moves with the follower"""
+    external_force: Annotated[
+        float | None, In("N", at_least=-1e9, at_most=1e9), Known("process, or measured", "50 N")
+    ] = None
+    """constant force of the machine on the follower along its axis, positive towards the cam"""
+    external_force_file: Annotated[FileName | None, Known("process, or measured", "force.csv")] = (
+        None
+    )
+    """that force over the cam angle: columns of cam angle and force, linear between rows"""
+    gravity_angle: Annotated[
+        float | None, In("deg", at_least=0, at_most=180), Known("drawing of the machine", "0 deg")
+    ] = None
+    """angle of the outward stroke from the upward vertical: at 0 deg the weight presses the
+    follower on the cam, at 180 deg it pulls it off"""
+    source: SourceOfTable = NO_SOURCE
 
     @model_validator(mode="after")
     def _has_its_face(self) -> Self:

@@ -12,6 +12,7 @@ from pydantic import Field, model_validator
 
 from camwright.geometry.errors import InputError
 from camwright.pipeline.base import units
+from camwright.pipeline.base.quantities import Known
 from camwright.pipeline.base.source import Source, entry_of
 from camwright.pipeline.case.section import Section, Text
 from camwright.pipeline.case.toml_text import Tables, TomlValue
@@ -77,8 +78,16 @@ _KEYS: dict[ScopeName, tuple[str, ...]] = {
 class Scope(Section):
     """Parts that the sign-off does not cover, and why; every other part has to be described."""
 
-    not_covered: Annotated[tuple[ScopeName, ...], Field(strict=False, max_length=16)] = ()
-    reason: Text = ""
+    not_covered: Annotated[
+        tuple[ScopeName, ...],
+        Field(strict=False, max_length=16),
+        Known("own responsibility", ("gear",)),
+    ] = ()
+    """parts left out of the sign-off"""
+    reason: Annotated[
+        Text, Known("own responsibility", "signed off by the maker of the engine")
+    ] = ""
+    """why they are left out"""
 
     @property
     def statement(self) -> str:

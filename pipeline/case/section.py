@@ -36,7 +36,16 @@ from pydantic_core import CoreSchema, InitErrorDetails, PydanticCustomError, cor
 
 from camwright.geometry.errors import InputError
 from camwright.pipeline.base.material import Material
-from camwright.pipeline.base.quantities import Characters, Count, In, Part, hints_of
+from camwright.pipeline.base.quantities import (
+    Characters,
+    Count,
+    In,
+    Part,
+    Resolved,
+    TableSource,
+    describes,
+    hints_of,
+)
 from camwright.pipeline.base.source import FORM, Source, source_in
 
 SAFE_NAME = re.compile(r"[A-Za-z0-9](?:[A-Za-z0-9_.-]{0,38}[A-Za-z0-9_-])?")
@@ -77,15 +86,19 @@ class FromText:
 
 
 StatedSource = Annotated[Source, FromText()]
+"""A field with a source."""
+SourceOfTable = Annotated[TableSource, FromText()]
 """A field with the source of the values of its table."""
 
 
 class Section(BaseModel):
     """Base of all sections: frozen, unknown keys refused.
 
-    `defaults` has, in words, what a field without a value means.
+    `defaults` has, in words, what a field without a value means, `resolved` the keys that the
+    reader replaces by what they name.
     """
 
+    resolved: ClassVar[Mapping[str, Resolved]] = {}
     defaults: ClassVar[Mapping[str, str]] = {}
 
     model_config = ConfigDict(frozen=True, extra="forbid", strict=True, defer_build=True)
@@ -182,13 +195,20 @@ def part_of(part: type[PartType], section: Section) -> PartType:
 
 
 _SECTIONS: dict[type[Part], type[Section]] = {}  # each made once
+_PARTS: dict[type[Section], type[Part]] = {}
 
 
 def section_of(part: type[Part]) -> type[Section]:
     """Section of a case file that describes a part, with the fields of the part in their order."""
     if part not in _SECTIONS:
-        _SECTIONS[part] = _section_made_of(part)
+        made = _section_made_of(part)
+        _SECTIONS[part], _PARTS[made] = made, part
     return _SECTIONS[part]
+
+
+def written_as(section: type[Section]) -> type[Section | Part]:
+    """The class with the fields of a section in its source: its part, else itself."""
+    return _PARTS.get(section, section)
 
 
 def _section_made_of(part: type[Part]) -> type[Section]:
@@ -200,11 +220,11 @@ def _section_made_of(part: type[Part]) -> type[Section]:
         default = ... if field.default is MISSING else field.default
         described[field.name] = (_in_section(hints[field.name]), default)
     made = create_model(part.__name__, __base__=Section, __doc__=part.__doc__, **described)
-    made.defaults = part.defaults
+    made.resolved, made.defaults = part.resolved, part.defaults
     return made
 
 
-def marks_in(field: FieldInfo) -> Iterator[object]:
+def _marks_in(field: FieldInfo) -> Iterator[object]:
     """Marks of a field: of its annotation, of the kinds in a union, of the entries of a list."""
     yield from field.metadata
     yield from _marks(field.annotation)
@@ -216,9 +236,16 @@ def _marks(hint: object) -> Iterator[object]:
         yield from _marks(each)
 
 
+def words_at(section: type[Section], name: str) -> Iterator[object]:
+    """Marks of a field, and those that describe it: a section made of a part goes without."""
+    if section in _PARTS:
+        return _marks(hints_of(_PARTS[section])[name])
+    return _marks_in(section.model_fields[name])
+
+
 def number_in(field: FieldInfo) -> In | Count | None:
     """Unit and bounds of the number, or of each number, in a field; None: it holds none."""
-    return next((mark for mark in marks_in(field) if isinstance(mark, (In, Count))), None)
+    return next((mark for mark in _marks_in(field) if isinstance(mark, (In, Count))), None)
 
 
 def _in_section(hint: Any) -> Any:
@@ -231,6 +258,10 @@ def _in_section(hint: Any) -> Any:
         return Annotated[Material, MaterialName()]
     if isinstance(hint, type) and issubclass(hint, Part):
         return Annotated[hint, FromTable()]
+    if get_origin(hint) is Annotated:
+        inner, *marks = get_args(hint)
+        rules = [mark for mark in marks if not describes(mark)]
+        return Annotated.__class_getitem__((inner, *rules)) if rules else _in_section(inner)
     if get_origin(hint) in (Union, UnionType):
         return Union[tuple(_in_section(each) for each in get_args(hint))]  # noqa: UP007
     if get_origin(hint) is tuple:

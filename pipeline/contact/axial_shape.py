@@ -10,8 +10,8 @@ import numpy as np
 
 from camwright.geometry.arrays import Array
 from camwright.geometry.errors import InputError
-from camwright.pipeline.base.quantities import FileName, In, Length, Part
-from camwright.pipeline.base.source import NO_SOURCE, Source
+from camwright.pipeline.base.quantities import FileName, In, Known, Length, Part, TableSource
+from camwright.pipeline.base.source import NO_SOURCE
 
 EndKind = Literal["sharp", "chamfer", "radius"]
 CrownKind = Literal["circular", "lundberg", "johns_gohar", "iso16281", "table"]
@@ -28,16 +28,18 @@ _KEYS: Mapping[CrownKind, Mapping[str, bool]] = {
 
 @dataclass(frozen=True)
 class BodyEnd(Part):
-    """Both ends of a body: a sharp edge, a chamfer of 45 deg or a radius of `size` (m).
+    """Both ends of a body.
 
-    The radius is tangent to the flat and ends at the end face.
+    A radius ends at the end face.
     """
 
     table: ClassVar[str] = "end"
 
-    kind: EndKind = "sharp"
-    size: Annotated[float, In("mm", at_least=0, at_most=1000)] = 0.0
-    source: Source = NO_SOURCE
+    kind: Annotated[EndKind, Known("drawing")] = "sharp"
+    """sharp edge, chamfer of 45 deg, or radius tangent to the track"""
+    size: Annotated[float, In("mm", at_least=0, at_most=1000), Known("drawing", "0.3 mm")] = 0.0
+    """width of the chamfer, or the radius; 0 at a sharp edge"""
+    source: TableSource = NO_SOURCE
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -64,8 +66,7 @@ def flat_width(width: float, end: BodyEnd | None) -> float:
 class AxialCrown(Part):
     """Crown of a body along the axis.
 
-    circular: radius of the arc; lundberg, johns_gohar: line load of uniform pressure and length of
-    the crown; iso16281: reference geometry of a roller; table: drop over the axial coordinate.
+    Each kind has keys of its own, those of `_KEYS`, and refuses the others.
     """
 
     table: ClassVar[str] = "crown"
@@ -76,12 +77,24 @@ class AxialCrown(Part):
         "file": "of a table alone",
     }
 
-    kind: CrownKind
-    radius: Annotated[float, In("mm", above=0, at_most=1e6)] | None = None
-    line_load: Annotated[float, In("N/mm", above=0, at_most=1e6)] | None = None
-    length: Length | None = None
-    file: FileName | None = None
-    source: Source = NO_SOURCE
+    kind: Annotated[CrownKind, Known("drawing", "johns_gohar")]
+    """arc, logarithmic crown of Lundberg or of Johns and Gohar, reference geometry of ISO/TS 16281,
+    or table"""
+    radius: Annotated[float | None, In("mm", above=0, at_most=1e6), Known("drawing", "500 mm")] = (
+        None
+    )
+    """radius of the arc along the axis"""
+    line_load: Annotated[
+        float | None,
+        In("N/mm", above=0, at_most=1e6),
+        Known("own choice: greatest line load of the cycle", "200 N/mm"),
+    ] = None
+    """line load of uniform pressure, for which the crown is designed"""
+    length: Annotated[Length | None, Known("drawing", "16 mm")] = None
+    """length on which the crown is designed"""
+    file: Annotated[FileName | None, Known("drawing, or measured", "crown.csv")] = None
+    """CSV file of the drop, columns y_mm from the middle and drop_um, relative to the case file"""
+    source: TableSource = NO_SOURCE
 
     def __post_init__(self) -> None:
         super().__post_init__()

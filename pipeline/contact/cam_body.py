@@ -7,18 +7,18 @@ from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Annotated, ClassVar, Literal, NamedTuple
 
-from camwright.pipeline.base.material import Material
-from camwright.pipeline.base.quantities import Angle, In, Length, Part
-from camwright.pipeline.base.source import NO_SOURCE, Source
+from camwright.pipeline.base.material import MadeOf
+from camwright.pipeline.base.quantities import Angle, In, Known, Length, Part, TableSource, Used
+from camwright.pipeline.base.source import NO_SOURCE
 from camwright.pipeline.contact.axial_shape import AxialCrown, BodyEnd, flat_width
 from camwright.pipeline.contact.shrink_fit import SeatFit
 
 
 @dataclass(frozen=True, kw_only=True)
 class Keyway(Part):
-    """A keyway in the bore; angle of its centre line in the cam frame.
+    """A keyway in the bore.
 
-    root_radius: fillet between side and floor, for the stress at the root.
+    The fillet counts for the stress at the root alone.
     """
 
     fillet: ClassVar[float] = 0.0  # its inner corners are meshed sharp
@@ -27,10 +27,14 @@ class Keyway(Part):
         "root_radius": "least of DIN 6885-1, by a standard width of the keyway"
     }
 
-    width: Length
-    depth: Length
-    angle: Angle = 0.0
-    root_radius: Length | None = None
+    width: Annotated[Length, Known("DIN 6885-1 by the shaft diameter", "5 mm")]
+    """width of the keyway"""
+    depth: Annotated[Length, Known("DIN 6885-1 by the shaft diameter", "2.3 mm")]
+    """depth in the hub, from the bore"""
+    angle: Annotated[Angle, Known("drawing")] = 0.0
+    """direction of the centre line of the keyway in the cam frame"""
+    root_radius: Annotated[Length | None, Known("DIN 6885-1, or drawing", "0.16 mm")] = None
+    """fillet between side and floor"""
 
 
 class StandardKey(NamedTuple):
@@ -62,9 +66,7 @@ STANDARD_KEYS: Mapping[int, StandardKey] = {
 class ParallelKey(Part):
     """Parallel key of the cam.
 
-    height, h; shaft_depth, t1: of its keyway in the shaft; chamfer: of its edges; form A has round
-    ends, which do not transmit torque, and length includes them. application_factor: K_A, on the
-    solved torque, for impact where the torque reverses.
+    h of DIN 6885-1 is `height`, t1 `shaft_depth`. Round ends do not transmit torque.
     """
 
     table: ClassVar[str] = "cam.key"
@@ -72,14 +74,22 @@ class ParallelKey(Part):
         ("height", "shaft_depth", "chamfer"), "DIN 6885-1, by a standard width of the keyway"
     )
 
-    length: Length | None = None
-    height: Length | None = None
-    shaft_depth: Length | None = None
-    chamfer: Length | None = None
-    form: Literal["A", "B"] = "A"
-    material: Material | None = None
-    application_factor: Annotated[float, In(at_least=1, at_most=10)] = 1.5
-    source: Source = NO_SOURCE
+    length: Annotated[Length | None, Known("drawing; DIN 6885-1", "14 mm")] = None
+    """length, round ends of form A included"""
+    height: Annotated[Length | None, Known("DIN 6885-1", "5 mm")] = None
+    """height of the key"""
+    shaft_depth: Annotated[Length | None, Known("DIN 6885-1", "3 mm")] = None
+    """depth of the keyway in the shaft"""
+    chamfer: Annotated[Length | None, Known("DIN 6885-1", "0.4 mm")] = None
+    """chamfer of the edges of the key"""
+    form: Annotated[Literal["A", "B"], Known("DIN 6885-1; drawing")] = "A"
+    """A with round ends, B with square ends"""
+    material: Annotated[MadeOf | None, Known("drawing; C45 is usual", "c45")] = None
+    application_factor: Annotated[
+        float, In(at_least=1, at_most=10), Known("DIN 3990; own choice")
+    ] = 1.5
+    """K_A on the solved torque, for impact where it reverses"""
+    source: TableSource = NO_SOURCE
 
 
 class KeyFlanks(NamedTuple):
@@ -105,23 +115,17 @@ WAVES: Mapping[str, float] = MappingProxyType({"ground": 0.8e-3, "milled": 3e-3,
 
 @dataclass(frozen=True, kw_only=True)
 class BalanceHole(Part):
-    """Request for a hole through the cam that removes its unbalance.
-
-    wall: minimum thickness between the hole and contour, bore or keyway.
-    """
+    """Request for a hole through the cam that removes its unbalance."""
 
     table: ClassVar[str] = "cam.counter_hole"
 
-    wall: Length = 0.003
+    wall: Annotated[Length, Known("own choice")] = 0.003
+    """least wall between the hole and contour, bore or keyway"""
 
 
 @dataclass(frozen=True, kw_only=True)
 class CamBody(Part):
-    """The cam disc.
-
-    prime_radius: minimum distance of the roller centre from the cam axis, for a flat face the base
-    radius; offset: distance of the follower axis from the cam axis.
-    """
+    """The cam disc."""
 
     table: ClassVar[str] = "cam"
     width_key: ClassVar[str] = "cam.width"
@@ -130,23 +134,45 @@ class CamBody(Part):
         "waviness_height": "of the process at the wavelength, within the profile tolerance",
     }
 
-    prime_radius: Length
-    offset: Annotated[float, In("mm", above=-10_000, below=10_000)] = 0.0
-    width: Length
-    bore_radius: Length
-    material: Material
-    keyway: Keyway | None = None
-    key: ParallelKey | None = None
-    fit: SeatFit | None = None
-    roughness: Annotated[float, In("um", above=0, at_most=1000)] | None = None
-    profile_tolerance: Annotated[float, In("mm", above=0, at_most=10)] = 1e-4
-    process: Process = "ground"
-    waviness_length: Length = 0.005
-    waviness_height: Length | None = None
-    end: BodyEnd | None = None
-    crown: AxialCrown | None = None
-    counter_hole: BalanceHole | None = None
-    source: Source = NO_SOURCE
+    prime_radius: Annotated[Length, Known("drawing, or own choice", "60 mm")]
+    """base circle radius plus roller radius; of a flat face the base circle radius"""
+    offset: Annotated[float, In("mm", above=-10_000, below=10_000), Known("drawing")] = 0.0
+    """distance of the follower axis from the cam axis"""
+    width: Annotated[Length, Known("drawing", "10 mm")]
+    """width of the disc along the shaft"""
+    bore_radius: Annotated[Length, Known("drawing", "8.5 mm")]
+    """half of the bore diameter"""
+    material: Annotated[MadeOf, Known("drawing", "case_hardened")]
+    keyway: Annotated[Keyway | None, Used("contour, meshes, checks of the key")] = None
+    """keyway in the bore"""
+    key: Annotated[ParallelKey | None, Used("checks of the key")] = None
+    """parallel key of the cam"""
+    fit: Annotated[
+        SeatFit | None,
+        Used("slip of the seat, pressure and stress of the bore, stress at the keyway's root"),
+    ] = None
+    """press or sliding fit of the cam on its shaft"""
+    roughness: Annotated[
+        float | None, In("um", above=0, at_most=1000), Known("drawing or measured", "0.3 um")
+    ] = None
+    """rms roughness Rq of the track, 1.1 to 1.25 Ra"""
+    profile_tolerance: Annotated[float, In("mm", above=0, at_most=10), Known("drawing")] = 1e-4
+    """width of the line profile tolerance, ISO 1101"""
+    process: Annotated[Process, Known("drawing")] = "ground"
+    """last process of the track, which sets the height of its waves; cut: by laser, plasma or
+    flame"""
+    waviness_length: Annotated[Length, Known("measured; the machine")] = 0.005
+    """wavelength of the waviness of the track"""
+    waviness_height: Annotated[Length | None, Known("measured", "2 um")] = None
+    """height of the waves from crest to trough"""
+    end: Annotated[BodyEnd | None, Used("contact of finite length")] = None
+    """ends of the cam's track; without them the pressure at the ends of the contact is not
+    evaluated"""
+    crown: Annotated[AxialCrown | None, Used("contact of finite length")] = None
+    """crown of the cam's track along the axis; added to that of the follower"""
+    counter_hole: Annotated[BalanceHole | None, Used("unbalance, meshes, workshop files")] = None
+    """hole through the cam that removes its unbalance"""
+    source: TableSource = NO_SOURCE
 
     @property
     def line_width(self) -> float:

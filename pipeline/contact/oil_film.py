@@ -11,7 +11,15 @@ from numpy.typing import ArrayLike, NDArray
 
 from camwright.geometry.arrays import Array, finite, freeze, positive
 from camwright.geometry.errors import InputError
-from camwright.pipeline.base.quantities import In, Part, Temperature
+from camwright.pipeline.base.quantities import (
+    In,
+    Known,
+    Part,
+    Resolved,
+    TableSource,
+    Temperature,
+    card_of,
+)
 from camwright.pipeline.base.source import NO_SOURCE, Source
 from camwright.pipeline.base.units import shown
 
@@ -34,26 +42,48 @@ _RANGE = {  # of the regression, orders of magnitude: verify
 class Lubricant(Part):
     """Oil in the contact of cam and follower at the inlet temperature.
 
-    film "mixed" adds the film of rough surfaces by a regression with unverified source. thinning:
-    slope B of log log (v + 0.7) = A - B log T, v in mm2/s; the default is that of a mineral oil.
-    scuffing_temperature holds for a film that carries, boundary_temperature for the layer adsorbed
-    on the surfaces, which alone keeps them apart without one.
+    The source of the regression for rough surfaces is not verified. Walther's equation is log log
+    (v + 0.7) = A - B log T, v in mm2/s; the default slope B is that of a mineral oil. Scuffing
+    limits a film that carries; without one the adsorbed layer alone keeps the surfaces apart.
     """
 
     table: ClassVar[str] = "lubricant"
+    resolved: ClassVar[Mapping[str, Resolved]] = card_of(
+        "card of the oil; with temperature it supplies the viscosity", "oils.toml", "iso_vg_150"
+    )
     defaults: ClassVar[Mapping[str, str]] = {
         "scuffing_temperature": "unknown: needed under a flat face, which slides",
         "boundary_temperature": "unknown: needed under a flat face, which slides",
     }
 
-    viscosity: Annotated[float, In("mPa s", above=0, at_most=1e5)]
-    pressure_viscosity: Annotated[float, In("1/GPa", above=0, at_most=1000)]
-    film: Literal["smooth", "mixed"] = "smooth"
-    temperature: Temperature | None = None
-    thinning: Annotated[float, In(above=0, at_most=10)] = 3.6
-    scuffing_temperature: Temperature | None = None
-    boundary_temperature: Temperature | None = None
-    source: Source = NO_SOURCE
+    viscosity: Annotated[
+        float, In("mPa s", above=0, at_most=1e5), Known("oil data sheet", "24 mPa s")
+    ]
+    """dynamic viscosity at the temperature of the inlet"""
+    pressure_viscosity: Annotated[
+        float,
+        In("1/GPa", above=0, at_most=1000),
+        Known("oil maker; 15 to 25 1/GPa of mineral oil", "18 1/GPa"),
+    ]
+    """pressure-viscosity coefficient"""
+    film: Annotated[Literal["smooth", "mixed"], Known("own choice")] = "smooth"
+    """film of smooth surfaces, or of rough ones by a regression"""
+    temperature: Annotated[Temperature | None, Known("measured at the machine", "80 degC")] = None
+    """temperature of the oil at the inlet"""
+    thinning: Annotated[
+        float, In(above=0, at_most=10), Known("viscosities at 40 and 100 degC", 3.45)
+    ] = 3.6
+    """slope of the viscosity in Walther's equation, ASTM D341"""
+    scuffing_temperature: Annotated[
+        Temperature | None, Known("scuffing test of the oil", "228 degC")
+    ] = None
+    """temperature in a sliding contact at which the oil lets the surfaces scuff"""
+    boundary_temperature: Annotated[
+        Temperature | None, Known("friction of the oil by temperature without a film", "150 degC")
+    ] = None
+    """temperature in a sliding contact at which the layer adsorbed from the oil leaves the
+    surfaces"""
+    source: TableSource = NO_SOURCE
 
     def warmer(self, rise: float) -> Lubricant:
         """The oil warmer by a rise, K; unchanged where its temperature is not stated.

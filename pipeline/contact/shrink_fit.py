@@ -13,8 +13,8 @@ import numpy as np
 from camwright.geometry.arrays import Value
 from camwright.geometry.errors import InputError
 from camwright.pipeline.base.material import ROOM, Material
-from camwright.pipeline.base.quantities import In, Part, Temperature
-from camwright.pipeline.base.source import NO_SOURCE, Source
+from camwright.pipeline.base.quantities import In, Known, Part, TableSource, Temperature
+from camwright.pipeline.base.source import NO_SOURCE
 from camwright.pipeline.base.units import shown
 
 Interference = Annotated[float, In("um", above=-1000, below=1000)]
@@ -22,11 +22,10 @@ Interference = Annotated[float, In("um", above=-1000, below=1000)]
 
 @dataclass(frozen=True, kw_only=True)
 class SeatFit(Part):
-    """Fit of the cam on its shaft: limits of the interference of the diameters at 20 degC.
+    """Fit of the cam on its shaft.
 
-    Negative: a clearance. Both are those of the finished surfaces, what assembly smooths taken
-    off. friction: of the seat without its key; temperatures: of cam and shaft in operation, where
-    the fit counts at both, 20 degC and these.
+    The fit counts at both, 20 degC and the temperatures in operation; its friction acts without the
+    key.
 
     Raises
     ------
@@ -36,12 +35,25 @@ class SeatFit(Part):
 
     table: ClassVar[str] = "cam.fit"
 
-    least_interference: Interference
-    greatest_interference: Interference
-    friction: Annotated[float, In(above=0, at_most=1)] = 0.12
-    cam_temperature: Temperature = ROOM
-    shaft_temperature: Temperature = ROOM
-    source: Source = NO_SOURCE
+    least_interference: Annotated[
+        Interference,
+        Known("tolerance classes of ISO 286, less 0.8 (Rz1 + Rz2) by DIN 7190-1", "10 um"),
+    ]
+    """least interference of the diameters at 20 degC, without what assembly smooths; negative:
+    clearance"""
+    greatest_interference: Annotated[Interference, Known("tolerance classes of ISO 286", "24 um")]
+    """greatest interference of the diameters at 20 degC; negative: clearance"""
+    friction: Annotated[
+        float,
+        In(above=0, at_most=1),
+        Known("DIN 7190-1: 0.12 of oiled steel on steel, to be confirmed"),
+    ] = 0.12
+    """friction coefficient of the seat at slip"""
+    cam_temperature: Annotated[Temperature, Known("measurement or heat balance")] = ROOM
+    """temperature of the cam in operation"""
+    shaft_temperature: Annotated[Temperature, Known("measurement or heat balance")] = ROOM
+    """temperature of the shaft under the cam in operation"""
+    source: TableSource = NO_SOURCE
 
     def __post_init__(self) -> None:
         super().__post_init__()

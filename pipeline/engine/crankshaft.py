@@ -13,8 +13,8 @@ from numpy.typing import ArrayLike
 
 from camwright.geometry.arrays import Array, finite, freeze, positive, readonly
 from camwright.geometry.errors import CamError, InputError
-from camwright.pipeline.base.quantities import In, Part
-from camwright.pipeline.base.source import NO_SOURCE, Source
+from camwright.pipeline.base.quantities import In, Known, Part, TableSource, Used
+from camwright.pipeline.base.source import NO_SOURCE
 from camwright.pipeline.base.units import shown
 from camwright.pipeline.engine.cylinder import CYCLE_ANGLE
 from camwright.pipeline.torque.motor_line import MotorLine, MotorPoint
@@ -42,10 +42,8 @@ class StallError(CamError):
 class Crankshaft(Part):
     """Rotating parts of the engine and the load it drives; needed for the speed, not for the cam.
 
-    `inertia` is that of the engine with its flywheel, reciprocating masses left out where the
-    engine states them; `mechanism_inertia` that of the turning parts of the mechanism, at the
-    crank. The load follows the speed to the power of `load_exponent`; with a motor line the motor
-    follows its line instead, and the mean speed with it.
+    Reciprocating masses that the engine states are left out of `inertia`. With a motor line the
+    motor follows its line in place of the load, and the mean speed with it.
 
     Raises
     ------
@@ -55,12 +53,25 @@ class Crankshaft(Part):
 
     table: ClassVar[str] = "crankshaft"
 
-    inertia: Annotated[float, In("kg m^2", above=0, at_most=1e6)]
-    mechanism_inertia: Annotated[float, In("kg m^2", at_least=0, at_most=1e6)] = 0.0
-    load_exponent: Annotated[float, In(at_least=0, at_most=4)] = 0.0
-    measured_speed_std: Annotated[float, In("rad/s", above=0, at_most=1e3)] | None = None
-    motor_line: tuple[MotorPoint, ...] = ()
-    source: Source = NO_SOURCE
+    inertia: Annotated[
+        float,
+        In("kg m^2", above=0, at_most=1e6),
+        Known("drawing or run-down test", "0.0139 kg m^2"),
+    ]
+    """moment of inertia of all that turns with the crank, flywheel included"""
+    mechanism_inertia: Annotated[float, In("kg m^2", at_least=0, at_most=1e6), Known("drawing")] = (
+        0.0
+    )
+    """moment of inertia of the turning parts of the mechanism, at the crank"""
+    load_exponent: Annotated[float, In(at_least=0, at_most=4), Known("kind of load")] = 0.0
+    """power of the speed that the load follows: 0 constant, 2 a pump"""
+    measured_speed_std: Annotated[
+        float | None, In("rad/s", above=0, at_most=1e3), Known("test bench", "3.74 rad/s")
+    ] = None
+    """measured standard deviation of the crank speed, for comparison"""
+    motor_line: Annotated[tuple[MotorPoint, ...], Used("torque")] = ()
+    """torque of the motor that drives the shaft, over its speed"""
+    source: TableSource = NO_SOURCE
 
     def __post_init__(self) -> None:
         super().__post_init__()

@@ -15,17 +15,21 @@ from camwright.geometry.errors import InputError
 from camwright.geometry.linkage import SliderCrank
 from camwright.pipeline.base.quantities import (
     Angle,
+    CrankRadius,
     Duration,
     Force,
     Fraction,
     GasPressure,
     In,
+    Known,
     Length,
     Mass,
     Part,
     Positive,
+    RodLength,
     Share,
     Temperature,
+    Used,
 )
 from camwright.pipeline.base.units import shown
 from camwright.pipeline.torque.period import FOUR_STROKE
@@ -38,22 +42,28 @@ FrictionPressure = Annotated[float, In("kPa", at_least=0, at_most=1e4)]
 
 @dataclass(frozen=True, kw_only=True)
 class LiftPoint(Part):
-    """One row of a lift table: an angle and the lift there."""
+    """One row of the lift table of a valve: an angle and the lift there."""
 
     table: ClassVar[str] = "lift_point"
 
-    angle: Angle
-    lift: Annotated[float, In("mm", at_least=0, at_most=1000)]
+    angle: Annotated[Angle, Known("measured", "30 deg")]
+    """crank angle"""
+    lift: Annotated[float, In("mm", at_least=0, at_most=1000), Known("measured", "2.5 mm")]
+    """lift of the valve at this crank angle"""
+
+
+@dataclass(frozen=True, kw_only=True)
+class ExhaustLiftPoint(LiftPoint):
+    """One row of the lift table of an exhaust valve."""
+
+    angle: Annotated[Angle, Known("measured", "500 deg")]
 
 
 @dataclass(frozen=True, kw_only=True)
 class RunningGear(Part):
     """Crank, connecting rods and pistons of equal cylinders, and their firing order.
 
-    The piston mass includes rings and pin. The pin offset is that of the cylinder axis from the
-    crank axis, positive on the side to which the crank pin moves from angle 0; the big-end share
-    that of the rod mass that rotates with the crank pin; a firing offset the crank angle by which
-    the cycle of a cylinder lags.
+    The pin offset is positive on the side to which the crank pin moves from angle 0.
 
     Raises
     ------
@@ -63,13 +73,18 @@ class RunningGear(Part):
 
     table: ClassVar[str] = "engine.running_gear"
 
-    crank_radius: Length
-    rod_length: Length
-    piston_mass: Mass
-    rod_mass: Mass
-    pin_offset: Annotated[float, In("mm", above=-1000, below=1000)] = 0.0
-    rod_big_end_share: Share = 2.0 / 3.0
-    firing_offsets: tuple[Angle, ...] = (0.0,)
+    crank_radius: Annotated[CrankRadius, Known("engine data sheet", "21 mm")]
+    rod_length: Annotated[RodLength, Known("drawing", "73 mm")]
+    piston_mass: Annotated[Mass, Known("weighed, or drawing", "144 g")]
+    """piston with rings and pin"""
+    rod_mass: Annotated[Mass, Known("weighed, or drawing", "123 g")]
+    """connecting rod"""
+    pin_offset: Annotated[float, In("mm", above=-1000, below=1000), Known("drawing")] = 0.0
+    """offset of the piston pin from the crank axis"""
+    rod_big_end_share: Annotated[Share, Known("centre of gravity of the rod")] = 2.0 / 3.0
+    """share of the rod mass that turns with the crank"""
+    firing_offsets: Annotated[tuple[Angle, ...], Known("firing order")] = (0.0,)
+    """crank angle of each cylinder behind the first"""
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -117,8 +132,10 @@ class CrankDrive(RunningGear):
     table: ClassVar[str] = "engine"
 
     kind: str
-    bore: Length
-    compression_ratio: Annotated[float, In(above=1, at_most=40)]
+    bore: Annotated[Length, Known("engine data sheet", "60 mm")]
+    """cylinder bore"""
+    compression_ratio: Annotated[float, In(above=1, at_most=40), Known("engine data sheet", 8.5)]
+    """volume at bottom over that at top dead centre"""
 
     @property
     def stroke(self) -> float:
@@ -175,12 +192,8 @@ class CylinderEngine(CrankDrive):
     """Model of a four-stroke engine of equal cylinders; crank angle 0 is the TDC of intake.
 
     Firing TDC is at 360 deg. Valve angles may leave [0, 720 deg): an intake valve may open at
-    -10 deg. A lift table replaces timing and lift of its valve. `valve_lift` is at the valve,
-    `rocker_ratio` valve lift over cam lift. `exhaust_temperature` is that of exhaust gas that
-    flows back. `spark` is the start of injection with compression ignition, where
-    `premixed_share` of the fuel burns in a first, short Wiebe burn. Without a friction pressure
-    friction closes the torque balance. A dipper area of 0 means no oil dipper; `dipper_immersion`
-    is half the crank angle under oil about BDC.
+    -10 deg. With compression ignition the premixed share of the fuel burns in a first, short Wiebe
+    burn. An oil dipper is immersed about BDC.
 
     Raises
     ------
@@ -189,48 +202,100 @@ class CylinderEngine(CrankDrive):
     """
 
     kind: Literal["cylinder"] = "cylinder"
-    intake_valve_open: Angle = 0.0
-    intake_valve_close: Angle = radians(220.0)
-    exhaust_valve_open: Angle = radians(470.0)
-    exhaust_valve_close: Angle = radians(720.0)
-    valve_lift: Length = 0.0055
-    intake_lift_table: tuple[LiftPoint, ...] = ()
-    exhaust_lift_table: tuple[LiftPoint, ...] = ()
-    intake_valve_diameter: Length = 0.025
-    exhaust_valve_diameter: Length = 0.022
-    valve_discharge_coefficient: Fraction = 0.6
-    valve_spring_rate: Annotated[float, In("N/m", at_least=0, at_most=1e9)] = 5884.0
-    valve_spring_preload: Force = 47.0
-    rocker_ratio: Positive = 1.0
+    intake_valve_open: Annotated[Angle, Known("engine data sheet")] = 0.0
+    """crank angle at which the intake valve opens; 0 is the top dead centre of intake"""
+    intake_valve_close: Annotated[Angle, Known("engine data sheet")] = radians(220.0)
+    """crank angle at which the intake valve closes"""
+    exhaust_valve_open: Annotated[Angle, Known("engine data sheet")] = radians(470.0)
+    """crank angle at which the exhaust valve opens"""
+    exhaust_valve_close: Annotated[Angle, Known("engine data sheet")] = radians(720.0)
+    """crank angle at which the exhaust valve closes"""
+    valve_lift: Annotated[Length, Known("engine data sheet or measured")] = 0.0055
+    """maximum lift at the valve"""
+    intake_lift_table: Annotated[tuple[LiftPoint, ...], Used("torque")] = ()
+    """lift of the intake valve, in place of its timing"""
+    exhaust_lift_table: Annotated[tuple[ExhaustLiftPoint, ...], Used("torque")] = ()
+    """lift of the exhaust valve, in place of its timing"""
+    intake_valve_diameter: Annotated[Length, Known("drawing or measured")] = 0.025
+    """diameter of the intake valve seat"""
+    exhaust_valve_diameter: Annotated[Length, Known("drawing or measured")] = 0.022
+    """diameter of the exhaust valve seat"""
+    valve_discharge_coefficient: Annotated[Fraction, Known("flow bench; textbooks")] = 0.6
+    """flow through the valve over that of its opening"""
+    valve_spring_rate: Annotated[
+        float, In("N/m", at_least=0, at_most=1e9), Known("spring drawing")
+    ] = 5884.0
+    """rate of each valve spring"""
+    valve_spring_preload: Annotated[Force, Known("spring drawing")] = 47.0
+    """force of the closed valve's spring"""
+    rocker_ratio: Annotated[Positive, Known("drawing")] = 1.0
+    """valve lift over cam lift"""
 
-    intake_pressure: GasPressure = 30.5e3
-    exhaust_pressure: GasPressure = 101.3e3
-    crankcase_pressure: GasPressure = 101.3e3
-    intake_temperature: Temperature = 305.0
-    exhaust_temperature: Temperature = 700.0
-    wall_temperature: Temperature = 400.0
+    intake_pressure: Annotated[GasPressure, Known("measured", "30.5 kPa")] = 30.5e3
+    """absolute pressure in the intake manifold: the engine load; measured cycles are pegged to
+    it"""
+    exhaust_pressure: Annotated[GasPressure, Known("measured")] = 101.3e3
+    """absolute pressure in the exhaust port"""
+    crankcase_pressure: Annotated[GasPressure, Known("measured; ambient")] = 101.3e3
+    """absolute pressure below the piston"""
+    intake_temperature: Annotated[Temperature, Known("measured")] = 305.0
+    """temperature of the fresh charge"""
+    exhaust_temperature: Annotated[Temperature, Known("measured")] = 700.0
+    """temperature of exhaust gas that flows back"""
+    wall_temperature: Annotated[Temperature, Known("measured; textbooks")] = 400.0
+    """mean temperature of the cylinder wall"""
 
-    ignition: Literal["spark", "compression"] = "spark"
-    spark: Angle = radians(335.0)
-    ignition_delay: Annotated[float, In("deg", at_least=0, at_most=180)] = radians(8.0)
-    burn_duration: Duration = radians(80.0)
-    wiebe_a: Positive = 5.0
-    wiebe_m: Positive = 2.0
-    premixed_share: Share = 0.0
-    premixed_duration: Duration = radians(8.0)
-    premixed_m: Positive = 1.5
-    combustion_efficiency: Share = 0.9
-    air_fuel_ratio: Annotated[float, In(above=1, at_most=1000)] = 13.5
-    lower_heating_value: Annotated[float, In("MJ/kg", above=0, at_most=1000)] = 43.5e6
+    ignition: Annotated[Literal["spark", "compression"], Known("engine data sheet")] = "spark"
+    """spark or compression ignition"""
+    spark: Annotated[Angle, Known("engine data sheet")] = radians(335.0)
+    """crank angle of the spark, or start of injection"""
+    ignition_delay: Annotated[
+        float, In("deg", at_least=0, at_most=180), Known("heat release analysis")
+    ] = radians(8.0)
+    """crank angle from the spark to the start of the burn"""
+    burn_duration: Annotated[Duration, Known("heat release analysis")] = radians(80.0)
+    """crank angle of the Wiebe burn"""
+    wiebe_a: Annotated[Positive, Known("textbooks")] = 5.0
+    """completeness of the Wiebe burn"""
+    wiebe_m: Annotated[Positive, Known("textbooks")] = 2.0
+    """shape of the Wiebe burn"""
+    premixed_share: Annotated[Share, Known("heat release analysis")] = 0.0
+    """share of the fuel in the premixed burn of compression ignition"""
+    premixed_duration: Annotated[Duration, Known("heat release analysis")] = radians(8.0)
+    """crank angle of the premixed burn"""
+    premixed_m: Annotated[Positive, Known("textbooks")] = 1.5
+    """shape of the Wiebe burn of the premixed fuel"""
+    combustion_efficiency: Annotated[Share, Known("exhaust analysis; textbooks")] = 0.9
+    """share of the fuel that burns"""
+    air_fuel_ratio: Annotated[float, In(above=1, at_most=1000), Known("measured")] = 13.5
+    """mass of air over mass of fuel"""
+    lower_heating_value: Annotated[
+        float, In("MJ/kg", above=0, at_most=1000), Known("fuel data sheet")
+    ] = 43.5e6
+    """heating value of the fuel"""
 
-    heat_loss: Literal["hohenberg", "woschni"] = "hohenberg"
-    heat_loss_factor: Annotated[float, In(at_least=0, at_most=100)] = 1.0
-    friction_pressure: FrictionPressure | None = None
-    dipper_area: Annotated[float, In("mm^2", at_least=0, at_most=1e6)] = 0.0
-    dipper_radius: Length = 0.035
-    dipper_drag_coefficient: Positive = 1.2
-    dipper_immersion: Annotated[float, In("deg", above=0, at_most=180)] = radians(40.0)
-    oil_density: Annotated[float, In("kg/m^3", above=0, at_most=1e5)] = 870.0
+    heat_loss: Annotated[Literal["hohenberg", "woschni"], Known("own choice")] = "hohenberg"
+    """correlation of the heat transfer to the wall"""
+    heat_loss_factor: Annotated[
+        float, In(at_least=0, at_most=100), Known("tuned to a measurement")
+    ] = 1.0
+    """factor on the heat transfer"""
+    friction_pressure: Annotated[FrictionPressure | None, Known("motoring test", "150 kPa")] = None
+    """friction mean effective pressure; left out, friction closes the torque balance"""
+    dipper_area: Annotated[float, In("mm^2", at_least=0, at_most=1e6), Known("drawing")] = 0.0
+    """area of an oil dipper on the rod; 0: none"""
+    dipper_radius: Annotated[Length, Known("drawing")] = 0.035
+    """radius of the dipper about the crank"""
+    dipper_drag_coefficient: Annotated[Positive, Known("textbooks")] = 1.2
+    """drag coefficient of the dipper"""
+    dipper_immersion: Annotated[float, In("deg", above=0, at_most=180), Known("drawing")] = radians(
+        40.0
+    )
+    """half of the crank angle under oil"""
+    oil_density: Annotated[float, In("kg/m^3", above=0, at_most=1e5), Known("oil data sheet")] = (
+        870.0
+    )
+    """density of the oil in the sump"""
 
     def __post_init__(self) -> None:
         super().__post_init__()

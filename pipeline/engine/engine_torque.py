@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import ClassVar, Literal
+from typing import Annotated, ClassVar, Literal
 
-from camwright.pipeline.base.quantities import FileName, Part
+from camwright.pipeline.base.quantities import FileName, Known, Part
 from camwright.pipeline.engine.cylinder import CylinderEngine
 from camwright.pipeline.engine.indicated_cycle import CylinderCycle
 from camwright.pipeline.engine.indicated_cycle_solver import working_cycle
@@ -20,8 +20,10 @@ class TorqueTable(Part):
 
     table: ClassVar[str] = "engine"
 
-    kind: Literal["table"] = "table"
-    file: FileName
+    kind: Annotated[Literal["table"], Known("own choice")] = "table"
+    """origin of the engine torque"""
+    file: Annotated[FileName, Known("test bench or simulation", "torque.csv")]
+    """data file, relative to the case file"""
 
 
 def torque_from_cycle(cycle: CylinderCycle) -> Torque:

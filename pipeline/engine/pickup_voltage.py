@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from camwright.geometry.arrays import Array, finite, freeze
 from camwright.geometry.errors import InputError
-from camwright.pipeline.base.quantities import Count, In
+from camwright.pipeline.base.quantities import Count, In, Known
 from camwright.pipeline.engine.speed_file import WheelTable, speed_of_record
 from camwright.pipeline.engine.speed_trace import SpeedTrace
 from camwright.pipeline.engine.tooth_pattern import (
@@ -70,8 +70,10 @@ class VoltageTable(WheelTable):
     }  # fmt: skip
 
     kind: Literal["voltage"] = "voltage"
-    extra_teeth: Annotated[int, Count(0, 1)] | None = None
-    threshold: Annotated[float, In(above=0, below=1)] = THRESHOLD
+    extra_teeth: Annotated[int | None, Count(0, 1), Known("counted", 1)] = None
+    """additional teeth between two others of the wheel"""
+    threshold: Annotated[float, In(above=0, below=1), Known("own choice")] = THRESHOLD
+    """share of the amplitude at which the voltage is switched"""
 
     def wheel_shown(self, field: str, shown: ToothPattern) -> TriggerWheel:
         """The wheel as stated, completed by what the signal shows.

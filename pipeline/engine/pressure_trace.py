@@ -13,7 +13,7 @@ import scipy
 
 from camwright.geometry.arrays import Array, finite, freeze
 from camwright.geometry.errors import InputError
-from camwright.pipeline.base.quantities import Angle, FileName, GasPressure, In, Part
+from camwright.pipeline.base.quantities import Angle, FileName, GasPressure, In, Known, Part
 from camwright.pipeline.base.units import shown
 from camwright.pipeline.engine.cylinder import CYCLE_ANGLE, CrankDrive, FrictionPressure
 from camwright.pipeline.torque.angle_trace import (
@@ -55,24 +55,34 @@ class _PressureFile(Part):
 
     kind: str
     file: FileName
-    column: HeaderText = ""
-    angle_unit: HeaderText = ""
-    pressure_unit: HeaderText = ""
-    firing_angle: Angle = 2.0 * pi
-    gap_max: Annotated[float, In("deg", above=0, at_most=90)] = GAP_MAX
-    dead_centre: DeadCentre = "given"
-    motored_file: FileName | None = None
-    loss_angle: Annotated[float, In("deg", at_least=0, at_most=5)] = LOSS_ANGLE
+    column: Annotated[HeaderText, Known("the file", "run1")] = ""
+    """columns of the file, by the beginning of their headers; without a header by number, `2` or `2
+    to 9`; left out, all runs or cycles, or the primary trigger of a log"""
+    angle_unit: Annotated[HeaderText, Known("the file", "deg")] = ""
+    """unit of the angles of a file without header"""
+    pressure_unit: Annotated[HeaderText, Known("the file", "bar")] = ""
+    """unit of the pressures of a file without header"""
+    firing_angle: Annotated[Angle, Known("the file")] = 2.0 * pi
+    """angle of firing dead centre in the file"""
+    gap_max: Annotated[float, In("deg", above=0, at_most=90), Known("own choice")] = GAP_MAX
+    """greatest gap between two angles of the file"""
+    dead_centre: Annotated[DeadCentre, Known("test bench")] = "given"
+    """origin of the top dead centre: as given, by symmetry or by loss angle of a motored cycle"""
+    motored_file: Annotated[FileName | None, Known("test bench", "motored.csv")] = None
+    """motored pressure of the same cylinder, for the dead centre"""
+    loss_angle: Annotated[
+        float, In("deg", at_least=0, at_most=5), Known("textbooks: 0.4 to 1 deg")
+    ] = LOSS_ANGLE
+    """crank angle of the peak motored pressure before top dead centre"""
 
 
 @dataclass(frozen=True, kw_only=True)
 class PressureTable(CrankDrive, _PressureFile):
     """Cylinder pressure against crank angle from a file, and the crank drive it acts on.
 
-    The file has one column a cycle, or cycles one below the other. `angle_unit` and
-    `pressure_unit` together mean that it has no header. With an `intake_pressure` each cycle is
-    pegged to it; without, the pressure is absolute. Without a friction pressure friction closes
-    the torque balance, with the brake torque where it is measured.
+    The file has one column a cycle, or cycles one below the other; both units together mean that it
+    has no header. Without an intake pressure the pressure is absolute. Friction closes the torque
+    balance with the brake torque where it is measured.
 
     Raises
     ------
@@ -85,8 +95,14 @@ class PressureTable(CrankDrive, _PressureFile):
     intake_pressure: GasPressure | None = None
     crankcase_pressure: GasPressure = 101.3e3
     friction_pressure: FrictionPressure | None = None
-    brake_torque: Annotated[float, In("N m", at_least=0, at_most=1e8)] | None = None
-    brake_power: Annotated[float, In("kW", at_least=0, at_most=1e6)] | None = None
+    brake_torque: Annotated[
+        float | None, In("N m", at_least=0, at_most=1e8), Known("test bench", "18 N m")
+    ] = None
+    """measured brake torque, which the indicated torque must exceed"""
+    brake_power: Annotated[
+        float | None, In("kW", at_least=0, at_most=1e6), Known("test bench", "3.4 kW")
+    ] = None
+    """measured brake power at the speed of the first load case, in place of its torque"""
 
     def __post_init__(self) -> None:
         super().__post_init__()

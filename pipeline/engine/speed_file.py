@@ -11,11 +11,12 @@ import numpy as np
 
 from camwright.geometry.arrays import Array
 from camwright.geometry.errors import InputError
-from camwright.pipeline.base.quantities import Angle, Count, FileName, In, Part, Share
+from camwright.pipeline.base.quantities import Angle, Count, FileName, In, Known, Part, Share, Used
 from camwright.pipeline.engine.cylinder import CYCLE_ANGLE, RunningGear
 from camwright.pipeline.engine.speed_trace import (
     HARMONICS,
     TAPER,
+    TAPERED,
     Filter,
     Harmonics,
     SpeedTrace,
@@ -76,15 +77,26 @@ class WheelTable(Part):
 
     file: FileName
     column: HeaderText = ""
-    teeth: Teeth | None = None
-    missing_teeth: MissingTeeth | None = None
-    reference_angle: Angle = 0.0
-    harmonics: Harmonics = HARMONICS
-    taper: Share = TAPER
-    wheel_class: WheelClass = "stamped"
-    pitch_tolerance: PitchTolerance | None = None
-    reference: WheelReference | None = None
-    running_gear: RunningGear | None = None
+    teeth: Annotated[Teeth | None, Known("counted", 36)] = None
+    """teeth of the trigger wheel, missing ones included"""
+    missing_teeth: Annotated[MissingTeeth | None, Known("counted", 2)] = None
+    """teeth left out at the gap, or at each of several gaps, as 2 of 36-2-2-2"""
+    reference_angle: Annotated[Angle, Known("measured at the engine")] = 0.0
+    """crank angle of the first tooth after the gap, of several gaps the one before the longest row
+    of teeth"""
+    harmonics: Annotated[Harmonics, Known("own choice")] = HARMONICS
+    """harmonics of the cycle that are kept: the bandwidth"""
+    taper: Annotated[Share, TAPERED, Known("own choice")] = TAPER
+    wheel_class: Annotated[WheelClass, Known("drawing")] = "stamped"
+    """making of the trigger wheel, for the tolerance of its edges"""
+    pitch_tolerance: Annotated[PitchTolerance | None, Known("measured, or drawing", "0.02 deg")] = (
+        None
+    )
+    """standard deviation of the place of an edge of the wheel"""
+    reference: Annotated[WheelReference | None, Used("torque")] = None
+    """second record at the same trigger wheel, for its pitch errors"""
+    running_gear: Annotated[RunningGear | None, Used("torque")] = None
+    """crank, connecting rod and piston, for their inertia in the pitch errors of the wheel"""
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -133,10 +145,16 @@ class SpeedTable(WheelTable):
     kind: Literal["speed"] = "speed"
     teeth: Teeth = TEETH
     missing_teeth: MissingTeeth = 0
-    speed_unit: HeaderText = ""
-    edges: Annotated[int, Count(1, 2)] = 2
-    tooth_share: ToothShare = 0.5
-    averaged_over: Annotated[float, In("deg", at_least=0, at_most=60)] = 0.0
+    speed_unit: Annotated[HeaderText, Known("the file", "rpm")] = ""
+    """unit of the speeds of columns whose headers have none"""
+    edges: Annotated[int, Count(1, 2), Known("the file")] = 2
+    """edges recorded of each tooth"""
+    tooth_share: Annotated[ToothShare, Known("drawing")] = 0.5
+    """tooth over pitch of the wheel"""
+    averaged_over: Annotated[
+        float, In("deg", at_least=0, at_most=60), Known("data acquisition")
+    ] = 0.0
+    """angle over which each speed of the file is a mean"""
 
     @property
     def wheel(self) -> TriggerWheel:

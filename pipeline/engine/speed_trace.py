@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from camwright.geometry.arrays import FULL_TURN, Array, finite, freeze, median, positive
 from camwright.geometry.errors import InputError
-from camwright.pipeline.base.quantities import Count, Part, Share
+from camwright.pipeline.base.quantities import Count, Meaning, Part, Share
 from camwright.pipeline.engine.band_fit import (
     SHARE_MAX,
     fitted,
@@ -38,6 +38,7 @@ from camwright.pipeline.torque.torque import SAMPLES, Torque, uniform_cycle
 
 HARMONICS = 20  # of the cycle, 10 per crank turn: least error at a noise of 0.2 rad/s
 TAPER = 0.25
+TAPERED = Meaning("half-width of the cosine edge of the filter, as a share of its harmonics")
 SPEED_RANGE = (5.0, 3000.0)  # rad/s, of a crank
 
 

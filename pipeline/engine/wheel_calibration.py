@@ -11,7 +11,7 @@ from typing import Annotated, ClassVar, Literal, NamedTuple
 import numpy as np
 
 from camwright.geometry.errors import InputError
-from camwright.pipeline.base.quantities import FileName, In, Part
+from camwright.pipeline.base.quantities import FileName, In, Known, Part
 from camwright.pipeline.engine.crankshaft import Inertia
 from camwright.pipeline.engine.cylinder import RunningGear
 from camwright.pipeline.engine.passing_times import passages_of
@@ -39,15 +39,17 @@ PitchTolerance = Annotated[float, In("deg", at_least=0, at_most=2)]
 class WheelReference(Part):
     """A second record at the same trigger wheel, for its pitch errors, in the form of the first.
 
-    second_speed: the engine with the gas torque of the measurement at another mean speed; run_down:
-    the engine without firing while its speed falls, its gas torque the same in every cycle;
-    no_torque: the wheel driven without gas torque, as by a motor or with the spark plug removed.
+    In a run-down the gas torque is the same in every cycle. Without gas torque the wheel is driven,
+    as by a motor or with the spark plug removed.
     """
 
     table: ClassVar[str] = "engine.reference"
 
-    file: FileName
-    kind: ReferenceKind
+    file: Annotated[FileName, Known("test bench", "fast.csv")]
+    """data file of the second record, in the form of the first"""
+    kind: Annotated[ReferenceKind, Known("test bench", "second_speed")]
+    """the gas torque of the measurement at another speed, a run-down without firing, or no gas
+    torque"""
 
 
 class EdgeRecord(NamedTuple):

@@ -15,19 +15,23 @@ from camwright.geometry.contour import Contour
 from camwright.geometry.cutouts import KeywayLike
 from camwright.geometry.errors import GeometryError, InputError
 from camwright.geometry.extrema import refined
-from camwright.pipeline.base.material import Material
+from camwright.pipeline.base.material import MadeOf, Material
 from camwright.pipeline.base.quantities import (
     Angle,
     Characters,
     Count,
     Force,
     In,
+    Known,
     Length,
     Mass,
+    Meaning,
     Part,
     Pressure,
+    TableSource,
+    Used,
 )
-from camwright.pipeline.base.source import NO_SOURCE, Source
+from camwright.pipeline.base.source import NO_SOURCE
 from camwright.pipeline.base.units import shown
 from camwright.pipeline.contact.cam_body import KeyFlanks
 
@@ -117,11 +121,7 @@ _ZOOMS = 14  # in the search of the greatest hole
 
 @dataclass(frozen=True, kw_only=True)
 class CamshaftGear(Part):
-    """Spur gear on the camshaft, 20 deg full depth; the pinion is on the crankshaft.
-
-    bending_limit and contact_limit: endurance limits of the gear, those of the pinion apart; both
-    have the same width. machine_shaft_diameter: beside the cam, 0 where it ends at the pinion.
-    """
+    """Spur gear on the camshaft, 20 deg full depth; the pinion is on the crankshaft."""
 
     table: ClassVar[str] = "camshaft.gear"
     defaults: ClassVar[Mapping[str, str]] = {
@@ -129,23 +129,36 @@ class CamshaftGear(Part):
         "machine_shaft_diameter": "at most that of the pinion",
     }
 
-    teeth: Annotated[int, Count(10, 1000)]
-    pinion_teeth: Annotated[int, Count(10, 1000)]
-    width: Length
-    material: Material
-    application_factor: Annotated[float, In(at_least=1, at_most=10)] = 1.5
-    bending_limit: Pressure | None = None
-    contact_limit: Pressure | None = None
-    pinion_material: Material | None = None
-    pinion_bending_limit: Pressure | None = None
-    pinion_contact_limit: Pressure | None = None
-    machine_shaft_diameter: Annotated[float, In("mm", at_least=0, at_most=10_000)] | None = None
-    source: Source = NO_SOURCE
+    teeth: Annotated[int, Count(10, 1000), Known("gear drawing", 40)]
+    """teeth of the gear on the camshaft"""
+    pinion_teeth: Annotated[int, Count(10, 1000), Known("gear drawing", 20)]
+    """teeth of the pinion on the machine shaft"""
+    width: Annotated[Length, Known("gear drawing", "20 mm")]
+    """face width of gear and pinion"""
+    material: Annotated[MadeOf, Known("gear drawing", "case_hardened")]
+    application_factor: Annotated[float, In(at_least=1, at_most=10), Known("DIN 3990")] = 1.5
+    """K_A on the torque"""
+    bending_limit: Annotated[Pressure | None, Known("ISO 6336-5", "430 MPa")] = None
+    """endurance limit of tooth root bending"""
+    contact_limit: Annotated[Pressure | None, Known("ISO 6336-5", "1500 MPa")] = None
+    """endurance limit of flank contact"""
+    pinion_material: Annotated[Material | None, Known("gear drawing", "case_hardened")] = None
+    """name of the pinion's material in [materials]"""
+    pinion_bending_limit: Annotated[Pressure | None, Known("ISO 6336-5", "430 MPa")] = None
+    """endurance limit of tooth root bending of the pinion"""
+    pinion_contact_limit: Annotated[Pressure | None, Known("ISO 6336-5", "1500 MPa")] = None
+    """endurance limit of flank contact of the pinion"""
+    machine_shaft_diameter: Annotated[
+        float | None, In("mm", at_least=0, at_most=10_000), Known("drawing", "20 mm")
+    ] = None
+    """diameter of the machine shaft beside the cam; 0 where it ends at its pinion"""
+    source: TableSource = NO_SOURCE
 
 
 Surface = Literal["ground", "machined", "hot_rolled", "forged"]
 Notch = Annotated[float, In(at_least=1, at_most=10)]
 Place = Annotated[float, In("mm", above=-10_000, below=10_000)]
+FromBearing = Annotated[Place, Meaning("position from the first bearing")]
 MassMoment = Annotated[float, In("g mm", above=0, at_most=1e9)]
 
 
@@ -155,19 +168,22 @@ class ShaftSection(Part):
 
     table: ClassVar[str] = "camshaft.sections"
 
-    name: Annotated[str, Characters(1, 40)]
-    position: Place
-    diameter: Length
-    notch_bending: Notch
-    notch_torsion: Notch
+    name: Annotated[str, Characters(1, 40), Known("own choice", "bearing seat 1")]
+    """name of the section in messages"""
+    position: Annotated[FromBearing, Known("drawing", "0 mm")]
+    diameter: Annotated[Length, Known("drawing", "15 mm")]
+    """diameter of the section"""
+    notch_bending: Annotated[Notch, Known("Shigley table 7-1; DIN 743-2", 1.9)]
+    """fatigue notch factor in bending"""
+    notch_torsion: Annotated[Notch, Known("Shigley table 7-1; DIN 743-2", 2.8)]
+    """fatigue notch factor in torsion"""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Counterweight(Part):
     """Counterweight on the camshaft, stated in one of two ways.
 
-    unbalance, angle: its own m e and direction in the cam frame; residual: m e that is left of cam
-    and counterweight together when it is set against the cam on a balancing bench.
+    It has its own unbalance m e and direction, or the residual of cam and counterweight together.
     """
 
     table: ClassVar[str] = "camshaft.counterweight"
@@ -177,11 +193,16 @@ class Counterweight(Part):
         "residual": "with unbalance: what it leaves of the cam",
     }
 
-    unbalance: MassMoment | None = None
-    angle: Angle | None = None
-    residual: MassMoment | None = None
-    position: Place
-    source: Source = NO_SOURCE
+    unbalance: Annotated[MassMoment | None, Known("drawing", "50 g mm")] = None
+    """unbalance m e of the counterweight; with angle, without residual"""
+    angle: Annotated[Angle | None, Known("drawing", "30 deg")] = None
+    """direction of the counterweight in the cam frame"""
+    residual: Annotated[MassMoment | None, Known("balancing report, ISO 21940-11", "20 g mm")] = (
+        None
+    )
+    """unbalance left after balancing on a bench; without unbalance and angle"""
+    position: Annotated[FromBearing, Known("drawing", "30 mm")]
+    source: TableSource = NO_SOURCE
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -214,16 +235,9 @@ class Counterweight(Part):
 class Camshaft(Part):
     """Camshaft: positions from its first bearing, driving gear, two ball bearings.
 
-    A negative position or one beyond the spacing is overhung. mesh_angle: direction of the gear
-    mesh from the follower axis, counter-clockwise; gear_radius: pitch radius; pressure_angle: of
-    the teeth; drag: torque of bearings and seals; diameter: at every seat without a section of its
-    own; surface: finish; notch_bending, notch_torsion: fatigue notch factors at cam and gear,
-    end-milled keyway; seat_notch_bending, seat_notch_torsion: at the bearings, shoulder with a
-    sharp fillet; sections: further sections, or seats of another diameter or notch; bearing_rating,
-    bearing_static_rating: C and C0 of each bearing; bearing_width: of each; rotor_mass: of cam,
-    shaft and gear together; slip_torque: at which the cam slips on its seat without its key, 0 for
-    a sliding fit, of another that of `cam.fit`; counterweight: against the unbalance of the cam.
-    The fatigue_bending of its material is that of a polished specimen under rotating bending.
+    The notch factors at cam and gear are those of an end-milled keyway, at the bearings those of a
+    shoulder with a sharp fillet. A press fit without a slip torque has that of `cam.fit`. The
+    fatigue_bending of its material is that of a polished specimen under rotating bending.
     """
 
     table: ClassVar[str] = "camshaft"
@@ -233,29 +247,56 @@ class Camshaft(Part):
         "slip_torque": "that of cam.fit",
     }
 
-    bearing_spacing: Length
-    cam_position: Place
-    gear_position: Place
-    gear_radius: Length
-    mesh_angle: Angle = pi
-    pressure_angle: Annotated[float, In("deg", at_least=0, below=45)] = pi / 9.0
-    drag: Annotated[float, In("N m", at_least=0, at_most=1e6)] = 0.0
-    diameter: Length | None = None
-    material: Material | None = None
-    surface: Surface = "machined"
-    notch_bending: Notch = 2.14
-    notch_torsion: Notch = 3.0
-    seat_notch_bending: Notch = 2.7
-    seat_notch_torsion: Notch = 2.2
-    sections: tuple[ShaftSection, ...] = ()
-    bearing_rating: Force | None = None
-    bearing_static_rating: Force | None = None
-    bearing_width: Length | None = None
-    rotor_mass: Mass | None = None
-    slip_torque: Annotated[float, In("N m", at_least=0, at_most=1e6)] | None = None
-    gear: CamshaftGear | None = None
-    counterweight: Counterweight | None = None
-    source: Source = NO_SOURCE
+    bearing_spacing: Annotated[Length, Known("drawing", "60 mm")]
+    """distance of its two bearings"""
+    cam_position: Annotated[Place, Known("drawing", "20 mm")]
+    """position of the cam from the first bearing; negative or beyond the spacing: overhung"""
+    gear_position: Annotated[Place, Known("drawing", "-15 mm")]
+    """position of the driving gear from the first bearing"""
+    gear_radius: Annotated[Length, Known("gear drawing", "20 mm")]
+    """pitch radius of the driving gear"""
+    mesh_angle: Annotated[Angle, Known("drawing")] = pi
+    """direction of the gear mesh from the follower axis, counter-clockwise"""
+    pressure_angle: Annotated[float, In("deg", at_least=0, below=45), Known("gear drawing")] = (
+        pi / 9.0
+    )
+    """pressure angle of the teeth"""
+    drag: Annotated[float, In("N m", at_least=0, at_most=1e6), Known("bearing catalogue")] = 0.0
+    """torque of bearings and seals"""
+    diameter: Annotated[Length | None, Known("drawing", "17 mm")] = None
+    """diameter of every seat without a section of its own"""
+    material: Annotated[MadeOf | None, Known("drawing", "c45")] = None
+    surface: Annotated[Surface, Known("drawing")] = "machined"
+    """surface finish of the shaft"""
+    notch_bending: Annotated[Notch, Known("Shigley table 7-1; DIN 743-2")] = 2.14
+    """fatigue notch factor in bending at cam and gear"""
+    notch_torsion: Annotated[Notch, Known("Shigley table 7-1; DIN 743-2")] = 3.0
+    """fatigue notch factor in torsion at cam and gear"""
+    seat_notch_bending: Annotated[Notch, Known("Shigley table 7-1; DIN 743-2")] = 2.7
+    """fatigue notch factor in bending at the bearing seats"""
+    seat_notch_torsion: Annotated[Notch, Known("Shigley table 7-1; DIN 743-2")] = 2.2
+    """fatigue notch factor in torsion at the bearing seats"""
+    sections: Annotated[tuple[ShaftSection, ...], Used("checks of the camshaft")] = ()
+    """section of the camshaft, or a seat with a diameter of its own"""
+    bearing_rating: Annotated[Force | None, Known("bearing catalogue", "9.95 kN")] = None
+    """dynamic rating C of each bearing"""
+    bearing_static_rating: Annotated[Force | None, Known("bearing catalogue", "4.75 kN")] = None
+    """static rating C0 of each bearing"""
+    bearing_width: Annotated[Length | None, Known("bearing catalogue", "12 mm")] = None
+    """width of each bearing"""
+    rotor_mass: Annotated[Mass | None, Known("drawing, or weighed", "900 g")] = None
+    """mass of cam, shaft and gear together, for the unbalance"""
+    slip_torque: Annotated[
+        float | None,
+        In("N m", at_least=0, at_most=1e6),
+        Known("calculation of the press fit, DIN 7190", "60 N m"),
+    ] = None
+    """torque at which the cam slips on its seat without the key; 0 for a sliding fit"""
+    gear: Annotated[CamshaftGear | None, Used("checks of the gear")] = None
+    """spur gear on the camshaft and its pinion on the machine shaft"""
+    counterweight: Annotated[Counterweight | None, Used("unbalance, camshaft loads")] = None
+    """counterweight against the unbalance of the cam"""
+    source: TableSource = NO_SOURCE
 
     @property
     def widest(self) -> float | None:

@@ -10,9 +10,9 @@ from camwright.geometry.arrays import Array
 from camwright.geometry.contour import Contour
 from camwright.geometry.flat_face_contour import FacePath, FlatFaceContour
 from camwright.geometry.lift import Lift
-from camwright.pipeline.base.material import Material
-from camwright.pipeline.base.quantities import In, Length, Part
-from camwright.pipeline.base.source import NO_SOURCE, Source
+from camwright.pipeline.base.material import MadeOf
+from camwright.pipeline.base.quantities import In, Known, Length, Part, TableSource, Used
+from camwright.pipeline.base.source import NO_SOURCE
 from camwright.pipeline.contact.axial_shape import AxialCrown, BodyEnd, flat_width
 from camwright.pipeline.contact.cam_body import CamBody
 from camwright.pipeline.contact.contact_history import ContactHistory
@@ -25,11 +25,7 @@ from camwright.pipeline.follower.stem_beam import Stem
 
 @dataclass(frozen=True, kw_only=True)
 class FlatFace(Part):
-    """Flat face of a follower, perpendicular to the stem and centred on it.
-
-    width: length in the plane of motion; depth: length along the line of contact; thickness: of the
-    block along the stem; friction: of the face on the cam.
-    """
+    """Flat face of a follower, perpendicular to the stem and centred on it."""
 
     table: ClassVar[str] = "follower.face"
     word: ClassVar[str] = "face"
@@ -43,16 +39,32 @@ class FlatFace(Part):
         "roughness": "unknown: the film ratio, which is advisory, is not evaluated",
     }
 
-    width: Length
-    depth: Length
-    thickness: Length
-    friction: Annotated[float, In(above=0, at_most=1)] | None = None
-    roughness: Annotated[float, In("um", above=0, at_most=1000)] | None = None
-    pv_limit: Annotated[float, In("MPa m/s", above=0, at_most=1e9)] | None = None
-    material: Material
-    end: BodyEnd | None = None
-    crown: AxialCrown | None = None
-    source: Source = NO_SOURCE
+    width: Annotated[Length, Known("drawing", "30 mm")]
+    """length in the plane of motion"""
+    depth: Annotated[Length, Known("drawing", "10 mm")]
+    """length along the cam axis"""
+    thickness: Annotated[Length, Known("drawing", "6 mm")]
+    """thickness of the block along the stem"""
+    friction: Annotated[
+        float | None, In(above=0, at_most=1), Known("textbooks: 0.05 to 0.12 oiled steel", 0.08)
+    ] = None
+    """coefficient of friction on the cam"""
+    roughness: Annotated[
+        float | None, In("um", above=0, at_most=1000), Known("drawing or measured", "0.2 um")
+    ] = None
+    """rms roughness Rq of the face"""
+    pv_limit: Annotated[
+        float | None,
+        In("MPa m/s", above=0, at_most=1e9),
+        Known("maker of the face or coating", "3000 MPa m/s"),
+    ] = None
+    """permissible mean contact pressure times sliding speed"""
+    material: Annotated[MadeOf, Known("drawing", "case_hardened")]
+    end: Annotated[BodyEnd | None, Used("contact of finite length")] = None
+    """ends of the face; without them the pressure at the ends of the contact is not evaluated"""
+    crown: Annotated[AxialCrown | None, Used("contact of finite length")] = None
+    """crown of the face along the axis; added to that of the cam"""
+    source: TableSource = NO_SOURCE
 
     @property
     def line_width(self) -> float:

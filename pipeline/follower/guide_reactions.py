@@ -14,9 +14,20 @@ from numpy.typing import ArrayLike
 from camwright.geometry.arrays import Array, Value, finite, freeze, readonly
 from camwright.geometry.display import Displayed
 from camwright.geometry.errors import ContactError, InputError
-from camwright.pipeline.base.material import ROOM, Material
-from camwright.pipeline.base.quantities import In, Length, Part, Pressure, Temperature
-from camwright.pipeline.base.source import NO_SOURCE, Source
+from camwright.pipeline.base.material import ROOM, MadeOf
+from camwright.pipeline.base.quantities import (
+    In,
+    Known,
+    Length,
+    Part,
+    Pressure,
+    Resolved,
+    TableSource,
+    Temperature,
+    Used,
+    card_of,
+)
+from camwright.pipeline.base.source import NO_SOURCE
 from camwright.pipeline.base.units import shown
 from camwright.pipeline.follower.guide_contact import BearingLine, settle
 from camwright.pipeline.follower.stem_beam import Stem, end_flexibility, stem_compliance
@@ -36,12 +47,8 @@ def _no_press_fit(field: str, clearance: float) -> None:
 class Guide(Part):
     """Guide of the stem; its limits hold for dry running unless the source states otherwise.
 
-    wall: thickness of the bush; clearance: diametral, as mounted; friction: Coulomb coefficient,
-    with bounds where known; stiffness: of the whole bush, None: from the elasticity of its wall.
-    housing_resistance: thermal, from the outside of the bush to the ambient; thermal_resistance:
-    the total from the rubbing surface to the ambient, in place of wall and housing.
-    pressure_limit_temperature: up to which the pressure limit holds; above, it falls with the yield
-    strength of the material. speed_limit: greatest sliding speed.
+    Above the temperature of its limit the permissible pressure falls with the yield strength of the
+    material.
 
     Raises
     ------
@@ -50,6 +57,9 @@ class Guide(Part):
     """
 
     table: ClassVar[str] = "guide"
+    resolved: ClassVar[Mapping[str, Resolved]] = card_of(
+        "card of the bush, which fills the keys left out", "bushes.toml", "ptfe_lined"
+    )
     defaults: ClassVar[Mapping[str, str]] = {
         "friction_min": "friction less the tolerance of friction",
         "friction_max": "friction plus the tolerance of friction",
@@ -59,24 +69,72 @@ class Guide(Part):
         "pressure_limit_temperature": "20 degC",
     }
 
-    length: Length
-    diameter: Length
-    wall: Length | None = None
-    friction: Annotated[float, In(at_least=0, at_most=1)]
-    friction_min: Annotated[float, In(at_least=0, at_most=1)] | None = None
-    friction_max: Annotated[float, In(at_least=0, at_most=1)] | None = None
-    lubrication: Literal["dry", "greased_once", "regularly_greased", "flooded"] | None = None
-    clearance: Annotated[float, In("mm", at_least=-100, at_most=100)] = 0.0
-    material: Material
-    pressure_limit: Pressure | None = None
-    pressure_limit_temperature: Temperature | None = None
-    speed_limit: Annotated[float, In("m/s", above=0, at_most=1000)] | None = None
-    pv_limit: Annotated[float, In("MPa m/s", above=0, at_most=1e6)] | None = None
-    stiffness: Annotated[float, In("N/mm", above=0, at_most=1e9)] | None = None
-    housing_resistance: Annotated[float, In("K/W", above=0, at_most=1e6)] | None = None
-    thermal_resistance: Annotated[float, In("K/W", above=0, at_most=1e6)] | None = None
-    wear_rate: Annotated[float, In("mm^3/N/m", above=0, at_most=1e3)] | None = None
-    source: Source = NO_SOURCE
+    length: Annotated[Length, Known("bush catalogue", "20 mm")]
+    """length of the bush"""
+    diameter: Annotated[Length, Known("bush catalogue", "10 mm")]
+    """bore of the bush: stem diameter"""
+    wall: Annotated[Length | None, Known("bush catalogue", "2 mm")] = None
+    """wall thickness of the bush"""
+    friction: Annotated[float, In(at_least=0, at_most=1), Known("data sheet of the bush", 0.1)]
+    """coefficient of friction of stem and bush"""
+    friction_min: Annotated[
+        float | None, In(at_least=0, at_most=1), Known("data sheet of the bush", 0.05)
+    ] = None
+    """least coefficient of friction"""
+    friction_max: Annotated[
+        float | None, In(at_least=0, at_most=1), Known("data sheet of the bush", 0.15)
+    ] = None
+    """greatest coefficient of friction"""
+    lubrication: Annotated[
+        Literal["dry", "greased_once", "regularly_greased", "flooded"] | None,
+        Known("own choice", "greased_once"),
+    ] = None
+    """lubrication of a nylon bush, which sets its PV limit"""
+    clearance: Annotated[
+        float, In("mm", at_least=-100, at_most=100), Known("tolerances of bush and stem")
+    ] = 0.0
+    """diametral clearance as mounted"""
+    material: Annotated[MadeOf, Known("data sheet of the bush", "nylon")]
+    pressure_limit: Annotated[Pressure | None, Known("data sheet of the bush", "20 MPa")] = None
+    """permissible mean bearing pressure"""
+    pressure_limit_temperature: Annotated[
+        Temperature | None, Known("data sheet of the bush", "80 degC")
+    ] = None
+    """temperature up to which the pressure limit holds"""
+    speed_limit: Annotated[
+        float | None, In("m/s", above=0, at_most=1000), Known("data sheet of the bush", "2.5 m/s")
+    ] = None
+    """greatest sliding speed"""
+    pv_limit: Annotated[
+        float | None,
+        In("MPa m/s", above=0, at_most=1e6),
+        Known("data sheet of the bush", "1.8 MPa m/s"),
+    ] = None
+    """permissible pressure times sliding speed"""
+    stiffness: Annotated[
+        float | None,
+        In("N/mm", above=0, at_most=1e9),
+        Known("measured, or finite elements", "50000 N/mm"),
+    ] = None
+    """stiffness of the whole bush in its seat"""
+    housing_resistance: Annotated[
+        float | None,
+        In("K/W", above=0, at_most=1e6),
+        Known("measured or estimated: about 1 K/W in aluminium", "1 K/W"),
+    ] = None
+    """thermal resistance from the outside of the bush to the ambient"""
+    thermal_resistance: Annotated[
+        float | None, In("K/W", above=0, at_most=1e6), Known("measured", "3 K/W")
+    ] = None
+    """total thermal resistance from the rubbing surface to the ambient, in place of wall and
+    housing"""
+    wear_rate: Annotated[
+        float | None,
+        In("mm^3/N/m", above=0, at_most=1e3),
+        Known("data sheet of the bush", "1e-7 mm^3/N/m"),
+    ] = None
+    """wear volume per load and sliding distance, Archard"""
+    source: TableSource = NO_SOURCE
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -123,14 +181,20 @@ class Guide(Part):
 
 @dataclass(frozen=True, kw_only=True)
 class GuidePair(Part):
-    """Guide A next to the cam and guide B beyond; spacing from middle to middle."""
+    """Guides A and B of the stem."""
 
     table: ClassVar[str] = "guides"
 
-    spacing: Length
-    ambient_temperature: Temperature | None = None
-    a: Guide
-    b: Guide
+    spacing: Annotated[Length, Known("drawing", "80 mm")]
+    """distance of the guides from middle to middle"""
+    ambient_temperature: Annotated[
+        Temperature | None, Known("measured at the machine", "60 degC")
+    ] = None
+    """temperature around the guides in operation"""
+    a: Annotated[Guide, Used("cycle, checks of the guides")]
+    """guide A next to the cam"""
+    b: Annotated[Guide, Used("cycle, checks of the guides")]
+    """guide B beyond guide A"""
 
     def __post_init__(self) -> None:
         super().__post_init__()

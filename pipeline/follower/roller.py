@@ -12,8 +12,8 @@ from camwright.geometry.arrays import FULL_TURN, Array
 from camwright.geometry.contour import Contour, RollerContour
 from camwright.geometry.lift import Lift
 from camwright.geometry.pitch_curve import PitchCurve, rolling_share
-from camwright.pipeline.base.material import Material
-from camwright.pipeline.base.quantities import In, Length, Mass, Part
+from camwright.pipeline.base.material import MadeOf
+from camwright.pipeline.base.quantities import In, Known, Length, Mass, Part, Used
 from camwright.pipeline.contact.axial_shape import AxialCrown, BodyEnd, flat_width
 from camwright.pipeline.contact.cam_body import CamBody
 from camwright.pipeline.contact.contact_history import ContactHistory
@@ -38,12 +38,7 @@ _NO_SLIP = 1e6  # friction coefficient of rolling without slip
 
 @dataclass(frozen=True, kw_only=True)
 class Roller(Part):
-    """Roller of the follower.
-
-    hub_radius: of its pin or inner ring; axial_offset: of the middle of its width from that of
-    the cam; friction: coefficient of sliding on the cam; roughness: rms; mass: with its bearing,
-    without the pin.
-    """
+    """Roller of the follower."""
 
     table: ClassVar[str] = "roller"
     word: ClassVar[str] = "roller"
@@ -55,20 +50,46 @@ class Roller(Part):
         "roughness": "unknown: the film ratio, which is advisory, is not evaluated",
     }
 
-    radius: Length
-    width: Length
-    hub_radius: Length
-    inertia: Annotated[float, In("kg mm^2", above=0, at_most=1e9)] | None = None
-    mass: Mass | None = None
-    axial_offset: Annotated[float, In("mm", at_least=0, at_most=1000)] | None = None
-    friction: Annotated[float, In(above=0, at_most=1)] | None = None
-    roughness: Annotated[float, In("um", above=0, at_most=1000)] | None = None
-    material: Material
-    end: BodyEnd | None = None
-    crown: AxialCrown | None = None
-    bearing: Bearing
-    pin: Pin | None = None
-    fork: Fork | None = None
+    radius: Annotated[Length, Known("bearing catalogue", "23.5 mm")]
+    """outer radius of the roller"""
+    width: Annotated[Length, Known("bearing catalogue", "17.5 mm")]
+    """width of the roller"""
+    hub_radius: Annotated[Length, Known("bearing catalogue", "11.5 mm")]
+    """radius of the inner ring's shoulder, or of the pin"""
+    inertia: Annotated[
+        float | None, In("kg mm^2", above=0, at_most=1e9), Known("drawing", "30 kg mm^2")
+    ] = None
+    """moment of inertia of the part that turns"""
+    mass: Annotated[Mass | None, Known("bearing catalogue, or weighed", "150 g")] = None
+    """roller with its bearing, without the pin"""
+    axial_offset: Annotated[
+        float | None,
+        In("mm", at_least=0, at_most=1000),
+        Known("drawing, tolerance chain", "0.3 mm"),
+    ] = None
+    """greatest offset of the roller's middle from that of the cam"""
+    friction: Annotated[
+        float | None, In(above=0, at_most=1), Known("textbooks: 0.05 to 0.12 oiled steel", 0.1)
+    ] = None
+    """coefficient of sliding friction on the cam"""
+    roughness: Annotated[
+        float | None,
+        In("um", above=0, at_most=1000),
+        Known("bearing maker; 0.1 um ground", "0.1 um"),
+    ] = None
+    """rms roughness Rq of the surface"""
+    material: Annotated[MadeOf, Known("bearing maker; bearing steel", "bearing_steel")]
+    end: Annotated[BodyEnd | None, Used("contact of finite length")] = None
+    """ends of the roller's surface; without them the pressure at the ends of the contact is not
+    evaluated"""
+    crown: Annotated[AxialCrown | None, Used("contact of finite length")] = None
+    """crown of the roller's surface along the axis; added to that of the cam"""
+    bearing: Annotated[Bearing, Used("checks of the roller bearing")]
+    """bearing of the roller"""
+    pin: Annotated[Pin | None, Used("checks of the pin, follower mass")] = None
+    """pin of the roller"""
+    fork: Annotated[Fork | None, Used("checks of the fork, follower mass")] = None
+    """fork that holds the pin"""
 
     @property
     def line_width(self) -> float:

@@ -8,17 +8,23 @@ from math import pi, sin
 from typing import Annotated, ClassVar, Literal
 
 from camwright.geometry.errors import InputError
-from camwright.pipeline.base.material import Material
+from camwright.pipeline.base.material import MadeOf
 from camwright.pipeline.base.quantities import (
     Count,
     Force,
     In,
+    Known,
     Length,
+    Meaning,
     Part,
     Pressure,
+    Resolved,
+    TableSource,
     Temperature,
+    Used,
+    card_of,
 )
-from camwright.pipeline.base.source import NO_SOURCE, Source
+from camwright.pipeline.base.source import NO_SOURCE
 from camwright.pipeline.base.units import shown
 
 Cleanliness = Literal[
@@ -31,24 +37,29 @@ RadialLimit = Annotated[float, In("N", above=0, at_most=1e9)]
 Hours = Annotated[float, In("h", above=0, at_most=1e6)]
 
 
+BallCircle = Annotated[Length, Meaning("diameter of the circle of the ball centres")]
+
+
 @dataclass(frozen=True, kw_only=True)
 class OuterRing(Part):
-    """Outer ring of a bearing as roller, supported by its balls.
-
-    thickness: below the groove; pitch_diameter: of the ball centres; balls: number per row;
-    strengths: of the ring steel.
-    """
+    """Outer ring of a bearing as roller, supported by its balls."""
 
     table: ClassVar[str] = "roller.bearing.ring"
 
-    outer_diameter: Length
-    thickness: Length
-    pitch_diameter: Length
-    balls: Annotated[int, Count(3, 100)]
-    rows: Annotated[int, Count(1, 4)] = 1
-    fatigue_bending: Pressure | None = None
-    tensile_strength: Pressure | None = None
-    source: Source = NO_SOURCE
+    outer_diameter: Annotated[Length, Known("bearing catalogue", "47 mm")]
+    """outer diameter of the ring"""
+    thickness: Annotated[Length, Known("bearing maker, or measured", "4 mm")]
+    """thickness below the groove"""
+    pitch_diameter: Annotated[BallCircle, Known("bearing maker", "30 mm")]
+    balls: Annotated[int, Count(3, 100), Known("bearing maker, or counted", 9)]
+    """balls per row"""
+    rows: Annotated[int, Count(1, 4), Known("bearing catalogue")] = 1
+    """rows of balls"""
+    fatigue_bending: Annotated[Pressure | None, Known("card of bearing steel", "700 MPa")] = None
+    """fatigue strength of the ring steel in bending"""
+    tensile_strength: Annotated[Pressure | None, Known("card of bearing steel", "2000 MPa")] = None
+    """tensile strength of the ring steel"""
+    source: TableSource = NO_SOURCE
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -76,15 +87,12 @@ class OuterRing(Part):
 
 @dataclass(frozen=True, kw_only=True)
 class Bearing(Part):
-    """Bearing of the roller with the ratings of its manufacturer.
-
-    fatigue_load_limit: P_u of ISO 281; radial_limit, static_radial_limit: maximum dynamic and
-    static load of an outer ring without a housing, F_r,max and F_0r,max; viscosity: of the oil, or
-    of the base oil of the grease, at the temperature in operation; grease_life: of the
-    manufacturer for this duty, in place of the estimate.
-    """
+    """Bearing of the roller with the ratings of its manufacturer."""
 
     table: ClassVar[str] = "roller.bearing"
+    resolved: ClassVar[Mapping[str, Resolved]] = card_of(
+        "card of the bearing, which fills the keys left out", "bearings.toml", "track_roller_47x18"
+    )
     defaults: ClassVar[Mapping[str, str]] = {
         "pitch_diameter": "that of the ring",
         "drag_torque": "zero",
@@ -94,37 +102,79 @@ class Bearing(Part):
         "relubrication_interval": "not needed with oil, nor with grease for life",
     }
 
-    name: str
-    C: Force | None = None
-    C0: Force | None = None
-    fatigue_load_limit: RadialLimit | None = None
-    radial_limit: RadialLimit | None = None
-    static_radial_limit: RadialLimit | None = None
-    speed_limit: Annotated[float, In("rpm", above=0, at_most=1e6)] | None = None
-    drag_torque: Annotated[float, In("N mm", at_least=0, at_most=1e6)] | None = None
-    friction: Annotated[float, In(at_least=0, below=1)] | None = None
-    viscosity: Annotated[float, In("mm^2/s", above=0, at_most=1e5)] | None = None
-    contamination: Cleanliness | None = None
-    lubrication: Lubrication | None = None
-    temperature: Temperature | None = None
-    grease_life: Hours | None = None
-    relubrication_interval: Hours | None = None
-    pitch_diameter: Length | None = None
-    ring: OuterRing | None = None
-    source: Source = NO_SOURCE
+    name: Annotated[str, Known("bearing catalogue", "LR6204")]
+    """designation of the bearing"""
+    C: Annotated[Force | None, Known("bearing catalogue", "14 kN")] = None
+    """dynamic rating"""
+    C0: Annotated[Force | None, Known("bearing catalogue", "7.8 kN")] = None
+    """static rating"""
+    fatigue_load_limit: Annotated[RadialLimit | None, Known("bearing catalogue", "335 N")] = None
+    """fatigue load limit P_u, ISO 281"""
+    radial_limit: Annotated[RadialLimit | None, Known("catalogue of track rollers", "8.3 kN")] = (
+        None
+    )
+    """greatest dynamic radial load F_r,max of an outer ring without a housing"""
+    static_radial_limit: Annotated[
+        RadialLimit | None, Known("catalogue of track rollers", "11.8 kN")
+    ] = None
+    """greatest static radial load F_0r,max of an outer ring without a housing"""
+    speed_limit: Annotated[
+        float | None, In("rpm", above=0, at_most=1e6), Known("bearing catalogue", "9500 rpm")
+    ] = None
+    """limiting speed"""
+    drag_torque: Annotated[
+        float | None,
+        In("N mm", at_least=0, at_most=1e6),
+        Known("bearing maker's calculation", "5 N mm"),
+    ] = None
+    """drag of seals and grease"""
+    friction: Annotated[
+        float | None,
+        In(at_least=0, below=1),
+        Known("bearing catalogue; 0.0015 of ball bearings", 0.0015),
+    ] = None
+    """friction coefficient of the bearing at its pitch circle"""
+    viscosity: Annotated[
+        float | None,
+        In("mm^2/s", above=0, at_most=1e5),
+        Known("data sheet of oil or grease", "30 mm^2/s"),
+    ] = None
+    """viscosity of the oil, or of the base oil of the grease, in operation"""
+    contamination: Annotated[
+        Cleanliness | None, Known("seals and surroundings", "normal_cleanliness")
+    ] = None
+    """class of contamination, ISO 281 table 13"""
+    lubrication: Annotated[Lubrication | None, Known("bearing catalogue; own choice", "oil")] = None
+    """grease for life, relubricated grease, or oil"""
+    temperature: Annotated[Temperature | None, Known("measured at the machine", "70 degC")] = None
+    """temperature of the bearing in operation"""
+    grease_life: Annotated[Hours | None, Known("maker's calculation", "5000 h")] = None
+    """life of the grease for this duty, in place of the estimate"""
+    relubrication_interval: Annotated[Hours | None, Known("maintenance plan", "1000 h")] = None
+    """interval of relubrication"""
+    pitch_diameter: Annotated[
+        BallCircle | None, Known("bearing maker; mean of bore and outer diameter", "33.5 mm")
+    ] = None
+    ring: Annotated[OuterRing | None, Used("contact, checks of the ring")] = None
+    """outer ring of the bearing, where it is the roller itself"""
+    source: TableSource = NO_SOURCE
 
 
 @dataclass(frozen=True, kw_only=True)
 class Pin(Part):
-    """Pin of the roller: straddled, span between supports; overhung, span from its support."""
+    """Pin of the roller, straddled or overhung."""
 
     table: ClassVar[str] = "roller.pin"
 
-    diameter: Length
-    span: Length
-    mounting: Literal["straddled", "overhung"] = "straddled"
-    material: Material
-    source: Source = NO_SOURCE
+    diameter: Annotated[Length, Known("drawing; bore of the bearing", "17 mm")]
+    """diameter of the pin"""
+    span: Annotated[Length, Known("drawing", "23 mm")]
+    """distance between the middles of the cheeks; of an overhung pin from the cheek to the middle
+    of the roller"""
+    mounting: Annotated[Literal["straddled", "overhung"], Known("drawing")] = "straddled"
+    """whether the pin is held at both ends or at one"""
+    material: Annotated[MadeOf, Known("drawing", "case_hardened")]
+    source: TableSource = NO_SOURCE
 
     @property
     def overhung(self) -> bool:
@@ -142,12 +192,7 @@ class Pin(Part):
 
 @dataclass(frozen=True, kw_only=True)
 class Fork(Part):
-    """Fork that holds the pin: two cheeks under a straddled pin, one beside an overhung one.
-
-    cheek_width: along the pin, of each cheek; cheek_height: across pin and stem; cheek_length: from
-    the middle of the pin to the bridge; bridge_length: of the bridge along the stem;
-    pressure_limit: of the pin in the cheeks.
-    """
+    """Fork that holds the pin: two cheeks under a straddled pin, one beside an overhung one."""
 
     table: ClassVar[str] = "roller.fork"
     defaults: ClassVar[Mapping[str, str]] = {
@@ -155,13 +200,20 @@ class Fork(Part):
         " the lower",
     }
 
-    cheek_width: Length
-    cheek_height: Length | None = None
-    cheek_length: Length | None = None
-    bridge_length: Length | None = None
-    material: Material
-    pressure_limit: Pressure | None = None
-    source: Source = NO_SOURCE
+    cheek_width: Annotated[Length, Known("drawing", "5 mm")]
+    """width of each cheek along the pin"""
+    cheek_height: Annotated[Length | None, Known("drawing", "22 mm")] = None
+    """height of the cheeks across pin and stem"""
+    cheek_length: Annotated[Length | None, Known("drawing", "26 mm")] = None
+    """length from the middle of the pin to the bridge"""
+    bridge_length: Annotated[Length | None, Known("drawing", "4 mm")] = None
+    """length of the bridge along the stem"""
+    material: Annotated[MadeOf, Known("drawing", "c45")]
+    pressure_limit: Annotated[
+        Pressure | None, Known("textbooks of machine elements", "120 MPa")
+    ] = None
+    """permissible pressure of the pin in the cheeks"""
+    source: TableSource = NO_SOURCE
 
     def cheeks(self, pin: Pin) -> int:
         """Number of cheeks: one beside an overhung pin, else two."""

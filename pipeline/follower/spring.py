@@ -16,20 +16,27 @@ from camwright.geometry.energy import spring_deflection
 from camwright.geometry.errors import InputError
 from camwright.pipeline.base.quantities import (
     In,
+    Known,
     Length,
     Part,
     Preload,
     Pressure,
     Rate,
+    Resolved,
     Share,
+    TableSource,
     Temperature,
+    Used,
+    card_of,
 )
-from camwright.pipeline.base.source import NO_SOURCE, Source
+from camwright.pipeline.base.source import NO_SOURCE
 from camwright.pipeline.base.units import shown
 from camwright.pipeline.follower.spring_kinds import (
+    CoilDiameter,
     GasSpring,
     SpringShape,
     TorsionSpring,
+    WireDiameter,
     rise,
     shaped_deflection,
 )
@@ -406,11 +413,8 @@ RELAXATION = WireLimit(
 class HelicalSpring(WoundWire[float], Part):
     """Cylindrical compression spring of round wire with squared and ground ends.
 
-    mean_diameter D over wire_diameter d from 3 to 20; coils: active; end_factor: seating
-    coefficient, 1 pivoted at both ends, 0.7 pivoted and fixed, 0.5 flat; tensile strength of the
-    wire R_m = strength_at_1mm (d / 1 mm)^-strength_exponent; damping_ratio: of each mode of the
-    surge; relaxation: share of the greatest force that is lost at `temperature` in
-    48 h at its stress, of the maker or EN 13906-1 annex A; name: of a catalogue.
+    D/d, mean over wire diameter, is from 3 to 20. The seating coefficient of a pivoted and a fixed
+    end is 0.7. The damping ratio is that of each mode of the surge. `name` is that of a catalogue.
 
     Raises
     ------
@@ -421,6 +425,9 @@ class HelicalSpring(WoundWire[float], Part):
 
     table: ClassVar[str] = "spring.design"
     labels: ClassVar[tuple[str, ...]] = ("name",)
+    resolved: ClassVar[Mapping[str, Resolved]] = card_of(
+        "card of the wire, which fills the keys left out", "wires.toml", "chrome_silicon"
+    )
     defaults: ClassVar[Mapping[str, str]] = MappingProxyType(
         {
             "elastic_modulus": "2.6 times the shear modulus: isotropic, Poisson ratio 0.3",
@@ -429,21 +436,39 @@ class HelicalSpring(WoundWire[float], Part):
         }
     )
 
-    wire_diameter: Length
-    mean_diameter: Length
-    coils: Annotated[float, In(at_least=1.5, at_most=1000)]
-    free_length: Length
-    end_factor: Annotated[float, In(above=0, at_most=2)] = 0.5
-    shear_modulus: WireModulus
-    elastic_modulus: WireModulus | None = None
-    density: WireDensity
-    strength_at_1mm: Pressure
-    strength_exponent: WireExponent
-    treatment: Treatment = "plain"
-    damping_ratio: Annotated[float, In(at_least=1e-4, at_most=0.5)] | None = None
-    temperature: Temperature | None = None
-    relaxation: Share | None = None
-    source: Source = NO_SOURCE
+    wire_diameter: Annotated[WireDiameter, Known("spring catalogue or drawing", "4 mm")]
+    mean_diameter: Annotated[CoilDiameter, Known("spring catalogue or drawing", "30 mm")]
+    coils: Annotated[
+        float, In(at_least=1.5, at_most=1000), Known("spring catalogue or drawing", 6.0)
+    ]
+    """number of active coils"""
+    free_length: Annotated[Length, Known("spring catalogue or drawing", "80 mm")]
+    """length without load"""
+    end_factor: Annotated[float, In(above=0, at_most=2), Known("EN 13906-1")] = 0.5
+    """seating coefficient of buckling: 0.5 flat ends, 1 pivoted"""
+    shear_modulus: Annotated[WireModulus, Known("EN 10270; card of the wire", "79.5 GPa")]
+    """shear modulus of the wire"""
+    elastic_modulus: Annotated[
+        WireModulus | None, Known("EN 10270; card of the wire", "206 GPa")
+    ] = None
+    """Young's modulus of the wire"""
+    density: Annotated[WireDensity, Known("card of the wire", "7850 kg/m^3")]
+    """density of the wire"""
+    strength_at_1mm: Annotated[Pressure, Known("EN 10270; Shigley table 10-4", "1974 MPa")]
+    """tensile strength of a wire of 1 mm: A of R_m = A (d / 1 mm)^-m"""
+    strength_exponent: Annotated[WireExponent, Known("EN 10270; Shigley table 10-4", 0.108)]
+    """m of R_m = A (d / 1 mm)^-m"""
+    treatment: Annotated[Treatment, Known("spring drawing")] = "plain"
+    """whether the wire is shot-peened"""
+    damping_ratio: Annotated[
+        float | None, In(at_least=1e-4, at_most=0.5), Known("measured; 0.002 to 0.02", 0.01)
+    ] = None
+    """damping of the surge of the coils"""
+    temperature: Annotated[Temperature | None, Known("measured at the machine", "60 degC")] = None
+    """temperature of the spring in operation"""
+    relaxation: Annotated[Share | None, Known("maker's data, or EN 13906-1 annex A", 0.02)] = None
+    """share of the greatest force lost in 48 h at the temperature of the spring"""
+    source: TableSource = NO_SOURCE
     name: str = ""
 
     def __post_init__(self) -> None:
@@ -468,10 +493,8 @@ class HelicalSpring(WoundWire[float], Part):
 class Spring(Part):
     """Spring of the follower, preloaded at zero lift; linear, or of another kind.
 
-    rate: at zero lift. Tolerances are relative, of the preload and of the rise of the force;
-    travel_max: maximum lift; design: geometry of the wound spring; seat_height: of the moving seat
-    over roller centre or face, where the coils rest on it; seat_thickness: of that seat. A gas or
-    torsion spring sets rate and preload, which its case leaves out.
+    The rate is that at zero lift, its tolerance that of the rise of the force. A gas or torsion
+    spring sets rate and preload, which its case leaves out.
 
     Raises
     ------
@@ -480,6 +503,14 @@ class Spring(Part):
     """
 
     table: ClassVar[str] = "spring"
+    resolved: ClassVar[Mapping[str, Resolved]] = {
+        "catalogue": Resolved(
+            "`shipped`, or a file name",
+            "puts in the lightest spring of a catalogue that carries the load: `shipped`, or a"
+            " file",
+            Known("shipped, or catalogue of the maker", "shipped"),
+        )
+    }
     defaults: ClassVar[Mapping[str, str]] = MappingProxyType(
         {
             "kind": "coil",
@@ -489,18 +520,30 @@ class Spring(Part):
         }
     )
 
-    kind: Literal["coil", "gas", "torsion"] | None = None
-    rate: Rate
-    preload: Preload
-    travel_max: Length | None = None
-    seat_height: Length | None = None
-    seat_thickness: Length | None = None
-    rate_tolerance: Annotated[float, In(above=0, below=1)] = 0.05
-    preload_tolerance: Annotated[float, In(above=0, below=1)] = 0.05
-    design: HelicalSpring | None = None
-    gas: GasSpring | None = None
-    torsion: TorsionSpring | None = None
-    source: Source = NO_SOURCE
+    kind: Annotated[Literal["coil", "gas", "torsion"] | None, Known("own choice", "coil")] = None
+    """coil; or gas or torsion with the table of its name, from which rate and preload follow"""
+    rate: Annotated[Rate, Known("spring catalogue or drawing", "24.2 kN/m")]
+    """force per deflection"""
+    preload: Annotated[Preload, Known("spring drawing", "242 N")]
+    """force at zero lift"""
+    travel_max: Annotated[Length | None, Known("spring catalogue or drawing", "34 mm")] = None
+    """greatest lift that the spring permits"""
+    seat_height: Annotated[Length | None, Known("assembly drawing", "120 mm")] = None
+    """height of the moving seat of a coil spring, where the coils rest, over roller centre or
+    face"""
+    seat_thickness: Annotated[Length | None, Known("drawing of the seat", "4 mm")] = None
+    """thickness of the moving seat of a coil spring"""
+    rate_tolerance: Annotated[float, In(above=0, below=1), Known("EN 15800, or drawing")] = 0.05
+    """relative tolerance of the rate"""
+    preload_tolerance: Annotated[float, In(above=0, below=1), Known("EN 15800, or drawing")] = 0.05
+    """relative tolerance of the preload"""
+    design: Annotated[HelicalSpring | None, Used("checks of the spring, speed sweep")] = None
+    """geometry and wire of the spring"""
+    gas: Annotated[GasSpring | None, Used("lift, cycle, checks of the spring")] = None
+    """gas spring, of `kind` gas"""
+    torsion: Annotated[TorsionSpring | None, Used("lift, cycle, checks of the spring")] = None
+    """torsion spring whose arm presses on the follower, of `kind` torsion"""
+    source: TableSource = NO_SOURCE
 
     def __post_init__(self) -> None:
         super().__post_init__()

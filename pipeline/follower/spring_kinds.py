@@ -18,8 +18,19 @@ from numpy.typing import ArrayLike
 
 from camwright.geometry.arrays import Array
 from camwright.geometry.errors import ContactError, InputError
-from camwright.pipeline.base.quantities import In, Length, Part, Pressure, Temperature
-from camwright.pipeline.base.source import NO_SOURCE, Source
+from camwright.pipeline.base.quantities import (
+    In,
+    Known,
+    Length,
+    Meaning,
+    Part,
+    Pressure,
+    Resolved,
+    TableSource,
+    Temperature,
+    card_of,
+)
+from camwright.pipeline.base.source import NO_SOURCE
 from camwright.pipeline.base.units import shown
 
 ATMOSPHERE = 101_325.0
@@ -120,15 +131,16 @@ class Limited(NamedTuple):
     temperature: Array
 
 
+WireDiameter = Annotated[Length, Meaning("diameter of the wire")]
+CoilDiameter = Annotated[Length, Meaning("mean diameter of the coils")]
+
+
 @dataclass(frozen=True, kw_only=True)
 class GasSpring(Part):
     """Gas spring: a piston of an area on a gas volume.
 
-    pressure: above that of the surroundings at zero lift and 20 degC; volume: of the gas at zero
-    lift; exponent: of the polytropic compression, 1 slow to 1.4 fast for nitrogen; temperature: of
-    the gas in operation, at which the pressure is higher; cold_temperature: of the coldest start;
-    loss: share of the gas that is lost in a service interval; friction: of the seals, over the
-    force; conductance: heat that the spring gives off. Limits: of the maker, each of a check.
+    At the temperature in operation the pressure is higher. Limits are those of the maker, each of a
+    check.
 
     Raises
     ------
@@ -137,6 +149,11 @@ class GasSpring(Part):
     """
 
     table: ClassVar[str] = "spring.gas"
+    resolved: ClassVar[Mapping[str, Resolved]] = card_of(
+        "card of the gas spring, which fills the keys left out; it states no pressure",
+        "gas_springs.toml",
+        "nitrogen_20x25",
+    )
     defaults: ClassVar[Mapping[str, str]] = MappingProxyType(
         {
             "temperature": "20 degC, at which the pressure is stated",
@@ -144,21 +161,65 @@ class GasSpring(Part):
         }
     )
 
-    pressure: Annotated[float, In("bar", above=0, at_most=10_000)]
-    area: Annotated[float, In("mm^2", above=0, at_most=1e7)]
-    volume: Annotated[float, In("cm^3", above=0, at_most=1e6)]
-    exponent: Annotated[float, In(at_least=1, at_most=1.7)] = 1.3
-    temperature: Temperature | None = None
-    cold_temperature: Temperature | None = None
-    loss: Annotated[float, In(at_least=0, below=1)] | None = None
-    friction: Annotated[float, In(at_least=0, below=1)] = 0.05
-    conductance: Annotated[float, In("W/K", above=0, at_most=1e6)] | None = None
-    pressure_limit: Annotated[float, In("bar", above=0, at_most=10_000)] | None = None
-    temperature_limit: Temperature | None = None
-    speed_limit: Annotated[float, In("m/s", above=0, at_most=1000)] | None = None
-    stroke_rate_limit: Annotated[float, In("1/min", above=0, at_most=1e5)] | None = None
-    stroke: Length | None = None
-    source: Source = NO_SOURCE
+    pressure: Annotated[
+        float, In("bar", above=0, at_most=10_000), Known("data sheet of the maker", "100 bar")
+    ]
+    """pressure above that of the surroundings at zero lift and 20 degC"""
+    area: Annotated[
+        float, In("mm^2", above=0, at_most=1e7), Known("data sheet of the maker", "113 mm^2")
+    ]
+    """area of the piston or rod on which the gas acts"""
+    volume: Annotated[
+        float, In("cm^3", above=0, at_most=1e6), Known("data sheet of the maker", "12 cm^3")
+    ]
+    """volume of the gas at zero lift"""
+    exponent: Annotated[
+        float, In(at_least=1, at_most=1.7), Known("measured, or data sheet of the maker")
+    ] = 1.3
+    """exponent of the polytropic compression: 1 slow, 1.4 fast nitrogen"""
+    temperature: Annotated[Temperature | None, Known("measured at the machine", "50 degC")] = None
+    """mean temperature of the gas in operation"""
+    cold_temperature: Annotated[Temperature | None, Known("place of the machine", "5 degC")] = None
+    """temperature of the gas at the coldest start"""
+    loss: Annotated[
+        float | None,
+        In(at_least=0, below=1),
+        Known("data sheet of the maker, and the service interval", 0.03),
+    ] = None
+    """share of the gas that is lost until it is filled again"""
+    friction: Annotated[
+        float, In(at_least=0, below=1), Known("data sheet of the maker; 5 to 10 % is usual")
+    ] = 0.05
+    """friction of the seals over the force, which heats the gas"""
+    conductance: Annotated[
+        float | None,
+        In("W/K", above=0, at_most=1e6),
+        Known("measured: its friction power over its rise", "0.2 W/K"),
+    ] = None
+    """heat that the spring gives off per kelvin above the surroundings"""
+    pressure_limit: Annotated[
+        float | None,
+        In("bar", above=0, at_most=10_000),
+        Known("data sheet of the maker", "250 bar"),
+    ] = None
+    """greatest pressure at full compression, above that of the surroundings"""
+    temperature_limit: Annotated[
+        Temperature | None, Known("data sheet of the maker", "80 degC")
+    ] = None
+    """greatest temperature in operation"""
+    speed_limit: Annotated[
+        float | None, In("m/s", above=0, at_most=1000), Known("data sheet of the maker", "0.8 m/s")
+    ] = None
+    """greatest piston speed"""
+    stroke_rate_limit: Annotated[
+        float | None,
+        In("1/min", above=0, at_most=1e5),
+        Known("data sheet of the gas spring", "100 1/min"),
+    ] = None
+    """greatest number of strokes per time, cooled as the data sheet says"""
+    stroke: Annotated[Length | None, Known("data sheet of the maker", "25 mm")] = None
+    """greatest stroke from zero lift"""
+    source: TableSource = NO_SOURCE
 
     @property
     def column(self) -> float:
@@ -225,10 +286,7 @@ _ISOTHERMAL = 1e-9  # exponent less 1, below which the compression is isothermal
 class TorsionSpring(Part):
     """Torsion spring whose arm presses on the follower through a pin that slides across its axis.
 
-    moment: at zero lift; angular_rate: moment per angle; arm: from the coil axis to the pin;
-    arm_angle: of the arm at zero lift from square to the follower axis, positive towards the
-    outward stroke. Wire, mean diameter, strength and permissible range of the bending stress: for
-    the checks.
+    Wire, mean diameter, strength and range of the bending stress are for the checks.
 
     Raises
     ------
@@ -242,15 +300,30 @@ class TorsionSpring(Part):
 
     table: ClassVar[str] = "spring.torsion"
 
-    moment: Annotated[float, In("N m", above=0, at_most=1e6)]
-    angular_rate: Annotated[float, In("N m/rad", above=0, at_most=1e6)]
-    arm: Length
-    arm_angle: Annotated[float, In("deg", at_least=-75, at_most=75)] = 0.0
-    wire_diameter: Length | None = None
-    mean_diameter: Length | None = None
-    tensile_strength: Pressure | None = None
-    stress_range: Pressure | None = None
-    source: Source = NO_SOURCE
+    moment: Annotated[float, In("N m", above=0, at_most=1e6), Known("spring drawing", "12 N m")]
+    """moment at zero lift"""
+    angular_rate: Annotated[
+        float,
+        In("N m/rad", above=0, at_most=1e6),
+        Known("spring drawing, or DIN EN 13906-3", "20 N m/rad"),
+    ]
+    """moment per angle"""
+    arm: Annotated[Length, Known("drawing", "40 mm")]
+    """length of the arm from the coil axis to the pin on the follower"""
+    arm_angle: Annotated[float, In("deg", at_least=-75, at_most=75), Known("drawing")] = 0.0
+    """angle of the arm at zero lift from square to the follower axis, positive towards the outward
+    stroke"""
+    wire_diameter: Annotated[WireDiameter | None, Known("spring drawing", "6 mm")] = None
+    mean_diameter: Annotated[CoilDiameter | None, Known("spring drawing", "48 mm")] = None
+    tensile_strength: Annotated[
+        Pressure | None, Known("EN 10270-1 for the wire diameter", "1700 MPa")
+    ] = None
+    """tensile strength R_m of the wire"""
+    stress_range: Annotated[
+        Pressure | None, Known("fatigue diagram of DIN EN 13906-3, or the maker", "500 MPa")
+    ] = None
+    """permissible range of the bending stress for the target life"""
+    source: TableSource = NO_SOURCE
 
     def __post_init__(self) -> None:
         super().__post_init__()

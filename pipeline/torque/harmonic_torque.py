@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 
 from camwright.geometry.arrays import FULL_TURN, Array, readonly
 from camwright.geometry.errors import InputError
-from camwright.pipeline.base.quantities import Cycle, In, Part, Torsion
+from camwright.pipeline.base.quantities import Cycle, In, Known, Part, Torsion, Used
 from camwright.pipeline.base.units import shown
 from camwright.pipeline.torque.machine_torque import MachineTorque, Role
 
@@ -21,20 +21,21 @@ _WHOLE = 1e-9  # of a number of waves: an order and a cycle written as decimals
 
 @dataclass(frozen=True, kw_only=True)
 class Harmonic(Part):
-    """One harmonic: waves per turn of the shaft, amplitudes of cosine and sine."""
+    """One harmonic of a torque over the shaft angle."""
 
     table: ClassVar[str] = "torque.harmonics"
 
-    order: Annotated[float, In(above=0, at_most=360)]
-    cosine: Torsion = 0.0
-    sine: Torsion = 0.0
+    order: Annotated[float, In(above=0, at_most=360), Known("measured or computed", 2.0)]
+    """waves per turn of the shaft"""
+    cosine: Annotated[Torsion, Known("measured or computed")] = 0.0
+    """amplitude of the cosine"""
+    sine: Annotated[Torsion, Known("measured or computed")] = 0.0
+    """amplitude of the sine"""
 
 
 @dataclass(frozen=True, kw_only=True)
 class HarmonicTorque(MachineTorque):
     """Torque T = mean + sum of a cos(k theta) + b sin(k theta) over the shaft angle.
-
-    A load is stated positive and acts against the shaft.
 
     Raises
     ------
@@ -46,8 +47,10 @@ class HarmonicTorque(MachineTorque):
     kind: Literal["harmonics"] = "harmonics"
     role: Role = "drive"
     cycle: Cycle = 2.0 * pi
-    mean: Torsion = 0.0
-    harmonics: tuple[Harmonic, ...]
+    mean: Annotated[Torsion, Known("measured or computed")] = 0.0
+    """mean of the torque, which a steady motor or load balances"""
+    harmonics: Annotated[tuple[Harmonic, ...], Used("torque")]
+    """one harmonic of the torque"""
 
     def __post_init__(self) -> None:
         super().__post_init__()

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Annotated, ClassVar, Literal
 
 from camwright.geometry.errors import InputError
-from camwright.pipeline.base.quantities import Characters, In, Part
+from camwright.pipeline.base.quantities import Characters, In, Known, Part, Used
 from camwright.pipeline.base.units import shown
 
 MARKS_MAX = 24
@@ -15,12 +15,14 @@ Role = Literal["drive", "load"]
 
 @dataclass(frozen=True, kw_only=True)
 class Mark(Part):
-    """Name of a part of the cycle, which ends at the next mark."""
+    """Beginning and name of a part of the cycle."""
 
     table: ClassVar[str] = "torque.marks"
 
-    angle: Annotated[float, In("deg", at_least=0, below=7200)]
-    name: Annotated[str, Characters(1, 24)]
+    angle: Annotated[float, In("deg", at_least=0, below=7200), Known("the machine", "0 deg")]
+    """shaft angle at which the part begins"""
+    name: Annotated[str, Characters(1, 24), Known("own choice", "forming")]
+    """name in the pictures"""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -29,7 +31,8 @@ class MachineTorque(Part):
 
     table: ClassVar[str] = "torque"
 
-    marks: tuple[Mark, ...] = ()
+    marks: Annotated[tuple[Mark, ...], Used("report")] = ()
+    """name of a part of the cycle, up to the next mark"""
 
 
 def require_marks(marks: tuple[Mark, ...], cycle: float) -> None:

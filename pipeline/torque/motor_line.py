@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 
 from camwright.geometry.arrays import Array
 from camwright.geometry.errors import CamError, InputError
-from camwright.pipeline.base.quantities import In, Part, Torsion
+from camwright.pipeline.base.quantities import In, Known, Part, Torsion
 from camwright.pipeline.base.units import shown
 
 POINTS = (2, 200)
@@ -24,8 +24,12 @@ class MotorPoint(Part):
 
     table: ClassVar[str] = "crankshaft.motor_line"
 
-    speed: Annotated[float, In("rpm", at_least=0, at_most=1e6)]
-    torque: Torsion
+    speed: Annotated[
+        float, In("rpm", at_least=0, at_most=1e6), Known("torque curve of the motor", "1500 rpm")
+    ]
+    """speed of the shaft"""
+    torque: Annotated[Torsion, Known("torque curve of the motor", "0 N m")]
+    """torque of the motor at the shaft, at this speed"""
 
 
 @dataclass(frozen=True)

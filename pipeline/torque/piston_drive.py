@@ -13,7 +13,16 @@ from numpy.typing import ArrayLike
 from camwright.geometry.arrays import Array, readonly
 from camwright.geometry.errors import InputError
 from camwright.geometry.linkage import SliderCrank
-from camwright.pipeline.base.quantities import Angle, GasPressure, In, Length, Part
+from camwright.pipeline.base.quantities import (
+    Angle,
+    CrankRadius,
+    GasPressure,
+    In,
+    Known,
+    Length,
+    Part,
+    RodLength,
+)
 from camwright.pipeline.base.units import shown
 
 ATMOSPHERE = 101.325e3
@@ -26,11 +35,8 @@ CYLINDERS_MAX = 24
 class PistonDrive(Part):
     """Crank drive of one cylinder and the areas of its piston.
 
-    At shaft angle `phase` the crank lies along the cylinder, at its outer dead centre; without an
-    offset it is the dead centre. `back_pressure` acts on the crank side of a piston that works
-    with its head side alone, and on the piston rod of one that works with both. `pin_offset` is
-    positive on the side to which the crank pin moves from there. `reciprocating_mass` is that of
-    piston, piston rod and crosshead with the small end of the connecting rod.
+    At `phase` the crank lies along the cylinder, which without an offset is the dead centre. The
+    offset is positive on the side to which the crank pin moves from there.
 
     Raises
     ------
@@ -41,15 +47,26 @@ class PistonDrive(Part):
 
     table: ClassVar[str] = "torque.cylinders"
 
-    bore: Length
-    crank_radius: Length
-    rod_length: Length
-    pin_offset: Annotated[float, In("mm", above=-1000, below=1000)] = 0.0
-    phase: Angle = 0.0
-    double_acting: bool = False
-    piston_rod_diameter: Annotated[float, In("mm", at_least=0, at_most=10_000)] = 0.0
-    back_pressure: GasPressure = ATMOSPHERE
-    reciprocating_mass: Annotated[float, In("kg", at_least=0, at_most=1e6)] = 0.0
+    bore: Annotated[Length, Known("data sheet", "60 mm")]
+    """diameter of the piston"""
+    crank_radius: Annotated[CrankRadius, Known("data sheet", "25 mm")]
+    rod_length: Annotated[RodLength, Known("drawing", "100 mm")]
+    pin_offset: Annotated[float, In("mm", above=-1000, below=1000), Known("drawing")] = 0.0
+    """offset of the line of the piston from the crank axis"""
+    phase: Annotated[Angle, Known("drawing")] = 0.0
+    """shaft angle of the outer dead centre"""
+    double_acting: Annotated[bool, Known("drawing")] = False
+    """whether both sides of the piston work"""
+    piston_rod_diameter: Annotated[
+        float, In("mm", at_least=0, at_most=10_000), Known("drawing")
+    ] = 0.0
+    """diameter of the piston rod"""
+    back_pressure: Annotated[GasPressure, Known("ambient")] = ATMOSPHERE
+    """absolute pressure behind a single-acting piston, and on the piston rod"""
+    reciprocating_mass: Annotated[
+        float, In("kg", at_least=0, at_most=1e6), Known("weighed, or drawing")
+    ] = 0.0
+    """piston, piston rod and crosshead with the small end of the connecting rod"""
 
     def __post_init__(self) -> None:
         super().__post_init__()

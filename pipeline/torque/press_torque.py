@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 from camwright.geometry.arrays import FULL_TURN, Array, finite, freeze, readonly
 from camwright.geometry.errors import InputError
 from camwright.geometry.linkage import SliderCrank
-from camwright.pipeline.base.quantities import Angle, FileName, In, Length
+from camwright.pipeline.base.quantities import Angle, FileName, In, Known, Length, RodLength
 from camwright.pipeline.base.units import shown
 from camwright.pipeline.torque.machine_torque import MachineTorque
 from camwright.pipeline.torque.trace_file import HeaderText, trace_text, value_column
@@ -28,9 +28,7 @@ _ROUND_OFF = 1e-9  # of a stroke
 class Press(MachineTorque):
     """Drive of a press and its force, constant over the last part of the stroke or from a file.
 
-    At shaft angle `phase` the eccentric points to the ram's upper dead centre. The force opposes
-    the ram on its way down, from `working_travel` above the lower dead centre; a file has one
-    column of travel above the lower dead centre and one of force.
+    The force opposes the ram on its way down.
 
     Raises
     ------
@@ -40,15 +38,25 @@ class Press(MachineTorque):
     """
 
     kind: Literal["press"] = "press"
-    eccentric_radius: Length
-    rod_length: Length
-    pin_offset: Annotated[float, In("mm", above=-1000, below=1000)] = 0.0
-    phase: Angle = 0.0
-    force: Annotated[float, In("kN", above=0, at_most=1e6)] | None = None
-    working_travel: Length | None = None
+    eccentric_radius: Annotated[Length, Known("drawing", "40 mm")]
+    """eccentricity of the press shaft: half of the stroke without an offset"""
+    rod_length: Annotated[RodLength, Known("drawing", "300 mm")]
+    pin_offset: Annotated[float, In("mm", above=-1000, below=1000), Known("drawing")] = 0.0
+    """offset of the line of the ram from the shaft axis"""
+    phase: Annotated[Angle, Known("drawing")] = 0.0
+    """shaft angle at which the eccentric points to the upper dead centre of the ram"""
+    force: Annotated[
+        float | None, In("kN", above=0, at_most=1e6), Known("process data", "60 kN")
+    ] = None
+    """force of the press over its working travel"""
+    working_travel: Annotated[Length | None, Known("process data", "6 mm")] = None
+    """travel above the lower dead centre over which the force acts"""
     file: FileName | None = None
     column: HeaderText = ""
-    ram_mass: Annotated[float, In("kg", at_least=0, at_most=1e6)] = 0.0
+    ram_mass: Annotated[float, In("kg", at_least=0, at_most=1e6), Known("weighed, or drawing")] = (
+        0.0
+    )
+    """mass that moves with the ram"""
 
     cycle: ClassVar[float] = 2.0 * pi
     defaults: ClassVar = {

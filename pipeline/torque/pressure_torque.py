@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from math import pi
 from pathlib import Path
-from typing import Literal
+from typing import Annotated, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 from camwright.geometry.arrays import FULL_TURN, Array, readonly
 from camwright.geometry.errors import InputError
 from camwright.geometry.periodic_spline import periodic_cubic
-from camwright.pipeline.base.quantities import Cycle, FileName
+from camwright.pipeline.base.quantities import Cycle, FileName, Known, Used
 from camwright.pipeline.base.units import shown
 from camwright.pipeline.torque.angle_trace import Trace, read_trace
 from camwright.pipeline.torque.machine_torque import MachineTorque
@@ -25,9 +25,7 @@ _WHOLE = 1e-9  # of the turns in a cycle
 
 @dataclass(frozen=True, kw_only=True)
 class PressureCylinder(PistonDrive):
-    """Cylinder of a pressure in a file; `column` is the beginning of the header of its pressure.
-
-    `crank_side_column` is that of the crank side of a double-acting piston.
+    """Cylinder with its pressure in a file.
 
     Raises
     ------
@@ -35,8 +33,10 @@ class PressureCylinder(PistonDrive):
         As `PistonDrive`; if a double-acting piston lacks the pressure of its crank side.
     """
 
-    column: HeaderText = ""
-    crank_side_column: HeaderText = ""
+    column: Annotated[HeaderText, Known("the file")] = ""
+    """column of its pressure, by the beginning of the header"""
+    crank_side_column: Annotated[HeaderText, Known("the file")] = ""
+    """column of the pressure on the crank side of a double-acting piston"""
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -50,8 +50,7 @@ class PressureCylinder(PistonDrive):
 class PressureTorqueFile(MachineTorque):
     """Absolute pressures over one cycle from a file, and the cylinders that they act in.
 
-    `angles` of the file are those of the shaft, or those of each cylinder from its outer dead
-    centre, so that equal cylinders share a column.
+    Equal cylinders share a column of angles from their outer dead centres.
 
     Raises
     ------
@@ -62,8 +61,11 @@ class PressureTorqueFile(MachineTorque):
     kind: Literal["pressure"] = "pressure"
     cycle: Cycle = 2.0 * pi
     file: FileName
-    angles: Literal["cylinder", "shaft"] = "cylinder"
-    cylinders: tuple[PressureCylinder, ...]
+    angles: Annotated[Literal["cylinder", "shaft"], Known("the file")] = "cylinder"
+    """whether the angles of the file are those of the shaft, or those of each cylinder from its
+    outer dead centre"""
+    cylinders: Annotated[tuple[PressureCylinder, ...], Used("torque")]
+    """one cylinder; several may differ"""
 
     def __post_init__(self) -> None:
         super().__post_init__()

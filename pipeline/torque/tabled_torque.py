@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from functools import partial
 from math import pi
 from pathlib import Path
-from typing import Literal
+from typing import Annotated, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike
 from camwright.geometry.arrays import Array, readonly
 from camwright.geometry.errors import InputError
 from camwright.pipeline.base import disk_cache
-from camwright.pipeline.base.quantities import Cycle, FileName
+from camwright.pipeline.base.quantities import Cycle, FileName, Known
 from camwright.pipeline.torque import angle_trace
 from camwright.pipeline.torque.angle_trace import Trace, read_trace
 from camwright.pipeline.torque.machine_torque import MachineTorque, Role
@@ -31,16 +31,21 @@ table is then some ten times as near."""
 
 @dataclass(frozen=True, kw_only=True)
 class TabledTorqueFile(MachineTorque):
-    """Torque over one cycle from a file: a column of shaft angle, one of torque.
+    """Torque over one cycle from a file: a column of shaft angle, one of torque."""
 
-    A load is stated positive and acts against the shaft.
-    """
-
-    kind: Literal["table"] = "table"
-    role: Role = "drive"
-    cycle: Cycle = 2.0 * pi
-    file: FileName
-    column: HeaderText = ""
+    kind: Annotated[Literal["table"], Known("own choice")] = "table"
+    """origin of the torque"""
+    role: Annotated[Role, Known("own choice")] = "drive"
+    """whether the torque drives the shaft, or loads it: then stated positive, it acts against the
+    shaft"""
+    cycle: Annotated[Cycle, Known("the machine")] = 2.0 * pi
+    """shaft angle after which the torque repeats"""
+    file: Annotated[FileName, Known("measured or computed", "torque.csv")]
+    """data file, relative to the case file; of a press: travel above the lower dead centre and
+    force"""
+    column: Annotated[HeaderText, Known("the file")] = ""
+    """column of the file, by the beginning of its header; needed where several are of the
+    quantity"""
 
 
 @dataclass(frozen=True, eq=False)

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from camwright.geometry.arrays import Array
 from camwright.geometry.errors import InputError
-from camwright.pipeline.base.quantities import GasPressure, In
+from camwright.pipeline.base.quantities import GasPressure, In, Known
 from camwright.pipeline.base.units import shown
 from camwright.pipeline.torque.machine_torque import MachineTorque
 from camwright.pipeline.torque.piston_drive import PistonDrive, require_cylinders, torque_sum
@@ -22,11 +22,13 @@ from camwright.pipeline.torque.piston_drive import PistonDrive, require_cylinder
 class _ValvedCylinder(PistonDrive):
     """Cylinder whose valves open by themselves at constant pressures of suction and discharge.
 
-    `clearance` is the volume left at a dead centre over the swept volume, of either side.
+    The clearance is that of either side.
     """
 
-    suction_pressure: GasPressure
-    discharge_pressure: GasPressure
+    suction_pressure: Annotated[GasPressure, Known("measured", "100 kPa")]
+    """absolute pressure of suction"""
+    discharge_pressure: Annotated[GasPressure, Known("measured", "600 kPa")]
+    """absolute pressure of discharge"""
     clearance: float
 
     def __post_init__(self) -> None:
@@ -87,8 +89,12 @@ class CompressorCylinder(_ValvedCylinder):
     ideal indicator diagram of a reciprocating compressor with clearance.
     """
 
-    clearance: Annotated[float, In(above=0, at_most=1)]
-    exponent: Annotated[float, In(at_least=1, at_most=2)] = 1.3
+    clearance: Annotated[float, In(above=0, at_most=1), Known("data sheet", 0.05)]
+    """volume left at the dead centre over the swept volume"""
+    exponent: Annotated[float, In(at_least=1, at_most=2), Known("indicator diagram; textbooks")] = (
+        1.3
+    )
+    """exponent n of p V^n while both valves are shut"""
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -116,7 +122,10 @@ class PumpCylinder(_ValvedCylinder):
     """
 
     clearance: Annotated[float, In(at_least=0, at_most=100)] = 0.0
-    bulk_modulus: Annotated[float, In("MPa", above=0, at_most=1e6)] | None = None
+    bulk_modulus: Annotated[
+        float | None, In("MPa", above=0, at_most=1e6), Known("textbooks", "2000 MPa")
+    ] = None
+    """bulk modulus of the liquid; left out, it is incompressible"""
 
     defaults: ClassVar = {"bulk_modulus": "incompressible"}
 

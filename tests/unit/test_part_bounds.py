@@ -17,12 +17,13 @@ from camwright.pipeline.base.quantities import Count, In, Part, marks_of
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_file import read_case
 from camwright.pipeline.case.error_text import refusal_of
+from camwright.pipeline.case.lift_section import CamLiftPoint
 from camwright.pipeline.case.section import section_of
 from camwright.pipeline.case.toml_text import tables_of
 from camwright.pipeline.contact.axial_shape import AxialCrown
 from camwright.pipeline.contact.cam_body import BalanceHole
 from camwright.pipeline.engine.crankshaft import Crankshaft
-from camwright.pipeline.engine.cylinder import CylinderEngine, LiftPoint
+from camwright.pipeline.engine.cylinder import CylinderEngine, ExhaustLiftPoint
 from camwright.pipeline.engine.engine_torque import TorqueTable
 from camwright.pipeline.engine.pickup_voltage import VoltageTable
 from camwright.pipeline.engine.pressure_trace import PressureTable
@@ -100,7 +101,8 @@ def every_part() -> dict[type[Part], Part]:
         SpeedTable(file="speed.csv"),
         VoltageTable(file="voltage.csv"),
         WheelReference(file="fast.csv", kind="second_speed"),
-        LiftPoint(angle=0.0, lift=0.0),
+        CamLiftPoint(angle=0.0, lift=0.0),
+        ExhaustLiftPoint(angle=0.0, lift=0.0),
         TriggerWheel(),
         Filter(),
         MotorPoint(speed=100.0, torque=1.0),
