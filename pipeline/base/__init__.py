@@ -23,6 +23,7 @@ In the order of use:
 | `fits`             | sizes with limit deviations: bores and keyways           | m                |
 | `tables`           | columns with unit and meaning; CSV files                 |                  |
 | `spreadsheets`     | CSV tables as .xlsx, rounded and ready to print          |                  |
+| `store`            | values by key, each in a file of a folder                |                  |
 | `disk_cache`       | arrays that depend on their key alone, kept between runs |                  |
 | `worker_processes` | processes with one BLAS thread and a safe import path    |                  |
 | `value_groups`     | dotted keys on which checks rest, in groups              |                  |

@@ -6,7 +6,7 @@ import os
 import numpy as np
 import pytest
 
-from camwright.pipeline.base import disk_cache
+from camwright.pipeline.base import disk_cache, store
 
 MODULES = (disk_cache,)
 
@@ -81,7 +81,7 @@ def test_a_broken_entry_is_computed_again(place, spoil):
 def test_new_versions_leave_old_entries_behind(place, monkeypatch):
     maker = Maker()
     asked(maker)
-    monkeypatch.setattr(disk_cache, "_versions", lambda: ("camwright 99",))
+    monkeypatch.setattr(store, "_versions", lambda: ("camwright 99",))
     asked(maker)
     assert maker.calls == 2
 
@@ -89,7 +89,7 @@ def test_new_versions_leave_old_entries_behind(place, monkeypatch):
 def test_a_changed_recipe_leaves_old_entries_behind(place, monkeypatch):
     maker = Maker()
     asked(maker)
-    monkeypatch.setattr(disk_cache, "_source", lambda module: b"another text")
+    monkeypatch.setattr(store, "_source", lambda module: b"another text")
     asked(maker)
     assert maker.calls == 2
 
