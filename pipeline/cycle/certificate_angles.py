@@ -10,6 +10,7 @@ import numpy as np
 from camwright.geometry.arrays import Array
 from camwright.geometry.errors import ResultError
 from camwright.geometry.extrema import first_greatest, first_least
+from camwright.pipeline.base.store import Arrays
 from camwright.pipeline.base.worker_processes import Crew, PendingCall
 from camwright.pipeline.contact.certificate import (
     EDGES,
@@ -21,7 +22,12 @@ from camwright.pipeline.contact.contact_history import CertificatePoint, Contact
 from camwright.pipeline.contact.contact_pair import ContactPair
 from camwright.pipeline.contact.finite_length.length_certificate import ONE_MESH, LengthLoad
 from camwright.pipeline.contact.finite_length.length_tiers import plane_strain
-from camwright.pipeline.cycle.contact_store import NOT_STORED, ContactStore, piece_key
+from camwright.pipeline.cycle.contact_store import (
+    NOT_STORED,
+    ContactStore,
+    kept_piece,
+    piece_key,
+)
 from camwright.pipeline.cycle.cycle import Cycle
 from camwright.pipeline.cycle.length_history import length_table, signed_factor
 
@@ -216,11 +222,11 @@ def _figures(
 ) -> MeshFigures:
     """Figures of a mesh, from the store if it has them."""
     key = piece_key(pair, np.array(force), theta, edges)
-    known = store.load(_STORED_AS, key)
-    if index in known:
-        values = {name: float(value) for name, value in known[index].items()}
-        return MeshFigures(dofs=int(values.pop("dofs")), **values)
-    figures = mesh_figures(pair, theta, force, edges)
-    named = {name: np.array(value) for name, value in asdict(figures).items()}
-    store.save(_STORED_AS, index, named, key)
-    return figures
+
+    def solved() -> Arrays:
+        figures = asdict(mesh_figures(pair, theta, force, edges))
+        return {name: np.array(value) for name, value in figures.items()}
+
+    piece = kept_piece(store, _STORED_AS, index, key, solved)
+    values = {name: float(value) for name, value in piece.items()}
+    return MeshFigures(dofs=int(values.pop("dofs")), **values)

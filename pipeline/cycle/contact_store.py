@@ -1,39 +1,43 @@
-"""Store of solved pieces of the contact, to resume an interrupted run."""
+"""Solved pieces of the contact in a store, to resume an interrupted run."""
 
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Mapping
-from typing import Protocol
+from collections.abc import Callable
+from typing import TypeAlias
 
 import numpy as np
 
 from camwright.geometry.arrays import Array
+from camwright.pipeline.base.store import PACKED, Arrays, Store
 from camwright.pipeline.contact.contact_pair import ContactPair
 
+ContactStore: TypeAlias = Store[Arrays]
+"""Pieces of a contact solution; workers write to it, too."""
 
-class ContactStore(Protocol):
-    """Pieces of a contact solution, kept over an interruption; workers write to it, too."""
-
-    def load(self, load_case: str, key: str) -> Mapping[int, Mapping[str, Array]]:
-        """Pieces of a load case and a key, by index."""
-        ...
-
-    def save(self, load_case: str, index: int, arrays: Mapping[str, Array], key: str) -> None:
-        """Store a piece."""
-        ...
+NOT_STORED: ContactStore = Store(None, PACKED)
 
 
-class NotStored:
-    """A store without effect."""
+def kept_piece(
+    store: ContactStore, load_case: str, index: int, key: str, compute: Callable[[], Arrays]
+) -> Arrays:
+    """Arrays of a piece by name, from the store or computed and stored.
 
-    def load(self, load_case: str, key: str) -> Mapping[int, Mapping[str, Array]]:  # noqa: ARG002
-        return {}
+    Parameters
+    ----------
+    key : str   of `piece_key`; a piece of other inputs is computed again
 
-    def save(self, load_case: str, index: int, arrays: Mapping[str, Array], key: str) -> None: ...
+    Raises
+    ------
+    ResultError
+        If the piece cannot be written.
+    """
 
+    def keyed() -> Arrays:
+        return {f"a_{name}": values for name, values in compute().items()} | {"key": np.array(key)}
 
-NOT_STORED = NotStored()
+    piece = store.kept(f"{load_case}/{index:06d}", keyed, lambda each: str(each.get("key")) == key)
+    return {name[2:]: values for name, values in piece.items() if name.startswith("a_")}
 
 
 def piece_key(pair: ContactPair, normal_force: Array, *inputs: float) -> str:

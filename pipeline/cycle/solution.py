@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from functools import cached_property, partial
 
 import numpy as np
 
@@ -17,6 +17,7 @@ from camwright.meshes.body_mesh import BodyMesh
 from camwright.meshes.mesh_quality import Quality, gate, quality
 from camwright.pipeline.base.kept_results import KeptResult
 from camwright.pipeline.base.progress import SILENT, Progress
+from camwright.pipeline.base.store import Arrays
 from camwright.pipeline.base.worker_processes import Crew
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.limits import END_MEAN_LENGTH
@@ -37,7 +38,12 @@ from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.contact.two_scale import CycleBodies, loaded_cam, two_scale_history
 from camwright.pipeline.cycle.certificate_angles import begun, length_loads, positions_to_certify
 from camwright.pipeline.cycle.contact_setup import contact_pair
-from camwright.pipeline.cycle.contact_store import NOT_STORED, ContactStore, piece_key
+from camwright.pipeline.cycle.contact_store import (
+    NOT_STORED,
+    ContactStore,
+    kept_piece,
+    piece_key,
+)
 from camwright.pipeline.cycle.crank_speed import SpeedRipple
 from camwright.pipeline.cycle.cycle import Cycle
 from camwright.pipeline.cycle.hub_history import HubFatigue, hub_fatigue
@@ -471,25 +477,23 @@ def _contact(
         return ContactHistory.unknown(each.theta.size)
     if bodies is None:
         return closed_form_history(pair, each.theta, each.loads.normal_force)
-    pieces = dict(_pieces(pair, bodies, each, store, progress))
-    first = pieces[0]
-    whole = {name: np.concatenate([pieces[k][name] for k in sorted(pieces)]) for name in first}
+    pieces = list(_pieces(pair, bodies, each, store, progress))
+    whole = {name: np.concatenate([piece[name] for piece in pieces]) for name in pieces[0]}
     return ContactHistory(**whole, tier=Tier.CYCLE)
 
 
 def _pieces(
     pair: ContactPair, bodies: CycleBodies, each: Turn, store: ContactStore, progress: Progress
-) -> Iterator[tuple[int, Mapping[str, Array]]]:
-    """Pieces of the contact of a turn by index, from the store if it has them."""
+) -> Iterator[Arrays]:
+    """Pieces of the contact of a turn in order, from the store if it has them."""
     name, key = each.machine.load_case, piece_key(pair, each.loads.normal_force, CHUNK)
-    known, total = store.load(name, key), -(-each.theta.size // CHUNK)
-    for index, start in enumerate(range(0, each.theta.size, CHUNK)):
-        if index in known:
-            yield index, known[index]
-        else:
-            part = slice(start, start + CHUNK)
-            force = each.loads.normal_force[part]
-            arrays = two_scale_history(pair, bodies, each.theta[part], force).arrays
-            store.save(name, index, arrays, key)
-            yield index, arrays
+    total = -(-each.theta.size // CHUNK)
+    for index in range(total):
+        part = slice(index * CHUNK, (index + 1) * CHUNK)
+        solved = partial(_piece, pair, bodies, each.theta[part], each.loads.normal_force[part])
+        yield kept_piece(store, name, index, key, solved)
         progress.advance(index + 1, total)
+
+
+def _piece(pair: ContactPair, bodies: CycleBodies, theta: Array, normal_force: Array) -> Arrays:
+    return two_scale_history(pair, bodies, theta, normal_force).arrays

@@ -11,16 +11,13 @@ import re
 import shutil
 from collections.abc import Iterable, Mapping
 from contextlib import suppress
-from dataclasses import dataclass
 from importlib import import_module
 from pathlib import Path
 from types import TracebackType
-from typing import IO, Self
+from typing import IO, TYPE_CHECKING, Self
 
-import numpy as np
 from numpy.typing import ArrayLike
 
-from camwright.geometry.arrays import Array, readonly
 from camwright.geometry.errors import CamError, ResultError
 from camwright.pipeline.base.files import (
     Json,
@@ -28,11 +25,11 @@ from camwright.pipeline.base.files import (
     json_text,
     npz_bytes,
     read_json,
-    read_npz,
     require_plain,
     shown_name,
     write_atomic,
 )
+from camwright.pipeline.base.store import PACKED, Store
 from camwright.pipeline.base.tables import Values, table
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.contact.tiers import Tier
@@ -53,6 +50,9 @@ from camwright.pipeline.results.folder_exchange import (
     unrecorded,
 )
 from camwright.pipeline.results.workshop_files import WORKSHOP, stamp_solid
+
+if TYPE_CHECKING:
+    from camwright.pipeline.cycle.contact_store import ContactStore
 
 _TEMPORARY = re.compile(r"\.\w+\.tmp")
 _LIBRARIES = (
@@ -278,9 +278,9 @@ class RunFolder:
 
     # --- pieces of the contact solution
 
-    def contact_store(self, trial: int) -> ContactFiles:
+    def contact_store(self, trial: int) -> ContactStore:
         """Pieces of the contact of a trial."""
-        return ContactFiles(self.path / CHUNKS / f"trial_{trial}")
+        return Store(self.path / CHUNKS / f"trial_{trial}", PACKED)
 
     # --- opening
 
@@ -354,31 +354,6 @@ class RunFolder:
 
     def _write_table(self, name: str, values: Values) -> None:
         write_atomic(self._file(name), table(values).to_csv())
-
-
-@dataclass(frozen=True)
-class ContactFiles:
-    """Pieces of the contact of a trial as files, to resume an interrupted run."""
-
-    folder: Path
-
-    def save(self, load_case: str, index: int, arrays: Mapping[str, Array], key: str) -> None:
-        """Store a piece; `key` is the hash of its inputs."""
-        named = {f"a_{name}": a for name, a in arrays.items()} | {"key": np.array(key)}
-        write_atomic(self.folder / load_case / f"{index:06d}.npz", npz_bytes(named))
-
-    def load(self, load_case: str, key: str) -> dict[int, dict[str, Array]]:
-        """Pieces of a key by index."""
-        pieces: dict[int, dict[str, Array]] = {}
-        for file in sorted((self.folder / load_case).glob("*.npz")):
-            try:
-                stored = read_npz(file)
-                if str(stored["key"]) == key:
-                    names = [name for name in stored if name.startswith("a_")]
-                    pieces[int(file.stem)] = {n[2:]: readonly(stored[n]) for n in names}
-            except (ResultError, ValueError, KeyError):
-                continue  # damaged by a crash of the machine: solved again
-        return pieces
 
 
 def _differing(state: Json, now: Mapping[str, Json]) -> str:

@@ -24,6 +24,7 @@ from camwright.meshes.body_mesh import roller_mesh
 from camwright.meshes.element_size import ElementSize
 from camwright.pipeline.case.case_file import read_case
 from camwright.pipeline.contact.tiers import Tier
+from camwright.pipeline.cycle.contact_store import kept_piece
 from camwright.pipeline.results.run_folder import RunFolder
 
 Command = Callable[..., tuple[int, str, str]]
@@ -182,7 +183,7 @@ def test_a_full_disk_says_that_the_run_can_be_resumed(
 ) -> None:
     def fails(case: Any, out: Path, **_: Any) -> None:
         with RunFolder(out, case) as folder:
-            folder.contact_store(1).save("idle", 0, {"p0": np.array([1.0])}, key="a")
+            kept_piece(folder.contact_store(1), "idle", 0, "a", lambda: {"p0": np.array([1.0])})
             raise ResultError(f"{out}: No space left on device")
 
     runner(fails)
@@ -212,7 +213,7 @@ def test_a_signal_says_how_to_go_on(
     def stopped(case: Any, out: Path, **_: Any) -> None:
         roller_mesh(0.008, 0.003, 0.0, ElementSize(far_size=2e-3))
         with RunFolder(out, case) as folder:
-            folder.contact_store(1).save("idle", 0, {"p0": np.array([1.0])}, key="a")
+            kept_piece(folder.contact_store(1), "idle", 0, "a", lambda: {"p0": np.array([1.0])})
             os.kill(os.getpid(), number)
 
     runner(stopped)

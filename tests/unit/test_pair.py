@@ -9,13 +9,13 @@ from camwright.geometry.arrays import uniform_turn
 from camwright.geometry.contour import RollerContour
 from camwright.geometry.lift import Lift
 from camwright.geometry.pitch_curve import PitchCurve
+from camwright.pipeline.base.store import PACKED, Store
 from camwright.pipeline.contact import hertz
 from camwright.pipeline.contact.contact_pair import ContactPair
 from camwright.pipeline.contact.elasticity.elastic_body import Elastic
 from camwright.pipeline.contact.follower_body import RollerBody
 from camwright.pipeline.contact.two_scale import CycleBodies, two_scale_history
 from camwright.pipeline.cycle import certificate_angles
-from camwright.pipeline.results.run_folder import ContactFiles
 
 STEEL = Elastic(210e9, 0.3)
 
@@ -81,7 +81,7 @@ def test_shear_on_any_plane_is_told_where_it_is_larger(nu: float) -> None:
 
 def test_figures_of_a_mesh_are_kept_to_the_bit(tmp_path, monkeypatch):
     """Only a mesh of another load is solved again."""
-    store, pair = ContactFiles(tmp_path), round_cam()
+    store, pair = Store(tmp_path, PACKED), round_cam()
     solved = certificate_angles._figures(store, 0, pair, 0.5, 800.0, 4.0)
     monkeypatch.setattr(certificate_angles, "mesh_figures", lambda *_: pytest.fail("solved again"))
     assert certificate_angles._figures(store, 0, pair, 0.5, 800.0, 4.0) == solved

@@ -28,6 +28,7 @@ from camwright.pipeline.base.files import (
     write_atomic,
 )
 from camwright.pipeline.commands.terminal import ALTERED, ERROR
+from camwright.pipeline.cycle.contact_store import kept_piece
 from camwright.pipeline.results import run_reader, signoff
 from camwright.pipeline.results.field_file import read_series
 from camwright.pipeline.results.folder_exchange import amended
@@ -190,7 +191,7 @@ def test_a_run_is_not_written_over_or_resumed_through_a_link(home: Path, tmp_pat
     with pytest.raises(ResultError, match="workshop: is a link"):
         RunFolder(run, small_case(), replace=True)
     with pytest.raises(KeyboardInterrupt), RunFolder(tmp_path / "new", small_case()) as folder:
-        folder.contact_store(1).save("idle", 0, {"p0": np.arange(3.0)}, key="a")
+        kept_piece(folder.contact_store(1), "idle", 0, "a", lambda: {"p0": np.arange(3.0)})
         raise KeyboardInterrupt
     shutil.rmtree(tmp_path / ".new.partial" / ".chunks" / "trial_1")
     (tmp_path / ".new.partial" / ".chunks" / "trial_1").symlink_to(home)

@@ -18,7 +18,9 @@ from small_run import TORQUE, check, small_case, summary, values, write_run, wri
 
 from camwright.geometry.errors import ResultError
 from camwright.pipeline.base.files import write_atomic
+from camwright.pipeline.base.store import Arrays
 from camwright.pipeline.case.case_file import parse_case
+from camwright.pipeline.cycle.contact_store import kept_piece
 from camwright.pipeline.results import run_folder, run_reader
 from camwright.pipeline.results.folder_exchange import amended
 from camwright.pipeline.results.run_folder import RunFolder
@@ -30,7 +32,21 @@ def entries(folder: Path) -> list[str]:
 
 def keep_piece(folder: RunFolder) -> None:
     """A first piece of the contact of a first trial."""
-    folder.contact_store(1).save("idle", 0, {"p0": np.arange(3) / 7.0}, key="a")
+    kept_piece(folder.contact_store(1), "idle", 0, "a", lambda: {"p0": np.arange(3) / 7.0})
+
+
+def is_kept(folder: RunFolder, key: str = "a", trial: int = 1, load_case: str = "idle") -> bool:
+    """Whether the first piece of a trial is kept, as `keep_piece` keeps it."""
+
+    def computed() -> Arrays:
+        raise LookupError
+
+    try:
+        piece = kept_piece(folder.contact_store(trial), load_case, 0, key, computed)
+    except LookupError:
+        return False
+    assert piece["p0"].tolist() == (np.arange(3) / 7.0).tolist()
+    return True
 
 
 def other_case() -> Any:
@@ -73,7 +89,7 @@ def test_what_nobody_expected_leaves_solved_trials_to_resume(tmp_path: Path) -> 
     with RunFolder(tmp_path / "run", case, resume=True) as folder:
         assert folder.resumed
         assert not (folder.path / "trial_1").exists(), "written again, with the options of this run"
-        assert list(folder.contact_store(1).load("idle", "a")) == [0]
+        assert is_kept(folder)
 
 
 def test_what_nobody_expected_before_any_contact_leaves_nothing(tmp_path: Path) -> None:
@@ -141,7 +157,7 @@ def test_two_runs_at_once(tmp_path: Path) -> None:
 def interrupted(out: Path) -> None:
     with pytest.raises(KeyboardInterrupt), RunFolder(out, small_case()) as folder:
         keep_piece(folder)
-        folder.contact_store(1).save("idle", 1, {"p0": np.arange(3) / 9.0}, key="b")
+        kept_piece(folder.contact_store(1), "idle", 1, "b", lambda: {"p0": np.arange(3) / 9.0})
         raise KeyboardInterrupt
 
 
@@ -151,11 +167,9 @@ def test_interrupted_run_resumes(tmp_path: Path) -> None:
     assert not out.exists()
     with RunFolder(out, small_case(), resume=True) as folder:
         assert folder.resumed
-        found = folder.contact_store(1).load("idle", "a")
-        assert list(found) == [0]
-        assert found[0]["p0"].tolist() == (np.arange(3) / 7.0).tolist()
-        assert folder.contact_store(2).load("idle", "a") == {}
-        assert folder.contact_store(1).load("rated", "a") == {}
+        assert is_kept(folder)
+        assert not is_kept(folder, trial=2) and not is_kept(folder, load_case="rated")
+        assert not is_kept(folder, "b"), "a piece of other inputs"
         write_trial(folder, [check()])
         folder.finish(summary())
     assert entries(tmp_path) == ["run"]
@@ -166,7 +180,7 @@ def test_without_resume_an_interrupted_run_starts_afresh(tmp_path: Path) -> None
     interrupted(tmp_path / "run")
     with RunFolder(tmp_path / "run", small_case()) as folder:
         assert not folder.resumed
-        assert folder.contact_store(1).load("idle", "a") == {}
+        assert not is_kept(folder)
 
 
 def test_resume_without_a_start_begins(tmp_path: Path) -> None:
@@ -212,7 +226,7 @@ def test_torn_piece_is_computed_anew(tmp_path: Path) -> None:
     (piece,) = tmp_path.rglob("000000.npz")
     piece.write_bytes(piece.read_bytes()[:100])
     with RunFolder(out, small_case(), resume=True) as folder:
-        assert folder.contact_store(1).load("idle", "a") == {}
+        assert not is_kept(folder)
 
 
 def full_disk(*_: object) -> None:
