@@ -26,7 +26,6 @@ from camwright.pipeline.base.files import json_text, npz_bytes, read_json, read_
 _LIBRARIES = ("camwright", "gmsh", "numpy", "scikit-fem", "scipy")
 
 Arrays = Mapping[str, Array]
-Record = dict[str, Any]
 
 T = TypeVar("T")
 
@@ -57,11 +56,11 @@ class Form(Generic[T]):
     as_read: Callable[[T], T] = _same
 
 
-def _json_bytes(record: Record) -> bytes:
+def _json_bytes(record: dict[str, Any]) -> bytes:
     return f"{json_text(record)}\n".encode()
 
 
-def _read_record(path: Path) -> Record:
+def _read_record(path: Path) -> dict[str, Any]:
     record = read_json(path)
     if not isinstance(record, dict):
         raise ResultError(f"{path}: is no record")
@@ -85,7 +84,7 @@ def _packed(arrays: Arrays) -> bytes:
     return npz_bytes(_in_order(arrays))
 
 
-JSON: Form[Record] = Form(".json", _json_bytes, _read_record)
+JSON: Form[dict[str, Any]] = Form(".json", _json_bytes, _read_record)
 ARRAYS: Form[Arrays] = Form(".npz", _loose, read_npz, _laid_out)
 PACKED: Form[Arrays] = replace(ARRAYS, write=_packed)
 """Arrays, compressed."""

@@ -8,7 +8,6 @@ import pytest
 from synthesis_ratings import named
 
 from camwright.geometry.errors import InputError
-from camwright.pipeline.base.files import json_text
 from camwright.pipeline.case.cards.catalogue import (
     better_bush,
     better_roller,
@@ -282,14 +281,16 @@ def test_branch_ends_where_nothing_fits():
 def test_a_point_that_is_kept_is_not_solved_again(tmp_path):
     task = point_store.PointTask("no case at all", "nor this", tmp_path, "v", "whole")
     known = {"feasible": True, "ripple_left_Nm": 1.0}
-    task.path.parent.mkdir()
-    task.path.write_text(json_text(known))
+    of = point_store.points(tmp_path)
+    of.put(task.key, known)
     assert point_store.solved(task) == known
     other = replace(task, version="w")  # solved by another version: it counts for nothing
     assert point_store.solved(other)["why"].startswith("case = ")
-    assert other.path.is_file()
-    task.path.write_text('{"feasib')  # torn
+    assert of.holds(other.key)
+    of.put_written(task.key, b'{"feasib')  # torn
     assert point_store.solved(task)["feasible"] is False
+    of.put(task.key, {"verdict": "pass"})  # of no point
+    assert "why" in point_store.solved(task)
 
 
 def test_a_point_that_passes_keeps_one_without_data_off_the_front():

@@ -5,12 +5,12 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import lru_cache, partial
 from pathlib import Path
 from typing import Any, Literal
 
 from camwright.geometry.errors import CamError
-from camwright.pipeline.base.files import json_text, read_json, write_atomic
+from camwright.pipeline.base.store import JSON, Store
 from camwright.pipeline.case.case_file import parse_case
 from camwright.pipeline.case.load_case_torque import engine_torques
 from camwright.pipeline.smoothing.infeasibility import infeasibility
@@ -29,7 +29,7 @@ class PointTask:
     its conflict of limits.
 
     base: the original case, whose torque all variants share; folder: of the included files and of
-    the cache ``solved/``; version: of the source.
+    the store ``solved/``; version: of the source.
     """
 
     text: str
@@ -39,43 +39,35 @@ class PointTask:
     tier: Literal["coarse", "rough", "whole", "conflict"]
 
     @property
-    def path(self) -> Path:
-        """File of the point in the cache."""
+    def key(self) -> str:
+        """Key of the point in the store of its folder."""
         digest = hashlib.sha256(f"{self.version}\0{self.base}\0{self.text}".encode()).hexdigest()
-        return self.folder / SOLVED / f"{self.tier}_{digest[:24]}.json"
+        return f"{self.tier}_{digest[:24]}"
+
+
+def points(folder: Path) -> Store[Record]:
+    """Solved points of a folder."""
+    return Store(folder / SOLVED, JSON)
 
 
 def solved(task: PointTask) -> Record:
-    """Record of a point, cached or solved; ``why`` states the reason of a missing cam."""
-    known = _read(task.path)
-    if known is not None:
-        return known
+    """Record of a point, stored or solved; ``why`` states the reason of a missing cam."""
+    return points(task.folder).kept(task.key, partial(_record, task), lambda r: "feasible" in r)
+
+
+def _record(task: PointTask) -> Record:
     try:
         case = parse_case(task.text, task.folder)
         if task.tier == "rough":
-            record = rough_point(case, _torques(task.base, task.folder)).as_record()
-        elif task.tier == "coarse":
-            record = rough_point(case, engine_torques(case), fine=False).as_record()
-        elif task.tier == "conflict":
+            return rough_point(case, _torques(task.base, task.folder)).as_record()
+        if task.tier == "coarse":
+            return rough_point(case, engine_torques(case), fine=False).as_record()
+        if task.tier == "conflict":
             problem = problem_of(case, _torques(task.base, task.folder))
-            record = {"feasible": False, **infeasibility(problem).as_record()}
-        else:
-            record = point_of(case).as_record()
+            return {"feasible": False, **infeasibility(problem).as_record()}
+        return point_of(case).as_record()
     except CamError as error:
-        record = {"feasible": False, "why": str(error)}
-    write_atomic(task.path, json_text(record) + "\n")
-    return record
-
-
-def _read(path: Path) -> Record | None:
-    """Record of a cached point; None without one."""
-    if not path.is_file():
-        return None
-    try:
-        record = read_json(path)
-    except CamError:  # damaged file: solved again
-        return None
-    return record if isinstance(record, dict) and "feasible" in record else None
+        return {"feasible": False, "why": str(error)}
 
 
 @lru_cache(maxsize=1)
