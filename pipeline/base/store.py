@@ -159,6 +159,12 @@ class Store(Generic[T]):
             with suppress(OSError):
                 _make_room(path, self.most)
 
+    def delete(self, key: str) -> None:
+        """Delete an entry, if there is one."""
+        path = self.path(key)
+        if path is not None and path.is_file():
+            path.unlink(missing_ok=True)
+
     def kept(self, key: str, compute: Callable[[], T], fits: Callable[[T], bool] = _any) -> T:
         """Value of an entry, or computed and stored; equal in both cases, to the bit.
 

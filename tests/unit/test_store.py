@@ -116,6 +116,9 @@ def test_a_value_is_read_back_to_the_bit(given: tuple[Form[Any], Any]) -> None:
         whole = content(of)
         of.put(KEY, value)
         assert content(of) == whole == form.write(again)
+        of.delete(KEY)
+        of.delete(KEY)
+        assert not of.holds(KEY) and files(place) == []
 
 
 @FEW
@@ -254,6 +257,7 @@ def test_without_a_folder_nothing_is_stored(given: tuple[Form[Any], Any]) -> Non
     form, value = given
     of = Store(None, form)
     of.put(KEY, value)
+    of.delete(KEY)
     assert of.path(KEY) is None and not of.holds(KEY) and of.get(KEY) is None
     assert same(of.kept(KEY, lambda: value), form.as_read(value))
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import tempfile
 from collections.abc import Mapping
 from pathlib import Path
 from types import SimpleNamespace
@@ -12,6 +13,8 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from camwright.geometry.errors import ResultError
 from camwright.pipeline.contact.tiers import Tier
@@ -139,6 +142,26 @@ def test_a_damaged_shard_is_not_taken(tmp_path: Path, damage: str) -> None:
     path.write_bytes(content)
     assert home.read_whole(shards[0]) is None
     assert not path.exists()
+
+
+@settings(max_examples=60, deadline=None)
+@given(st.data())
+def test_a_shard_that_is_cut_or_altered_is_never_another(data: st.DataObject) -> None:
+    with tempfile.TemporaryDirectory() as place:
+        home, shards = _folder(Path(place))
+        path, true = Path(place) / "shards" / "one.parquet", home.read_whole(shards[0])
+        content = bytearray(path.read_bytes())
+        at = data.draw(st.integers(0, len(content) - 1))
+        if data.draw(st.booleans()):
+            del content[at:]
+        else:
+            content[at] ^= data.draw(st.integers(1, 255))
+        path.write_bytes(content)
+        rows = home.read_whole(shards[0])
+        assert path.exists() is (rows is not None)
+        assert rows is None or rows["id"] == true["id"]
+        home.write_shard("one", parquet_bytes(true), b"")
+        assert home.read_whole(shards[0]).equals(true)
 
 
 def test_a_folder_is_written_by_one_study_at_a_time(tmp_path: Path) -> None:

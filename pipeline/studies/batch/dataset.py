@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from camwright.geometry.errors import ResultError
+from camwright.pipeline.base.store import Form
 from camwright.pipeline.base.tables import Column
 
 if TYPE_CHECKING:
@@ -265,6 +266,10 @@ def read_parquet(path: Path) -> pa.Table:
         return table_from(path.read_bytes())
     except (OSError, ValueError, pa.ArrowException) as error:
         raise ResultError(f"{path}: {' '.join(str(error).split())[:200]}") from None
+
+
+TABLE: Form[pa.Table] = Form(".parquet", parquet_bytes, read_parquet)
+"""Tables as the files of a store."""
 
 
 def require_columns(table: pa.Table, fixed: Sequence[Column], path: Path) -> None:

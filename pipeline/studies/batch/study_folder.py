@@ -24,6 +24,7 @@ from camwright.pipeline.base.files import (
     shown_name,
     write_atomic,
 )
+from camwright.pipeline.base.store import Store
 from camwright.pipeline.results.folder_exchange import of_the_user
 from camwright.pipeline.studies.batch.case_template import Template
 from camwright.pipeline.studies.batch.dataset import (
@@ -38,10 +39,10 @@ from camwright.pipeline.studies.batch.dataset import (
     SHARDS,
     STUDY,
     SUMMARY,
+    TABLE,
     TIMINGS,
     WRITING,
     in_order,
-    read_parquet,
     require_columns,
     whole_numbers,
 )
@@ -63,6 +64,14 @@ class Shard:
 
     name: str
     ids: tuple[str, ...]
+
+    def fits(self, rows: pa.Table) -> bool:
+        """Whether a table is of a study, and its rows are those of the shard."""
+        try:
+            require_columns(rows, [each for each in FIXED if each is not DESIGN], Path(self.name))
+        except ResultError:
+            return False
+        return bool(rows[ID.name].to_pylist() == list(self.ids))
 
 
 class StudyFolder:
@@ -151,28 +160,23 @@ class StudyFolder:
 
     def read_whole(self, shard: Shard) -> pa.Table | None:
         """Rows of a shard; None if it is missing or damaged, and then deleted."""
-        path = self._shard(shard.name)
-        if not path.is_file():
-            return None
-        try:
-            table = read_parquet(path)
-            require_columns(table, [each for each in FIXED if each is not DESIGN], path)
-            whole = table[ID.name].to_pylist() == list(shard.ids)
-        except ResultError:
-            whole = False
-        if whole:
-            return table
-        path.unlink()
-        return None
+        shards = self._store(SHARDS)
+        table = shards.get(shard.name, shard.fits)
+        if table is None:
+            shards.delete(shard.name)
+        return table
 
     def write_shard(self, name: str, rows: bytes, clock: bytes) -> None:
         """Write the rows of a task and their clock figures."""
-        write_atomic(self.path / TIMINGS / f"{name}.parquet", clock)
-        write_atomic(self._shard(name), rows)
+        self._store(TIMINGS).put_written(name, clock)
+        self._store(SHARDS).put_written(name, rows)
 
     def read_shard(self, name: str) -> pa.Table:
         """Rows of a shard."""
-        return read_parquet(self._shard(name))
+        return TABLE.read(self._shard(name))
+
+    def _store(self, folder: str) -> Store[pa.Table]:
+        return Store(self.path / folder, TABLE)
 
     def forget_others(self, shards: Sequence[Shard], runs: Sequence[str]) -> None:
         """Delete shards and runs of an earlier study."""
