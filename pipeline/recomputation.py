@@ -542,10 +542,10 @@ def _written(
 ) -> dict[str, Any]:
     """Write the files that follow from a trial as a run does; the contents of ``run.json``."""
     if torques:
-        again.write_torque(torque_columns(torques[trial.case.load_cases[0].name]))
+        again.write("1_torque.csv", torque_columns(torques[trial.case.load_cases[0].name]))
     TrialWriter(again).keep(trial)
     if trial.corners:
-        again.write_corners(corners_record(trial.case, trial.corners))
+        again.write("corners.json", corners_record(trial.case, trial.corners))
     summary = summary_of(again, torques, trial, (TrialPoint.of(trial),))
     if trial.mesh is not None:
         shop = again.path / WORKSHOP

@@ -131,7 +131,7 @@ def _solved(
     for line in measurement_words(case):
         watch.note(line)
     if torques:
-        folder.write_torque(torque_columns(torques[case.load_cases[0].name]))
+        folder.write("1_torque.csv", torque_columns(torques[case.load_cases[0].name]))
     writer = TrialWriter(folder)
     sought: list[PendingCall] = []
 
@@ -154,7 +154,7 @@ def _solved(
     else:
         final, statement, points = solved_already(solved, writer, on_final)
     if final.corners:
-        folder.write_corners(corners_record(final.case, final.corners))
+        folder.write("corners.json", corners_record(final.case, final.corners))
     summary = summary_of(folder, torques, final, points) | dict(also(final))
 
     if depth >= Tier.CYCLE:
@@ -220,7 +220,7 @@ def summary_of(
         required = required_torque(case, torques[case.load_cases[0].name], smoother)
     crank_speed, columns = crank_speed_record(torques, final, required)
     if columns is not None:
-        folder.write_speed(columns)
+        folder.write("1_speed.csv", columns)
     return {
         "trials": len(points),
         "final_trial": final.number,

@@ -9,12 +9,12 @@ import os
 import platform
 import re
 import shutil
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from importlib import import_module
 from pathlib import Path
 from types import TracebackType
-from typing import IO, TYPE_CHECKING, Self
+from typing import IO, TYPE_CHECKING, Any, Self, TypeAlias
 
 from numpy.typing import ArrayLike
 
@@ -68,6 +68,40 @@ _LIBRARIES = (
 )
 _PACKAGES = ("geometry", "meshes", "pipeline", "reports")
 _SOURCES = (".py", ".toml")
+
+
+Contents: TypeAlias = (
+    Values | Mapping[str, ArrayLike] | Mapping[str, Json] | Sequence[Mapping[str, Json]]
+)
+"""What a file of a run is written of: SI values by column, arrays by name, a record or several."""
+
+
+def _csv(values: Values) -> str:
+    return table(values).to_csv()
+
+
+def _json(record: Json) -> str:
+    return f"{json_text(record)}\n"
+
+
+FILES: Mapping[str, Callable[[Any], bytes | str]] = {
+    "1_torque.csv": _csv,
+    "1_speed.csv": _csv,
+    "corners.json": _json,
+    run_reader.SPLINE_FILE: _csv,
+    "2_lift.csv": _csv,
+    run_reader.LIMITS_FILE: _csv,
+    "3_contour.csv": _csv,
+    "5_cycle.csv": _csv,
+    run_reader.SWEEP_FILE: _csv,
+    "5_pressure.npz": npz_bytes,
+    "5_guides.npz": npz_bytes,
+    "5_length.npz": npz_bytes,
+    "5_envelope.npz": npz_bytes,
+    "6_checks.json": _json,
+    "trial.json": _json,
+}
+"""How tables, arrays and records of a run are written; the package lists their contents."""
 
 
 def versions() -> dict[str, str]:
@@ -141,71 +175,25 @@ class RunFolder:
 
     # --- files, in the order of the calculation
 
-    def write_torque(self, values: Values) -> None:
-        """``1_torque.csv``."""
-        self._write_table("1_torque.csv", values)
+    def write(self, name: str, values: Contents, trial: int | None = None) -> None:
+        """Write a file of `FILES`.
 
-    def write_speed(self, values: Values) -> None:
-        """``1_speed.csv``."""
-        self._write_table("1_speed.csv", values)
+        Parameters
+        ----------
+        values : Contents   as the form of the file takes them
+        trial : int         number of the trial whose file it is; None: of the run
 
-    def write_spline(self, trial: int, values: Values) -> None:
-        """``2_spline.csv``: knots and coefficients of the lift."""
-        self._write_table(f"trial_{trial}/{run_reader.SPLINE_FILE}", values)
-
-    def write_lift(self, trial: int, values: Values) -> None:
-        """``2_lift.csv``."""
-        self._write_table(f"trial_{trial}/2_lift.csv", values)
-
-    def write_limits(self, trial: int, values: Values) -> None:
-        """``2_limits.csv``."""
-        self._write_table(f"trial_{trial}/{run_reader.LIMITS_FILE}", values)
-
-    def write_contour(self, trial: int, values: Values) -> None:
-        """``3_contour.csv``."""
-        self._write_table(f"trial_{trial}/3_contour.csv", values)
+        Raises
+        ------
+        ResultError
+            If the file cannot be written.
+        """
+        place = name if trial is None else f"trial_{trial}/{name}"
+        write_atomic(self._file(place), FILES[name](values))
 
     def mesh_path(self, trial: int) -> Path:
         """Path of ``4_mesh.msh``; its folder exists."""
         return self._file(f"trial_{trial}/4_mesh.msh")
-
-    def write_cycle(self, trial: int, values: Values) -> None:
-        """``5_cycle.csv``, all load cases."""
-        self._write_table(f"trial_{trial}/5_cycle.csv", values)
-
-    def write_pressure(self, trial: int, arrays: Mapping[str, ArrayLike]) -> None:
-        """``5_pressure.npz``: contact pressure at every position of every load case."""
-        write_atomic(self._file(f"trial_{trial}/5_pressure.npz"), npz_bytes(arrays))
-
-    def write_speed_sweep(self, trial: int, values: Values) -> None:
-        """``5_speed_sweep.csv``: extremes over the turn from standstill to over-speed."""
-        self._write_table(f"trial_{trial}/5_speed_sweep.csv", values)
-
-    def write_guides(self, trial: int, arrays: Mapping[str, ArrayLike]) -> None:
-        """``5_guides.npz``: line load of the guides at every position, pressure in the bores."""
-        write_atomic(self._file(f"trial_{trial}/5_guides.npz"), npz_bytes(arrays))
-
-    def write_length(self, trial: int, arrays: Mapping[str, ArrayLike]) -> None:
-        """``5_length.npz``: pressure along the line of contact at every position."""
-        write_atomic(self._file(f"trial_{trial}/5_length.npz"), npz_bytes(arrays))
-
-    def write_envelope(self, trial: int, arrays: Mapping[str, ArrayLike]) -> None:
-        """``5_envelope.npz``: maximum stresses of a turn in a band under the contour."""
-        write_atomic(self._file(f"trial_{trial}/5_envelope.npz"), npz_bytes(arrays))
-
-    def write_checks(self, trial: int, records: Iterable[Mapping[str, Json]]) -> None:
-        """``6_checks.json``"""
-        text = json_text([dict(record) for record in records])
-        write_atomic(self._file(f"trial_{trial}/6_checks.json"), text + "\n")
-
-    def write_trial(self, trial: int, record: Mapping[str, Json]) -> None:
-        """``trial.json``: smoothing, reason of the trial, mesh quality, certificate."""
-        text = json_text(dict(record))
-        write_atomic(self._file(f"trial_{trial}/trial.json"), text + "\n")
-
-    def write_corners(self, record: Mapping[str, Json]) -> None:
-        """``corners.json``: demands at every corner of the tolerances."""
-        write_atomic(self._file("corners.json"), json_text(dict(record)) + "\n")
 
     @property
     def fields(self) -> Path:
@@ -236,7 +224,7 @@ class RunFolder:
             **summary,
             "files": file_hashes(self.path, run_reader.is_result),
         }
-        write_atomic(self.path / "run.json", json_text(whole) + "\n")
+        write_atomic(self.path / "run.json", _json(whole))
         return whole
 
     def finish(self, summary: Mapping[str, Json]) -> None:
@@ -351,9 +339,6 @@ class RunFolder:
         except OSError as error:
             raise ResultError(f"{path}: {error.strerror or error}") from None
         return path
-
-    def _write_table(self, name: str, values: Values) -> None:
-        write_atomic(self._file(name), table(values).to_csv())
 
 
 def _differing(state: Json, now: Mapping[str, Json]) -> str:

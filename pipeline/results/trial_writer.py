@@ -39,25 +39,26 @@ class TrialWriter:
         """
         folder, number, case = self._folder, trial.number, trial.case
         cycles = tuple(cycle.with_ends(None) for cycle in trial.cycles)
-        folder.write_spline(number, spline_columns(trial.lift))
-        folder.write_lift(number, lift_columns(case, trial.lift))
+        folder.write("2_spline.csv", spline_columns(trial.lift), number)
+        folder.write("2_lift.csv", lift_columns(case, trial.lift), number)
         if trial.limits_in_use is not None:
-            folder.write_limits(number, limit_columns(*trial.limits_in_use))
-        folder.write_contour(number, contour_columns(case, trial.contour))
+            folder.write("2_limits.csv", limit_columns(*trial.limits_in_use), number)
+        folder.write("3_contour.csv", contour_columns(case, trial.contour), number)
         if (mesh := trial.mesh) is not None:
             bodies = {"cam": mesh.cam, mesh.name: mesh.follower}
             write_msh(folder.mesh_path(number), bodies)
             turns = {cycle.load_case: cycle.rolling for cycle in cycles}
-            folder.write_envelope(number, envelope_arrays(turns))
-        folder.write_cycle(number, cycle_columns(cycles))
-        folder.write_speed_sweep(number, sweep_columns(trial.solution.speed_sweeps))
-        folder.write_pressure(number, pressure_arrays(cycles))
-        folder.write_guides(number, guide_arrays(cycles))
+            folder.write("5_envelope.npz", envelope_arrays(turns), number)
+        folder.write("5_cycle.csv", cycle_columns(cycles), number)
+        folder.write("5_speed_sweep.csv", sweep_columns(trial.solution.speed_sweeps), number)
+        folder.write("5_pressure.npz", pressure_arrays(cycles), number)
+        folder.write("5_guides.npz", guide_arrays(cycles), number)
         if (axial := axial_arrays(cycles)) is not None:
-            folder.write_length(number, axial)
+            folder.write("5_length.npz", axial, number)
         self.judge(trial)
 
     def judge(self, trial: Trial) -> None:
         """Write checks and record of a trial; again after its certificate."""
-        self._folder.write_checks(trial.number, [check.as_record() for check in trial.checks])
-        self._folder.write_trial(trial.number, trial_record(trial))
+        checks = [check.as_record() for check in trial.checks]
+        self._folder.write("6_checks.json", checks, trial.number)
+        self._folder.write("trial.json", trial_record(trial), trial.number)

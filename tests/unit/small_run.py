@@ -110,17 +110,17 @@ def summary(verdict: str = "pass", trials: int = 1) -> dict[str, Any]:
 
 
 def write_trial(folder: RunFolder, checks: list[Mapping[str, Any]], number: int = 1) -> None:
-    folder.write_lift(number, values(LIFT))
-    folder.write_contour(number, values(CONTOUR))
-    folder.write_cycle(number, values(CYCLE))
-    folder.write_checks(number, checks)
-    folder.write_trial(number, TRIAL)
+    folder.write("2_lift.csv", values(LIFT), number)
+    folder.write("3_contour.csv", values(CONTOUR), number)
+    folder.write("5_cycle.csv", values(CYCLE), number)
+    folder.write("6_checks.json", checks, number)
+    folder.write("trial.json", TRIAL, number)
 
 
 def write_run(out: Path, case: Case | None = None, status: str = "pass") -> Path:
     """A finished run whose only check has this status."""
     with RunFolder(out, case or small_case()) as folder:
-        folder.write_torque(values(TORQUE))
+        folder.write("1_torque.csv", values(TORQUE))
         write_trial(folder, [check(status)])
         folder.finish(summary(VERDICT_OF[status]))
     return out

@@ -362,7 +362,7 @@ def test_recorded_remedies_of_a_run_are_printed(command: Command, tmp_path: Path
     failed = check("fail", id="a_two", remedy="follower.mass: 99 g; saves 76 g")
     folder = tmp_path / "run"
     with RunFolder(folder, small_case()) as made:
-        made.write_torque(values(TORQUE))
+        made.write("1_torque.csv", values(TORQUE))
         write_trial(made, [failed])
         made.finish(summary("fail"))
     for option in ((), ("--all",)):

@@ -62,7 +62,7 @@ def solve(out: Path, *, resume: bool = False) -> int:
 
         for index in range(PIECES):
             kept_piece(folder.contact_store(1), "idle", index, "a", partial(piece, index))
-        folder.write_torque(values(TORQUE))
+        folder.write("1_torque.csv", values(TORQUE))
         write_trial(folder, [check("fail")])
         folder.write_summary(summary("fail"))
         (folder.path / "8_report.html").write_text("page")

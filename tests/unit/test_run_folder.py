@@ -6,6 +6,7 @@ import errno
 import hashlib
 import json
 import os
+import re
 import shutil
 import sys
 from pathlib import Path
@@ -17,6 +18,7 @@ from small_machine import small_machine
 from small_run import TORQUE, check, small_case, summary, values, write_run, write_trial
 
 from camwright.geometry.errors import ResultError
+from camwright.pipeline import results
 from camwright.pipeline.base.files import write_atomic
 from camwright.pipeline.base.store import Arrays
 from camwright.pipeline.case.case_file import parse_case
@@ -94,7 +96,7 @@ def test_what_nobody_expected_leaves_solved_trials_to_resume(tmp_path: Path) -> 
 
 def test_what_nobody_expected_before_any_contact_leaves_nothing(tmp_path: Path) -> None:
     with pytest.raises(ZeroDivisionError), RunFolder(tmp_path / "run", small_case()) as folder:
-        folder.write_torque(values(TORQUE))
+        folder.write("1_torque.csv", values(TORQUE))
         raise ZeroDivisionError
     assert entries(tmp_path) == []
 
@@ -231,6 +233,12 @@ def test_torn_piece_is_computed_anew(tmp_path: Path) -> None:
 
 def full_disk(*_: object) -> None:
     raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+
+def test_the_package_lists_the_files_that_are_written() -> None:
+    listed = re.findall(r"^\| ``(?:trial_N/)?([\w.]+)``", str(results.__doc__), re.MULTILINE)
+    by_others = {"run.json", "signoff.json", "signoff.intoto.jsonl", "4_mesh.msh"}
+    assert set(listed) - by_others == set(run_folder.FILES)
 
 
 def test_full_disk_leaves_no_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

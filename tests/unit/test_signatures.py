@@ -52,7 +52,7 @@ def original(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A passing run with files of every kind, prepared and approved by A."""
     out = tmp_path_factory.mktemp("signed") / "run"
     with RunFolder(out, small_case()) as folder:
-        folder.write_torque(values(TORQUE))
+        folder.write("1_torque.csv", values(TORQUE))
         (folder.fields / "stress.vtkhdf").write_bytes(b"field")
         (folder.figures / "lift.png").write_bytes(b"png")
         (folder.path / "8_report.html").write_text("<p>PASS</p>")

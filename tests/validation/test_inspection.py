@@ -153,14 +153,14 @@ def write_run(folder: Path, case: Case, lift: Lift, **record: object) -> Contour
     """A run folder whose tables are those of a given lift, at little cost; its contour."""
     made = case.contour(lift)
     with RunFolder(folder, case) as out:
-        out.write_spline(1, spline_columns(lift))
-        out.write_lift(1, lift_columns(case, lift))
-        out.write_contour(1, contour_columns(case, made))
+        out.write("2_spline.csv", spline_columns(lift), 1)
+        out.write("2_lift.csv", lift_columns(case, lift), 1)
+        out.write("3_contour.csv", contour_columns(case, made), 1)
         cycle = {k: np.abs(v) if v.dtype.kind == "f" else v
                  for k, v in small_run.values(small_run.CYCLE).items()}  # fmt: skip
-        out.write_cycle(1, cycle)
-        out.write_checks(1, [small_run.check()])
-        out.write_trial(1, {**small_run.TRIAL, **record})
+        out.write("5_cycle.csv", cycle, 1)
+        out.write("6_checks.json", [small_run.check()], 1)
+        out.write("trial.json", {**small_run.TRIAL, **record}, 1)
         out.finish({**small_run.summary(), "scope": case.scope.as_record()})
     return made
 
