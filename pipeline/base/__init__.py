@@ -17,6 +17,7 @@ In the order of use:
 | `stem_layout`      | guides, seats and spring along the stem                  | z, m             |
 | `envelope`         | box that holds the mechanism over the turn               | m                |
 | `files`            | files read, written in one step, hashed; JSON records    | SHA-256          |
+| `owned_folder`     | folder of one command, locked, without foreign files     |                  |
 | `extras`           | libraries that are not installed with the package        |                  |
 | `kept_results`     | properties kept in a field that other owners take over   |                  |
 | `columns`          | data frame and figure of columns, for a notebook         |                  |

@@ -21,6 +21,7 @@ from typing import IO
 
 from camwright.geometry.errors import AlteredError, ResultError
 from camwright.pipeline.base.files import files_in, locked, read_json, require_plain, sha256_of
+from camwright.pipeline.base.owned_folder import OwnedFolder
 from camwright.pipeline.results import signoff
 
 STATE, CHUNKS = ".state.json", ".chunks"
@@ -66,15 +67,9 @@ def _lock_file(out: Path) -> Path:
     return out.with_name(f".{out.name}.lock")
 
 
-def lock_of(out: Path) -> IO[str] | None:
-    """Lock of a final path for this process; ResultError if another run is writing to it."""
-    return locked(_lock_file(out), f"{out}: another run is writing to it")
-
-
-def unlock(out: Path, lock: IO[str]) -> None:
-    """End a lock and delete its file."""
-    _lock_file(out).unlink(missing_ok=True)
-    lock.close()
+def owned(out: Path) -> OwnedFolder:
+    """Final path of a run, with its lock beside it."""
+    return OwnedFolder(out, OURS, "run", _lock_file(out))
 
 
 def complete_exchange(out: Path) -> None:
@@ -88,15 +83,14 @@ def complete_exchange(out: Path) -> None:
     out = absolute(out)
     if not any(path.exists() for path in (partial_of(out), _replaced(out), _lock_file(out))):
         return
+    home = owned(out)
+    home.take()
     try:
-        lock = lock_of(out)
-        try:
-            settle(out)
-        finally:
-            if lock is not None:
-                unlock(out, lock)
+        settle(out)
     except OSError as error:
         raise ResultError(f"{out}: {error.strerror or error}") from None
+    finally:
+        home.release()
 
 
 def settle(out: Path) -> None:

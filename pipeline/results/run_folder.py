@@ -7,14 +7,13 @@ import importlib.metadata
 import json
 import os
 import platform
-import re
 import shutil
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from importlib import import_module
 from pathlib import Path
 from types import TracebackType
-from typing import IO, TYPE_CHECKING, Any, Self, TypeAlias
+from typing import TYPE_CHECKING, Any, Self, TypeAlias
 
 from numpy.typing import ArrayLike
 
@@ -29,6 +28,7 @@ from camwright.pipeline.base.files import (
     shown_name,
     write_atomic,
 )
+from camwright.pipeline.base.owned_folder import ASIDE, OwnedFolder
 from camwright.pipeline.base.store import PACKED, Store
 from camwright.pipeline.base.tables import Values, table
 from camwright.pipeline.case.case import Case
@@ -37,16 +37,14 @@ from camwright.pipeline.results import run_reader, signoff
 from camwright.pipeline.results.folder_exchange import (
     CHUNKS,
     KEPT,
-    OURS,
     STATE,
     absolute,
     exchange,
     is_complete,
     kept_by_nothing,
-    lock_of,
+    owned,
     partial_of,
     settle,
-    unlock,
     unrecorded,
 )
 from camwright.pipeline.results.workshop_files import WORKSHOP, stamp_solid
@@ -54,7 +52,6 @@ from camwright.pipeline.results.workshop_files import WORKSHOP, stamp_solid
 if TYPE_CHECKING:
     from camwright.pipeline.cycle.contact_store import ContactStore
 
-_TEMPORARY = re.compile(r"\.\w+\.tmp")
 _LIBRARIES = (
     "numpy",
     "scipy",
@@ -149,9 +146,8 @@ class RunFolder:
         self._replace = replace
         self.versions = versions()
         self.resumed = False
-        self._created: list[Path] = []
-        self._lock: IO[str] | None = None
-        self._open(resume, replace)
+        self._home = owned(self.out)
+        self._open(resume)
 
     def __enter__(self) -> Self:
         return self
@@ -168,7 +164,7 @@ class RunFolder:
                 self.discard()
             else:
                 error.add_note(KEPT)
-        self._unlock()
+        self._home.release()
 
     def _holds_pieces(self) -> bool:
         return any((self.path / CHUNKS).rglob("*.npz"))
@@ -235,22 +231,21 @@ class RunFolder:
         stamp_solid(self.path / WORKSHOP, recorded["input_sha256"], results)
         signoff.write(self.path)
         try:
-            _refuse_strangers(self.out, self.case, replace=self._replace)
+            _refuse_other_runs(self._home, self.case, replace=self._replace)
             (self.path / STATE).unlink()
             exchange(self.out)
         except OSError as error:
             raise ResultError(f"{self.out}: {error.strerror or error}") from None
-        self._unlock()
+        self._home.release()
 
     def discard(self) -> None:
         """Delete the unfinished run, and the folders created for it."""
-        if self._lock is not None:
+        if self._home.taken:
             with suppress(OSError):
                 self._clear()
                 (self.path / STATE).unlink(missing_ok=True)
                 self.path.rmdir()
-            self._unlock()
-        self._remove_parents()
+            self._home.release()
 
     def _clear(self, kept: str = "") -> None:
         """Delete the files but `kept` and the state, which marks the folder as that of a run."""
@@ -258,11 +253,6 @@ class RunFolder:
             if entry.name not in (STATE, kept):
                 is_folder = entry.is_dir() and not entry.is_symlink()
                 shutil.rmtree(entry) if is_folder else entry.unlink()
-
-    def _remove_parents(self) -> None:
-        for folder in self._created:
-            if folder.is_dir() and not any(folder.iterdir()):
-                folder.rmdir()
 
     # --- pieces of the contact solution
 
@@ -272,13 +262,12 @@ class RunFolder:
 
     # --- opening
 
-    def _open(self, resume: bool, replace: bool) -> None:
-        self._created = _make_parents(self.out)
+    def _open(self, resume: bool) -> None:
         opened = False
+        self._home.take()
         try:
-            self._lock = lock_of(self.out)
             settle(self.out)
-            _refuse_strangers(self.out, self.case, replace=replace)
+            _refuse_other_runs(self._home, self.case, replace=self._replace)
             self._take_over(resume)
             opened = True
             self._begin()
@@ -290,8 +279,7 @@ class RunFolder:
                 refused.add_note(KEPT)
             elif opened:
                 self.discard()
-            self._unlock()
-            self._remove_parents()
+            self._home.release()
             raise refused from None
 
     def _take_over(self, resume: bool) -> None:
@@ -301,7 +289,7 @@ class RunFolder:
             raise ResultError(f"{self.path}: in the way, and not the start of a run")
         self.path.mkdir(exist_ok=True)
         names = [entry.name for entry in self.path.iterdir()]
-        if not state.is_file() and not all(_TEMPORARY.fullmatch(name) for name in names):
+        if not state.is_file() and not all(ASIDE.fullmatch(name) for name in names):
             raise ResultError(f"{self.path}: in the way, and not the start of a run")
         if resume and state.is_file():
             differ = _differing(read_json(state), self._identity())
@@ -327,11 +315,6 @@ class RunFolder:
             "versions": self.versions,
         }
 
-    def _unlock(self) -> None:
-        if self._lock is not None:
-            unlock(self.out, self._lock)
-            self._lock = None
-
     def _file(self, name: str) -> Path:
         path = self.path / name
         try:
@@ -355,22 +338,16 @@ def _differing(state: Json, now: Mapping[str, Json]) -> str:
     return f"its versions ({', '.join(names)})" if names else ""
 
 
-def _refuse_strangers(out: Path, case: Case, *, replace: bool) -> None:
+def _refuse_other_runs(home: OwnedFolder, case: Case, *, replace: bool) -> None:
     """Refuse to overwrite anything but a run of the same input, or name if it is replaced."""
-    if not os.path.lexists(out):
-        return
-    if not out.is_dir():
-        raise ResultError(f"{out}: is not a folder")
-    entries = sorted(entry.name for entry in out.iterdir())
+    out = home.path
+    if os.path.lexists(out / signoff.SIGNATURES):
+        raise ResultError(f"{out}: holds a signed run; choose another folder or remove it")
+    entries = home.entries()
     if not entries:
         return
-    if signoff.SIGNATURES in entries:
-        raise ResultError(f"{out}: holds a signed run; choose another folder or remove it")
-    strange = [name for name in entries if not OURS.fullmatch(name)]
-    if strange or "run.json" not in entries:
-        name = (strange or entries)[0]
-        raise ResultError(f"{out}: holds {name}, which is not of a run; choose another folder")
-    require_plain(out)
+    if "run.json" not in entries:
+        raise home.stranger(entries[0])
     if not (replace and _name_of(out) == case.name):
         summary = run_reader.read_summary(out)
         if summary["input_sha256"] != case.sha256:
@@ -399,16 +376,6 @@ def _name_of(out: Path) -> Json:
     """Name of the case of a run, of another schema too."""
     summary = read_json(out / "run.json")
     return summary.get("case") if isinstance(summary, dict) else None
-
-
-def _make_parents(out: Path) -> list[Path]:
-    """Create the folders above `out`; returns the new ones, innermost first."""
-    missing = [folder for folder in out.parents if not folder.exists()]
-    try:
-        out.parent.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise ResultError(f"{out.parent}: {error.strerror or error}") from None
-    return missing
 
 
 def _version(name: str) -> str:

@@ -198,7 +198,7 @@ def test_page_and_record(done):
 
 def test_leaves_other_folders_alone(small, case_file, tmp_path):
     (tmp_path / "letter.txt").write_text("mine")
-    with pytest.raises(ResultError, match="something other"):
+    with pytest.raises(ResultError, match=r"holds letter\.txt, which is not of a redesign"):
         redesign_study.redesign(case_file, tmp_path, "size", 1, Silent())
     assert [path.name for path in tmp_path.iterdir()] == ["letter.txt"]
     (tmp_path / "letter.txt").rename(tmp_path / "redesign.json")
@@ -208,6 +208,30 @@ def test_leaves_other_folders_alone(small, case_file, tmp_path):
     (tmp_path / "redesign.json").write_text("[]")
     with pytest.raises(ResultError, match="another case"):
         redesign_study.redesign(case_file, tmp_path, "size", 1, Silent())
+
+
+def test_a_killed_search_blocks_nothing_and_a_running_one_blocks_others(
+    small, case_file, tmp_path, monkeypatch
+):
+    """Nothing is written through a link either."""
+    out = tmp_path / "out"
+    (out / "solved").mkdir(parents=True)
+    for name in (".k3_x9.tmp", "solved/.a1.tmp", ".lock"):
+        (out / name).write_text("")
+
+    def stopped(*_):
+        assert [each.name for each in sorted(out.rglob("*"))] == [".lock", "solved"]
+        with pytest.raises(ResultError, match="another redesign is writing to it"):
+            redesign_study.redesign(case_file, out, "size", 1, Silent())
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(redesign_study, "_searched", stopped)
+    with pytest.raises(KeyboardInterrupt):
+        redesign_study.redesign(case_file, out, "size", 1, Silent())
+    assert [each.name for each in out.iterdir()] == ["solved"]
+    (out / "solved" / "rough_a.json").symlink_to(case_file)
+    with pytest.raises(ResultError, match=r"rough_a\.json: is a link"):
+        redesign_study.redesign(case_file, out, "size", 1, Silent())
 
 
 def test_files_a_case_includes_go_with_its_points(tmp_path):
@@ -222,7 +246,7 @@ def test_files_a_case_includes_go_with_its_points(tmp_path):
     path.write_text(to_toml(case, {"torque.csv": "torque.csv"}), encoding="utf-8")
     parts, out = catalogue_of(None), tmp_path / "out"
     asked = redesign_study.RedesignTask(read_case(path), tmp_path, parts, out, "v")
-    redesign_study._prepare(asked)
+    redesign_study._begin(asked)
     text = asked.text(Choice(ROLLER, "60 x 42", "bronze"))
     point = parse_case(text, out)
     assert point.included["inputs/torque.csv"] == (tmp_path / "torque.csv").read_bytes()

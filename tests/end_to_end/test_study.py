@@ -411,7 +411,7 @@ def test_a_file_in_the_way_is_refused(tmp_path: Path, monkeypatch: pytest.Monkey
     written(tmp_path, 2)
     (tmp_path / "file").write_text("mine")
     monkeypatch.chdir(tmp_path)
-    with pytest.raises(ResultError, match="file: in the way"):
+    with pytest.raises(ResultError, match="file: is not a folder"):
         app(args=["study", "study.toml", "--out", "file"], standalone_mode=False)
     assert (tmp_path / "file").read_text() == "mine"
 

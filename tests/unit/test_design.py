@@ -7,7 +7,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
-from typing import Any
+from typing import Any, NoReturn
 
 import numpy as np
 import pytest
@@ -23,13 +23,14 @@ from camwright.pipeline.case.cards.spring_catalogue import SpringDemand
 from camwright.pipeline.case.case_file import parse_case
 from camwright.pipeline.cycle.machine_envelope import sizes_of
 from camwright.pipeline.studies.design import (
+    design_study,
     part_exchange,
     relaxation_search,
     synthesised_points,
 )
 from camwright.pipeline.studies.design.candidate_search import candidates, spring_wire
 from camwright.pipeline.studies.design.design_case import Machinery, case_text, oils_of
-from camwright.pipeline.studies.design.design_study import _prepare, designed
+from camwright.pipeline.studies.design.design_study import _copied, designed
 from camwright.pipeline.studies.design.machine_frame import frame_of
 from camwright.pipeline.studies.design.relaxation_search import WIDTH, relaxations
 from camwright.pipeline.studies.design.synthesised_points import (
@@ -556,14 +557,14 @@ def test_cards_beside_the_case_are_copies_or_refused(tmp_path: Path) -> None:
     beside.mkdir()
     task = task_in(source)
     (source / "cards.toml").write_text("# mine\n", encoding="utf-8")
-    file, copied = _prepare(task, beside / "x_design", beside / "x.toml")
+    file, copied = _copied(task, beside / "x_design", beside / "x.toml")
     assert (file, copied) == ("torque.csv", ["torque.csv", "cards.toml"])
     assert (beside / "cards.toml").read_text(encoding="utf-8") == "# mine\n"
     (beside / "cards.toml").write_text("# another\n", encoding="utf-8")
     with pytest.raises(ResultError, match=r"cards\.toml: differs"):
-        _prepare(task, beside / "x_design", beside / "x.toml")
+        _copied(task, beside / "x_design", beside / "x.toml")
     assert (beside / "cards.toml").read_text(encoding="utf-8") == "# another\n"
-    assert _prepare(task, source / "x_design", source / "x.toml") == ("torque.csv", [])
+    assert _copied(task, source / "x_design", source / "x.toml") == ("torque.csv", [])
 
 
 def test_a_folder_of_something_else_is_refused(tmp_path: Path) -> None:
@@ -572,5 +573,32 @@ def test_a_folder_of_something_else_is_refused(tmp_path: Path) -> None:
         designed(task, tmp_path / "x.txt")
     (tmp_path / "x_design").mkdir()
     (tmp_path / "x_design" / "letter.txt").write_text("mine", encoding="utf-8")
-    with pytest.raises(ResultError, match="holds something other"):
+    with pytest.raises(ResultError, match=r"holds letter\.txt, which is not of a design"):
         designed(task, tmp_path / "x.toml")
+    (tmp_path / "x_design" / "letter.txt").unlink()
+    (tmp_path / "x_design" / "solved").symlink_to(tmp_path)
+    with pytest.raises(ResultError, match="solved: is a link"):
+        designed(task, tmp_path / "x.toml")
+
+
+def test_the_points_of_a_design_are_written_by_one_process(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    task = task_in(tmp_path)
+
+    def stopped(*_: object) -> NoReturn:
+        with pytest.raises(ResultError, match="another design is writing to it"):
+            designed(task, tmp_path / "x.toml")
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(design_study, "candidates", stopped)
+    (tmp_path / "cards.toml").write_text("", encoding="utf-8")
+    (tmp_path / "beside").mkdir()
+    (tmp_path / "beside" / "cards.toml").write_text("# another\n", encoding="utf-8")
+    with pytest.raises(ResultError, match="differs"):
+        designed(task, tmp_path / "beside" / "x.toml")
+    assert [each.name for each in (tmp_path / "beside").iterdir()] == ["cards.toml"]
+    with pytest.raises(KeyboardInterrupt):
+        designed(task, tmp_path / "x.toml")
+    points = [each.name for each in (tmp_path / "x_design").iterdir()]
+    assert sorted(points) == ["cards.toml", "torque.csv"]

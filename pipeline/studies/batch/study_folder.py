@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import contextlib
 import os
+import re
 import shutil
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import IO, TYPE_CHECKING
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,12 +19,11 @@ from camwright.pipeline.base.files import (
     Json,
     files_in,
     json_text,
-    locked,
     read_json,
-    require_plain,
     shown_name,
     write_atomic,
 )
+from camwright.pipeline.base.owned_folder import OwnedFolder
 from camwright.pipeline.base.store import Store
 from camwright.pipeline.results.folder_exchange import of_the_user
 from camwright.pipeline.studies.batch.case_template import Template
@@ -51,8 +51,12 @@ from camwright.pipeline.studies.batch.design_rows import CLOCK, Files
 if TYPE_CHECKING:
     import pyarrow as pa
 
-_LOCK = ".lock"
-_OURS = (ANSWERS, PAGE, STUDY, SUMMARY, DATASET, SHARDS, TIMINGS, RUNS, CASES, _LOCK)
+_OURS = re.compile(
+    "|".join(
+        re.escape(name)
+        for name in (ANSWERS, PAGE, STUDY, SUMMARY, DATASET, SHARDS, TIMINGS, RUNS, CASES)
+    )
+)
 _WRITTEN = (".parquet", ".json", ".tmp")
 _BLOCK = 2000
 """Rows of a row group of the dataset; bounds the memory of its writing."""
@@ -91,28 +95,22 @@ class StudyFolder:
 
     def __init__(self, out: Path, *, resume: bool) -> None:
         self.path, self._resume = out, resume
-        self._lock: IO[str] | None = None
+        self._home = OwnedFolder(out, _OURS, "study")
 
     def require_free(self) -> None:
         """Refuse a folder that holds anything but a study, or one without `resume`; ResultError."""
-        if self.path.is_symlink() or (self.path.exists() and not self.path.is_dir()):
-            raise ResultError(f"{self.path}: in the way, and not a folder")
-        present = [each.name for each in self.path.iterdir()] if self.path.is_dir() else []
-        present = [name for name in present if not name.endswith(".tmp")]
-        foreign = sorted(set(present) - set(_OURS))
-        foreign += sorted(name for name in present if (self.path / name).is_symlink())
-        if foreign:
-            raise ResultError(f"{self.path}: holds {foreign[0]}, which is not of a study")
-        inside = sorted(set(present) - {_LOCK})
-        if inside and SHARDS not in inside:  # a folder of the user with cases/, runs/, study.toml
-            raise ResultError(f"{self.path}: holds {inside[0]} and no {SHARDS}: not a study")
-        if inside and not self._resume:
+        if self.path.is_symlink():
+            raise ResultError(f"{self.path}: is a link; choose a folder")
+        entries = self._home.entries()
+        if not entries:
+            return
+        if SHARDS not in entries:  # a folder of the user with cases/, runs/, study.toml
+            raise ResultError(f"{self.path}: holds {entries[0]} and no {SHARDS}: not a study")
+        if not self._resume:
             raise ResultError(f"{self.path}: holds a study; --resume completes it")
-        if inside:
-            require_plain(self.path)
-            for name in self._of_the_user()[:1]:
-                told = f"holds {shown_name(name)}, which no study wrote; move it elsewhere"
-                raise ResultError(f"{self.path}: {told}")
+        for name in self._of_the_user()[:1]:
+            told = f"holds {shown_name(name)}, which no study wrote; move it elsewhere"
+            raise ResultError(f"{self.path}: {told}")
 
     def _of_the_user(self) -> list[str]:
         """Files among shards and runs that a resumed study would delete and did not write."""
@@ -131,21 +129,16 @@ class StudyFolder:
 
     def __enter__(self) -> StudyFolder:
         self.require_free()
+        self._home.take()
         try:
-            self.path.mkdir(parents=True, exist_ok=True)
-            busy = f"{self.path}: another study is writing to it"
-            self._lock = locked(self.path / _LOCK, busy)
             (self.path / SHARDS).mkdir(exist_ok=True)  # first: by it a study is known
-            for each in self.path.rglob(".*.tmp"):  # of a process that was killed
-                shutil.rmtree(each) if each.is_dir() else each.unlink()
         except OSError as error:
+            self._home.release()
             raise ResultError(f"{self.path}: {error.strerror or error}") from None
         return self
 
     def __exit__(self, *_: object) -> None:
-        if self._lock is not None:
-            self._lock.close()
-            (self.path / _LOCK).unlink(missing_ok=True)
+        self._home.release()
 
     def write_inputs(self, text: str, templates: Sequence[Template]) -> None:
         """Write the study file and the cases; those of an earlier study are replaced."""

@@ -15,6 +15,7 @@ from camwright.geometry.arrays import uniform_turn
 from camwright.geometry.errors import InputError, ResultError
 from camwright.pipeline.base import units
 from camwright.pipeline.base.files import json_text, write_atomic
+from camwright.pipeline.base.owned_folder import OwnedFolder
 from camwright.pipeline.base.progress import SILENT, Progress
 from camwright.pipeline.base.worker_processes import Crew, crew
 from camwright.pipeline.case.cards.card_filling import USER_FILE
@@ -111,7 +112,13 @@ def designed(task: DesignTask, out: Path, progress: Progress = SILENT) -> Record
     if out.suffix != ".toml" or not SAFE_NAME.fullmatch(out.stem):
         raise InputError("--out", out.name, "a file NAME.toml of letters, digits, '_', '-' or '.'")
     folder = points_folder(out).absolute()
-    file, copied = _prepare(task, folder, out)
+    with OwnedFolder(folder, _OURS, "design"):
+        return _designed(task, folder, out, progress)
+
+
+def _designed(task: DesignTask, folder: Path, out: Path, progress: Progress) -> Record:
+    """As `designed`; the folder of the points is owned."""
+    file, copied = _copied(task, folder, out)
     study = PointStudy(task, folder, file, versions()["source"])
     progress.stage("search rollers, springs and base circles")
     screened = candidates(task, folder, file, progress)
@@ -197,7 +204,7 @@ def _within_space(study: PointStudy, point: Solved) -> list[Solved]:
     return [limited] if limited.has_cam and limited.passes else []
 
 
-def _prepare(task: DesignTask, folder: Path, out: Path) -> tuple[str, list[str]]:
+def _copied(task: DesignTask, folder: Path, out: Path) -> tuple[str, list[str]]:
     """Copy the torque table and the user's cards to the points and beside the case.
 
     Returns the name of the table, and the names of the files beside the case that are copies.
@@ -205,15 +212,8 @@ def _prepare(task: DesignTask, folder: Path, out: Path) -> tuple[str, list[str]]
     Raises
     ------
     ResultError
-        If the folder of the points holds something else, or a file of such a name beside the case
-        differs.
+        If a file of such a name beside the case differs.
     """
-    if folder.exists():
-        strangers = [] if not folder.is_dir() else [
-            entry.name for entry in folder.iterdir() if not _OURS.fullmatch(entry.name)
-        ]  # fmt: skip
-        if not folder.is_dir() or strangers:
-            raise ResultError(f"{folder}: holds something other than a design")
     name = task.file.name if task.file.suffix == ".csv" else f"{out.stem}_torque.csv"
     source, beside = task.file.resolve().parent, out.resolve().parent
     sources = {name: task.file}

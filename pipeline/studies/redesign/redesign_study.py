@@ -11,6 +11,7 @@ from typing import Literal
 
 from camwright.geometry.errors import InputError, ResultError
 from camwright.pipeline.base.files import Json, json_text, read_json, write_atomic
+from camwright.pipeline.base.owned_folder import OwnedFolder
 from camwright.pipeline.base.progress import Progress
 from camwright.pipeline.base.units import in_unit
 from camwright.pipeline.base.worker_processes import pool, workers_for
@@ -84,47 +85,44 @@ def redesign(
     search = RedesignTask(case, folder, catalogue_of(folder), out.absolute(), versions()["source"])
     problem = problem_of(case, engine_torques(case))
     running, pruned = branches(case, search.parts, problem, by_mass=against == "mass")
-    _prepare(search)
-    with pool(workers_for(jobs, _BUSY)) as workers:
-        progress.stage("search the catalogue")
-        tried = _searched(search, running, workers, progress)
-        original, points = _solved_whole(search, _chosen(tried, against), workers, progress)
-        kept, refused = _split(points, against)
-        excluded = None
-        if not kept:
-            progress.stage("conflicting limits")
-            excluded = exclusions(tried, refused, pruned, _conflict_of(search, workers))
-    verdict = kept[0][1]["verdict"] if kept else "fail"
-    document: dict[str, Json] = {
-        "schema": 1,
-        "case": case.name,
-        "input_sha256": case.sha256,
-        "version": search.version,
-        "against": against,
-        "given": original,
-        "points": _written(search, kept),
-        "refused": [_named(choice) | {"why": _why(record, verdict)} for choice, record in refused],
-        "without_result": excluded,
-        "pruned": [asdict(one) for one in pruned],
-        "tried": [_named(choice) | record for choice, record in tried],
-    }
-    write_atomic(search.out / RECORD, json_text(document) + "\n")
+    with OwnedFolder(search.out, _OURS, "redesign"):
+        _begin(search)
+        with pool(workers_for(jobs, _BUSY)) as workers:
+            progress.stage("search the catalogue")
+            tried = _searched(search, running, workers, progress)
+            original, points = _solved_whole(search, _chosen(tried, against), workers, progress)
+            kept, refused = _split(points, against)
+            excluded = None
+            if not kept:
+                progress.stage("conflicting limits")
+                excluded = exclusions(tried, refused, pruned, _conflict_of(search, workers))
+        verdict = kept[0][1]["verdict"] if kept else "fail"
+        document: dict[str, Json] = {
+            "schema": 1,
+            "case": case.name,
+            "input_sha256": case.sha256,
+            "version": search.version,
+            "against": against,
+            "given": original,
+            "points": _written(search, kept),
+            "refused": [
+                _named(choice) | {"why": _why(record, verdict)} for choice, record in refused
+            ],
+            "without_result": excluded,
+            "pruned": [asdict(one) for one in pruned],
+            "tried": [_named(choice) | record for choice, record in tried],
+        }
+        write_atomic(search.out / RECORD, json_text(document) + "\n")
     return document
 
 
-def _prepare(search: RedesignTask) -> None:
-    """Prepare the output folder; it may hold an earlier redesign of this case only."""
+def _begin(search: RedesignTask) -> None:
+    """Copy the files that the case includes; the folder may hold a redesign of this case alone."""
     out, case = search.out, search.case
-    if out.exists():
-        strangers = [] if not out.is_dir() else [
-            entry.name for entry in out.iterdir() if not _OURS.fullmatch(entry.name)
-        ]  # fmt: skip
-        if not out.is_dir() or strangers:
-            raise ResultError(f"{out}: holds something other than a redesign")
-        record = out / RECORD
-        held = read_json(record) if record.is_file() else {"case": case.name}
-        if not isinstance(held, dict) or held.get("case") != case.name:
-            raise ResultError(f"{out}: holds the redesign of another case")
+    record = out / RECORD
+    held = read_json(record) if record.is_file() else {"case": case.name}
+    if not isinstance(held, dict) or held.get("case") != case.name:
+        raise ResultError(f"{out}: holds the redesign of another case")
     for name, content in case.included.items():
         write_atomic(out / name, content)
 
