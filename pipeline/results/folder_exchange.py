@@ -17,10 +17,9 @@ import shutil
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
-from typing import IO
 
 from camwright.geometry.errors import AlteredError, ResultError
-from camwright.pipeline.base.files import files_in, locked, read_json, require_plain, sha256_of
+from camwright.pipeline.base.files import files_in, read_json, require_plain, sha256_of
 from camwright.pipeline.base.owned_folder import OwnedFolder
 from camwright.pipeline.results import signoff
 
@@ -259,10 +258,8 @@ def staged(path: Path) -> Iterator[Path]:
     require_plain(path, AlteredError)
     home = path / signoff.AMENDMENT
     partial, complete = home / "partial", path / signoff.COMPLETE
-    try:
-        lock = _lock_of_amendment(path, home)
-    except OSError as error:
-        raise ResultError(f"{path}: {error.strerror or error}") from None
+    owner = OwnedFolder(path, OURS, "process", home / _LOCK)
+    owner.take()
     try:
         _put_in_place(complete, path)
         shutil.rmtree(partial, ignore_errors=True)
@@ -276,19 +273,9 @@ def staged(path: Path) -> Iterator[Path]:
         raise ResultError(f"{error.filename or path}: {error.strerror or error}") from None
     finally:
         shutil.rmtree(partial, ignore_errors=True)
-        with suppress(OSError):
-            (home / _LOCK).unlink(missing_ok=True)
+        owner.release()
+        with suppress(OSError):  # that of a killed process, or it holds what cannot be moved
             home.rmdir()
-        if lock is not None:
-            lock.close()
-
-
-def _lock_of_amendment(path: Path, home: Path) -> IO[str] | None:
-    """Lock of the files to be added to a run; ResultError if another process has it."""
-    while True:
-        home.mkdir(exist_ok=True)
-        with suppress(FileNotFoundError):  # its holder deleted the folder after it was made here
-            return locked(home / _LOCK, f"{path}: another process is writing into it")
 
 
 def _put_in_place(complete: Path, path: Path) -> None:

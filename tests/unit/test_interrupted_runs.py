@@ -306,7 +306,7 @@ def test_two_processes_do_not_write_into_a_run(tmp_path: Path) -> None:
     out = write_run(tmp_path / "run")
     with amended(out) as place:
         write_atomic(place / PAGE, "first")
-        with pytest.raises(ResultError, match="another process is writing into it"):
+        with pytest.raises(ResultError, match="another process is writing to it"):
             amend(out)
     assert (out / PAGE).read_text() == "first"
     assert signoff.changes(out) == []
