@@ -25,7 +25,7 @@ from camwright.pipeline.checks.check import Check, Verdict, verdict, within_dept
 from camwright.pipeline.checks.registry import FORECAST, checks_of
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.contact_store import NOT_STORED, ContactStore
-from camwright.pipeline.cycle.solution import is_body, solution
+from camwright.pipeline.cycle.solution import Solution, is_body, solution
 from camwright.pipeline.preview import preview_case, smoothing_record
 from camwright.pipeline.results.run_records import contour_columns, lift_columns
 from camwright.pipeline.results.trial import (
@@ -35,19 +35,15 @@ from camwright.pipeline.results.trial import (
     Trial,
     TrialPoint,
 )
-from camwright.pipeline.smoothing.constrained_synthesis import synthesise
 from camwright.pipeline.smoothing.fe_correction import (
     Comparison,
     Rank,
     SynthesisRecord,
-    compared,
-    corrected,
     design_record,
     rank,
     solved_ripple,
 )
 from camwright.pipeline.smoothing.infeasibility import infeasibility
-from camwright.pipeline.smoothing.multistart import Explored, explored
 from camwright.pipeline.smoothing.problem_setup import problem_of, roller_problems
 from camwright.pipeline.smoothing.required_lift import cam_lift
 from camwright.pipeline.smoothing.scenario import redrawn
@@ -55,7 +51,8 @@ from camwright.pipeline.smoothing.shadow_prices import limits_in_use, machine_pr
 from camwright.pipeline.smoothing.smoothers import Smoother
 from camwright.pipeline.smoothing.smoothing_feedback import Stop, next_smoother
 from camwright.pipeline.smoothing.smoothing_forecast import Attempt, Forecast
-from camwright.pipeline.smoothing.synthesis_problem import Design, Problem
+from camwright.pipeline.smoothing.synthesis_problem import Design
+from camwright.pipeline.smoothing.synthesis_rounds import rounds
 from camwright.pipeline.solver import solve
 from camwright.pipeline.torque.torque import Torque
 
@@ -250,6 +247,12 @@ class _Task:
             limits_in_use=uses,
         )
 
+    def previewed(self, design: Design) -> Solution:
+        """Preview of a design: guides of finite length, Hertz contact."""
+        drawn = redrawn(self.case, design.variables)
+        contour = drawn.contour(design.lift())
+        return solution(drawn, contour, Tier.PREVIEW, torques=self.torques)
+
 
 def _smoothed(task: _Task) -> Iteration:
     """Trials of ever wider smoothers."""
@@ -315,27 +318,17 @@ def forecasts(
 def _constrained(task: _Task) -> Iteration:
     """Synthesis and finite elements in turn, until they agree; the best trial is the final one."""
     case, torques = task.case, task.torques
-    problem, margin = problem_of(case, torques), case.smoothing.correction_margin
-    why = "least ripple within all limits"
-    first: Explored | None = None
-    comparisons: list[Comparison] = []
+    margin, why = case.smoothing.correction_margin, "least ripple within all limits"
     points: list[TrialPoint] = []
-    best: tuple[Rank, Trial] | None = None
-    # Without corrections the synthesis sees lower bounds: limits that conflict there conflict.
-    conflicts = False
-    while True:
-        number = len(points) + 1
-        task.progress.stage(f"trial {number}: synthesis")
-        if number > 1:  # starts from the optimum of the trial before
-            design = synthesise(problem)
-        else:
-            first = explored(problem, case.smoothing.starts)
-            design, problem = first.design, replace(problem, coefficients=first.splines)
-            conflicts = not design.feasible
-            if task.tier is Tier.CYCLE and not conflicts:
-                problem = _with_guides(task, problem, design)
-                design = synthesise(problem)
-        record = design_record(design, problem, first if number == 1 else None)
+    best: Rank | None = None
+    for each in rounds(
+        problem_of(case, torques),
+        starts=case.smoothing.starts,
+        guided=task.previewed if task.tier is Tier.CYCLE else None,
+        progress=task.progress,
+    ):
+        number, problem, design = each.number, each.problem, each.design
+        record = design_record(design, problem, each.first if number == 1 else None)
         record["machine_prices"] = machine_prices(design, problem, case, torques)
         trial = task.solved(
             number,
@@ -347,45 +340,35 @@ def _constrained(task: _Task) -> Iteration:
             uses=limits_in_use(design),
             gain=design.ripple_gain,
         )
-        judged = trial.checks if margin > 0.0 else ()
-        comparisons.append(compared(problem, design, trial.solution, judged))
+        comparison = each.compare(trial.solution, trial.checks if margin > 0.0 else ())
         unmeshed = task.tier is Tier.CYCLE and trial.mesh is None
-        ends = conflicts or unmeshed or comparisons[-1].settled
+        ends = each.conflicts or unmeshed or comparison.settled
         last = ends or number == case.solver.max_trials
         conflict = None
         if last and not design.feasible:
             task.progress.stage("conflicting limits")
-            after = corrected(problem, design, comparisons) if margin > 0.0 else problem
+            after = each.corrected() if margin > 0.0 else problem
             rollers = roller_problems(case, torques, after)
             conflict = infeasibility(problem, rollers, after, margin)
             record["infeasible"] = conflict.as_record()
         ranked = rank(trial.checks, solved_ripple(trial.cycles))
-        if best is None or ranked <= best[0]:
-            best = (ranked, trial)
+        if best is None or ranked <= best:
+            best, final = ranked, trial
         if last:
-            task.on_final(best[1])
+            task.on_final(final)
         task.sink.keep(trial)
         points.append(TrialPoint.of(trial))
         if last:
-            final = best[1]
-            parts = [_ending(final, number, comparisons[-1], settled=ends or comparisons[-1].agree)]
-            parts += [] if conflict is None else [conflict.sentence]
-            if first is not None and conflict is None:
-                parts += [first.starts.sentence, first.resolution.sentence]
-            return Iteration(final, "; ".join(parts), tuple(points))
+            break
         del trial  # its solution takes most of the memory
-        why = comparisons[-1].sentence
+        why = comparison.sentence
         task.progress.note(f"trial {number}: {why}")
-        problem = corrected(problem, design, comparisons)
-
-
-def _with_guides(task: _Task, problem: Problem, design: Design) -> Problem:
-    """The problem corrected by a preview of its design: guides of finite length, Hertz contact."""
-    task.progress.stage("trial 1: preview")
-    drawn = redrawn(task.case, design.variables)
-    contour = drawn.contour(design.lift())
-    solved = solution(drawn, contour, Tier.PREVIEW, torques=task.torques)
-    return corrected(problem, design, [compared(problem, design, solved)])
+    parts = [_ending(final, number, comparison, settled=ends or comparison.agree)]
+    if conflict is None:
+        parts += [each.first.starts.sentence, each.first.resolution.sentence]
+    else:
+        parts.append(conflict.sentence)
+    return Iteration(final, "; ".join(parts), tuple(points))
 
 
 def _ending(final: Trial, count: int, latest: Comparison, *, settled: bool) -> str:
