@@ -142,7 +142,6 @@ def recompute(
     seed: int = 0,
     jobs: int | None = None,
     progress: Progress = SILENT,
-    also: Callable[[Trial], Mapping[str, Any]] = lambda _: {},
     present: Callable[[Path, Collection[str]], object] | None = None,
 ) -> Recomputation:
     """Compute a finished run again from its case and the lift of its final trial, and compare it.
@@ -157,7 +156,6 @@ def recompute(
     angles : int      cam angles at which both bodies are solved in full
     seed : int        of their choice
     jobs : int        processes for the certificate; None: number of processors, at most 4
-    also : callable   final trial -> further entries of ``run.json``
     present : callable   draws files of a run folder by their names; None: a page is a difference
 
     Raises
@@ -170,7 +168,7 @@ def recompute(
     if not 0 <= seed <= LARGEST_SEED:
         raise InputError("--seed", seed, f">= 0 and <= {LARGEST_SEED}")
     with disk_cache.left_out():
-        return _recomputed(read_run(folder), angles, seed, jobs, progress, also, present)
+        return _recomputed(read_run(folder), angles, seed, jobs, progress, present)
 
 
 def _recomputed(
@@ -179,7 +177,6 @@ def _recomputed(
     seed: int,
     jobs: int | None,
     progress: Progress,
-    also: Callable[[Trial], Mapping[str, Any]],
     present: Callable[[Path, Collection[str]], object] | None,
 ) -> Recomputation:
     """See `recompute`."""
@@ -208,7 +205,7 @@ def _recomputed(
     differences += _check_differences(run.final, checks)
     progress.stage("files")
     files = _Files(run, trial)
-    files.compare(torques, also, present)
+    files.compare(torques, present)
     return Recomputation(
         cast("tuple[AnyCheck, ...]", checks),
         check_records.judgement(checks, trial.depth.word),
@@ -432,12 +429,11 @@ class _Files:
     def compare(
         self,
         torques: Mapping[str, Torque],
-        also: Callable[[Trial], Mapping[str, Any]],
         present: Callable[[Path, Collection[str]], object] | None,
     ) -> None:
         """Compare every file by its class, and the records by their entries."""
         with tempfile.TemporaryDirectory(prefix="camwright-") as home:
-            self._solved(Path(home) / "run", torques, also)
+            self._solved(Path(home) / "run", torques)
             self._drawn(Path(home) / "drawn", present)
         for name, each in self._classes.items():
             if each.origin is Origin.ELSEWHERE:
@@ -450,13 +446,12 @@ class _Files:
         self,
         folder: Path,
         torques: Mapping[str, Torque],
-        also: Callable[[Trial], Mapping[str, Any]],
     ) -> None:
         """Compare what follows from case and lift."""
         run, trial = self._run, self._trial
         case = read_case(run.path / "case.toml")
         with RunFolder(folder, case, depth=trial.depth) as again:
-            summary = _written(again, run, trial, torques) | dict(also(trial))
+            summary = _written(again, run, trial, torques)
             made = [name for name, _ in files_in(again.path)]
             classes = {name: classes_of(name, trial.number)[0] for name in made}
             solved = {n: each.kind for n, each in classes.items() if each.origin is Origin.SOLVED}

@@ -33,6 +33,7 @@ from camwright.pipeline.results.run_reader import Run, read_run
 from camwright.pipeline.results.run_records import crank_speed_record, headline, torque_columns
 from camwright.pipeline.results.trial import Trial, TrialPoint
 from camwright.pipeline.results.trial_writer import TrialWriter
+from camwright.pipeline.results.valve_train import valve_record
 from camwright.pipeline.results.workshop_files import WORKSHOP, write_workshop
 from camwright.pipeline.smoothing.required_lift import required_torque
 from camwright.pipeline.smoothing.smoothers import Smoother
@@ -57,7 +58,6 @@ def run_case(
     began: float | None = None,
     report: Callable[[Path], object] | None = None,
     ahead: Callable[[Path, Crew], object] | None = None,
-    also: Callable[[Trial], Mapping[str, Any]] = lambda _: {},
     judged: Callable[[Mapping[str, Torque], Trial], object] = lambda *_: None,
     solved: Trial | None = None,
 ) -> Run:
@@ -75,7 +75,6 @@ def run_case(
                          stages; None: now
     report : callable    writes page and pictures into the run folder; None: none are written
     ahead : callable     begins pictures in the worker processes before the certificate
-    also : callable      final trial -> further entries of ``run.json``
     judged : callable    receives engine torques and checked final trial; below CERTIFIED before
                          its files are written
     solved : Trial       the only trial, solved at `depth` below CERTIFIED; None: it is solved here
@@ -97,7 +96,7 @@ def run_case(
         crew(jobs) as workers,
     ):
         watch = Stopwatch(progress, began)
-        summary = _solved(folder, case, depth, workers, fields, watch, also, ahead, judged, solved)
+        summary = _solved(folder, case, depth, workers, fields, watch, ahead, judged, solved)
         if report is not None:
             watch.stage("report")  # the solution, which takes most of the memory, is released
             folder.write_summary(summary | watch.record())
@@ -113,7 +112,6 @@ def _solved(
     workers: Crew,
     fields: Shown,
     watch: Stopwatch,
-    also: Callable[[Trial], Mapping[str, Any]],
     ahead: Callable[[Path, Crew], object] | None,
     judged: Callable[[Mapping[str, Torque], Trial], object],
     solved: Trial | None,
@@ -155,7 +153,7 @@ def _solved(
         final, statement, points = solved_already(solved, writer, on_final)
     if final.corners:
         folder.write_corners(corners_record(final.case, final.corners))
-    summary = summary_of(folder, torques, final, points) | dict(also(final))
+    summary = summary_of(folder, torques, final, points)
 
     if depth >= Tier.CYCLE:
         watch.stage("fields")
@@ -236,6 +234,7 @@ def summary_of(
         **crank_speed,
         "ripple_map": _ripple_map_record(torques, final),
         "measurement": measurement_record(case),
+        **valve_record(final),
     }
 
 

@@ -415,7 +415,6 @@ def _recomputed(target: Path, angles: int | None, seed: int | None) -> bool:
     import secrets
 
     from camwright.pipeline.recomputation import ANGLES, recompute
-    from camwright.pipeline.studies.valve_train import valve_record
     from camwright.reports.sections import redraw
 
     if not target.is_dir():
@@ -429,7 +428,6 @@ def _recomputed(target: Path, angles: int | None, seed: int | None) -> bool:
                 angles=ANGLES if angles is None else angles,
                 seed=drawn,
                 progress=progress,
-                also=valve_record,
                 present=redraw,
             )
         except ResultError as error:

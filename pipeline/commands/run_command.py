@@ -86,7 +86,6 @@ def run(
     if not (resume and _finished(out, design.sha256, depth)):
         from camwright.pipeline.results.field_output import Shown
         from camwright.pipeline.run import run_case
-        from camwright.pipeline.studies.valve_train import valve_record
         from camwright.reports import sections
 
         drawings = sections.Ahead(sections.chosen(png=png))
@@ -104,7 +103,6 @@ def run(
                 began=process_began(),
                 report=None if no_report else drawings.write,
                 ahead=None if no_report else drawings.begin,
-                also=valve_record,
             )
     from camwright.pipeline.results.run_reader import read_run, read_summary, read_verdict
     from camwright.pipeline.results.verdict_summary import Places, trial_lines

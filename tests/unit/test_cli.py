@@ -65,7 +65,6 @@ def short_run(
     depth: Tier,
     report: Callable[[Path], object] | None,
     ahead: object,
-    also: Callable[[Any], object],
 ) -> None:
     progress.stage("cycle")
     progress.advance(1, 2)
