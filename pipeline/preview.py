@@ -72,7 +72,7 @@ def preview_case(
         known = engine_torques(case) if torques is None else torques
         trial = _nominal(case, known, kept, progress)
         nominal(trial)
-        return judged_at_corners(trial, known) if corners else trial
+        return judged_at_corners(trial) if corners else trial
 
 
 def _nominal(case: Case, torques: Mapping[str, Torque], kept: bool, progress: Progress) -> Trial:

@@ -205,7 +205,7 @@ def _recomputed(
     differences += _check_differences(run.final, checks)
     progress.stage("files")
     files = _Files(run, trial)
-    files.compare(torques, present)
+    files.compare(present)
     return Recomputation(
         cast("tuple[AnyCheck, ...]", checks),
         check_records.judgement(checks, trial.depth.word),
@@ -428,12 +428,11 @@ class _Files:
 
     def compare(
         self,
-        torques: Mapping[str, Torque],
         present: Callable[[Path, Collection[str]], object] | None,
     ) -> None:
         """Compare every file by its class, and the records by their entries."""
         with tempfile.TemporaryDirectory(prefix="camwright-") as home:
-            self._solved(Path(home) / "run", torques)
+            self._solved(Path(home) / "run")
             self._drawn(Path(home) / "drawn", present)
         for name, each in self._classes.items():
             if each.origin is Origin.ELSEWHERE:
@@ -442,16 +441,12 @@ class _Files:
                 own = name.startswith(f"{self._final}/")
                 self.unseen.append(name if own else f"{name.partition('/')[0]}/")
 
-    def _solved(
-        self,
-        folder: Path,
-        torques: Mapping[str, Torque],
-    ) -> None:
+    def _solved(self, folder: Path) -> None:
         """Compare what follows from case and lift."""
         run, trial = self._run, self._trial
         case = read_case(run.path / "case.toml")
         with RunFolder(folder, case, depth=trial.depth) as again:
-            summary = _written(again, run, trial, torques)
+            summary = _written(again, run, trial)
             made = [name for name, _ in files_in(again.path)]
             classes = {name: classes_of(name, trial.number)[0] for name in made}
             solved = {n: each.kind for n, each in classes.items() if each.origin is Origin.SOLVED}
@@ -532,16 +527,14 @@ def _few(file: str, lines: Sequence[str]) -> Iterator[str]:
         yield f"{file}: {len(lines) - _LISTED} more entries differ"
 
 
-def _written(
-    again: RunFolder, run: Run, trial: Trial, torques: Mapping[str, Torque]
-) -> dict[str, Any]:
+def _written(again: RunFolder, run: Run, trial: Trial) -> dict[str, Any]:
     """Write the files that follow from a trial as a run does; the contents of ``run.json``."""
-    if torques:
-        again.write_torque(torque_columns(torques[trial.case.load_cases[0].name]))
+    if (torque := trial.solution.machine.torque) is not None:
+        again.write_torque(torque_columns(torque))
     TrialWriter(again).keep(trial)
     if trial.corners:
         again.write_corners(corners_record(trial.case, trial.corners))
-    summary = summary_of(again, torques, trial, (TrialPoint.of(trial),))
+    summary = summary_of(again, trial, (TrialPoint.of(trial),))
     if trial.mesh is not None:
         shop = again.path / WORKSHOP
         write_workshop(shop, trial.case, trial.contour)

@@ -38,7 +38,6 @@ from camwright.pipeline.results.workshop_files import WORKSHOP, write_workshop
 from camwright.pipeline.smoothing.required_lift import required_torque
 from camwright.pipeline.smoothing.smoothers import Smoother
 from camwright.pipeline.solver import certify_trial
-from camwright.pipeline.torque.torque import Torque
 
 START = "start"
 """Stage before the first: start of the program, imports, case file."""
@@ -58,7 +57,7 @@ def run_case(
     began: float | None = None,
     report: Callable[[Path], object] | None = None,
     ahead: Callable[[Path, Crew], object] | None = None,
-    judged: Callable[[Mapping[str, Torque], Trial], object] = lambda *_: None,
+    judged: Callable[[Trial], object] = lambda _: None,
     solved: Trial | None = None,
 ) -> Run:
     """Trials of a case until a cam passes or the limit that binds is named; writes the run folder.
@@ -75,8 +74,8 @@ def run_case(
                          stages; None: now
     report : callable    writes page and pictures into the run folder; None: none are written
     ahead : callable     begins pictures in the worker processes before the certificate
-    judged : callable    receives engine torques and checked final trial; below CERTIFIED before
-                         its files are written
+    judged : callable    receives the checked final trial; below CERTIFIED before its files are
+                         written
     solved : Trial       the only trial, solved at `depth` below CERTIFIED; None: it is solved here
 
     Returns
@@ -113,7 +112,7 @@ def _solved(
     fields: Shown,
     watch: Stopwatch,
     ahead: Callable[[Path, Crew], object] | None,
-    judged: Callable[[Mapping[str, Torque], Trial], object],
+    judged: Callable[[Trial], object],
     solved: Trial | None,
 ) -> dict[str, Any]:
     """Solve a case and write all files but report and records; the contents of ``run.json``."""
@@ -137,7 +136,7 @@ def _solved(
         if depth is Tier.CERTIFIED:
             sought.extend(_remedies_begun(trial, workers, folder.path))
         else:
-            judged(torques, trial)
+            judged(trial)
 
     if solved is None:
         final, statement, points = trials_of(
@@ -153,7 +152,7 @@ def _solved(
         final, statement, points = solved_already(solved, writer, on_final)
     if final.corners:
         folder.write_corners(corners_record(final.case, final.corners))
-    summary = summary_of(folder, torques, final, points)
+    summary = summary_of(folder, final, points)
 
     if depth >= Tier.CYCLE:
         watch.stage("fields")
@@ -169,7 +168,7 @@ def _solved(
         ahead(folder.path, workers)
     failing = _failing(final)
     certified = certify_trial(final, workers, store=writer.store(final.number), progress=watch)
-    judged(torques, certified)
+    judged(certified)
     if sought:
         watch.stage("remedies")
         texts = {name: text for part in sought for name, text in part.result().items()}
@@ -206,17 +205,16 @@ def _failing(trial: Trial) -> list[str]:
 
 def summary_of(
     folder: RunFolder,
-    torques: Mapping[str, Torque],
     final: Trial,
     points: Sequence[TrialPoint],
 ) -> dict[str, Any]:
     """Contents of ``run.json`` that no certificate changes; writes ``1_speed.csv``."""
-    case, required = final.case, None
-    if final.smoothing.strength is not None:
+    case, torque, required = final.case, final.solution.machine.torque, None
+    if torque is not None and final.smoothing.strength is not None:
         smoother = Smoother.from_case(case.smoothing, case.period)
         smoother = smoother.stretched(final.smoothing.strength)
-        required = required_torque(case, torques[case.load_cases[0].name], smoother)
-    crank_speed, columns = crank_speed_record(torques, final, required)
+        required = required_torque(case, torque, smoother)
+    crank_speed, columns = crank_speed_record(final, required)
     if columns is not None:
         folder.write_speed(columns)
     return {
@@ -224,7 +222,7 @@ def summary_of(
         "final_trial": final.number,
         "trial_points": [point.as_record() for point in points],
         "scope": case.scope.as_record(),
-        "headline": headline(torques, final),
+        "headline": headline(final),
         "load_ends": final.load_ends,
         "prices": None if final.synthesis is None else final.synthesis["prices"],
         "machine_prices": None
@@ -232,16 +230,17 @@ def summary_of(
         else final.synthesis.get("machine_prices"),
         "mesh_quality": None if final.mesh is None else asdict(final.mesh.quality),
         **crank_speed,
-        "ripple_map": _ripple_map_record(torques, final),
+        "ripple_map": _ripple_map_record(final),
         "measurement": measurement_record(case),
         **valve_record(final),
     }
 
 
-def _ripple_map_record(torques: Mapping[str, Torque], final: Trial) -> Mapping[str, Any] | None:
+def _ripple_map_record(final: Trial) -> Mapping[str, Any] | None:
     """Ripple map of the final cam; the reason where a working cycle cannot be solved."""
     try:
-        mapped = ripple_map(final.case, torques, final.contour.pitch, final.cycles[0].loads.rubbing)
+        rubbing = final.cycles[0].loads.rubbing
+        mapped = ripple_map(final.case, final.solution.machines, final.contour.pitch, rubbing)
     except CamError as error:
         return {"refused": str(error)}
     return None if mapped is None else mapped.as_record()

@@ -30,7 +30,7 @@ def text(name):
 def record(given):
     case = parse_case(given)
     contour = case.contour(given_lift(case))
-    turns = turns_of(machines(case), contour, case, {}, POSITIONS)
+    turns = turns_of(machines(case), contour, POSITIONS)
     return case, machine_motion(valve_cam(case), turns)
 
 

@@ -41,7 +41,6 @@ from camwright.pipeline.studies.batch.design_rows import (
     out_of_memory,
 )
 from camwright.pipeline.studies.batch.design_task import Settings, Task, Wanted
-from camwright.pipeline.torque.torque import Torque
 
 UNEXPECTED = "unexpected {kind}: {text}"
 
@@ -140,7 +139,7 @@ class DesignSolver:
             return {name: _cell(values[0]) for name, values in columns.items()}
         case, lift = self.design(task, row)
         trial = trial_at(case, task.tier, lift, corners=self.settings.corners)
-        return row_of(trial, headline(engine_torques(case), trial))
+        return row_of(trial, headline(trial))
 
     def design(self, task: Task, row: int) -> tuple[Case, Lift | None]:
         """Case of one design, and its lift where the study has one cam for all.
@@ -193,8 +192,8 @@ class DesignSolver:
 
         cells: Row = {}
 
-        def judged(torques: Mapping[str, Torque], trial: Trial) -> None:
-            cells.update(row_of(trial, headline(torques, trial)))
+        def judged(trial: Trial) -> None:
+            cells.update(row_of(trial, headline(trial)))
             send(cells)
             if not wanted.takes(screen(trial.checks), cells):
                 raise _NotKeptError
@@ -236,7 +235,7 @@ class DesignSolver:
         self,
         task: Task,
         row: int,
-        judged: Callable[[Mapping[str, Torque], Trial], object] = lambda *_: None,
+        judged: Callable[[Trial], object] = lambda _: None,
     ) -> Files:
         """Files of the run of one design without its page; judged: as of `run_case`."""
         from camwright.pipeline.results import signoff
