@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -119,25 +119,11 @@ class Iteration(NamedTuple):
     points: tuple[TrialPoint, ...]
 
 
-class TrialSink(Protocol):
-    """Receives each trial when it is solved."""
+class Tried(NamedTuple):
+    """A solved trial, and the iteration that ends with it; None: another trial follows."""
 
-    def store(self, number: int) -> ContactStore:
-        """Store of the contact solutions of a trial."""
-        ...
-
-    def keep(self, trial: Trial) -> None:
-        """Keep a solved and checked trial."""
-        ...
-
-
-class NotKept:
-    """Sink that discards the trials."""
-
-    def store(self, number: int) -> ContactStore:  # noqa: ARG002
-        return NOT_STORED
-
-    def keep(self, trial: Trial) -> None: ...
+    trial: Trial
+    iteration: Iteration | None
 
 
 def synthesize(case: Case, *, progress: Progress = SILENT) -> Synthesis:
@@ -158,49 +144,55 @@ def synthesize(case: Case, *, progress: Progress = SILENT) -> Synthesis:
     return Synthesis(case, case.contour(lift))
 
 
-def trials_of(
+def trials(
     case: Case,
     torques: Mapping[str, Torque],
     *,
     tier: Tier = Tier.CYCLE,
-    sink: TrialSink | None = None,
+    stores: Callable[[int], ContactStore] = lambda _: NOT_STORED,
     progress: Progress = SILENT,
     workers: Crew = ALONE,
-    on_final: Callable[[Trial], object] = lambda _: None,
-) -> Iteration:
+) -> Iterator[Tried]:
     """Trials until one passes the checks of its tier or no better one is forecast.
+
+    Only one solution is in memory at a time, and the best of a constrained synthesis, if the caller
+    holds no trial while the next is solved.
 
     Parameters
     ----------
     torques : mapping    engine torque by load case
     tier : Tier          depth of the trials, at most CYCLE: the last one alone is certified
-    sink : TrialSink     receives each trial when it is solved
+    stores : callable    number of a trial -> store of its contact solutions
     workers : Crew       processes for tolerance corners and forecasts
-    on_final : callable  called with the final trial, before its files are written
 
     Raises
     ------
     CamError
         If a trial cannot be solved.
     """
-    depth = min(tier, Tier.CYCLE)
-    task = _Task(case, torques, depth, sink or NotKept(), progress, workers, on_final)
+    task = _Task(case, torques, min(tier, Tier.CYCLE), stores, progress, workers)
     if case.smoothing.kind == "constrained":
         return _constrained(task)
-    if not case.balances:
-        trial = task.solved(1, case, given_lift(case), lift_origin(case), GIVEN_LIFT)
-        reason = f"prescribed lift: {_result(trial)}, not smoothed"
-        task.on_final(trial)
-        task.sink.keep(trial)
-        return Iteration(trial, reason, (TrialPoint.of(trial),))
-    return _smoothed(task)
+    return _smoothed(task) if case.balances else _prescribed(task)
 
 
-def solved_already(trial: Trial, sink: TrialSink, on_final: Callable[[Trial], object]) -> Iteration:
-    """Iteration of one trial that is solved; sink, on_final: as of `trials_of`."""
-    on_final(trial)
-    sink.keep(trial)
-    return Iteration(trial, f"one trial, {_result(trial)}", (TrialPoint.of(trial),))
+def trials_of(case: Case, torques: Mapping[str, Torque], *, tier: Tier = Tier.CYCLE) -> Iteration:
+    """Iteration of a case, its trials not kept; see `trials`."""
+    made = trials(case, torques, tier=tier)
+    while True:
+        trial, iteration = next(made)
+        if iteration is not None:
+            return iteration
+        del trial  # its solution takes most of the memory
+
+
+def solved_already(trial: Trial) -> Iteration:
+    """Iteration of one trial that is solved."""
+    return _alone(trial, f"one trial, {_result(trial)}")
+
+
+def _alone(trial: Trial, statement: str) -> Iteration:
+    return Iteration(trial, statement, (TrialPoint.of(trial),))
 
 
 @dataclass(frozen=True, eq=False)
@@ -210,10 +202,9 @@ class _Task:
     case: Case
     torques: Mapping[str, Torque]
     tier: Tier
-    sink: TrialSink
+    stores: Callable[[int], ContactStore]
     progress: Progress
     workers: Crew
-    on_final: Callable[[Trial], object]
 
     def solved(
         self,
@@ -234,7 +225,7 @@ class _Task:
             tier=self.tier,
             torques=self.torques,
             synthesis_gain=gain,
-            store=self.sink.store(number),
+            store=self.stores(number),
             workers=self.workers,
             progress=_Prefixed(self.progress, f"trial {number}: "),
         )
@@ -254,7 +245,14 @@ class _Task:
         return solution(drawn, contour, Tier.PREVIEW, torques=self.torques)
 
 
-def _smoothed(task: _Task) -> Iteration:
+def _prescribed(task: _Task) -> Iterator[Tried]:
+    """The trial of a lift in the case file."""
+    case = task.case
+    trial = task.solved(1, case, given_lift(case), lift_origin(case), GIVEN_LIFT)
+    yield Tried(trial, _alone(trial, f"prescribed lift: {_result(trial)}, not smoothed"))
+
+
+def _smoothed(task: _Task) -> Iterator[Tried]:
     """Trials of ever wider smoothers."""
     case, torques = task.case, task.torques
     forecast = _forecast_of(task)
@@ -269,10 +267,9 @@ def _smoothed(task: _Task) -> Iteration:
         attempts.append(Attempt(smoother, within_depth(trial.checks)))
         after = next_smoother(attempts, case.solver.max_trials, forecast)
         if isinstance(after, Stop):
-            task.on_final(trial)
-        task.sink.keep(trial)
-        if isinstance(after, Stop):
-            return Iteration(trial, after.reason, tuple(points))
+            yield Tried(trial, Iteration(trial, after.reason, tuple(points)))
+            return
+        yield Tried(trial, None)
         del trial  # its solution takes most of the memory
         task.progress.note(f"trial {len(attempts)} fails: {after.why}")
         smoother, why = after.smoother, after.why
@@ -315,7 +312,7 @@ def forecasts(
     return made
 
 
-def _constrained(task: _Task) -> Iteration:
+def _constrained(task: _Task) -> Iterator[Tried]:
     """Synthesis and finite elements in turn, until they agree; the best trial is the final one."""
     case, torques = task.case, task.torques
     margin, why = case.smoothing.correction_margin, "least ripple within all limits"
@@ -354,21 +351,19 @@ def _constrained(task: _Task) -> Iteration:
         ranked = rank(trial.checks, solved_ripple(trial.cycles))
         if best is None or ranked <= best:
             best, final = ranked, trial
-        if last:
-            task.on_final(final)
-        task.sink.keep(trial)
         points.append(TrialPoint.of(trial))
         if last:
-            break
+            parts = [_ending(final, number, comparison, settled=ends or comparison.agree)]
+            if conflict is None:
+                parts += [each.first.starts.sentence, each.first.resolution.sentence]
+            else:
+                parts.append(conflict.sentence)
+            yield Tried(trial, Iteration(final, "; ".join(parts), tuple(points)))
+            return
+        yield Tried(trial, None)
         del trial  # its solution takes most of the memory
         why = comparison.sentence
         task.progress.note(f"trial {number}: {why}")
-    parts = [_ending(final, number, comparison, settled=ends or comparison.agree)]
-    if conflict is None:
-        parts += [each.first.starts.sentence, each.first.resolution.sentence]
-    else:
-        parts.append(conflict.sentence)
-    return Iteration(final, "; ".join(parts), tuple(points))
 
 
 def _ending(final: Trial, count: int, latest: Comparison, *, settled: bool) -> str:

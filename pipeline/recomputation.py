@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import shutil
 import tempfile
-from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, cast
@@ -50,6 +50,7 @@ from camwright.pipeline.results.field_output import (
 from camwright.pipeline.results.file_differences import (
     SAME,
     FileClass,
+    Kind,
     Origin,
     classes_of,
     file_differences,
@@ -60,7 +61,7 @@ from camwright.pipeline.results.run_folder import RunFolder, versions
 from camwright.pipeline.results.run_reader import Run, TrialRecord, read_run, results_sha256
 from camwright.pipeline.results.run_records import torque_columns, trial_record
 from camwright.pipeline.results.trial import CONSTRAINED, SmoothingRecord, Trial, TrialPoint
-from camwright.pipeline.results.trial_writer import TrialWriter
+from camwright.pipeline.results.trial_writer import write_trial_files
 from camwright.pipeline.results.workshop_files import WORKSHOP, stamp_solid, write_workshop
 from camwright.pipeline.run import judged_of, summary_of
 from camwright.pipeline.smoothing.required_lift import cam_lift
@@ -82,7 +83,6 @@ _LAST = (signoff.NAME, signoff.SIGNATURES)
 _HASHES = "mesh.sha256"
 _NEGLIGIBLE = 1e-3
 _ELSEWHERE = "rests on more than the run holds and cannot be made again; make it anew"
-PAGE = "8_report.html"
 _LISTED = 5
 """Differences of a record that are listed."""
 _OF_A_CHECK = ("demand", "corner_demand", "error", "utilisation", "margin", "stated")
@@ -124,6 +124,8 @@ class Recomputation:
     angles : tuple        drawn angles; empty below the certified depth
     unseen : tuple        files, folders and entries of records that do not follow from case and
                           lift, and were not compared; none of them is cut or run
+    pages : mapping       pages, sheets and pictures by name, with the kind of their file; they are
+                          not compared, see `page_differences`
     versions : tuple      of the run, where they are not those of this installation, in words
     """
 
@@ -132,6 +134,7 @@ class Recomputation:
     differences: tuple[str, ...]
     angles: tuple[Angle, ...]
     unseen: tuple[str, ...]
+    pages: Mapping[str, Kind]
     versions: tuple[str, ...]
 
 
@@ -142,7 +145,6 @@ def recompute(
     seed: int = 0,
     jobs: int | None = None,
     progress: Progress = SILENT,
-    present: Callable[[Path, Collection[str]], object] | None = None,
 ) -> Recomputation:
     """Compute a finished run again from its case and the lift of its final trial, and compare it.
 
@@ -156,7 +158,6 @@ def recompute(
     angles : int      cam angles at which both bodies are solved in full
     seed : int        of their choice
     jobs : int        processes for the certificate; None: number of processors, at most 4
-    present : callable   draws files of a run folder by their names; None: a page is a difference
 
     Raises
     ------
@@ -168,7 +169,27 @@ def recompute(
     if not 0 <= seed <= LARGEST_SEED:
         raise InputError("--seed", seed, f">= 0 and <= {LARGEST_SEED}")
     with disk_cache.left_out():
-        return _recomputed(read_run(folder), angles, seed, jobs, progress, present)
+        return _recomputed(read_run(folder), angles, seed, jobs, progress)
+
+
+def copy_without(folder: Path, copy: Path, pages: Iterable[str]) -> None:
+    """Copy a run without these pages and without its record, so that they can be drawn again."""
+    shutil.copytree(folder, copy, symlinks=True)  # a link made since is not followed
+    for name in (*pages, *_LAST):
+        (copy / name).unlink(missing_ok=True)
+
+
+def page_differences(folder: Path, drawn: Path, pages: Mapping[str, Kind]) -> dict[str, str]:
+    """Differences of the pages of a run from those drawn again, in words by the name of the file.
+
+    Parameters
+    ----------
+    drawn : Path      copy of the run in which they are drawn again, see `copy_without`
+    pages : mapping   of `Recomputation`
+    """
+    made = {name: kind for name, kind in pages.items() if (drawn / name).is_file()}
+    differing = dict(file_differences(folder, drawn, made.items()))
+    return differing | {n: "is none of the run's pages" for n in pages if n not in made}
 
 
 def _recomputed(
@@ -177,7 +198,6 @@ def _recomputed(
     seed: int,
     jobs: int | None,
     progress: Progress,
-    present: Callable[[Path, Collection[str]], object] | None,
 ) -> Recomputation:
     """See `recompute`."""
     case, contour = drawn_cam(run.path)
@@ -205,13 +225,14 @@ def _recomputed(
     differences += _check_differences(run.final, checks)
     progress.stage("files")
     files = _Files(run, trial)
-    files.compare(present)
+    files.compare()
     return Recomputation(
         cast("tuple[AnyCheck, ...]", checks),
         check_records.judgement(checks, trial.depth.word),
         (*differences, *files.differences),
         drawn,
         tuple(dict.fromkeys(files.unseen)),
+        files.pages,
         _other_versions(run),
     )
 
@@ -426,14 +447,15 @@ class _Files:
             else:
                 self.unseen.append(name)
 
-    def compare(
-        self,
-        present: Callable[[Path, Collection[str]], object] | None,
-    ) -> None:
-        """Compare every file by its class, and the records by their entries."""
+    @property
+    def pages(self) -> dict[str, Kind]:
+        """Pages, sheets and pictures, by the kind of their file."""
+        return {n: each.kind for n, each in self._classes.items() if each.origin is Origin.DRAWN}
+
+    def compare(self) -> None:
+        """Compare every file but the pages by its class, and the records by their entries."""
         with tempfile.TemporaryDirectory(prefix="camwright-") as home:
             self._solved(Path(home) / "run")
-            self._drawn(Path(home) / "drawn", present)
         for name, each in self._classes.items():
             if each.origin is Origin.ELSEWHERE:
                 self.differences.append(f"{name}: {_ELSEWHERE}")
@@ -450,7 +472,8 @@ class _Files:
             made = [name for name, _ in files_in(again.path)]
             classes = {name: classes_of(name, trial.number)[0] for name in made}
             solved = {n: each.kind for n, each in classes.items() if each.origin is Origin.SOLVED}
-            self._add(file_differences(run.path, again.path, solved.items()))
+            differing = file_differences(run.path, again.path, solved.items())
+            self.differences += (f"{name}: {words}" for name, words in differing)
             again.discard()
         self.differences += (
             f"{name}: is none of the case"
@@ -460,12 +483,6 @@ class _Files:
         self._trial_record()
         self._summary(summary, case)
         self.differences += _recorded_limits(run)
-
-    def _add(self, of_files: Iterator[tuple[str, str]]) -> list[str]:
-        """Add differences of files; their names."""
-        pairs = list(of_files)
-        self.differences += (f"{name}: {words}" for name, words in pairs)
-        return [name for name, _ in pairs]
 
     def _trial_record(self) -> None:
         """Compare ``trial.json``; the hashes of a mesh are those of its last bits."""
@@ -500,25 +517,6 @@ class _Files:
         words = record_differences(cast("Json", stored), cast("Json", expected))
         self.differences += _few("run.json", list(words))
 
-    def _drawn(self, copy: Path, present: Callable[[Path, Collection[str]], object] | None) -> None:
-        """Compare pages, sheets and pictures, drawn again from the tables of the run."""
-        names = {n: each.kind for n, each in self._classes.items() if each.origin is Origin.DRAWN}
-        if present is None or not names:
-            self.unseen += names
-            return
-        shutil.copytree(self._run.path, copy, symlinks=True)  # a link made since is not followed
-        for name in (*names, *_LAST):
-            (copy / name).unlink(missing_ok=True)
-        present(copy, names)
-        made = {name: kind for name, kind in names.items() if (copy / name).is_file()}
-        differing = dict(file_differences(self._run.path, copy, made.items()))
-        if PAGE in differing:  # it names the pictures that are in the folder when it is drawn
-            present(copy, (PAGE,))
-            differing.pop(PAGE)
-            differing |= file_differences(self._run.path, copy, [(PAGE, names[PAGE])])
-        self._add(iter(differing.items()))
-        self.differences += (f"{n}: is none of the run's pages" for n in names if n not in made)
-
 
 def _few(file: str, lines: Sequence[str]) -> Iterator[str]:
     """Lines of the first differences of a record, and the number of the others."""
@@ -531,7 +529,7 @@ def _written(again: RunFolder, run: Run, trial: Trial) -> dict[str, Any]:
     """Write the files that follow from a trial as a run does; the contents of ``run.json``."""
     if (torque := trial.solution.machine.torque) is not None:
         again.write_torque(torque_columns(torque))
-    TrialWriter(again).keep(trial)
+    write_trial_files(again, trial)
     if trial.corners:
         again.write_corners(corners_record(trial.case, trial.corners))
     summary = summary_of(again, trial, (TrialPoint.of(trial),))
