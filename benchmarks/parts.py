@@ -87,12 +87,13 @@ def mixed_work() -> float:
 def main() -> int:
     positions = int(sys.argv[1]) if len(sys.argv) > 1 else POSITIONS
     case = read_case(ROOT / "cases" / "gx120.toml")
-    machine, torques = machines(case)[0], engine_torques(case)
+    torques = engine_torques(case)
+    machine = machines(case, torques)[0]
     contour = case.contour(cam_lift(case, torques))
     pair, unit = contact_pair(machine, contour), dense_solution()
 
     def turned() -> Turn:
-        return turn(machine, contour, torques[machine.load_case], positions)
+        return turn(machine, contour, positions)
 
     def cycled() -> object:
         one, bodies = turned(), CycleBodies.meshed(pair)

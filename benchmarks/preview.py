@@ -18,6 +18,7 @@ from parts import ROUNDS, mixed_work, seconds
 
 from camwright.pipeline.case.case_file import read_case
 from camwright.pipeline.case.load_case_torque import engine_torques
+from camwright.pipeline.case.machine import machines
 from camwright.pipeline.checks.tolerance_corners import outcomes
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.smoothing.required_lift import cam_lift
@@ -65,7 +66,7 @@ def main() -> int:
         "--help": process_seconds("--help"),
         "check": process_seconds("check", str(CASE)),
         "preview per load case": seconds(preview) / preview(),
-        "corners": seconds(lambda: outcomes(case, torques, contour)),
+        "corners": seconds(lambda: outcomes(case, machines(case, torques), contour)),
     }
     print(f"mixed work {1e3 * unit:.1f} ms")
     for name, value in spent.items():

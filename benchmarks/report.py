@@ -25,7 +25,6 @@ from camwright.pipeline.base.progress import Silent
 from camwright.pipeline.case.case_file import read_case
 from camwright.pipeline.run import run_case
 from camwright.reports.page import PAGE
-from camwright.reports.sections import report
 
 ROOT = Path(__file__).resolve().parent.parent
 SECONDS, MEBIBYTES, MEGABYTES, OPEN_SECONDS = 40.0, 3072.0, 8.0, 2.0
@@ -50,7 +49,7 @@ def main() -> None:
             shutil.copytree(run, copy)
         else:
             case = read_case(ROOT / "cases" / "gx120.toml")
-            run_case(case, copy, positions=72, progress=Silent(), report=report)
+            run_case(case, copy, positions=72, progress=Silent())
         start = time.perf_counter()
         subprocess.run([sys.executable, "-m", "camwright", "report", str(copy)], check=True)
         told("report, by the clock", time.perf_counter() - start, "s", SECONDS)

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -25,7 +25,7 @@ from camwright.pipeline.checks.check import Check, Verdict, verdict, within_dept
 from camwright.pipeline.checks.registry import FORECAST, checks_of
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.contact_store import NOT_STORED, ContactStore
-from camwright.pipeline.cycle.solution import is_body, solution
+from camwright.pipeline.cycle.solution import Solution, is_body, solution
 from camwright.pipeline.preview import preview_case, smoothing_record
 from camwright.pipeline.results.run_records import contour_columns, lift_columns
 from camwright.pipeline.results.trial import (
@@ -35,19 +35,15 @@ from camwright.pipeline.results.trial import (
     Trial,
     TrialPoint,
 )
-from camwright.pipeline.smoothing.constrained_synthesis import synthesise
 from camwright.pipeline.smoothing.fe_correction import (
     Comparison,
     Rank,
     SynthesisRecord,
-    compared,
-    corrected,
     design_record,
     rank,
     solved_ripple,
 )
 from camwright.pipeline.smoothing.infeasibility import infeasibility
-from camwright.pipeline.smoothing.multistart import Explored, explored
 from camwright.pipeline.smoothing.problem_setup import problem_of, roller_problems
 from camwright.pipeline.smoothing.required_lift import cam_lift
 from camwright.pipeline.smoothing.scenario import redrawn
@@ -55,7 +51,8 @@ from camwright.pipeline.smoothing.shadow_prices import limits_in_use, machine_pr
 from camwright.pipeline.smoothing.smoothers import Smoother
 from camwright.pipeline.smoothing.smoothing_feedback import Stop, next_smoother
 from camwright.pipeline.smoothing.smoothing_forecast import Attempt, Forecast
-from camwright.pipeline.smoothing.synthesis_problem import Design, Problem
+from camwright.pipeline.smoothing.synthesis_problem import Design
+from camwright.pipeline.smoothing.synthesis_rounds import rounds
 from camwright.pipeline.solver import solve
 from camwright.pipeline.torque.torque import Torque
 
@@ -122,25 +119,11 @@ class Iteration(NamedTuple):
     points: tuple[TrialPoint, ...]
 
 
-class TrialSink(Protocol):
-    """Receives each trial when it is solved."""
+class Tried(NamedTuple):
+    """A solved trial, and the iteration that ends with it; None: another trial follows."""
 
-    def store(self, number: int) -> ContactStore:
-        """Store of the contact solutions of a trial."""
-        ...
-
-    def keep(self, trial: Trial) -> None:
-        """Keep a solved and checked trial."""
-        ...
-
-
-class NotKept:
-    """Sink that discards the trials."""
-
-    def store(self, number: int) -> ContactStore:  # noqa: ARG002
-        return NOT_STORED
-
-    def keep(self, trial: Trial) -> None: ...
+    trial: Trial
+    iteration: Iteration | None
 
 
 def synthesize(case: Case, *, progress: Progress = SILENT) -> Synthesis:
@@ -161,49 +144,55 @@ def synthesize(case: Case, *, progress: Progress = SILENT) -> Synthesis:
     return Synthesis(case, case.contour(lift))
 
 
-def trials_of(
+def trials(
     case: Case,
     torques: Mapping[str, Torque],
     *,
     tier: Tier = Tier.CYCLE,
-    sink: TrialSink | None = None,
+    stores: Callable[[int], ContactStore] = lambda _: NOT_STORED,
     progress: Progress = SILENT,
     workers: Crew = ALONE,
-    on_final: Callable[[Trial], object] = lambda _: None,
-) -> Iteration:
+) -> Iterator[Tried]:
     """Trials until one passes the checks of its tier or no better one is forecast.
+
+    Only one solution is in memory at a time, and the best of a constrained synthesis, if the caller
+    holds no trial while the next is solved.
 
     Parameters
     ----------
     torques : mapping    engine torque by load case
     tier : Tier          depth of the trials, at most CYCLE: the last one alone is certified
-    sink : TrialSink     receives each trial when it is solved
+    stores : callable    number of a trial -> store of its contact solutions
     workers : Crew       processes for tolerance corners and forecasts
-    on_final : callable  called with the final trial, before its files are written
 
     Raises
     ------
     CamError
         If a trial cannot be solved.
     """
-    depth = min(tier, Tier.CYCLE)
-    task = _Task(case, torques, depth, sink or NotKept(), progress, workers, on_final)
+    task = _Task(case, torques, min(tier, Tier.CYCLE), stores, progress, workers)
     if case.smoothing.kind == "constrained":
         return _constrained(task)
-    if not case.balances:
-        trial = task.solved(1, case, given_lift(case), lift_origin(case), GIVEN_LIFT)
-        reason = f"prescribed lift: {_result(trial)}, not smoothed"
-        task.on_final(trial)
-        task.sink.keep(trial)
-        return Iteration(trial, reason, (TrialPoint.of(trial),))
-    return _smoothed(task)
+    return _smoothed(task) if case.balances else _prescribed(task)
 
 
-def solved_already(trial: Trial, sink: TrialSink, on_final: Callable[[Trial], object]) -> Iteration:
-    """Iteration of one trial that is solved; sink, on_final: as of `trials_of`."""
-    on_final(trial)
-    sink.keep(trial)
-    return Iteration(trial, f"one trial, {_result(trial)}", (TrialPoint.of(trial),))
+def trials_of(case: Case, torques: Mapping[str, Torque], *, tier: Tier = Tier.CYCLE) -> Iteration:
+    """Iteration of a case, its trials not kept; see `trials`."""
+    made = trials(case, torques, tier=tier)
+    while True:
+        trial, iteration = next(made)
+        if iteration is not None:
+            return iteration
+        del trial  # its solution takes most of the memory
+
+
+def solved_already(trial: Trial) -> Iteration:
+    """Iteration of one trial that is solved."""
+    return _alone(trial, f"one trial, {_result(trial)}")
+
+
+def _alone(trial: Trial, statement: str) -> Iteration:
+    return Iteration(trial, statement, (TrialPoint.of(trial),))
 
 
 @dataclass(frozen=True, eq=False)
@@ -213,10 +202,9 @@ class _Task:
     case: Case
     torques: Mapping[str, Torque]
     tier: Tier
-    sink: TrialSink
+    stores: Callable[[int], ContactStore]
     progress: Progress
     workers: Crew
-    on_final: Callable[[Trial], object]
 
     def solved(
         self,
@@ -237,7 +225,7 @@ class _Task:
             tier=self.tier,
             torques=self.torques,
             synthesis_gain=gain,
-            store=self.sink.store(number),
+            store=self.stores(number),
             workers=self.workers,
             progress=_Prefixed(self.progress, f"trial {number}: "),
         )
@@ -250,8 +238,21 @@ class _Task:
             limits_in_use=uses,
         )
 
+    def previewed(self, design: Design) -> Solution:
+        """Preview of a design: guides of finite length, Hertz contact."""
+        drawn = redrawn(self.case, design.variables)
+        contour = drawn.contour(design.lift())
+        return solution(drawn, contour, Tier.PREVIEW, torques=self.torques)
 
-def _smoothed(task: _Task) -> Iteration:
+
+def _prescribed(task: _Task) -> Iterator[Tried]:
+    """The trial of a lift in the case file."""
+    case = task.case
+    trial = task.solved(1, case, given_lift(case), lift_origin(case), GIVEN_LIFT)
+    yield Tried(trial, _alone(trial, f"prescribed lift: {_result(trial)}, not smoothed"))
+
+
+def _smoothed(task: _Task) -> Iterator[Tried]:
     """Trials of ever wider smoothers."""
     case, torques = task.case, task.torques
     forecast = _forecast_of(task)
@@ -266,10 +267,9 @@ def _smoothed(task: _Task) -> Iteration:
         attempts.append(Attempt(smoother, within_depth(trial.checks)))
         after = next_smoother(attempts, case.solver.max_trials, forecast)
         if isinstance(after, Stop):
-            task.on_final(trial)
-        task.sink.keep(trial)
-        if isinstance(after, Stop):
-            return Iteration(trial, after.reason, tuple(points))
+            yield Tried(trial, Iteration(trial, after.reason, tuple(points)))
+            return
+        yield Tried(trial, None)
         del trial  # its solution takes most of the memory
         task.progress.note(f"trial {len(attempts)} fails: {after.why}")
         smoother, why = after.smoother, after.why
@@ -312,30 +312,20 @@ def forecasts(
     return made
 
 
-def _constrained(task: _Task) -> Iteration:
+def _constrained(task: _Task) -> Iterator[Tried]:
     """Synthesis and finite elements in turn, until they agree; the best trial is the final one."""
     case, torques = task.case, task.torques
-    problem, margin = problem_of(case, torques), case.smoothing.correction_margin
-    why = "least ripple within all limits"
-    first: Explored | None = None
-    comparisons: list[Comparison] = []
+    margin, why = case.smoothing.correction_margin, "least ripple within all limits"
     points: list[TrialPoint] = []
-    best: tuple[Rank, Trial] | None = None
-    # Without corrections the synthesis sees lower bounds: limits that conflict there conflict.
-    conflicts = False
-    while True:
-        number = len(points) + 1
-        task.progress.stage(f"trial {number}: synthesis")
-        if number > 1:  # starts from the optimum of the trial before
-            design = synthesise(problem)
-        else:
-            first = explored(problem, case.smoothing.starts)
-            design, problem = first.design, replace(problem, coefficients=first.splines)
-            conflicts = not design.feasible
-            if task.tier is Tier.CYCLE and not conflicts:
-                problem = _with_guides(task, problem, design)
-                design = synthesise(problem)
-        record = design_record(design, problem, first if number == 1 else None)
+    best: Rank | None = None
+    for each in rounds(
+        problem_of(case, torques),
+        starts=case.smoothing.starts,
+        guided=task.previewed if task.tier is Tier.CYCLE else None,
+        progress=task.progress,
+    ):
+        number, problem, design = each.number, each.problem, each.design
+        record = design_record(design, problem, each.first if number == 1 else None)
         record["machine_prices"] = machine_prices(design, problem, case, torques)
         trial = task.solved(
             number,
@@ -347,45 +337,33 @@ def _constrained(task: _Task) -> Iteration:
             uses=limits_in_use(design),
             gain=design.ripple_gain,
         )
-        judged = trial.checks if margin > 0.0 else ()
-        comparisons.append(compared(problem, design, trial.solution, judged))
+        comparison = each.compare(trial.solution, trial.checks if margin > 0.0 else ())
         unmeshed = task.tier is Tier.CYCLE and trial.mesh is None
-        ends = conflicts or unmeshed or comparisons[-1].settled
+        ends = each.conflicts or unmeshed or comparison.settled
         last = ends or number == case.solver.max_trials
         conflict = None
         if last and not design.feasible:
             task.progress.stage("conflicting limits")
-            after = corrected(problem, design, comparisons) if margin > 0.0 else problem
+            after = each.corrected() if margin > 0.0 else problem
             rollers = roller_problems(case, torques, after)
             conflict = infeasibility(problem, rollers, after, margin)
             record["infeasible"] = conflict.as_record()
         ranked = rank(trial.checks, solved_ripple(trial.cycles))
-        if best is None or ranked <= best[0]:
-            best = (ranked, trial)
-        if last:
-            task.on_final(best[1])
-        task.sink.keep(trial)
+        if best is None or ranked <= best:
+            best, final = ranked, trial
         points.append(TrialPoint.of(trial))
         if last:
-            final = best[1]
-            parts = [_ending(final, number, comparisons[-1], settled=ends or comparisons[-1].agree)]
-            parts += [] if conflict is None else [conflict.sentence]
-            if first is not None and conflict is None:
-                parts += [first.starts.sentence, first.resolution.sentence]
-            return Iteration(final, "; ".join(parts), tuple(points))
+            parts = [_ending(final, number, comparison, settled=ends or comparison.agree)]
+            if conflict is None:
+                parts += [each.first.starts.sentence, each.first.resolution.sentence]
+            else:
+                parts.append(conflict.sentence)
+            yield Tried(trial, Iteration(final, "; ".join(parts), tuple(points)))
+            return
+        yield Tried(trial, None)
         del trial  # its solution takes most of the memory
-        why = comparisons[-1].sentence
+        why = comparison.sentence
         task.progress.note(f"trial {number}: {why}")
-        problem = corrected(problem, design, comparisons)
-
-
-def _with_guides(task: _Task, problem: Problem, design: Design) -> Problem:
-    """The problem corrected by a preview of its design: guides of finite length, Hertz contact."""
-    task.progress.stage("trial 1: preview")
-    drawn = redrawn(task.case, design.variables)
-    contour = drawn.contour(design.lift())
-    solved = solution(drawn, contour, Tier.PREVIEW, torques=task.torques)
-    return corrected(problem, design, [compared(problem, design, solved)])
 
 
 def _ending(final: Trial, count: int, latest: Comparison, *, settled: bool) -> str:

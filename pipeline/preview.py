@@ -72,7 +72,7 @@ def preview_case(
         known = engine_torques(case) if torques is None else torques
         trial = _nominal(case, known, kept, progress)
         nominal(trial)
-        return judged_at_corners(trial, known) if corners else trial
+        return judged_at_corners(trial) if corners else trial
 
 
 def _nominal(case: Case, torques: Mapping[str, Torque], kept: bool, progress: Progress) -> Trial:
@@ -140,48 +140,28 @@ def _trial_of(solved: Solution, record: SynthesisRecord, progress: Progress) -> 
 def _synthesised(case: Case, torques: Mapping[str, Torque], progress: Progress) -> Trial:
     """Trial of the constrained synthesis, without tolerance corners.
 
-    The number of splines rises once, with the first correction. A search that has not converged
-    after `_EFFORT` ends, as a note tells: a run goes on.
+    A search that has not converged after `_EFFORT` ends, as a note tells: a run goes on.
     """
     # Most previews need no optimiser.
-    from camwright.pipeline.smoothing.constrained_synthesis import synthesise
-    from camwright.pipeline.smoothing.fe_correction import (
-        Comparison,
-        compared,
-        corrected,
-        design_record,
-        rank,
-        solved_ripple,
-    )
-    from camwright.pipeline.smoothing.multistart import REMOVABLE, continued, explored, resolved
+    from camwright.pipeline.smoothing.fe_correction import design_record, rank, solved_ripple
     from camwright.pipeline.smoothing.problem_setup import problem_of
+    from camwright.pipeline.smoothing.synthesis_rounds import rounds
 
-    whole = problem_of(case, torques)
-    problem = replace(whole, convergence=None, effort=_EFFORT)
-    convergence = None if whole.convergence is None else _CONVERGENCE * whole.convergence
-    design, refined = explored(problem, 1).design, convergence is None
-    comparisons: list[Comparison] = []
+    problem = replace(problem_of(case, torques), effort=_EFFORT)
+    if problem.convergence is not None:
+        problem = replace(problem, convergence=_CONVERGENCE * problem.convergence)
     tried: list[tuple[Solution, SynthesisRecord]] = []
-    while True:
-        given_up = design.stuck or design.ended or design.violation > REMOVABLE
-        if not refined and (comparisons or not (design.feasible or given_up)):
-            first = continued(problem, design) if comparisons else design
-            rising = replace(problem, convergence=convergence)
-            design, refined = resolved(rising, first)[0][-1], True
-            problem = replace(problem, coefficients=design.coefficients.size)
-        elif comparisons:
-            design = synthesise(problem)
+    for each in rounds(problem, late=True):
+        design = each.design
         drawn, gain = redrawn(case, design.variables), design.ripple_gain
         solved = _solved(drawn, design.lift(), None if design.ended else gain, torques, progress)
-        tried.append((solved, design_record(design, problem)))
-        comparisons.append(compared(problem, design, solved))
+        tried.append((solved, design_record(design, each.problem)))
+        settled = each.compare(solved).settled
         # After a search that its effort has ended, corrections do not settle.
-        rounds = _ENDED_ROUNDS if design.ended else _ROUNDS
-        last = not design.feasible or len(comparisons) >= rounds
-        if last or (refined and comparisons[-1].settled):
+        most = _ENDED_ROUNDS if design.ended else _ROUNDS
+        if not design.feasible or each.number >= most or (settled and not each.rises):
             break
-        problem = corrected(problem, design, comparisons)
-    if comparisons[-1].settled or len(tried) == 1:
+    if settled or len(tried) == 1:
         return _trial_of(*tried[-1], progress)
     ranking = [each for each in DECLARED.values() if each.must_have and depends_on_lift(each)]
     ranks = [rank(checks_of(each, ranking), solved_ripple(each.cycles)) for each, _ in tried]

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import shutil
 import tempfile
-from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, cast
@@ -50,6 +50,7 @@ from camwright.pipeline.results.field_output import (
 from camwright.pipeline.results.file_differences import (
     SAME,
     FileClass,
+    Kind,
     Origin,
     classes_of,
     file_differences,
@@ -60,7 +61,7 @@ from camwright.pipeline.results.run_folder import RunFolder, versions
 from camwright.pipeline.results.run_reader import Run, TrialRecord, read_run, results_sha256
 from camwright.pipeline.results.run_records import torque_columns, trial_record
 from camwright.pipeline.results.trial import CONSTRAINED, SmoothingRecord, Trial, TrialPoint
-from camwright.pipeline.results.trial_writer import TrialWriter
+from camwright.pipeline.results.trial_writer import write_trial_files
 from camwright.pipeline.results.workshop_files import WORKSHOP, stamp_solid, write_workshop
 from camwright.pipeline.run import judged_of, summary_of
 from camwright.pipeline.smoothing.required_lift import cam_lift
@@ -82,7 +83,6 @@ _LAST = (signoff.NAME, signoff.SIGNATURES)
 _HASHES = "mesh.sha256"
 _NEGLIGIBLE = 1e-3
 _ELSEWHERE = "rests on more than the run holds and cannot be made again; make it anew"
-PAGE = "8_report.html"
 _LISTED = 5
 """Differences of a record that are listed."""
 _OF_A_CHECK = ("demand", "corner_demand", "error", "utilisation", "margin", "stated")
@@ -124,6 +124,8 @@ class Recomputation:
     angles : tuple        drawn angles; empty below the certified depth
     unseen : tuple        files, folders and entries of records that do not follow from case and
                           lift, and were not compared; none of them is cut or run
+    pages : mapping       pages, sheets and pictures by name, with the kind of their file; they are
+                          not compared, see `page_differences`
     versions : tuple      of the run, where they are not those of this installation, in words
     """
 
@@ -132,6 +134,7 @@ class Recomputation:
     differences: tuple[str, ...]
     angles: tuple[Angle, ...]
     unseen: tuple[str, ...]
+    pages: Mapping[str, Kind]
     versions: tuple[str, ...]
 
 
@@ -142,8 +145,6 @@ def recompute(
     seed: int = 0,
     jobs: int | None = None,
     progress: Progress = SILENT,
-    also: Callable[[Trial], Mapping[str, Any]] = lambda _: {},
-    present: Callable[[Path, Collection[str]], object] | None = None,
 ) -> Recomputation:
     """Compute a finished run again from its case and the lift of its final trial, and compare it.
 
@@ -157,8 +158,6 @@ def recompute(
     angles : int      cam angles at which both bodies are solved in full
     seed : int        of their choice
     jobs : int        processes for the certificate; None: number of processors, at most 4
-    also : callable   final trial -> further entries of ``run.json``
-    present : callable   draws files of a run folder by their names; None: a page is a difference
 
     Raises
     ------
@@ -170,7 +169,27 @@ def recompute(
     if not 0 <= seed <= LARGEST_SEED:
         raise InputError("--seed", seed, f">= 0 and <= {LARGEST_SEED}")
     with disk_cache.left_out():
-        return _recomputed(read_run(folder), angles, seed, jobs, progress, also, present)
+        return _recomputed(read_run(folder), angles, seed, jobs, progress)
+
+
+def copy_without(folder: Path, copy: Path, pages: Iterable[str]) -> None:
+    """Copy a run without these pages and without its record, so that they can be drawn again."""
+    shutil.copytree(folder, copy, symlinks=True)  # a link made since is not followed
+    for name in (*pages, *_LAST):
+        (copy / name).unlink(missing_ok=True)
+
+
+def page_differences(folder: Path, drawn: Path, pages: Mapping[str, Kind]) -> dict[str, str]:
+    """Differences of the pages of a run from those drawn again, in words by the name of the file.
+
+    Parameters
+    ----------
+    drawn : Path      copy of the run in which they are drawn again, see `copy_without`
+    pages : mapping   of `Recomputation`
+    """
+    made = {name: kind for name, kind in pages.items() if (drawn / name).is_file()}
+    differing = dict(file_differences(folder, drawn, made.items()))
+    return differing | {n: "is none of the run's pages" for n in pages if n not in made}
 
 
 def _recomputed(
@@ -179,8 +198,6 @@ def _recomputed(
     seed: int,
     jobs: int | None,
     progress: Progress,
-    also: Callable[[Trial], Mapping[str, Any]],
-    present: Callable[[Path, Collection[str]], object] | None,
 ) -> Recomputation:
     """See `recompute`."""
     case, contour = drawn_cam(run.path)
@@ -208,13 +225,14 @@ def _recomputed(
     differences += _check_differences(run.final, checks)
     progress.stage("files")
     files = _Files(run, trial)
-    files.compare(torques, also, present)
+    files.compare()
     return Recomputation(
         cast("tuple[AnyCheck, ...]", checks),
         check_records.judgement(checks, trial.depth.word),
         (*differences, *files.differences),
         drawn,
         tuple(dict.fromkeys(files.unseen)),
+        files.pages,
         _other_versions(run),
     )
 
@@ -429,16 +447,15 @@ class _Files:
             else:
                 self.unseen.append(name)
 
-    def compare(
-        self,
-        torques: Mapping[str, Torque],
-        also: Callable[[Trial], Mapping[str, Any]],
-        present: Callable[[Path, Collection[str]], object] | None,
-    ) -> None:
-        """Compare every file by its class, and the records by their entries."""
+    @property
+    def pages(self) -> dict[str, Kind]:
+        """Pages, sheets and pictures, by the kind of their file."""
+        return {n: each.kind for n, each in self._classes.items() if each.origin is Origin.DRAWN}
+
+    def compare(self) -> None:
+        """Compare every file but the pages by its class, and the records by their entries."""
         with tempfile.TemporaryDirectory(prefix="camwright-") as home:
-            self._solved(Path(home) / "run", torques, also)
-            self._drawn(Path(home) / "drawn", present)
+            self._solved(Path(home) / "run")
         for name, each in self._classes.items():
             if each.origin is Origin.ELSEWHERE:
                 self.differences.append(f"{name}: {_ELSEWHERE}")
@@ -446,21 +463,17 @@ class _Files:
                 own = name.startswith(f"{self._final}/")
                 self.unseen.append(name if own else f"{name.partition('/')[0]}/")
 
-    def _solved(
-        self,
-        folder: Path,
-        torques: Mapping[str, Torque],
-        also: Callable[[Trial], Mapping[str, Any]],
-    ) -> None:
+    def _solved(self, folder: Path) -> None:
         """Compare what follows from case and lift."""
         run, trial = self._run, self._trial
         case = read_case(run.path / "case.toml")
         with RunFolder(folder, case, depth=trial.depth) as again:
-            summary = _written(again, run, trial, torques) | dict(also(trial))
+            summary = _written(again, run, trial)
             made = [name for name, _ in files_in(again.path)]
             classes = {name: classes_of(name, trial.number)[0] for name in made}
             solved = {n: each.kind for n, each in classes.items() if each.origin is Origin.SOLVED}
-            self._add(file_differences(run.path, again.path, solved.items()))
+            differing = file_differences(run.path, again.path, solved.items())
+            self.differences += (f"{name}: {words}" for name, words in differing)
             again.discard()
         self.differences += (
             f"{name}: is none of the case"
@@ -470,12 +483,6 @@ class _Files:
         self._trial_record()
         self._summary(summary, case)
         self.differences += _recorded_limits(run)
-
-    def _add(self, of_files: Iterator[tuple[str, str]]) -> list[str]:
-        """Add differences of files; their names."""
-        pairs = list(of_files)
-        self.differences += (f"{name}: {words}" for name, words in pairs)
-        return [name for name, _ in pairs]
 
     def _trial_record(self) -> None:
         """Compare ``trial.json``; the hashes of a mesh are those of its last bits."""
@@ -510,25 +517,6 @@ class _Files:
         words = record_differences(cast("Json", stored), cast("Json", expected))
         self.differences += _few("run.json", list(words))
 
-    def _drawn(self, copy: Path, present: Callable[[Path, Collection[str]], object] | None) -> None:
-        """Compare pages, sheets and pictures, drawn again from the tables of the run."""
-        names = {n: each.kind for n, each in self._classes.items() if each.origin is Origin.DRAWN}
-        if present is None or not names:
-            self.unseen += names
-            return
-        shutil.copytree(self._run.path, copy, symlinks=True)  # a link made since is not followed
-        for name in (*names, *_LAST):
-            (copy / name).unlink(missing_ok=True)
-        present(copy, names)
-        made = {name: kind for name, kind in names.items() if (copy / name).is_file()}
-        differing = dict(file_differences(self._run.path, copy, made.items()))
-        if PAGE in differing:  # it names the pictures that are in the folder when it is drawn
-            present(copy, (PAGE,))
-            differing.pop(PAGE)
-            differing |= file_differences(self._run.path, copy, [(PAGE, names[PAGE])])
-        self._add(iter(differing.items()))
-        self.differences += (f"{n}: is none of the run's pages" for n in names if n not in made)
-
 
 def _few(file: str, lines: Sequence[str]) -> Iterator[str]:
     """Lines of the first differences of a record, and the number of the others."""
@@ -537,16 +525,14 @@ def _few(file: str, lines: Sequence[str]) -> Iterator[str]:
         yield f"{file}: {len(lines) - _LISTED} more entries differ"
 
 
-def _written(
-    again: RunFolder, run: Run, trial: Trial, torques: Mapping[str, Torque]
-) -> dict[str, Any]:
+def _written(again: RunFolder, run: Run, trial: Trial) -> dict[str, Any]:
     """Write the files that follow from a trial as a run does; the contents of ``run.json``."""
-    if torques:
-        again.write("1_torque.csv", torque_columns(torques[trial.case.load_cases[0].name]))
-    TrialWriter(again).keep(trial)
+    if (torque := trial.solution.machine.torque) is not None:
+        again.write("1_torque.csv", torque_columns(torque))
+    write_trial_files(again, trial)
     if trial.corners:
         again.write("corners.json", corners_record(trial.case, trial.corners))
-    summary = summary_of(again, torques, trial, (TrialPoint.of(trial),))
+    summary = summary_of(again, trial, (TrialPoint.of(trial),))
     if trial.mesh is not None:
         shop = again.path / WORKSHOP
         write_workshop(shop, trial.case, trial.contour)

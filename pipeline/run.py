@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
+from contextlib import ExitStack
 from dataclasses import asdict
 from dataclasses import replace as with_changes
 from pathlib import Path
-from typing import Any
+from types import TracebackType
+from typing import Any, Self, TypedDict, Unpack
 
 from camwright.geometry.errors import CamError
 from camwright.pipeline.base.progress import SILENT, Progress, utc
 from camwright.pipeline.base.source import old_words
-from camwright.pipeline.base.worker_processes import ALONE, Crew, PendingCall, crew
+from camwright.pipeline.base.worker_processes import ALONE, PendingCall, crew
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_values import refused_as_written
 from camwright.pipeline.case.load_case_torque import (
@@ -24,7 +26,7 @@ from camwright.pipeline.case.plausibility import implausible
 from camwright.pipeline.checks.tolerance_corners import corners_record
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.ripple_map import ripple_map
-from camwright.pipeline.iteration import solved_already, trials_of
+from camwright.pipeline.iteration import Iteration, solved_already, trials
 from camwright.pipeline.remedies.remedy_search import order_of, texts_of, with_remedies
 from camwright.pipeline.results.check_records import governing_id
 from camwright.pipeline.results.field_output import ENDS, Shown, write_end_field, write_fields
@@ -32,7 +34,8 @@ from camwright.pipeline.results.run_folder import RunFolder
 from camwright.pipeline.results.run_reader import Run, read_run
 from camwright.pipeline.results.run_records import crank_speed_record, headline, torque_columns
 from camwright.pipeline.results.trial import Trial, TrialPoint
-from camwright.pipeline.results.trial_writer import TrialWriter
+from camwright.pipeline.results.trial_writer import write_judgement, write_trial_files
+from camwright.pipeline.results.valve_train import valve_record
 from camwright.pipeline.results.workshop_files import WORKSHOP, write_workshop
 from camwright.pipeline.smoothing.required_lift import required_torque
 from camwright.pipeline.smoothing.smoothers import Smoother
@@ -41,30 +44,31 @@ from camwright.pipeline.torque.torque import Torque
 
 START = "start"
 """Stage before the first: start of the program, imports, case file."""
+_ORDER = "the steps of a run are solve, write, certify and finish, each once"
 
 
-def run_case(
-    case: Case,
-    out: str | Path,
-    *,
-    depth: Tier = Tier.CERTIFIED,
-    positions: int | None = None,
-    jobs: int | None = None,
-    resume: bool = False,
-    replace: bool = False,
-    fields: Shown = Shown.DEFAULT,
-    progress: Progress = SILENT,
-    began: float | None = None,
-    report: Callable[[Path], object] | None = None,
-    ahead: Callable[[Path, Crew], object] | None = None,
-    also: Callable[[Trial], Mapping[str, Any]] = lambda _: {},
-    judged: Callable[[Mapping[str, Torque], Trial], object] = lambda *_: None,
-    solved: Trial | None = None,
-) -> Run:
-    """Trials of a case until a cam passes or the limit that binds is named; writes the run folder.
+class RunOptions(TypedDict, total=False):
+    """Options of `run_case`, with the defaults and the meaning of `CaseRun`."""
+
+    depth: Tier
+    positions: int | None
+    jobs: int | None
+    resume: bool
+    replace: bool
+    fields: Shown
+    progress: Progress
+    began: float | None
+
+
+class CaseRun:
+    """Trials of a case until a cam passes or the limit that binds is named; a context manager.
+
+    The steps in order: `solve`, `write`, `certify`, `finish`; pages are drawn from the folder of
+    `draft` while it is written. A run that is left before `finish` can be resumed.
 
     Parameters
     ----------
+    out : Path           run folder to write
     depth : Tier         of the solution; below CERTIFIED the run has no verdict
     positions : int      per cam turn; None: those of the case
     jobs : int           processes for the certificate; None: number of processors, at most 4
@@ -73,12 +77,195 @@ def run_case(
     fields : Shown       cam angles of the stress field
     began : float        `time.perf_counter` at the start of the program, for the times of the
                          stages; None: now
-    report : callable    writes page and pictures into the run folder; None: none are written
-    ahead : callable     begins pictures in the worker processes before the certificate
-    also : callable      final trial -> further entries of ``run.json``
-    judged : callable    receives engine torques and checked final trial; below CERTIFIED before
-                         its files are written
-    solved : Trial       the only trial, solved at `depth` below CERTIFIED; None: it is solved here
+
+    Raises
+    ------
+    CamError
+        In every step, if the case, a trial or a file cannot be solved, read or written.
+    """
+
+    def __init__(
+        self,
+        case: Case,
+        out: str | Path,
+        *,
+        depth: Tier = Tier.CERTIFIED,
+        positions: int | None = None,
+        jobs: int | None = None,
+        resume: bool = False,
+        replace: bool = False,
+        fields: Shown = Shown.DEFAULT,
+        progress: Progress = SILENT,
+        began: float | None = None,
+    ) -> None:
+        self.case = case if positions is None else case.with_positions(positions)
+        self.out, self.depth = Path(out), depth
+        self._jobs, self._resume, self._replace = jobs, resume, replace
+        self._shown, self._progress, self._began = fields, progress, began
+        self._last: Trial | None = None  # until its files are written
+        self._final: Trial | None = None  # until its solution is released
+        self._remedies: list[PendingCall] = []
+        self._statement = ""
+        self._points: tuple[TrialPoint, ...] = ()
+        self._summary: dict[str, Any] = {}
+
+    def __enter__(self) -> Self:
+        with ExitStack() as stack:
+            stack.enter_context(refused_as_written(self.case))
+            self._folder = stack.enter_context(
+                RunFolder(
+                    self.out,
+                    self.case,
+                    depth=self.depth,
+                    resume=self._resume,
+                    replace=self._replace,
+                )
+            )
+            self.workers = stack.enter_context(crew(self._jobs))
+            self._stack = stack.pop_all()
+        self._watch = Stopwatch(self._progress, self._began)
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self._stack.__exit__(kind, error, trace)
+
+    def solve(self, trial: Trial | None = None) -> Trial:
+        """Torque and trials; the final trial, whose files are not written yet.
+
+        Of a certified run the search of its remedies begins in the worker processes.
+
+        Parameters
+        ----------
+        trial : Trial   the only trial, solved at the depth of the run below CERTIFIED; None: it is
+                        solved here
+        """
+        torques = self._torques()
+        last, iteration = self._tried(torques) if trial is None else (trial, solved_already(trial))
+        final, self._statement, self._points = iteration
+        self._last, self._final = last, final
+        if self.depth is Tier.CERTIFIED:
+            parts = order_of(final, self._folder.path).parts
+            self._remedies = [self.workers.submit(texts_of, part) for part in parts]
+        return final
+
+    def _torques(self) -> dict[str, Torque]:
+        """Engine torques, with what is to be noted of the case."""
+        case, watch = self.case, self._watch
+        watch.stage("torque")
+        if self.depth is Tier.CERTIFIED:
+            self.workers.prepare(order_of.__module__)
+        torques = engine_torques(case)
+        for words in (
+            *old_words(case.written.tables),
+            *(one.how for one in implausible(case, torques)),
+        ):
+            watch.note(f"warning: {words}")
+        for line in measurement_words(case):
+            watch.note(line)
+        if torques:
+            self._folder.write("1_torque.csv", torque_columns(torques[case.load_cases[0].name]))
+        return torques
+
+    def _tried(self, torques: Mapping[str, Torque]) -> tuple[Trial, Iteration]:
+        """The last trial with its iteration; the files of those before it are written."""
+        made = trials(
+            self.case,
+            torques,
+            tier=self.depth,
+            stores=self._folder.contact_store,
+            progress=self._watch,
+            workers=self.workers if self.depth is Tier.CERTIFIED else ALONE,
+        )
+        while True:
+            trial, iteration = next(made)
+            if iteration is not None:
+                return trial, iteration
+            write_trial_files(self._folder, trial)
+            del trial  # its solution takes most of the memory
+
+    def write(self) -> None:
+        """Files of the last trial, tolerance corners, stress fields, workshop files."""
+        folder, watch, final = self._folder, self._watch, _made(self._final)
+        write_trial_files(folder, _made(self._last))
+        self._last = None
+        if final.corners:
+            folder.write("corners.json", corners_record(final.case, final.corners))
+        self._summary = summary_of(folder, final, self._points) | judged_of(final, self._statement)
+        if self.depth >= Tier.CYCLE:
+            watch.stage("fields")
+            write_fields(folder.fields, final, self._shown, watch.advance)
+        if final.mesh is not None:  # else the contour is no body to machine
+            watch.stage(WORKSHOP)
+            write_workshop(folder.path / WORKSHOP, final.case, final.contour, note=watch.note)
+
+    def certify(self) -> Trial:
+        """The final trial with its certificate; as it is, below CERTIFIED."""
+        final = _made(self._final)
+        if self.depth < Tier.CERTIFIED:
+            return final
+        store = self._folder.contact_store(final.number)
+        certified = certify_trial(final, self.workers, store=store, progress=self._watch)
+        self._statement = restated(self._statement, _failing(final), _failing(certified))
+        self._final = certified
+        return certified
+
+    def draft(self) -> Path:
+        """The folder of the run with ``run.json`` so far: pages are drawn from it.
+
+        The solution, which takes most of the memory, is released after the certificate.
+        """
+        self._settle()
+        self._watch.stage("report")
+        self._folder.write_summary(self._summary | self._watch.record())
+        return self._folder.path
+
+    def finish(self) -> Run:
+        """Write ``run.json`` and the sign-off record, and move the folder to its place.
+
+        Returns
+        -------
+        Run    read back from the folder
+        """
+        self._settle()
+        if self._final is not None:
+            raise RuntimeError(_ORDER)
+        self._folder.finish(self._summary | self._watch.record())
+        return read_run(self.out)
+
+    def _settle(self) -> None:
+        """Write what the certificate changes, the remedies among it; nothing before it."""
+        final = self._final
+        if not self._summary:
+            raise RuntimeError(_ORDER)
+        if final is None or final.depth is not self.depth:
+            return
+        self._final = None
+        if self.depth is Tier.CERTIFIED:
+            if self._remedies:
+                self._watch.stage("remedies")
+                texts = {
+                    name: text for part in self._remedies for name, text in part.result().items()
+                }
+                final = with_changes(final, checks=with_remedies(final.checks, texts))
+            if self._shown is not Shown.NONE:
+                self._watch.stage("fields")
+                write_end_field(self._folder.fields / ENDS, final, self.workers)
+            self.workers.dismiss()
+            write_judgement(self._folder, final)
+        self._summary |= judged_of(final, self._statement)
+
+
+def run_case(case: Case, out: str | Path, **options: Unpack[RunOptions]) -> Run:
+    """Run a case and write its run folder, without pages.
+
+    Parameters
+    ----------
+    options   see `CaseRun`
 
     Returns
     -------
@@ -89,104 +276,18 @@ def run_case(
     CamError
         If the case, a trial or a file cannot be solved, read or written.
     """
-    out = Path(out)
-    case = case if positions is None else case.with_positions(positions)
-    with (
-        refused_as_written(case),
-        RunFolder(out, case, depth=depth, resume=resume, replace=replace) as folder,
-        crew(jobs) as workers,
-    ):
-        watch = Stopwatch(progress, began)
-        summary = _solved(folder, case, depth, workers, fields, watch, also, ahead, judged, solved)
-        if report is not None:
-            watch.stage("report")  # the solution, which takes most of the memory, is released
-            folder.write_summary(summary | watch.record())
-            report(folder.path)
-        folder.finish(summary | watch.record())
-    return read_run(out)
+    with CaseRun(case, out, **options) as run:
+        run.solve()
+        run.write()
+        run.certify()
+        return run.finish()
 
 
-def _solved(
-    folder: RunFolder,
-    case: Case,
-    depth: Tier,
-    workers: Crew,
-    fields: Shown,
-    watch: Stopwatch,
-    also: Callable[[Trial], Mapping[str, Any]],
-    ahead: Callable[[Path, Crew], object] | None,
-    judged: Callable[[Mapping[str, Torque], Trial], object],
-    solved: Trial | None,
-) -> dict[str, Any]:
-    """Solve a case and write all files but report and records; the contents of ``run.json``."""
-    watch.stage("torque")
-    if depth is Tier.CERTIFIED:
-        workers.prepare(order_of.__module__)
-    torques = engine_torques(case)
-    for words in (
-        *old_words(case.written.tables),
-        *(one.how for one in implausible(case, torques)),
-    ):
-        watch.note(f"warning: {words}")
-    for line in measurement_words(case):
-        watch.note(line)
-    if torques:
-        folder.write("1_torque.csv", torque_columns(torques[case.load_cases[0].name]))
-    writer = TrialWriter(folder)
-    sought: list[PendingCall] = []
-
-    def on_final(trial: Trial) -> None:
-        if depth is Tier.CERTIFIED:
-            sought.extend(_remedies_begun(trial, workers, folder.path))
-        else:
-            judged(torques, trial)
-
-    if solved is None:
-        final, statement, points = trials_of(
-            case,
-            torques,
-            tier=depth,
-            sink=writer,
-            progress=watch,
-            workers=workers if depth is Tier.CERTIFIED else ALONE,
-            on_final=on_final,
-        )
-    else:
-        final, statement, points = solved_already(solved, writer, on_final)
-    if final.corners:
-        folder.write("corners.json", corners_record(final.case, final.corners))
-    summary = summary_of(folder, torques, final, points) | dict(also(final))
-
-    if depth >= Tier.CYCLE:
-        watch.stage("fields")
-        write_fields(folder.fields, final, fields, watch.advance)
-    if final.mesh is not None:  # else the contour is no body to machine
-        watch.stage(WORKSHOP)
-        write_workshop(folder.path / WORKSHOP, final.case, final.contour, note=watch.note)
-    if depth < Tier.CERTIFIED:
-        return summary | judged_of(final, statement)
-    if ahead is not None:
-        watch.stage("report")
-        folder.write_summary(summary | judged_of(final, statement) | watch.record())
-        ahead(folder.path, workers)
-    failing = _failing(final)
-    certified = certify_trial(final, workers, store=writer.store(final.number), progress=watch)
-    judged(torques, certified)
-    if sought:
-        watch.stage("remedies")
-        texts = {name: text for part in sought for name, text in part.result().items()}
-        certified = with_changes(certified, checks=with_remedies(certified.checks, texts))
-    if fields is not Shown.NONE:
-        watch.stage("fields")
-        write_end_field(folder.fields / ENDS, certified, workers)
-    workers.dismiss()
-    writer.judge(certified)
-    return summary | judged_of(certified, restated(statement, failing, _failing(certified)))
-
-
-def _remedies_begun(final: Trial, workers: Crew, folder: Path) -> list[PendingCall]:
-    """Search of the remedies of a final trial in worker processes; empty if no check fails."""
-    return [workers.submit(texts_of, part) for part in order_of(final, folder).parts]
+def _made(trial: Trial | None) -> Trial:
+    """A trial of a step before."""
+    if trial is None:
+        raise RuntimeError(_ORDER)
+    return trial
 
 
 def restated(statement: str, before: Sequence[str], after: Sequence[str]) -> str:
@@ -208,17 +309,16 @@ def _failing(trial: Trial) -> list[str]:
 
 def summary_of(
     folder: RunFolder,
-    torques: Mapping[str, Torque],
     final: Trial,
     points: Sequence[TrialPoint],
 ) -> dict[str, Any]:
     """Contents of ``run.json`` that no certificate changes; writes ``1_speed.csv``."""
-    case, required = final.case, None
-    if final.smoothing.strength is not None:
+    case, torque, required = final.case, final.solution.machine.torque, None
+    if torque is not None and final.smoothing.strength is not None:
         smoother = Smoother.from_case(case.smoothing, case.period)
         smoother = smoother.stretched(final.smoothing.strength)
-        required = required_torque(case, torques[case.load_cases[0].name], smoother)
-    crank_speed, columns = crank_speed_record(torques, final, required)
+        required = required_torque(case, torque, smoother)
+    crank_speed, columns = crank_speed_record(final, required)
     if columns is not None:
         folder.write("1_speed.csv", columns)
     return {
@@ -226,7 +326,7 @@ def summary_of(
         "final_trial": final.number,
         "trial_points": [point.as_record() for point in points],
         "scope": case.scope.as_record(),
-        "headline": headline(torques, final),
+        "headline": headline(final),
         "load_ends": final.load_ends,
         "prices": None if final.synthesis is None else final.synthesis["prices"],
         "machine_prices": None
@@ -234,15 +334,17 @@ def summary_of(
         else final.synthesis.get("machine_prices"),
         "mesh_quality": None if final.mesh is None else asdict(final.mesh.quality),
         **crank_speed,
-        "ripple_map": _ripple_map_record(torques, final),
+        "ripple_map": _ripple_map_record(final),
         "measurement": measurement_record(case),
+        **valve_record(final),
     }
 
 
-def _ripple_map_record(torques: Mapping[str, Torque], final: Trial) -> Mapping[str, Any] | None:
+def _ripple_map_record(final: Trial) -> Mapping[str, Any] | None:
     """Ripple map of the final cam; the reason where a working cycle cannot be solved."""
     try:
-        mapped = ripple_map(final.case, torques, final.contour.pitch, final.cycles[0].loads.rubbing)
+        rubbing = final.cycles[0].loads.rubbing
+        mapped = ripple_map(final.case, final.solution.machines, final.contour.pitch, rubbing)
     except CamError as error:
         return {"refused": str(error)}
     return None if mapped is None else mapped.as_record()

@@ -11,6 +11,7 @@ from camwright.pipeline.base.progress import SILENT, Progress
 from camwright.pipeline.base.worker_processes import Crew, PendingCall, crew
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.load_case_torque import engine_torques
+from camwright.pipeline.case.machine import machines
 from camwright.pipeline.checks.check import Check, in_order
 from camwright.pipeline.checks.registry import all_checks
 from camwright.pipeline.checks.tolerance_corners import Outcome, governed, outcomes, unsolved
@@ -70,7 +71,7 @@ def solve(
     with crew(jobs) if workers is None else nullcontext(workers) as hands:
         tried: PendingCall | None = None
         if corners and tier > Tier.SCREENING:
-            tried = hands.submit(outcomes, case, known, contour)
+            tried = hands.submit(outcomes, case, machines(case, known), contour)
         solved = solution(
             case,
             contour,
@@ -93,14 +94,9 @@ def checked(solved: Solution) -> Trial:
     return Trial(1, "", GIVEN_LIFT, solved, all_checks(solved))
 
 
-def judged_at_corners(trial: Trial, torques: Mapping[str, Torque]) -> Trial:
-    """Trial whose checks are judged at their worst tolerance corners.
-
-    Parameters
-    ----------
-    torques : mapping   engine torque by load case
-    """
-    return _at_corners(trial, outcomes(trial.case, torques, trial.contour))
+def judged_at_corners(trial: Trial) -> Trial:
+    """Trial whose checks are judged at their worst tolerance corners."""
+    return _at_corners(trial, outcomes(trial.case, trial.solution.machines, trial.contour))
 
 
 def _at_corners(trial: Trial, tried: tuple[Outcome, ...]) -> Trial:

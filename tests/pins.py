@@ -68,6 +68,7 @@ Json = Any
 
 def records(case: Case, contour: Contour, **how: Any) -> Json:
     """Records of the checks of a preview, and what differs from them in a screening."""
+    how = {"torques": engine_torques(case)} | how
     both = {
         tier: {
             each.id: {key: value for key, value in each.as_record().items()

@@ -24,6 +24,6 @@ def stated_loads(
     coarse: bool = False,
 ) -> Solution:
     """Solution of a cam in the load cases that its case states; no engine torque by default."""
-    states = machines(case)[: len(case.load_cases)]
-    turns = turns_of(states, contour, case, torques, positions, coarse=coarse)
-    return solved_turns(case, contour, turns, tier, torques, coarse=coarse)
+    states = machines(case, torques)[: len(case.load_cases)]
+    turns = turns_of(states, contour, positions, coarse=coarse)
+    return solved_turns(case, contour, turns, tier, coarse=coarse)

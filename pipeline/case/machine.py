@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
+from types import MappingProxyType
 
 import numpy as np
 
@@ -56,6 +57,7 @@ from camwright.pipeline.follower.roller import Roller
 from camwright.pipeline.follower.spring import Spring
 from camwright.pipeline.follower.stem_beam import Stem
 from camwright.pipeline.torque.period import Period
+from camwright.pipeline.torque.torque import Torque
 
 _UNLOADED = {
     "torque": None,
@@ -66,6 +68,7 @@ _UNLOADED = {
     SPEED_REDUCTION.id: None,
     "source": "every case is judged at standstill and over-speed",
 }
+NO_TORQUES: Mapping[str, Torque] = MappingProxyType({})
 # Greatest depth of a body under the contact, over the length of contact.
 _DEPTH = 2.0
 # Crank speed of a load case at rest, rad/s: inertia, film and heat are negligible.
@@ -116,6 +119,8 @@ class Machine(Displayed):
     camshaft, crankshaft, lubricant : or None   None: not described
     limits : Limits
     scope : Scope              parts that the sign-off covers
+    torque : Torque            of the engine at `speed`, over a cam turn; None: without one, or not
+                               stated, where the parts alone are needed
     """
 
     load_case: str
@@ -147,6 +152,7 @@ class Machine(Displayed):
     cooling: Cooling
     limits: Limits
     scope: Scope
+    torque: Torque | None = field(default=None, compare=False)
 
     @property
     def crank_speed(self) -> float:
@@ -386,9 +392,14 @@ class Machine(Displayed):
         )
 
 
-def machines(case: Case) -> tuple[Machine, ...]:
-    """The machine in every load case that is judged, the design load case first."""
-    return tuple(machine(case, state) for state in judged_load_cases(case))
+def machines(case: Case, torques: Mapping[str, Torque] = NO_TORQUES) -> tuple[Machine, ...]:
+    """The machine in every load case that is judged, the design load case first.
+
+    Parameters
+    ----------
+    torques : mapping   engine torque by load case, such as of `engine_torques`
+    """
+    return tuple(machine(case, state, torques.get(state.name)) for state in judged_load_cases(case))
 
 
 def judged_load_cases(case: Case) -> tuple[LoadCase, ...]:
@@ -415,7 +426,7 @@ def judged_load_cases(case: Case) -> tuple[LoadCase, ...]:
     return (*stated, *added)
 
 
-def machine(case: Case, state: LoadCase) -> Machine:
+def machine(case: Case, state: LoadCase, torque: Torque | None = None) -> Machine:
     """The machine of a case in one of its load cases."""
     follower, guides, spring = case.follower, case.guides, case.spring
     card = follower.stem_material
@@ -451,6 +462,7 @@ def machine(case: Case, state: LoadCase) -> Machine:
         cooling=case.cooling,
         limits=case.limits,
         scope=case.scope,
+        torque=torque,
     )
 
 

@@ -22,7 +22,7 @@ from camwright.geometry.lift import Lift
 from camwright.pipeline.base.files import Json
 from camwright.pipeline.base.units import in_unit
 from camwright.pipeline.case.case import Case
-from camwright.pipeline.case.machine import Corner, Machine, machines
+from camwright.pipeline.case.machine import Corner, Machine
 from camwright.pipeline.checks.check import Check, Declaration, Demand
 from camwright.pipeline.checks.lost_loads import checks_on_sound_loads
 from camwright.pipeline.checks.registry import TOLERANCE_CORNERS, TOLERANCED, checks_of
@@ -31,7 +31,6 @@ from camwright.pipeline.cycle.cycle import solve_lengths
 from camwright.pipeline.cycle.solution import Solution, solved_turns
 from camwright.pipeline.cycle.turn import Turn, TurnInput, turns
 from camwright.pipeline.follower.guide_friction import FrictionRange
-from camwright.pipeline.torque.torque import Torque
 
 NOMINAL = Corner("nominal")
 POSITIONS = 90
@@ -101,7 +100,7 @@ def spring_corners(case: Case) -> tuple[Corner, ...]:
 
 def outcomes(
     case: Case,
-    torques: Mapping[str, Torque],
+    states: Sequence[Machine],
     contour: Contour,
     corners: Sequence[Corner] | None = None,
     declarations: Sequence[Declaration] = TOLERANCED,
@@ -110,21 +109,22 @@ def outcomes(
 
     Parameters
     ----------
+    states : sequence         nominal machine in each load case, with its torque
     corners : sequence        None: the nominal, then every corner of the case
     declarations : sequence   of the checks made there
     """
     if corners is None:
         corners = NOMINAL, *corners_of(case)
     try:
-        solved = _turns_at(case, torques, contour, corners, declarations)
+        solved = _turns_at(states, contour, corners, declarations)
     except CamError:  # of one corner at least: each on its own
-        return tuple(_alone(case, torques, contour, each, declarations) for each in corners)
-    return tuple(_outcomes(case, torques, solved, declarations))
+        return tuple(_alone(case, states, contour, each, declarations) for each in corners)
+    return tuple(_outcomes(case, solved, declarations))
 
 
 def checks_at(
     case: Case,
-    torques: Mapping[str, Torque],
+    states: Sequence[Machine],
     contour: Contour,
     corners: Sequence[Corner],
     declarations: Sequence[Declaration],
@@ -136,8 +136,8 @@ def checks_at(
     CamError
         If a corner cannot be solved.
     """
-    solved = _turns_at(case, torques, contour, corners, declarations)
-    return tuple(checks_of(_solution(case, torques, *each), declarations) for each in solved)
+    solved = _turns_at(states, contour, corners, declarations)
+    return tuple(checks_of(_solution(case, *each), declarations) for each in solved)
 
 
 def governed(checks: Sequence[Check], tried: Sequence[Outcome]) -> tuple[Check, ...]:
@@ -229,27 +229,14 @@ class _Tried:
     inputs: tuple[TurnInput, ...]
 
     @classmethod
-    def at(
-        cls,
-        states: Sequence[Machine],
-        torques: Mapping[str, Torque],
-        contour: Contour,
-        corner: Corner,
-    ) -> _Tried:
+    def at(cls, states: Sequence[Machine], contour: Contour, corner: Corner) -> _Tried:
         shape = _shape(contour, corner)
-        return cls(
-            corner,
-            shape,
-            tuple(
-                TurnInput(state.at_corner(corner), shape, torques.get(state.load_case))
-                for state in states
-            ),
-        )
+        inputs = tuple(TurnInput(state.at_corner(corner), shape) for state in states)
+        return cls(corner, shape, inputs)
 
 
 def _turns_at(
-    case: Case,
-    torques: Mapping[str, Torque],
+    states: Sequence[Machine],
     contour: Contour,
     corners: Sequence[Corner],
     declarations: Sequence[Declaration],
@@ -258,8 +245,7 @@ def _turns_at(
 
     The bounds of the friction as well, where every check is made there.
     """
-    states = machines(case)
-    tried = [_Tried.at(states, torques, contour, each) for each in corners]
+    tried = [_Tried.at(states, contour, each) for each in corners]
     bounds = declarations is TOLERANCED
     every = turns(
         [state for each in tried for state in each.inputs], POSITIONS, coarse=True, bounds=bounds
@@ -270,34 +256,31 @@ def _turns_at(
 
 def _alone(
     case: Case,
-    torques: Mapping[str, Torque],
+    states: Sequence[Machine],
     contour: Contour,
     corner: Corner,
     declarations: Sequence[Declaration],
 ) -> Outcome:
     try:
-        solved = _turns_at(case, torques, contour, (corner,), declarations)
+        solved = _turns_at(states, contour, (corner,), declarations)
     except CamError as error:
         return Outcome(corner, {}, str(error))
-    (outcome,) = _outcomes(case, torques, solved, declarations)
+    (outcome,) = _outcomes(case, solved, declarations)
     return outcome
 
 
-def _solution(
-    case: Case, torques: Mapping[str, Torque], tried: _Tried, solved: Sequence[Turn]
-) -> Solution:
+def _solution(case: Case, tried: _Tried, solved: Sequence[Turn]) -> Solution:
     """Solution of the turns at a corner."""
     corner, shape = tried.corner, tried.shape
     advance = corner.phase / case.mechanism.gear_ratio
     return solved_turns(
-        case, shape, tuple(_phased(each, corner) for each in solved), Tier.PREVIEW, torques,
+        case, shape, tuple(_phased(each, corner) for each in solved), Tier.PREVIEW,
         body=True, speed_contour=_early(shape, advance), advance=advance, error_bars=False,
     )  # fmt: skip
 
 
 def _outcomes(
     case: Case,
-    torques: Mapping[str, Torque],
     turns_at: Sequence[tuple[_Tried, tuple[Turn, ...]]],
     declarations: Sequence[Declaration],
 ) -> Iterator[Outcome]:
@@ -305,7 +288,7 @@ def _outcomes(
     first: dict[Corner, Solution] = {}  # of each set of loads
     for tried, turns_there in turns_at:
         try:
-            there = _solution(case, torques, tried, turns_there)
+            there = _solution(case, tried, turns_there)
         except CamError as error:
             solved.append((tried.corner, error))
         else:

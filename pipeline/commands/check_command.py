@@ -31,6 +31,7 @@ from camwright.pipeline.commands.terminal import (
 if TYPE_CHECKING:
     from xml.etree.ElementTree import Element
 
+    from camwright.pipeline.recomputation import Recomputation
     from camwright.pipeline.results.check_records import CheckRecord
     from camwright.pipeline.results.junit_report import Clock
     from camwright.pipeline.results.signatures import Signature
@@ -414,9 +415,7 @@ def _recomputed(target: Path, angles: int | None, seed: int | None) -> bool:
     """Whether a run is what its case gives; prints seed, drawn angles and each difference."""
     import secrets
 
-    from camwright.pipeline.recomputation import ANGLES, recompute
-    from camwright.pipeline.studies.valve_train import valve_record
-    from camwright.reports.sections import redraw
+    from camwright.pipeline.recomputation import ANGLES
 
     if not target.is_dir():
         raise InputError("--recompute", str(target), "stated with a run folder")
@@ -424,13 +423,11 @@ def _recomputed(target: Path, angles: int | None, seed: int | None) -> bool:
     say(f"recomputation with --seed {drawn}")
     with progress_shown() as progress:
         try:
-            made = recompute(
+            made = recomputed(
                 target,
                 angles=ANGLES if angles is None else angles,
                 seed=drawn,
                 progress=progress,
-                also=valve_record,
-                present=redraw,
             )
         except ResultError as error:
             say(str(error))
@@ -445,6 +442,37 @@ def _recomputed(target: Path, angles: int | None, seed: int | None) -> bool:
     if made.unseen:
         say(f"not compared: {', '.join(made.unseen)}")
     return not made.differences
+
+
+def recomputed(folder: Path, **options: Any) -> Recomputation:
+    """Recomputation of a run, its pages drawn again and compared too.
+
+    Parameters
+    ----------
+    options   see `recompute`
+    """
+    from dataclasses import replace
+    from tempfile import TemporaryDirectory
+
+    from camwright.pipeline.base import disk_cache
+    from camwright.pipeline.recomputation import copy_without, page_differences, recompute
+    from camwright.reports.page import PAGE
+    from camwright.reports.sections import redraw
+
+    made = recompute(folder, **options)
+    if not made.pages:
+        return made
+    with disk_cache.left_out(), TemporaryDirectory(prefix="camwright-") as home:
+        copy = Path(home) / "drawn"
+        copy_without(folder, copy, made.pages)
+        redraw(copy, made.pages)
+        differing = page_differences(folder, copy, made.pages)
+        if PAGE in differing:  # it names the pictures that are in the folder when it is drawn
+            redraw(copy, (PAGE,))
+            del differing[PAGE]
+            differing |= page_differences(folder, copy, {PAGE: made.pages[PAGE]})
+    words = (f"{name}: {each}" for name, each in differing.items())
+    return replace(made, differences=(*made.differences, *words), pages={})
 
 
 def _checked_run(folder: Path) -> tuple[dict[str, Any], Clock]:

@@ -85,27 +85,32 @@ def run(
         design = design.with_positions(positions)
     if not (resume and _finished(out, design.sha256, depth)):
         from camwright.pipeline.results.field_output import Shown
-        from camwright.pipeline.run import run_case
-        from camwright.pipeline.studies.valve_train import valve_record
+        from camwright.pipeline.run import CaseRun
         from camwright.reports import sections
 
-        drawings = sections.Ahead(sections.chosen(png=png))
-        with progress_shown() as progress:
-            run_case(
+        drawings = None if no_report else sections.Ahead(sections.chosen(png=png))
+        with (
+            progress_shown() as progress,
+            CaseRun(
                 design,
                 out,
                 depth=tier,
-                positions=positions,
                 jobs=jobs,
                 resume=resume,
                 replace=replace,
                 fields=Shown(fields),
                 progress=progress,
                 began=process_began(),
-                report=None if no_report else drawings.write,
-                ahead=None if no_report else drawings.begin,
-                also=valve_record,
-            )
+            ) as made,
+        ):
+            made.solve()
+            made.write()
+            if drawings is not None and tier is Tier.CERTIFIED:
+                drawings.begin(made.draft(), made.workers)
+            made.certify()
+            if drawings is not None:
+                drawings.write(made.draft())
+            made.finish()
     from camwright.pipeline.results.run_reader import read_run, read_summary, read_verdict
     from camwright.pipeline.results.verdict_summary import Places, trial_lines
 

@@ -20,6 +20,7 @@ In the order of the calculation:
 | `rolling_history`    | traction, creep, rolling fatigue, bore stress   | tau, sigma, Pa; xi     |
 | `cycle`              | turn with contact; columns of its table         |                        |
 | `speed_sweep`        | surge, contact force, torque over the speed     | F_n, N; T, N m         |
+| `valve_cam`          | machine motion of a valve cam                   | J*, kg m2; rad/s       |
 | `ripple_map`         | torque ripple by speed and engine load          | std ratio, -           |
 | `axial_pressure`     | pressure along the line at every position       | y, m; p, Pa            |
 | `guide_pressure`     | line load of the guides, pressure in the bores  | P', N/m; p, Pa         |

@@ -164,15 +164,15 @@ def _motion_with_cam(
 
 
 def study_of(
-    machine: Machine, torque: Torque, pitch: FollowerPath, rubbing: Rubbing | None = None
+    machine: Machine, pitch: FollowerPath, rubbing: Rubbing | None = None
 ) -> SpeedStudy | None:
-    """Crank speed of one load case; None without a crankshaft.
+    """Crank speed of one load case; None without a crankshaft or a torque.
 
     Guide friction follows from `rubbing`, without it from point supports. Reciprocating masses that
     the engine states are part of J(theta); their inertia torque at constant speed is subtracted.
     """
-    shaft = machine.crankshaft
-    if shaft is None:
+    shaft, torque = machine.crankshaft, machine.torque
+    if shaft is None or torque is None:
         return None
     values, inertia = _driving(torque, shaft.inertia)
     return speed_study(
@@ -203,19 +203,18 @@ class DrivenCam(NamedTuple):
     stall: float | None = None
 
 
-def driven_cam(
-    machine: Machine, torque: Torque | None, pitch: FollowerPath, rubbing: Rubbing
-) -> DrivenCam:
+def driven_cam(machine: Machine, pitch: FollowerPath, rubbing: Rubbing) -> DrivenCam:
     """Cam at the angles of `rubbing`, equal parts of a turn.
 
     With a torque and a crankshaft the speed is that of the crank with the cam; constant without
     them, and where the crank stalls, whose loads no check may rest on.
     """
     steady = readonly(np.full(rubbing.theta.size, machine.cam_speed))
-    if torque is None or machine.crankshaft is None or not machine.speed > 0:
+    torque, shaft = machine.torque, machine.crankshaft
+    if torque is None or shaft is None or not machine.speed > 0:
         return DrivenCam(steady)
     try:
-        _, after = _motions(machine, machine.crankshaft, torque, pitch, rubbing)
+        _, after = _motions(machine, shaft, torque, pitch, rubbing)
     except StallError as stall:
         return DrivenCam(steady, stall.crank_angle / machine.gear_ratio % FULL_TURN)
     except InputError:  # an engine torque that does not vary
@@ -231,7 +230,6 @@ class SpeedRipple(Mapping[str, tuple[float, float]]):
     """
 
     machines: Sequence[Machine]
-    torques: Mapping[str, Torque]
     pitch: FollowerPath
     rubbing: Mapping[str, Rubbing]
 
@@ -239,13 +237,11 @@ class SpeedRipple(Mapping[str, tuple[float, float]]):
     def _ripple(self) -> dict[str, tuple[float, float]]:
         ripple: dict[str, tuple[float, float]] = {}
         for machine in self.machines:
-            name, shaft = machine.load_case, machine.crankshaft
-            if shaft is None or name not in self.torques or not machine.speed > 0:
+            name, shaft, torque = machine.load_case, machine.crankshaft, machine.torque
+            if shaft is None or torque is None or not machine.speed > 0:
                 continue
             try:
-                motions = _motions(
-                    machine, shaft, self.torques[name], self.pitch, self.rubbing.get(name)
-                )
+                motions = _motions(machine, shaft, torque, self.pitch, self.rubbing.get(name))
             except CamError:
                 ripple[name] = (np.nan, np.nan)
             else:
@@ -291,7 +287,6 @@ def _motions(
 
 def consistency(
     machine: Machine,
-    torque: Torque,
     pitch: FollowerPath,
     study: SpeedStudy | None,
     *,
@@ -301,6 +296,8 @@ def consistency(
 ) -> tuple[Implied, ...]:
     """Inertia, power, energy and work against the values that the other inputs imply.
 
+    Empty without a torque.
+
     Parameters
     ----------
     demand : array (n,)   crank torque about its mean, N m, for which the lift is drawn; None where
@@ -308,7 +305,9 @@ def consistency(
                           for a torque of zero
     measured : bool       the measured speed is that of this load case
     """
-    ratio, shaft = machine.gear_ratio, machine.crankshaft
+    ratio, shaft, torque = machine.gear_ratio, machine.crankshaft, machine.torque
+    if torque is None:
+        return ()
     system = replace(machine.system, rubbing=rubbing)
     theta = uniform_turn(torque.theta.size)
     loads = follower_loads(pitch, system, machine.speed / ratio, theta)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import TypedDict
 
@@ -13,7 +13,7 @@ from camwright.geometry.follower_path import FollowerPath
 from camwright.pipeline.base.units import in_unit
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.load_case_torque import engine_torque
-from camwright.pipeline.case.machine import Machine, machines
+from camwright.pipeline.case.machine import Machine
 from camwright.pipeline.case.requirements_section import LoadCase
 from camwright.pipeline.cycle.speed_sweep import highest_speed
 from camwright.pipeline.engine.cylinder import CylinderEngine
@@ -91,7 +91,7 @@ class RippleMap:
 
 
 def ripple_map(
-    case: Case, torques: Mapping[str, Torque], pitch: FollowerPath, rubbing: Rubbing
+    case: Case, states: Sequence[Machine], pitch: FollowerPath, rubbing: Rubbing
 ) -> RippleMap | None:
     """Ripple from the slowest load case to over-speed; None without a running engine.
 
@@ -101,7 +101,7 @@ def ripple_map(
 
     Parameters
     ----------
-    torques : mapping    engine torque by load case
+    states : sequence    machine in each load case, with its torque
     rubbing : Rubbing    of the guides, from the solved first load case
 
     Raises
@@ -109,6 +109,7 @@ def ripple_map(
     CamError
         If a working cycle cannot be solved.
     """
+    torques = {each.load_case: each.torque for each in states if each.torque is not None}
     running = [
         state
         for state in case.load_cases
@@ -116,9 +117,9 @@ def ripple_map(
     ]
     if not running:
         return None
-    state, every = running[0], machines(case)
-    machine = next(each for each in every if each.load_case == state.name)
-    top, least = highest_speed(every), min(each.speed for each in running)
+    state = running[0]
+    machine = next(each for each in states if each.load_case == state.name)
+    top, least = highest_speed(states), min(each.speed for each in running)
     speeds = np.linspace(least if least < top else 0.5 * top, top, _SPEEDS)
     engine = case.engine
     if isinstance(engine, CylinderEngine) and state.torque is None:

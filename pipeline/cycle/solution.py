@@ -21,7 +21,6 @@ from camwright.pipeline.base.store import Arrays
 from camwright.pipeline.base.worker_processes import Crew
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.limits import END_MEAN_LENGTH
-from camwright.pipeline.case.load_case_torque import engine_torques
 from camwright.pipeline.case.machine import Machine, machines
 from camwright.pipeline.contact.bore_stress import bore_stress
 from camwright.pipeline.contact.certificate import EDGES, contact_meshes
@@ -216,7 +215,7 @@ def solution(
     contour: Contour,
     tier: Tier = Tier.CYCLE,
     *,
-    torques: Mapping[str, Torque] | None = None,
+    torques: Mapping[str, Torque],
     positions: int | None = None,
     coarse: bool = False,
     bounds: bool = True,
@@ -227,7 +226,7 @@ def solution(
 
     Parameters
     ----------
-    torques : mapping     engine torque by load case; None: computed from the case
+    torques : mapping     engine torque by load case
     positions : int       per cam turn; None: those of the case
     coarse : bool         coarse guide mesh, constant crank speed: for ratios of demands
     bounds : bool         see `turns`
@@ -238,28 +237,22 @@ def solution(
     CamError
         If a mesh, the contact or the guides cannot be solved.
     """
-    states = machines(case)
-    turns = turns_of(states, contour, case, torques, positions, coarse=coarse, bounds=bounds)
-    return solved_turns(
-        case, contour, turns, tier, torques, coarse=coarse, store=store, progress=progress
-    )
+    count = case.solver.positions if positions is None else positions
+    turns = turns_of(machines(case, torques), contour, count, coarse=coarse, bounds=bounds)
+    return solved_turns(case, contour, turns, tier, coarse=coarse, store=store, progress=progress)
 
 
 def turns_of(
     states: tuple[Machine, ...],
     contour: Contour,
-    case: Case,
-    torques: Mapping[str, Torque] | None = None,
-    positions: int | None = None,
+    positions: int,
     *,
     coarse: bool = False,
     bounds: bool = True,
 ) -> tuple[Turn, ...]:
     """Loads of the machine in every load case, before the contact is solved; see `turns`."""
-    known = engine_torques(case) if torques is None else torques
-    count = case.solver.positions if positions is None else positions
-    inputs = [TurnInput(each, contour, known.get(each.load_case)) for each in states]
-    return turns(inputs, count, coarse=coarse, bounds=bounds)
+    inputs = [TurnInput(each, contour) for each in states]
+    return turns(inputs, positions, coarse=coarse, bounds=bounds)
 
 
 def solved_turns(
@@ -267,7 +260,6 @@ def solved_turns(
     contour: Contour,
     turns: tuple[Turn, ...],
     tier: Tier,
-    torques: Mapping[str, Torque] | None,
     *,
     coarse: bool = False,
     store: ContactStore = NOT_STORED,
@@ -287,7 +279,6 @@ def solved_turns(
     body : bool               whether the contour encloses a body; None: to be determined
     error_bars : bool         compute the errors by sampling and by every second crank angle
     """
-    known = engine_torques(case) if torques is None else torques
     states = tuple(each.machine for each in turns)
     pair = contact_pair(states[0], contour)
     mesh = bodies = None
@@ -316,11 +307,17 @@ def solved_turns(
     solved = Solution(case, contour, states, tier, mesh, cycles, coarse=coarse)
     if coarse:
         return solved
-    solved = replace(solved, crank_speed=SpeedRipple(states, known, pitch, rubbing))
+    solved = replace(solved, crank_speed=SpeedRipple(states, pitch, rubbing))
     if not error_bars:
         return solved
-    halved = {name: each.resampled(each.theta.size // 2) for name, each in known.items()}
-    return replace(solved, crank_speed_halved=SpeedRipple(states, halved, pitch, rubbing))
+    halved = tuple(_halved(each) for each in states)
+    return replace(solved, crank_speed_halved=SpeedRipple(halved, pitch, rubbing))
+
+
+def _halved(machine: Machine) -> Machine:
+    """The machine with its torque at every second crank angle."""
+    torque = machine.torque
+    return replace(machine, torque=torque and torque.resampled(torque.theta.size // 2))
 
 
 def certified_solution(

@@ -18,7 +18,6 @@ from camwright.pipeline.follower.friction_coupling import Guided, MovingFollower
 from camwright.pipeline.follower.guide_friction import FrictionBounds, friction_bounds
 from camwright.pipeline.follower.guide_reactions import KNOTS, GuidePair, GuideReactions
 from camwright.pipeline.follower.stem_beam import Stem
-from camwright.pipeline.torque.torque import Torque
 
 COARSE_KNOTS = 5  # of a guide, for ratios of demands
 
@@ -64,30 +63,21 @@ class Turn(Displayed):
 
 
 class TurnInput(NamedTuple):
-    """Machine in a load case, its cam, and the torque of its engine; None without one."""
+    """Machine in a load case, and its cam."""
 
     machine: Machine
     contour: Contour
-    torque: Torque | None
 
 
-def turn(
-    machine: Machine,
-    contour: Contour,
-    torque: Torque | None,
-    positions: int,
-    *,
-    coarse: bool = False,
-) -> Turn:
+def turn(machine: Machine, contour: Contour, positions: int, *, coarse: bool = False) -> Turn:
     """Loads and guide reactions of a load case.
 
     Parameters
     ----------
-    torque : Torque     of the engine; None without one
     positions : int     equal cam angles of the turn
     coarse : bool       coarse guide mesh, constant crank speed
     """
-    (one,) = turns([TurnInput(machine, contour, torque)], positions, coarse=coarse)
+    (one,) = turns([TurnInput(machine, contour)], positions, coarse=coarse)
     return one
 
 
@@ -107,7 +97,8 @@ def turns(
         for each in inputs
         for system in (each.machine.system, *(_rubbed(each.machine) if bounds else ()))
     )
-    engine = {id(torque): torque for _, _, torque in inputs if torque is not None}
+    torques = (each.machine.torque for each in inputs)
+    engine = {id(torque): torque for torque in torques if torque is not None}
     before = {
         key: torque.without_mean().resampled(positions).total for key, torque in engine.items()
     }
@@ -116,7 +107,7 @@ def turns(
             each,
             theta,
             strokes,
-            before.get(id(each.torque)),
+            before.get(id(each.machine.torque)),
             coarse=coarse,
         )
         for each in inputs
@@ -190,9 +181,9 @@ def _turn(
     coarse: bool,
 ) -> Turn:
     """Turn of one load case; `before` (n,), N m, is the torque of the engine less its mean."""
-    machine, contour, torque = turn_input
-    nominal, driving = strokes.of(turn_input, machine.system), None if coarse else torque
-    loads = nominal.loads
+    machine, contour = turn_input
+    nominal = strokes.of(turn_input, machine.system)
+    loads, driving = nominal.loads, replace(machine, torque=None) if coarse else machine
     after = None if before is None else before - loads.cam_torque / machine.gear_ratio
     return Turn(
         machine=machine,
@@ -203,8 +194,8 @@ def _turn(
         ),
         guides=nominal.reactions,
         friction_residual=nominal.residual,
-        driven=driven_cam(machine, driving, contour.pitch, loads.rubbing),
+        driven=driven_cam(driving, contour.pitch, loads.rubbing),
         torque_before=before,
         torque_after=after,
-        throughput=None if torque is None else torque.throughput,
+        throughput=None if machine.torque is None else machine.torque.throughput,
     )

@@ -13,7 +13,7 @@ from camwright.geometry.contour import Contour
 from camwright.geometry.errors import GeometryError
 from camwright.geometry.lift import Lift
 from camwright.pipeline.case.case import Case
-from camwright.pipeline.case.machine import Corner
+from camwright.pipeline.case.machine import Corner, machines
 from camwright.pipeline.checks.check import Check, Declaration
 from camwright.pipeline.checks.registry import CHECKS, DECLARED, TOLERANCED, checks_of
 from camwright.pipeline.checks.tolerance_corners import (
@@ -55,13 +55,11 @@ class Preview:
     Parameters
     ----------
     solved : Solution
-    torques : mapping   engine torque by load case
     governing : tuple   tolerance corners, besides the nominal, at which every check is judged
     worst : tuple       those at which the check of the remedy is judged
     """
 
     solved: Solution
-    torques: Mapping[str, Torque]
     governing: tuple[Corner, ...]
     worst: tuple[Corner, ...]
     _outcomes: dict[str, dict[Corner, Outcome]] = field(default_factory=dict, init=False)
@@ -80,19 +78,20 @@ class Preview:
         known = self._outcomes.setdefault(declared.id, {})
         left = [corner for corner in corners if corner not in known]
         if left:
-            case, contour = self.solved.case, self.solved.contour
-            made = outcomes(case, self.torques, contour, left, [declared])
+            solved = self.solved
+            made = outcomes(solved.case, solved.machines, solved.contour, left, [declared])
             known |= {outcome.corner: outcome for outcome in made}
         return tuple(known[corner] for corner in corners)
 
     @cached_property
     def checks(self) -> Mapping[str, Check]:
         """Every must-have check of the design at its worst corner, by id."""
-        case, contour = self.solved.case, self.solved.contour
-        made = checks_of(self.solved, _DECIDING)
+        solved = self.solved
+        made = checks_of(solved, _DECIDING)
         if self.governing:
             toleranced = [one for one in _DECIDING if one in TOLERANCED]
-            tried = outcomes(case, self.torques, contour, (NOMINAL, *self.governing), toleranced)
+            corners = NOMINAL, *self.governing
+            tried = outcomes(solved.case, solved.machines, solved.contour, corners, toleranced)
             made = governed(made, tried)
         return {one.id: one for one in made}
 
@@ -145,7 +144,7 @@ class Judge:
             name: known.get(next(iter(self.corners.get(name, ())), ""), NOMINAL) for name in wanted
         }
         corners = tuple(dict.fromkeys(governing.values()))
-        made = checks_at(case, self.torques, contour, corners, declared)
+        made = checks_at(case, machines(case, self.torques), contour, corners, declared)
         by_corner = {
             corner: {one.id: one for one in checks}
             for corner, checks in zip(corners, made, strict=True)
@@ -170,7 +169,6 @@ class Judge:
         of_any = {names[0] for names in self.corners.values() if names}
         return Preview(
             solved,
-            self.torques,
             governing=tuple(self._named(case, {name for names in of_wanted for name in names[:1]})),
             worst=tuple(self._named(case, of_any.union(*of_wanted))),
         )

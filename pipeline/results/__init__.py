@@ -15,6 +15,7 @@ In the order of a run:
 | `folder_exchange`      | runs and added files take their place, whole at any interruption      |
 | `run_folder`           | the folder of a run while it is written; resumption                   |
 | `run_records`          | columns of the tables, key figures, records of trial and crank speed  |
+| `valve_train`          | machine motion of a valve cam in ``run.json``                         |
 | `trial_writer`         | files of a trial                                                      |
 | `field_file`           | VTKHDF file of fields over the turn, VTU file of the ends: readers    |
 | `contact_zone`         | fine mesh of a body below its contact, interpolation on it            |

@@ -173,13 +173,13 @@ def pressure_arrays(cycles: tuple[Cycle, ...]) -> dict[str, Array]:
     }
 
 
-def headline(torques: Mapping[str, Torque], trial: Trial) -> dict[str, float | None]:
+def headline(trial: Trial) -> dict[str, float | None]:
     """Key figures of the final trial in mm, N and MPa; None where not applicable.
 
     Loads are those of the load cases in which the follower neither leaves the cam nor locks.
     """
     first, contour = trial.cycles[0], trial.contour
-    design = torques.get(first.load_case)
+    design = first.machine.torque
     loaded = [cycle for cycle in trial.cycles if cycle.end is None]
 
     def over(measure: Callable[[Cycle], Array]) -> float | None:
@@ -405,7 +405,7 @@ def hertz_difference(cycles: Sequence[Cycle]) -> dict[str, Json] | None:
 
 
 def crank_speed_record(
-    torques: Mapping[str, Torque], trial: Trial, required: Array | None
+    trial: Trial, required: Array | None
 ) -> tuple[dict[str, Json], Values | None]:
     """Crank speed with and without the cam, and consistency and plausibility of the inputs.
 
@@ -421,15 +421,16 @@ def crank_speed_record(
     """
     case = trial.case
     speed: dict[str, Json] = {}
+    torques = {c.load_case: c.machine.torque for c in trial.cycles if c.machine.torque is not None}
     odd = implausible(case, torques)
     findings: list[Json] = [{"load_case": "", **one.as_record()} for one in odd]
     columns: Values | None = None
     running = [c for c in trial.cycles if c.load_case in torques and c.machine.speed > 0]
     for number, cycle in enumerate(running):
         machine, name, pitch = cycle.machine, cycle.load_case, trial.contour.pitch
-        torque, rubbing, study = torques[name], cycle.loads.rubbing, None
+        rubbing, study = cycle.loads.rubbing, None
         try:
-            study = study_of(machine, torque, pitch, rubbing)
+            study = study_of(machine, pitch, rubbing)
         except CamError as error:  # a crank that stalls
             speed[name] = {"refused": str(error)}
         if study is not None:
@@ -437,7 +438,6 @@ def crank_speed_record(
             columns = study.columns() if number == 0 else columns
         agreement = consistency(
             machine,
-            torque,
             pitch,
             study,
             demand=required if number == 0 else None,

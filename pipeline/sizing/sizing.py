@@ -493,7 +493,7 @@ class _SizeSearch:
         if any(each.must_have and each.status == "fail" for each in nominal):
             return trial
         case, contour = trial.case, trial.contour
-        worst = outcomes(case, self.torques, contour, spring_corners(case), ones)
+        worst = outcomes(case, trial.solution.machines, contour, spring_corners(case), ones)
         judged = governed(nominal, (*trial.corners, *worst))
         beyond = {one.id: one for one in judged if one.status == "fail" and not one.not_proven}
         return replace(trial, checks=tuple(beyond.get(each.id, each) for each in trial.checks))

@@ -30,6 +30,7 @@ In the order of the calculation:
 | `shadow_prices`         | change of the ripple per unit of a limit     | N m per unit            |
 | `infeasibility`         | conflicting limits, feasible relaxations     | factor                  |
 | `fe_correction`         | correction by finite elements; JSON record   | ratio                   |
+| `synthesis_rounds`      | rounds of synthesis and correction           |                         |
 
 Imports `geometry`, `base`, `engine`, `contact`, `follower`, `case`, `cycle` and `checks`.
 """

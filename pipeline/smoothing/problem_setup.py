@@ -58,12 +58,12 @@ def problem_of(case: Case, torques: Mapping[str, Torque]) -> Problem:
     closing_preload(case)  # refuses one that is not positive
     if "preload" in smoothing.free and smoothing.preload_range is not None:
         require_closing("smoothing.preload_range", smoothing.preload_range[0], dead)
-    states = machines(case)
+    states = machines(case, torques)
     first = {each.spring.preload: each.load_case for each in reversed(states)}
     scenarios = [
         replace(scenario, swept=each.load_case == first[each.spring.preload])
         for each in states
-        for scenario in _scenarios(case, each, torques.get(each.load_case))
+        for scenario in _scenarios(case, each)
     ]
     if smoothing.robust_weight > 0:
         named = {item.name: item for item in scenarios}
@@ -144,9 +144,9 @@ def _objective(case: Case) -> Objective:
     return objective_of(weights, [round(order * ratio) for order in smoothing.harmonic_orders])
 
 
-def _scenarios(case: Case, machine: Machine, torque: Torque | None) -> list[Scenario]:
+def _scenarios(case: Case, machine: Machine) -> list[Scenario]:
     """The load case and, where the case includes them, its tolerance corners."""
-    points = _points(case)
+    points, torque = _points(case), machine.torque
     values = np.zeros(points)  # at rest the engine has no torque
     if torque is not None:
         values = torque.without_mean().resampled(points).total

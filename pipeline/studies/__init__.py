@@ -9,12 +9,10 @@ In the order of the calculation:
 | `two_cylinders_document` | options, document and text of this contact    | MPa, mm             |
 | `smoother_comparison`    | smoothers on one case by previews             | N m                 |
 | `cam_inspection`         | measured cam: fit, cycle, checks              | m; um in the record |
-| `valve_cam`              | machine motion of a valve cam                 | J*, kg m2; rad/s    |
-| `valve_train`            | record of the machine motion in ``run.json``  |                     |
 | `redesign`               | Pareto front over the catalogues              |                     |
 | `design`                 | from a torque to a case with all parts        | E, J                |
 | `papers`                 | published values, recomputed                  |                     |
 | `batch`                  | studies of many designs                       |                     |
 
-Imported by `commands`; the valve cam by `papers` as well.
+Imported by `commands`.
 """

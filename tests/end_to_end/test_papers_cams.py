@@ -33,7 +33,7 @@ POSITIONS = 72
 def eccentric():
     case = read_case(PAPERS / "eccentric.toml")
     contour = case.contour(cam_lift(case, {}))
-    return case, contour, turns_of(machines(case), contour, case, {}, POSITIONS)[0]
+    return case, contour, turns_of(machines(case), contour, POSITIONS)[0]
 
 
 LINKAGE = Eccentric(0.02, 0.08)

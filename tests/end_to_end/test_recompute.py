@@ -17,18 +17,20 @@ from typing import Any
 import h5py
 import numpy as np
 import pytest
+from drawn_run import drawn_run
 from PIL import Image
 from test_run import small
 
 from camwright.geometry.errors import InputError
 from camwright.pipeline.base.files import files_in, npz_bytes, sha256_of
 from camwright.pipeline.case.case_file import read_case, with_values
+from camwright.pipeline.commands import check_command
 from camwright.pipeline.contact.tiers import Tier
-from camwright.pipeline.recomputation import MOST_ANGLES, Recomputation, recompute
+from camwright.pipeline.recomputation import MOST_ANGLES, Recomputation
 from camwright.pipeline.results import check_records, run_reader, signoff
 from camwright.pipeline.results.file_differences import Kind, Origin, classes_of
 from camwright.pipeline.run import run_case
-from camwright.reports.sections import PARTS, redraw, report
+from camwright.reports.sections import PARTS, report
 
 Command = Callable[..., tuple[int, str, str]]
 TRIAL = "trial_1"
@@ -136,7 +138,7 @@ def page_edited(run: Path) -> None:
 
 
 def recomputed(run: Path, **options: Any) -> Recomputation:
-    return recompute(run, jobs=1, present=redraw, **({"angles": 0} | options))
+    return check_command.recomputed(run, jobs=1, **({"angles": 0} | options))
 
 
 # --- a screening: a second each
@@ -231,7 +233,7 @@ def test_options_without_recomputation_are_refused(quick: Path, command: Command
 @pytest.fixture(scope="module")
 def certified(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("certified")
-    run_case(small(folder), folder / "run", jobs=1, report=report)
+    drawn_run(small(folder), folder / "run", jobs=1)
     return folder / "run"
 
 

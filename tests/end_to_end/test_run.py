@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 import printed_text
 import pytest
+from drawn_run import drawn_run
 from record_validation import keeps_schema, schema_errors
 from run_recomputed import RECOMPUTED, RunFiles, line_contact_by_quadrature
 
@@ -31,7 +32,6 @@ from camwright.pipeline.cycle.solution import CONTACT
 from camwright.pipeline.results import run_reader
 from camwright.pipeline.run import run_case
 from camwright.pipeline.smoothing.required_lift import cam_lift
-from camwright.reports.sections import report
 
 ROOT = Path(__file__).resolve().parents[2]
 POSITIONS = 108
@@ -79,9 +79,9 @@ def finished(tmp_path_factory: pytest.TempPathFactory) -> tuple[Case, Path, dict
     folder = tmp_path_factory.mktemp("run")
     case, out = small(folder), folder / "out"
     with pytest.raises(KeyboardInterrupt):
-        run_case(case, out, progress=Recorder(stop_after=3), report=report)
+        drawn_run(case, out, progress=Recorder(stop_after=3))
     assert not out.exists()
-    run = run_case(case, out, resume=True, jobs=1, progress=Silent(), report=report)
+    run = drawn_run(case, out, resume=True, jobs=1, progress=Silent())
     return case, out, dict(run.summary)
 
 
@@ -371,7 +371,7 @@ def test_folder_of_another_case_is_refused(
     _, out, summary = finished
     other = small(tmp_path, preload='"250 N"')
     with pytest.raises(ResultError, match="holds the run of"):
-        run_case(other, out, progress=Silent(), report=report)
+        run_case(other, out, progress=Silent())
     assert json.loads((out / "run.json").read_text()) == summary
 
 
@@ -381,7 +381,7 @@ def test_undercut_is_a_verdict(tmp_path: Path) -> None:
     text = (tmp_path / "case.toml").read_text().replace('kind = "moving_average"', 'kind = "none"')
     (tmp_path / "case.toml").write_text(text)
     case = read_case(tmp_path / "case.toml")
-    summary = run_case(case, tmp_path / "out", progress=Silent(), report=report).summary
+    summary = drawn_run(case, tmp_path / "out", progress=Silent()).summary
     assert summary["verdict"] == "fail"
     assert "undercut" in summary["binding"]
     assert "contact_pressure" in summary["binding"], "an unknown contact must not pass"

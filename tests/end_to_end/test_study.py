@@ -521,7 +521,7 @@ def test_a_kept_preview_is_solved_once(folder: Path, monkeypatch: pytest.MonkeyP
             return _original(*arguments, **options)
 
         monkeypatch.setattr(module, "solve", counted)
-    monkeypatch.setattr(run, "trials_of", None)
+    monkeypatch.setattr(run, "trials", None)
     study = read_study(folder / "study.toml")
     templates = read_templates(folder, study.cases)
     plan = study_run.planned(study, templates)
@@ -534,6 +534,32 @@ def test_a_kept_preview_is_solved_once(folder: Path, monkeypatch: pytest.MonkeyP
     page = designs.presented(files)
     assert set(files) < set(page) and "8_report.html" in page and solved == ["solve"] * 2
     assert page == designs.run_folder(task, 0) | {CLOCK: page[CLOCK]}
+
+
+@pytest.mark.parametrize("kept", [True, False])
+def test_files_that_cannot_be_written_lose_no_row(
+    folder: Path, monkeypatch: pytest.MonkeyPatch, kept: bool
+) -> None:
+    """The row is sent before the files of its run; of a design that is not kept none is written."""
+    from camwright.pipeline import run
+
+    written: list[Any] = []
+
+    def full(_: Any, trial: Any) -> None:
+        written.append(trial)
+        raise ResultError("No space left on device")
+
+    monkeypatch.setattr(run, "write_trial_files", full)
+    study = read_study(folder / "study.toml")
+    templates = read_templates(folder, study.cases)
+    plan = study_run.planned(study, templates)
+    task = next(plan.tasks(study.tier)).alone(0)
+    designs, sent = DesignSolver(templates, plan.settings), list[Any]()
+    monkeypatch.setattr(Wanted, "takes", lambda *_: kept)
+    designs.solved_and_run(task, 0, Wanted("open"), sent.append)
+    row, files = sent
+    assert row == designs.solved(task, 0) and row["screen"] != "error"
+    assert files == {} and len(written) == kept
 
 
 def test_a_design_that_kills_its_process_is_a_row(folder: Path) -> None:

@@ -24,6 +24,7 @@ from camwright.pipeline.cycle.turn import TurnInput, turn, turns
 from camwright.pipeline.preview import preview_case
 from camwright.pipeline.smoothing.required_lift import cam_lift
 from camwright.pipeline.smoothing.smoothers import Smoother
+from camwright.pipeline.solver import solve
 
 GX120_CASE = Path(__file__).resolve().parents[2] / "cases" / "gx120.toml"
 GX120 = GX120_CASE.read_text(encoding="utf-8")
@@ -48,11 +49,11 @@ def by_name(case):
 def test_a_load_case_with_its_own_preload_changes_the_spring_force_by_the_difference(torques):
     case = parse_case(GX120 + SOFT)
     contour = cam(case, torques)
-    idle, soft = (turn(each, contour, torques["idle"], 72) for each in machines(case)[:2])
+    idle, soft = (turn(each, contour, 72) for each in machines(case, torques)[:2])
     np.testing.assert_allclose(idle.loads.spring_force - soft.loads.spring_force, 121.0, atol=1e-9)
     plain = cam(parse_case(GX120), torques)
     np.testing.assert_array_equal(contour.pitch.lift.values, plain.pitch.lift.values)
-    solution = solved_turns(case, contour, (soft,), Tier.PREVIEW, {})
+    solution = solved_turns(case, contour, (soft,), Tier.PREVIEW)
     least = 121.0 + case.spring.rate * contour.pitch.lift.lowest.value
     expected = float(sampled_least(solution.cycles[0].loads_between.normal_force)) / least
     assert contact_force_margin(solution).demand == pytest.approx(expected, rel=1e-12)
@@ -60,8 +61,8 @@ def test_a_load_case_with_its_own_preload_changes_the_spring_force_by_the_differ
     raised = replace(
         contour, pitch=replace(pitch, lift=replace(pitch.lift, values=pitch.lift.values + 2e-3))
     )
-    higher = turn(machines(case)[1], raised, torques["idle"], 72)
-    solution = solved_turns(case, raised, (higher,), Tier.PREVIEW, {})
+    higher = turn(machines(case, torques)[1], raised, 72)
+    solution = solved_turns(case, raised, (higher,), Tier.PREVIEW)
     force = float(sampled_least(solution.cycles[0].loads_between.normal_force))
     expected = force / (least + 2e-3 * case.spring.rate)
     assert contact_force_margin(solution).demand == pytest.approx(expected, rel=1e-9)
@@ -80,6 +81,29 @@ def test_there_is_a_machine_for_every_load_case_with_its_speed_and_preload():
     assert idle.cam_speed == pytest.approx(0.5 * 1500 * np.pi / 30, rel=1e-12)
     assert (still.speed, still.crank_speed) == (0.0, CREEP)  # it creeps
     assert idle.cam is soft.cam and idle.follower is case.roller
+
+
+def test_each_machine_has_the_torque_of_its_load_case():
+    """None at standstill and over-speed; a machine is known by its parts alone."""
+    case = parse_case(GX120 + '\n[[load_case]]\nname = "fast"\nspeed = "3000 rpm"\n')
+    torques = engine_torques(case)
+    found = machines(case, torques)
+    assert found[0].torque is torques["idle"] and found[1].torque is torques["fast"]
+    assert [each.load_case for each in found if each.torque is None] == ["standstill", "over-speed"]
+    assert found == machines(case) and found[0].at_corner(Corner("a", mass=1.1)).torque is not None
+
+
+def test_a_changed_case_is_solved_with_its_own_torque(torques):
+    """Nothing of the torque is held by the case, of which a copy at another speed is made."""
+    case = parse_case(GX120).with_positions(72)
+    contour = cam(case, torques)
+    idle = solve(case, contour, tier=Tier.SCREENING)
+    (state,) = case.load_cases
+    fast = case.model_copy(update={"load_cases": (state.model_copy(update={"speed": 300.0}),)})
+    own, solved = engine_torques(fast)["idle"], solve(fast, contour, tier=Tier.SCREENING)
+    torque = solved.solution.machine.torque
+    np.testing.assert_array_equal(torque.total, own.total)
+    assert np.abs(torque.total - idle.solution.machine.torque.total).max() > 1.0
 
 
 def test_the_machine_of_a_case_by_hand():
@@ -107,7 +131,8 @@ def test_the_machine_of_a_case_by_hand():
 def test_bounds_of_the_friction_are_those_solved_at_once(torques):
     case = parse_case(GX120)
     contour = case.contour(cam_lift(case, torques))
-    inputs = [TurnInput(each, contour, torques["idle"]) for each in machines(case)]
+    states = (replace(each, torque=torques["idle"]) for each in machines(case))
+    inputs = [TurnInput(each, contour) for each in states]
     for early, late in zip(turns(inputs, 72), turns(inputs, 72, bounds=False), strict=True):
         for name in ("least", "nominal", "greatest"):
             one, other = (getattr(each.friction, name).normal_force for each in (early, late))
@@ -119,7 +144,8 @@ def test_a_load_case_without_bounds_of_the_friction_leaves_those_of_the_others(
 ):
     case = parse_case(GX120)
     contour = case.contour(cam_lift(case, torques))
-    inputs = [TurnInput(each, contour, torques["idle"]) for each in machines(case)]
+    states = (replace(each, torque=torques["idle"]) for each in machines(case))
+    inputs = [TurnInput(each, contour) for each in states]
     refused = inputs[1].machine.cam_speed
 
     def refusing(strokes, *rest):
@@ -165,7 +191,7 @@ def test_half_the_compensation_halves_the_torque_that_the_cam_takes(torques):
     half = parse_case(GX120.replace("gear_ratio = 2.0", "compensation = 0.5\ngear_ratio = 2.0"))
     taken = []
     for case in (parse_case(GX120), half):
-        loads = turn(machines(case)[0], cam(case, torques), torques["idle"], 720).loads
+        loads = turn(machines(case, torques)[0], cam(case, torques), 720).loads
         taken.append(loads.spring_force * loads.lift_slope)
     # The lift's spline is not linear in the torque: 1e-3 of the greatest.
     np.testing.assert_allclose(2.0 * taken[1], taken[0], atol=1e-3 * np.abs(taken[0]).max())
@@ -244,7 +270,7 @@ def test_at_rest_alone_no_speed_dependent_check_is_missing(loads):
     start = by_name(case)["start"]
     lift = parse_case(GX120).with_positions(72)
     contour = cam(lift, engine_torques(lift))
-    given = turn(start, contour, None, 72)
+    given = turn(start, contour, 72)
     pair, unknown = contact_pair(start, contour), ContactHistory.unknown(72)
     cycles = (Cycle(given, contour, pair, None, unknown),)
     solution = Solution(case, contour, (start,), Tier.CYCLE, None, cycles)

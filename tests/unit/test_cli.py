@@ -12,7 +12,7 @@ import sys
 from collections.abc import Callable
 from pathlib import Path
 from types import ModuleType
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
 import pytest
@@ -22,10 +22,12 @@ from small_run import check, small_case, summary, write_run, write_trial
 from camwright.geometry.errors import ContactError, ResultError
 from camwright.meshes.body_mesh import roller_mesh
 from camwright.meshes.element_size import ElementSize
+from camwright.pipeline.base.worker_processes import ALONE
 from camwright.pipeline.case.case_file import read_case
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.contact_store import kept_piece
 from camwright.pipeline.results.run_folder import RunFolder
+from camwright.reports import sections
 
 Command = Callable[..., tuple[int, str, str]]
 
@@ -34,14 +36,20 @@ ROOT = Path(__file__).resolve().parents[2]
 
 @pytest.fixture
 def runner(monkeypatch: pytest.MonkeyPatch) -> Callable[[Callable[..., Any]], None]:
-    """Puts a stand-in in the place of the run itself."""
+    """Puts a stand-in in the place of the run itself, and of its pages."""
 
-    def install(run_case: Callable[..., Any]) -> None:
+    def install(run: Callable[..., Any]) -> None:
         module = ModuleType("camwright.pipeline.run")
-        module.run_case = run_case  # type: ignore[attr-defined]
+        module.CaseRun = run  # type: ignore[attr-defined]
         monkeypatch.setitem(sys.modules, "camwright.pipeline.run", module)
 
+    monkeypatch.setattr(sections.Ahead, "begin", lambda *_: None)
+    monkeypatch.setattr(sections.Ahead, "write", _page)
     return install
+
+
+def _page(_: Any, folder: Path) -> None:
+    (folder / "8_report.html").write_text("")
 
 
 @pytest.fixture
@@ -52,29 +60,65 @@ def case_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return file
 
 
-def short_run(
-    case: Any,
-    out: Path,
-    *,
-    positions: int | None,
-    jobs: int | None,
-    resume: bool,
-    replace: bool,
-    fields: str,
-    progress: Any,
-    began: float,
-    depth: Tier,
-    report: Callable[[Path], object] | None,
-    ahead: object,
-    also: Callable[[Any], object],
-) -> None:
-    progress.stage("cycle")
-    progress.advance(1, 2)
-    with RunFolder(out, case, depth=depth, resume=resume, replace=replace) as folder:
-        write_trial(folder, [check("fail"), check("not_evaluated", id="x", must_have=False)])
-        if report is not None:
-            (folder.path / "8_report.html").write_text("")
-        folder.finish(summary("fail"))
+class ShortRun:
+    """A run whose cam fails a check, without a solution."""
+
+    workers = ALONE
+
+    def __init__(
+        self,
+        case: Any,
+        out: Path,
+        *,
+        jobs: int | None,
+        resume: bool,
+        replace: bool,
+        fields: str,
+        progress: Any,
+        began: float,
+        depth: Tier,
+    ) -> None:
+        self.case, self.out, self._progress = case, out, progress
+        self._folder = RunFolder(out, case, depth=depth, resume=resume, replace=replace)
+        self.steps: list[str] = []
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *raised: Any) -> None:
+        self._folder.__exit__(*raised)
+
+    def solve(self) -> None:
+        self.steps.append("solve")
+        self._progress.stage("cycle")
+        self._progress.advance(1, 2)
+
+    def write(self) -> None:
+        self.steps.append("write")
+        checks = [check("fail"), check("not_evaluated", id="x", must_have=False)]
+        write_trial(self._folder, checks)
+
+    def certify(self) -> None:
+        self.steps.append("certify")
+
+    def draft(self) -> Path:
+        self.steps.append("draft")
+        return self._folder.path
+
+    def finish(self) -> None:
+        self.steps.append("finish")
+        self._folder.finish(summary("fail"))
+
+
+def solving(work: Callable[[RunFolder], object]) -> type[ShortRun]:
+    """A run that does something else where it solves."""
+
+    class Run(ShortRun):
+        def solve(self) -> None:
+            work(self._folder)
+            super().solve()
+
+    return Run
 
 
 def is_one_line(text: str) -> bool:
@@ -84,7 +128,7 @@ def is_one_line(text: str) -> bool:
 def test_run_completes_with_0_whatever_the_verdict(
     case_file: Path, command: Command, runner: Any
 ) -> None:
-    runner(short_run)
+    runner(ShortRun)
     code, out, err = command("run", case_file, "--out", "runs/small", "--jobs", 2)
     assert code == 0
     assert out.startswith("verdict: FAIL: 1 check beyond its limit\n  1. Pressure angle: 3 deg, ")
@@ -95,21 +139,38 @@ def test_run_completes_with_0_whatever_the_verdict(
 
 
 def test_positions_reach_the_case(case_file: Path, command: Command, runner: Any) -> None:
-    seen: list[Any] = []
-
-    def look(case: Any, out: Path, **options: Any) -> None:
-        seen.append((case.solver.positions, options["positions"]))
-        short_run(case, out, **options)
-
-    runner(look)
+    seen: list[int] = []
+    runner(solving(lambda folder: seen.append(folder.case.solver.positions)))
     assert command("run", case_file, "--out", "run", "--positions", 48)[0] == 0
-    assert seen == [(48, 48)]
+    assert seen == [48]
+
+
+@pytest.mark.parametrize(
+    ("options", "steps"),
+    [
+        ((), "solve write draft certify draft finish"),
+        (("--no-report",), "solve write certify finish"),
+        (("--depth", "cycle"), "solve write certify draft finish"),
+    ],
+)
+def test_drawings_begin_before_the_certificate(
+    case_file: Path, command: Command, runner: Any, options: tuple[str, ...], steps: str
+) -> None:
+    made: list[ShortRun] = []
+
+    def kept(*arguments: Any, **stated: Any) -> ShortRun:
+        made.append(ShortRun(*arguments, **stated))
+        return made[-1]
+
+    runner(kept)
+    assert command("run", case_file, "--out", "run", *options)[0] == 0
+    assert " ".join(made[0].steps) == steps
 
 
 def test_resume_of_a_finished_run_solves_nothing(
     case_file: Path, command: Command, runner: Any
 ) -> None:
-    runner(short_run)
+    runner(ShortRun)
     first = command("run", case_file, "--out", "run")
     runner(lambda *_, **__: pytest.fail("solved again"))
     again = command("run", case_file, "--out", "run", "--resume")
@@ -121,7 +182,7 @@ def test_resume_of_a_finished_run_solves_nothing(
 def test_replace_takes_an_earlier_version_of_the_case_only(
     case_file: Path, command: Command, runner: Any
 ) -> None:
-    runner(short_run)
+    runner(ShortRun)
     assert command("run", case_file, "--out", "run")[0] == 0
     case_file.write_text(case_file.read_text().replace('"400 N"', '"401 N"'))
     code, _, err = command("run", case_file, "--out", "run")
@@ -166,11 +227,10 @@ def test_bad_arguments(
 def test_errors_of_the_run(
     case_file: Path, command: Command, runner: Any, error: Exception, message: str
 ) -> None:
-    def fails(case: Any, out: Path, **_: Any) -> None:
-        with RunFolder(out, case):
-            raise error
+    def fails(_: RunFolder) -> None:
+        raise error
 
-    runner(fails)
+    runner(solving(fails))
     code, out, err = command("run", case_file, "--out", "runs/small")
     assert (code, out) == (2, "")
     assert message in err
@@ -181,12 +241,11 @@ def test_errors_of_the_run(
 def test_a_full_disk_says_that_the_run_can_be_resumed(
     case_file: Path, command: Command, runner: Any
 ) -> None:
-    def fails(case: Any, out: Path, **_: Any) -> None:
-        with RunFolder(out, case) as folder:
-            kept_piece(folder.contact_store(1), "idle", 0, "a", lambda: {"p0": np.array([1.0])})
-            raise ResultError(f"{out}: No space left on device")
+    def fails(folder: RunFolder) -> None:
+        kept_piece(folder.contact_store(1), "idle", 0, "a", lambda: {"p0": np.array([1.0])})
+        raise ResultError(f"{folder.out.name}: No space left on device")
 
-    runner(fails)
+    runner(solving(fails))
     code, _, err = command("run", case_file, "--out", "run")
     assert code == 2
     assert is_one_line(err)
@@ -195,10 +254,10 @@ def test_a_full_disk_says_that_the_run_can_be_resumed(
 
 
 def test_debug_shows_where(case_file: Path, command: Command, runner: Any) -> None:
-    def fails(*_: Any, **__: Any) -> None:
+    def fails(_: RunFolder) -> None:
         raise ZeroDivisionError
 
-    runner(fails)
+    runner(solving(fails))
     code, _, err = command("run", case_file, "--out", "run", "--debug")
     assert code == 2
     assert "Traceback" in err and "in fails" in err
@@ -210,13 +269,12 @@ def test_a_signal_says_how_to_go_on(
 ) -> None:
     """After a mesh, too: gmsh would leave the process to end at once, without a word."""
 
-    def stopped(case: Any, out: Path, **_: Any) -> None:
+    def stopped(folder: RunFolder) -> None:
         roller_mesh(0.008, 0.003, 0.0, ElementSize(far_size=2e-3))
-        with RunFolder(out, case) as folder:
-            kept_piece(folder.contact_store(1), "idle", 0, "a", lambda: {"p0": np.array([1.0])})
-            os.kill(os.getpid(), number)
+        kept_piece(folder.contact_store(1), "idle", 0, "a", lambda: {"p0": np.array([1.0])})
+        os.kill(os.getpid(), number)
 
-    runner(stopped)
+    runner(solving(stopped))
     code, _, err = command("run", case_file, "--out", "run")
     assert code == 128 + number
     assert is_one_line(err)
@@ -248,11 +306,7 @@ def test_a_signal_that_is_ignored_at_the_start_stays_ignored(
 ) -> None:
     """As SIGHUP is by `nohup`."""
 
-    def signalled(case: Any, out: Path, **options: Any) -> None:
-        os.kill(os.getpid(), number)
-        short_run(case, out, **options)
-
-    runner(signalled)
+    runner(solving(lambda _: os.kill(os.getpid(), number)))
     before = signal.signal(number, signal.SIG_IGN)
     try:
         assert command("run", case_file, "--out", "run")[0] == 0
@@ -265,14 +319,14 @@ def test_a_signal_that_comes_twice_does_not_stop_the_clean_up(
 ) -> None:
     """A terminal that closes signals its processes, and its shell does once more."""
 
-    def stopped(case: Any, out: Path, **_: Any) -> None:
+    def stopped(_: RunFolder) -> None:
         try:
             os.kill(os.getpid(), signal.SIGHUP)
         finally:
             os.kill(os.getpid(), signal.SIGHUP)
             Path("cleaned").touch()
 
-    runner(stopped)
+    runner(solving(stopped))
     assert command("run", case_file, "--out", "run")[0] == 128 + signal.SIGHUP
     assert Path("cleaned").exists()
 

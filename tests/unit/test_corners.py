@@ -71,7 +71,7 @@ def torque():
 
 @pytest.fixture(scope="module")
 def tried():
-    return outcomes(case(), {}, cam())
+    return outcomes(case(), machines(case()), cam())
 
 
 @pytest.fixture(scope="module")
@@ -150,7 +150,8 @@ def test_a_tolerance_of_inertia_that_is_none_is_refused(line):
 
 def test_phase_and_inertia_move_the_speed_ripple_alone(torque):
     """Of the ripple's share little; of no other demand anything, as far as the crank goes."""
-    seen = {one.corner.name: one.demands for one in outcomes(case(), torque, cam())}
+    tried = outcomes(case(), machines(case(), torque), cam())
+    seen = {one.corner.name: one.demands for one in tried}
     name = "speed_reduction"
     assert seen["crank inertia high"][name] != pytest.approx(seen["nominal"][name], abs=1e-5)
     assert seen["phase low"][name] != pytest.approx(seen["phase high"][name], abs=1e-4)
@@ -172,9 +173,10 @@ def test_corners_of_the_same_loads_are_those_solved_alone(name):
         Corner("mass", mass=1.1),
         Corner("mass and inertia", mass=1.1, inertia=1.2, phase=-0.02),
     ]
-    together = outcomes(shipped, known, contour, tried)
+    states = machines(shipped, known)
+    together = outcomes(shipped, states, contour, tried)
     for corner, outcome in zip(tried, together, strict=True):
-        (alone,) = outcomes(shipped, known, contour, [corner])
+        (alone,) = outcomes(shipped, states, contour, [corner])
         assert len(alone.demands) > 20
         assert outcome.demands == pytest.approx(alone.demands, rel=1e-14)  # order of a sum
         assert (outcome.bounds, outcome.lost) == (alone.bounds, alone.lost)
@@ -245,7 +247,7 @@ def test_a_corner_without_a_solution_is_refused_alone(monkeypatch, demands):
         return turns(inputs, positions, coarse=coarse, bounds=bounds)
 
     monkeypatch.setattr(tolerance_corners, "turns", refusing)
-    seen = {one.corner.name: one for one in outcomes(case(), {}, cam())}
+    seen = {one.corner.name: one for one in outcomes(case(), machines(case()), cam())}
     assert seen["mass high"].refused == "guides: too heavy"
     assert seen["mass high"].demands == {}
     for name in ("nominal", "mass low", "friction high"):

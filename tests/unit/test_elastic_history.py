@@ -32,17 +32,17 @@ def gx120():
     return case, engine_torques(case)["idle"], case.contour(lift)
 
 
-def idle(case):
+def idle(case, torque=None):
     """The machine in its one load case."""
-    return machines(case)[0]
+    return machines(case, {} if torque is None else {"idle": torque})[0]
 
 
 def test_the_cam_turns_with_the_crank_that_it_drives(gx120):
     case, torque, contour = gx120
-    machine, speed = idle(case), case.load_cases[0].speed
-    given = turn(machine, contour, torque, POSITIONS)
+    machine, speed = idle(case, torque), case.load_cases[0].speed
+    given = turn(machine, contour, POSITIONS)
     assert np.ptp(given.driven.speed) > 0.005 * 0.5 * speed
-    study = study_of(machine, torque, contour.pitch, given.loads.rubbing)
+    study = study_of(machine, contour.pitch, given.loads.rubbing)
     np.testing.assert_allclose(given.driven.speed, 0.5 * study.after.speed[::10], rtol=1e-12)
     # over the time of the turn it is the speed of the load case; 72 samples of it
     assert 1.0 / np.mean(1.0 / given.driven.speed) == pytest.approx(0.5 * speed, rel=1e-5)
@@ -50,8 +50,8 @@ def test_the_cam_turns_with_the_crank_that_it_drives(gx120):
 
 def test_the_stem_rides_on_that_speed_and_says_so(gx120):
     case, torque, contour = gx120
-    machine = idle(case)
-    given = turn(machine, contour, torque, POSITIONS)
+    machine = idle(case, torque)
+    given = turn(machine, contour, POSITIONS)
     pair, unknown = contact_pair(machine, contour), ContactHistory.unknown(POSITIONS)
     cycle = Cycle(given, contour, pair, None, unknown)
     elastic = cycle.elastic
@@ -69,14 +69,13 @@ def test_the_stem_rides_on_that_speed_and_says_so(gx120):
 @pytest.mark.parametrize("known", ["no crankshaft", "no engine", "a crank that stalls", "coarse"])
 def test_the_speed_is_constant_where_it_is_not_known(gx120, known):
     case, torque, contour = gx120
-    machine = idle(case)
+    machine = idle(case, None if known == "no engine" else torque)
     if known == "no crankshaft":
         machine = replace(machine, crankshaft=None)
     if known == "a crank that stalls":
         light = replace(machine.crankshaft, inertia=1e-7, mechanism_inertia=0.0)
         machine = replace(machine, crankshaft=light)
-    driving = None if known == "no engine" else torque
-    given = turn(machine, contour, driving, POSITIONS, coarse=known == "coarse")
+    given = turn(machine, contour, POSITIONS, coarse=known == "coarse")
     np.testing.assert_array_equal(given.driven.speed, 0.5 * case.load_cases[0].speed)
     lift = contour.pitch.lift
     found = elastic_history(machine, lift, given.loads.lift, given.driven.speed)

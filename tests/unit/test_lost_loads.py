@@ -14,7 +14,6 @@ from made_check import made_check
 
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_file import parse_case, read_case
-from camwright.pipeline.case.load_case_torque import engine_torque
 from camwright.pipeline.case.machine import Corner
 from camwright.pipeline.checks import lost_loads
 from camwright.pipeline.checks.check import Check
@@ -174,16 +173,15 @@ def test_loads_on_a_crank_that_stalls_are_no_results() -> None:
         assert made[name].without == f"the follower {end.words}"
         assert made[name].status != "pass" and made[name].load_case != "idle"
     assert made["pressure_angle"].evaluated
-    machine, state = light.cycles[0].machine, light.case.load_cases[0]
     with pytest.raises(
         StallError, match=r"the crank stalls at \d+\.?\d* deg of its cycle"
     ) as stall:
-        study_of(machine, engine_torque(light.case, state), light.contour.pitch)
+        study_of(light.cycles[0].machine, light.contour.pitch)
     assert stall.value.crank_angle == pytest.approx(2.0 * end.cam_angle)
 
 
 def test_the_headline_has_the_loads_of_the_others() -> None:
-    figures, slower = headline({}, trial()), headline({}, trial((OVERSPEED, "")))
+    figures, slower = headline(trial()), headline(trial((OVERSPEED, "")))
     for name in ("normal_force_max_N", "p0_max_MPa", "guide_reaction_A_max_N"):
         assert figures[name] == pytest.approx(slower[name], rel=1e-12)
     assert figures["normal_force_min_N"] == 0.0
@@ -212,7 +210,7 @@ def test_loads_lost_at_a_corner_leave_the_other_corners(
 
 def test_the_headline_names_the_stress_of_each_body() -> None:
     """Half-planes of nu = 0.3: 0.558 p0 at 0.704 a, Johnson (1985) sec. 4.2(c), to its digits."""
-    figures = headline({}, trial())
+    figures = headline(trial())
     loaded = [each for each in trial().cycles if each.load_case != "over-speed"]
     worst = max(loaded, key=lambda each: float(each.contact.p0.max()))
     k = int(worst.contact.p0.argmax())

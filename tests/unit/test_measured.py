@@ -236,8 +236,8 @@ def gx120():
 def test_speed_of_the_published_case(gx120):
     """Engine alone 3.59 rad/s at 157 rad/s, 3.44 with the mechanism's inertia, 0.40 at work."""
     case, torque, contour = gx120
-    idle = machines(case)[0]
-    study = study_of(idle, torque, contour.pitch)
+    idle = machines(case, {"idle": torque})[0]
+    study = study_of(idle, contour.pitch)
     assert study is not None
     motions = (study.before, study.inertia_alone, study.after)
     stds = [motion.statistics.std for motion in motions]
@@ -248,7 +248,7 @@ def test_speed_of_the_published_case(gx120):
         "crank_angle", "speed_before", "speed_inertia_alone", "speed_after"
     }  # fmt: skip
     whole, pitch = torque.without_mean().total, contour.pitch
-    agreement = consistency(idle, torque, pitch, study, demand=whole, measured=True)
+    agreement = consistency(idle, pitch, study, demand=whole, measured=True)
     found = {one.id: one for one in agreement}
     assert set(found) == {"power", "energy", "work", "inertia"}
     assert not found["work"].flagged
@@ -265,10 +265,10 @@ def trial_of(case, torques, contour):
 def test_the_record_of_a_run_holds_the_crank_speed_of_the_guides_that_rub(gx120):
     case, torque, contour = gx120
     trial, whole = trial_of(case, {"idle": torque}, contour), torque.without_mean().total
-    record, columns = crank_speed_record({"idle": torque}, trial, whole)
+    record, columns = crank_speed_record(trial, whole)
     json.dumps(record)
     cycle = trial.cycles[0]
-    study = study_of(cycle.machine, torque, contour.pitch, cycle.loads.rubbing)
+    study = study_of(cycle.machine, contour.pitch, cycle.loads.rubbing)
     found = record["speed"]["idle"]
     for name in ("before", "inertia_alone", "after"):
         motion = getattr(study, name)
@@ -287,23 +287,21 @@ def test_the_record_of_a_run_holds_the_crank_speed_of_the_guides_that_rub(gx120)
 def test_no_crankshaft_no_speed(gx120):
     case, torque, contour = gx120
     bare = case.model_copy(update={"crankshaft": None})
-    idle = machines(bare)[0]
-    assert study_of(idle, torque, contour.pitch) is None
+    idle = machines(bare, {"idle": torque})[0]
+    assert study_of(idle, contour.pitch) is None
     whole, pitch = torque.without_mean().total, contour.pitch
-    agreement = consistency(idle, torque, pitch, None, demand=whole, measured=True)
+    agreement = consistency(idle, pitch, None, demand=whole, measured=True)
     assert {one.id for one in agreement} == {"power", "energy"}
-    record, columns = crank_speed_record(
-        {"idle": torque}, trial_of(bare, {"idle": torque}, contour), None
-    )
+    record, columns = crank_speed_record(trial_of(bare, {"idle": torque}, contour), None)
     assert (record, columns) == ({"speed": None, "consistency": []}, None)
 
 
 def test_nothing_asked_of_the_cam_and_nothing_measured_there_is_nothing_to_agree_with(gx120):
     case, torque, contour = gx120
-    idle = machines(case)[0]
-    found = [one.id for one in consistency(idle, torque, contour.pitch, None, measured=True)]
+    idle = machines(case, {"idle": torque})[0]
+    found = [one.id for one in consistency(idle, contour.pitch, None, measured=True)]
     assert found == ["inertia"]
-    assert consistency(idle, torque, contour.pitch, None) == ()
+    assert consistency(idle, contour.pitch, None) == ()
 
 
 def test_what_was_measured_of_the_speed_belongs_to_the_design_load_case(gx120):
@@ -311,7 +309,7 @@ def test_what_was_measured_of_the_speed_belongs_to_the_design_load_case(gx120):
     (idle,) = case.load_cases
     both = case.model_copy(update={"load_cases": (idle, idle.model_copy(update={"name": "rated"}))})
     torques = {"idle": torque, "rated": torque}
-    record, _ = crank_speed_record(torques, trial_of(both, torques, contour), None)
+    record, _ = crank_speed_record(trial_of(both, torques, contour), None)
     found = [(one["load_case"], one["id"]) for one in record["consistency"]]
     assert found == [("idle", "work"), ("idle", "inertia"), ("rated", "work")]
 

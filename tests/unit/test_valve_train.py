@@ -11,12 +11,12 @@ from camwright.pipeline.case.given_lift import given_lift
 from camwright.pipeline.case.machine import machines
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.solution import turns_of
-from camwright.pipeline.solver import solve
-from camwright.pipeline.studies.valve_train import (
+from camwright.pipeline.results.valve_train import (
     machine_motion,
     valve_cam,
     valve_record,
 )
+from camwright.pipeline.solver import solve
 from camwright.reports.verification_tables import valve_train
 
 PAPERS = Path(__file__).resolve().parents[2] / "cases" / "papers"
@@ -30,7 +30,7 @@ def text(name):
 def record(given):
     case = parse_case(given)
     contour = case.contour(given_lift(case))
-    turns = turns_of(machines(case), contour, case, {}, POSITIONS)
+    turns = turns_of(machines(case), contour, POSITIONS)
     return case, machine_motion(valve_cam(case), turns)
 
 

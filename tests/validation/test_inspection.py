@@ -129,7 +129,7 @@ def test_rise_of_force_and_pressure_is_that_of_theory() -> None:
     real = real_contour(nominal, inspected(nominal, points))
     speed = case.load_cases[0].speed / case.mechanism.gear_ratio
     states = machines(case)
-    drawn, run = (turns_of(states, made, case, {}, 720)[0] for made in (nominal, real))
+    drawn, run = (turns_of(states, made, 720)[0] for made in (nominal, real))
     away = np.cos(theta) > 0.2  # far from the mark the cam is round
     # the roller's centre sees the wave of the surface a little finer than the surface itself
     surface = base - roller
@@ -280,7 +280,7 @@ def test_command_judges_the_real_part(run, tmp_path: Path, capsys) -> None:
     np.testing.assert_allclose(cycle["p0_fe_MPa"], cycle["p0_hertz_MPa"], rtol=0.02)
     theta = np.radians(cycle["cam_angle_deg"])
     case = small_case(72)
-    drawn = turns_of(machines(case), made, case, {}, 72)[0].loads.normal_force
+    drawn = turns_of(machines(case), made, 72)[0].loads.normal_force
     rise = np.fft.rfft(cycle["normal_force_N"] - drawn) / (theta.size / 2)
     speed = case.load_cases[0].speed / case.mechanism.gear_ratio
     swing = RIPPLE * (case.spring.rate - case.follower.mass * (speed * WAVES) ** 2)

@@ -53,12 +53,11 @@ def test_machine_of_2025(name: str) -> None:
 
 def test_preload_study_runs_one_cam_at_three_preloads() -> None:
     paper = case("c25_preload")
-    states = machines(paper)[: len(paper.load_cases)]
+    torques = engine_torques(paper)
+    states = machines(paper, torques)[: len(paper.load_cases)]
     preloads = [machine.spring.preload for machine in states]
     assert sorted(preloads) == list(cardoso_2025.PRELOADS)
-    torques = engine_torques(paper)
-    contour = paper.contour(cam_lift(paper, torques))
-    turns = turns_of(states, contour, paper, torques, 72)
+    turns = turns_of(states, paper.contour(cam_lift(paper, torques)), 72)
     springs = {turn.machine.load_case: turn.loads.spring_force for turn in turns}
     # The cam is one; the springs differ by what they are screwed tighter or looser.
     np.testing.assert_allclose(springs["preload-242"] - springs["preload-121"], 121.0, atol=1e-9)

@@ -379,7 +379,7 @@ def test_no_mean_of_the_index_has_the_printed_yields(by_name):
 
 def test_acceleration_at_uneven_speed_is_that_of_the_motion_in_time(by_name):
     """d2s/dt2 by differences over the time of the turn: 2 % of the extreme, at 0.5 deg."""
-    from camwright.pipeline.studies.valve_cam import shaft_speed
+    from camwright.pipeline.cycle.valve_cam import shaft_speed
 
     for panel, (name, cam_set), rpm in zip(
         by_name["p15-dynamics"]["panels"], SETS.items(), (5500, 5500, 5000, 5000), strict=True

@@ -11,15 +11,15 @@ from camwright.geometry.contour import RollerContour
 from camwright.geometry.errors import ContactError, InputError
 from camwright.geometry.motion_laws import Segment, SegmentMotion
 from camwright.geometry.pitch_curve import PitchCurve
-from camwright.pipeline.follower.follower_forces import FollowerSystem, follower_loads
-from camwright.pipeline.follower.spring import Spring
-from camwright.pipeline.studies.valve_cam import (
+from camwright.pipeline.cycle.valve_cam import (
     ElasticValve,
     ValveCam,
     follower_acceleration,
     rise_efficiency,
     shaft_speed,
 )
+from camwright.pipeline.follower.follower_forces import FollowerSystem, follower_loads
+from camwright.pipeline.follower.spring import Spring
 
 # r0, h (m), phi_u (deg); index mean and max, mean of sin^2 delta, delta max (deg),
 # least pitch radius (mm), undercut: computed independently from eqs 6.1 to 6.18

@@ -360,9 +360,10 @@ def test_each_constraint_is_its_check_on_a_solved_cam(drawn):
         random.normal() / k**3 * np.cos(k * theta + random.uniform(0, 6)) for k in range(1, 5)
     )
     lift = Lift(theta, 0.002 + 0.006 * (waves - waves.min()) / np.ptp(waves))
-    solved = solution(drawn, drawn.contour(lift), Tier.PREVIEW, positions=240)
+    torques = engine_torques(drawn)
+    solved = solution(drawn, drawn.contour(lift), Tier.PREVIEW, torques=torques, positions=240)
     checks = {check.id: check for check in checks_of(solved)}
-    problem, corrections = problem_of(drawn, engine_torques(drawn)), corrections_of(solved)
+    problem, corrections = problem_of(drawn, torques), corrections_of(solved)
     pitch, ratings, variables = solved.contour.pitch, own_limits(drawn), problem.variables
     ambient = drawn.guides.ambient_temperature - 273.15
     for name in sorted(OF_FACE.difference(APART)):

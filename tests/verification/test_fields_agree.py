@@ -113,7 +113,9 @@ def solved() -> dict[str, Solution]:
         case = read_clamped(CASES / f"{name}.toml")
         smoothing = case.smoothing.model_copy(update={"corners": False})
         case = case.model_copy(update={"smoothing": smoothing})
-        states[follower] = solution(case, contour_of(case), Tier.PREVIEW, positions=POSITIONS)
+        states[follower] = solution(
+            case, contour_of(case), Tier.PREVIEW, torques=engine_torques(case), positions=POSITIONS
+        )
     return states
 
 

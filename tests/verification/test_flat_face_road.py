@@ -47,7 +47,7 @@ def turned(case_text):
     """Contour and turn of a case."""
     case = parse_case(case_text)
     contour = case.contour(cam_lift(case, {}))
-    return contour, turns_of(machines(case), contour, case, {}, THETA.size)[0]
+    return contour, turns_of(machines(case), contour, THETA.size)[0]
 
 
 @pytest.fixture(scope="module")

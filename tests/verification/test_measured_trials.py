@@ -12,6 +12,7 @@ from camwright.pipeline import iteration
 from camwright.pipeline.case.case_file import read_case
 from camwright.pipeline.case.load_case_torque import engine_torques
 from camwright.pipeline.contact.tiers import Tier
+from camwright.pipeline.smoothing import synthesis_rounds
 from camwright.pipeline.smoothing.constraints import CONSTRAINTS
 from camwright.pipeline.smoothing.fe_correction import Rank
 
@@ -34,7 +35,7 @@ def test_trials_of_v10_end_on_the_best_of_six(monkeypatch):
         }
     )
     limits = frozenset(each.check for each in CONSTRAINTS) - KEPT | NOT_KEPT_ANY_MORE
-    problem_of, compared, solved = iteration.problem_of, iteration.compared, []
+    problem_of, compared, solved = iteration.problem_of, synthesis_rounds.compared, []
 
     def problem(case, torques):
         own, stated = problem_of(case, torques), measured("v10")
@@ -56,7 +57,7 @@ def test_trials_of_v10_end_on_the_best_of_six(monkeypatch):
 
     ranks = []
     monkeypatch.setattr(iteration, "problem_of", problem)
-    monkeypatch.setattr(iteration, "compared", comparison)
+    monkeypatch.setattr(synthesis_rounds, "compared", comparison)
     monkeypatch.setattr(iteration, "rank", rank)
     monkeypatch.setattr(iteration, "machine_prices", lambda *_: [])
     result = iteration.trials_of(case, engine_torques(case), tier=Tier.CYCLE)

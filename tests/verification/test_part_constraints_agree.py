@@ -105,7 +105,8 @@ def random_cam(case, seed):
 @pytest.fixture(scope="module", params=range(2))
 def solved(case, request):
     """A random cam in every load case."""
-    return solution(case, random_cam(case, request.param), Tier.PREVIEW, positions=POSITIONS)
+    cam, torques = random_cam(case, request.param), engine_torques(case)
+    return solution(case, cam, Tier.PREVIEW, torques=torques, positions=POSITIONS)
 
 
 @pytest.fixture(scope="module")
@@ -235,7 +236,8 @@ def sharing(case):
         for each, share in zip(case.load_cases, DUTY, strict=True)
     )
     shared = case.model_copy(update={"load_cases": states})
-    solved = solution(shared, random_cam(shared, 0), Tier.PREVIEW, positions=POSITIONS)
+    cam, torques = random_cam(shared, 0), engine_torques(shared)
+    solved = solution(shared, cam, Tier.PREVIEW, torques=torques, positions=POSITIONS)
     corrections = corrections_of(solved)
     scenarios = [
         replace(each, correction=corrections[each.name])

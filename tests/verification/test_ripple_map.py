@@ -8,6 +8,7 @@ import pytest
 
 from camwright.pipeline.case.case_file import read_case
 from camwright.pipeline.case.load_case_torque import engine_torque, engine_torques
+from camwright.pipeline.case.machine import machines
 from camwright.pipeline.cycle.ripple_map import ripple_map
 from camwright.pipeline.cycle.turn import turn
 from camwright.pipeline.preview import preview_case
@@ -26,7 +27,8 @@ def solved():
 
 
 def mapped(case, torques, trial):
-    return ripple_map(case, torques, trial.contour.pitch, trial.cycles[0].loads.rubbing)
+    states = machines(case, torques)
+    return ripple_map(case, states, trial.contour.pitch, trial.cycles[0].loads.rubbing)
 
 
 def test_map_contains_the_ripple_of_the_first_load_case(solved):
@@ -53,8 +55,8 @@ def test_interpolated_torque_is_that_of_solved_cycles(solved, load, speed):
         }
     )
     torque = engine_torque(case, state)
-    running = replace(trial.cycles[0].machine, speed=state.speed)
-    there = turn(running, trial.contour, torque, positions=360)
+    running = replace(trial.cycles[0].machine, speed=state.speed, torque=torque)
+    there = turn(running, trial.contour, positions=360)
     before, after = np.std(there.torque_before), np.std(there.torque_after)
     assert ripples.before[load, speed] == pytest.approx(before, rel=0.01)
     assert ripples.ratio[load, speed] == pytest.approx(after / before, rel=0.02)

@@ -53,7 +53,7 @@ def cam() -> Contour:
 
 
 def cycle(of: Machine) -> Cycle:
-    loaded, pair = turn(of, cam(), None, POSITIONS), contact_pair(of, cam())
+    loaded, pair = turn(of, cam(), POSITIONS), contact_pair(of, cam())
     contact = closed_form_history(pair, loaded.theta, loaded.loads.normal_force)
     return Cycle(loaded, cam(), pair, None, contact)
 
@@ -231,6 +231,6 @@ def test_load_cases_from_rest_to_overspeed_name_the_one_that_governs():
 def test_at_rest_only_spring_and_friction_act():
     start = next(each for each in machines(states(2000)) if each.load_case == "start")
     assert start.speed == 0.0
-    loads = turn(start, cam(), None, POSITIONS).loads
+    loads = turn(start, cam(), POSITIONS).loads
     assert np.abs(loads.inertia_force).max() < 1e-6
     assert loads.normal_force.min() > 0

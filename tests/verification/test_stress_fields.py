@@ -52,7 +52,7 @@ def series(tmp_path_factory: pytest.TempPathFactory):
     case = parse_case(small_machine("series")).with_positions(72)
     theta = uniform_turn(360)
     contour = case.contour(Lift(theta, 0.006 * (1 - np.cos(theta))))
-    turn = turns_of(machines(case), contour, case, {}, POSITIONS)[0]
+    turn = turns_of(machines(case), contour, POSITIONS)[0]
     pair = contact_pair(turn.machine, contour)
     bodies = CycleBodies.meshed(pair)
     contact = two_scale_history(pair, bodies, turn.theta, turn.loads.normal_force)

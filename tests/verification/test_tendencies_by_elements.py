@@ -64,7 +64,7 @@ def at(corner: Corner, width: float) -> Machine:
 def cycle(corner: Corner, width: float = 1.0) -> Cycle:
     """The turn at a corner of the machine."""
     machine = at(corner, width)
-    loaded = turn(machine, cam(), None, POSITIONS)
+    loaded = turn(machine, cam(), POSITIONS)
     pair = contact_pair(machine, cam())
     contact = two_scale_history(pair, bodies(), loaded.theta, loaded.loads.normal_force)
     return Cycle(loaded, cam(), pair, bodies(), contact)

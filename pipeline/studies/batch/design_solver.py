@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import math
 import tempfile
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -41,15 +42,13 @@ from camwright.pipeline.studies.batch.design_rows import (
     out_of_memory,
 )
 from camwright.pipeline.studies.batch.design_task import Settings, Task, Wanted
-from camwright.pipeline.torque.torque import Torque
+
+if TYPE_CHECKING:
+    from camwright.pipeline.run import CaseRun
 
 UNEXPECTED = "unexpected {kind}: {text}"
 
 _AT_ONCE = 125  # screened designs: their arrays bound the memory of a process
-
-
-class _NotKeptError(Exception):
-    """Ends the run of a design that is not kept."""
 
 
 def row_of(trial: Trial, headline: Mapping[str, float | None]) -> Row:
@@ -140,7 +139,7 @@ class DesignSolver:
             return {name: _cell(values[0]) for name, values in columns.items()}
         case, lift = self.design(task, row)
         trial = trial_at(case, task.tier, lift, corners=self.settings.corners)
-        return row_of(trial, headline(engine_torques(case), trial))
+        return row_of(trial, headline(trial))
 
     def design(self, task: Task, row: int) -> tuple[Case, Lift | None]:
         """Case of one design, and its lift where the study has one cam for all.
@@ -192,16 +191,13 @@ class DesignSolver:
         from camwright.pipeline.results.run_records import headline
 
         cells: Row = {}
-
-        def judged(torques: Mapping[str, Torque], trial: Trial) -> None:
-            cells.update(row_of(trial, headline(torques, trial)))
-            send(cells)
-            if not wanted.takes(screen(trial.checks), cells):
-                raise _NotKeptError
-
         files: Files = {}
         try:
-            files = self._run(task, row, judged)
+            with self._begun(task, row) as (run, trial):
+                cells = row_of(trial, headline(trial))
+                send(cells)
+                if wanted.takes(screen(trial.checks), cells):
+                    files = _finished(run)
         except Exception:  # noqa: BLE001 - a refusal is a row; a run that fails is made again alone
             if not cells:
                 send(self.solved(task, row))
@@ -215,7 +211,9 @@ class DesignSolver:
         CamError
             If the design is refused.
         """
-        return self.presented(self._run(task, row))
+        with self._begun(task, row) as (run, _):
+            files = _finished(run)
+        return self.presented(files)
 
     def presented(self, files: Files) -> Files:
         """Files of a run with its page and pictures, which are made from the others."""
@@ -232,27 +230,39 @@ class DesignSolver:
             made = {each: file.read_bytes() for each, file in files_in(path)}
         return made | {each: files[each] for each in files if each == CLOCK}
 
-    def _run(
-        self,
-        task: Task,
-        row: int,
-        judged: Callable[[Mapping[str, Torque], Trial], object] = lambda *_: None,
-    ) -> Files:
-        """Files of the run of one design without its page; judged: as of `run_case`."""
-        from camwright.pipeline.results import signoff
-        from camwright.pipeline.run import run_case
+    @contextmanager
+    def _begun(self, task: Task, row: int) -> Iterator[tuple[CaseRun, Trial]]:
+        """Run of one design in a folder that is deleted, and its checked trial.
+
+        Below CERTIFIED none of its files is written yet.
+        """
+        from camwright.pipeline.run import CaseRun
 
         case, _ = self.design(task, row)
         solved: Trial | None = None
         if task.tier is Tier.PREVIEW:  # as its row, so that it is solved once
             solved = trial_at(case, task.tier, None, corners=self.settings.corners)
-        with tempfile.TemporaryDirectory(prefix="camwright-run-") as name:
-            path = Path(name) / "run"
-            run_case(case, path, depth=task.tier, jobs=1, judged=judged, solved=solved)
-            clock = _without_clock(path)
-            signoff.write(path)  # has the hash of run.json
-            files = {each: file.read_bytes() for each, file in files_in(path)}
-        return files | {CLOCK: clock}
+        with (
+            tempfile.TemporaryDirectory(prefix="camwright-run-") as name,
+            CaseRun(case, Path(name) / "run", depth=task.tier, jobs=1) as run,
+        ):
+            trial = run.solve(solved)
+            if task.tier is Tier.CERTIFIED:
+                run.write()
+                trial = run.certify()
+            yield run, trial
+
+
+def _finished(run: CaseRun) -> Files:
+    """Files of a run that has begun, without its page."""
+    from camwright.pipeline.results import signoff
+
+    if run.depth < Tier.CERTIFIED:
+        run.write()
+    run.finish()
+    clock = _without_clock(run.out)
+    signoff.write(run.out)  # has the hash of run.json
+    return {each: file.read_bytes() for each, file in files_in(run.out)} | {CLOCK: clock}
 
 
 def _without_clock(folder: Path) -> bytes:

@@ -10,6 +10,12 @@ from camwright.geometry.arrays import Array, uniform_turn
 from camwright.geometry.contour import RollerContour
 from camwright.geometry.flat_face_contour import FacePath, FlatFaceContour
 from camwright.geometry.pitch_curve import PitchCurve
+from camwright.pipeline.cycle.valve_cam import (
+    ElasticValve,
+    ValveCam,
+    follower_acceleration,
+    shaft_speed,
+)
 from camwright.pipeline.studies.papers.figures_2025_cam import X, Y
 from camwright.pipeline.studies.papers.paper_figure import (
     MUTED,
@@ -32,12 +38,6 @@ from camwright.pipeline.studies.papers.petrescu_2015 import (
     CamSet,
 )
 from camwright.pipeline.studies.papers.published_figures import Target
-from camwright.pipeline.studies.valve_cam import (
-    ElasticValve,
-    ValveCam,
-    follower_acceleration,
-    shaft_speed,
-)
 
 CAM, ACCELERATION = "cam angle, deg", "acceleration, m/s²"
 COUNT, OUTLINE_POINTS, RISE_POINTS = 720, 1440, 200

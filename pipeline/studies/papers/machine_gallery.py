@@ -13,7 +13,6 @@ from camwright.geometry.errors import CamError, InputError
 from camwright.pipeline.base.progress import SILENT, Progress
 from camwright.pipeline.base.units import in_unit
 from camwright.pipeline.case.case_file import read_case
-from camwright.pipeline.case.load_case_torque import engine_torques
 from camwright.pipeline.checks.check import in_order, screen, within_depth
 from camwright.pipeline.cycle.crank_speed import study_of
 from camwright.pipeline.preview import preview_case
@@ -105,9 +104,8 @@ def _outline(trial: Trial) -> PaperPanel:
 def _speeds(trial: Trial) -> tuple[PaperPanel, ...]:
     """Shaft speed without and with the cam; nothing without inertia or where the shaft stalls."""
     machine = trial.cycles[0].machine
-    torque = engine_torques(trial.case)[machine.load_case]
     try:
-        study = study_of(machine, torque, trial.contour.pitch)
+        study = study_of(machine, trial.contour.pitch)
     except CamError:
         return ()
     if study is None:

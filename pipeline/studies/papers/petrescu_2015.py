@@ -15,17 +15,17 @@ import numpy as np
 from camwright.geometry.contour import RollerContour
 from camwright.geometry.motion_laws import Segment, SegmentMotion
 from camwright.geometry.pitch_curve import PitchCurve
-from camwright.pipeline.follower.follower_forces import FollowerSystem, follower_loads
-from camwright.pipeline.follower.spring import Spring
-from camwright.pipeline.studies.papers.paper_figure import records
-from camwright.pipeline.studies.papers.published_figures import PaperResult, Target, judged
-from camwright.pipeline.studies.papers.validation_figures import SHOWN, yields
-from camwright.pipeline.studies.valve_cam import (
+from camwright.pipeline.cycle.valve_cam import (
     ElasticValve,
     ValveCam,
     rise_efficiency,
     shaft_speed,
 )
+from camwright.pipeline.follower.follower_forces import FollowerSystem, follower_loads
+from camwright.pipeline.follower.spring import Spring
+from camwright.pipeline.studies.papers.paper_figure import records
+from camwright.pipeline.studies.papers.published_figures import PaperResult, Target, judged
+from camwright.pipeline.studies.papers.validation_figures import SHOWN, yields
 
 ROLLER = 0.002
 GUIDE_FRICTION = 0.05  # assumed, for the true efficiency

@@ -17,7 +17,6 @@ from camwright.geometry.errors import InputError
 from camwright.pipeline.base.units import in_unit
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.limits import KEYWAY_SAFETY, TORQUE_REDUCTION
-from camwright.pipeline.case.load_case_torque import engine_torques
 from camwright.pipeline.checks.check import Check, Verdict, in_order, within_depth
 from camwright.pipeline.checks.key_strength import keyway_root
 from camwright.pipeline.cycle.hub_history import hub_fatigue
@@ -149,7 +148,7 @@ def point_of(case: Case) -> DesignPoint:
     """
     trial = preview_case(case, corners=False)
     if not any(check.blocks and check.status == "fail" for check in trial.checks):
-        trial = judged_at_corners(trial, engine_torques(case))
+        trial = judged_at_corners(trial)
     drawn, contour, turn = trial.case, trial.contour, trial.cycles[0].turn
     rest, torque = turn.torque_after, turn.torque_before
     if rest is None or torque is None:

@@ -18,13 +18,13 @@ from camwright.pipeline.case.lift_section import LiftSegments, motion_of
 from camwright.pipeline.case.machine import Machine
 from camwright.pipeline.cycle.elastic_response import elastic_follower
 from camwright.pipeline.cycle.turn import Turn
-from camwright.pipeline.results.trial import Trial
-from camwright.pipeline.studies.valve_cam import (
+from camwright.pipeline.cycle.valve_cam import (
     ElasticValve,
     ValveCam,
     follower_acceleration,
     rise_efficiency,
 )
+from camwright.pipeline.results.trial import Trial
 
 MachineMotion = Mapping[str, str | list[dict[str, str | float]]]
 
