@@ -11,9 +11,9 @@ import numpy as np
 
 from camwright.geometry.errors import CamError
 from camwright.pipeline.base.files import Json
+from camwright.pipeline.base.verdict import CERTIFIED
 from camwright.pipeline.hand_check.hand_sheet import SheetRun
 from camwright.pipeline.hand_check.printed_sheet import PrintedSheet, printed
-from camwright.pipeline.results.check_records import CERTIFIED
 from camwright.pipeline.results.model_limits import MODEL_LIMITS
 from camwright.pipeline.results.run_reader import TrialRecord, load_end_words, results_sha256
 from camwright.reports import report_tables, verification_tables

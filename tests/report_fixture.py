@@ -15,9 +15,10 @@ import numpy as np
 from scipy.spatial import Delaunay
 
 from camwright.geometry.periodic_spline import periodic_quintic
+from camwright.pipeline.base.verdict import binding, verdict
 from camwright.pipeline.case.scope_section import Scope
 from camwright.pipeline.results import signoff
-from camwright.pipeline.results.check_records import binding_of, verdict_of
+from camwright.pipeline.results.check_records import of_records
 from camwright.pipeline.results.field_file import MeshBlock, field_file
 from camwright.pipeline.results.run_reader import SCHEMA, input_sha256
 from camwright.pipeline.results.run_records import SPLINE
@@ -535,8 +536,8 @@ def write_run(
         "platform": "Linux x86_64", "prices": None, "machine_prices": None, "benchmarks": None,
         "speed": None, "consistency": [], "files": {},
         "trials": 2, "final_trial": 2, "trial_points": TRIAL_POINTS, "ripple_map": RIPPLE_MAP,
-        "depth": "certified", "verdict": verdict_of(records), "screen": None,
-        "binding": list(binding_of(records)),
+        "depth": "certified", "verdict": verdict(of_records(records)), "screen": None,
+        "binding": list(binding(of_records(records))),
         "scope": left_out.as_record(),
         "headline": {
             "torque_std_before_Nm": float(before.std()), "torque_std_after_Nm": float(after.std()),

@@ -23,17 +23,16 @@ from camwright.pipeline.base.files import (
     sha256_of,
 )
 from camwright.pipeline.base.tables import Table, read_table
+from camwright.pipeline.base.verdict import STATUSES, binding, governing_id
 from camwright.pipeline.results.check_records import (
-    STATUSES,
     AnyCheck,
     CheckList,
     CheckRecord,
     CheckRecordOfAnyCheck,
+    RecordedCheck,
     WithChecks,
-    binding_of,
-    governing_id,
     judgement,
-    status_of,
+    of_records,
     to_be_confirmed,
 )
 
@@ -218,7 +217,7 @@ class TrialRecord(WithChecks):
     @property
     def binding(self) -> tuple[str, ...]:
         """Ids of the must-have checks that fail or lack data."""
-        return binding_of(self.checks)
+        return binding(of_records(self.checks))
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -308,8 +307,8 @@ def read_verdict(path: Path) -> dict[str, Any]:
         "input_sha256": summary["input_sha256"],
         **judgement(checks, depth),
         "to_be_confirmed": to_be_confirmed(checks),
-        "binding": list(binding_of(checks)),
-        "governing": governing_id(checks),
+        "binding": list(binding(of_records(checks))),
+        "governing": governing_id(of_records(checks)),
         "load_ends": summary.get("load_ends", []),
         "trials": summary["trials"],
         "scope": summary["scope"],
@@ -480,7 +479,7 @@ def read_records(file: Path) -> tuple[CheckRecord, ...]:
         status = record["status"]
         if status not in STATUSES:
             raise ResultError(f"{file}: {record['id']}: status {status} is unknown")
-        if STATUSES.index(status) < STATUSES.index(status_of(record)):
+        if STATUSES.index(status) < STATUSES.index(RecordedCheck(record).status_by_numbers):
             raise ResultError(
                 f"{file}: {record['id']} is marked {status}, its numbers say otherwise"
             )

@@ -23,8 +23,14 @@ from camwright.pipeline.base.files import (
     unplain,
     write_atomic,
 )
-from camwright.pipeline.results import check_records, run_reader
-from camwright.pipeline.results.check_records import CheckRecord, to_be_confirmed
+from camwright.pipeline.base.verdict import binding, governing_id
+from camwright.pipeline.results import run_reader
+from camwright.pipeline.results.check_records import (
+    CheckRecord,
+    judgement,
+    of_records,
+    to_be_confirmed,
+)
 from camwright.pipeline.results.model_limits import MODEL_LIMITS, limitations
 
 NAME = "signoff.json"
@@ -68,9 +74,9 @@ def _record(path: Path, files: Mapping[str, str]) -> dict[str, Json]:
             "platform": summary["platform"],
             "versions": summary["versions"],
         },
-        **check_records.judgement(checks, made["depth"]),
-        "binding": list(check_records.binding_of(checks)),
-        "governing": check_records.governing_id(checks),
+        **judgement(checks, made["depth"]),
+        "binding": list(binding(of_records(checks))),
+        "governing": governing_id(of_records(checks)),
         "not_evaluated": [c["id"] for c in checks if c["status"] == "not_evaluated"],
         "not_proven": [c["id"] for c in checks if c["not_proven"]],
         "scope": {

@@ -13,17 +13,17 @@ from camwright.geometry.arrays import Array
 from camwright.geometry.contour import Contour
 from camwright.geometry.lift import Lift
 from camwright.pipeline.base.units import in_unit
-from camwright.pipeline.case.case import Case
-from camwright.pipeline.checks.check import (
-    Check,
+from camwright.pipeline.base.verdict import (
     Screen,
     Verdict,
     binding,
-    depends_on_lift,
+    in_order,
     screen,
     verdict,
     within_depth,
 )
+from camwright.pipeline.case.case import Case
+from camwright.pipeline.checks.check import Check, depends_on_lift
 from camwright.pipeline.checks.lost_loads import load_ends
 from camwright.pipeline.checks.tolerance_corners import Outcome
 from camwright.pipeline.contact.contact_history import CertificatePoint
@@ -200,5 +200,5 @@ class Trial(WithChecks):
 
     @property
     def binding(self) -> tuple[str, ...]:
-        """Ids of the must-have checks that fail or lack data; see `binding`."""
-        return binding(self.checks)
+        """Ids of the must-have checks that fail or lack data; see `verdict.binding`."""
+        return binding(in_order(self.checks))

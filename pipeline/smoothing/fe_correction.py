@@ -12,8 +12,9 @@ import scipy
 from camwright.geometry.arrays import Array
 from camwright.pipeline.base.material import ROOM
 from camwright.pipeline.base.units import in_unit
+from camwright.pipeline.base.verdict import within_depth
 from camwright.pipeline.case.limits import TORQUE_REDUCTION
-from camwright.pipeline.checks.check import Check, depends_on_lift, within_depth
+from camwright.pipeline.checks.check import Check, depends_on_lift
 from camwright.pipeline.checks.guide_strength import GUIDES, Side, hottest
 from camwright.pipeline.cycle.cycle import Cycle
 from camwright.pipeline.cycle.solution import Solution

@@ -22,6 +22,7 @@ from test_run import small
 
 from camwright.geometry.errors import InputError
 from camwright.pipeline.base.files import files_in, npz_bytes, sha256_of
+from camwright.pipeline.base.verdict import binding, governing_id
 from camwright.pipeline.case.case_file import read_case, with_values
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.recomputation import MOST_ANGLES, Recomputation, recompute
@@ -79,8 +80,8 @@ def judged_anew(run: Path, records: Any) -> None:
     said = json.loads(file.read_text())
     judged = check_records.judgement(records, said["depth"])
     said |= {"verdict": judged["verdict"], "screen": judged["screen"]}
-    said["binding"] = list(check_records.binding_of(records))
-    said["governing"] = check_records.governing_id(records)
+    said["binding"] = list(binding(check_records.of_records(records)))
+    said["governing"] = governing_id(check_records.of_records(records))
     file.write_text(json.dumps(said))
 
 

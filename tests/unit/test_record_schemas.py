@@ -14,6 +14,7 @@ from made_check import made_check
 from record_validation import schema_errors
 
 from camwright.geometry.errors import InputError
+from camwright.pipeline.base.verdict import STATUSES
 from camwright.pipeline.case.case_file import read_case
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.results import check_records, run_reader
@@ -89,7 +90,7 @@ def test_keys_and_words_are_those_of_the_modules() -> None:
     record = made_check("stress", 1.0, 2.0).as_record()
     assert set(check["required"]) <= set(record) <= set(check["properties"])
     assert set(check_records.CheckRecordOfAnyCheck.__annotations__) <= set(check["required"])
-    assert common()["status"]["enum"] == list(check_records.STATUSES)
+    assert common()["status"]["enum"] == list(STATUSES)
     assert common()["depth"]["enum"] == [tier.word for tier in Tier]
     assert set(run_reader.HEADLINE) <= set(common()["headline"]["required"])
     run = record_schema("run")

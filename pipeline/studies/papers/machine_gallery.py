@@ -12,9 +12,9 @@ from camwright.geometry.arrays import Array, uniform_turn
 from camwright.geometry.errors import CamError, InputError
 from camwright.pipeline.base.progress import SILENT, Progress
 from camwright.pipeline.base.units import in_unit
+from camwright.pipeline.base.verdict import in_order, screen, within_depth
 from camwright.pipeline.case.case_file import read_case
 from camwright.pipeline.case.load_case_torque import engine_torques
-from camwright.pipeline.checks.check import in_order, screen, within_depth
 from camwright.pipeline.cycle.crank_speed import study_of
 from camwright.pipeline.preview import preview_case
 from camwright.pipeline.results.trial import Trial

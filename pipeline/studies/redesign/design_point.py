@@ -15,10 +15,11 @@ import numpy as np
 from camwright.geometry.contour import Contour
 from camwright.geometry.errors import InputError
 from camwright.pipeline.base.units import in_unit
+from camwright.pipeline.base.verdict import Verdict, in_order, within_depth
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.limits import KEYWAY_SAFETY, TORQUE_REDUCTION
 from camwright.pipeline.case.load_case_torque import engine_torques
-from camwright.pipeline.checks.check import Check, Verdict, in_order, within_depth
+from camwright.pipeline.checks.check import Check
 from camwright.pipeline.checks.key_strength import keyway_root
 from camwright.pipeline.cycle.hub_history import hub_fatigue
 from camwright.pipeline.follower.camshaft_loads import unbalance
