@@ -28,6 +28,7 @@ from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.contact_store import NOT_STORED, ContactStore
 from camwright.pipeline.cycle.solution import is_body, solution
 from camwright.pipeline.preview import preview_case, smoothing_record
+from camwright.pipeline.records.trial_contents import SynthesisRecord
 from camwright.pipeline.results.run_records import contour_columns, lift_columns
 from camwright.pipeline.results.trial import (
     CONSTRAINED,
@@ -40,7 +41,6 @@ from camwright.pipeline.smoothing.constrained_synthesis import synthesise
 from camwright.pipeline.smoothing.fe_correction import (
     Comparison,
     Rank,
-    SynthesisRecord,
     compared,
     corrected,
     design_record,

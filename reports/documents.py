@@ -16,7 +16,8 @@ from camwright.pipeline.base.spreadsheets import SUFFIX, Excerpt, spreadsheet
 from camwright.pipeline.base.tables import CAM_ANGLE
 from camwright.pipeline.base.units import celsius, parse
 from camwright.pipeline.base.worker_processes import Crew, PendingCall
-from camwright.pipeline.results.check_records import CheckRecord, RecordedCheck, of_records
+from camwright.pipeline.records.check_record import CheckRecord
+from camwright.pipeline.results.check_records import RecordedCheck, of_records
 from camwright.pipeline.results.run_reader import results_sha256
 from camwright.reports import pdf
 from camwright.reports.arrangement_data import arrangement_at
@@ -177,7 +178,7 @@ def _facts(material: ReportMaterial) -> Iterator[tuple[str, str]]:
     yield "Lubricant", shortened(_lubricant(case), _LINE)
     yield "Temperature", shortened(_temperatures(case) or "not stated", _LINE)
     head = material.run.summary["headline"]
-    before, after = (head.get(f"torque_std_{when}_Nm") for when in ("before", "after"))
+    before, after = head.get("torque_std_before_Nm"), head.get("torque_std_after_Nm")
     if before is not None and after is not None:
         yield "Torque ripple", f"{number(before, 3)} to {quantity(after, 'N m', 3)}"
     if head.get("p0_max_MPa") is not None:

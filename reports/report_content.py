@@ -524,8 +524,8 @@ def _versions(material: ReportMaterial) -> ReportSection:
 
 def _hashes(material: ReportMaterial) -> list[tuple[str, str]]:
     """SHA-256 of input, results, source and meshes."""
-    summary, mesh = material.run.summary, material.run.final.record["mesh"] or {}
-    meshes = mesh.get("sha256")
+    summary, mesh = material.run.summary, material.run.final.record["mesh"]
+    meshes = None if mesh is None else mesh.get("sha256")
     digests: dict[str, Json] = {"input": summary["input_sha256"]}
     digests["results"] = results_sha256(summary["files"])
     digests["source"] = summary["versions"].get("source")

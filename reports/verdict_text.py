@@ -8,8 +8,9 @@ from typing import cast
 
 from camwright.pipeline.base.verdict import CERTIFIED, OUTCOMES, in_order, within_depth
 from camwright.pipeline.base.verdict import governing as governing_of
+from camwright.pipeline.records.check_record import CheckRecord
+from camwright.pipeline.records.forms import Depth
 from camwright.pipeline.results.check_records import (
-    CheckRecord,
     judgement,
     of_records,
     records_of,
@@ -104,7 +105,7 @@ def verdict(
     binding: Sequence[str],
     stopped: str,
     scope: str = "",
-    depth: str = CERTIFIED,
+    depth: Depth = CERTIFIED,
     load_ends: str = "",
 ) -> Verdict:
     """Verdict in sentences.

@@ -17,10 +17,11 @@ from scipy.spatial import Delaunay
 from camwright.geometry.periodic_spline import periodic_quintic
 from camwright.pipeline.base.verdict import binding, verdict
 from camwright.pipeline.case.scope_section import Scope
+from camwright.pipeline.records.run_summary import SCHEMA
 from camwright.pipeline.results import signoff
 from camwright.pipeline.results.check_records import of_records
 from camwright.pipeline.results.field_file import MeshBlock, field_file
-from camwright.pipeline.results.run_reader import SCHEMA, input_sha256
+from camwright.pipeline.results.run_reader import input_sha256
 from camwright.pipeline.results.run_records import SPLINE
 
 RATE, PRELOAD, PRIME_RADIUS, ROLLER, WIDTH = 24.2e3, 242.0, 0.050, 0.008, 0.0044
@@ -263,7 +264,7 @@ def check(**record: Any) -> dict[str, Any]:
         "unit": "", "load_case": "idle", "cam_angle_deg": 192.0, "sense": "at_most", "note": "",
         "source": "Norton, Cam Design and Manufacturing Handbook (2009)", "must_have": True,
         "method": "closed form, refined between samples", "waiver": None, "status": "pass",
-        "error": None, "corner": None, "corner_demand": None, "evidence": False, "judged_at": "",
+        "error": None, "corner": "", "corner_demand": None, "evidence": False, "judged_at": "",
         "waived_up_to": None, "not_proven": False,
     }  # fmt: skip
     return base | record

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
-from typing import Literal, Protocol, TypeVar, get_args
+from typing import Final, Literal, Protocol, TypeVar, get_args
 
 from camwright.geometry.errors import InputError
 from camwright.geometry.extrema import to_rank
@@ -26,7 +26,7 @@ OUTCOMES = ("pass", "incomplete", "open", "fail")
 FAIL_ON: tuple[FailOn, ...] = get_args(FailOn)
 """Checks that decide the exit code of `check`: the must-haves; also any check without data; also
 any optional check that fails; none."""
-CERTIFIED = "certified"
+CERTIFIED: Final = "certified"
 """Depth of a run with a verdict; a shallower one has a screen, ``fail`` or ``open``."""
 OPEN: Screen = "open"
 """Screen without a failed check; as an exit code it counts as ``incomplete``."""

@@ -38,6 +38,8 @@ from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.loaded_cam import LoadedCam
 from camwright.pipeline.cycle.numbers import Numbers
 from camwright.pipeline.cycle.solution import Solution
+from camwright.pipeline.records.check_record import CheckRecord
+from camwright.pipeline.records.forms import Depth
 
 Error = Literal["sampling", "contact", "ends", "guides", "guide_edges", "bore", "unknown"]
 Bounded = Literal["", "crown", "line", "surge"]
@@ -55,7 +57,6 @@ Page = Literal[
     "Camshaft",
 ]
 """Parts of the mechanism in the order of the flow of force; "": of evidence."""
-Record = dict[str, str | float | bool | list[str] | dict[str, float] | None]
 EVERY = "all, standstill and over-speed included"
 BY_DUTY = (
     "by load_case.duty, 1/L = sum q_i/L_i with q_i the shares; without a duty the worst load case"
@@ -118,7 +119,7 @@ class Demand:
     source: Source = NO_SOURCE
     must_have: bool = True
     corner: str = ""
-    judged_at: str = ""
+    judged_at: Depth | Literal[""] = ""
     stated: Mapping[str, float] = field(default_factory=dict, hash=False)
 
 
@@ -703,7 +704,7 @@ class Check(Displayed):
     corner_demand: float | None = None
     unconfirmed: tuple[str, ...] = ()
     relaxed: tuple[str, ...] = ()
-    judged_at: str = ""
+    judged_at: Depth | Literal[""] = ""
     without: str = ""
     remedy: str = ""
     stated: Mapping[str, float] = field(default_factory=dict, hash=False)
@@ -812,7 +813,7 @@ class Check(Displayed):
         """Whether the verdict is not PASS for it: a must-have check, neither passed nor waived."""
         return blocks(self)
 
-    def as_record(self) -> Record:
+    def as_record(self) -> CheckRecord:
         """JSON record, in `unit` and degrees; NaN and infinity become null.
 
         A demand without bound that keeps its limit, such as the fatigue safety factor of a constant

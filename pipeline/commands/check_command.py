@@ -31,7 +31,7 @@ from camwright.pipeline.commands.terminal import (
 if TYPE_CHECKING:
     from xml.etree.ElementTree import Element
 
-    from camwright.pipeline.results.check_records import CheckRecord
+    from camwright.pipeline.records.check_record import CheckRecord
     from camwright.pipeline.results.junit_report import Clock
     from camwright.pipeline.results.signatures import Signature
     from camwright.pipeline.results.signing_keys import TrustedKey

@@ -29,7 +29,8 @@ from camwright.pipeline.checks.registry import DECLARED
 from camwright.pipeline.cycle.loaded_cam import roller_of
 from camwright.pipeline.cycle.numbers import Numbers, fitted_ring, greatest_interference
 from camwright.pipeline.cycle.solved_cam import ContourCam, in_load_case, numbers_of
-from camwright.pipeline.results.check_records import CheckRecord, RecordedCheck
+from camwright.pipeline.records.check_record import CheckRecord
+from camwright.pipeline.results.check_records import RecordedCheck
 from camwright.pipeline.results.check_report import place
 from camwright.pipeline.results.drawn_cam import drawn_cam
 from camwright.pipeline.results.run_reader import Run, read_run

@@ -5,7 +5,8 @@ from __future__ import annotations
 from camwright.pipeline.base import formula
 from camwright.pipeline.base.units import used
 from camwright.pipeline.hand_check.hand_sheet import Sheet
-from camwright.pipeline.results.check_records import CheckRecord, RecordedCheck
+from camwright.pipeline.records.check_record import CheckRecord
+from camwright.pipeline.results.check_records import RecordedCheck
 from camwright.pipeline.results.check_report import (
     corner,
     number,

@@ -5,7 +5,7 @@ In the order of a run:
 | module                 | responsibility                                                        |
 | ---------------------- | --------------------------------------------------------------------- |
 | `trial`                | a cam with its solution, checks and smoothing                         |
-| `check_records`        | records of checks: status by the numbers, verdict, governing check    |
+| `check_records`        | records of checks: table, status by the numbers, verdict in one line  |
 | `run_reader`           | a finished run read from its folder; schema of the records            |
 | `model_limits`         | limits of the model, for report, sign-off record and documentation    |
 | `signoff`              | sign-off record: figures, evidence, validity limits, hashes of files  |

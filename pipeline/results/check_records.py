@@ -9,7 +9,7 @@ import math
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Generic, Protocol, TypedDict, TypeVar
+from typing import TYPE_CHECKING, Any, Generic, Protocol, TypeVar
 
 from camwright.geometry.display import Displayed, html_table, in_brief, panels_of
 from camwright.pipeline.base.columns import data_frame
@@ -23,6 +23,8 @@ from camwright.pipeline.base.verdict import (
     verdict,
     worst,
 )
+from camwright.pipeline.records.forms import Depth
+from camwright.pipeline.records.run_summary import StatedVerdict
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -32,50 +34,6 @@ _DIGITS = 1e-12
 """Relative error of a sum of numbers with the 15 digits of a record."""
 _ROUNDING = 1.001e-9
 """Share of a demand up to which its error is that of rounding, no uncertainty."""
-
-
-class CheckRecordOfAnyCheck(TypedDict):
-    """A record of ``6_checks.json``, in `unit` and degrees; null: missing, or infinite."""
-
-    id: str
-    title: str
-    demand: float | None
-    limit: float | None
-    unit: str
-    utilisation: float | None
-    status: str
-    load_case: str
-    cam_angle_deg: float | None
-    source: str
-    method: str
-    sense: str
-    must_have: bool
-    waiver: str | None
-    waived_up_to: float | None
-    not_proven: bool
-    note: str
-    error: float | None
-    corner: str | None
-    corner_demand: float | None
-    evidence: bool
-    judged_at: str
-
-
-class CheckRecord(CheckRecordOfAnyCheck, total=False):
-    """A record of ``6_checks.json``.
-
-    to_be_confirmed: names of the recalled values on which it rests; relaxed: its limits that are
-    weaker than their defaults; missing: dotted keys that the
-    case lacks and without which it is not evaluated; remedy: smallest change that cures it, "" if
-    none is known; stated: numbers of solvers and reductions in its formula by their symbol. Records
-    of earlier versions lack them.
-    """
-
-    to_be_confirmed: list[str]
-    relaxed: list[str]
-    missing: list[str]
-    remedy: str
-    stated: dict[str, float]
 
 
 AnyCheck = Mapping[str, object]
@@ -274,7 +232,7 @@ def _row_in_words(record: AnyCheck) -> list[str]:
     return ["" if value is None else in_brief(value) for value in values]
 
 
-def judgement(checks: Iterable[AnyCheck], depth: str) -> dict[str, str | None]:
+def judgement(checks: Iterable[AnyCheck], depth: Depth) -> StatedVerdict:
     """Depth, verdict, screen and both in one line.
 
     A certified run has a verdict and no screen, a shallower one a screen and no verdict.

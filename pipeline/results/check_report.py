@@ -11,14 +11,9 @@ from typing import TYPE_CHECKING, Any
 from camwright.geometry.errors import InputError
 from camwright.pipeline.base.units import used
 from camwright.pipeline.base.verdict import governing, in_order, within_depth
-from camwright.pipeline.results.check_records import (
-    AnyCheck,
-    CheckRecord,
-    RecordedCheck,
-    of_records,
-    records_of,
-)
-from camwright.pipeline.results.run_reader import Finding
+from camwright.pipeline.records.check_record import CheckRecord
+from camwright.pipeline.records.run_summary import Finding
+from camwright.pipeline.results.check_records import AnyCheck, RecordedCheck, of_records, records_of
 
 if TYPE_CHECKING:
     from rich.table import Table

@@ -14,12 +14,8 @@ from dataclasses import dataclass
 
 from camwright.pipeline.base.units import used
 from camwright.pipeline.base.verdict import failing, in_order
-from camwright.pipeline.results.check_records import (
-    CheckRecord,
-    RecordedCheck,
-    of_records,
-    records_of,
-)
+from camwright.pipeline.records.check_record import CheckRecord
+from camwright.pipeline.results.check_records import RecordedCheck, of_records, records_of
 from camwright.pipeline.results.check_report import (
     corner,
     not_proven,

@@ -193,12 +193,12 @@ class RunFolder:
         """``5_envelope.npz``: maximum stresses of a turn in a band under the contour."""
         write_atomic(self._file(f"trial_{trial}/5_envelope.npz"), npz_bytes(arrays))
 
-    def write_checks(self, trial: int, records: Iterable[Mapping[str, Json]]) -> None:
+    def write_checks(self, trial: int, records: Iterable[Mapping[str, object]]) -> None:
         """``6_checks.json``"""
         text = json_text([dict(record) for record in records])
         write_atomic(self._file(f"trial_{trial}/6_checks.json"), text + "\n")
 
-    def write_trial(self, trial: int, record: Mapping[str, Json]) -> None:
+    def write_trial(self, trial: int, record: Mapping[str, object]) -> None:
         """``trial.json``: smoothing, reason of the trial, mesh quality, certificate."""
         text = json_text(dict(record))
         write_atomic(self._file(f"trial_{trial}/trial.json"), text + "\n")

@@ -9,12 +9,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from camwright.pipeline.base.units import used
 from camwright.pipeline.base.verdict import OPEN, governing, governing_id, in_order, within_depth
-from camwright.pipeline.results.check_records import (
-    CheckRecord,
-    RecordedCheck,
-    of_records,
-    records_of,
-)
+from camwright.pipeline.records.check_record import CheckRecord
+from camwright.pipeline.results.check_records import RecordedCheck, of_records, records_of
 from camwright.pipeline.results.check_report import (
     corner,
     ids_by_reason,

@@ -203,7 +203,7 @@ def test_options_out_of_bounds_are_refused(
         ("smoothing_strength", 0.5, "smoothing_strength = 0.5, recomputed None"),
         ("closure_mm", 1.0, "trial.json: closure_mm = 1 mm, recomputed 0 mm"),
         ("table_step_deg", 2.0, "trial.json: table_step_deg = 2 deg, recomputed "),
-        ("synthesis", 3, "trial.json|synthesis"),
+        ("synthesis", {"feasible": True}, "trial.json|synthesis"),
     ],
 )
 def test_a_hostile_record_is_named(

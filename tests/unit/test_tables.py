@@ -18,7 +18,7 @@ def check(name, status="pass", utilisation=0.5, **more):
         "utilisation": utilisation, "status": status, "load_case": "idle", "cam_angle_deg": 12.5,
         "source": "", "method": "", "must_have": True, "sense": "at_most",
         "waiver": None, "waived_up_to": None, "not_proven": False, "note": "", "error": None,
-        "corner": None, "corner_demand": None, "evidence": False, "judged_at": "",
+        "corner": "", "corner_demand": None, "evidence": False, "judged_at": "",
     }  # fmt: skip
     return base | more
 

@@ -7,7 +7,7 @@ import tempfile
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 
@@ -21,6 +21,7 @@ from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_file import with_values
 from camwright.pipeline.case.load_case_torque import engine_torques
 from camwright.pipeline.contact.tiers import Tier
+from camwright.pipeline.records.run_summary import HeadlineRecord
 from camwright.pipeline.results.trial import Trial
 from camwright.pipeline.studies.batch.case_template import Template, UnpackedTemplates
 from camwright.pipeline.studies.batch.dataset import (
@@ -51,14 +52,15 @@ class _NotKeptError(Exception):
     """Ends the run of a design that is not kept."""
 
 
-def row_of(trial: Trial, headline: Mapping[str, float | None]) -> Row:
+def row_of(trial: Trial, headline: HeadlineRecord) -> Row:
     """Cells of a solved design, in the units of the records."""
+    figures = cast("Mapping[str, float | None]", headline)
     row: Row = {
         SCREEN.name: screen(trial.checks),
         VERDICT.name: trial.verdict,
         GOVERNING.name: governing_id(trial.checks),
     }
-    row |= {HEADLINE + key: value for key, value in headline.items()}
+    row |= {HEADLINE + key: value for key, value in figures.items()}
     if trial.mesh is not None:
         row |= {MESH + key: float(v) for key, v in asdict(trial.mesh.quality).items()}
     for one in trial.checks:
