@@ -229,10 +229,13 @@ def _show_overview(judged: Sequence[_Judged]) -> None:
 
 def schema(
     name: Annotated[
-        str, typer.Argument(metavar="NAME", help="run, checks, check (of check --json) or signoff.")
+        str,
+        typer.Argument(
+            metavar="NAME", help="run, trial, checks, check (of check --json) or signoff."
+        ),
     ],
 ) -> int:
-    """Print the JSON Schema of a record: run.json, 6_checks.json, check --json, signoff.json."""
+    """Print the JSON Schema of a record of a run, or of the output of check --json."""
     from camwright.pipeline.results.record_schemas import record_schema
 
     show_json(record_schema(name))

@@ -11,7 +11,7 @@ In the order of a run:
 | `signoff`              | sign-off record: figures, evidence, validity limits, hashes of files  |
 | `signing_keys`         | Ed25519 keys: new, read, trusted                                      |
 | `signatures`           | signatures of the sign-off record: in-toto statements, DSSE envelopes |
-| `record_schemas`       | JSON Schemas of summary, checks and sign-off record                   |
+| `record_schemas`       | JSON Schemas of the records, made of their forms                      |
 | `folder_exchange`      | runs and added files take their place, whole at any interruption      |
 | `run_folder`           | the folder of a run while it is written; resumption                   |
 | `run_records`          | columns of the tables, key figures, records of trial and crank speed  |
