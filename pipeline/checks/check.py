@@ -820,7 +820,8 @@ class Check(Displayed):
         load, is recorded as `BOUNDLESS`.
 
         The demand of a check `without` the loads of a load case is null as well, unless it fails.
-        A utilisation of null is infinite with the status `fail`, missing with `not_evaluated`.
+        A utilisation of null is infinite with the status `fail` or `waived`, missing with
+        `not_evaluated`.
         """
         unit = self.unit
         bound = self.is_bound

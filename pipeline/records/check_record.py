@@ -15,9 +15,9 @@ from camwright.pipeline.records.forms import (
     form,
 )
 
-_EVALUATED = {"demand": "number", "limit": "number", "utilisation": "number"}
 _OF_STATUS = (
-    Condition("status", ("pass", "waived"), _EVALUATED),
+    Condition("status", ("pass", "waived"), {"demand": "number", "limit": "number"}),
+    Condition("status", ("pass",), {"utilisation": "number"}),
     Condition("status", ("waived",), {"waiver": "string", "waived_up_to": "number"}),
     Condition("status", ("not_evaluated",), {"utilisation": "null"}),
 )
@@ -38,8 +38,8 @@ class CheckFigure(TypedDict):
     unit: Unit
     """Unit of demand, limit, error, corner_demand and waived_up_to; - for a pure number."""
     utilisation: Least0OrNull
-    """Worst demand over limit, or limit over it for a least value; null with the status fail is
-    infinite, with not_evaluated missing."""
+    """Worst demand over limit, or limit over it for a least value; null with the status fail
+    or waived is infinite, with not_evaluated missing."""
     status: Status
     """Result of the check."""
     not_proven: bool
