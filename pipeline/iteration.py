@@ -17,16 +17,18 @@ from camwright.geometry.lift import Lift
 from camwright.pipeline.base.progress import SILENT, Progress
 from camwright.pipeline.base.tables import Table, Tabled, table
 from camwright.pipeline.base.units import in_unit, shown
+from camwright.pipeline.base.verdict import Verdict, verdict, within_depth
 from camwright.pipeline.base.worker_processes import ALONE, Crew
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.given_lift import given_lift, lift_origin
 from camwright.pipeline.case.load_case_torque import engine_torques
-from camwright.pipeline.checks.check import Check, Verdict, verdict, within_depth
+from camwright.pipeline.checks.check import Check
 from camwright.pipeline.checks.registry import FORECAST, checks_of
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.contact_store import NOT_STORED, ContactStore
 from camwright.pipeline.cycle.solution import Solution, is_body, solution
 from camwright.pipeline.preview import preview_case, smoothing_record
+from camwright.pipeline.records.trial_contents import SynthesisRecord
 from camwright.pipeline.results.run_records import contour_columns, lift_columns
 from camwright.pipeline.results.trial import (
     CONSTRAINED,
@@ -38,7 +40,6 @@ from camwright.pipeline.results.trial import (
 from camwright.pipeline.smoothing.fe_correction import (
     Comparison,
     Rank,
-    SynthesisRecord,
     design_record,
     rank,
     solved_ripple,

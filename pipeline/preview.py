@@ -28,7 +28,7 @@ from camwright.pipeline.solver import CHECKS, checked, judged_at_corners, solve
 from camwright.pipeline.torque.torque import Torque
 
 if TYPE_CHECKING:
-    from camwright.pipeline.smoothing.fe_correction import SynthesisRecord
+    from camwright.pipeline.records.trial_contents import SynthesisRecord
 
 _CONVERGENCE = 2.0  # of a preview over that of a run
 _ROUNDS = 3  # of synthesis and correction

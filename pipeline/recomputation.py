@@ -36,6 +36,7 @@ from camwright.pipeline.contact.contact_history import CertificatePoint
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.certificate_angles import begun
 from camwright.pipeline.preview import smoothing_record
+from camwright.pipeline.records.run_summary import StatedVerdict
 from camwright.pipeline.results import check_records, run_reader, signoff
 from camwright.pipeline.results.check_records import AnyCheck
 from camwright.pipeline.results.drawn_cam import drawn_cam
@@ -130,7 +131,7 @@ class Recomputation:
     """
 
     checks: tuple[AnyCheck, ...]
-    judged: Mapping[str, str | None]
+    judged: StatedVerdict
     differences: tuple[str, ...]
     angles: tuple[Angle, ...]
     unseen: tuple[str, ...]
@@ -563,5 +564,5 @@ def _recorded_limits(run: Run) -> Iterator[str]:
     """Limits of the model in the record that are not those of this version."""
     recorded = read_json(run.path / signoff.NAME)
     for key, words in limitations().items():
-        if recorded.get(key) != list(words):
+        if recorded.get(key) != words:
             yield f"{signoff.NAME}: {key} are not those of this version"

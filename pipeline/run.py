@@ -14,6 +14,7 @@ from typing import Any, Self, TypedDict, Unpack
 from camwright.geometry.errors import CamError
 from camwright.pipeline.base.progress import SILENT, Progress, utc
 from camwright.pipeline.base.source import old_words
+from camwright.pipeline.base.verdict import governing_id
 from camwright.pipeline.base.worker_processes import ALONE, PendingCall, crew
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_values import refused_as_written
@@ -28,7 +29,6 @@ from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.ripple_map import ripple_map
 from camwright.pipeline.iteration import Iteration, solved_already, trials
 from camwright.pipeline.remedies.remedy_search import order_of, texts_of, with_remedies
-from camwright.pipeline.results.check_records import governing_id
 from camwright.pipeline.results.field_output import ENDS, Shown, write_end_field, write_fields
 from camwright.pipeline.results.run_folder import RunFolder
 from camwright.pipeline.results.run_reader import Run, read_run
@@ -358,7 +358,7 @@ def judged_of(final: Trial, statement: str) -> dict[str, Any]:
         "verdict": final.verdict,
         "screen": final.screen,
         "binding": list(final.binding),
-        "governing": governing_id(one.as_record() for one in final.checks),
+        "governing": governing_id(final.checks),
         "statement": statement,
         "benchmarks": None if benchmarks is None else dict(benchmarks),
     }

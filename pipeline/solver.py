@@ -8,11 +8,12 @@ from dataclasses import replace
 
 from camwright.geometry.contour import Contour
 from camwright.pipeline.base.progress import SILENT, Progress
+from camwright.pipeline.base.verdict import in_order
 from camwright.pipeline.base.worker_processes import Crew, PendingCall, crew
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.load_case_torque import engine_torques
 from camwright.pipeline.case.machine import machines
-from camwright.pipeline.checks.check import Check, in_order
+from camwright.pipeline.checks.check import Check
 from camwright.pipeline.checks.registry import all_checks
 from camwright.pipeline.checks.tolerance_corners import Outcome, governed, outcomes, unsolved
 from camwright.pipeline.contact.tiers import Tier

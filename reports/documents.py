@@ -16,7 +16,8 @@ from camwright.pipeline.base.spreadsheets import SUFFIX, Excerpt, spreadsheet
 from camwright.pipeline.base.tables import CAM_ANGLE
 from camwright.pipeline.base.units import celsius, parse
 from camwright.pipeline.base.worker_processes import Crew, PendingCall
-from camwright.pipeline.results.check_records import judged, utilisation_of
+from camwright.pipeline.records.check_record import CheckRecord
+from camwright.pipeline.results.check_records import RecordedCheck, of_records
 from camwright.pipeline.results.run_reader import results_sha256
 from camwright.reports import pdf
 from camwright.reports.arrangement_data import arrangement_at
@@ -125,9 +126,9 @@ def sheet_content(material: ReportMaterial) -> SignoffSheet:
     """Contents of the sheet of a run."""
     run, verdict = material.run, verdict_of(material)
     rows = [row for row in check_rows(run.final.checks) if row.must_have and not row.judged_at]
-    records = {str(c["id"]): c for c in run.final.checks}
+    records = {each.id: each for each in of_records(run.final.checks)}
     known = [row for row in rows
-             if not row.evidence and utilisation_of(records[row.id]) is not None]  # fmt: skip
+             if not row.evidence and records[row.id].utilisation is not None]  # fmt: skip
     summary = run.summary
     versions = summary["versions"]
     code = " · ".join(filter(None, (str(versions.get(k, "")) for k in ("camwright", "source"))))
@@ -143,11 +144,11 @@ def sheet_content(material: ReportMaterial) -> SignoffSheet:
     )  # fmt: skip
 
 
-def _safety(row: CheckRow, check: Record) -> Safety:
+def _safety(row: CheckRow, check: RecordedCheck[CheckRecord]) -> Safety:
     """Row of the table; the safety is the reciprocal of the utilisation."""
-    used, worst = utilisation_of(check), judged(check)
+    used = check.utilisation
     safety = DASH if used is None or used <= 0.0 else number(1.0 / used, 3)
-    actual = quantity(None if worst is None else worst.demand, str(check["unit"]))
+    actual = quantity(check.worst, str(check.record["unit"]))
     return Safety(shortened(row.title, 64), row.status.id, actual, row.limit, safety,
                   shortened(row.place, 34))  # fmt: skip
 
@@ -177,7 +178,7 @@ def _facts(material: ReportMaterial) -> Iterator[tuple[str, str]]:
     yield "Lubricant", shortened(_lubricant(case), _LINE)
     yield "Temperature", shortened(_temperatures(case) or "not stated", _LINE)
     head = material.run.summary["headline"]
-    before, after = (head.get(f"torque_std_{when}_Nm") for when in ("before", "after"))
+    before, after = head.get("torque_std_before_Nm"), head.get("torque_std_after_Nm")
     if before is not None and after is not None:
         yield "Torque ripple", f"{number(before, 3)} to {quantity(after, 'N m', 3)}"
     if head.get("p0_max_MPa") is not None:

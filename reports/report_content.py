@@ -11,9 +11,9 @@ import numpy as np
 
 from camwright.geometry.errors import CamError
 from camwright.pipeline.base.files import Json
+from camwright.pipeline.base.verdict import CERTIFIED
 from camwright.pipeline.hand_check.hand_sheet import SheetRun
 from camwright.pipeline.hand_check.printed_sheet import PrintedSheet, printed
-from camwright.pipeline.results.check_records import CERTIFIED
 from camwright.pipeline.results.model_limits import MODEL_LIMITS
 from camwright.pipeline.results.run_reader import TrialRecord, load_end_words, results_sha256
 from camwright.reports import report_tables, verification_tables
@@ -524,8 +524,8 @@ def _versions(material: ReportMaterial) -> ReportSection:
 
 def _hashes(material: ReportMaterial) -> list[tuple[str, str]]:
     """SHA-256 of input, results, source and meshes."""
-    summary, mesh = material.run.summary, material.run.final.record["mesh"] or {}
-    meshes = mesh.get("sha256")
+    summary, mesh = material.run.summary, material.run.final.record["mesh"]
+    meshes = None if mesh is None else mesh.get("sha256")
     digests: dict[str, Json] = {"input": summary["input_sha256"]}
     digests["results"] = results_sha256(summary["files"])
     digests["source"] = summary["versions"].get("source")

@@ -7,13 +7,14 @@ import re
 import unicodedata
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from math import inf, isclose, isfinite, isnan, pi
+from math import isclose, isfinite, isnan, pi
 from typing import Any, TypeAlias
 
 from camwright.pipeline.base.files import Json
 from camwright.pipeline.base.source import source_in
 from camwright.pipeline.base.units import used
-from camwright.pipeline.results.check_records import utilisation_of
+from camwright.pipeline.base.verdict import in_order
+from camwright.pipeline.results.check_records import of_records
 from camwright.pipeline.results.check_report import not_proven
 from camwright.pipeline.results.verdict_summary import body_stresses
 from camwright.reports.check_parts import part_of
@@ -248,22 +249,11 @@ class CheckRow:
         return [line for line in lines if line[0]]
 
 
-def sorted_checks(checks: Sequence[Record]) -> list[Record]:
-    """Checks not evaluated first, then by decreasing utilisation."""
-
-    def order(check: Record) -> tuple[bool, float, str]:
-        value = utilisation_of(check)
-        size = -inf if value is None else value
-        return check["status"] != "not_evaluated", -size, str(check["id"])
-
-    return sorted(checks, key=order)
-
-
 def check_rows(checks: Sequence[Record]) -> list[CheckRow]:
-    """Checks as text, in the order of `sorted_checks`."""
+    """Checks as text, in the order of `verdict.in_order`."""
     rows = []
-    for check in sorted_checks(checks):
-        value = utilisation_of(check)
+    for one in in_order(of_records(checks)):
+        check, value = one.record, one.utilisation
         status = str(check["status"])
         status_words = STATUS.get(status, words(status))
         status_words += ", not proven" if check["not_proven"] else ""

@@ -10,7 +10,6 @@ import numpy as np
 from camwright.geometry.arrays import Array
 from camwright.geometry.errors import InputError, ResultError
 from camwright.pipeline.base import units
-from camwright.pipeline.base.files import Json
 from camwright.pipeline.base.tables import Table
 from camwright.pipeline.results.run_reader import TrialRecord
 from camwright.reports.figures import SERIES, AngleFigure, Curve, Figure, LimitLine, Panel
@@ -137,7 +136,7 @@ class SheetTurn:
 
     def length(self, *path: str, unit: str = "mm") -> float | None:
         """A value of the case in a unit; None if it is absent or of another dimension."""
-        value: Json = self.case
+        value: object = self.case
         for key in path:
             value = value.get(key) if isinstance(value, Mapping) else None
         try:

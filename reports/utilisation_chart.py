@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from camwright.pipeline.results.check_records import utilisation_of
+from camwright.pipeline.base.verdict import in_order, within_depth
+from camwright.pipeline.results.check_records import of_records, records_of
 from camwright.reports.check_parts import part_of
 from camwright.reports.report_tables import (
     BAR_TOP,
@@ -13,7 +14,6 @@ from camwright.reports.report_tables import (
     Record,
     check_rows,
     isolated,
-    sorted_checks,
 )
 
 _BARS = 12
@@ -46,11 +46,10 @@ def utilisation_chart(checks: Sequence[Record]) -> tuple[BarGroup, ...]:
 
     Parts follow by their greatest utilisation; the others with missing data are one last group.
     """
-    required = [c for c in sorted_checks(checks) if c["must_have"] and not c["evidence"]]
-    known = [
-        c for c in required if c["status"] != "not_evaluated" and utilisation_of(c) is not None
-    ]
-    missing = [c for c in required if c["status"] == "not_evaluated" and not c["judged_at"]]
+    ordered = in_order(of_records(checks))
+    required = [each for each in ordered if each.must_have and not each.evidence]
+    known = records_of(each for each in required if each.utilisation is not None)
+    missing = records_of(each for each in within_depth(required) if each.status == "not_evaluated")
     shown = known[:_BARS]
     parts = list(dict.fromkeys(map(part_of, shown)))
     groups = [

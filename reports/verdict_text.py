@@ -6,13 +6,14 @@ from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from typing import cast
 
+from camwright.pipeline.base.verdict import CERTIFIED, OUTCOMES, in_order, within_depth
+from camwright.pipeline.base.verdict import governing as governing_of
+from camwright.pipeline.records.check_record import CheckRecord
+from camwright.pipeline.records.forms import Depth
 from camwright.pipeline.results.check_records import (
-    CERTIFIED,
-    OPEN,
-    VERDICTS,
-    CheckRecord,
-    governing_of,
     judgement,
+    of_records,
+    records_of,
     relaxed_limits,
     to_be_confirmed,
 )
@@ -28,7 +29,6 @@ from camwright.reports.report_tables import (
     check_rows,
     isolated,
     printed,
-    sorted_checks,
     words,
 )
 
@@ -105,7 +105,7 @@ def verdict(
     binding: Sequence[str],
     stopped: str,
     scope: str = "",
-    depth: str = CERTIFIED,
+    depth: Depth = CERTIFIED,
     load_ends: str = "",
 ) -> Verdict:
     """Verdict in sentences.
@@ -122,15 +122,16 @@ def verdict(
 
     The outcome is the worse of the recorded one and that of the checks.
     """
-    required = [c for c in sorted_checks(checks) if c["must_have"]]
-    missing = [c for c in required if c["status"] == "not_evaluated" and not c["judged_at"]]
+    deciding = [each for each in in_order(of_records(checks)) if each.must_have]
+    required = records_of(deciding)
+    missing = records_of(each for each in within_depth(deciding) if each.status == "not_evaluated")
     titles = {str(c["id"]): isolated(str(c["title"])) for c in checks}
     unknown = {str(c["id"]): titles[str(c["id"])] for c in missing}
     clauses = (clause for clause in stopped.split("; ") if clause)
     records = cast("Sequence[CheckRecord]", checks)
     judged = judgement(checks, depth)
     by_checks = str(judged["verdict"] or judged["screen"])
-    outcome = max(recorded, by_checks, key=(*VERDICTS[:-1], OPEN, VERDICTS[-1]).index)
+    outcome = max(recorded, by_checks, key=OUTCOMES.index)
     return Verdict(
         outcome=outcome,
         line=str(judged["verdict_line"]) if outcome == by_checks else outcome.upper(),
@@ -197,11 +198,11 @@ def _sentence(checks: Sequence[Check], required: Sequence[Check], missing: Seque
 
 
 def governing(checks: Sequence[Check]) -> str:
-    """The governing check in a sentence, see `governing_of`; empty if none is evaluated."""
-    first = governing_of(checks)
+    """The governing check in a sentence, see `verdict.governing`; empty if none is evaluated."""
+    first = governing_of(of_records(checks))
     if first is None:
         return ""
-    row = check_rows([first])[0]
+    row = check_rows([first.record])[0]
     place = f", load case {isolated(row.load_case)}" if row.load_case else ""
     angle = f", cam angle {row.where}" if row.where else ""
     corner = f", at the tolerance corner {row.corner}" if row.corner else ""
@@ -213,8 +214,9 @@ def governing(checks: Sequence[Check]) -> str:
 
 def governing_load_case(checks: Sequence[Check], names: Sequence[str]) -> str:
     """Load case of the governing one of the checks made in a load case; else the first name."""
-    first = governing_of(check for check in checks if check["load_case"] in names)
-    return names[0] if first is None else str(first["load_case"])
+    made = [check for check in checks if check["load_case"] in names]
+    first = governing_of(of_records(made))
+    return names[0] if first is None else str(first.record["load_case"])
 
 
 def _count(items: Sequence[Check], one: str) -> str:

@@ -332,7 +332,7 @@ def _several(values: Json, digits: int = 4) -> str:
     return ", ".join(number(v, digits) for v in values) if isinstance(values, list) else DASH
 
 
-def _records(value: Json) -> list[Record]:
+def _records(value: object) -> list[Record]:
     return [one for one in value if isinstance(one, Mapping)] if isinstance(value, list) else []
 
 

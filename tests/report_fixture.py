@@ -15,11 +15,13 @@ import numpy as np
 from scipy.spatial import Delaunay
 
 from camwright.geometry.periodic_spline import periodic_quintic
+from camwright.pipeline.base.verdict import binding, verdict
 from camwright.pipeline.case.scope_section import Scope
+from camwright.pipeline.records.run_summary import SCHEMA
 from camwright.pipeline.results import signoff
-from camwright.pipeline.results.check_records import binding_of, verdict_of
+from camwright.pipeline.results.check_records import of_records
 from camwright.pipeline.results.field_file import MeshBlock, field_file
-from camwright.pipeline.results.run_reader import SCHEMA, input_sha256
+from camwright.pipeline.results.run_reader import input_sha256
 from camwright.pipeline.results.run_records import SPLINE
 
 RATE, PRELOAD, PRIME_RADIUS, ROLLER, WIDTH = 24.2e3, 242.0, 0.050, 0.008, 0.0044
@@ -262,7 +264,7 @@ def check(**record: Any) -> dict[str, Any]:
         "unit": "", "load_case": "idle", "cam_angle_deg": 192.0, "sense": "at_most", "note": "",
         "source": "Norton, Cam Design and Manufacturing Handbook (2009)", "must_have": True,
         "method": "closed form, refined between samples", "waiver": None, "status": "pass",
-        "error": None, "corner": None, "corner_demand": None, "evidence": False, "judged_at": "",
+        "error": None, "corner": "", "corner_demand": None, "evidence": False, "judged_at": "",
         "waived_up_to": None, "not_proven": False,
     }  # fmt: skip
     return base | record
@@ -535,8 +537,8 @@ def write_run(
         "platform": "Linux x86_64", "prices": None, "machine_prices": None, "benchmarks": None,
         "speed": None, "consistency": [], "files": {},
         "trials": 2, "final_trial": 2, "trial_points": TRIAL_POINTS, "ripple_map": RIPPLE_MAP,
-        "depth": "certified", "verdict": verdict_of(records), "screen": None,
-        "binding": list(binding_of(records)),
+        "depth": "certified", "verdict": verdict(of_records(records)), "screen": None,
+        "binding": list(binding(of_records(records))),
         "scope": left_out.as_record(),
         "headline": {
             "torque_std_before_Nm": float(before.std()), "torque_std_after_Nm": float(after.std()),

@@ -27,6 +27,7 @@ In the order of use:
 | `store`            | values by key, each in a file of a folder                |                  |
 | `disk_cache`       | arrays that depend on their key alone, kept between runs |                  |
 | `worker_processes` | processes with one BLAS thread and a safe import path    |                  |
+| `verdict`          | meaning of status, utilisation, verdict, governing       | utilisation      |
 | `value_groups`     | dotted keys on which checks rest, in groups              |                  |
 | `formula`          | formula texts of checks: read, evaluated, written        | SI               |
 | `levers`           | levers of a check: keys, direction, range                | factor           |

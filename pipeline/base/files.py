@@ -24,7 +24,7 @@ from numpy.typing import ArrayLike
 
 from camwright.geometry.errors import InputError, ResultError
 
-Json: TypeAlias = "str | float | Sequence[Json] | Mapping[str, Json] | None"
+Json: TypeAlias = "str | float | Sequence[Json] | Mapping[str, object] | None"
 """A value of a JSON record."""
 
 _TABLES_DEEP = 16

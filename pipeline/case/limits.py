@@ -18,9 +18,9 @@ from pydantic import Field, create_model, field_validator
 from camwright.geometry.lift import CLOSURE_LIMIT
 from camwright.pipeline.base.quantities import In, Known, Meaning
 from camwright.pipeline.base.source import Source
+from camwright.pipeline.base.verdict import Sense
 from camwright.pipeline.case.section import Section, StatedSource, refusal, suggestion
 
-Sense = Literal["at_most", "at_least"]
 Slope = Literal["whole", "rest", "square", "unit"]
 
 _LENGTH = In("mm", above=0, at_most=10_000)

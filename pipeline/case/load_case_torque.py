@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Protocol
 
 import numpy as np
 
@@ -46,6 +46,7 @@ from camwright.pipeline.engine.pressure_trace import (
 )
 from camwright.pipeline.engine.speed_file import SpeedTable, speed_from_csv
 from camwright.pipeline.engine.speed_trace import SpeedTrace
+from camwright.pipeline.records.run_summary import Measurement, WheelRecording
 from camwright.pipeline.torque import torque as torque_module
 from camwright.pipeline.torque.period import Period
 from camwright.pipeline.torque.tabled_torque import TabledTorqueFile
@@ -264,7 +265,7 @@ def crank_speed(case: TorqueSource, engine: SpeedTable | VoltageTable) -> SpeedT
     )
 
 
-def measurement_record(case: TorqueSource) -> Mapping[str, Any] | None:
+def measurement_record(case: TorqueSource) -> Measurement | None:
     """Statistics of a measurement for ``run.json``; None for a model."""
     engine = case.engine
     if isinstance(engine, PressureTable):
@@ -321,12 +322,12 @@ def measurement_words(case: TorqueSource) -> Iterator[str]:
         yield from speed_notes(trace, case.crankshaft.inertia, engine.running_gear)
 
 
-def _recording(speed: SpeedTrace) -> Mapping[str, str | float]:
+def _recording(speed: SpeedTrace) -> WheelRecording:
     """What the record of a trigger wheel shows of itself."""
     recording = speed.recording
     if recording is None:
         return {}
-    known: dict[str, str | float] = {"runs": recording.runs, "wheel": recording.pattern.words}
+    known: WheelRecording = {"runs": recording.runs, "wheel": recording.pattern.words}
     if recording.sampling_rate is not None:
         known["sampling_rate_Hz"] = recording.sampling_rate
     return known

@@ -16,6 +16,7 @@ from camwright.pipeline.base.quantities import Known
 from camwright.pipeline.base.source import Source, entry_of
 from camwright.pipeline.case.section import Section, Text
 from camwright.pipeline.case.toml_text import Tables, TomlValue
+from camwright.pipeline.records.run_summary import ScopeRecord
 
 PartName = Literal[
     "roller_bearing", "pin", "fork", "spring", "gas_spring", "torsion_spring", "guides",
@@ -96,7 +97,7 @@ class Scope(Section):
         reason = " ".join(self.reason.split())
         return f"Not covered by this sign-off: {parts}: {reason}" if parts else ""
 
-    def as_record(self) -> dict[str, str | list[str]]:
+    def as_record(self) -> ScopeRecord:
         """The scope for ``run.json`` and ``signoff.json``."""
         return {
             "not_covered": list(self.not_covered),

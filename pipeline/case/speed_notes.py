@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-
 import numpy as np
 
 from camwright.pipeline.base.units import shown
 from camwright.pipeline.engine.cylinder import RunningGear
 from camwright.pipeline.engine.speed_trace import SpeedTrace
 from camwright.pipeline.engine.wheel_calibration import Calibration
+from camwright.pipeline.records.run_summary import WheelErrors
 
 WHEEL_BAR_MAX = 0.05
 """Error bar of the torque due to the wheel, of the torque from peak to peak, with a warning."""
@@ -31,15 +30,16 @@ _ASSUMED = {
 }
 
 
-def calibration_record(calibration: Calibration | None) -> Mapping[str, float]:
+def calibration_record(calibration: Calibration | None) -> WheelErrors:
     """Pitch errors of the wheel in ``run.json``."""
     if calibration is None:
         return {}
     errors = calibration.errors
-    known = {"pitch_tolerance_deg": float(np.degrees(errors.tolerance))}
+    known: WheelErrors = {"pitch_tolerance_deg": float(np.degrees(errors.tolerance))}
     if not calibration.kind:
         return known
-    return known | {
+    return {
+        **known,
         "pitch_errors_rms_deg": float(np.degrees(errors.rms)),
         "pitch_errors_left_deg": float(np.degrees(errors.residual)),
         "torque_change_percent": 100.0 * errors.torque_change,

@@ -18,11 +18,12 @@ from camwright.pipeline.base import levers
 from camwright.pipeline.base.source import Source
 from camwright.pipeline.base.stem_layout import SEAT_MOST, StemLayout, decided
 from camwright.pipeline.base.units import shown
+from camwright.pipeline.base.verdict import ROUNDING
 from camwright.pipeline.case.limits import ASSEMBLY_GAP
 from camwright.pipeline.case.machine import Machine
 from camwright.pipeline.checks.cam_shape import contour_radius, lift
 from camwright.pipeline.checks.camshaft_strength import camshaft_of, gear_of
-from camwright.pipeline.checks.check import NONE, ROUNDING, STATED, Allowed, Demand, check
+from camwright.pipeline.checks.check import NONE, STATED, Allowed, Demand, check
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.loaded_cam import LoadedCam
 from camwright.pipeline.cycle.machine_envelope import stem_layout

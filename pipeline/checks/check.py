@@ -1,4 +1,4 @@
-"""Check: demand against limit, with method and source; verdict and screen of many checks."""
+"""Check: demand against limit, with method and source."""
 
 from __future__ import annotations
 
@@ -15,11 +15,22 @@ from numpy.typing import NDArray
 from camwright.geometry.arrays import Array, Value
 from camwright.geometry.display import Displayed
 from camwright.geometry.errors import InputError
-from camwright.geometry.extrema import to_rank
 from camwright.pipeline.base.levers import Lever
 from camwright.pipeline.base.source import NO_SOURCE, Source
 from camwright.pipeline.base.units import in_unit, shown
-from camwright.pipeline.case.limits import TORQUE_REDUCTION, AnyLimit, Sense
+from camwright.pipeline.base.verdict import (
+    Sense,
+    Status,
+    blocks,
+    evaluated,
+    is_bound,
+    not_proven,
+    status,
+    upper_utilisation,
+    utilisation,
+    worst,
+)
+from camwright.pipeline.case.limits import TORQUE_REDUCTION, AnyLimit
 from camwright.pipeline.case.machine import Machine
 from camwright.pipeline.case.scope_section import PartName, ScopeName
 from camwright.pipeline.checks.extremes import Extreme, Measure, Reduce, worst_measure
@@ -27,10 +38,9 @@ from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.loaded_cam import LoadedCam
 from camwright.pipeline.cycle.numbers import Numbers
 from camwright.pipeline.cycle.solution import Solution
+from camwright.pipeline.records.check_record import CheckRecord
+from camwright.pipeline.records.forms import Depth
 
-Status = Literal["pass", "fail", "not_evaluated", "waived"]
-Verdict = Literal["pass", "incomplete", "fail"]
-Screen = Literal["open", "fail"]
 Error = Literal["sampling", "contact", "ends", "guides", "guide_edges", "bore", "unknown"]
 Bounded = Literal["", "crown", "line", "surge"]
 RestsOn = Literal["", "contact", "loads"]
@@ -47,7 +57,6 @@ Page = Literal[
     "Camshaft",
 ]
 """Parts of the mechanism in the order of the flow of force; "": of evidence."""
-Record = dict[str, str | float | bool | list[str] | dict[str, float] | None]
 EVERY = "all, standstill and over-speed included"
 BY_DUTY = (
     "by load_case.duty, 1/L = sum q_i/L_i with q_i the shares; without a duty the worst load case"
@@ -66,8 +75,6 @@ FACTOR_MAX = 4.0
 """Maximum factor of a relaxation of a limit."""
 STATED = "stated"
 """Place of a symbol of a formula whose number the check states, as in ``stated [MPa]``."""
-ROUNDING = 1e-9
-"""Relative error of closed forms and exact integrals: no uncertainty of a demand."""
 
 
 @dataclass(frozen=True)
@@ -112,7 +119,7 @@ class Demand:
     source: Source = NO_SOURCE
     must_have: bool = True
     corner: str = ""
-    judged_at: str = ""
+    judged_at: Depth | Literal[""] = ""
     stated: Mapping[str, float] = field(default_factory=dict, hash=False)
 
 
@@ -697,7 +704,7 @@ class Check(Displayed):
     corner_demand: float | None = None
     unconfirmed: tuple[str, ...] = ()
     relaxed: tuple[str, ...] = ()
-    judged_at: str = ""
+    judged_at: Depth | Literal[""] = ""
     without: str = ""
     remedy: str = ""
     stated: Mapping[str, float] = field(default_factory=dict, hash=False)
@@ -756,14 +763,14 @@ class Check(Displayed):
         return abs(demand) * share
 
     @property
+    def waived_up_to(self) -> float | None:
+        """Worst demand that the waiver accepts; None: not waived."""
+        return None if self.waiver is None else self.waiver.up_to
+
+    @property
     def worst(self) -> float | None:
         """Worse of the demand and that at the governing tolerance corner; it is judged."""
-        demand, corner = self.demand, self.corner_demand
-        if demand is None or math.isnan(demand) or corner is None:
-            return demand
-        if math.isnan(corner):
-            return corner
-        return max(demand, corner) if self.sense == "at_most" else min(demand, corner)
+        return worst(self)
 
     @property
     def margin(self) -> float | None:
@@ -773,90 +780,48 @@ class Check(Displayed):
 
     @property
     def evaluated(self) -> bool:
-        """Whether demand and limit are known; NaN and an infinite limit are not.
-
-        `without` the loads of a load case the demand is a bound: within the limit it says nothing.
-        """
-        demand, limit = self.worst, self.limit
-        if demand is None or math.isnan(demand) or limit is None or not math.isfinite(limit):
-            return False
-        return not self.is_bound
+        """Whether demand and limit are known; see `verdict.evaluated`."""
+        return evaluated(self)
 
     @property
     def is_bound(self) -> bool:
         """Whether its demand is a bound within the limit, which says nothing; see `without`."""
-        demand, limit = self.worst, self.limit
-        if not self.without or demand is None or limit is None:
-            return bool(self.without)
-        return math.isnan(demand) or self._holds(demand, limit)
+        return is_bound(self)
 
     @property
     def utilisation(self) -> float | None:
-        """Worst demand over limit, or limit over it for a least value; None if one is missing.
-
-        At <= 1 the demand is within its limit. Infinite for a demand <= 0 against a positive least
-        value, and for a positive demand against a limit of zero.
-        """
-        return self._use_of(float(self.worst or 0.0)) if self.evaluated else None
+        """Worst demand over limit, or limit over it for a least value; None if one is missing."""
+        return utilisation(self)
 
     @property
     def upper_utilisation(self) -> float | None:
         """Utilisation at the end of the error bar towards the limit; None if one is missing."""
-        worst = float(self.worst or 0.0)
-        return self._use_of(self._upper(worst)) if self.evaluated else None
-
-    def _use_of(self, demand: float) -> float:
-        limit = float(self.limit or 0.0)
-        part, whole = (demand, limit) if self.sense == "at_most" else (limit, demand)
-        if whole > 0:
-            return part / whole
-        return 0.0 if part <= whole else math.inf
+        return upper_utilisation(self)
 
     @property
     def status(self) -> Status:
-        """`pass`, `fail`, `not_evaluated`, or `waived` where the waiver covers a failed demand."""
-        if not self.evaluated:
-            return "not_evaluated"
-        worst = float(self.worst or 0.0)
-        if self._holds(worst, self.limit) and not self.not_proven:
-            return "pass"
-        covered = self.waiver is not None and self._holds(self._upper(worst), self.waiver.up_to)
-        return "waived" if covered else "fail"
+        """`pass`, `fail`, `not_evaluated`, or `waived`; see `verdict.status`."""
+        return status(self)
 
     @property
     def not_proven(self) -> bool:
         """Whether the limit lies within the error bar of a worst demand that is within it."""
-        if not self.evaluated:
-            return False
-        worst = float(self.worst or 0.0)
-        share = self.error_share or 0.0
-        if share <= ROUNDING or not self._holds(worst, self.limit):
-            return False
-        return not self._holds(self._upper(worst), self.limit)
-
-    def _upper(self, worst: float) -> float:
-        """End of the error bar of the worst demand towards the limit."""
-        error = abs(worst) * (self.error_share or 0.0)
-        return worst + error if self.sense == "at_most" else worst - error
-
-    def _holds(self, demand: float, limit: float | None) -> bool:
-        if limit is None:
-            return False
-        return demand <= limit if self.sense == "at_most" else demand >= limit
+        return not_proven(self)
 
     @property
     def blocks(self) -> bool:
         """Whether the verdict is not PASS for it: a must-have check, neither passed nor waived."""
-        return self.must_have and self.status in ("fail", "not_evaluated")
+        return blocks(self)
 
-    def as_record(self) -> Record:
+    def as_record(self) -> CheckRecord:
         """JSON record, in `unit` and degrees; NaN and infinity become null.
 
         A demand without bound that keeps its limit, such as the fatigue safety factor of a constant
         load, is recorded as `BOUNDLESS`.
 
         The demand of a check `without` the loads of a load case is null as well, unless it fails.
-        A utilisation of null is infinite with the status `fail`, missing with `not_evaluated`.
+        A utilisation of null is infinite with the status `fail` or `waived`, missing with
+        `not_evaluated`.
         """
         unit = self.unit
         bound = self.is_bound
@@ -879,7 +844,7 @@ class Check(Displayed):
             "must_have": self.must_have,
             "lift_can_help": self.lift_can_help,
             "waiver": None if self.waiver is None else self.waiver.text,
-            "waived_up_to": _shown(None if self.waiver is None else self.waiver.up_to, unit),
+            "waived_up_to": _shown(self.waived_up_to, unit),
             "not_proven": self.not_proven,
             "missing": list(self.missing),
             "note": "; ".join(filter(None, (self.without, self.note))),
@@ -906,51 +871,9 @@ class Check(Displayed):
         return {name: value for name, value in known.items() if value is not None}
 
 
-def verdict(checks: Iterable[Check]) -> Verdict:
-    """Verdict of the must-have checks.
-
-    `fail` if one is beyond its limit or not proven, or without checks; else `incomplete` if one
-    lacks data; else `pass`.
-    """
-    deciding = [each.status for each in checks if each.must_have]
-    if not deciding or "fail" in deciding:
-        return "fail"
-    return "incomplete" if "not_evaluated" in deciding else "pass"
-
-
-def screen(checks: Iterable[Check]) -> Screen:
-    """Result below the certified depth: `fail` if a must-have check fails, else `open`."""
-    failing = any(each.must_have and each.status == "fail" for each in checks)
-    return "fail" if failing else "open"
-
-
-def within_depth(checks: Iterable[Check]) -> tuple[Check, ...]:
-    """The checks without those that a deeper solution judges."""
-    return tuple(each for each in checks if not each.judged_at)
-
-
 def depends_on_lift(one: Check | Declaration) -> bool:
     """Whether a synthesis of the lift can change the demand of a check."""
     return one.lift_can_help or one.id == TORQUE_REDUCTION.id
-
-
-def binding(checks: Iterable[Check]) -> tuple[str, ...]:
-    """Ids of the must-have checks that fail or lack data: those without data first.
-
-    A check that a deeper solution judges does not bind.
-    """
-    return tuple(each.id for each in in_order(within_depth(checks)) if each.blocks)
-
-
-def in_order(checks: Iterable[Check]) -> tuple[Check, ...]:
-    """Not evaluated first, must-have checks before others, then by descending utilisation."""
-    return tuple(sorted(checks, key=_place))
-
-
-def _place(one: Check) -> tuple[int, float, str]:
-    if one.utilisation is None:
-        return 0, 0.0 if one.must_have else 1.0, one.id
-    return 1, -to_rank(one.utilisation), one.id
 
 
 def _shown(value: float | None, unit: str = "") -> float | None:

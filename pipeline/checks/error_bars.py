@@ -8,7 +8,8 @@ from dataclasses import replace
 import numpy as np
 
 from camwright.geometry.extrema import TIE, first_greatest
-from camwright.pipeline.checks.check import ROUNDING, Check, Error
+from camwright.pipeline.base.verdict import ROUNDING
+from camwright.pipeline.checks.check import Check, Error
 from camwright.pipeline.checks.solution_verification import mesh_reaction
 from camwright.pipeline.cycle.solution import Solution
 

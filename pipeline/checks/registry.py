@@ -10,6 +10,7 @@ from types import ModuleType
 from camwright.geometry.errors import InputError
 from camwright.pipeline.base.quantities import In
 from camwright.pipeline.base.source import Source
+from camwright.pipeline.base.verdict import in_order
 from camwright.pipeline.case.limits import TORQUE_REDUCTION
 from camwright.pipeline.case.requirements_section import Waiver
 from camwright.pipeline.checks import (
@@ -38,7 +39,6 @@ from camwright.pipeline.checks.check import (
     Demand,
     Waived,
     check,
-    in_order,
     made_from_others,
 )
 from camwright.pipeline.checks.confirmation import with_values_to_confirm

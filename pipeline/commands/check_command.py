@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from xml.etree.ElementTree import Element
 
     from camwright.pipeline.recomputation import Recomputation
-    from camwright.pipeline.results.check_records import CheckRecord
+    from camwright.pipeline.records.check_record import CheckRecord
     from camwright.pipeline.results.junit_report import Clock
     from camwright.pipeline.results.signatures import Signature
     from camwright.pipeline.results.signing_keys import TrustedKey
@@ -160,7 +160,7 @@ def _unshown(_: Iterable[str]) -> None:
 
 def _require_known(fail_on: str) -> None:
     """Refuse an unknown value of --fail-on."""
-    from camwright.pipeline.results.check_report import FAIL_ON
+    from camwright.pipeline.base.verdict import FAIL_ON
 
     if fail_on not in FAIL_ON:
         raise InputError("--fail-on", fail_on, f"one of: {', '.join(FAIL_ON)}")
@@ -230,10 +230,13 @@ def _show_overview(judged: Sequence[_Judged]) -> None:
 
 def schema(
     name: Annotated[
-        str, typer.Argument(metavar="NAME", help="run, checks, check (of check --json) or signoff.")
+        str,
+        typer.Argument(
+            metavar="NAME", help="run, trial, checks, check (of check --json) or signoff."
+        ),
     ],
 ) -> int:
-    """Print the JSON Schema of a record: run.json, 6_checks.json, check --json, signoff.json."""
+    """Print the JSON Schema of a record of a run, or of the output of check --json."""
     from camwright.pipeline.results.record_schemas import record_schema
 
     show_json(record_schema(name))
@@ -301,8 +304,9 @@ def _judged(
     CamError
         If the run cannot be read, the case solved, or no check fits a pattern.
     """
-    from camwright.pipeline.results.check_records import VERDICTS, exit_word
-    from camwright.pipeline.results.check_report import outcome, overview_row, selected
+    from camwright.pipeline.base.verdict import VERDICTS, exit_word, outcome
+    from camwright.pipeline.results.check_records import of_records
+    from camwright.pipeline.results.check_report import overview_row, selected
     from camwright.pipeline.results.junit_report import junit_suite
 
     if not target.exists():
@@ -310,9 +314,11 @@ def _judged(
     made = _checked_case(target, remedies, early) if target.is_file() else _checked_run(target)
     document, clock = made
     document["checks"] = list(selected(document["checks"], only))
-    decided = outcome(document["checks"], fail_on)
+    decided = outcome(of_records(document["checks"]), fail_on)
     if not only and fail_on != "never":
-        decided = max(decided, exit_word(document), key=VERDICTS.index)
+        decided = max(
+            decided, exit_word(document["verdict"], document["screen"]), key=VERDICTS.index
+        )
     if baseline is not None:
         from camwright.pipeline.results.baseline_comparison import changes
 
@@ -491,6 +497,7 @@ def _checked_case(
     """Checks of the preview of a case, with the clock of the preview."""
     from camwright.pipeline.base.progress import utc
     from camwright.pipeline.base.source import old_words
+    from camwright.pipeline.base.verdict import governing_id
     from camwright.pipeline.case.case_file import read_case
     from camwright.pipeline.case.load_case_torque import (
         engine_torques,
@@ -499,7 +506,7 @@ def _checked_case(
     )
     from camwright.pipeline.case.plausibility import implausible
     from camwright.pipeline.preview import preview_case
-    from camwright.pipeline.results.check_records import governing_id, judgement, to_be_confirmed
+    from camwright.pipeline.results.check_records import judgement, to_be_confirmed
     from camwright.pipeline.results.junit_report import Clock
     from camwright.pipeline.results.run_records import figures
     from camwright.pipeline.results.verdict_summary import figure_lines, torque_lines
@@ -538,7 +545,7 @@ def _checked_case(
         **judgement(checks, trial.depth.word),
         "to_be_confirmed": to_be_confirmed(checks),
         "binding": list(trial.binding),
-        "governing": governing_id(checks),
+        "governing": governing_id(made),
         "load_ends": trial.load_ends,
         "figures": figures(trial),
         "scope": case.scope.as_record(),

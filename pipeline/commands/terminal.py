@@ -132,10 +132,11 @@ def show(document: dict[str, Any], places: Places) -> None:
 
 def show_failures(document: dict[str, Any], places: Places) -> None:
     """Print the failed checks, missing data, verdict, scope and path of the report."""
+    from camwright.pipeline.base.verdict import within_depth
     from camwright.pipeline.results import verdict_summary
-    from camwright.pipeline.results.check_records import within_depth
+    from camwright.pipeline.results.check_records import of_records, records_of
 
-    checks = within_depth(document["checks"])
+    checks = records_of(within_depth(of_records(document["checks"])))
     show_lines(verdict_summary.load_end_line(document))
     show_lines(verdict_summary.failure_lines(checks))
     show_lines(verdict_summary.missing_lines(checks, places.case))
@@ -156,7 +157,8 @@ def show_failures(document: dict[str, Any], places: Places) -> None:
 
 def show_all(document: dict[str, Any], places: Places) -> None:
     """Print checks and evidence by utilisation, remarks, verdict, scope, path of the report."""
-    from camwright.pipeline.results.check_records import within_depth
+    from camwright.pipeline.base.verdict import within_depth
+    from camwright.pipeline.results.check_records import of_records, records_of
     from camwright.pipeline.results.check_report import (
         binding_lines,
         consistency_line,
@@ -172,7 +174,7 @@ def show_all(document: dict[str, Any], places: Places) -> None:
         verdict_words,
     )
 
-    checks = within_depth(document["checks"])
+    checks = records_of(within_depth(of_records(document["checks"])))
     show_lines(load_end_line(document))
     stdout.print(table(check for check in checks if not check["evidence"]))
     evidence = [check for check in checks if check["evidence"]]

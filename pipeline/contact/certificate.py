@@ -22,6 +22,7 @@ from camwright.pipeline.contact.elasticity.mesh_convergence import (
 )
 from camwright.pipeline.contact.elasticity.surface_integrals import ContactFrame
 from camwright.pipeline.contact.full_contact import ContactSide, ContactSolution, solve_contact
+from camwright.pipeline.records.trial_contents import ContactFigure
 
 # Whole numbers of edges: the edge of the contact is a knot of every mesh.
 REFINEMENT = 2.0
@@ -147,7 +148,7 @@ def certificate_point(
     def over_meshes(name: str) -> tuple[float, ...]:
         return tuple(float(getattr(mesh, name)) for mesh in meshes)
 
-    def figure(name: str) -> Convergence:
+    def figure(name: ContactFigure) -> Convergence:
         if not worst:
             return converged(over_meshes(name), REFINEMENT)
         observed = [point.figures[name][0] for point in worst]

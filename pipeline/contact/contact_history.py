@@ -13,6 +13,7 @@ from camwright.geometry.display import Displayed
 from camwright.geometry.extrema import first_greatest
 from camwright.pipeline.contact.elasticity.mesh_convergence import Convergence
 from camwright.pipeline.contact.tiers import Tier
+from camwright.pipeline.records.trial_contents import ContactFigure
 
 TWO_SCALE = "two-scale finite elements: contact patch and bodies"
 GAP_ROUND_OFF_MAX = 1e-3
@@ -144,7 +145,7 @@ class CertificatePoint(Displayed):
     order_from: tuple[float, ...] = ()
 
     @property
-    def figures(self) -> Mapping[str, tuple[Convergence, float]]:
+    def figures(self) -> Mapping[ContactFigure, tuple[Convergence, float]]:
         """Each certified quantity by its name: convergence over the meshes, value of the cycle."""
         return {
             "p0": (self.p0, self.p0_cycle),
@@ -159,12 +160,12 @@ class CertificatePoint(Displayed):
         return self.difference(self.spread_of)
 
     @property
-    def spread_of(self) -> str:
+    def spread_of(self) -> ContactFigure:
         """Name of the figure with the largest difference, or without a number."""
         names = list(self.figures)
         return names[first_greatest([self.difference(name) for name in names])]
 
-    def difference(self, name: str) -> float:
+    def difference(self, name: ContactFigure) -> float:
         """Relative difference of cycle and certificate in one figure."""
         one, value = self.figures[name]
         return abs(value / one.extrapolated - 1)
@@ -175,7 +176,7 @@ class CertificatePoint(Displayed):
         return self.figures[self.gci_of][0].gci
 
     @property
-    def gci_of(self) -> str:
+    def gci_of(self) -> ContactFigure:
         """Name of the figure with the largest index, or without a number."""
         names = list(self.figures)
         return names[first_greatest([self.figures[name][0].gci for name in names])]

@@ -5,6 +5,7 @@ from __future__ import annotations
 from enum import IntEnum
 
 from camwright.geometry.errors import InputError
+from camwright.pipeline.records.forms import DEPTHS, Depth
 
 
 class Tier(IntEnum):
@@ -21,9 +22,9 @@ class Tier(IntEnum):
     CERTIFIED = 4
 
     @property
-    def word(self) -> str:
+    def word(self) -> Depth:
         """Name in records and on the command line, such as ``preview``."""
-        return self.name.lower()
+        return DEPTHS[self - 1]
 
     @classmethod
     def of(cls, word: str, field: str) -> Tier:

@@ -10,7 +10,6 @@ import numpy as np
 from camwright.geometry.arrays import Array
 from camwright.geometry.contour import Contour
 from camwright.geometry.errors import GeometryError
-from camwright.pipeline.base.files import Json
 from camwright.pipeline.contact.cam_body import CamBody
 from camwright.pipeline.follower.camshaft_loads import (
     Camshaft,
@@ -24,6 +23,7 @@ from camwright.pipeline.follower.camshaft_loads import (
     unbalance,
 )
 from camwright.pipeline.follower.follower_forces import Loads
+from camwright.pipeline.records.trial_contents import BalanceRecord
 
 WALL = 3e-3
 """Wall around a proposed hole, which no case states, m."""
@@ -60,7 +60,7 @@ class Balance:
         """Unbalance of the cam as manufactured."""
         return self.left if self.drilled else self.unbalance
 
-    def record(self) -> dict[str, Json]:
+    def record(self) -> BalanceRecord:
         """Record in ``trial.json``."""
         hole = self.hole
         return {

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 
-from camwright.pipeline.base.files import Json
+from camwright.geometry.arrays import Array
 from camwright.pipeline.base.units import in_unit
 from camwright.pipeline.contact.finite_length.axial_drop import FinitePair
 from camwright.pipeline.contact.finite_length.length_certificate import (
@@ -12,18 +12,24 @@ from camwright.pipeline.contact.finite_length.length_certificate import (
     LengthPoint,
 )
 from camwright.pipeline.contact.finite_length.length_tiers import (
-    FACTORS,
     TierResult,
     plane_strain,
 )
 from camwright.pipeline.contact.finite_length.subsurface_stress import subsurface_stress
+from camwright.pipeline.records.trial_contents import (
+    LengthElements,
+    LengthFactors,
+    LengthPointRecord,
+    LengthTier,
+    StressPeakRecord,
+)
 
 _DIGITS = 7
 
 
 def length_record(
     certificate: LengthCertificate | None, bodies: Sequence[str]
-) -> list[dict[str, Json]]:
+) -> list[LengthPointRecord]:
     """Contact of bodies with ends by both tiers at each angle, over plane-strain p0.
 
     bodies : sequence   names of both bodies
@@ -31,7 +37,7 @@ def length_record(
     return [] if certificate is None else [_point(point, bodies) for point in certificate.points]
 
 
-def _point(point: LengthPoint, bodies: Sequence[str]) -> dict[str, Json]:
+def _point(point: LengthPoint, bodies: Sequence[str]) -> LengthPointRecord:
     load = point.load
     _, p0 = plane_strain(load.pair, load.force)
     return {
@@ -46,49 +52,59 @@ def _point(point: LengthPoint, bodies: Sequence[str]) -> dict[str, Json]:
         "is_mean_at_corner": point.finite_elements.at_corner,
         "ratio": point.ratio,
         "half_space": _tier(point.half_space),
-        "finite_elements": _tier(point.finite_elements) | _stresses(point, bodies),
-        "difference": dict(zip(FACTORS, point.difference.tolist(), strict=True)),
+        "finite_elements": _elements(point, bodies),
+        "difference": _by_name(point.difference),
     }
 
 
-def _tier(tier: TierResult) -> dict[str, Json]:
-    bars = {
-        f"{name}_gci_percent": in_unit(each.gci, "%")
-        for name, each in zip(FACTORS, tier.convergence, strict=True)
-    }
+def _tier(tier: TierResult) -> LengthTier:
+    centre, greatest, end1, end2 = (in_unit(each.gci, "%") for each in tier.convergence)
     return {
         **factors(tier),
-        **bars,
+        "centre_gci_percent": centre,
+        "greatest_gci_percent": greatest,
+        "end1_mean_gci_percent": end1,
+        "end2_mean_gci_percent": end2,
         "mean_length_mm": in_unit(tier.factors.mean_length, "mm"),
         "unknowns": tier.unknowns,
     }
 
 
-def factors(tier: TierResult) -> dict[str, float]:
+def factors(tier: TierResult) -> LengthFactors:
     """Factors of a tier over plane-strain p0 by name."""
-    return dict(zip(FACTORS, tier.factors.all[0].tolist(), strict=True))
+    return _by_name(tier.factors.all[0])
 
 
-def _stresses(point: LengthPoint, bodies: Sequence[str]) -> dict[str, Json]:
-    """Pressure at the middle of each cell along the contact, and stress below it."""
+def _by_name(values: Array) -> LengthFactors:
+    """Values in the order of `FACTORS`."""
+    centre, greatest, end1, end2 = map(float, values)
+    return {"centre": centre, "greatest": greatest, "end1_mean": end1, "end2_mean": end2}
+
+
+def _elements(point: LengthPoint, bodies: Sequence[str]) -> LengthElements:
+    """Factors, pressure at the middle of each cell along the contact, and stress below it."""
     pair, contact = point.load.pair, point.finite_elements.contact
     _, p0 = plane_strain(pair, point.load.force)
-    axial = {
-        "y_mm": [in_unit(float(y), "mm") for y in contact.cells.centres_along],
-        "factor": (contact.centre_line[0] / p0).tolist(),
+    places = [in_unit(float(y), "mm") for y in contact.cells.centres_along]
+    return {
+        **_tier(point.finite_elements),
+        "axial": {
+            "y_mm": _rounded(places),
+            "factor": _rounded((contact.centre_line[0] / p0).tolist()),
+        },
+        "stress": dict(zip(bodies, stress_peaks(pair, point.finite_elements), strict=True)),
     }
-    rounded: dict[str, Json] = {
-        name: [float(f"{value:.{_DIGITS}g}") for value in values] for name, values in axial.items()
-    }
-    peaks = stress_peaks(pair, point.finite_elements)
-    return {"axial": rounded, "stress": dict(zip(bodies, peaks, strict=True))}
 
 
-def stress_peaks(pair: FinitePair, tier: TierResult) -> list[dict[str, Json]]:
+def _rounded(values: Iterable[float]) -> list[float]:
+    return [float(f"{value:.{_DIGITS}g}") for value in values]
+
+
+def stress_peaks(pair: FinitePair, tier: TierResult) -> list[dict[str, StressPeakRecord]]:
     """Greatest stresses below middle and ends over plane-strain p0, and their depths, by body."""
     force, stretch = float(tier.contact.force[0]), tier.factors.mean_length
     half_width, p0 = plane_strain(pair, force)
-    records: list[dict[str, Json]] = []
+    records: list[dict[str, StressPeakRecord]] = []
     for body in pair.bodies:
         stress = subsurface_stress(
             tier.contact,

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from camwright.geometry.arrays import Array, freeze
-from camwright.pipeline.base.files import Json
 from camwright.pipeline.base.tables import Column
 from camwright.pipeline.case.machine import Machine
 from camwright.pipeline.contact.contact_history import ContactHistory
@@ -18,6 +17,7 @@ from camwright.pipeline.contact.oil_film import (
     minimum_film,
     mixed_film,
 )
+from camwright.pipeline.records.trial_contents import MixedFilmRecord
 
 VICKERS = 9.80665e6  # Pa
 _UM = 1e6
@@ -71,10 +71,10 @@ class FilmHistory:
             }
         return columns
 
-    def record(self) -> dict[str, Json]:
-        """Record of the mixed film in ``trial.json``; empty without one."""
+    def record(self) -> MixedFilmRecord | None:
+        """Record of the mixed film in ``trial.json``; None without one."""
         if self.mixed is None:
-            return {}
+            return None
         known = np.isfinite(self.mixed.minimum)
         minimum = _UM * float(self.mixed.minimum[known].min()) if known.any() else None
         return {

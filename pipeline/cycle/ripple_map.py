@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import TypedDict
 
 import numpy as np
 
@@ -18,6 +17,7 @@ from camwright.pipeline.case.requirements_section import LoadCase
 from camwright.pipeline.cycle.speed_sweep import highest_speed
 from camwright.pipeline.engine.cylinder import CylinderEngine
 from camwright.pipeline.follower.follower_forces import Rubbing, follower_loads
+from camwright.pipeline.records.run_summary import RippleMapRecord
 from camwright.pipeline.torque.torque import Torque
 
 ANGLES = 360
@@ -32,18 +32,6 @@ _SCALED = (
     "speed; the rest is taken as at the speed of the load case."
 )
 _FIXED = "Torque of the load case at every speed: its inertia is not separated."
-
-
-class RippleMapRecord(TypedDict):
-    """JSON record of a ripple map; a row of each ripple by load."""
-
-    load_case: str
-    engine: str
-    crank_speed_rpm: list[float]
-    intake_pressure_kPa: list[float] | None
-    ratio: list[list[float]]
-    ripple_before_Nm: list[list[float]]
-    ripple_after_Nm: list[list[float]]
 
 
 @dataclass(frozen=True, eq=False)

@@ -11,7 +11,6 @@ import numpy as np
 from camwright.geometry.arrays import FULL_TURN, Array, freeze, uniform_turn
 from camwright.geometry.display import Displayed
 from camwright.geometry.extrema import first_greatest
-from camwright.pipeline.base.files import Json
 from camwright.pipeline.base.tables import Column
 from camwright.pipeline.case.machine import Machine
 from camwright.pipeline.contact.bore_stress import BoreStress, bore_stress
@@ -31,11 +30,12 @@ from camwright.pipeline.cycle.contact_heat import flash_history
 from camwright.pipeline.cycle.oil_film_history import FilmHistory, film_history
 from camwright.pipeline.follower.flat_face_motion import FaceSliding
 from camwright.pipeline.follower.follower_forces import Loads, follower_loads
+from camwright.pipeline.records.trial_contents import BoreMaximum, RollingRecord, StressMap
 
 # The stress that the real body adds is taken at every so many contact angles.
 _THINNED = 4
 _MM, _MPA = 1e3, 1e-6
-MAPS = {
+MAPS: Mapping[StressMap, str] = {
     "von_mises": "von Mises stress",
     "tau_max": "in-plane shear stress",
     "shear_range": "range of the orthogonal shear stress",
@@ -266,13 +266,13 @@ def envelope_arrays(turns: Mapping[str, RollingHistory]) -> dict[str, Array]:
     return arrays
 
 
-def rolling_record(turns: Mapping[str, RollingHistory]) -> dict[str, Json]:
+def rolling_record(turns: Mapping[str, RollingHistory]) -> dict[str, RollingRecord]:
     """Maxima of the turn and their places by load case, mm and MPa, for ``trial.json``."""
     return {name: _worst_record(turn) for name, turn in turns.items()}
 
 
-def _worst_record(turn: RollingHistory) -> dict[str, Json]:
-    record: dict[str, Json] = {}
+def _worst_record(turn: RollingHistory) -> RollingRecord:
+    record: RollingRecord = {}
     for name in MAPS:
         if getattr(turn.envelope, name) is not None:
             value, theta, depth = turn.envelope.worst(name)
@@ -292,12 +292,13 @@ def _worst_record(turn: RollingHistory) -> dict[str, Json]:
         record["gross_slip_share"] = float(turn.contact.skidding.mean())
     if turn.sliding is not None:
         record["sliding_loss_J_per_cam_turn"] = turn.sliding.loss
-    if turn.film is not None and turn.film.mixed is not None:
-        record["film_thickness_mixed"] = turn.film.record()
+    film = None if turn.film is None else turn.film.record()
+    if film is not None:
+        record["film_thickness_mixed"] = film
     return record
 
 
-def _worst_bore_record(bore: BoreStress) -> dict[str, Json]:
+def _worst_bore_record(bore: BoreStress) -> BoreMaximum:
     k = first_greatest(bore.von_mises)
     return {
         "von_mises_MPa": _MPA * float(bore.von_mises[k]),

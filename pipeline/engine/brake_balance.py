@@ -15,6 +15,7 @@ from camwright.pipeline.engine.pressure_trace import (
     PressureTrace,
     dead_centre_offset,
 )
+from camwright.pipeline.records.run_summary import IndicatedTorque
 
 SHIFT_MAX = radians(10.0)
 """Greatest error of a dead centre that is considered, rad."""
@@ -82,9 +83,9 @@ class BrakeBalance:
             parts.append(f"motored peak {degrees(self.motored_lead):.2f} deg before dead centre")
         return "; ".join(parts)
 
-    def as_record(self) -> dict[str, float]:
+    def as_record(self) -> IndicatedTorque:
         """Plain values; without those that are not measured."""
-        record = {
+        record: IndicatedTorque = {
             "indicated_torque_Nm": self.indicated,
             "indicated_torque_per_deg_Nm": self.slope * radians(1.0),
         }

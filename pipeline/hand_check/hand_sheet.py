@@ -29,7 +29,8 @@ from camwright.pipeline.checks.registry import DECLARED
 from camwright.pipeline.cycle.loaded_cam import roller_of
 from camwright.pipeline.cycle.numbers import Numbers, fitted_ring, greatest_interference
 from camwright.pipeline.cycle.solved_cam import ContourCam, in_load_case, numbers_of
-from camwright.pipeline.results.check_records import CheckRecord, utilisation_of
+from camwright.pipeline.records.check_record import CheckRecord
+from camwright.pipeline.results.check_records import RecordedCheck
 from camwright.pipeline.results.check_report import place
 from camwright.pipeline.results.drawn_cam import drawn_cam
 from camwright.pipeline.results.run_reader import Run, read_run
@@ -250,7 +251,7 @@ class SheetRun:
             for each in self.records.values()
             if each["must_have"] and not each["evidence"] and each["demand"] is not None
         ]
-        ranked = sorted(required, key=lambda each: -(utilisation_of(each) or 0.0))
+        ranked = sorted(required, key=lambda each: -(RecordedCheck(each).utilisation or 0.0))
         return tuple(each["id"] for each in ranked[:most])
 
     def _holds(self, declared: Declaration) -> bool:

@@ -15,7 +15,7 @@ from camwright.pipeline.hand_check.sheet_lines import (
     outcome_words,
     use_words,
 )
-from camwright.pipeline.results.check_records import utilisation_of
+from camwright.pipeline.results.check_records import RecordedCheck
 
 Math = tuple[Printed, ...]
 _EQUAL = (Printed("sign", "="),)
@@ -70,7 +70,7 @@ def printed(sheet: Sheet, *, governing: bool) -> PrintedSheet:
         demand_words(record),
         f"{outcome_words(sheet)}; {use_words(sheet)}",
         limit_words(sheet),
-        used(utilisation_of(record)),
+        used(RecordedCheck(record).utilisation),
         governing,
     )
 

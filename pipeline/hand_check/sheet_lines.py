@@ -5,7 +5,8 @@ from __future__ import annotations
 from camwright.pipeline.base import formula
 from camwright.pipeline.base.units import used
 from camwright.pipeline.hand_check.hand_sheet import Sheet
-from camwright.pipeline.results.check_records import CheckRecord, utilisation_of
+from camwright.pipeline.records.check_record import CheckRecord
+from camwright.pipeline.results.check_records import RecordedCheck
 from camwright.pipeline.results.check_report import (
     corner,
     number,
@@ -50,7 +51,7 @@ def outcome_words(sheet: Sheet) -> str:
 
 def use_words(sheet: Sheet) -> str:
     """Use of the limit as a quotient, in percent."""
-    used_words = used(utilisation_of(sheet.record))
+    used_words = used(RecordedCheck(sheet.record).utilisation)
     if sheet.use is None:
         return f"{used_words} used"
     unit = unit_text(sheet.record["unit"])

@@ -5,13 +5,13 @@ In the order of a run:
 | module                 | responsibility                                                        |
 | ---------------------- | --------------------------------------------------------------------- |
 | `trial`                | a cam with its solution, checks and smoothing                         |
-| `check_records`        | records of checks: status by the numbers, verdict, governing check    |
+| `check_records`        | records of checks: table, status by the numbers, verdict in one line  |
 | `run_reader`           | a finished run read from its folder; schema of the records            |
 | `model_limits`         | limits of the model, for report, sign-off record and documentation    |
 | `signoff`              | sign-off record: figures, evidence, validity limits, hashes of files  |
 | `signing_keys`         | Ed25519 keys: new, read, trusted                                      |
 | `signatures`           | signatures of the sign-off record: in-toto statements, DSSE envelopes |
-| `record_schemas`       | JSON Schemas of summary, checks and sign-off record                   |
+| `record_schemas`       | JSON Schemas of the records, made of their forms                      |
 | `folder_exchange`      | runs and added files take their place, whole at any interruption      |
 | `run_folder`           | the folder of a run while it is written; resumption                   |
 | `run_records`          | columns of the tables, key figures, records of trial and crank speed  |

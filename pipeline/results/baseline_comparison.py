@@ -3,28 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import Literal, TypedDict
+from typing import Literal
 
-from camwright.pipeline.results.check_records import CheckRecord
+from camwright.pipeline.records.check_document import ChangeKind, CheckChange
+from camwright.pipeline.records.check_record import CheckRecord
 
 # Relative error bar of a demand without one: digits beyond it are not printed.
 UNKNOWN_ERROR = 1e-6
 
 
-class Change(TypedDict):
-    """Change of a check; `kinds` of status, demand, limit, new, gone."""
-
-    id: str
-    kinds: list[str]
-    unit: str
-    demand_before: float | None
-    demand: float | None
-    error_bars: float
-    status_before: str | None
-    status: str | None
-
-
-def changes(before: Iterable[CheckRecord], now: Iterable[CheckRecord]) -> list[Change]:
+def changes(before: Iterable[CheckRecord], now: Iterable[CheckRecord]) -> list[CheckChange]:
     """Checks that differ: by status, by demand beyond both error bars, by limit.
 
     A check on one side only is `new` or `gone`. Relative evidence, such as residuals and mesh
@@ -42,7 +30,7 @@ def changes(before: Iterable[CheckRecord], now: Iterable[CheckRecord]) -> list[C
     return [entry for entry in entries if entry["kinds"]]
 
 
-def lines(entries: Iterable[Change]) -> list[str]:
+def lines(entries: Iterable[CheckChange]) -> list[str]:
     """One line a change."""
     return [
         f"{entry['id']}: {', '.join(entry['kinds'])}; demand {_text(entry['demand_before'])} ->"
@@ -52,7 +40,7 @@ def lines(entries: Iterable[Change]) -> list[str]:
     ] or ["nothing changed beyond the error bars"]
 
 
-def _one_sided(record: CheckRecord, kind: Literal["new", "gone"]) -> Change:
+def _one_sided(record: CheckRecord, kind: Literal["new", "gone"]) -> CheckChange:
     demand, status = record["demand"], record["status"]
     return {
         "id": record["id"],
@@ -66,9 +54,9 @@ def _one_sided(record: CheckRecord, kind: Literal["new", "gone"]) -> Change:
     }
 
 
-def _change(old: CheckRecord, new: CheckRecord) -> Change:
+def _change(old: CheckRecord, new: CheckRecord) -> CheckChange:
     bars, limit = _error(old) + _error(new), new["limit"] or 0.0
-    differs = {
+    differs: dict[ChangeKind, bool] = {
         "status": old["status"] != new["status"],
         "demand": not _is_error(new) and _apart(old["demand"], new["demand"], bars),
         "limit": _apart(old["limit"], new["limit"], UNKNOWN_ERROR * abs(limit)),

@@ -1,4 +1,4 @@
-"""Records of checks: contents, status by the numbers, verdict, screen, governing check.
+"""Records of checks: contents, table, status by the numbers, verdict in one line.
 
 No solver and no case parser is imported.
 """
@@ -8,72 +8,32 @@ from __future__ import annotations
 import math
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
-from typing import TYPE_CHECKING, Any, NamedTuple, Protocol, TypedDict, TypeVar
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Generic, Protocol, TypeVar
 
 from camwright.geometry.display import Displayed, html_table, in_brief, panels_of
-from camwright.geometry.extrema import to_rank
 from camwright.pipeline.base.columns import data_frame
+from camwright.pipeline.base.verdict import (
+    CERTIFIED,
+    STATUSES,
+    Status,
+    error_of_worst,
+    screen,
+    status,
+    verdict,
+    worst,
+)
+from camwright.pipeline.records.forms import Depth
+from camwright.pipeline.records.run_summary import StatedVerdict
 
 if TYPE_CHECKING:
     import pandas as pd
     from matplotlib.axes import Axes
 
-STATUSES = ("pass", "waived", "not_evaluated", "fail")
-"""Statuses of a check, from the best to the worst."""
-VERDICTS = ("pass", "incomplete", "fail")
-"""Verdicts, from the best to the worst."""
-CERTIFIED = "certified"
-"""Depth of a run with a verdict; a shallower one has a screen, ``fail`` or ``open``."""
-OPEN = "open"
-"""Screen without a failed check; as an exit code it counts as ``incomplete``."""
 _DIGITS = 1e-12
 """Relative error of a sum of numbers with the 15 digits of a record."""
 _ROUNDING = 1.001e-9
 """Share of a demand up to which its error is that of rounding, no uncertainty."""
-
-
-class CheckRecordOfAnyCheck(TypedDict):
-    """A record of ``6_checks.json``, in `unit` and degrees; null: missing, or infinite."""
-
-    id: str
-    title: str
-    demand: float | None
-    limit: float | None
-    unit: str
-    utilisation: float | None
-    status: str
-    load_case: str
-    cam_angle_deg: float | None
-    source: str
-    method: str
-    sense: str
-    must_have: bool
-    waiver: str | None
-    waived_up_to: float | None
-    not_proven: bool
-    note: str
-    error: float | None
-    corner: str | None
-    corner_demand: float | None
-    evidence: bool
-    judged_at: str
-
-
-class CheckRecord(CheckRecordOfAnyCheck, total=False):
-    """A record of ``6_checks.json``.
-
-    to_be_confirmed: names of the recalled values on which it rests; relaxed: its limits that are
-    weaker than their defaults; missing: dotted keys that the
-    case lacks and without which it is not evaluated; remedy: smallest change that cures it, "" if
-    none is known; stated: numbers of solvers and reductions in its formula by their symbol. Records
-    of earlier versions lack them.
-    """
-
-    to_be_confirmed: list[str]
-    relaxed: list[str]
-    missing: list[str]
-    remedy: str
-    stated: dict[str, float]
 
 
 AnyCheck = Mapping[str, object]
@@ -87,6 +47,104 @@ class Recorded(Protocol):
 
 
 Item = TypeVar("Item", bound=AnyCheck | Recorded)
+
+
+AnyRecord = TypeVar("AnyRecord", bound=AnyCheck)
+
+
+@dataclass(frozen=True)
+class RecordedCheck(Generic[AnyRecord]):
+    """A record as `base.verdict` reads a check: status and utilisation are as stated.
+
+    Its numbers are in the unit of the record.
+    """
+
+    record: AnyRecord
+
+    @property
+    def id(self) -> str:
+        return str(self.record["id"])
+
+    @property
+    def status(self) -> str:
+        return str(self.record["status"])
+
+    @property
+    def utilisation(self) -> float | None:
+        """As stated; null of an evaluated check is infinite, as JSON has no infinity."""
+        value = _number(self.record["utilisation"])
+        return math.inf if value is None and self.status in ("fail", "waived") else value
+
+    @property
+    def must_have(self) -> bool:
+        return bool(self.record["must_have"])
+
+    @property
+    def evidence(self) -> bool:
+        return bool(self.record["evidence"])
+
+    @property
+    def judged_at(self) -> str:
+        return str(self.record["judged_at"])
+
+    @property
+    def demand(self) -> float | None:
+        return _number(self.record["demand"])
+
+    @property
+    def corner_demand(self) -> float | None:
+        """NaN where a corner is named without a number."""
+        corner = _number(self.record["corner_demand"])
+        return math.nan if corner is None and self.record["corner"] else corner
+
+    @property
+    def worst(self) -> float | None:
+        """Demand by which it is judged; None where a number is missing."""
+        demand = worst(self)
+        return None if demand is None or math.isnan(demand) else demand
+
+    @property
+    def limit(self) -> float | None:
+        return _number(self.record["limit"])
+
+    @property
+    def error_share(self) -> float:
+        error, demand = _number(self.record["error"]), self.demand
+        return error / abs(demand) if error and demand else 0.0
+
+    @property
+    def error(self) -> float:
+        """Half of the error bar of the worst demand; 0 where it is that of round-off."""
+        return error_of_worst(self) if self.error_share > _ROUNDING else 0.0
+
+    @property
+    def sense(self) -> str:
+        return str(self.record["sense"])
+
+    @property
+    def waived_up_to(self) -> float | None:
+        return _number(self.record["waived_up_to"]) if self.record["waiver"] else None
+
+    @property
+    def without(self) -> str:
+        """Empty: a bound within its limit is recorded without its demand."""
+        return ""
+
+    @property
+    def status_by_numbers(self) -> Status:
+        """Status by worst demand, error bar, limit and value of the waiver, to their digits."""
+        proven = not self.record["not_proven"]
+        return status(self, digits=_DIGITS, rounding=_ROUNDING, proven=proven)
+
+
+def of_records(records: Iterable[AnyRecord]) -> tuple[RecordedCheck[AnyRecord], ...]:
+    """Records as `base.verdict` reads checks."""
+    return tuple(RecordedCheck(record) for record in records)
+
+
+def records_of(checks: Iterable[RecordedCheck[AnyRecord]]) -> tuple[AnyRecord, ...]:
+    """Records of the checks that `of_records` gives."""
+    return tuple(each.record for each in checks)
 
 
 class CheckList(Displayed, tuple[Item, ...]):
@@ -118,7 +176,7 @@ class CheckList(Displayed, tuple[Item, ...]):
         ----------
         most : int   number of bars, at most
         """
-        used = [(utilisation_of(record), record) for record in self.records]
+        used = [(each.utilisation, each.record) for each in of_records(self.records)]
         ranked = sorted(
             ((value, record) for value, record in used if value is not None),
             key=lambda each: -each[0],
@@ -174,91 +232,20 @@ def _row_in_words(record: AnyCheck) -> list[str]:
     return ["" if value is None else in_brief(value) for value in values]
 
 
-def binding_of(checks: Iterable[CheckRecord]) -> tuple[str, ...]:
-    """Ids of the must-have checks that fail or lack data, without those of a deeper solution."""
-    return tuple(
-        check["id"]
-        for check in within_depth(checks)
-        if check["must_have"] and check["status"] not in ("pass", "waived")
-    )
-
-
-def governing_of(checks: Iterable[AnyCheck]) -> AnyCheck | None:
-    """Must-have check of the design of the greatest utilisation; None if none is evaluated.
-
-    Evidence, which no change of the design moves, and waived checks do not govern. Of equal ones
-    the first by its id.
-    """
-    ranked = [
-        (-to_rank(used), str(check["id"]), check)
-        for check in checks
-        if _governs(check) and (used := utilisation_of(check)) is not None
-    ]
-    return min(ranked, key=lambda each: each[:2])[2] if ranked else None
-
-
-def _governs(check: AnyCheck) -> bool:
-    """Whether a check is ranked as governing: a must-have of the design that passes or fails."""
-    ranked = check["must_have"] and not check["evidence"]
-    return bool(ranked and check["status"] in ("pass", "fail"))
-
-
-def governing_id(checks: Iterable[AnyCheck]) -> str | None:
-    """Id of the governing check; see `governing_of`."""
-    governing = governing_of(checks)
-    return None if governing is None else str(governing["id"])
-
-
-def utilisation_of(check: AnyCheck) -> float | None:
-    """Utilisation of a record; null with status ``fail`` is infinite, as JSON has no infinity."""
-    value = _number(check["utilisation"])
-    return math.inf if value is None and check["status"] == "fail" else value
-
-
-def within_depth(checks: Iterable[CheckRecord]) -> tuple[CheckRecord, ...]:
-    """The records without those that a deeper solution judges."""
-    return tuple(check for check in checks if not check["judged_at"])
-
-
-def judgement(checks: Iterable[AnyCheck], depth: str) -> dict[str, str | None]:
+def judgement(checks: Iterable[AnyCheck], depth: Depth) -> StatedVerdict:
     """Depth, verdict, screen and both in one line.
 
-    A certified run has a verdict, see `verdict_of`, and no screen. A shallower one has no verdict;
-    its screen is ``fail`` if a must-have check fails, else ``open``.
+    A certified run has a verdict and no screen, a shallower one a screen and no verdict.
     """
     checks = tuple(checks)
     line = verdict_line(checks) if depth == CERTIFIED else screen_line(checks, depth)
     certified = depth == CERTIFIED
     return {
         "depth": depth,
-        "verdict": verdict_of(checks) if certified else None,
-        "screen": None if certified else screen_of(checks),
+        "verdict": verdict(of_records(checks)) if certified else None,
+        "screen": None if certified else screen(of_records(checks)),
         "verdict_line": line,
     }
-
-
-def screen_of(checks: Iterable[AnyCheck]) -> str:
-    """Screen of the must-have checks, as `checks.check.screen` has it."""
-    failing = any(check["must_have"] and check["status"] == "fail" for check in checks)
-    return "fail" if failing else OPEN
-
-
-def exit_word(judged: Mapping[str, Any]) -> str:
-    """Verdict that decides the exit code; ``incomplete`` for an open screen."""
-    word = judged["verdict"] or judged["screen"]
-    return "incomplete" if word == OPEN else str(word)
-
-
-def verdict_of(checks: Iterable[AnyCheck]) -> str:
-    """Verdict of the must-have checks, as `checks.check.verdict` has it.
-
-    ``fail`` if one is beyond its limit or not proven, or without any; else ``incomplete`` if one
-    lacks data; else ``pass``.
-    """
-    deciding = [check["status"] for check in checks if check["must_have"]]
-    if not deciding or "fail" in deciding:
-        return "fail"
-    return "incomplete" if "not_evaluated" in deciding else "pass"
 
 
 def verdict_line(records: Iterable[AnyCheck]) -> str:
@@ -271,10 +258,10 @@ def verdict_line(records: Iterable[AnyCheck]) -> str:
     deciding = [record for record in records if record["must_have"]]
     if not deciding:
         return "FAIL: no check decides"
-    verdict, stated = verdict_of(deciding), _counts(deciding)
-    if verdict == "pass":
+    judged, stated = verdict(of_records(deciding)), _counts(deciding)
+    if judged == "pass":
         return f"PASS, {stated}" if stated else "PASS"
-    return f"{verdict.upper()}: {stated}"
+    return f"{judged.upper()}: {stated}"
 
 
 def screen_line(records: Iterable[AnyCheck], depth: str) -> str:
@@ -284,7 +271,8 @@ def screen_line(records: Iterable[AnyCheck], depth: str) -> str:
     deeper = len(deciding) - len(within)
     later = f"{_counted(deeper, 'check', 'checks')} judged deeper" if deeper else ""
     parts = ", ".join(part for part in (_counts(within), later) if part)
-    return f"{screen_of(deciding).upper()} at the depth {depth}: {parts or 'no check fails'}"
+    judged = screen(of_records(deciding))
+    return f"{judged.upper()} at the depth {depth}: {parts or 'no check fails'}"
 
 
 def _counts(deciding: Sequence[AnyCheck]) -> str:
@@ -323,55 +311,6 @@ def _listed(records: Iterable[AnyCheck], field: str) -> list[str]:
     listed = (record.get(field) for record in records if record["must_have"])
     names = (str(name) for each in listed if isinstance(each, list) for name in each)
     return list(dict.fromkeys(names))
-
-
-class Judged(NamedTuple):
-    """Worst demand of a record and half of its error bar, in the unit of the record."""
-
-    demand: float
-    error: float
-
-    def towards(self, sense: str) -> float:
-        """End of the error bar towards the limit."""
-        return self.demand - self.error if sense == "at_least" else self.demand + self.error
-
-
-def judged(record: AnyCheck) -> Judged | None:
-    """Demand by which a record is judged: the worse of nominal and tolerance corner.
-
-    None where a number is missing; a named corner without a number is one. The error bar is the
-    same share of the demand at the corner as at the nominal.
-    """
-    demand, corner = _number(record["demand"]), _number(record["corner_demand"])
-    if demand is None or (record["corner"] and corner is None):
-        return None
-    worse = min if record["sense"] == "at_least" else max
-    worst = demand if corner is None else worse(demand, corner)
-    error = _number(record["error"]) or 0.0
-    share = error / abs(demand) if demand else 0.0
-    return Judged(worst, abs(worst) * share if share > _ROUNDING else 0.0)
-
-
-def status_of(record: AnyCheck) -> str:
-    """Status of a record by its numbers: worst demand, error bar, limit and value of the waiver.
-
-    A missing number is never better than ``not_evaluated``.
-    """
-    one, limit, sense = judged(record), _number(record["limit"]), str(record["sense"])
-    if one is None or limit is None:
-        return "not_evaluated"
-    upper = one.towards(sense)
-    if not record["not_proven"] and _within(upper, limit, sense):
-        return "pass"
-    accepted = _number(record["waived_up_to"]) if record["waiver"] else None
-    covered = accepted is not None and _within(upper, accepted, sense)
-    return "waived" if covered else "fail"
-
-
-def _within(demand: float, limit: float, sense: str) -> bool:
-    """Whether a demand keeps a limit, up to the digits of a record."""
-    slack = _DIGITS * max(abs(demand), abs(limit))
-    return demand >= limit - slack if sense == "at_least" else demand <= limit + slack
 
 
 def _number(value: object) -> float | None:

@@ -10,22 +10,13 @@ from typing import TYPE_CHECKING, Any
 
 from camwright.geometry.errors import InputError
 from camwright.pipeline.base.units import used
-from camwright.pipeline.results.check_records import (
-    AnyCheck,
-    CheckRecord,
-    governing_of,
-    judged,
-    utilisation_of,
-    within_depth,
-)
-from camwright.pipeline.results.run_reader import Finding
+from camwright.pipeline.base.verdict import governing, in_order, within_depth
+from camwright.pipeline.records.check_record import CheckRecord
+from camwright.pipeline.records.run_summary import Finding
+from camwright.pipeline.results.check_records import AnyCheck, RecordedCheck, of_records, records_of
 
 if TYPE_CHECKING:
     from rich.table import Table
-
-FAIL_ON = ("must", "open", "any", "never")
-"""Checks that decide the exit code of `check`: the must-haves; also any check without data; also
-any optional check that fails; none."""
 
 HEADINGS = ("check", "demand", "limit", "used", "where, worst corner", "status")
 OVERVIEW = ("run", "case", "depth", "result", "failed", "missing", "governing")
@@ -59,41 +50,14 @@ def _patterns(only: Iterable[str]) -> list[str]:
     return [word for text in only for word in text.replace(",", " ").split()]
 
 
-def failing(records: Iterable[CheckRecord], fail_on: str) -> tuple[CheckRecord, ...]:
-    """Checks that count at a level of `FAIL_ON` and fail or lack data.
-
-    Raises
-    ------
-    InputError
-        If the level is unknown.
-    """
-    if fail_on not in FAIL_ON:
-        raise InputError("--fail-on", fail_on, f"one of: {', '.join(FAIL_ON)}")
-    return tuple(record for record in records if _counts(record, fail_on))
-
-
-def outcome(records: Iterable[CheckRecord], fail_on: str) -> str:
-    """Verdict at a level of `FAIL_ON`: ``fail``, else ``incomplete``, else ``pass``.
-
-    Raises
-    ------
-    InputError
-        If the level is unknown.
-    """
-    counted = {record["status"] for record in failing(records, fail_on)}
-    if "fail" in counted:
-        return "fail"
-    return "incomplete" if counted else "pass"
-
-
 def not_proven(record: AnyCheck) -> str:
     """Worst demand with its error bar against the limit, where the bar lies across it."""
-    one, limit = judged(record), record["limit"]
-    if not record["not_proven"] or one is None or not isinstance(limit, (int, float)):
+    one = RecordedCheck(record)
+    if not record["not_proven"] or one.worst is None or one.limit is None:
         return ""
     decimals = 0 if not one.error else max(0, 1 - math.floor(math.log10(one.error)))
     error = f"{one.error:.{decimals}f}"
-    return f"not proven: {one.demand:.{decimals}f} ± {error} against {limit:.6g}"
+    return f"not proven: {one.worst:.{decimals}f} ± {error} against {one.limit:.6g}"
 
 
 def waiver_words(record: CheckRecord) -> str:
@@ -104,21 +68,6 @@ def waiver_words(record: CheckRecord) -> str:
     return f"up to {number(record['waived_up_to'])}{unit}, {record['waiver']}"
 
 
-def _counts(record: CheckRecord, fail_on: str) -> bool:
-    status = record["status"]
-    if fail_on == "never" or status in ("pass", "waived"):
-        return False
-    if record["must_have"] or fail_on == "any":
-        return True
-    return fail_on == "open" and status == "not_evaluated"
-
-
-def rank(record: CheckRecord) -> tuple[bool, float, str]:
-    """Not evaluated first, then by falling utilisation; an infinite one has no number."""
-    used = record["utilisation"]
-    return record["status"] != "not_evaluated", -(math.inf if used is None else used), record["id"]
-
-
 def rows(records: Iterable[CheckRecord]) -> list[tuple[str, ...]]:
     """Text of the table by `HEADINGS`, worst first."""
     return [
@@ -126,11 +75,11 @@ def rows(records: Iterable[CheckRecord]) -> list[tuple[str, ...]]:
             record["title"],
             f"{with_error(record['demand'], record['error'])}{_unit(record)}",
             number(record["limit"]),
-            used(utilisation_of(record)),
+            used(RecordedCheck(record).utilisation),
             "\n".join(filter(None, (place(record), corner(record)))),
             status(record),
         )
-        for record in sorted(records, key=rank)
+        for record in records_of(in_order(of_records(records)))
     ]
 
 
@@ -199,22 +148,20 @@ def overview(rows: Iterable[Sequence[str]]) -> Table:
 
 def overview_row(target: str, document: Mapping[str, Any]) -> tuple[str, ...]:
     """Run or case as a row of `overview`."""
-    checks: Sequence[CheckRecord] = within_depth(document["checks"])
-    required = [record for record in checks if record["must_have"]]
-    missing = sum(record["status"] == "not_evaluated" for record in required)
-    first = governing_of(checks)
-    worst = "" if first is None else f"{first['id']} {used(utilisation_of(first))}"
-    failed = sum(record["status"] == "fail" for record in required)
+    checks = within_depth(of_records(document["checks"]))
+    required = [each.status for each in checks if each.must_have]
+    first = governing(checks)
+    worst = "" if first is None else f"{first.id} {used(first.utilisation)}"
     return (
         *(target, document["case"], document["depth"]),
         str(document["verdict"] or document["screen"]).upper(),
-        *(str(failed), str(missing), worst),
+        *(str(required.count("fail")), str(required.count("not_evaluated")), worst),
     )
 
 
 def remarks(records: Iterable[CheckRecord]) -> list[str]:
     """Lines below the table: missing data, not proven checks, waivers, remedies."""
-    records = sorted(records, key=rank)
+    records = records_of(in_order(of_records(records)))
     waived = [f"{_waived(r)}: {r['id']}: {waiver_words(r)}" for r in records if r["waiver"]]
     unproven = [f"{r['id']}: {not_proven(r)}" for r in records if r["not_proven"]]
     still_open = [
@@ -231,7 +178,7 @@ def remarks(records: Iterable[CheckRecord]) -> list[str]:
 def deeper_lines(records: Iterable[CheckRecord]) -> list[str]:
     """Checks that a deeper solution judges, a line a depth."""
     by_depth: dict[str, list[str]] = {}
-    for record in sorted(records, key=rank):
+    for record in records_of(in_order(of_records(records))):
         if record["judged_at"]:
             by_depth.setdefault(record["judged_at"], []).append(record["id"])
     return [f"judged at the depth {depth}: {', '.join(ids)}" for depth, ids in by_depth.items()]

@@ -21,7 +21,7 @@ from typing import NamedTuple
 import numpy as np
 
 from camwright.geometry.errors import ResultError
-from camwright.pipeline.base.files import Json, read_json, read_npz, read_text
+from camwright.pipeline.base.files import read_json, read_npz, read_text
 from camwright.pipeline.base.tables import CAM_ANGLE, Table, read_table
 from camwright.pipeline.results import signoff
 
@@ -440,7 +440,7 @@ _BY_KIND: Mapping[Kind, Callable[[Path, Path], str]] = {
 
 
 def record_differences(
-    one: Json, two: Json, share: float = SAME, place: str = "", left_out: Sequence[str] = ()
+    one: object, two: object, share: float = SAME, place: str = "", left_out: Sequence[str] = ()
 ) -> Iterator[str]:
     """Differences of two JSON values in words.
 

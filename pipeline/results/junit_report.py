@@ -13,14 +13,14 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 from camwright.pipeline.base.units import used
-from camwright.pipeline.results.check_records import CheckRecord, judged
+from camwright.pipeline.base.verdict import failing, in_order
+from camwright.pipeline.records.check_record import CheckRecord
+from camwright.pipeline.results.check_records import RecordedCheck, of_records, records_of
 from camwright.pipeline.results.check_report import (
     corner,
-    failing,
     not_proven,
     number,
     place,
-    rank,
     reason_without_data,
     status,
     unit_text,
@@ -100,13 +100,13 @@ def junit_suite(
     decided : str          ``pass``, ``incomplete`` or ``fail``, as the exit code states it
     properties : mapping   such as the verdict in words, the scope, the exit code
     """
-    records = sorted(records, key=rank)
-    counting = {record["id"] for record in failing(records, fail_on)}
+    checks = in_order(of_records(records))
+    counting = {each.id for each in failing(checks, fail_on)}
     suite = ET.Element("testsuite", {"name": _for_xml(name), **clock.attributes})
     stated = ET.SubElement(suite, "properties")
     for key, value in properties.items():
         ET.SubElement(stated, "property", name=key, value=_for_xml(value))
-    for record in records:
+    for record in records_of(checks):
         case, kind = _case(suite, name, record["id"]), record["status"]
         if kind == "not_evaluated":
             ET.SubElement(case, "skipped", message=_for_xml(_reason(record)))
@@ -157,8 +157,8 @@ def _reason(record: CheckRecord) -> str:
 def _shortfall(record: CheckRecord) -> str:
     """Demand against limit with unit and status, the reason of a failure, in one line."""
     unit = unit_text(record["unit"])
-    worst = judged(record)
-    demand = record["demand"] if worst is None else worst.demand
+    worst = RecordedCheck(record).worst
+    demand = record["demand"] if worst is None else worst
     sign = "<=" if record["sense"] == "at_most" else ">="
     unbounded = demand is None and record["status"] == "fail"
     words = "unbounded" if unbounded else f"{with_error(demand, record['error'])}{unit}"

@@ -13,6 +13,7 @@ from camwright.pipeline.checks.contact_strength import (
 from camwright.pipeline.checks.jump_and_jamming import contact_over_speed
 from camwright.pipeline.checks.roller_bearing import roller_radial
 from camwright.pipeline.checks.solution_verification import excluded_zone, held_distance
+from camwright.pipeline.records.signoff_record import LimitationsRecord
 
 
 @dataclass(frozen=True)
@@ -112,7 +113,7 @@ MODEL_LIMITS = (
 )
 
 
-def limitations() -> dict[str, list[str]]:
+def limitations() -> LimitationsRecord:
     """Statements by kind: ``limitations`` of the model, ``singularities`` that are excluded."""
     return {
         "limitations": [each.statement for each in MODEL_LIMITS if not each.singular],

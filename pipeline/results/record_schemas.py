@@ -1,33 +1,55 @@
-"""JSON Schemas, draft 2020-12, of ``run.json``, checks and ``signoff.json``; in ``schemas/``."""
+"""JSON Schemas, draft 2020-12, of the records of a run: made of their forms when asked for."""
 
 from __future__ import annotations
 
-from pathlib import Path
+from collections.abc import Mapping
 from typing import Any
 
 from camwright.geometry.errors import InputError
-from camwright.pipeline.base.files import read_json
+from camwright.pipeline.records.check_document import CheckDocument, SeveralTargets
+from camwright.pipeline.records.check_record import CheckRecord
+from camwright.pipeline.records.forms import Schema
+from camwright.pipeline.records.run_summary import Summary
+from camwright.pipeline.records.signoff_record import SignoffRecord
+from camwright.pipeline.records.trial_contents import TrialContents
 
 NAMES = {
     "run": "run.json",
+    "trial": "trial.json",
     "checks": "6_checks.json",
     "check": "output of camwright check --json",
     "signoff": "signoff.json",
 }
 """Names of the schemas and the documents that they describe."""
-_FOLDER = Path(__file__).parent / "schemas"
+_FORMS: Mapping[str, Any] = {
+    "run": Summary,
+    "trial": TrialContents,
+    "checks": list[CheckRecord],
+    "check": CheckDocument | SeveralTargets,
+    "signoff": SignoffRecord,
+}
 
 
-def record_schema(name: str) -> dict[str, Any]:
-    """Schema of a record, complete in itself: it bundles the definitions it refers to.
+def record_schema(name: str) -> Schema:
+    """Schema of a record, complete in itself.
 
     Raises
     ------
     InputError
         If the name is none of `NAMES`.
     """
+    from pydantic import TypeAdapter
+    from pydantic.json_schema import GenerateJsonSchema
+
+    class Untitled(GenerateJsonSchema):
+        """Schemas without a title of each key, which is the key once more."""
+
+        def field_title_should_be_set(self, schema: object) -> bool:  # noqa: ARG002 - of all
+            return False
+
     if name not in NAMES:
         raise InputError("schema", name, f"one of: {', '.join(NAMES)}")
-    schema: dict[str, Any] = read_json(_FOLDER / f"{name}.json")
-    schema["$defs"] = {**schema.get("$defs", {}), "common": read_json(_FOLDER / "common.json")}
-    return schema
+    adapter: TypeAdapter[object] = TypeAdapter(_FORMS[name])
+    made = adapter.json_schema(schema_generator=Untitled)
+    head = {"$schema": GenerateJsonSchema.schema_dialect, "$id": f"urn:camwright:schema:{name}"}
+    return head | made | {"title": NAMES[name]}

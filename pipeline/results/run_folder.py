@@ -68,7 +68,7 @@ _SOURCES = (".py", ".toml")
 
 
 Contents: TypeAlias = (
-    Values | Mapping[str, ArrayLike] | Mapping[str, Json] | Sequence[Mapping[str, Json]]
+    Values | Mapping[str, ArrayLike] | Mapping[str, object] | Sequence[Mapping[str, object]]
 )
 """What a file of a run is written of: SI values by column, arrays by name, a record or several."""
 

@@ -6,11 +6,12 @@ Reading needs no solver and no case parser.
 from __future__ import annotations
 
 import hashlib
-import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypedDict
+from types import NoneType, UnionType
+from typing import Any, Literal, Union, get_args, get_origin, get_type_hints
 
 from camwright.geometry.errors import AlteredError, InputError, ResultError
 from camwright.pipeline.base.files import (
@@ -23,156 +24,30 @@ from camwright.pipeline.base.files import (
     sha256_of,
 )
 from camwright.pipeline.base.tables import Table, read_table
+from camwright.pipeline.base.verdict import STATUSES, binding, governing_id
+from camwright.pipeline.records.check_record import CheckRecord
+from camwright.pipeline.records.forms import Depth
+from camwright.pipeline.records.run_summary import SCHEMA, HeadlineRecord, LoadEndRecord, Summary
+from camwright.pipeline.records.trial_contents import TrialContents
 from camwright.pipeline.results.check_records import (
-    STATUSES,
     AnyCheck,
     CheckList,
-    CheckRecord,
-    CheckRecordOfAnyCheck,
+    RecordedCheck,
     WithChecks,
-    binding_of,
-    governing_id,
     judgement,
-    status_of,
+    of_records,
     to_be_confirmed,
 )
 
-if TYPE_CHECKING:
-    from camwright.pipeline.smoothing.fe_correction import SynthesisRecord
-
-SCHEMA = 7
-"""Number of the form of a run folder; a folder of another form is refused."""
-_TYPES: Mapping[str, tuple[tuple[type, ...], str]] = {
-    "str": ((str,), "text"), "int": ((int,), "a whole number"), "None": ((type(None),), "null"),
-    "float": ((float, int), "a number"), "bool": ((bool,), "true or false"),
-    "list": ((list,), "a list"), "dict": ((dict,), "an object"),
+_WORDS: Mapping[type, str] = {
+    str: "text", int: "a whole number", NoneType: "null", float: "a number",
+    bool: "true or false", list: "a list", dict: "an object",
 }  # fmt: skip
-"""Types of JSON by the words of an annotation, and what they are called."""
-_ITEMS = re.compile(r"\[(?:[^][]|\[[^][]*\])*\]")
-HEADLINE = (
-    *("torque_std_before_Nm", "torque_std_after_Nm", "torque_p2p_before_Nm", "torque_p2p_after_Nm"),
-    *("lift_max_mm", "pressure_angle_max_deg", "pitch_radius_of_curvature_min_mm"),
-    *("normal_force_min_N", "normal_force_max_N"),
-    *("p0_max_MPa", "p0_hertz_max_MPa", "half_width_max_mm", "von_mises_max_MPa"),
-    *("von_mises_depth_mm", "follower_von_mises_max_MPa", "follower_von_mises_depth_mm"),
-    "ring_stress_max_MPa",
-    *("guide_reaction_A_max_N", "guide_reaction_B_max_N", "friction_loss_J_per_cam_turn"),
-    *("p0_difference_max_percent", "residual_equilibrium_max"),
-)
+"""Types of JSON, and what they are called."""
+HEADLINE = tuple(HeadlineRecord.__annotations__)
 LIMITS_FILE = "2_limits.csv"
 SPLINE_FILE = "2_spline.csv"
 SWEEP_FILE = "5_speed_sweep.csv"
-
-
-class ContentsOfAnyTrial(TypedDict):
-    """Contents of ``trial.json`` that every trial has."""
-
-    number: int
-    why: str
-    smoothing_kind: str | None
-    smoothing_strength: float | None
-    smoothing_width_deg: float | None
-    smoothing_description: str
-    synthesis: SynthesisRecord | None
-    prices: Json
-    closure_mm: float
-    table_step_deg: float
-    depth: str
-    contact_method: str
-    hertz_difference: dict[str, Json] | None
-    balance: dict[str, Json]
-    mesh: dict[str, Json] | None
-    certificate: list[dict[str, Json]]
-
-
-class TrialContents(ContentsOfAnyTrial, total=False):
-    """Contents of ``trial.json``.
-
-    fatigue: points of the Goodman diagrams by part; length_certificate: ends of the contact;
-    length_refused: why finite elements did not solve them.
-    """
-
-    fatigue: dict[str, Json]
-    length_certificate: list[dict[str, Json]]
-    length_refused: str | None
-
-
-class ScopeRecord(TypedDict):
-    """Parts that the sign-off does not cover, the reason, and both in a sentence."""
-
-    not_covered: list[str]
-    reason: str
-    statement: str
-
-
-class Finding(TypedDict):
-    """An input beside the value that the other inputs imply."""
-
-    load_case: str
-    id: str
-    how: str
-    title: str
-    given: float
-    implied: float
-    unit: str
-    difference_percent: float | None
-    flagged: bool
-
-
-class TrialPointRecord(TypedDict):
-    """Ripple and worst utilisation of a trial; see `trial.TrialPoint`."""
-
-    trial: int
-    ripple_Nm: float | None
-    limit: str
-    utilisation: float | None
-    passes: bool
-
-
-class LoadEndRecord(TypedDict):
-    """Cam angle from which a load case has no loads of the cam; see `checks.lost_loads`."""
-
-    load_case: str
-    cam_angle_deg: float
-    statement: str
-
-
-class SummaryOfAnyRun(TypedDict):
-    """Contents of ``run.json`` that every run has."""
-
-    schema: int
-    case: str
-    input_sha256: str
-    versions: dict[str, str]
-    platform: str
-    timings_s: dict[str, float]
-    trials: int
-    final_trial: int
-    trial_points: list[TrialPointRecord]
-    depth: str
-    verdict: str | None
-    screen: str | None
-    binding: list[str]
-    scope: ScopeRecord
-    statement: str
-    headline: dict[str, float | None]
-    prices: Json
-    machine_prices: Json
-    benchmarks: Json
-    speed: Json
-    ripple_map: dict[str, Json] | None
-    consistency: list[Finding]
-    files: dict[str, str]
-
-
-class Summary(SummaryOfAnyRun, total=False):
-    """Contents of ``run.json``; started: of the program, UTC, None of a design of a study."""
-
-    started: str | None
-    valve_train: Json
-    measurement: Json
-    governing: str | None
-    load_ends: list[LoadEndRecord]
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -201,7 +76,7 @@ class TrialRecord(WithChecks):
         }
 
     @property
-    def depth(self) -> str:
+    def depth(self) -> Depth:
         """Depth of the solution, such as ``preview``."""
         return self.record["depth"]
 
@@ -218,7 +93,7 @@ class TrialRecord(WithChecks):
     @property
     def binding(self) -> tuple[str, ...]:
         """Ids of the must-have checks that fail or lack data."""
-        return binding_of(self.checks)
+        return binding(of_records(self.checks))
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -308,8 +183,8 @@ def read_verdict(path: Path) -> dict[str, Any]:
         "input_sha256": summary["input_sha256"],
         **judgement(checks, depth),
         "to_be_confirmed": to_be_confirmed(checks),
-        "binding": list(binding_of(checks)),
-        "governing": governing_id(checks),
+        "binding": list(binding(of_records(checks))),
+        "governing": governing_id(of_records(checks)),
         "load_ends": summary.get("load_ends", []),
         "trials": summary["trials"],
         "scope": summary["scope"],
@@ -350,7 +225,7 @@ def read_summary(path: Path) -> Summary:
         raise ResultError(f"{path}: holds no finished run (run.json is missing)")
     summary: Summary = read_json(file)
     require_schema(file, summary)
-    _require(file, summary, SummaryOfAnyRun)
+    _require(file, summary, Summary)
     if summary["trials"] < 1:
         raise ResultError(f"{file}: trials = {summary['trials']}, must be a count >= 1")
     final = summary["final_trial"]
@@ -413,26 +288,24 @@ def _case_text(path: Path, summary: Summary) -> str:
         scope = parse_toml(text, str(path / "case.toml")).get("scope", {})
     except InputError as error:
         raise ResultError(str(error)) from None
-    said = summary["scope"]
     left_out = scope.get("not_covered", []) if isinstance(scope, dict) else None
-    if not isinstance(said, dict) or said.get("not_covered") != left_out:
+    if summary["scope"].get("not_covered") != left_out:
         raise ResultError(f"{path}: the scope in run.json is not that of case.toml")
     return text
 
 
 def _require_judgement(
-    path: Path, summary: Summary, checks: Iterable[AnyCheck], depth: str
+    path: Path, summary: Summary, checks: Iterable[AnyCheck], depth: Depth
 ) -> None:
     """Refuse a summary whose depth, verdict or screen is not that of the final trial."""
     judged = judgement(checks, depth)
-    for name, said in (
-        ("depth", summary["depth"]),
-        ("verdict", summary["verdict"]),
-        ("screen", summary["screen"]),
+    for said, known, whose in (
+        (summary["depth"], judged["depth"], "the final trial"),
+        (summary["verdict"], judged["verdict"], "the checks of the final trial"),
+        (summary["screen"], judged["screen"], "the checks of the final trial"),
     ):
-        if said != judged[name]:
-            whose = "the final trial" if name == "depth" else "the checks of the final trial"
-            raise ResultError(f"{path}: run.json says {said}, {whose} {judged[name]}")
+        if said != known:
+            raise ResultError(f"{path}: run.json says {said}, {whose} {known}")
 
 
 def _read_trial(run: Path, number: int) -> TrialRecord:
@@ -455,7 +328,7 @@ def read_trial_record(trial: Path) -> TrialContents:
     """Contents of ``trial.json`` in the folder of a trial."""
     file = trial / "trial.json"
     record: TrialContents = read_json(file)
-    _require(file, record, ContentsOfAnyTrial)
+    _require(file, record, TrialContents)
     return record
 
 
@@ -476,11 +349,11 @@ def read_records(file: Path) -> tuple[CheckRecord, ...]:
     if not isinstance(records, list):
         raise ResultError(f"{file}: must be a list of checks")
     for record in records:
-        _require(file, record, CheckRecordOfAnyCheck, "a check ")
+        _require(file, record, CheckRecord, "a check ")
         status = record["status"]
         if status not in STATUSES:
             raise ResultError(f"{file}: {record['id']}: status {status} is unknown")
-        if STATUSES.index(status) < STATUSES.index(status_of(record)):
+        if STATUSES.index(status) < STATUSES.index(RecordedCheck(record).status_by_numbers):
             raise ResultError(
                 f"{file}: {record['id']} is marked {status}, its numbers say otherwise"
             )
@@ -488,15 +361,36 @@ def read_records(file: Path) -> tuple[CheckRecord, ...]:
 
 
 def _require(file: Path, record: Mapping[str, object], kind: type, what: str = "") -> None:
-    """Refuse a record without the keys of a typed dictionary, or with a value of another type."""
-    types = kind.__annotations__
-    missing = [key for key in types if not isinstance(record, dict) or key not in record]
+    """Refuse a record without the keys of a form, or with a value of another type."""
+    known = _known(kind)
+    missing = [key for key in known if not isinstance(record, dict) or key not in record]
     if missing:
         raise ResultError(f"{file}: {what}lacks {', '.join(missing)}")
-    for key, each in types.items():
-        named = set(_ITEMS.sub("", each.__forward_arg__).split(" | "))
-        if named <= _TYPES.keys() and type(record[key]) not in {
-            one for name in named for one in _TYPES[name][0]
-        }:
-            limit = " or ".join(sorted(_TYPES[name][1] for name in named))
+    for key, types in known.items():
+        if type(record[key]) not in (types | {int} if float in types else types):
+            limit = " or ".join(sorted(_WORDS[each] for each in types))
             raise ResultError(f"{file}: {what}has {key} = {record[key]!r:.40}, must be {limit}")
+
+
+@cache
+def _known(kind: type) -> Mapping[str, frozenset[type]]:
+    """Types of JSON by the keys that a record of every version has."""
+    hints = get_type_hints(kind)
+    return {key: frozenset(_types(hint)) for key, hint in hints.items() if key in _required(kind)}
+
+
+def _required(kind: type) -> frozenset[str]:
+    return getattr(kind, "__required_keys__", frozenset())
+
+
+def _types(hint: object) -> Iterator[type]:
+    """Types of JSON of an annotation."""
+    origin = get_origin(hint)
+    if origin in (Union, UnionType):
+        for each in get_args(hint):
+            yield from _types(each)
+    elif origin is Literal:
+        yield from map(type, get_args(hint))
+    else:
+        made = origin or hint
+        yield made if made in _WORDS else dict  # type: ignore[misc]  # a form

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import asdict
 
 import numpy as np
 
@@ -12,6 +11,7 @@ from camwright.geometry.contour import Contour
 from camwright.geometry.errors import CamError
 from camwright.geometry.extrema import first_greatest, greatest, sampled_peak
 from camwright.geometry.lift import Lift
+from camwright.meshes.mesh_quality import Quality
 from camwright.pipeline.base.files import Json
 from camwright.pipeline.base.tables import CAM_ANGLE, CRANK_ANGLE, Cells, Column, Values
 from camwright.pipeline.base.units import in_unit
@@ -39,6 +39,21 @@ from camwright.pipeline.cycle.rolling_history import rolling_record
 from camwright.pipeline.cycle.solution import Solution
 from camwright.pipeline.cycle.speed_sweep import SpeedSweep
 from camwright.pipeline.engine.crankshaft import CrankMotion
+from camwright.pipeline.records.check_document import CamFigures, LoadCaseFigures
+from camwright.pipeline.records.run_summary import (
+    BodyStresses,
+    HeadlineRecord,
+    MotionRecord,
+    QualityRecord,
+    Refused,
+    SpeedRecord,
+)
+from camwright.pipeline.records.trial_contents import (
+    CertificateRecord,
+    ConvergenceRecord,
+    FatigueRecord,
+    TrialContents,
+)
 from camwright.pipeline.results.trial import Trial
 from camwright.pipeline.torque.torque import Torque
 
@@ -173,7 +188,7 @@ def pressure_arrays(cycles: tuple[Cycle, ...]) -> dict[str, Array]:
     }
 
 
-def headline(trial: Trial) -> dict[str, float | None]:
+def headline(trial: Trial) -> HeadlineRecord:
     """Key figures of the final trial in mm, N and MPa; None where not applicable.
 
     Loads are those of the load cases in which the follower neither leaves the cam nor locks.
@@ -219,7 +234,7 @@ def headline(trial: Trial) -> dict[str, float | None]:
     }
 
 
-def figures(trial: Trial) -> dict[str, Json]:
+def figures(trial: Trial) -> CamFigures:
     """Figures of a cam and of its stated load cases, in mm, deg, rpm, N, N m and MPa.
 
     Extremes are refined between the samples. Of a load case in which the follower leaves the cam
@@ -236,7 +251,7 @@ def figures(trial: Trial) -> dict[str, Json]:
         lowest = peak(-values)
         return None if lowest is None else -lowest
 
-    rows: list[Json] = []
+    rows: list[LoadCaseFigures] = []
     for cycle in steady(trial.solution):
         loads, contact = cycle.loads, cycle.contact
         whole = cycle.end is None
@@ -262,7 +277,7 @@ def figures(trial: Trial) -> dict[str, Json]:
     }
 
 
-def _body_stresses(trial: Trial, loaded: Sequence[Cycle]) -> dict[str, float | None]:
+def _body_stresses(trial: Trial, loaded: Sequence[Cycle]) -> BodyStresses:
     """Maximum von Mises stress below the contact with its depth, in cam and follower; ring.
 
     The contact presses on both bodies alike: in the follower stress and depth are those of the cam
@@ -284,14 +299,17 @@ def _body_stresses(trial: Trial, loaded: Sequence[Cycle]) -> dict[str, float | N
         if (amplitude := cycle.parts.ring_amplitude) is not None
         and (mean := cycle.parts.ring_mean) is not None
     ]
-    figures = {
-        "von_mises_max_MPa": stress,
-        "von_mises_depth_mm": depth,
-        "follower_von_mises_max_MPa": stress * other / own,
-        "follower_von_mises_depth_mm": depth * there / at if at > 0.0 else np.nan,
-        "ring_stress_max_MPa": _MPA * max(rings, default=np.nan),
+
+    def finite(value: float) -> float | None:
+        return value if np.isfinite(value) else None
+
+    return {
+        "von_mises_max_MPa": finite(stress),
+        "von_mises_depth_mm": finite(depth),
+        "follower_von_mises_max_MPa": finite(stress * other / own),
+        "follower_von_mises_depth_mm": finite(depth * there / at if at > 0.0 else np.nan),
+        "ring_stress_max_MPa": finite(_MPA * max(rings, default=np.nan)),
     }
-    return {name: value if np.isfinite(value) else None for name, value in figures.items()}
 
 
 def _residual_max(trial: Trial) -> float | None:
@@ -310,7 +328,7 @@ def _residual_max(trial: Trial) -> float | None:
     return residual if np.isfinite(residual) else None
 
 
-def trial_record(trial: Trial) -> dict[str, Json]:
+def trial_record(trial: Trial) -> TrialContents:
     """Contents of ``trial.json``: smoothing, reason, mesh, certificate, rolling."""
     smoothing, mesh, width = trial.smoothing, trial.mesh, trial.smoothing.angular_width
     machine, contact = trial.solution.machine, trial.cycles[0].contact
@@ -337,7 +355,7 @@ def trial_record(trial: Trial) -> dict[str, Json]:
             "cam_angle_deg": float(np.degrees(mesh.theta)),
             "half_width_mm": _MM * mesh.half_width,
             "sha256": {"cam": mesh.cam.sha256, mesh.name: mesh.follower.sha256},
-            **asdict(mesh.quality),
+            **quality_record(mesh.quality),
         },
         "certificate": [certificate_record(point) for point in trial.certificate],
         "length_certificate": length_record(ends, (*machine.bodies,)),
@@ -347,7 +365,18 @@ def trial_record(trial: Trial) -> dict[str, Json]:
     }
 
 
-def fatigue_record(solution: Solution) -> dict[str, Json]:
+def quality_record(quality: Quality) -> QualityRecord:
+    """Quality of a mesh."""
+    return {
+        "min_angle_deg": quality.min_angle_deg,
+        "min_scaled_jacobian": quality.min_scaled_jacobian,
+        "edges_across_half_width": quality.edges_across_half_width,
+        "elements": quality.elements,
+        "nodes": quality.nodes,
+    }
+
+
+def fatigue_record(solution: Solution) -> dict[str, FatigueRecord]:
     """Points of the Goodman diagrams of spring and camshaft, with the safety required, MPa."""
     limits = solution.machine.limits
     parts = {
@@ -373,7 +402,7 @@ def fatigue_record(solution: Solution) -> dict[str, Json]:
     }
 
 
-def hertz_difference(cycles: Sequence[Cycle]) -> dict[str, Json] | None:
+def hertz_difference(cycles: Sequence[Cycle]) -> dict[str, list[float]] | None:
     """Change of p0 by finite elements over Hertz, least and greatest of the loaded angles, percent.
 
     p0; bending of the cam and of the part of the follower, to first order; rest: mesh and change of
@@ -420,7 +449,7 @@ def crank_speed_record(
     columns : mapping   of ``1_speed.csv`` in the design load case; None without a crankshaft
     """
     case = trial.case
-    speed: dict[str, Json] = {}
+    speed: dict[str, SpeedRecord | Refused] = {}
     torques = {c.load_case: c.machine.torque for c in trial.cycles if c.machine.torque is not None}
     odd = implausible(case, torques)
     findings: list[Json] = [{"load_case": "", **one.as_record()} for one in odd]
@@ -448,7 +477,7 @@ def crank_speed_record(
     return {"speed": speed or None, "consistency": findings}, columns
 
 
-def _speed_record(study: SpeedStudy, radius: float) -> dict[str, Json]:
+def _speed_record(study: SpeedStudy, radius: float) -> SpeedRecord:
     """Crank speed of one load case; radius (m) of the cam."""
     disc, rim = study.flywheel_masses(radius)
     return {
@@ -464,7 +493,7 @@ def _speed_record(study: SpeedStudy, radius: float) -> dict[str, Json]:
     }
 
 
-def _motion_record(motion: CrankMotion) -> dict[str, float]:
+def _motion_record(motion: CrankMotion) -> MotionRecord:
     ripple = motion.statistics
     return {
         "mean_rad_per_s": ripple.mean,
@@ -480,7 +509,7 @@ def _motion_record(motion: CrankMotion) -> dict[str, float]:
     }
 
 
-def certificate_record(point: CertificatePoint) -> dict[str, Json]:
+def certificate_record(point: CertificatePoint) -> CertificateRecord:
     """One certified angle in millimetres and megapascals."""
     return {
         "cam_angle_deg": float(np.degrees(point.theta)),
@@ -501,7 +530,7 @@ def certificate_record(point: CertificatePoint) -> dict[str, Json]:
     }
 
 
-def _figure(figure: Convergence, cycle: float, scale: float) -> dict[str, Json]:
+def _figure(figure: Convergence, cycle: float, scale: float) -> ConvergenceRecord:
     return {
         "cycle": scale * cycle,
         "meshes": [scale * value for value in figure.values],

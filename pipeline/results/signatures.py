@@ -14,7 +14,7 @@ import base64
 import binascii
 import json
 import re
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from datetime import datetime
 from pathlib import Path
@@ -22,6 +22,7 @@ from typing import TYPE_CHECKING, Any
 
 from camwright.geometry.errors import InputError, ResultError
 from camwright.pipeline.base.files import each_key_once, read_text, sha256_of, write_atomic
+from camwright.pipeline.records.check_document import Role, SignatureRecord
 from camwright.pipeline.results import signoff
 from camwright.pipeline.results.folder_exchange import staged
 from camwright.pipeline.results.signing_keys import ROLES, TrustedKey, bytes_of, fingerprint
@@ -47,7 +48,7 @@ class Signature:
     owner : str        of the key, as the file of trusted keys names him
     """
 
-    role: str
+    role: Role
     name: str
     date: str
     key: str
@@ -59,7 +60,7 @@ class Signature:
         owner = f" ({self.owner})" if self.owner and self.owner != self.name else ""
         return f"{self.role} by {self.name}, {self.date}, key {self.key}{owner}"
 
-    def as_record(self) -> dict[str, str]:
+    def as_record(self) -> SignatureRecord:
         """The record of ``check --json``."""
         return {"role": self.role, "name": self.name, "date": self.date, "key": self.key}
 
@@ -105,15 +106,21 @@ def sign(folder: Path, private: Ed25519PrivateKey, role: str, name: str, date: s
         If the role is signed already, a signature is of another record, or another process writes
         into the run.
     """
-    if role not in ROLES:
+    known = _role(role, ROLES)
+    if known is None:
         raise InputError("--role", role, f"one of: {', '.join(ROLES)}")
     name = checked_name(name)
     with staged(folder) as place:
-        return _signed(folder, place, private, role, name, date)
+        return _signed(folder, place, private, known, name, date)
+
+
+def _role(text: str, roles: Iterable[Role]) -> Role | None:
+    """The role that a text names; None: none of these."""
+    return next((each for each in roles if each == text), None)
 
 
 def _signed(
-    folder: Path, place: Path, private: Ed25519PrivateKey, role: str, name: str, date: str
+    folder: Path, place: Path, private: Ed25519PrivateKey, role: Role, name: str, date: str
 ) -> Signature:
     """Signature of a role, written with those of the folder into the folder `place`."""
     file, digest = folder / signoff.SIGNATURES, sha256_of(folder / signoff.NAME)
@@ -194,10 +201,11 @@ def _valid(line: str, digest: str, trusted: Mapping[str, TrustedKey]) -> Signatu
     except InvalidSignature:
         raise _RefusedError(f"was changed since it was signed with the key {key}") from None
     predicate = _statement(payload, digest)
-    if predicate["role"] not in known.roles:
+    role = _role(predicate["role"], known.roles)
+    if role is None:
         allowed = ", ".join(known.roles)
         raise _RefusedError(f"the key {key} may not sign {predicate['role']}, only {allowed}")
-    return Signature(predicate["role"], predicate["name"], predicate["date"], key, known.owner)
+    return Signature(role, predicate["name"], predicate["date"], key, known.owner)
 
 
 def _claim(payload: bytes, digest: str) -> str:

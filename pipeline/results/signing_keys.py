@@ -14,10 +14,11 @@ import re
 import sys
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, get_args
 
 from camwright.geometry.errors import InputError, ResultError
 from camwright.pipeline.base.files import read_text, write_atomic
+from camwright.pipeline.records.check_document import Role
 
 if TYPE_CHECKING:
     from cryptography.hazmat.primitives.asymmetric.ed25519 import (
@@ -25,7 +26,7 @@ if TYPE_CHECKING:
         Ed25519PublicKey,
     )
 
-ROLES = ("prepared", "checked", "approved")
+ROLES: tuple[Role, ...] = get_args(Role)
 """Roles of a signature, in their order."""
 LARGEST = 1 << 20
 """Bytes of a file of keys or signatures; one of either has a few hundred."""
@@ -43,7 +44,7 @@ class TrustedKey:
 
     public: Ed25519PublicKey
     owner: str = ""
-    roles: tuple[str, ...] = ROLES
+    roles: tuple[Role, ...] = ROLES
 
 
 def fingerprint(public: Ed25519PublicKey) -> str:
@@ -190,8 +191,9 @@ def _lines_alone(block: re.Match[str]) -> str:
 
 def _trusted_line(line: str, path: Path, number: int) -> TrustedKey:
     before, algorithm, after = line.partition(_OPENSSH)
-    roles = tuple(part for part in before.strip().split(",") if part)
-    if not algorithm or bool(before) != bool(roles) or any(role not in ROLES for role in roles):
+    named = [part for part in before.strip().split(",") if part]
+    roles = tuple(role for part in named for role in ROLES if role == part)
+    if not algorithm or bool(before) != bool(named) or len(roles) != len(named):
         limit = f"`[{','.join(ROLES)}] {_OPENSSH} KEY [OWNER]`"
         raise InputError("--trusted", f"{path}, line {number}", limit)
     key, _, owner = after.strip().partition(" ")

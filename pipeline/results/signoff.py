@@ -10,7 +10,7 @@ import platform
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import NamedTuple
+from typing import NamedTuple, cast
 
 from camwright.geometry.errors import AlteredError, ResultError
 from camwright.pipeline.base.files import (
@@ -23,8 +23,11 @@ from camwright.pipeline.base.files import (
     unplain,
     write_atomic,
 )
-from camwright.pipeline.results import check_records, run_reader
-from camwright.pipeline.results.check_records import CheckRecord, to_be_confirmed
+from camwright.pipeline.base.verdict import binding, governing_id
+from camwright.pipeline.records.check_record import CheckFigure, CheckRecord
+from camwright.pipeline.records.signoff_record import LimitStatement, Program, SignoffRecord
+from camwright.pipeline.results import run_reader
+from camwright.pipeline.results.check_records import judgement, of_records, to_be_confirmed
 from camwright.pipeline.results.model_limits import MODEL_LIMITS, limitations
 
 NAME = "signoff.json"
@@ -41,7 +44,7 @@ _DRAWN = (".html", ".pdf", ".png", ".xlsx")
 _SHA256 = re.compile(r"[0-9a-f]{64}")
 
 
-def record(path: Path) -> dict[str, Json]:
+def record(path: Path) -> SignoffRecord:
     """The sign-off record of the run in a folder.
 
     Raises
@@ -52,7 +55,7 @@ def record(path: Path) -> dict[str, Json]:
     return _record(path, hashes(path))
 
 
-def _record(path: Path, files: Mapping[str, str]) -> dict[str, Json]:
+def _record(path: Path, files: dict[str, str]) -> SignoffRecord:
     """The record with these hashes of files."""
     summary = run_reader.read_summary(path)
     trial = path / f"trial_{summary['final_trial']}"
@@ -63,14 +66,17 @@ def _record(path: Path, files: Mapping[str, str]) -> dict[str, Json]:
         "case": summary["case"],
         "case_sha256": run_reader.input_sha256(path),
         "results_sha256": run_reader.results_sha256(summary["files"]),
-        "code": {name: summary["versions"].get(name) for name in ("camwright", "source")},
+        "code": cast(
+            "Program",
+            {name: summary["versions"].get(name) for name in ("camwright", "source")},
+        ),
         "environment": {
             "platform": summary["platform"],
             "versions": summary["versions"],
         },
-        **check_records.judgement(checks, made["depth"]),
-        "binding": list(check_records.binding_of(checks)),
-        "governing": check_records.governing_id(checks),
+        **judgement(checks, made["depth"]),
+        "binding": list(binding(of_records(checks))),
+        "governing": governing_id(of_records(checks)),
         "not_evaluated": [c["id"] for c in checks if c["status"] == "not_evaluated"],
         "not_proven": [c["id"] for c in checks if c["not_proven"]],
         "scope": {
@@ -82,7 +88,7 @@ def _record(path: Path, files: Mapping[str, str]) -> dict[str, Json]:
             {
                 "check": c["id"],
                 "waiver": c["waiver"],
-                "up_to": c["waived_up_to"],
+                "up_to": cast("float", c["waived_up_to"]),
                 "unit": c["unit"],
                 "status": c["status"],
             }
@@ -106,7 +112,7 @@ def _record(path: Path, files: Mapping[str, str]) -> dict[str, Json]:
     }
 
 
-def _statements(checks: Sequence[CheckRecord]) -> list[Json]:
+def _statements(checks: Sequence[CheckRecord]) -> list[LimitStatement]:
     """Limits of the model with their checks; a status of null: the check was not made."""
     status = {check["id"]: check["status"] for check in checks}
     return [
@@ -274,7 +280,7 @@ def environment() -> str:
     return f"{platform.system()} {platform.machine()}"
 
 
-def _disagreements(recorded: Mapping[str, Json], drawn: Mapping[str, Json]) -> list[Difference]:
+def _disagreements(recorded: Mapping[str, Json], drawn: Mapping[str, object]) -> list[Difference]:
     """Entries of the record that differ from the files of the run.
 
     The limitations are those of the version that wrote them; they follow from no file of the run.
@@ -289,7 +295,7 @@ def _disagreements(recorded: Mapping[str, Json], drawn: Mapping[str, Json]) -> l
     ]
 
 
-def _figure(check: CheckRecord) -> dict[str, Json]:
+def _figure(check: CheckRecord) -> CheckFigure:
     return {
         "id": check["id"],
         "demand": check["demand"],

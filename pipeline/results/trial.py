@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
@@ -13,25 +12,26 @@ from camwright.geometry.arrays import Array
 from camwright.geometry.contour import Contour
 from camwright.geometry.lift import Lift
 from camwright.pipeline.base.units import in_unit
-from camwright.pipeline.case.case import Case
-from camwright.pipeline.checks.check import (
-    Check,
+from camwright.pipeline.base.verdict import (
     Screen,
     Verdict,
     binding,
-    depends_on_lift,
+    in_order,
     screen,
     verdict,
     within_depth,
 )
+from camwright.pipeline.case.case import Case
+from camwright.pipeline.checks.check import Check, depends_on_lift
 from camwright.pipeline.checks.lost_loads import load_ends
 from camwright.pipeline.checks.tolerance_corners import Outcome
 from camwright.pipeline.contact.contact_history import CertificatePoint
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.cycle import Cycle
 from camwright.pipeline.cycle.solution import ContactMesh, Solution
+from camwright.pipeline.records.run_summary import LoadEndRecord, TrialPointRecord
+from camwright.pipeline.records.trial_contents import SynthesisRecord
 from camwright.pipeline.results.check_records import CheckList, WithChecks
-from camwright.pipeline.results.run_reader import LoadEndRecord, TrialPointRecord
 
 
 @dataclass(frozen=True)
@@ -112,7 +112,7 @@ class Trial(WithChecks):
     smoothing : SmoothingRecord
     solution : Solution
     checks : tuple     not evaluated first, then by falling utilisation
-    synthesis : mapping   record of the constrained synthesis; None without one
+    synthesis : SynthesisRecord   record of the constrained synthesis; None without one
     limits_in_use : tuple  cam angles (n,), rad, and utilisation (n,) of each limit by the id of its
                           check; None without a constrained synthesis
     corners : tuple    outcomes at the nominal and at each tolerance corner; empty: none was tried
@@ -123,7 +123,7 @@ class Trial(WithChecks):
     smoothing: SmoothingRecord
     solution: Solution
     checks: tuple[Check, ...]
-    synthesis: Mapping[str, Any] | None = None
+    synthesis: SynthesisRecord | None = None
     limits_in_use: tuple[Array, Mapping[str, Array]] | None = None
     corners: tuple[Outcome, ...] = ()
 
@@ -200,5 +200,5 @@ class Trial(WithChecks):
 
     @property
     def binding(self) -> tuple[str, ...]:
-        """Ids of the must-have checks that fail or lack data; see `binding`."""
-        return binding(self.checks)
+        """Ids of the must-have checks that fail or lack data; see `verdict.binding`."""
+        return binding(in_order(self.checks))

@@ -7,7 +7,7 @@ are marked *reconstructed*.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -24,9 +24,8 @@ from camwright.pipeline.cycle.valve_cam import (
     follower_acceleration,
     rise_efficiency,
 )
+from camwright.pipeline.records.run_summary import ValveTrainRecord, ValveTrainRow
 from camwright.pipeline.results.trial import Trial
-
-MachineMotion = Mapping[str, str | list[dict[str, str | float]]]
 
 _ANGLES = 20_000
 RECONSTRUCTED = "reconstructed"
@@ -42,6 +41,16 @@ class Row:
     value: float
     unit: str
     note: str = ""
+
+    def as_record(self) -> ValveTrainRow:
+        """The row of ``run.json``."""
+        return {
+            "load_case": self.load_case,
+            "name": self.name,
+            "value": self.value,
+            "unit": self.unit,
+            "note": self.note,
+        }
 
 
 def valve_cam(case: Case) -> ValveCam | None:
@@ -61,16 +70,16 @@ def valve_cam(case: Case) -> ValveCam | None:
     )
 
 
-def valve_record(trial: Trial) -> Mapping[str, MachineMotion | None]:
+def valve_record(trial: Trial) -> Mapping[str, ValveTrainRecord | None]:
     """Entry ``valve_train`` of ``run.json``: module and rows; null without a valve cam."""
     cam, turns = valve_cam(trial.case), [cycle.turn for cycle in trial.cycles]
     return {"valve_train": None if cam is None else machine_motion(cam, turns)}
 
 
-def machine_motion(cam: ValveCam, turns: Sequence[Turn]) -> MachineMotion:
+def machine_motion(cam: ValveCam, turns: Sequence[Turn]) -> ValveTrainRecord:
     """Module of the cam and rows of its machine motion in all load cases."""
     rows = [*_shape(cam), *(row for turn in turns for row in _motion(cam, turn))]
-    return {"module": cam.module, "rows": [asdict(row) for row in rows]}
+    return {"module": cam.module, "rows": [row.as_record() for row in rows]}
 
 
 def _shape(cam: ValveCam) -> list[Row]:

@@ -8,15 +8,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from camwright.pipeline.base.units import used
-from camwright.pipeline.results.check_records import (
-    OPEN,
-    CheckRecord,
-    governing_id,
-    governing_of,
-    judged,
-    utilisation_of,
-    within_depth,
-)
+from camwright.pipeline.base.verdict import OPEN, governing, governing_id, in_order, within_depth
+from camwright.pipeline.records.check_record import CheckRecord
+from camwright.pipeline.results.check_records import RecordedCheck, of_records, records_of
 from camwright.pipeline.results.check_report import (
     corner,
     ids_by_reason,
@@ -64,7 +58,7 @@ def summary_lines(document: Mapping[str, Any], places: Places) -> list[str]:
     governing check, unless it is the first failure; scope; page, trials and time.
     Only a path makes a line longer.
     """
-    checks: Sequence[CheckRecord] = within_depth(document["checks"])
+    checks: Sequence[CheckRecord] = records_of(within_depth(of_records(document["checks"])))
     failed = failures(checks)
     lines = folded(verdict_words(document))
     lines += [shortened(line) for line in load_end_line(document)]
@@ -99,8 +93,8 @@ def trial_lines(run: Run) -> list[str]:
         smoothing = str(trial.record["smoothing_kind"])
         smoothing += "" if width is None else f", {width:.4g} deg"
         left = "-" if ripple is None else f"{ripple:.3g} N m"
-        failed = failures(within_depth(trial.checks))
-        named = [f"{each['id']} {used(utilisation_of(each))}" for each in failed[:WORST]]
+        failed = of_records(failures(records_of(within_depth(of_records(trial.checks)))))
+        named = [f"{each.id} {used(each.utilisation)}" for each in failed[:WORST]]
         words = f"{len(failed)}: {', '.join(named)}" if failed else "none"
         line = _TRIAL.format(f"{trial.number:>5}", smoothing, left, words)
         cut = len(line) > WIDTH or len(failed) > WORST
@@ -124,28 +118,31 @@ def load_end_line(document: Mapping[str, Any]) -> list[str]:
 
 def failures(checks: Iterable[CheckRecord]) -> list[CheckRecord]:
     """Failed required checks: those of the design, then evidence; worst first."""
-    failed = [check for check in checks if check["must_have"] and check["status"] == "fail"]
-    return sorted(failed, key=_severity)
+    return _failed(checks, must_have=True)
 
 
 def governs_first(checks: Iterable[CheckRecord]) -> bool:
     """Whether the governing check is the first of `failures`, where it is described."""
     checks = tuple(checks)
-    return [governing_id(checks)] == [check["id"] for check in failures(checks)[:1]]
+    return [governing_id(of_records(checks))] == [check["id"] for check in failures(checks)[:1]]
 
 
-def _severity(check: CheckRecord) -> tuple[bool, float, str]:
-    return bool(check["evidence"]), -(utilisation_of(check) or 0.0), check["id"]
+def _failed(checks: Iterable[CheckRecord], *, must_have: bool) -> list[CheckRecord]:
+    """Failed required checks, else the optional ones: those of the design, then evidence."""
+    failed = in_order(
+        each for each in of_records(checks) if each.must_have is must_have and each.status == "fail"
+    )
+    return list(records_of(sorted(failed, key=lambda each: each.evidence)))
 
 
 def failure_words(check: CheckRecord, room: int | None = None) -> str:
     """Title, demand, limit, utilisation, place of a failed check; room: columns, None: any."""
-    worst, unit = judged(check), unit_text(check["unit"])
-    demand = number(None if worst is None else worst.demand)
+    judged, unit = RecordedCheck(check), unit_text(check["unit"])
+    demand = number(judged.worst)
     sense = ">=" if check["sense"] == "at_least" else "<="
     where = place(check)
     words = f": {demand}{unit}, limit {sense} {number(check['limit'])}{unit}"
-    words += f" ({used(utilisation_of(check))})" + (f", {where}" if where else "")
+    words += f" ({used(judged.utilisation)})" + (f", {where}" if where else "")
     title = check["title"]
     if room is not None:
         title = shortened(title, max(room - len(words), _LEAST))
@@ -181,8 +178,8 @@ def failure_lines(checks: Iterable[CheckRecord]) -> list[str]:
 
 def advisory_lines(checks: Iterable[CheckRecord]) -> list[str]:
     """Lines on every failed optional check, with id and remedy: they decide nothing."""
-    failed = [check for check in checks if not check["must_have"] and check["status"] == "fail"]
-    return _failed_lines("beyond its limit, decides nothing", sorted(failed, key=_severity))
+    failed = _failed(checks, must_have=False)
+    return _failed_lines("beyond its limit, decides nothing", failed)
 
 
 def _failed_lines(word: str, failed: Iterable[CheckRecord]) -> list[str]:
@@ -307,11 +304,11 @@ def body_stresses(figures: Mapping[str, Any]) -> list[str]:
 
 def governing_line(checks: Iterable[CheckRecord]) -> list[str]:
     """Title, utilisation and place of the governing check; none if none is evaluated."""
-    first = governing_of(checks)
+    first = governing(of_records(checks))
     if first is None:
         return []
-    where = place(first)  # type: ignore[arg-type]
-    words = f"{first['title']}, {used(utilisation_of(first))} used"
+    where = place(first.record)
+    words = f"{first.record['title']}, {used(first.utilisation)} used"
     return [f"governing: {words}" + (f", {where}" if where else "")]
 
 

@@ -16,6 +16,7 @@ from camwright.pipeline.base.columns import data_frame
 from camwright.pipeline.base.progress import SILENT, Progress
 from camwright.pipeline.base.quantities import In
 from camwright.pipeline.base.units import in_unit, shown
+from camwright.pipeline.base.verdict import Verdict, verdict, within_depth
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_values import quantity_of, refused_as_written, replaced, value_of
 from camwright.pipeline.case.given_lift import given_lift
@@ -30,7 +31,7 @@ from camwright.pipeline.checks.cam_shape import (
     spring_travel,
     undercut,
 )
-from camwright.pipeline.checks.check import Check, Declaration, Verdict, verdict, within_depth
+from camwright.pipeline.checks.check import Check, Declaration
 from camwright.pipeline.checks.contact_strength import (
     contact_pressure,
     contact_pressure_at_life,

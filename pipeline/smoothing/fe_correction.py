@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
-from typing import NamedTuple, NotRequired, TypedDict
+from typing import NamedTuple
 
 import numpy as np
 import scipy
@@ -12,25 +12,21 @@ import scipy
 from camwright.geometry.arrays import Array
 from camwright.pipeline.base.material import ROOM
 from camwright.pipeline.base.units import in_unit
+from camwright.pipeline.base.verdict import within_depth
 from camwright.pipeline.case.limits import TORQUE_REDUCTION
-from camwright.pipeline.checks.check import Check, depends_on_lift, within_depth
+from camwright.pipeline.checks.check import Check, depends_on_lift
 from camwright.pipeline.checks.guide_strength import GUIDES, Side, hottest
 from camwright.pipeline.cycle.cycle import Cycle
 from camwright.pipeline.cycle.solution import Solution
 from camwright.pipeline.cycle.speed_sweep import SpeedSweep, SweptForces, swept_forces
 from camwright.pipeline.follower.follower_forces import Loads, levers
 from camwright.pipeline.follower.spring import spring_energy
+from camwright.pipeline.records.trial_contents import SynthesisRecord
 from camwright.pipeline.smoothing.allowables import corrected_ratings, softening
-from camwright.pipeline.smoothing.infeasibility import ConflictRecord
-from camwright.pipeline.smoothing.multistart import (
-    NEGLIGIBLE,
-    Explored,
-    ResolutionRecord,
-    StartsRecord,
-)
+from camwright.pipeline.smoothing.multistart import NEGLIGIBLE, Explored
 from camwright.pipeline.smoothing.sampled_problem import Search
 from camwright.pipeline.smoothing.scenario import Correction, Ratings
-from camwright.pipeline.smoothing.shadow_prices import MachinePriceRecord, PriceRecord, prices
+from camwright.pipeline.smoothing.shadow_prices import prices
 from camwright.pipeline.smoothing.synthesis_problem import RESERVE, Design, Problem
 
 SETTLED = 5e-3  # of a limit: maximum change of a utilisation at convergence
@@ -41,33 +37,6 @@ _USED = 0.5  # utilisation below which a limit does not count
 _JUDGED_MOST = 3.0  # utilisation at a tolerance corner over that of the synthesis
 _LATEST = 0.25  # least share of the latest corrections in those of the next trial
 _SUM = 1e3  # weight of the sum of the shares in their least squares
-
-
-class SynthesisRecord(TypedDict):
-    """JSON record of a synthesis.
-
-    ``infeasible`` where its limits conflict; ``ended`` where the effort of a preview ended the
-    search; ``machine_prices`` of a run.
-    """
-
-    feasible: bool
-    converged: bool
-    steps: int
-    ripple_left: float
-    initial_energy_J: float
-    spring_rate_N_per_mm: float
-    preload_N: float
-    prime_radius_mm: float
-    phase_deg: float
-    reserve: float
-    starts: StartsRecord | None
-    resolution: ResolutionRecord | None
-    corrections: dict[str, dict[str, list[float]]]
-    utilisation: dict[str, float]
-    prices: list[PriceRecord]
-    machine_prices: NotRequired[list[MachinePriceRecord]]
-    infeasible: NotRequired[ConflictRecord]
-    ended: NotRequired[bool]
 
 
 class LimitShift(NamedTuple):

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field, replace
-from typing import TypedDict
 
 import numpy as np
 
@@ -12,6 +11,7 @@ from camwright.pipeline.base.units import in_unit
 from camwright.pipeline.case.limits import TORQUE_REDUCTION
 from camwright.pipeline.checks.check import FACTOR_MAX
 from camwright.pipeline.checks.demands import NORMAL_FORCE
+from camwright.pipeline.records.trial_contents import ConflictRecord
 from camwright.pipeline.smoothing import bounds
 from camwright.pipeline.smoothing.bounds import bounds_of
 from camwright.pipeline.smoothing.constrained_synthesis import synthesise
@@ -42,13 +42,6 @@ class Relaxation:
         """The change in words."""
         unit = f" {self.unit}" if self.unit != "-" else ""
         return f"{self.what}: {self.after:.4g}{unit} instead of {self.before:.4g}{unit}"
-
-
-class ConflictRecord(TypedDict):
-    """JSON record of conflicting limits and of the relaxations, the smallest first."""
-
-    conflict: list[str]
-    relaxations: list[dict[str, str | float]]
 
 
 @dataclass(frozen=True)

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import NamedTuple, TypedDict
+from typing import NamedTuple
 
 import numpy as np
 import scipy
 
 from camwright.geometry.arrays import Array, readonly, uniform_turn
+from camwright.pipeline.records.trial_contents import ResolutionRecord, StartsRecord
 from camwright.pipeline.smoothing.constrained_synthesis import approached, synthesise
 from camwright.pipeline.smoothing.energy_spline import basis_matrix
 from camwright.pipeline.smoothing.linear_model import State
@@ -22,26 +23,6 @@ COEFFICIENTS_MAX = 240
 REMOVABLE = 0.01  # sum of the excess of each limit that more splines may still remove
 _REFINEMENT = 1.5  # of the number of splines
 _SEED = 1989
-
-
-class StartsRecord(TypedDict):
-    """JSON record of `Starts`."""
-
-    tried: int
-    ripple_left: list[float | None]
-    spread_percent: float
-    agree: bool
-    sentence: str
-
-
-class ResolutionRecord(TypedDict):
-    """JSON record of `Resolution`."""
-
-    splines: int
-    coarser_splines: int | None
-    change_percent: float
-    settled: bool
-    sentence: str
 
 
 @dataclass(frozen=True)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import Literal, TypedDict
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,6 +16,7 @@ from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_values import replaced, value_of
 from camwright.pipeline.checks.demands import PRESSURE
 from camwright.pipeline.checks.flat_face_sliding import face_pv
+from camwright.pipeline.records.run_summary import MachinePriceRecord, PriceRecord
 from camwright.pipeline.smoothing.bounds import Bound, bounds_of
 from camwright.pipeline.smoothing.cam_state import lift_jet, unloaded
 from camwright.pipeline.smoothing.problem_setup import problem_of
@@ -29,33 +30,6 @@ FLOOR = 1e-4  # of the engine's ripple, by 1 % of a value: the optima are conver
 _STEP = 1e-4  # of a number of the machine, for its difference quotient
 _BY_SQUARE = (PRESSURE, face_pv.id)
 _WEIGHTED = 1e-3  # of the ripple: least other terms of an objective that is no ripple alone
-
-
-class PriceRecord(TypedDict):
-    """JSON record of a shadow price."""
-
-    limit: str
-    words: str
-    value: float
-    unit: str
-    ripple_per_unit_Nm: float
-    ripple_per_percent_Nm: float
-    binds_at_deg: list[tuple[float, float]]
-    of: str
-    sentence: str
-
-
-class MachinePriceRecord(TypedDict):
-    """JSON record of the price of a number of the machine: decrease of the ripple by more of it."""
-
-    parameter: str
-    words: str
-    value: float
-    unit: str
-    ripple_per_unit_Nm: float
-    ripple_per_percent_Nm: float
-    of: str
-    sentence: str
 
 
 @dataclass(frozen=True)

@@ -7,8 +7,9 @@ from dataclasses import dataclass
 
 from camwright.geometry.errors import InputError
 from camwright.pipeline.base.units import used
+from camwright.pipeline.base.verdict import binding, in_order, verdict
 from camwright.pipeline.case.limits import TORQUE_REDUCTION
-from camwright.pipeline.checks.check import Check, binding, verdict
+from camwright.pipeline.checks.check import Check
 from camwright.pipeline.smoothing.smoothers import Smoother
 from camwright.pipeline.smoothing.smoothing_forecast import (
     Attempt,
@@ -108,7 +109,7 @@ def _end(attempts: Sequence[Attempt], room: int, cause: str) -> Next | Stop:
     text = _statement(attempts, latest, cause)
     if not is_best:
         text += f"; trial {best + 1} was better, but no trial was left to repeat it"
-    return Stop(text, binding(latest.checks), len(attempts) if is_best else best + 1)
+    return Stop(text, binding(in_order(latest.checks)), len(attempts) if is_best else best + 1)
 
 
 def _statement(attempts: Sequence[Attempt], latest: Attempt, cause: str) -> str:
@@ -116,7 +117,7 @@ def _statement(attempts: Sequence[Attempt], latest: Attempt, cause: str) -> str:
     first = {check.id: check for check in attempts[0].checks}
     by_id = {check.id: check for check in latest.checks}
     parts, unknown = [cause], []
-    for name in binding(latest.checks):
+    for name in binding(in_order(latest.checks)):
         check = by_id[name]
         if check.utilisation is None:
             unknown.append(name)

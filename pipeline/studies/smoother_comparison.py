@@ -13,8 +13,9 @@ from camwright.geometry.errors import CamError, InputError
 from camwright.geometry.lift import Lift
 from camwright.pipeline.base.progress import SILENT, Progress
 from camwright.pipeline.base.units import in_unit
+from camwright.pipeline.base.verdict import in_order, verdict, within_depth
 from camwright.pipeline.case.case import Case
-from camwright.pipeline.checks.check import Check, in_order, verdict, within_depth
+from camwright.pipeline.checks.check import Check
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.preview import preview_case
 from camwright.pipeline.results.trial import Trial

@@ -10,7 +10,7 @@ import pytest
 
 from camwright.geometry.arrays import uniform_turn
 from camwright.geometry.lift import Lift
-from camwright.pipeline.results.check_records import VERDICTS
+from camwright.pipeline.base.verdict import VERDICTS
 from camwright.pipeline.studies.smoother_comparison import (
     Compared,
     lines,

@@ -23,6 +23,7 @@ from test_run import small
 
 from camwright.geometry.errors import InputError
 from camwright.pipeline.base.files import files_in, npz_bytes, sha256_of
+from camwright.pipeline.base.verdict import binding, governing_id
 from camwright.pipeline.case.case_file import read_case, with_values
 from camwright.pipeline.commands import check_command
 from camwright.pipeline.contact.tiers import Tier
@@ -81,8 +82,8 @@ def judged_anew(run: Path, records: Any) -> None:
     said = json.loads(file.read_text())
     judged = check_records.judgement(records, said["depth"])
     said |= {"verdict": judged["verdict"], "screen": judged["screen"]}
-    said["binding"] = list(check_records.binding_of(records))
-    said["governing"] = check_records.governing_id(records)
+    said["binding"] = list(binding(check_records.of_records(records)))
+    said["governing"] = governing_id(check_records.of_records(records))
     file.write_text(json.dumps(said))
 
 
@@ -204,7 +205,7 @@ def test_options_out_of_bounds_are_refused(
         ("smoothing_strength", 0.5, "smoothing_strength = 0.5, recomputed None"),
         ("closure_mm", 1.0, "trial.json: closure_mm = 1 mm, recomputed 0 mm"),
         ("table_step_deg", 2.0, "trial.json: table_step_deg = 2 deg, recomputed "),
-        ("synthesis", 3, "trial.json|synthesis"),
+        ("synthesis", {"feasible": True}, "trial.json|synthesis"),
     ],
 )
 def test_a_hostile_record_is_named(

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from camwright.pipeline.case.limits import Sense
+from camwright.pipeline.base.verdict import Sense
 from camwright.pipeline.checks.check import Check, check, made_from_others
 
 

@@ -79,7 +79,7 @@ def check(status: str = "pass", **changes: Any) -> dict[str, Any]:
         "not_proven": False,
         "note": "",
         "error": None,
-        "corner": None,
+        "corner": "",
         "corner_demand": None,
         "evidence": False,
         "judged_at": "",

@@ -12,10 +12,11 @@ import pytest
 import tomli_w
 
 from camwright.geometry.errors import InputError
+from camwright.pipeline.base.verdict import verdict, within_depth
 from camwright.pipeline.case.added_tables import NOTHING, added_text
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_file import parse_case
-from camwright.pipeline.checks.check import Check, verdict, within_depth
+from camwright.pipeline.checks.check import Check
 from camwright.pipeline.commands import check_command
 from camwright.pipeline.commands.terminal import INCOMPLETE
 from camwright.pipeline.preview import preview_case

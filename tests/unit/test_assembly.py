@@ -18,6 +18,7 @@ from scipy.spatial import cKDTree
 
 from camwright.geometry.arrays import Array
 from camwright.geometry.errors import InputError
+from camwright.pipeline.base.verdict import verdict
 from camwright.pipeline.case.cards.catalogue import catalogue_of
 from camwright.pipeline.case.cards.shaft_seats import seats
 from camwright.pipeline.case.case import Case
@@ -25,7 +26,6 @@ from camwright.pipeline.case.case_file import case_of, read_case, with_values
 from camwright.pipeline.case.given_lift import given_lift
 from camwright.pipeline.case.template import first_case
 from camwright.pipeline.checks.assembly import from_follower
-from camwright.pipeline.checks.check import verdict
 from camwright.pipeline.checks.registry import CHECKS, checks_of
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.numbers import Numbers

@@ -10,17 +10,9 @@ from made_check import made_check
 from pydantic import ValidationError
 
 from camwright.geometry.errors import InputError
+from camwright.pipeline.base.verdict import ROUNDING, binding, in_order, verdict
 from camwright.pipeline.case.scope_section import Scope
-from camwright.pipeline.checks.check import (
-    BOUNDLESS,
-    ROUNDING,
-    Check,
-    Demand,
-    Waived,
-    binding,
-    in_order,
-    verdict,
-)
+from camwright.pipeline.checks.check import BOUNDLESS, Check, Demand, Waived
 from camwright.pipeline.checks.check import check as declare
 from camwright.pipeline.checks.part_data import data_key
 from camwright.pipeline.checks.registry import DECLARED
@@ -225,7 +217,7 @@ def test_order_not_evaluated_first_then_worst():
     ]
     names = [check.id for check in in_order(checks)]
     assert names == ["unknown", "optional_unknown", "never", "bad", "over", "mild"]
-    assert binding(checks) == ("unknown", "never", "bad", "over")
+    assert binding(in_order(checks)) == ("unknown", "never", "bad", "over")
 
 
 def test_order_does_not_depend_on_the_input_order():

@@ -31,6 +31,7 @@ from camwright.geometry.errors import InputError
 from camwright.geometry.lift import Lift
 from camwright.geometry.motion_laws import Segment, SegmentMotion
 from camwright.geometry.pitch_curve import PitchCurve
+from camwright.pipeline.base.verdict import binding, screen, verdict, within_depth
 from camwright.pipeline.case.machine import CREEP
 from camwright.pipeline.case.requirements_section import Waiver
 from camwright.pipeline.case.scope_section import Scope
@@ -44,14 +45,7 @@ from camwright.pipeline.checks import (
     torque_balance,
 )
 from camwright.pipeline.checks import guide_strength as guides
-from camwright.pipeline.checks.check import (
-    Check,
-    Waived,
-    binding,
-    screen,
-    verdict,
-    within_depth,
-)
+from camwright.pipeline.checks.check import Check, Waived
 from camwright.pipeline.checks.extremes import greatest, least
 from camwright.pipeline.checks.registry import (
     CHECKS,

@@ -16,10 +16,10 @@ from check_registry import BY_ID, BY_ITSELF, DATA, MADE_LATER, TRIED, check
 from recomputations import CLAIMS, RECOMPUTED_IN
 
 from camwright.geometry.errors import CamError
+from camwright.pipeline.base.verdict import verdict
 from camwright.pipeline.case.case_file import read_case
 from camwright.pipeline.case.machine import machines
 from camwright.pipeline.checks import solution_verification as verification
-from camwright.pipeline.checks.check import verdict
 from camwright.pipeline.checks.registry import (
     CHECKS,
     TOLERANCE_CORNERS,

@@ -30,7 +30,12 @@ OPTIONAL = {"cvxopt", "pypardiso"}
 """Libraries that make the program faster, and without which it does the same."""
 REQUIRED_BY_THEM = {"vtkmodules", "click", "PIL", "pydantic_core", "markupsafe"}
 """Modules of what pyvista, typer, matplotlib, pydantic and jinja2 require."""
-INSTALLED_AS = {"scikit-fem": "skfem", "scikit_fem": "skfem", "tomli-w": "tomli_w"}
+INSTALLED_AS = {
+    "scikit-fem": "skfem",
+    "scikit_fem": "skfem",
+    "tomli-w": "tomli_w",
+    "typing-extensions": "typing_extensions",
+}
 
 
 def modules_of(requirements: list[str]) -> set[str]:

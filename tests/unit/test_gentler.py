@@ -7,7 +7,8 @@ import pytest
 from made_check import made_check
 
 from camwright.geometry.errors import InputError
-from camwright.pipeline.checks.check import Check, verdict
+from camwright.pipeline.base.verdict import verdict
+from camwright.pipeline.checks.check import Check
 from camwright.pipeline.run import restated
 from camwright.pipeline.smoothing.smoothers import Smoother
 from camwright.pipeline.smoothing.smoothing_feedback import Next, Stop, best_attempt, next_smoother

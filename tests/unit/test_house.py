@@ -21,6 +21,7 @@ ORDER = (
     "geometry",
     "meshes",
     "pipeline.base",
+    "pipeline.records",
     "pipeline.torque",
     "pipeline.engine",
     "pipeline.contact.elasticity",
@@ -119,8 +120,8 @@ def test_no_import_points_upward() -> None:
 
 
 def test_reports_read_results_and_draw_nothing_else() -> None:
-    below = ("geometry", "pipeline.base", "pipeline.results", "pipeline.hand_check")
-    below += ("reports.drawing", "reports.painting", "reports")
+    below = ("geometry", "pipeline.base", "pipeline.records", "pipeline.results")
+    below += ("pipeline.hand_check", "reports.drawing", "reports.painting", "reports")
     other = {(n, t) for n, t, _ in imports() if package(n) == "reports" and package(t) not in below}
     assert sorted(other) == []
 
@@ -318,6 +319,7 @@ NAME_CHECKS = {
     "pipeline.follower.roller_parts": "key of a bearing",
     "pipeline.iteration": "fact of a design in a notebook",
     "pipeline.recomputation": _FREE,
+    "pipeline.records.trial_contents": "figure of the record of a trial",
     "pipeline.results.run_records": "figure of the record of a trial",
     "pipeline.smoothing.problem_setup": _FREE,
     "pipeline.studies.design.synthesised_points": "figure of the record of a point",

@@ -26,7 +26,7 @@ from camwright.pipeline.cycle.cycle import Cycle
 from camwright.pipeline.engine.crankshaft import StallError
 from camwright.pipeline.follower.follower_forces import follower_loads
 from camwright.pipeline.preview import preview_case
-from camwright.pipeline.results.check_records import status_of
+from camwright.pipeline.results.check_records import RecordedCheck
 from camwright.pipeline.results.field_output import hardest
 from camwright.pipeline.results.run_records import headline
 from camwright.pipeline.results.trial import Trial
@@ -100,7 +100,7 @@ def test_loads_after_the_follower_has_left_the_cam_are_no_results() -> None:
     assert (record["demand"], record["utilisation"], record["load_case"]) == (None, None, "")
     (end,) = load_ends(trial().solution)
     assert str(record["note"]).startswith(f"the follower {end.words}")
-    assert all(status_of(one.as_record()) == one.status for one in touched)
+    assert all(RecordedCheck(one.as_record()).status_by_numbers == one.status for one in touched)
 
 
 def test_a_check_that_is_not_made_in_that_load_case_is_judged() -> None:

@@ -13,10 +13,11 @@ from trial_variants import with_gas_spring, with_torsion_spring
 
 from camwright.geometry.errors import CamError, InputError
 from camwright.pipeline.base.quantities import Part
+from camwright.pipeline.base.verdict import verdict, within_depth
 from camwright.pipeline.case.case_file import case_of
 from camwright.pipeline.case.parts_section import Follower
 from camwright.pipeline.case.scope_section import PART_WORDS
-from camwright.pipeline.checks.check import Check, verdict, within_depth
+from camwright.pipeline.checks.check import Check
 from camwright.pipeline.preview import preview_case
 
 TABLES: dict[str, Any] = tomllib.loads(made.CASE_FILE.read_text(encoding="utf-8"))

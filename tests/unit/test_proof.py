@@ -11,7 +11,7 @@ CHECK = {
     "id": "x", "title": "Contact pressure", "demand": 1088.3, "limit": 650.0, "unit": "MPa",
     "utilisation": 1.67, "status": "fail", "load_case": "idle", "cam_angle_deg": 245.5,
     "source": "s", "method": "m", "sense": "at_most", "must_have": True, "waiver": None,
-    "waived_up_to": None, "not_proven": False, "note": "", "error": None, "corner": None,
+    "waived_up_to": None, "not_proven": False, "note": "", "error": None, "corner": "",
     "corner_demand": None, "evidence": False, "judged_at": "",
 }  # fmt: skip
 

@@ -3,19 +3,40 @@
 from __future__ import annotations
 
 import copy
+import itertools
 import json
-from collections.abc import Callable, Iterator
+import math
+import random
+from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
-from typing import Any
+from types import MappingProxyType, NoneType, UnionType
+from typing import (
+    Annotated,
+    Any,
+    Literal,
+    NotRequired,
+    Required,
+    Union,
+    get_args,
+    get_origin,
+    get_type_hints,
+)  # fmt: skip
 
 import pytest
 from jsonschema import Draft202012Validator
 from made_check import made_check
-from record_validation import schema_errors
+from record_validation import keeps_schema, schema_errors
 
 from camwright.geometry.errors import InputError
+from camwright.pipeline.base.verdict import STATUSES
 from camwright.pipeline.case.case_file import read_case
+from camwright.pipeline.checks.check import Waived
 from camwright.pipeline.contact.tiers import Tier
+from camwright.pipeline.records.check_document import CheckDocument
+from camwright.pipeline.records.check_record import CheckRecord
+from camwright.pipeline.records.run_summary import Summary
+from camwright.pipeline.records.signoff_record import SignoffRecord
+from camwright.pipeline.records.trial_contents import TrialContents
 from camwright.pipeline.results import check_records, run_reader
 from camwright.pipeline.results.record_schemas import NAMES, record_schema
 from camwright.pipeline.run import run_case
@@ -66,7 +87,9 @@ def test_objects_of_fixed_keys_are_closed(name: str) -> None:
 
 
 def test_an_unknown_schema_is_refused() -> None:
-    with pytest.raises(InputError, match="schema = runs, must be one of: run, checks, check"):
+    with pytest.raises(
+        InputError, match="schema = runs, must be one of: run, trial, checks, check"
+    ):
         record_schema("runs")
 
 
@@ -79,22 +102,22 @@ def test_the_command_prints_a_schema(command: Callable[..., tuple[int, str, str]
 # --- the schemas say what the modules say
 
 
-def common() -> dict[str, Any]:
-    return dict(record_schema("run")["$defs"]["common"]["$defs"])
+def check_schema() -> dict[str, Any]:
+    return dict(record_schema("checks")["$defs"]["CheckRecord"])
 
 
 def test_keys_and_words_are_those_of_the_modules() -> None:
-    check = common()["check"]
+    check = check_schema()
     record = made_check("stress", 1.0, 2.0).as_record()
     assert set(check["required"]) <= set(record) <= set(check["properties"])
-    assert set(check_records.CheckRecordOfAnyCheck.__annotations__) <= set(check["required"])
-    assert common()["status"]["enum"] == list(check_records.STATUSES)
-    assert common()["depth"]["enum"] == [tier.word for tier in Tier]
-    assert set(run_reader.HEADLINE) <= set(common()["headline"]["required"])
+    assert CheckRecord.__required_keys__ <= set(check["required"])
+    assert check["properties"]["status"]["enum"] == list(STATUSES)
     run = record_schema("run")
+    assert run["properties"]["depth"]["enum"] == [tier.word for tier in Tier]
+    assert {*run_reader.HEADLINE} == {*run["$defs"]["HeadlineRecord"]["required"]}
     assert run["properties"]["schema"]["const"] == run_reader.SCHEMA
     assert record_schema("signoff")["properties"]["schema"]["const"] == run_reader.SCHEMA
-    assert set(run_reader.SummaryOfAnyRun.__annotations__) <= set(run["required"])
+    assert Summary.__required_keys__ <= set(run["required"])
 
 
 # --- records of the shipped cases
@@ -114,6 +137,7 @@ def test_records_of_a_shipped_case_keep_the_schemas(path: Path, tmp_path: Path) 
     assert (run.summary["valve_train"] is None) is (case.valve_train is None)
     for name, file in (
         ("run", "run.json"),
+        ("trial", "trial_1/trial.json"),
         ("checks", "trial_1/6_checks.json"),
         ("signoff", "signoff.json"),
     ):
@@ -134,7 +158,9 @@ def records() -> list[dict[str, Any]]:
 
 
 def test_made_records_keep_the_schema() -> None:
-    assert schema_errors("checks", records()) == []
+    unbounded = made_check("crossings", 4.0, 0.0, waiver=Waived("A. Meyer: a trial", 4.0))
+    assert (unbounded.status, unbounded.utilisation) == ("waived", math.inf)
+    assert schema_errors("checks", [*records(), unbounded.as_record()]) == []
 
 
 CHANGES: tuple[tuple[str, Any], ...] = (
@@ -165,7 +191,7 @@ def test_a_changed_check_is_refused(key: str, value: Any) -> None:
 
 @pytest.mark.parametrize("key", sorted(made_check("a", 1.0, 2.0).as_record()))
 def test_a_check_without_a_key_is_refused(key: str) -> None:
-    optional = set(common()["check"]["properties"]) - set(common()["check"]["required"])
+    optional = set(check_schema()["properties"]) - set(check_schema()["required"])
     changed = records()
     del changed[0][key]
     assert bool(schema_errors("checks", changed)) == (key not in optional)
@@ -218,3 +244,121 @@ def test_an_output_without_a_key_is_refused(key: str) -> None:
     changed = copy.deepcopy(document())
     del changed[key]
     assert schema_errors("check", changed)
+
+
+# --- records drawn from the types of their forms, and the same with one value that is none
+
+
+JUDGED = ("certified", "pass", None), ("preview", None, "open"), ("cycle", None, "fail")
+WORDS = {
+    "^[A-Za-z][A-Za-z0-9_]*$": "stress",
+    "^[0-9a-f]{64}$": "5f" * 32,
+    "^SHA256:[A-Za-z0-9+/]{43}$": "SHA256:" + "a" * 43,
+    "^[0-9]{4}-[0-9]{2}-[0-9]{2}T[0-9]{2}:[0-9]{2}:[0-9]{2}Z$": "2026-01-31T12:00:00Z",
+}
+"""A text for each pattern."""
+
+
+class Draw:
+    """Records of a form by its types and bounds, with the places of their values."""
+
+    def __init__(self, seed: int) -> None:
+        self.rng = random.Random(seed)
+
+    def of(self, hint: Any, bounds: Mapping[str, Any] = MappingProxyType({})) -> Any:
+        """A value of an annotation."""
+        origin, inner = get_origin(hint), get_args(hint)
+        if origin in (NotRequired, Required):
+            return self.of(inner[0])
+        if origin is Annotated:
+            return self.of(inner[0], {k: v for each in inner[1:] for k, v in each.keywords.items()})
+        if origin in (Union, UnionType):
+            return self.of(self.rng.choice(inner), bounds)
+        if origin is Literal:
+            return self.rng.choice(inner)
+        if origin is tuple:
+            return [self.of(each) for each in inner]
+        if origin is list:
+            count = self.rng.randint(bounds.get("minItems", 0), 2)
+            made = [self.of(inner[0]) for _ in range(count)]
+            return list(dict.fromkeys(made)) if bounds.get("uniqueItems") else made
+        if origin is dict:
+            keys = (*bounds.get("required", ()), *self.rng.sample(["a", "b"], 1))
+            return {key: self.of(inner[1]) for key in keys}
+        if hasattr(hint, "__required_keys__"):
+            return self.of_form(hint)
+        return {
+            str: WORDS.get(bounds.get("pattern", ""), "words"), bool: self.rng.random() < 0.5,
+            int: self.rng.randint(1, 9), float: round(self.rng.uniform(0.0, 9.0), 3),
+            NoneType: None,
+        }[hint]  # fmt: skip
+
+    def of_form(self, form: Any) -> dict[str, Any]:
+        """A record with all its keys, its status and verdict as its conditions have them."""
+        hints = get_type_hints(form, include_extras=True)
+        record = {key: self.of(hint) for key, hint in hints.items()}
+        if "verdict" in record:
+            names = ("depth", "verdict", "screen")
+            record |= dict(zip(names, self.rng.choice(JUDGED), strict=True))
+        if "waived_up_to" in record:
+            known = record["status"] != "not_evaluated"
+            numbers = dict.fromkeys(("demand", "limit", "utilisation"), 1.5 if known else None)
+            record |= numbers | {"waiver": "A", "waived_up_to": 2.0}
+        return record
+
+
+def mutations(record: Any, place: str = "$") -> Iterator[tuple[str, Callable[[], None]]]:
+    """Changes of a record with which it is none: a key more, a value of another type."""
+    if isinstance(record, dict):
+        for key, value in record.items():
+            inside = f"{place}.{key}"
+
+            def exchange(key: str = key, value: Any = value) -> None:
+                record[key] = [value] if isinstance(value, dict) else {"further": [value]}
+
+            yield inside, exchange
+            yield from mutations(value, inside)
+    elif isinstance(record, list):
+        for k, value in enumerate(record):
+            yield from mutations(value, f"{place}[{k}]")
+
+
+FORMS = {
+    "run": Summary, "trial": TrialContents, "check": CheckDocument, "signoff": SignoffRecord,
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", FORMS)
+def test_drawn_records_keep_their_schema_and_mutated_ones_do_not(name: str) -> None:
+    draw, changed = Draw(20261129), 0
+    for _ in range(60):
+        record = draw.of_form(FORMS[name])
+        assert schema_errors(name, record) == []
+        text = json.dumps(record)
+        for k in draw.rng.sample(range(sum(1 for _ in mutations(record))), 4):
+            other = json.loads(text)
+            place, change = next(itertools.islice(mutations(other), k, None))
+            change()
+            assert not keeps_schema(name, other), place
+            changed += 1
+        assert not keeps_schema(name, record | {"further": 1})
+    assert changed == 240
+
+
+@pytest.mark.parametrize("name", FORMS)
+def test_a_drawn_record_without_a_key_that_is_always_written_is_refused(name: str) -> None:
+    schema = record_schema(name)
+    required = schema.get("required") or schema["$defs"]["CheckDocument"]["required"]
+    assert len(set(required)) == len(required) > 10
+    record = Draw(7).of_form(FORMS[name])
+    for key in record:
+        lacking = {other: value for other, value in record.items() if other != key}
+        assert keeps_schema(name, lacking) == (key not in required), key
+
+
+def test_bounds_and_patterns_of_a_form_hold() -> None:
+    record = Draw(3).of_form(CheckRecord)
+    assert schema_errors("checks", [record]) == []
+    for change in ({"error": -1.0}, {"utilisation": -0.1}, {"unit": ""}, {"id": "a b"},
+                   {"missing": ["a", "a"]}, {"status": "waived", "waiver": None}):  # fmt: skip
+        assert schema_errors("checks", [record | change]), change

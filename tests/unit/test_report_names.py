@@ -110,7 +110,7 @@ def columns(rolls: Trial, slides: Trial, speed: tuple[dict[str, Any], Any]) -> s
 @pytest.fixture(scope="module")
 def records(rolls: Trial, slides: Trial, speed: tuple[dict[str, Any], Any]) -> set[str]:
     """Keys of headline, trial, crank speed, and a measured engine by the schema."""
-    measurement = record_schema("run")["$defs"]["measurement"]["properties"]
+    measurement = record_schema("run")["$defs"]["Measurement"]["properties"]
     made = [run_records.headline(rolls), speed[0], measurement]
     made += [run_records.trial_record(trial) for trial in (rolls, slides)]
     return {key for record in made for key in keys_of(record)}

@@ -303,12 +303,36 @@ def _read_with(run: Path, record: dict[str, Any]) -> tuple[check_records.CheckRe
 
 def test_a_scope_that_is_not_of_the_case_is_refused(tmp_path: Path) -> None:
     run = write_run(tmp_path / "run")
-    for scope in ({"not_covered": ["key"], "reason": "", "statement": ""}, {}, "key"):
+    other = r"the scope in run\.json is not that of case"
+    for scope, words in (
+        ({"not_covered": ["key"], "reason": "", "statement": ""}, other),
+        ({}, other),
+        ("key", "has scope = 'key', must be an object"),
+    ):
         summary = json.loads((run / "run.json").read_text())
         (run / "run.json").write_text(json.dumps(summary | {"scope": scope}))
         for read in (run_reader.read_run, run_reader.read_verdict):
-            with pytest.raises(ResultError, match=r"the scope in run\.json is not that of case"):
+            with pytest.raises(ResultError, match=words):
                 read(run)
+
+
+@pytest.mark.parametrize(
+    ("key", "words"),
+    [
+        ("synthesis", "an object or null"),
+        ("balance", "an object"),
+        ("certificate", "a list"),
+        ("depth", "text"),
+    ],
+)
+def test_a_value_of_a_trial_of_another_form_is_refused(
+    tmp_path: Path, key: str, words: str
+) -> None:
+    run = write_run(tmp_path / "run")
+    file = run / "trial_1" / "trial.json"
+    file.write_text(json.dumps(json.loads(file.read_text()) | {key: 3}))
+    with pytest.raises(ResultError, match=rf"trial\.json: has {key} = 3, must be {words}$"):
+        run_reader.read_run(run)
 
 
 @pytest.mark.parametrize(

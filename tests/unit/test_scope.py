@@ -11,13 +11,13 @@ from typing import Any
 import pytest
 
 from camwright.geometry.errors import InputError
+from camwright.pipeline.base.verdict import governing_id, within_depth
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_file import case_of
 from camwright.pipeline.case.scope_section import PART_WORDS, SCOPE_WORDS, SUBJECT_WORDS
-from camwright.pipeline.checks.check import Check, within_depth
+from camwright.pipeline.checks.check import Check
 from camwright.pipeline.checks.registry import DECLARED
 from camwright.pipeline.preview import preview_case
-from camwright.pipeline.results.check_records import governing_id
 from camwright.pipeline.results.run_records import figures
 from camwright.pipeline.results.trial import Trial
 
@@ -70,7 +70,7 @@ def test_no_check_of_what_is_left_out_is_made_or_governs() -> None:
     outside = {one.id for one in DECLARED.values() if one.part or one.within}
     assert not outside & set(made)
     assert len(outside) > 60
-    assert governing_id([one.as_record() for one in made.values()]) in made
+    assert governing_id(made.values()) in made
 
 
 def test_all_is_every_name_and_is_stated() -> None:

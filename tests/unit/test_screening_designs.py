@@ -14,6 +14,7 @@ import pytest
 
 from camwright.geometry.arrays import Array
 from camwright.geometry.errors import GeometryError, InputError
+from camwright.pipeline.base.verdict import governing_id
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_file import read_case, with_values
 from camwright.pipeline.case.case_values import quantity_of, replaced, value_of
@@ -25,7 +26,6 @@ from camwright.pipeline.checks.registry import CHECKS
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.numbers import Numbers
 from camwright.pipeline.preview import preview_case
-from camwright.pipeline.results.check_records import governing_id
 from camwright.pipeline.screening import design_screening
 from camwright.pipeline.screening.design_arrays import Designs, TorqueOfSpeed
 from camwright.pipeline.screening.design_factors import ARRAYS, groups, is_array
@@ -99,7 +99,7 @@ def test_of_equal_utilisations_the_check_of_the_preview_governs() -> None:
     unbounded = ("contact_at_overspeed.utilisation", "contact_force_margin.utilisation")
     assert all(np.isposinf(columns[name][0]) for name in unbounded)
     checks = preview_case(replaced(case(), design), corners=False).checks
-    governing = governing_id(check.as_record() for check in checks)
+    governing = governing_id(checks)
     assert columns["governing"][0] == governing == "contact_at_overspeed"
 
 

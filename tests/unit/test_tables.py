@@ -6,7 +6,8 @@ import math
 
 import pytest
 
-from camwright.pipeline.results.check_records import governing_id, utilisation_of
+from camwright.pipeline.base.verdict import governing_id
+from camwright.pipeline.results.check_records import RecordedCheck, of_records
 from camwright.reports import report_tables, verification_tables
 from camwright.reports.verdict_text import governing, governing_load_case, verdict
 
@@ -17,7 +18,7 @@ def check(name, status="pass", utilisation=0.5, **more):
         "utilisation": utilisation, "status": status, "load_case": "idle", "cam_angle_deg": 12.5,
         "source": "", "method": "", "must_have": True, "sense": "at_most",
         "waiver": None, "waived_up_to": None, "not_proven": False, "note": "", "error": None,
-        "corner": None, "corner_demand": None, "evidence": False, "judged_at": "",
+        "corner": "", "corner_demand": None, "evidence": False, "judged_at": "",
     }  # fmt: skip
     return base | more
 
@@ -175,7 +176,7 @@ def test_the_governing_check_is_required_and_not_waived():
         check("worst", "fail", 2.0, load_case="rated"), check("fine"),
         check("mesh", "fail", 7.0, evidence=True), check("lacks", "not_evaluated", None),
     ]  # fmt: skip
-    assert governing_id(checks) == "worst"
+    assert governing_id(of_records(checks)) == "worst"
     assert governing(checks).startswith("Worst, load case rated, cam angle 12.5")
     assert governing([]) == ""
     at_corner = check("c", "fail", 2.5, corner="mass high", corner_demand=5.0)
@@ -194,10 +195,10 @@ def test_a_governing_check_that_is_the_worst_failure_is_described_once():
 
 def test_an_infinite_utilisation_governs_and_of_equal_ones_the_first_id():
     beyond = check("b", "fail", None, load_case="rated")
-    assert governing_id([check("a", "fail", 50.0), beyond]) == "b"
-    assert governing_id([beyond, check("c", "fail", None)]) == "b"
-    assert governing_id([check("a", "not_evaluated", None)]) is None
-    assert utilisation_of(beyond) == math.inf
+    assert governing_id(of_records([check("a", "fail", 50.0), beyond])) == "b"
+    assert governing_id(of_records([beyond, check("c", "fail", None)])) == "b"
+    assert governing_id(of_records([check("a", "not_evaluated", None)])) is None
+    assert RecordedCheck(beyond).utilisation == math.inf
 
 
 def test_the_sheet_draws_the_load_case_that_governs():

@@ -9,7 +9,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from made_check import made_check
 
-from camwright.pipeline.checks.check import Check, Waived, verdict
+from camwright.pipeline.base.verdict import STATUSES, verdict
+from camwright.pipeline.checks.check import Check, Waived
 from camwright.pipeline.results import check_records
 
 WORSE = ("pass", "incomplete", "fail")
@@ -133,9 +134,9 @@ def test_missing_data_are_never_a_pass_nor_waived(one: Check) -> None:
 def test_records_are_judged_as_the_checks(several: list[Check]) -> None:
     """A reader of the file reaches the same verdict, and no status is better than its numbers."""
     records = [one.as_record() for one in several]
-    assert check_records.verdict_of(records) == verdict(several)
+    assert verdict(check_records.of_records(records)) == verdict(several)
     for one, record in zip(several, records, strict=True):
         if any(each in (math.inf, -math.inf) for each in (one.demand, one.corner_demand)):
             continue  # a record has no infinity: it counts as missing
-        by_numbers = check_records.status_of(record)
-        assert check_records.STATUSES.index(one.status) >= check_records.STATUSES.index(by_numbers)
+        by_numbers = check_records.RecordedCheck(record).status_by_numbers
+        assert STATUSES.index(one.status) >= STATUSES.index(by_numbers)

@@ -16,9 +16,10 @@ from camwright.geometry.arrays import uniform_turn
 from camwright.geometry.energy import spring_deflection, stored_energy
 from camwright.geometry.lift import Jet, Lift
 from camwright.geometry.motion_laws import Segment, SegmentMotion
+from camwright.pipeline.base.verdict import within_depth
 from camwright.pipeline.case.case_values import replaced, value_of
 from camwright.pipeline.case.load_case_torque import engine_torques
-from camwright.pipeline.checks.check import depends_on_lift, within_depth
+from camwright.pipeline.checks.check import depends_on_lift
 from camwright.pipeline.checks.demands import CAM_TORQUE, NORMAL_FORCE, PRESSURE, TOOTH_TORQUE
 from camwright.pipeline.checks.key_strength import KeywayRoot
 from camwright.pipeline.checks.registry import checks_of

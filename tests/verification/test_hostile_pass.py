@@ -13,9 +13,9 @@ from typing import Any
 import pytest
 
 from camwright.geometry.errors import CamError
+from camwright.pipeline.base.verdict import within_depth
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_file import read_case, with_values
-from camwright.pipeline.checks.check import within_depth
 from camwright.pipeline.preview import preview_case
 
 CASES = Path(__file__).resolve().parents[2] / "cases"

@@ -13,9 +13,9 @@ from camwright.geometry.arrays import FULL_TURN, uniform_turn
 from camwright.geometry.contour import RollerContour
 from camwright.geometry.lift import Jet, Lift
 from camwright.geometry.pitch_curve import PitchCurve
+from camwright.pipeline.base.verdict import screen
 from camwright.pipeline.case.case_file import read_case, with_values
 from camwright.pipeline.case.load_case_torque import engine_torques
-from camwright.pipeline.checks.check import screen
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.contact.traction import Drag
 from camwright.pipeline.cycle.solution import solution

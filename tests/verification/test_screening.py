@@ -14,12 +14,13 @@ from camwright.geometry.energy import spring_deflection
 from camwright.geometry.lift import Lift
 from camwright.geometry.periodic_spline import knot_derivatives, knot_integrals, periodic_quintic
 from camwright.pipeline.base.units import in_unit
+from camwright.pipeline.base.verdict import within_depth
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_file import read_case, with_values
 from camwright.pipeline.case.case_values import replaced
 from camwright.pipeline.case.load_case_torque import engine_torques
 from camwright.pipeline.case.machine import machine
-from camwright.pipeline.checks.check import Check, within_depth
+from camwright.pipeline.checks.check import Check
 from camwright.pipeline.checks.registry import CHECKS, DECLARED
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.follower.follower_forces import Push

@@ -19,12 +19,13 @@ from camwright.geometry.arrays import uniform_turn
 from camwright.geometry.contour import Contour, RollerContour
 from camwright.geometry.lift import Lift
 from camwright.geometry.pitch_curve import PitchCurve
+from camwright.pipeline.base.verdict import verdict
 from camwright.pipeline.case.cards.card_filling import known_cards
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_file import parse_case
 from camwright.pipeline.case.load_case_torque import engine_torques
 from camwright.pipeline.case.machine import Corner, Machine, machines
-from camwright.pipeline.checks.check import Check, verdict
+from camwright.pipeline.checks.check import Check
 from camwright.pipeline.checks.registry import all_checks
 from camwright.pipeline.contact.closed_form import closed_form_history
 from camwright.pipeline.contact.tiers import Tier

@@ -8,11 +8,12 @@ from typing import Any
 import numpy as np
 import pytest
 
+from camwright.pipeline.base.verdict import verdict, within_depth
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_file import case_of
 from camwright.pipeline.case.given_lift import given_lift
 from camwright.pipeline.case.limits import LIMITS, OVERSPEED
-from camwright.pipeline.checks.check import Check, verdict, within_depth
+from camwright.pipeline.checks.check import Check
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.solver import solve
 

@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
@@ -16,13 +16,13 @@ from camwright.geometry.errors import CamError
 from camwright.geometry.lift import Lift
 from camwright.pipeline.base.files import files_in, json_text, read_json, write_atomic
 from camwright.pipeline.base.units import in_unit
+from camwright.pipeline.base.verdict import governing_id, screen
 from camwright.pipeline.base.worker_processes import crew
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_file import with_values
 from camwright.pipeline.case.load_case_torque import engine_torques
-from camwright.pipeline.checks.check import screen
 from camwright.pipeline.contact.tiers import Tier
-from camwright.pipeline.results.check_records import governing_id
+from camwright.pipeline.records.run_summary import HeadlineRecord
 from camwright.pipeline.results.trial import Trial
 from camwright.pipeline.studies.batch.case_template import Template, UnpackedTemplates
 from camwright.pipeline.studies.batch.dataset import (
@@ -51,14 +51,15 @@ UNEXPECTED = "unexpected {kind}: {text}"
 _AT_ONCE = 125  # screened designs: their arrays bound the memory of a process
 
 
-def row_of(trial: Trial, headline: Mapping[str, float | None]) -> Row:
+def row_of(trial: Trial, headline: HeadlineRecord) -> Row:
     """Cells of a solved design, in the units of the records."""
+    figures = cast("Mapping[str, float | None]", headline)
     row: Row = {
         SCREEN.name: screen(trial.checks),
         VERDICT.name: trial.verdict,
-        GOVERNING.name: governing_id(one.as_record() for one in trial.checks),
+        GOVERNING.name: governing_id(trial.checks),
     }
-    row |= {HEADLINE + key: value for key, value in headline.items()}
+    row |= {HEADLINE + key: value for key, value in figures.items()}
     if trial.mesh is not None:
         row |= {MESH + key: float(v) for key, v in asdict(trial.mesh.quality).items()}
     for one in trial.checks:

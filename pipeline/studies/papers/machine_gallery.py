@@ -12,8 +12,8 @@ from camwright.geometry.arrays import Array, uniform_turn
 from camwright.geometry.errors import CamError, InputError
 from camwright.pipeline.base.progress import SILENT, Progress
 from camwright.pipeline.base.units import in_unit
+from camwright.pipeline.base.verdict import governing, screen, within_depth
 from camwright.pipeline.case.case_file import read_case
-from camwright.pipeline.checks.check import in_order, screen, within_depth
 from camwright.pipeline.cycle.crank_speed import study_of
 from camwright.pipeline.preview import preview_case
 from camwright.pipeline.results.trial import Trial
@@ -72,14 +72,14 @@ def _machine(trial: Trial) -> dict[str, Any]:
         *speeds,
     )  # fmt: skip
     judged = within_depth(trial.checks)
-    governing = next((one for one in in_order(judged) if one.must_have), None)
+    worst = governing(judged)
     figure = PaperFigure(case.name, "", "", case.title, case.notes.strip(), panels, columns=2)
     ripple = float(before.std()), float(after.std())
     return {
         "name": case.name,
         "figure": figure.record(),
         "screen": screen(judged),
-        "governing": None if governing is None else governing.title,
+        "governing": None if worst is None else worst.title,
         "cycles_per_cam_turn": case.period.cycles,
         "values": {
             "speed_rpm": in_unit(turn.machine.speed, "rpm"),

@@ -15,9 +15,10 @@ import numpy as np
 from camwright.geometry.contour import Contour
 from camwright.geometry.errors import InputError
 from camwright.pipeline.base.units import in_unit
+from camwright.pipeline.base.verdict import Verdict, in_order, within_depth
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.limits import KEYWAY_SAFETY, TORQUE_REDUCTION
-from camwright.pipeline.checks.check import Check, Verdict, in_order, within_depth
+from camwright.pipeline.checks.check import Check
 from camwright.pipeline.checks.key_strength import keyway_root
 from camwright.pipeline.cycle.hub_history import hub_fatigue
 from camwright.pipeline.follower.camshaft_loads import unbalance
@@ -153,14 +154,14 @@ def point_of(case: Case) -> DesignPoint:
     rest, torque = turn.torque_after, turn.torque_before
     if rest is None or torque is None:
         raise InputError("engine", "missing", "specified: a redesign balances its torque")
-    record = trial.synthesis or {"feasible": False, "prices": []}
+    record = trial.synthesis
     blocking = [check for check in in_order(within_depth(trial.checks)) if check.blocks]
     failing = [check for check in blocking if check.status == "fail"]
     shortfalls = tuple(_shortfall(check) for check in failing)
     if not failing:
         shortfalls = _root_shortfall(trial)
     return DesignPoint(
-        feasible=record["feasible"],
+        feasible=record is not None and record["feasible"],
         ripple_before=float(np.std(torque)),
         ripple_left=float(np.std(rest)),
         cam_radius=float(contour.radius_max().value),
@@ -174,7 +175,7 @@ def point_of(case: Case) -> DesignPoint:
         p0_max=max(float(np.max(c.contact.p0)) for c in trial.cycles),
         shortfalls=shortfalls,
         open=tuple(check.id for check in blocking if check.status == "not_evaluated"),
-        binding=tuple(price["limit"] for price in record["prices"]),
+        binding=() if record is None else tuple(price["limit"] for price in record["prices"]),
     )
 
 
