@@ -24,6 +24,7 @@ from camwright.reports import pdf as printing
 
 ROOT = Path(__file__).parents[2]
 NEEDED = (
+    "camwright.pipeline.records",
     "camwright.geometry",
     "camwright.meshes",
     "camwright.pipeline.base",
