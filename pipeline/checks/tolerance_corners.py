@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import asdict, dataclass, replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -19,7 +19,6 @@ from camwright.geometry.display import Displayed
 from camwright.geometry.errors import CamError
 from camwright.geometry.extrema import first_greatest
 from camwright.geometry.lift import Lift
-from camwright.pipeline.base.files import Json
 from camwright.pipeline.base.units import in_unit
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.machine import Corner, Machine
@@ -31,6 +30,7 @@ from camwright.pipeline.cycle.cycle import solve_lengths
 from camwright.pipeline.cycle.solution import Solution, solved_turns
 from camwright.pipeline.cycle.turn import Turn, TurnInput, turns
 from camwright.pipeline.follower.guide_friction import FrictionRange
+from camwright.pipeline.records.corners_document import CornerRecord, CornersDocument
 
 NOMINAL = Corner("nominal")
 POSITIONS = 90
@@ -163,22 +163,32 @@ def unsolved(machine: Machine, tried: Sequence[Outcome]) -> Check:
     return TOLERANCE_CORNERS.judged(machine, demand)
 
 
-def corners_record(case: Case, tried: Sequence[Outcome]) -> dict[str, Json]:
+def corners_record(case: Case, tried: Sequence[Outcome]) -> CornersDocument:
     """Contents of ``corners.json``."""
     return {
         "seed": case.tolerances.seed,
         "tried": len(tried) - 1,
         "positions": POSITIONS,
         "method": "closed forms on the final cam; demands scale the nominal figures of the run",
-        "corners": [
-            {
-                **asdict(one.corner),
-                "demands": _plain(one.demands),
-                "refused": one.refused,
-                "lost": one.lost,
-            }
-            for one in tried
-        ],
+        "corners": [_corner_record(one) for one in tried],
+    }
+
+
+def _corner_record(one: Outcome) -> CornerRecord:
+    corner = one.corner
+    return {
+        "name": corner.name,
+        "friction_a": corner.friction_a,
+        "friction_b": corner.friction_b,
+        "rate": corner.rate,
+        "preload": corner.preload,
+        "mass": corner.mass,
+        "inertia": corner.inertia,
+        "phase": corner.phase,
+        "profile": corner.profile,
+        "demands": _plain(one.demands),
+        "refused": one.refused,
+        "lost": one.lost,
     }
 
 

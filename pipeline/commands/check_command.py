@@ -232,11 +232,12 @@ def schema(
     name: Annotated[
         str,
         typer.Argument(
-            metavar="NAME", help="run, trial, checks, check (of check --json) or signoff."
+            metavar="NAME",
+            help="run, trial, checks, check (of check --json), signoff, corners, crown or size.",
         ),
     ],
 ) -> int:
-    """Print the JSON Schema of a record of a run, or of the output of check --json."""
+    """Print the JSON Schema of a record, or of the output of a command with --json."""
     from camwright.pipeline.results.record_schemas import record_schema
 
     show_json(record_schema(name))

@@ -1,13 +1,16 @@
 """Forms of the JSON records of a run: types of the code, and their schemas.
 
-| module           | responsibility                                             |
-| ---------------- | ---------------------------------------------------------- |
-| `forms`          | declaration of a form: bounds, conditions, meaning of keys |
-| `check_record`   | ``6_checks.json``                                          |
-| `run_summary`    | ``run.json``                                               |
-| `trial_contents` | ``trial.json``                                             |
-| `signoff_record` | ``signoff.json``                                           |
-| `check_document` | output of ``check --json``                                 |
+| module             | responsibility                                             |
+| ------------------ | ---------------------------------------------------------- |
+| `forms`            | declaration of a form: bounds, conditions, meaning of keys |
+| `check_record`     | ``6_checks.json``                                          |
+| `run_summary`      | ``run.json``                                               |
+| `trial_contents`   | ``trial.json``                                             |
+| `corners_document` | ``corners.json``                                           |
+| `signoff_record`   | ``signoff.json``                                           |
+| `check_document`   | output of ``check --json``                                 |
+| `crown_document`   | ``crown.json``, output of ``crown --json``                 |
+| `size_document`    | output of ``size --json``                                  |
 
 Imports `geometry` and `base`.
 """

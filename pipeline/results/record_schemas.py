@@ -1,4 +1,4 @@
-"""JSON Schemas, draft 2020-12, of the records of a run: made of their forms when asked for."""
+"""JSON Schemas, draft 2020-12, of the records: made of their forms when asked for."""
 
 from __future__ import annotations
 
@@ -8,9 +8,12 @@ from typing import Any
 from camwright.geometry.errors import InputError
 from camwright.pipeline.records.check_document import CheckDocument, SeveralTargets
 from camwright.pipeline.records.check_record import CheckRecord
+from camwright.pipeline.records.corners_document import CornersDocument
+from camwright.pipeline.records.crown_document import CrownDocument
 from camwright.pipeline.records.forms import Schema
 from camwright.pipeline.records.run_summary import Summary
 from camwright.pipeline.records.signoff_record import SignoffRecord
+from camwright.pipeline.records.size_document import SizeDocument
 from camwright.pipeline.records.trial_contents import TrialContents
 
 NAMES = {
@@ -19,6 +22,9 @@ NAMES = {
     "checks": "6_checks.json",
     "check": "output of camwright check --json",
     "signoff": "signoff.json",
+    "corners": "corners.json",
+    "crown": "crown.json, output of camwright crown --json",
+    "size": "output of camwright size --json",
 }
 """Names of the schemas and the documents that they describe."""
 _FORMS: Mapping[str, Any] = {
@@ -27,6 +33,9 @@ _FORMS: Mapping[str, Any] = {
     "checks": list[CheckRecord],
     "check": CheckDocument | SeveralTargets,
     "signoff": SignoffRecord,
+    "corners": CornersDocument,
+    "crown": CrownDocument,
+    "size": SizeDocument,
 }
 
 

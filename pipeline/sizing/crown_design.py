@@ -35,11 +35,11 @@ from camwright.pipeline.contact.finite_length.axial_drop import (
 from camwright.pipeline.cycle.cycle import Cycle, turn_of_line
 from camwright.pipeline.cycle.length_history import ContactLoads
 from camwright.pipeline.preview import preview_case
+from camwright.pipeline.records.crown_document import CrownKind
 from camwright.pipeline.sizing.least_crown import (
     KINDS,
     AxialFactor,
     ContactStates,
-    CrownKind,
     CrownProblem,
     LeastCrown,
     families,

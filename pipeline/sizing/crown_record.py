@@ -3,13 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import Literal
 
 import numpy as np
 
-from camwright.pipeline.base.files import Json
 from camwright.pipeline.base.tables import table
 from camwright.pipeline.base.units import in_unit, shown
 from camwright.pipeline.contact.finite_length.axial_drop import Crown, Straight
+from camwright.pipeline.records.crown_document import (
+    CrownDocument,
+    CrownDrop,
+    CrownLengths,
+    CrownLine,
+    CrownShape,
+    CrownState,
+)
 from camwright.pipeline.sizing.crown_design import CrownDesign
 
 _WORDS = {
@@ -20,14 +28,8 @@ _WORDS = {
 }
 
 
-def crown_record(design: CrownDesign) -> dict[str, Json]:
-    """Record of a crown; ratios over the greatest plane-strain pressure of the load case.
-
-    ``crown``: as in the case; ``lightest``, ``heaviest``: of the same kind within the ratio, None
-    beyond those tried; ``governing``: state of the greatest ratio; ``centre``: pressure over plane
-    strain at the greatest load, aligned; ``life``: load cycles over those of plane strain;
-    ``lines``: axial pressure at the governing state; ``drop_table``: rows of the workshop.
-    """
+def crown_record(design: CrownDesign) -> CrownDocument:
+    """Record of a crown."""
     chosen, centre, rows = design.chosen, design.centres, table(design.columns())
     return {
         "case": design.case.name,
@@ -121,36 +123,42 @@ def _range_words(design: CrownDesign) -> str:
     )
 
 
-def _shape_record(design: CrownDesign) -> Json:
+def _shape_record(design: CrownDesign) -> CrownShape | None:
     """The crown in the units of its keys; None: straight."""
     chosen, shape = design.chosen, design.shape
     if shape is None:
         return None
-    record: dict[str, Json] = {"kind": shape.kind, "drop_at_ends_um": in_unit(chosen.drop, "um")}
+    lengths: CrownLengths = {}
     if shape.line_load is not None:
-        record["line_load_N_per_mm"] = in_unit(shape.line_load, "N/mm")
+        lengths["line_load_N_per_mm"] = in_unit(shape.line_load, "N/mm")
     if shape.radius is not None:
-        record["radius_mm"] = in_unit(shape.radius, "mm")
-    if shape.kind == "table":
+        lengths["radius_mm"] = in_unit(shape.radius, "mm")
+    if design.kind == "table":
         straight = chosen.family.straight * chosen.family.length
-        record["straight_length_mm"] = round(in_unit(straight, "mm"), 9)
-    return record | {"length_mm": round(in_unit(chosen.family.length, "mm"), 9)}
+        lengths["straight_length_mm"] = round(in_unit(straight, "mm"), 9)
+    record: CrownShape = {
+        "kind": design.kind,
+        "drop_at_ends_um": in_unit(chosen.drop, "um"),
+        **lengths,
+        "length_mm": round(in_unit(chosen.family.length, "mm"), 9),
+    }
+    return record
 
 
-def _heaviest_record(design: CrownDesign) -> Json:
+def _heaviest_record(design: CrownDesign) -> CrownDrop | None:
     if design.heaviest is None:
         return None
     return _drop_record(design, design.chosen.heaviest)
 
 
-def _drop_record(design: CrownDesign, load: float) -> dict[str, Json]:
+def _drop_record(design: CrownDesign, load: float) -> CrownDrop:
     return {
         "line_load_N_per_mm": in_unit(load, "N/mm"),
         "drop_at_ends_um": in_unit(design.chosen.family.drop(load), "um"),
     }
 
 
-def _governing_record(design: CrownDesign) -> dict[str, Json]:
+def _governing_record(design: CrownDesign) -> CrownState:
     states, row = design.chosen.problem.states, design.governing
     return {
         "load_case": design.load_cases[int(states.load_case[row])],
@@ -161,13 +169,16 @@ def _governing_record(design: CrownDesign) -> dict[str, Json]:
     }
 
 
-def _lines_record(design: CrownDesign) -> list[Json]:
+def _lines_record(design: CrownDesign) -> list[CrownLine]:
     """Axial pressure over plane strain at the governing state, aligned and under its moment."""
     row, crowned = design.governing, design.chosen.crown
-    shapes: tuple[tuple[str, Crown], ...] = (("straight", Straight()), ("crowned", crowned))
+    shapes: dict[Literal["straight", "crowned"], Crown] = {
+        "straight": Straight(),
+        "crowned": crowned,
+    }
     drawn = [
         (name, tilted, design.line(shape, row, tilted=tilted))
-        for name, shape in shapes
+        for name, shape in shapes.items()
         for tilted in (False, True)
     ]
     return [

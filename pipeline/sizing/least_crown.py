@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import Literal, Protocol, get_args
+from typing import Protocol, get_args
 
 import numpy as np
 from numpy.typing import NDArray
@@ -29,9 +29,9 @@ from camwright.pipeline.contact.finite_length.axial_drop import (
     lundberg,
 )
 from camwright.pipeline.cycle.length_history import ContactLoads
+from camwright.pipeline.records.crown_document import CrownKind
 
 IntArray = NDArray[np.intp]
-CrownKind = Literal["johns_gohar", "lundberg", "circular", "table"]
 KINDS: tuple[CrownKind, ...] = get_args(CrownKind)
 
 # Design loads tried first, over that of the greatest pressure: powers of two.

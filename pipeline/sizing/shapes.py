@@ -21,7 +21,6 @@ from camwright.geometry.cam_size import (
 from camwright.geometry.errors import InputError
 from camwright.geometry.extrema import least_argument
 from camwright.geometry.lift_parts import LiftParts
-from camwright.pipeline.base.files import Json
 from camwright.pipeline.base.units import in_unit, shown
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_values import value_of
@@ -35,6 +34,7 @@ from camwright.pipeline.case.limits import (
 )
 from camwright.pipeline.case.load_case_torque import engine_torques
 from camwright.pipeline.checks.cam_shape import least_concave_radius
+from camwright.pipeline.records.size_document import FaceSizeRecord, RollerSizeRecord, SizeLengths
 from camwright.pipeline.sizing.open_case import FACE, OFFSET, PRIME, ROLLER, OpenCase
 from camwright.pipeline.smoothing.required_lift import cam_lift
 
@@ -197,11 +197,12 @@ class RollerShapes:
         low, high = self.roller_range(shape)
         return f"{words}; roller {shown(low, 'mm')} to {shown(high, 'mm')}"
 
-    def record(self, shape: Shape) -> dict[str, Json]:
+    def record(self, shape: Shape) -> RollerSizeRecord:
         """Lengths of a shape with its extremes on the exact lift."""
         pitch = self.cam.extremes(shape.prime_radius, shape.offset)
         concave = pitch.concave_radius.value
         return {
+            **_lengths(shape),
             "prime_radius_mm": in_unit(shape.prime_radius, "mm"),
             "roller_radius_mm": in_unit(shape.roller_radius, "mm"),
             "pressure_angle_rise_deg": in_unit(pitch.rise.value, "deg"),
@@ -285,9 +286,10 @@ class FaceShapes:
             f" {shown(self.cam.face_width(shape.offset), 'mm')} wide"
         )
 
-    def record(self, shape: Shape) -> dict[str, Json]:
+    def record(self, shape: Shape) -> FaceSizeRecord:
         """Lengths of a shape with its extremes on the exact lift."""
         return {
+            **_lengths(shape),
             "face_width_mm": in_unit(shape.face_width, "mm"),
             "radius_of_curvature_min_mm": in_unit(
                 self.cam.least_radius(shape.prime_radius).value, "mm"
@@ -301,6 +303,14 @@ class FaceShapes:
 
 
 Shapes = RollerShapes | FaceShapes
+
+
+def _lengths(shape: Shape) -> SizeLengths:
+    return {
+        "base_radius_mm": in_unit(shape.base_radius, "mm"),
+        "offset_mm": in_unit(shape.offset, "mm"),
+        "governs": shape.governs,
+    }
 
 
 def shapes_of(opened: OpenCase, least_radius: float = 0.0) -> Shapes:

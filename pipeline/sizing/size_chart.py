@@ -8,10 +8,10 @@ import numpy as np
 
 from camwright.geometry.arrays import Array
 from camwright.geometry.cam_size import PitchLimits
-from camwright.pipeline.base.files import Json
 from camwright.pipeline.base.units import in_unit
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.limits import UNDERCUT_FACTOR
+from camwright.pipeline.records.size_document import SizeChart, SizeCurve, SizePanel
 from camwright.pipeline.sizing.shapes import FaceShapes, RollerShapes, Shape, Shapes
 
 _LEAST, _MOST = 0.4, 2.2
@@ -21,14 +21,8 @@ _CLEAR = 1.02
 _POINTS, _BEST_POINTS = 73, 19
 
 
-def chart_record(case: Case, shapes: Shapes, shape: Shape) -> dict[str, Json]:
-    """Curves of the chart about a sized shape, in mm and deg.
-
-    Returns
-    -------
-    dict   ``base_radius_mm`` of the shape, and ``panels``: quantity, unit, limits by label, and
-           curves: label, x: base radius, mm, y, whether dashed
-    """
+def chart_record(case: Case, shapes: Shapes, shape: Shape) -> SizeChart:
+    """Curves of the chart about a sized shape, in mm and deg."""
     panels = (
         _face_panels(case, shapes, shape)
         if isinstance(shapes, FaceShapes)
@@ -37,7 +31,7 @@ def chart_record(case: Case, shapes: Shapes, shape: Shape) -> dict[str, Json]:
     return {"base_radius_mm": in_unit(shape.base_radius, "mm"), "panels": panels}
 
 
-def _roller_panels(shapes: RollerShapes, shape: Shape) -> list[dict[str, Json]]:
+def _roller_panels(shapes: RollerShapes, shape: Shape) -> list[SizePanel]:
     cam, inset = shapes.cam, shape.roller_radius
     low = max(_LEAST * shape.prime_radius, _CLEAR * abs(shape.offset), _CLEAR * shape.roller_radius)
     primes, some = (_about(low, shape.prime_radius, count) for count in (_POINTS, _BEST_POINTS))
@@ -48,7 +42,7 @@ def _roller_panels(shapes: RollerShapes, shape: Shape) -> list[dict[str, Json]]:
 
     def curve(
         label: str, at: Array, measure: Callable[[float], float], unit: str, *, dashed: bool = False
-    ) -> dict[str, Json]:
+    ) -> SizeCurve:
         return _curve(label, at, [measure(float(each)) for each in at], inset, unit, dashed=dashed)
 
     sized = {float(prime): cam.extremes(float(prime), shape.offset) for prime in primes}
@@ -69,7 +63,7 @@ def _roller_panels(shapes: RollerShapes, shape: Shape) -> list[dict[str, Json]]:
     ]
 
 
-def _face_panels(case: Case, shapes: FaceShapes, shape: Shape) -> list[dict[str, Json]]:
+def _face_panels(case: Case, shapes: FaceShapes, shape: Shape) -> list[SizePanel]:
     bases, cam = _about(_LEAST * shape.prime_radius, shape.prime_radius, _POINTS), shapes.cam
     radii = bases + cam.least_radius(0.0).value
     factors = [cam.undercut_factor(float(each)) for each in bases]
@@ -87,7 +81,7 @@ def _about(least: float, radius: float, count: int) -> Array:
 
 def _curve(
     label: str, at: Array, values: list[float], inset: float, unit: str, *, dashed: bool = False
-) -> dict[str, Json]:
+) -> SizeCurve:
     x = [in_unit(float(each) - inset, "mm") for each in at]
     return {"label": label, "x": x, "y": [in_unit(each, unit) for each in values], "dashed": dashed}
 
@@ -99,6 +93,6 @@ def _angle_limits(limits: PitchLimits) -> dict[str, float]:
 
 
 def _panel(
-    quantity: str, unit: str, limits: dict[str, float], curves: list[dict[str, Json]]
-) -> dict[str, Json]:
+    quantity: str, unit: str, limits: dict[str, float], curves: list[SizeCurve]
+) -> SizePanel:
     return {"quantity": quantity, "unit": unit, "limits": limits, "curves": curves}

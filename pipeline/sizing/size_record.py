@@ -4,25 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from camwright.pipeline.base.files import Json
 from camwright.pipeline.base.units import in_unit, shown
 from camwright.pipeline.case.limits import SPRING_SURGE
 from camwright.pipeline.checks.check import Check
+from camwright.pipeline.records.size_document import SizeDocument
 from camwright.pipeline.sizing.open_case import GAPS, PRELOAD, RATE
-from camwright.pipeline.sizing.shapes import Shape, Shapes
 from camwright.pipeline.sizing.sizing import Sizing, unit_of
 from camwright.pipeline.sizing.spring_choice import greatest_coil_mass
 
 _MM, _DEG = "mm", "deg"
 
 
-def size_record(sizing: Sizing) -> dict[str, Json]:
-    """Record of a sizing.
-
-    ``sized``: value, unit and source of each open key, as in the complete case; ``smallest``: the
-    exact cam at the geometric limits, nominal, and ``drawn``: that of the complete case; spring,
-    checks that the open keys decide, ids of others that fail, and the chart.
-    """
+def size_record(sizing: Sizing) -> SizeDocument:
+    """Record of a sizing."""
     case, spring, stroke = sizing.case, sizing.spring, sizing.shapes.parts(sizing.shape).stroke
     return {
         "case": case.name,
@@ -36,8 +30,8 @@ def size_record(sizing: Sizing) -> dict[str, Json]:
             }
             for key, value in sizing.values.items()
         },
-        "smallest": _shape_record(sizing.shapes, sizing.exact),
-        "drawn": _shape_record(sizing.shapes, sizing.shape),
+        "smallest": sizing.shapes.record(sizing.exact),
+        "drawn": sizing.shapes.record(sizing.shape),
         "spring": {
             "rate_N_per_mm": in_unit(spring.rate, "N/mm"),
             "preload_N": spring.preload,
@@ -95,13 +89,3 @@ def _check_words(check: Check) -> str:
         lacks = f"; the case lacks {', '.join(check.missing)}" if check.missing else ""
         return f"not known: {check.title}{lacks}"
     return str(check)
-
-
-def _shape_record(shapes: Shapes, shape: Shape) -> dict[str, Json]:
-    """Lengths of a shape with its extremes on the exact lift."""
-    return {
-        "base_radius_mm": in_unit(shape.base_radius, _MM),
-        "offset_mm": in_unit(shape.offset, _MM),
-        "governs": shape.governs,
-        **shapes.record(shape),
-    }

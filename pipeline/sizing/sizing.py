@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -58,6 +58,7 @@ from camwright.pipeline.checks.spring_strength import (
 )
 from camwright.pipeline.checks.tolerance_corners import governed, outcomes, spring_corners
 from camwright.pipeline.contact.tiers import Tier
+from camwright.pipeline.records.size_document import SizeChart
 from camwright.pipeline.results.trial import Trial
 from camwright.pipeline.sizing.open_case import (
     FACE,
@@ -158,8 +159,8 @@ class Sizing(Displayed):
         return {"case": self.case.name, "verdict": self.verdict} | values
 
     @property
-    def chart(self) -> Mapping[str, Any]:
-        """Curves of pressure angle and curvature over the base radius; see `chart_record`."""
+    def chart(self) -> SizeChart:
+        """Curves of pressure angle and curvature over the base radius."""
         return chart_record(self.case, self.shapes, self.shape)
 
     def to_pandas(self) -> pd.DataFrame:

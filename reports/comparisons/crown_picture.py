@@ -6,9 +6,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from camwright.pipeline.base.files import write_atomic
+from camwright.pipeline.records.crown_document import CrownDocument
 from camwright.reports.figure_svg import COLOURS, png, shipped, style
 from camwright.reports.figures import SERIES
-from camwright.reports.report_tables import Record
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -17,7 +17,7 @@ _SIZE = (6.4, 5.2)
 
 
 @shipped()
-def draw(document: Record, out: Path) -> Path:
+def draw(document: CrownDocument, out: Path) -> Path:
     """Write the picture of the record of a least crown as PNG."""
     from matplotlib.figure import Figure as Canvas
 
@@ -29,7 +29,7 @@ def draw(document: Record, out: Path) -> Path:
         return write_atomic(out, png(canvas))
 
 
-def _pressure(axes: Axes, document: Record) -> None:
+def _pressure(axes: Axes, document: CrownDocument) -> None:
     for line in document["lines"]:
         crowned = line["crown"] == "crowned"
         axes.plot(
@@ -48,7 +48,7 @@ def _pressure(axes: Axes, document: Record) -> None:
     axes.set_title(f"{state['load_case']}, cam angle {state['cam_angle_deg']:.4g} deg")
 
 
-def _drop(axes: Axes, document: Record) -> None:
+def _drop(axes: Axes, document: CrownDocument) -> None:
     table = document["drop_table"]
     for name, label, line in (
         ("drop_um", "middle", "-"),

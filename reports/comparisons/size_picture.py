@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from camwright.pipeline.base.files import write_atomic
+from camwright.pipeline.records.size_document import SizeDocument
 from camwright.reports.figure_svg import COLOURS, png, shipped, style
 from camwright.reports.figures import SERIES
-from camwright.reports.report_tables import Record
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure as Canvas
@@ -22,7 +22,7 @@ _HEADROOM = 1.9
 
 
 @shipped()
-def draw(document: Record, out: Path) -> Path:
+def draw(document: SizeDocument, out: Path) -> Path:
     """Write the chart of the record of a sizing as PNG or SVG, by the end of its name."""
     with style(out.stem):
         canvas = _chart(document)
@@ -33,7 +33,7 @@ def draw(document: Record, out: Path) -> Path:
         return write_atomic(out, drawing.getvalue())
 
 
-def _chart(document: Record) -> Canvas:
+def _chart(document: SizeDocument) -> Canvas:
     from matplotlib.figure import Figure as Canvas
 
     chart = document["chart"]

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from record_validation import schema_errors
 
 import camwright as cw
 from camwright.geometry.errors import InputError, ResultError
@@ -27,6 +28,7 @@ def test_a_pasted_crown_is_that_of_the_drop_table(kind, ratio, tmp_path, capsys)
     assert crown(GX120, ratio=ratio, kind=kind, out=out, as_json=True) == PASSED
     record = json.loads(capsys.readouterr().out)
     assert json.loads((out / "crown.json").read_text()) == record
+    assert schema_errors("crown", record) == []
     assert record["ratio"] <= ratio < record["ratio_straight"]
     assert record["centre"]["crowned"] > record["centre"]["straight"]
     ratios = [each["ratio"] for each in record["tilt"]]

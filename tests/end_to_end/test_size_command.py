@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 import pytest
 import tomli_w
+from record_validation import schema_errors
 
 import camwright as cw
 from camwright.geometry.errors import InputError, ResultError
@@ -189,6 +190,7 @@ def test_a_flat_face_is_sized(tmp_path: Path, capsys: pytest.CaptureFixture[str]
     assert "the case lacks\n  limits.target_life, follower.face.end" in capsys.readouterr().out
     assert size(source, free, "0 mm", None, chart, as_json=True) == PASSED
     record = json.loads(capsys.readouterr().out)
+    assert schema_errors("size", record) == []
     assert record["smallest"]["undercut_factor_min"] == pytest.approx(0.3, abs=1e-9)
     assert chart.read_text(encoding="utf-8").startswith("<?xml")
     assert set(record["sized"]) == {*free, "cam.offset"}
@@ -197,7 +199,9 @@ def test_a_flat_face_is_sized(tmp_path: Path, capsys: pytest.CaptureFixture[str]
 @pytest.mark.slow
 def test_an_engine_cam_is_sized_by_its_torque() -> None:
     sizing = cw.size(CASES / "gx120.toml", ["cam.prime_radius"])
-    record = size_record(sizing)["smallest"]
+    document = size_record(sizing)
+    assert schema_errors("size", document) == []
+    record: Any = document["smallest"]
     assert record["pressure_angle_rise_deg"] == pytest.approx(30.0, abs=1e-3)
     assert record["pressure_angle_return_deg"] == pytest.approx(30.0, abs=1e-3)
     assert sizing.verdict == "fail"  # the spring of the paper leaves the cam at the overspeed

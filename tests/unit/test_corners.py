@@ -5,6 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from made_check import made_check
+from record_validation import schema_errors
 from small_machine import small_machine
 
 from camwright.geometry.errors import ContactError, InputError
@@ -216,7 +217,9 @@ def test_a_check_without_a_solution_at_a_corner_is_lost():
     lost = unsolved(machines(case())[0], seen)
     assert (lost.demand, lost.status) == (1.0, "fail")
     assert "jammed: follower.friction" in lost.note
-    written = corners_record(case(), seen)["corners"]
+    record = corners_record(case(), seen)
+    assert schema_errors("corners", record) == []
+    written = record["corners"]
     assert [corner["demands"].get("jump") for corner in written] == [0.1, None, None]
 
 
@@ -263,6 +266,7 @@ def test_a_demand_unknown_at_a_corner_is_missing():
 
 def test_record_holds_every_corner(tried):
     written = corners_record(case(), tried)
+    assert schema_errors("corners", written) == []
     assert written["tried"] == len(tried) - 1 == len(corners_of(case()))
     nominal = written["corners"][0]
     assert nominal["name"] == "nominal"
