@@ -500,7 +500,7 @@ class _Files:
         if any(check["id"] == synthesis_converged.id for check in checks):
             self.unseen.append(f"{self._final}/6_checks.json: {synthesis_converged.id}")
 
-    def _summary(self, again: Mapping[str, Any], case: Case) -> None:
+    def _summary(self, again: Mapping[str, object], case: Case) -> None:
         """Compare ``run.json``; its hashes are compared with the files by the sign-off record."""
         stored = dict[str, Any](self._run.summary)
         here: Mapping[str, Any] = {"platform": signoff.environment(), "versions": versions()}
@@ -526,7 +526,7 @@ def _few(file: str, lines: Sequence[str]) -> Iterator[str]:
         yield f"{file}: {len(lines) - _LISTED} more entries differ"
 
 
-def _written(again: RunFolder, run: Run, trial: Trial) -> dict[str, Any]:
+def _written(again: RunFolder, run: Run, trial: Trial) -> Mapping[str, object]:
     """Write the files that follow from a trial as a run does; the contents of ``run.json``."""
     if (torque := trial.solution.machine.torque) is not None:
         again.write("1_torque.csv", torque_columns(torque))
@@ -543,7 +543,7 @@ def _written(again: RunFolder, run: Run, trial: Trial) -> dict[str, Any]:
         write_fields(again.fields, trial, shown)
         if shown is not Shown.NONE:
             write_end_field(again.fields / ENDS, trial)
-    return summary | judged_of(trial, run.summary["statement"])
+    return {**summary, **judged_of(trial, run.summary["statement"])}
 
 
 def _shown_fields(folder: Path, trial: Trial) -> Shown:

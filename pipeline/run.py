@@ -5,11 +5,10 @@ from __future__ import annotations
 import time
 from collections.abc import Mapping, Sequence
 from contextlib import ExitStack
-from dataclasses import asdict
 from dataclasses import replace as with_changes
 from pathlib import Path
 from types import TracebackType
-from typing import Any, Self, TypedDict, Unpack
+from typing import Self, TypedDict, Unpack
 
 from camwright.geometry.errors import CamError
 from camwright.pipeline.base.progress import SILENT, Progress, utc
@@ -28,11 +27,23 @@ from camwright.pipeline.checks.tolerance_corners import corners_record
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.ripple_map import ripple_map
 from camwright.pipeline.iteration import Iteration, solved_already, trials
+from camwright.pipeline.records.run_summary import (
+    ClockRecord,
+    JudgedSummary,
+    Refused,
+    RippleMapRecord,
+    SolvedSummary,
+)
 from camwright.pipeline.remedies.remedy_search import order_of, texts_of, with_remedies
 from camwright.pipeline.results.field_output import ENDS, Shown, write_end_field, write_fields
 from camwright.pipeline.results.run_folder import RunFolder
 from camwright.pipeline.results.run_reader import Run, read_run
-from camwright.pipeline.results.run_records import crank_speed_record, headline, torque_columns
+from camwright.pipeline.results.run_records import (
+    crank_speed_record,
+    headline,
+    quality_record,
+    torque_columns,
+)
 from camwright.pipeline.results.trial import Trial, TrialPoint
 from camwright.pipeline.results.trial_writer import write_judgement, write_trial_files
 from camwright.pipeline.results.valve_train import valve_record
@@ -107,7 +118,8 @@ class CaseRun:
         self._remedies: list[PendingCall] = []
         self._statement = ""
         self._points: tuple[TrialPoint, ...] = ()
-        self._summary: dict[str, Any] = {}
+        self._solved: SolvedSummary | None = None
+        self._judged: JudgedSummary | None = None
 
     def __enter__(self) -> Self:
         with ExitStack() as stack:
@@ -195,7 +207,8 @@ class CaseRun:
         self._last = None
         if final.corners:
             folder.write("corners.json", corners_record(final.case, final.corners))
-        self._summary = summary_of(folder, final, self._points) | judged_of(final, self._statement)
+        self._solved = summary_of(folder, final, self._points)
+        self._judged = judged_of(final, self._statement)
         if self.depth >= Tier.CYCLE:
             watch.stage("fields")
             write_fields(folder.fields, final, self._shown, watch.advance)
@@ -221,7 +234,7 @@ class CaseRun:
         """
         self._settle()
         self._watch.stage("report")
-        self._folder.write_summary(self._summary | self._watch.record())
+        self._folder.write_summary(self._summary())
         return self._folder.path
 
     def finish(self) -> Run:
@@ -234,13 +247,13 @@ class CaseRun:
         self._settle()
         if self._final is not None:
             raise RuntimeError(_ORDER)
-        self._folder.finish(self._summary | self._watch.record())
+        self._folder.finish(self._summary())
         return read_run(self.out)
 
     def _settle(self) -> None:
         """Write what the certificate changes, the remedies among it; nothing before it."""
         final = self._final
-        if not self._summary:
+        if self._solved is None:
             raise RuntimeError(_ORDER)
         if final is None or final.depth is not self.depth:
             return
@@ -257,7 +270,13 @@ class CaseRun:
                 write_end_field(self._folder.fields / ENDS, final, self.workers)
             self.workers.dismiss()
             write_judgement(self._folder, final)
-        self._summary |= judged_of(final, self._statement)
+        self._judged = judged_of(final, self._statement)
+
+    def _summary(self) -> Mapping[str, object]:
+        """Contents of ``run.json`` of this run, with the times up to here."""
+        if self._solved is None or self._judged is None:
+            raise RuntimeError(_ORDER)
+        return {**self._solved, **self._judged, **self._watch.record()}
 
 
 def run_case(case: Case, out: str | Path, **options: Unpack[RunOptions]) -> Run:
@@ -311,7 +330,7 @@ def summary_of(
     folder: RunFolder,
     final: Trial,
     points: Sequence[TrialPoint],
-) -> dict[str, Any]:
+) -> SolvedSummary:
     """Contents of ``run.json`` that no certificate changes; writes ``1_speed.csv``."""
     case, torque, required = final.case, final.solution.machine.torque, None
     if torque is not None and final.smoothing.strength is not None:
@@ -332,15 +351,15 @@ def summary_of(
         "machine_prices": None
         if final.synthesis is None
         else final.synthesis.get("machine_prices"),
-        "mesh_quality": None if final.mesh is None else asdict(final.mesh.quality),
+        "mesh_quality": None if final.mesh is None else quality_record(final.mesh.quality),
         **crank_speed,
         "ripple_map": _ripple_map_record(final),
         "measurement": measurement_record(case),
-        **valve_record(final),
+        "valve_train": valve_record(final),
     }
 
 
-def _ripple_map_record(final: Trial) -> Mapping[str, Any] | None:
+def _ripple_map_record(final: Trial) -> RippleMapRecord | Refused | None:
     """Ripple map of the final cam; the reason where a working cycle cannot be solved."""
     try:
         rubbing = final.cycles[0].loads.rubbing
@@ -350,7 +369,7 @@ def _ripple_map_record(final: Trial) -> Mapping[str, Any] | None:
     return None if mapped is None else mapped.as_record()
 
 
-def judged_of(final: Trial, statement: str) -> dict[str, Any]:
+def judged_of(final: Trial, statement: str) -> JudgedSummary:
     """Contents of ``run.json`` that follow from the checks and the certificate."""
     benchmarks = final.solution.benchmarks
     return {
@@ -398,7 +417,7 @@ class Stopwatch:
         times = self._seconds | {"total": self._since - self._began}
         return {name: round(seconds, 3) for name, seconds in times.items()}
 
-    def record(self) -> dict[str, str | dict[str, float]]:
+    def record(self) -> ClockRecord:
         """Start and times of ``run.json``."""
         return {"started": self._started, "timings_s": self.read()}
 

@@ -11,6 +11,7 @@ from camwright.geometry.arrays import finite
 from camwright.geometry.errors import InputError
 from camwright.pipeline.engine.crankshaft import energy_swing
 from camwright.pipeline.engine.cylinder import CYCLE_ANGLE
+from camwright.pipeline.records.run_summary import ImpliedRecord
 
 FLAG_ABOVE = 0.10
 
@@ -46,7 +47,7 @@ class Implied:
         """Whether they differ by more than 10 %; NaN included."""
         return not abs(self.difference) <= FLAG_ABOVE
 
-    def as_record(self) -> dict[str, str | float | None]:
+    def as_record(self) -> ImpliedRecord:
         """Plain values; a difference beyond all bounds is null."""
         percent = 100.0 * self.difference
         return {

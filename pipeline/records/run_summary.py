@@ -42,11 +42,9 @@ class ScopeRecord(TypedDict):
 
 
 @form()
-class Finding(TypedDict):
-    """An input beside the value that the other inputs imply."""
+class ImpliedRecord(TypedDict):
+    """A value beside the one that the others imply."""
 
-    load_case: str
-    """Load case."""
     id: str
     """Key of the quantity."""
     title: str
@@ -63,6 +61,14 @@ class Finding(TypedDict):
     """Whether they are more than 10 % apart."""
     how: str
     """Derivation of the implied value."""
+
+
+@form()
+class Finding(ImpliedRecord):
+    """An input beside the value that the other inputs imply."""
+
+    load_case: str
+    """Load case; empty where it is of the case."""
 
 
 @form()
@@ -450,40 +456,46 @@ class StatedVerdict(VerdictRecord):
 
 
 @form(written=("governing",))
-class BindingRecord(TypedDict):
-    """Checks that bind, and what the sign-off leaves out."""
+class BindingIds(TypedDict):
+    """Checks that bind."""
 
     binding: Names
     """Ids of the must-have checks that fail or lack data."""
     governing: NotRequired[str | None]
     """Id of the must-have check of the design of the greatest utilisation; null where none is
     evaluated."""
+
+
+@form()
+class BindingRecord(BindingIds):
+    """Checks that bind, and what the sign-off leaves out."""
+
     scope: ScopeRecord
     """Parts that the sign-off does not cover."""
 
 
-@form(written=("started", "load_ends", "mesh_quality", "measurement", "valve_train"))
-class Summary(RecordHead, VerdictRecord, BindingRecord):
-    """Summary of a finished run."""
+@form()
+class CrankSpeedRecord(TypedDict):
+    """Crank speed, and consistency of the inputs."""
 
-    input_sha256: Sha256
-    """Hash of the case file with its included files."""
-    versions: Versions
-    """Versions of camwright, its source text, Python and the libraries."""
-    platform: str
-    """System and processor."""
-    started: NotRequired[Time | None]
-    """Start of the program, UTC; null for a design of a study."""
-    timings_s: dict[str, Least0]
-    """Wall-clock time by stage, and total; empty for a design of a study."""
+    speed: dict[str, SpeedRecord | Refused] | None
+    """Crank speed by load case; null without a crankshaft."""
+    consistency: list[Finding]
+    """Inputs beside the values that the others imply."""
+
+
+@form(written=("load_ends", "mesh_quality", "measurement", "valve_train"))
+class SolvedSummary(CrankSpeedRecord):
+    """Part of the summary of a run that no certificate changes."""
+
     trials: Count
     """Number of trials."""
     final_trial: Count
     """Number of the trial that is the result."""
     trial_points: list[TrialPointRecord]
     """Ripple and worst utilisation of each trial."""
-    statement: str
-    """Stopping criterion, in words."""
+    scope: ScopeRecord
+    """Parts that the sign-off does not cover."""
     headline: HeadlineRecord
     """Key figures of the final trial."""
     load_ends: NotRequired[list[LoadEndRecord]]
@@ -494,17 +506,43 @@ class Summary(RecordHead, VerdictRecord, BindingRecord):
     """Prices of the numbers of the machine; null without a constrained synthesis."""
     mesh_quality: NotRequired[QualityRecord | None]
     """Quality of the mesh; null without finite elements or without a body."""
-    benchmarks: dict[str, float] | None
-    """Relative deviations from published contact benchmarks; null below the certified depth."""
-    speed: dict[str, SpeedRecord | Refused] | None
-    """Crank speed by load case; null without a crankshaft."""
     ripple_map: RippleMapRecord | Refused | None
     """Torque ripple over speed and load; null without a running engine."""
-    consistency: list[Finding]
-    """Inputs beside the values that the others imply."""
     measurement: NotRequired[Measurement | None]
     """Statistics of a measured engine; null for a model."""
     valve_train: NotRequired[ValveTrainRecord | None]
     """Machine motion of a valve cam; null without one."""
+
+
+@form()
+class JudgedSummary(VerdictRecord, BindingIds):
+    """Part of the summary of a run that follows from the checks and the certificate."""
+
+    statement: str
+    """Stopping criterion, in words."""
+    benchmarks: dict[str, float] | None
+    """Relative deviations from published contact benchmarks; null below the certified depth."""
+
+
+@form(written=("started",))
+class ClockRecord(TypedDict):
+    """Start and times of a run."""
+
+    started: NotRequired[Time | None]
+    """Start of the program, UTC; null for a design of a study."""
+    timings_s: dict[str, Least0]
+    """Wall-clock time by stage, and total; empty for a design of a study."""
+
+
+@form()
+class Summary(RecordHead, SolvedSummary, JudgedSummary, ClockRecord):
+    """Summary of a finished run."""
+
+    input_sha256: Sha256
+    """Hash of the case file with its included files."""
+    versions: Versions
+    """Versions of camwright, its source text, Python and the libraries."""
+    platform: str
+    """System and processor."""
     files: dict[str, Sha256]
     """SHA-256 by path, relative to the run folder."""

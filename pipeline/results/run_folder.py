@@ -199,7 +199,7 @@ class RunFolder:
     def figures(self) -> Path:
         return self._file("figures/x").parent
 
-    def write_summary(self, summary: Mapping[str, Json]) -> dict[str, Json]:
+    def write_summary(self, summary: Mapping[str, object]) -> dict[str, object]:
         """``run.json``, completed by schema, case, hashes and versions; may be written again.
 
         Parameters
@@ -211,7 +211,7 @@ class RunFolder:
         missing = [name for name in run_reader.HEADLINE if name not in known]
         if missing:
             raise ResultError(f"headline lacks {', '.join(missing)}")
-        whole: dict[str, Json] = {
+        whole: dict[str, object] = {
             "schema": run_reader.SCHEMA,
             "case": self.case.name,
             "input_sha256": self.case.sha256,
@@ -223,7 +223,7 @@ class RunFolder:
         write_atomic(self.path / "run.json", _json(whole))
         return whole
 
-    def finish(self, summary: Mapping[str, Json]) -> None:
+    def finish(self, summary: Mapping[str, object]) -> None:
         """Write summary and sign-off record, and move the folder to its final path."""
         self.write_summary(summary)
         recorded = run_reader.read_summary(self.path)

@@ -12,7 +12,6 @@ from camwright.geometry.errors import CamError
 from camwright.geometry.extrema import first_greatest, greatest, sampled_peak
 from camwright.geometry.lift import Lift
 from camwright.meshes.mesh_quality import Quality
-from camwright.pipeline.base.files import Json
 from camwright.pipeline.base.tables import CAM_ANGLE, CRANK_ANGLE, Cells, Column, Values
 from camwright.pipeline.base.units import in_unit
 from camwright.pipeline.case.case import Case
@@ -42,6 +41,8 @@ from camwright.pipeline.engine.crankshaft import CrankMotion
 from camwright.pipeline.records.check_document import CamFigures, LoadCaseFigures
 from camwright.pipeline.records.run_summary import (
     BodyStresses,
+    CrankSpeedRecord,
+    Finding,
     HeadlineRecord,
     MotionRecord,
     QualityRecord,
@@ -435,7 +436,7 @@ def hertz_difference(cycles: Sequence[Cycle]) -> dict[str, list[float]] | None:
 
 def crank_speed_record(
     trial: Trial, required: Array | None
-) -> tuple[dict[str, Json], Values | None]:
+) -> tuple[CrankSpeedRecord, Values | None]:
     """Crank speed with and without the cam, and consistency and plausibility of the inputs.
 
     Parameters
@@ -452,7 +453,7 @@ def crank_speed_record(
     speed: dict[str, SpeedRecord | Refused] = {}
     torques = {c.load_case: c.machine.torque for c in trial.cycles if c.machine.torque is not None}
     odd = implausible(case, torques)
-    findings: list[Json] = [{"load_case": "", **one.as_record()} for one in odd]
+    findings: list[Finding] = [{"load_case": "", **one.as_record()} for one in odd]
     columns: Values | None = None
     running = [c for c in trial.cycles if c.load_case in torques and c.machine.speed > 0]
     for number, cycle in enumerate(running):

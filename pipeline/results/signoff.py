@@ -10,7 +10,7 @@ import platform
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import NamedTuple, cast
+from typing import NamedTuple
 
 from camwright.geometry.errors import AlteredError, ResultError
 from camwright.pipeline.base.files import (
@@ -25,7 +25,7 @@ from camwright.pipeline.base.files import (
 )
 from camwright.pipeline.base.verdict import binding, governing_id
 from camwright.pipeline.records.check_record import CheckFigure, CheckRecord
-from camwright.pipeline.records.signoff_record import LimitStatement, Program, SignoffRecord
+from camwright.pipeline.records.signoff_record import LimitStatement, SignoffRecord
 from camwright.pipeline.results import run_reader
 from camwright.pipeline.results.check_records import judgement, of_records, to_be_confirmed
 from camwright.pipeline.results.model_limits import MODEL_LIMITS, limitations
@@ -66,10 +66,10 @@ def _record(path: Path, files: dict[str, str]) -> SignoffRecord:
         "case": summary["case"],
         "case_sha256": run_reader.input_sha256(path),
         "results_sha256": run_reader.results_sha256(summary["files"]),
-        "code": cast(
-            "Program",
-            {name: summary["versions"].get(name) for name in ("camwright", "source")},
-        ),
+        "code": {
+            "camwright": summary["versions"].get("camwright", ""),
+            "source": summary["versions"].get("source", ""),
+        },
         "environment": {
             "platform": summary["platform"],
             "versions": summary["versions"],
@@ -88,12 +88,12 @@ def _record(path: Path, files: dict[str, str]) -> SignoffRecord:
             {
                 "check": c["id"],
                 "waiver": c["waiver"],
-                "up_to": cast("float", c["waived_up_to"]),
+                "up_to": up_to,
                 "unit": c["unit"],
                 "status": c["status"],
             }
             for c in checks
-            if c["waiver"]
+            if c["waiver"] and (up_to := c["waived_up_to"]) is not None
         ],
         "to_be_confirmed": to_be_confirmed(checks),
         "trial": summary["final_trial"],

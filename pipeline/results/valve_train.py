@@ -6,7 +6,7 @@ are marked *reconstructed*.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -70,10 +70,10 @@ def valve_cam(case: Case) -> ValveCam | None:
     )
 
 
-def valve_record(trial: Trial) -> Mapping[str, ValveTrainRecord | None]:
+def valve_record(trial: Trial) -> ValveTrainRecord | None:
     """Entry ``valve_train`` of ``run.json``: module and rows; null without a valve cam."""
     cam, turns = valve_cam(trial.case), [cycle.turn for cycle in trial.cycles]
-    return {"valve_train": None if cam is None else machine_motion(cam, turns)}
+    return None if cam is None else machine_motion(cam, turns)
 
 
 def machine_motion(cam: ValveCam, turns: Sequence[Turn]) -> ValveTrainRecord:

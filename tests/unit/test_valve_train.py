@@ -107,7 +107,7 @@ def test_what_is_reconstructed_is_said_on_the_page():
 
 def test_the_record_of_a_run_holds_module_and_rows_of_the_trial_s_own_turns():
     trial = solved(text("c"))
-    found = valve_record(trial)["valve_train"]
+    found = valve_record(trial)
     assert found == machine_motion(valve_cam(trial.case), [cycle.turn for cycle in trial.cycles])
     assert found["module"] == "C"
     stated = trial.case.load_cases[0].name
@@ -116,7 +116,7 @@ def test_the_record_of_a_run_holds_module_and_rows_of_the_trial_s_own_turns():
 
 def test_a_case_that_does_not_ask_gets_nothing():
     bare = text("c").replace("[valve_train]", "#").replace("cam_mass", "#")
-    assert valve_record(solved(bare)) == {"valve_train": None}
+    assert valve_record(solved(bare)) is None
     assert valve_cam(read_case(PAPERS / "eccentric.toml")) is None
 
 

@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -53,13 +53,12 @@ _AT_ONCE = 125  # screened designs: their arrays bound the memory of a process
 
 def row_of(trial: Trial, headline: HeadlineRecord) -> Row:
     """Cells of a solved design, in the units of the records."""
-    figures = cast("Mapping[str, float | None]", headline)
     row: Row = {
         SCREEN.name: screen(trial.checks),
         VERDICT.name: trial.verdict,
         GOVERNING.name: governing_id(trial.checks),
     }
-    row |= {HEADLINE + key: value for key, value in figures.items()}
+    row |= {HEADLINE + key: _cell(value) for key, value in headline.items()}
     if trial.mesh is not None:
         row |= {MESH + key: float(v) for key, v in asdict(trial.mesh.quality).items()}
     for one in trial.checks:
