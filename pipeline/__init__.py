@@ -9,7 +9,7 @@ verdict; a failed trial is smoothed again. `results` writes the run folder, `rep
 | `geometry`           | motion law, lift, pitch curve, contour               | s, m; rho, m       |
 | `meshes`             | outlines, meshes, mesh files                         | h, m               |
 | `base`               | units, quantities, tables, files, cache, processes   |                    |
-| `records`            | forms of the JSON records of a run                   | mm, N, MPa         |
+| `records`            | forms of the JSON records                            | mm, N, MPa         |
 | `torque`             | period of a machine, torque over its cycle           | T, N m; theta, rad |
 | `engine`             | indicated cycle, torque, crankshaft                  | T, N m             |
 | `contact.elasticity` | plane-strain elasticity                              | u, m; sigma, Pa    |

@@ -233,7 +233,8 @@ def schema(
         str,
         typer.Argument(
             metavar="NAME",
-            help="run, trial, checks, check (of check --json), signoff, corners, crown or size.",
+            help="run, trial, checks, check (of check --json), signoff, corners, crown, size, "
+            "redesign or study.",
         ),
     ],
 ) -> int:

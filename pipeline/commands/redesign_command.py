@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -17,6 +18,9 @@ from camwright.pipeline.commands.terminal import (
     show_json,
     stdout,
 )
+
+if TYPE_CHECKING:
+    from camwright.pipeline.records.redesign_document import RedesignDocument
 
 
 def redesign(
@@ -60,7 +64,7 @@ def redesign(
     return INCOMPLETE if lacking else PASSED
 
 
-def _show(document: dict[str, Any], folder: Path) -> None:
+def _show(document: RedesignDocument, folder: Path) -> None:
     from rich.table import Table
 
     from camwright.reports.comparisons.redesign_page import COLUMNS
@@ -69,10 +73,11 @@ def _show(document: dict[str, Any], folder: Path) -> None:
     table = Table(box=None, pad_edge=False)
     for _, words in COLUMNS:
         table.add_column(words)
-    for row in document["points"]:
+    rows: Sequence[Mapping[str, Any]] = document["points"]
+    for row in rows:
         table.add_row(*(listed(row.get(name)) for name, _ in COLUMNS))
     counts = f"{len(document['tried'])} tried, {len(document['pruned'])} left out by bounds"
-    if not document["points"]:
+    if document["without_result"] is not None:
         for line in document["without_result"]["lines"]:
             stdout.print(line, markup=False)
         stdout.print(f"{counts} and dominance", markup=False)

@@ -73,9 +73,10 @@ def study(
             resume=resume,
             progress=progress,
         )
-    for word in ("depth", "screen", "verdict"):
-        counts = record[word]
-        if isinstance(counts, dict) and counts:
+    for word, counts in (
+        ("depth", record["depth"]), ("screen", record["screen"]), ("verdict", record["verdict"]),
+    ):  # fmt: skip
+        if counts:
             words = ", ".join(f"{name} {count}" for name, count in counts.items())
             stdout.print(f"{word}: {words}", markup=False)
     stopped = f", stopped by {record['stopped']}" if record["stopped"] else ""

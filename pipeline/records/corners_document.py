@@ -4,7 +4,7 @@ from typing import Annotated
 
 from typing_extensions import TypedDict
 
-from camwright.pipeline.records.forms import Count, JsonBound, Unit, form
+from camwright.pipeline.records.forms import Count, JsonBound, Least0Count, Unit, form
 
 
 @form()
@@ -43,7 +43,7 @@ class CornersDocument(TypedDict):
 
     seed: int
     """Seed of the sample of all tolerances."""
-    tried: Annotated[int, JsonBound(minimum=0)]
+    tried: Least0Count
     """Number of corners, without the nominal one."""
     positions: Count
     """Cam angles of a turn."""

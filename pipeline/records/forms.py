@@ -36,6 +36,7 @@ Depth = Literal["screening", "preview", "cycle", "certified"]
 DEPTHS: tuple[Depth, ...] = get_args(Depth)
 """Words of `contact.tiers.Tier`, in its order."""
 Count: TypeAlias = Annotated[int, JsonBound(minimum=1)]
+Least0Count: TypeAlias = Annotated[int, JsonBound(minimum=0)]
 Least0: TypeAlias = Annotated[float, JsonBound(minimum=0)]
 Least0OrNull: TypeAlias = Annotated[float | None, JsonBound(minimum=0)]
 Identifier: TypeAlias = Annotated[str, JsonBound(pattern="^[A-Za-z][A-Za-z0-9_]*$")]

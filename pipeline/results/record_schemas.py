@@ -11,9 +11,11 @@ from camwright.pipeline.records.check_record import CheckRecord
 from camwright.pipeline.records.corners_document import CornersDocument
 from camwright.pipeline.records.crown_document import CrownDocument
 from camwright.pipeline.records.forms import Schema
+from camwright.pipeline.records.redesign_document import RedesignDocument
 from camwright.pipeline.records.run_summary import Summary
 from camwright.pipeline.records.signoff_record import SignoffRecord
 from camwright.pipeline.records.size_document import SizeDocument
+from camwright.pipeline.records.study_document import StudyDocument
 from camwright.pipeline.records.trial_contents import TrialContents
 
 NAMES = {
@@ -25,6 +27,8 @@ NAMES = {
     "corners": "corners.json",
     "crown": "crown.json, output of camwright crown --json",
     "size": "output of camwright size --json",
+    "redesign": "redesign.json, output of camwright redesign --json",
+    "study": "study.json",
 }
 """Names of the schemas and the documents that they describe."""
 _FORMS: Mapping[str, Any] = {
@@ -36,6 +40,8 @@ _FORMS: Mapping[str, Any] = {
     "corners": CornersDocument,
     "crown": CrownDocument,
     "size": SizeDocument,
+    "redesign": RedesignDocument,
+    "study": StudyDocument,
 }
 
 

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import Literal
 
 from camwright.pipeline.base.files import write_atomic
+from camwright.pipeline.records.redesign_document import Against, RedesignDocument, is_refused
 from camwright.reports.figure_svg import COLOURS, png, shipped
 from camwright.reports.page import study_page
 from camwright.reports.picture_list import Picture
@@ -27,16 +29,21 @@ COLUMNS = (
     ("p0_max_MPa", "p0, MPa"),
     ("binding", "active limits"),
 )
-AXES = {"size": ("cam_radius_mm", "maximum cam radius, mm"), "mass": ("mass_g", "mass, g")}
-_ROUGH = {"size": ("cam_radius", 1e3), "mass": ("mass", 1e3)}
+AXES: Mapping[Against, tuple[Literal["cam_radius_mm", "mass_g"], str]] = {
+    "size": ("cam_radius_mm", "maximum cam radius, mm"),
+    "mass": ("mass_g", "mass, g"),
+}
+_ROUGH: Mapping[Against, Literal["cam_radius", "mass"]] = {"size": "cam_radius", "mass": "mass"}
+_SCALE = 1e3
+"""Of a length or mass in SI to mm or g."""
 
 
-def write(folder: Path, document: Record) -> Path:
+def write(folder: Path, document: RedesignDocument) -> Path:
     """Write ``redesign.png`` and ``redesign.html``.
 
     Parameters
     ----------
-    document : mapping   contents of ``redesign.json``
+    document : dict   contents of ``redesign.json``
 
     Returns
     -------
@@ -48,19 +55,19 @@ def write(folder: Path, document: Record) -> Path:
 
 
 @shipped()
-def drawn(document: Record) -> bytes:
+def drawn(document: RedesignDocument) -> bytes:
     """Ripple left over size or mass: evaluated designs, front, initial design; PNG."""
     from matplotlib.figure import Figure
 
     name, label = AXES[document["against"]]
     canvas = Figure(figsize=(7.2, 4.4), layout="constrained")
     axes = canvas.add_subplot()
-    rough, scale = _ROUGH[document["against"]]
-    initial = document["given"]
-    before = initial.get("ripple_before_Nm")
-    tried = [row for row in document["tried"] if row["feasible"]]
-    if tried and before is not None:
-        axes.plot([scale * row[rough] for row in tried], [before * row["ripple"] for row in tried],
+    rough, initial = _ROUGH[document["against"]], document["given"]
+    tried = [row for row in document["tried"] if not is_refused(row)]
+    tried = [row for row in tried if row["feasible"]]
+    if tried and not is_refused(initial):
+        before = initial["ripple_before_Nm"]
+        axes.plot([_SCALE * row[rough] for row in tried], [before * row["ripple"] for row in tried],
                   ".", color=COLOURS["muted"], ms=4, label="coarse evaluations")  # fmt: skip
     points = document["points"]
     if points:
@@ -68,8 +75,8 @@ def drawn(document: Record) -> bytes:
         axes.plot(x, y, "o-", color=COLOURS["blue"], lw=1.4, ms=5, label="front")
         for k, place in enumerate(zip(x, y, strict=True), start=1):
             axes.annotate(str(k), place, xytext=(5, 5), textcoords="offset points", fontsize=8)
-    if initial.get(name) is not None:
-        words = "initial design, fails" if initial.get("failing") else "initial design"
+    if not is_refused(initial):
+        words = "initial design, fails" if initial["failing"] else "initial design"
         axes.plot([initial[name]], [initial["ripple_left_Nm"]], "x", color=COLOURS["vermillion"],
                   ms=8, mew=2, label=words)  # fmt: skip
     axes.set_xlabel(label)
@@ -80,13 +87,14 @@ def drawn(document: Record) -> bytes:
     return png(canvas)
 
 
-def _page(document: Record, picture: bytes) -> str:
+def _page(document: RedesignDocument, picture: bytes) -> str:
     title = f"{document['case']}: redesign, ripple against {document['against']}"
     words = (
         "Each point is a case file with the lift of the constrained synthesis, checked by closed "
         "forms as in camwright check. camwright run verifies it by finite elements."
     )
-    points = [[_cell(name, row.get(name)) for name, _ in COLUMNS] for row in document["points"]]
+    front_rows: Sequence[Record] = document["points"]
+    points = [[_cell(name, row.get(name)) for name, _ in COLUMNS] for row in front_rows]
     refused = [
         [f"{row['roller']}, {row['spring']}, {row['bush']}", str(row["why"])]
         for row in document["refused"]

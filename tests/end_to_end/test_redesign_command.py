@@ -11,6 +11,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from record_validation import schema_errors
 
 from camwright.geometry.errors import InputError, ResultError
 from camwright.pipeline.base.progress import Silent
@@ -162,6 +163,7 @@ def test_without_a_result_limit_and_way_are_named_and_no_file_is(
     assert "its limits in conflict: cam_radius, torque_reduction" in shown
     assert "point_01" not in shown
     document = json.loads((tmp_path / "out" / "redesign.json").read_text(encoding="utf-8"))
+    assert schema_errors("redesign", document) == []
     assert document["points"] == []
     page_text = (tmp_path / "out" / "redesign.html").read_text(encoding="utf-8")
     assert "changes that make it feasible: " in page_text
@@ -189,6 +191,7 @@ def test_the_next_command_names_case_and_run_folder(done, case_file, capsys):
 def test_page_and_record(done):
     out, document = done
     assert json.loads((out / "redesign.json").read_text(encoding="utf-8")) == document
+    assert schema_errors("redesign", document) == []
     made = page.write(out, document | {"case": "<b>"})
     text = made.read_text(encoding="utf-8")
     assert "&lt;b&gt;" in text and "<b>" not in text

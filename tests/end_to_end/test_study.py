@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import json
 import os
 import random
 import shutil
@@ -20,6 +21,7 @@ from typing import Any, Self
 import numpy as np
 import psutil
 import pytest
+from record_validation import schema_errors
 
 from camwright.geometry.errors import InputError, ResultError
 from camwright.pipeline.base.files import file_hashes
@@ -111,6 +113,8 @@ def test_the_dataset_has_a_row_for_each_design(folder: Path) -> None:
     assert data["message"].tolist() == [""] * 21
     assert len(list((folder / "one" / "shards").iterdir())) == 11
     assert len(list((folder / "one" / "timings").iterdir())) == 11
+    record = json.loads((folder / "one" / "study.json").read_text(encoding="utf-8"))
+    assert schema_errors("study", record) == []
 
 
 def test_killed_damaged_and_resumed_it_is_the_same(folder: Path) -> None:
@@ -397,6 +401,7 @@ def test_the_stop_rule_counts_as_the_answers(
     record = study_run.run_study(read_study(path), path.read_text(), tmp_path, tmp_path / "out")
     data = read_dataset(tmp_path / "out")
     share = answered(data, read_study(path))["yield"]
+    assert schema_errors("study", record) == []
     assert record["stopped"] == "interval" and record["designs"] == len(data) < 500
     assert share["count"] + share["without_result"] == len(data)
     assert share["without_result"] == len(data) // 3

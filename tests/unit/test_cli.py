@@ -489,6 +489,7 @@ def test_redesign_exits_by_its_points(
 
     points = [{"file": "point.toml", "verdict": "pass", "open": one} for one in open_checks]
     document: dict[str, Any] = {"points": points, "tried": [], "pruned": []}
+    document["without_result"] = None
     monkeypatch.setattr(redesign_study, "redesign", lambda *_: document)
     monkeypatch.setattr(redesign_page, "write", lambda *_: Path("page.html"))
     found, out, _ = command("redesign", case_file)

@@ -365,7 +365,8 @@ def test_of_points_solved_in_full_the_demand_is_the_limit_needed():
 def test_without_any_choice_the_case_itself_is_solved():
     solved = []
     pruned = [Pruned("weak", "too low", "torque_reduction")]
-    record = exclusions([], [], pruned, lambda choice: solved.append(choice) or {})
+    refused = {"feasible": False, "why": "no cam"}
+    record = exclusions([], [], pruned, lambda choice: solved.append(choice) or refused)
     assert solved == [None]
     assert record["lines"][-2:] == [
         "nearest: the parts of the case",

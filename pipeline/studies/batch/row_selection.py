@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from camwright.pipeline.base.files import Json
 from camwright.pipeline.contact.tiers import Tier
+from camwright.pipeline.records.study_document import DesignCounts
 from camwright.pipeline.studies.batch.answers_yield import states_of
 from camwright.pipeline.studies.batch.dataset import (
     DEPTH,
@@ -135,7 +135,7 @@ class RowFigures:
         bars = tuple(self._rows[name][5][: len(goals)] for name in names)
         return Wanted("open", tuple((each.column, _sign(each)) for each in goals), bars)
 
-    def record(self) -> dict[str, Json]:
+    def record(self) -> DesignCounts:
         """Counts of the unique designs for ``study.json``."""
         rows = list(self._rows.values())
         words = Counter(row[3] for row in rows if row[3])
@@ -158,7 +158,7 @@ def _in(row: tuple[str, str, str, str, float, tuple[float, ...]]) -> bool:
     return row[1] not in (FAILED, NO_RESULT) and bool(np.isfinite(row[5][0]))
 
 
-def _counts(words: Iterable[str]) -> dict[str, Json]:
+def _counts(words: Iterable[str]) -> dict[str, int]:
     return dict(sorted(Counter(words).items()))
 
 

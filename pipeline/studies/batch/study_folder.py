@@ -16,7 +16,6 @@ from numpy.typing import NDArray
 
 from camwright.geometry.errors import ResultError
 from camwright.pipeline.base.files import (
-    Json,
     files_in,
     json_text,
     read_json,
@@ -25,6 +24,7 @@ from camwright.pipeline.base.files import (
 )
 from camwright.pipeline.base.owned_folder import OwnedFolder
 from camwright.pipeline.base.store import Store
+from camwright.pipeline.records.study_document import StudyDocument
 from camwright.pipeline.results.folder_exchange import of_the_user
 from camwright.pipeline.studies.batch.case_template import Template
 from camwright.pipeline.studies.batch.dataset import (
@@ -226,7 +226,7 @@ class StudyFolder:
         shutil.rmtree(self.path / RUNS / name, ignore_errors=True)
         (self.path / TIMINGS / f"{name}.json").unlink(missing_ok=True)
 
-    def write_summary(self, record: Mapping[str, Json]) -> None:
+    def write_summary(self, record: StudyDocument) -> None:
         """Write the record of the study; last, as it tells a finished one."""
         write_atomic(self.path / SUMMARY, json_text(record) + "\n")
 

@@ -14,9 +14,10 @@ from numpy.typing import NDArray
 
 from camwright.geometry.errors import InputError, ResultError
 from camwright.pipeline.base.extras import require_extra
-from camwright.pipeline.base.files import Json, sha256_of
+from camwright.pipeline.base.files import sha256_of
 from camwright.pipeline.base.progress import SILENT, Progress
 from camwright.pipeline.contact.tiers import Tier
+from camwright.pipeline.records.study_document import StudyDocument
 from camwright.pipeline.studies.batch.answers_yield import FAILS, PASSES, UNKNOWN, Yield
 from camwright.pipeline.studies.batch.case_template import (
     Template,
@@ -58,7 +59,7 @@ def run_study(
     scheduler: str | None = None,
     resume: bool = False,
     progress: Progress = SILENT,
-) -> dict[str, Json]:
+) -> StudyDocument:
     """Solve the designs of a study and write its folder.
 
     Parameters
@@ -172,7 +173,7 @@ class _Run:
     def __post_init__(self) -> None:
         self.figures = RowFigures(self.study.objectives)
 
-    def finish(self) -> dict[str, Json]:
+    def finish(self) -> StudyDocument:
         """Solve both stages, write all files; the contents of ``study.json``."""
         study, plan, home = self.study, self.plan, self.home
         first = self._stage(study.tier, plan.tasks(study.tier), len(plan.ids), stop=True)
@@ -298,7 +299,7 @@ class _Run:
         rule = self.study.deeper
         return self.study.tier if rule is None else Tier.of(rule.depth, "deeper.depth")
 
-    def _record(self, kept: Sequence[str]) -> dict[str, Json]:
+    def _record(self, kept: Sequence[str]) -> StudyDocument:
         study, plan = self.study, self.plan
         return {
             "name": study.name,

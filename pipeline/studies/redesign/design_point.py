@@ -6,9 +6,8 @@ parallel.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import asdict, dataclass, replace
-from typing import Any, TypedDict
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -23,6 +22,7 @@ from camwright.pipeline.checks.key_strength import keyway_root
 from camwright.pipeline.cycle.hub_history import hub_fatigue
 from camwright.pipeline.follower.camshaft_loads import unbalance
 from camwright.pipeline.preview import preview_case
+from camwright.pipeline.records.redesign_document import PointRecord, RoughRecord, Shortfall
 from camwright.pipeline.results.trial import Trial
 from camwright.pipeline.smoothing.constrained_synthesis import approached, synthesise
 from camwright.pipeline.smoothing.multistart import continued
@@ -55,27 +55,27 @@ class Rough:
     prime_radius: float = 0.0
     preload: float = 0.0
     lift_max: float = 0.0
-    binding: tuple[str, ...] = ()
+    binding: Sequence[str] = ()
 
     @classmethod
     def impossible(cls) -> Rough:
         """Result of a case without a cam."""
         return cls(feasible=False, ripple=1.0, cam_radius=0.0, mass=0.0)
 
-    def as_record(self) -> dict[str, Any]:
+    def as_record(self) -> RoughRecord:
         """Record for JSON, SI: equal to the one that is read again."""
-        return asdict(self) | {"binding": list(self.binding)}
-
-
-class Shortfall(TypedDict):
-    """A blocking check that fails: demand and limit in `unit`; null: infinite."""
-
-    check: str
-    title: str
-    demand: float | None
-    limit: float | None
-    unit: str
-    utilisation: float | None
+        return {
+            "feasible": self.feasible,
+            "ripple": self.ripple,
+            "cam_radius": self.cam_radius,
+            "mass": self.mass,
+            "limit": self.limit,
+            "utilisation": self.utilisation,
+            "prime_radius": self.prime_radius,
+            "preload": self.preload,
+            "lift_max": self.lift_max,
+            "binding": list(self.binding),
+        }
 
 
 @dataclass(frozen=True)
@@ -112,7 +112,7 @@ class DesignPoint:
             return "fail"
         return "incomplete" if self.open else "pass"
 
-    def as_record(self) -> dict[str, str | float | list[str] | list[Shortfall] | None]:
+    def as_record(self) -> PointRecord:
         """Record for JSON, names with units."""
         return {
             "feasible": self.feasible,

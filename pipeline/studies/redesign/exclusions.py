@@ -4,25 +4,35 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Callable, Mapping, Sequence
-from typing import Any
+from collections.abc import Callable, Sequence
 
 from camwright.pipeline.case.cards.substitution import Choice
 from camwright.pipeline.case.limits import LIMITS
+from camwright.pipeline.records.redesign_document import (
+    ConflictPoint,
+    ExcludingLimit,
+    ExclusionReasons,
+    ExclusionRecord,
+    PointRecord,
+    RefusedPoint,
+    RoughRecord,
+    Shortfall,
+    is_refused,
+    is_whole,
+)
 from camwright.pipeline.results.check_report import number, unit_text
 from camwright.pipeline.studies.redesign.part_search import Pruned
-from camwright.pipeline.studies.redesign.point_store import Record
 
 _SHOWN = 3  # relaxations in a line
 _TITLES = {row.id: row.title for row in LIMITS.values()}
 
 
 def exclusions(
-    tried: Sequence[tuple[Choice, Record]],
-    refused: Sequence[tuple[Choice, Record]],
+    tried: Sequence[tuple[Choice, RoughRecord | RefusedPoint]],
+    refused: Sequence[tuple[Choice, PointRecord | RefusedPoint]],
     pruned: Sequence[Pruned],
-    conflict: Callable[[Choice | None], Record],
-) -> Record:
+    conflict: Callable[[Choice | None], ConflictPoint | RefusedPoint],
+) -> ExclusionRecord:
     """Reasons why no choice is on the front.
 
     A choice counts once, for the limit that it exceeds most: of its preview if it was solved in
@@ -34,43 +44,38 @@ def exclusions(
     refused : sequence    choices with their points in full; none is on the front
     pruned : sequence     parts excluded without solution
     conflict : callable   choice, None of the case as it is -> record of its infeasibility
-
-    Returns
-    -------
-    dict   ``excluded``: limit, title and count, the most frequent first; ``nearest``: parts of the
-           choice that exceeds its limit least; ``conflict``, ``ways``: its conflicting limits, and
-           the changes that would admit it, the smallest first; ``lines``: all in words
     """
-    whole = dict(refused)
+    whole: dict[Choice, RoughRecord | PointRecord | RefusedPoint] = dict(refused)
     reasons = [_reason(whole.get(choice, record)) for choice, record in tried]
     reasons += [each.limit for each in pruned if each.limit]
     counts = Counter(reason for reason in reasons if reason)
     first = sorted(counts, key=lambda name: (-counts[name], name))
-    excluded = [
+    excluded: list[ExcludingLimit] = [
         {"limit": name, "title": _TITLES.get(name, ""), "count": counts[name]} for name in first
     ]
-    short = [pair for pair in refused if pair[1].get("shortfalls")]
-    short = [pair for pair in short if _reason(pair[1]) == first[0]]
+    failing = [(each, record) for each, record in refused if is_whole(record)]
+    short = [pair for pair in failing if pair[1]["shortfalls"] and _reason(pair[1]) == first[0]]
     if short:
         nearest = min(short, key=lambda pair: _excess(pair[1]))
-        ways, conflicting = [_way(nearest[1]["shortfalls"][0])], []
+        ways, conflicting = [_way(nearest[1]["shortfalls"][0])], list[str]()
         choice: Choice | None = nearest[0]
     else:
-        solved = [pair for pair in tried if pair[1].get("limit")]
-        choice = min(solved, key=lambda pair: pair[1]["utilisation"])[0] if solved else None
-        record = conflict(choice)
-        conflicting = record.get("conflict", [])
-        ways = [each["sentence"] for each in record.get("relaxations", ())]
-    made: Record = {
+        rough = [(each, record) for each, record in tried if not is_refused(record)]
+        solved = [(each, record["utilisation"]) for each, record in rough if record["limit"]]
+        choice = min(solved, key=lambda pair: pair[1])[0] if solved else None
+        found = conflict(choice)
+        conflicting = [] if is_refused(found) else found["conflict"]
+        ways = [] if is_refused(found) else [str(each["sentence"]) for each in found["relaxations"]]
+    made: ExclusionReasons = {
         "excluded": excluded,
         "nearest": None if choice is None else choice.words,
         "conflict": conflicting,
         "ways": ways,
     }
-    return made | {"lines": _lines(made)}
+    return {**made, "lines": _lines(made)}
 
 
-def _lines(record: Record) -> list[str]:
+def _lines(record: ExclusionReasons) -> list[str]:
     """Limits by the number of excluded choices, and the smallest changes that admit one."""
     counts = [
         f"{each['limit']}{' (' + each['title'] + ')' if each['title'] else ''}: {each['count']}"
@@ -94,26 +99,26 @@ def _lines(record: Record) -> list[str]:
     return said
 
 
-def _total(record: Record) -> int:
+def _total(record: ExclusionReasons) -> int:
     return sum(int(each["count"]) for each in record["excluded"])
 
 
-def _reason(record: Record) -> str:
+def _reason(record: RoughRecord | PointRecord | RefusedPoint) -> str:
     """Limit that a point exceeds most; field of the case that refuses it; "": none."""
-    if record.get("shortfalls"):
-        return str(record["shortfalls"][0]["check"])
-    if record.get("limit"):
-        return str(record["limit"])
-    return str(record["why"]).partition(" = ")[0][:60] if record.get("why") else ""
+    if is_refused(record):
+        return record["why"].partition(" = ")[0][:60]
+    if is_whole(record):
+        return record["shortfalls"][0]["check"] if record["shortfalls"] else ""
+    return record["limit"]
 
 
-def _excess(record: Record) -> tuple[int, float]:
+def _excess(record: PointRecord) -> tuple[int, float]:
     """Number of failing checks of a point, and the utilisation of the worst."""
     used = record["shortfalls"][0]["utilisation"]
     return len(record["shortfalls"]), math.inf if used is None else used
 
 
-def _way(shortfall: Mapping[str, Any]) -> str:
+def _way(shortfall: Shortfall) -> str:
     """The limit at which a check would pass."""
     unit = unit_text(shortfall["unit"])
     demand, limit = shortfall["demand"], shortfall["limit"]

@@ -13,10 +13,19 @@ from camwright.geometry.errors import CamError
 from camwright.pipeline.base.store import JSON, Store
 from camwright.pipeline.case.case_file import parse_case
 from camwright.pipeline.case.load_case_torque import engine_torques
+from camwright.pipeline.records.redesign_document import (
+    ConflictPoint,
+    PointRecord,
+    RefusedPoint,
+    RoughRecord,
+)
 from camwright.pipeline.smoothing.infeasibility import infeasibility
 from camwright.pipeline.smoothing.problem_setup import problem_of
 from camwright.pipeline.studies.redesign.design_point import point_of, rough_point
 from camwright.pipeline.torque.torque import Torque
+
+Answer = RoughRecord | PointRecord | ConflictPoint | RefusedPoint
+"""Of the tiers coarse and rough, whole, conflict; the last where a case has no cam."""
 
 Record = dict[str, Any]
 
@@ -45,17 +54,17 @@ class PointTask:
         return f"{self.tier}_{digest[:24]}"
 
 
-def points(folder: Path) -> Store[Record]:
+def points(folder: Path) -> Store[Any]:
     """Solved points of a folder."""
     return Store(folder / SOLVED, JSON)
 
 
-def solved(task: PointTask) -> Record:
-    """Record of a point, stored or solved; ``why`` states the reason of a missing cam."""
+def solved(task: PointTask) -> Any:
+    """Record of a point, stored or solved: the one of `Answer` for its tier, or a refusal."""
     return points(task.folder).kept(task.key, partial(_record, task), lambda r: "feasible" in r)
 
 
-def _record(task: PointTask) -> Record:
+def _record(task: PointTask) -> Answer:
     try:
         case = parse_case(task.text, task.folder)
         if task.tier == "rough":
@@ -64,7 +73,8 @@ def _record(task: PointTask) -> Record:
             return rough_point(case, engine_torques(case), fine=False).as_record()
         if task.tier == "conflict":
             problem = problem_of(case, _torques(task.base, task.folder))
-            return {"feasible": False, **infeasibility(problem).as_record()}
+            conflict: ConflictPoint = {"feasible": False, **infeasibility(problem).as_record()}
+            return conflict
         return point_of(case).as_record()
     except CamError as error:
         return {"feasible": False, "why": str(error)}

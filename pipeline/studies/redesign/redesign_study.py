@@ -5,12 +5,12 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
 
 from camwright.geometry.errors import InputError, ResultError
-from camwright.pipeline.base.files import Json, json_text, read_json, write_atomic
+from camwright.pipeline.base.files import json_text, read_json, write_atomic
 from camwright.pipeline.base.owned_folder import OwnedFolder
 from camwright.pipeline.base.progress import Progress
 from camwright.pipeline.base.units import in_unit
@@ -20,15 +20,31 @@ from camwright.pipeline.case.cards.substitution import Choice, variant
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_file import read_case
 from camwright.pipeline.case.load_case_torque import engine_torques
+from camwright.pipeline.records.redesign_document import (
+    Against,
+    ChoiceRecord,
+    ConflictPoint,
+    FrontPoint,
+    PointRecord,
+    RedesignDocument,
+    RefusedPoint,
+    RoughRecord,
+    TriedPoint,
+    TriedRefusal,
+    is_refused,
+)
 from camwright.pipeline.results.run_folder import versions
 from camwright.pipeline.smoothing.problem_setup import problem_of
 from camwright.pipeline.studies.redesign.design_point import Rough
 from camwright.pipeline.studies.redesign.exclusions import exclusions
 from camwright.pipeline.studies.redesign.pareto_front import front, thinned
 from camwright.pipeline.studies.redesign.part_search import Branch, branches
-from camwright.pipeline.studies.redesign.point_store import SOLVED, PointTask, Record, solved
+from camwright.pipeline.studies.redesign.point_store import SOLVED, PointTask, solved
 
-AGAINST = {"size": "cam_radius_mm", "mass": "mass_g"}
+AGAINST: Mapping[Against, Literal["cam_radius_mm", "mass_g"]] = {
+    "size": "cam_radius_mm",
+    "mass": "mass_g",
+}
 RECORD = "redesign.json"
 MOST_POINTS = 12  # of a front, solved in full
 ALIKE = 1e-3  # relative size or ripple below which two points are equal
@@ -36,7 +52,9 @@ _BUSY = 64  # maximum number of processes
 _OF_A_BRANCH = 16  # expected choices per branch
 _OURS = re.compile(rf"redesign\.(json|html|png)|point_\d+\.toml|inputs|{SOLVED}")
 
-Tried = tuple[Choice, Record]
+Tried = tuple[Choice, RoughRecord | RefusedPoint]
+Whole = tuple[Choice, PointRecord]
+Solved = tuple[Choice, PointRecord | RefusedPoint]
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,7 +77,7 @@ class RedesignTask:
 
 def redesign(
     case_file: Path, out: Path, against: str, jobs: int | None, progress: Progress
-) -> Record:
+) -> RedesignDocument:
     """Pareto front of ripple and size or mass over the catalogues, written to a folder.
 
     Parameters
@@ -77,43 +95,50 @@ def redesign(
     CamError
         If the case cannot be redesigned, or the folder has other content.
     """
-    if against not in AGAINST:
-        raise InputError("--against", against, " or ".join(AGAINST))
+    other = _against(against)
     case, folder = read_case(case_file), case_file.resolve().parent
     if not case.balances:
         raise InputError("engine", "missing", "specified: a redesign balances its torque")
     search = RedesignTask(case, folder, catalogue_of(folder), out.absolute(), versions()["source"])
     problem = problem_of(case, engine_torques(case))
-    running, pruned = branches(case, search.parts, problem, by_mass=against == "mass")
+    running, pruned = branches(case, search.parts, problem, by_mass=other == "mass")
     with OwnedFolder(search.out, _OURS, "redesign"):
         _begin(search)
         with pool(workers_for(jobs, _BUSY)) as workers:
             progress.stage("search the catalogue")
             tried = _searched(search, running, workers, progress)
-            original, points = _solved_whole(search, _chosen(tried, against), workers, progress)
-            kept, refused = _split(points, against)
+            original, points = _solved_whole(search, _chosen(tried, other), workers, progress)
+            kept, refused = _split(points, other)
             excluded = None
             if not kept:
                 progress.stage("conflicting limits")
                 excluded = exclusions(tried, refused, pruned, _conflict_of(search, workers))
         verdict = kept[0][1]["verdict"] if kept else "fail"
-        document: dict[str, Json] = {
+        document: RedesignDocument = {
             "schema": 1,
             "case": case.name,
             "input_sha256": case.sha256,
             "version": search.version,
-            "against": against,
+            "against": other,
             "given": original,
             "points": _written(search, kept),
             "refused": [
-                _named(choice) | {"why": _why(record, verdict)} for choice, record in refused
+                {**_named(choice), "why": _why(record, verdict)} for choice, record in refused
             ],
             "without_result": excluded,
-            "pruned": [asdict(one) for one in pruned],
-            "tried": [_named(choice) | record for choice, record in tried],
+            "pruned": [{"part": one.part, "why": one.why, "limit": one.limit} for one in pruned],
+            "tried": [_tried_record(choice, record) for choice, record in tried],
         }
         write_atomic(search.out / RECORD, json_text(document) + "\n")
     return document
+
+
+def _against(name: str) -> Against:
+    """The second objective of a name; InputError for another."""
+    for known in AGAINST:
+        if known == name:
+            return known
+    raise InputError("--against", name, " or ".join(AGAINST))
 
 
 def _begin(search: RedesignTask) -> None:
@@ -136,7 +161,7 @@ def _searched(
     """All choices of the branches with their points of the synthesis alone, by choice."""
     tried: list[Tried] = []
     refusals: list[InputError] = []
-    waiting: dict[Future[Record], tuple[Branch, Choice]] = {}
+    waiting: dict[Future[RoughRecord | RefusedPoint], tuple[Branch, Choice]] = {}
     expected = _OF_A_BRANCH * len(running)
 
     def ask(branch: Branch, answer: Rough | None) -> None:
@@ -165,16 +190,17 @@ def _searched(
             record = future.result()
             tried.append((choice, record))
             progress.advance(len(tried), max(expected, len(tried) + len(waiting)))
-            ask(branch, Rough(**record) if "why" not in record else Rough.impossible())
+            ask(branch, Rough.impossible() if is_refused(record) else Rough(**record))
     if refusals and len(refusals) == len(tried):
         raise refusals[0]  # no choice is valid: an error of the case
     return sorted(tried, key=lambda pair: str(pair[0]))
 
 
-def _chosen(tried: Sequence[Tried], against: str) -> list[Choice]:
+def _chosen(tried: Sequence[Tried], against: Against) -> list[Choice]:
     """Choices on the front of the points of the synthesis alone."""
-    feasible = [(choice, record) for choice, record in tried if record["feasible"]]
-    size = "cam_radius" if against == "size" else "mass"
+    rough = [(choice, record) for choice, record in tried if not is_refused(record)]
+    feasible = [(choice, record) for choice, record in rough if record["feasible"]]
+    size: Literal["cam_radius", "mass"] = "cam_radius" if against == "size" else "mass"
     figures = [(record[size], record["ripple"]) for _, record in feasible]
     places = front(figures, ALIKE, ALIKE)  # the ripple is relative to that of the engine
     return [feasible[k][0] for k in thinned(places, figures, MOST_POINTS)]
@@ -182,12 +208,12 @@ def _chosen(tried: Sequence[Tried], against: str) -> list[Choice]:
 
 def _solved_whole(
     search: RedesignTask, chosen: Sequence[Choice], workers: ProcessPoolExecutor, progress: Progress
-) -> tuple[Record, list[Tried]]:
+) -> tuple[PointRecord | RefusedPoint, list[Solved]]:
     """Original case and choices by synthesis and preview, at their worst tolerance corners."""
     progress.stage(f"solve {len(chosen)} points of the front")
     texts = [search.case.to_toml(), *(search.text(choice) for choice in chosen)]
     futures = [workers.submit(solved, search.task(text, "whole")) for text in texts]
-    records = []
+    records: list[PointRecord | RefusedPoint] = []
     for future in futures:
         records.append(future.result())
         progress.advance(len(records), len(futures))
@@ -196,34 +222,36 @@ def _solved_whole(
 
 def _conflict_of(
     search: RedesignTask, workers: ProcessPoolExecutor
-) -> Callable[[Choice | None], Record]:
+) -> Callable[[Choice | None], ConflictPoint | RefusedPoint]:
     """Record of the infeasibility of a choice, of the case as it is for None."""
 
-    def conflict(choice: Choice | None) -> Record:
+    def conflict(choice: Choice | None) -> ConflictPoint | RefusedPoint:
         text = search.case.to_toml() if choice is None else search.text(choice)
-        return workers.submit(solved, search.task(text, "conflict")).result()
+        found: ConflictPoint | RefusedPoint
+        found = workers.submit(solved, search.task(text, "conflict")).result()
+        return found
 
     return conflict
 
 
-def _split(points: Sequence[Tried], against: str) -> tuple[list[Tried], list[Tried]]:
+def _split(points: Sequence[Solved], against: Against) -> tuple[list[Whole], list[Solved]]:
     """Points of the front by increasing size, and the other points.
 
     No point fails; where one passes, those that lack data are not on the front.
     """
-    solved = [pair for pair in points if pair[1].get("verdict") in ("pass", "incomplete")]
-    best = "pass" if any(record["verdict"] == "pass" for _, record in solved) else "incomplete"
-    good = [pair for pair in solved if pair[1]["verdict"] == best]
+    whole = [(choice, record) for choice, record in points if not is_refused(record)]
+    best = "pass" if any(record["verdict"] == "pass" for _, record in whole) else "incomplete"
+    good = [(choice, record) for choice, record in whole if record["verdict"] == best]
     figures = [(record[AGAINST[against]], record["ripple_left_Nm"]) for _, record in good]
     least = min((record["ripple_before_Nm"] for _, record in good), default=0.0)
     kept = [good[k] for k in front(figures, ALIKE, ALIKE * least)]
     return kept, [pair for pair in points if pair not in kept]
 
 
-def _why(record: Record, front: str) -> str:
+def _why(record: PointRecord | RefusedPoint, front: str) -> str:
     """Reason why a solved point is not on a front of points of this verdict."""
-    if "why" in record:
-        return str(record["why"])
+    if is_refused(record):
+        return record["why"]
     if not record["feasible"]:
         return "the synthesis on the fine turn ends outside the limits"
     if record["failing"]:
@@ -233,11 +261,11 @@ def _why(record: Record, front: str) -> str:
     return "dominated by another point"
 
 
-def _written(search: RedesignTask, kept: Sequence[Tried]) -> list[Record]:
+def _written(search: RedesignTask, kept: Sequence[Whole]) -> list[FrontPoint]:
     """Write the points as case files, replacing earlier ones; their records."""
     for old in search.out.glob("point_*.toml"):
         old.unlink()
-    records = []
+    records: list[FrontPoint] = []
     for number, (choice, record) in enumerate(kept, start=1):
         name, text = f"point_{number:02d}.toml", search.text(choice)
         head = (
@@ -247,11 +275,19 @@ def _written(search: RedesignTask, kept: Sequence[Tried]) -> list[Record]:
             f"cam radius {record['cam_radius_mm']:.4g} mm, {record['mass_g']:.4g} g.\n"
         )
         write_atomic(search.out / name, head + text)
-        records.append({"file": name} | _named(choice) | record)
+        records.append({"file": name, **_named(choice), **record})
     return records
 
 
-def _named(choice: Choice) -> Record:
+def _tried_record(choice: Choice, record: RoughRecord | RefusedPoint) -> TriedPoint | TriedRefusal:
+    if is_refused(record):
+        refused: TriedRefusal = {**_named(choice), **record}
+        return refused
+    point: TriedPoint = {**_named(choice), **record}
+    return point
+
+
+def _named(choice: Choice) -> ChoiceRecord:
     """Names of the parts of a choice, and the limit of the cam radius."""
     room = choice.cam_radius
     return {"roller": choice.roller, "spring": choice.spring, "bush": choice.bush,
