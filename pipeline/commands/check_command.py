@@ -234,7 +234,7 @@ def schema(
         typer.Argument(
             metavar="NAME",
             help="run, trial, checks, check (of check --json), signoff, corners, crown, size, "
-            "redesign or study.",
+            "redesign, design or study.",
         ),
     ],
 ) -> int:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -15,6 +15,13 @@ from camwright.pipeline.commands.terminal import (
     show_json,
     stdout,
 )
+
+if TYPE_CHECKING:
+    from camwright.pipeline.records.design_document import (
+        ChosenDesign,
+        DesignDocument,
+        ExchangesRecord,
+    )
 
 
 def design(
@@ -82,11 +89,11 @@ def design(
     return _run(out) if run else PASSED
 
 
-def _whole(point: dict[str, Any]) -> str:
+def _whole(point: ChosenDesign) -> str:
     return " x ".join(f"{length:.4g}" for length in point["envelope_mm"])
 
 
-def _show(document: dict[str, Any], out: Path) -> None:
+def _show(document: DesignDocument, out: Path) -> None:
     demand = document["torque"]
     stdout.print(
         f"torque: {demand['ripple_Nm']:.4g} N m of ripple (std), {demand['energy_swing_J']:.4g} J "
@@ -115,6 +122,8 @@ def _show(document: dict[str, Any], out: Path) -> None:
         )
         return
     conflict = document["conflict"]
+    if conflict is None:
+        return
     stdout.print(
         f"the search keeps no design within: {'; '.join(conflict['limits'])}", markup=False
     )
@@ -138,7 +147,7 @@ def _show(document: dict[str, Any], out: Path) -> None:
         )
 
 
-def _exchanges(record: dict[str, Any]) -> str:
+def _exchanges(record: ExchangesRecord) -> str:
     """What the exchange of the parts has shown."""
     lines = [
         f"  exchanged: {each['part']} {each['from']} for {each['to']}" for each in record["kept"]

@@ -12,6 +12,7 @@
 | `crown_document`    | ``crown.json``, output of ``crown --json``                 |
 | `size_document`     | output of ``size --json``                                  |
 | `redesign_document` | ``redesign.json``, output of ``redesign --json``           |
+| `design_document`   | ``design.json``, output of ``design --json``               |
 | `study_document`    | ``study.json``                                             |
 
 Imports `geometry` and `base`.

@@ -237,4 +237,4 @@ def is_refused(record: Mapping[str, object]) -> TypeIs[RefusedPoint]:
 
 def is_whole(record: Mapping[str, object]) -> TypeIs[PointRecord]:
     """Whether a point is solved in full."""
-    return "shortfalls" in record
+    return {"feasible", "shortfalls"} <= record.keys()

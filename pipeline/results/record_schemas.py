@@ -10,6 +10,7 @@ from camwright.pipeline.records.check_document import CheckDocument, SeveralTarg
 from camwright.pipeline.records.check_record import CheckRecord
 from camwright.pipeline.records.corners_document import CornersDocument
 from camwright.pipeline.records.crown_document import CrownDocument
+from camwright.pipeline.records.design_document import DesignDocument
 from camwright.pipeline.records.forms import Schema
 from camwright.pipeline.records.redesign_document import RedesignDocument
 from camwright.pipeline.records.run_summary import Summary
@@ -28,6 +29,7 @@ NAMES = {
     "crown": "crown.json, output of camwright crown --json",
     "size": "output of camwright size --json",
     "redesign": "redesign.json, output of camwright redesign --json",
+    "design": "design.json, output of camwright design --json",
     "study": "study.json",
 }
 """Names of the schemas and the documents that they describe."""
@@ -41,6 +43,7 @@ _FORMS: Mapping[str, Any] = {
     "crown": CrownDocument,
     "size": SizeDocument,
     "redesign": RedesignDocument,
+    "design": DesignDocument,
     "study": StudyDocument,
 }
 

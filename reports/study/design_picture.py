@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from camwright.pipeline.base.files import write_atomic
+from camwright.pipeline.records.design_document import DesignDocument
 from camwright.reports.figure_svg import COLOURS, png, shipped
-from camwright.reports.report_tables import Record
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -17,18 +17,18 @@ if TYPE_CHECKING:
 _MOST = 3.0  # of the sizes of the front: candidates further away are left out
 
 
-def write(path: Path, document: Record) -> Path:
+def write(path: Path, document: DesignDocument) -> Path:
     """Write the picture as PNG.
 
     Parameters
     ----------
-    document : mapping   contents of ``design.json``
+    document : dict   contents of ``design.json``
     """
     return write_atomic(path, drawn(document))
 
 
 @shipped()
-def drawn(document: Record) -> bytes:
+def drawn(document: DesignDocument) -> bytes:
     """Torque before and with the cam, ripple over size, cam with roller, values; PNG."""
     from matplotlib.figure import Figure
 
@@ -41,7 +41,7 @@ def drawn(document: Record) -> bytes:
     return png(canvas)
 
 
-def _torque(axes: Axes, document: Record) -> None:
+def _torque(axes: Axes, document: DesignDocument) -> None:
     demand, chosen = document["torque"], document["chosen"]
     before = np.array(demand["values_Nm"])
     angle = np.arange(before.size) * (demand["cycle_deg"] / before.size)
@@ -56,7 +56,7 @@ def _torque(axes: Axes, document: Record) -> None:
     _finish(axes, "Torque over one cycle")
 
 
-def _front(axes: Axes, document: Record) -> None:
+def _front(axes: Axes, document: DesignDocument) -> None:
     points, chosen = document["points"], document["chosen"]
     cloud = document["cloud"]
     if points:
@@ -88,7 +88,7 @@ def _front(axes: Axes, document: Record) -> None:
     _finish(axes, "Ripple against size")
 
 
-def _cam(axes: Axes, document: Record) -> None:
+def _cam(axes: Axes, document: DesignDocument) -> None:
     chosen = document["chosen"]
     if chosen is None:
         axes.axis("off")
@@ -110,7 +110,7 @@ def _cam(axes: Axes, document: Record) -> None:
     axes.tick_params(labelsize=8)
 
 
-def _words(axes: Axes, document: Record) -> None:
+def _words(axes: Axes, document: DesignDocument) -> None:
     axes.axis("off")
     chosen, demand = document["chosen"], document["torque"]
     turns = "turn" if demand["ratio"] == 1.0 else "turns"
@@ -141,8 +141,7 @@ def _words(axes: Axes, document: Record) -> None:
             f"normal force      {chosen['normal_force_max_N']:.4g} N",
             f"stem, bore        {chosen['stem_mm']:g} mm, {chosen['bore_mm']:g} mm",
         ]
-    else:
-        conflict = document["conflict"]
+    elif (conflict := document["conflict"]) is not None:
         lines.append("the search keeps no design within:")
         lines += [f"  {each}" for each in conflict["limits"]]
         lines += [f"passes with {each['option']} {each['to']}" for each in conflict["relaxations"]]

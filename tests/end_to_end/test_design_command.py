@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from record_validation import schema_errors
 from torque_tables import MACHINES, write_table
 
 from camwright.pipeline.base.progress import SILENT
@@ -50,6 +51,7 @@ def designed(tmp_path_factory: pytest.TempPathFactory) -> Designed:
 def record_of(out: Path) -> dict[str, Any]:
     text = (out.with_name(f"{out.stem}_design") / "design.json").read_text(encoding="utf-8")
     document: dict[str, Any] = json.loads(text)
+    assert schema_errors("design", document) == []
     return document
 
 

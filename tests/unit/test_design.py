@@ -513,7 +513,7 @@ def test_a_drafted_cam_grows_where_its_prime_radius_is_the_greatest(
     def free(_study: object, _candidate: object, growth: float) -> Any:
         tried.append(growth)
         return SimpleNamespace(
-            passes=False, use=1.1, record={"prime_radius_mm": prime},
+            passes=False, use=1.1, figures={"prime_radius_mm": prime},
             design=SimpleNamespace(prime_radius=0.05),
         )  # fmt: skip
 

@@ -37,6 +37,7 @@ from camwright.pipeline.records.check_document import CheckDocument
 from camwright.pipeline.records.check_record import CheckRecord
 from camwright.pipeline.records.corners_document import CornersDocument
 from camwright.pipeline.records.crown_document import CrownDocument
+from camwright.pipeline.records.design_document import DesignDocument
 from camwright.pipeline.records.redesign_document import RedesignDocument
 from camwright.pipeline.records.run_summary import Summary
 from camwright.pipeline.records.signoff_record import SignoffRecord
@@ -347,7 +348,7 @@ def mutations(record: Any, place: str = "$") -> Iterator[tuple[str, Callable[[],
 FORMS = {
     "run": Summary, "trial": TrialContents, "check": CheckDocument, "signoff": SignoffRecord,
     "corners": CornersDocument, "crown": CrownDocument, "size": SizeDocument,
-    "redesign": RedesignDocument, "study": StudyDocument,
+    "redesign": RedesignDocument, "design": DesignDocument, "study": StudyDocument,
 }  # fmt: skip
 
 

@@ -25,6 +25,14 @@ from camwright.pipeline.case.section import SAFE_NAME
 from camwright.pipeline.checks.registry import DECLARED
 from camwright.pipeline.cycle.machine_envelope import sizes_of
 from camwright.pipeline.preview import preview_case
+from camwright.pipeline.records.design_document import (
+    DesignDocument,
+    DesignDrawing,
+    DesignFigures,
+    DesignPointRecord,
+    RelaxationRecord,
+    TorqueRecord,
+)
 from camwright.pipeline.results.check_records import to_be_confirmed
 from camwright.pipeline.results.run_folder import versions
 from camwright.pipeline.studies.design.candidate_search import Candidate, candidates
@@ -38,7 +46,7 @@ from camwright.pipeline.studies.design.synthesised_points import (
     solved_front,
 )
 from camwright.pipeline.studies.design.torque_task import DesignTask, task_of
-from camwright.pipeline.studies.redesign.point_store import SOLVED, Record
+from camwright.pipeline.studies.redesign.point_store import SOLVED
 
 RECORD = "design.json"
 PICTURE = "design.png"
@@ -64,7 +72,7 @@ def design_from_torque(
     ambient: str | float | None = None,
     remove: str | float | None = None,
     progress: Progress = SILENT,
-) -> Record:
+) -> DesignDocument:
     """Case file of a torque table, as `camwright design`; options as of `task_of`.
 
     Parameters
@@ -93,7 +101,7 @@ def points_folder(out: Path) -> Path:
     return out.with_name(f"{out.stem}_design")
 
 
-def designed(task: DesignTask, out: Path, progress: Progress = SILENT) -> Record:
+def designed(task: DesignTask, out: Path, progress: Progress = SILENT) -> DesignDocument:
     """Case file of a task, the front of ripple and size, and what conflicts where there is none.
 
     Parameters
@@ -116,7 +124,7 @@ def designed(task: DesignTask, out: Path, progress: Progress = SILENT) -> Record
         return _designed(task, folder, out, progress)
 
 
-def _designed(task: DesignTask, folder: Path, out: Path, progress: Progress) -> Record:
+def _designed(task: DesignTask, folder: Path, out: Path, progress: Progress) -> DesignDocument:
     """As `designed`; the folder of the points is owned."""
     file, copied = _copied(task, folder, out)
     study = PointStudy(task, folder, file, versions()["source"])
@@ -125,7 +133,7 @@ def _designed(task: DesignTask, folder: Path, out: Path, progress: Progress) -> 
     with crew(None) as workers:
         progress.stage("solve the front")
         points, failing = solved_front(study, drafts(study, screened, workers), workers, progress)
-        changes: list[Record] = []
+        changes: list[RelaxationRecord] = []
         smaller: Exchanged | None = None
         roomy = None if points or task.space is None else _without_limit(study, workers, progress)
         if roomy is not None:
@@ -141,7 +149,7 @@ def _designed(task: DesignTask, folder: Path, out: Path, progress: Progress) -> 
             nearest = failing[0] if failing else None
             room = inf if roomy is None else _SPARE * roomy.point.size
             changes = relaxations(study, nearest, out, workers, progress, room)
-    document: Record = {
+    document: DesignDocument = {
         "schema": 1,
         "torque": _demand_record(task),
         "assumed": sorted(task.assumed),
@@ -151,7 +159,7 @@ def _designed(task: DesignTask, folder: Path, out: Path, progress: Progress) -> 
         "screened": len(screened),
         "within_limits": sum(each.excess == 0.0 for each in screened),
         "cloud": [
-            [round(1e3 * each.size, 2), round(each.ripple, 5), each.excess == 0.0]
+            (round(1e3 * each.size, 2), round(each.ripple, 5), each.excess == 0.0)
             for each in _sampled(screened)
         ],
         "points": [],
@@ -161,15 +169,13 @@ def _designed(task: DesignTask, folder: Path, out: Path, progress: Progress) -> 
     if smaller is not None:
         best = points[0]
         document["points"] = _write_points(study, points)
-        document["chosen"] = (
-            _row(best)
-            | _drawing(study, best)
-            | {
-                "file": out.name,
-                "exchanges": smaller.as_record(),
-                "envelope_mm": _envelope(study, best),
-            }
-        )
+        document["chosen"] = {
+            **_row(best),
+            **_drawing(study, best),
+            "file": out.name,
+            "exchanges": smaller.as_record(),
+            "envelope_mm": _envelope(study, best),
+        }
         head = _summary(study, points, smaller)
         write_atomic(out, _written(best, out.stem, file, head))
     else:
@@ -237,7 +243,7 @@ def _sampled(screened: Sequence[Candidate], most: int = 400) -> list[Candidate]:
     return list(screened[::step])
 
 
-def _demand_record(task: DesignTask) -> Record:
+def _demand_record(task: DesignTask) -> TorqueRecord:
     demand = task.demand
     return {
         "file": task.file.name,
@@ -252,7 +258,7 @@ def _demand_record(task: DesignTask) -> Record:
     }
 
 
-def _row(point: Solved) -> Record:
+def _row(point: Solved) -> DesignFigures:
     design = point.design
     spring = design.spring.spring
     name = spring.name or (
@@ -267,11 +273,11 @@ def _row(point: Solved) -> Record:
         "offset_mm": 1e3 * design.offset,
         "stem_mm": 1e3 * design.frame.stem,
         "bore_mm": 1e3 * design.frame.seat.bore,
-        **point.record,
+        **point.whole,
     }
 
 
-def _drawing(study: PointStudy, point: Solved) -> Record:
+def _drawing(study: PointStudy, point: Solved) -> DesignDrawing:
     """Contour, roller and torque left of a design, for its picture; its values to be confirmed."""
     trial = preview_case(parse_case(study.text(point.design), study.folder), corners=False)
     after, contour = trial.cycles[0].turn.torque_after, trial.contour
@@ -289,15 +295,16 @@ def _drawing(study: PointStudy, point: Solved) -> Record:
     }
 
 
-def _write_points(study: PointStudy, points: Sequence[Solved]) -> list[Record]:
+def _write_points(study: PointStudy, points: Sequence[Solved]) -> list[DesignPointRecord]:
     for old in study.folder.glob("point_*.toml"):
         old.unlink()
-    rows = []
+    rows: list[DesignPointRecord] = []
     for number, point in enumerate(points, start=1):
         name = f"point_{number:02d}"
         head = f"# Point {number} of {len(points)} of the front of ripple against size.\n"
         write_atomic(study.folder / f"{name}.toml", _written(point, name, study.file, head))
-        rows.append({"file": f"{name}.toml", "envelope_mm": _envelope(study, point)} | _row(point))
+        size = _envelope(study, point)
+        rows.append({"file": f"{name}.toml", "envelope_mm": size, **_row(point)})
     return rows
 
 
@@ -312,7 +319,8 @@ def _written(point: Solved, name: str, file: str, head: str) -> str:
 def _envelope(study: PointStudy, point: Solved) -> list[float]:
     """Lengths of the whole mechanism across and along the stem and along the camshaft, mm."""
     case = parse_case(study.text(point.design), study.folder)
-    radius, lift = (1e-3 * float(point.record[key]) for key in ("cam_radius_mm", "lift_max_mm"))
+    figures = point.figures
+    radius, lift = 1e-3 * figures["cam_radius_mm"], 1e-3 * figures["lift_max_mm"]
     return [round(1e3 * length, 2) for length in sizes_of(case, radius, lift).envelope.size]
 
 
@@ -341,7 +349,7 @@ def _limits(task: DesignTask, screened: Sequence[Candidate], points: Sequence[So
     if points:
         near = points[0]
         failing = near.failing or ["the limits of the synthesis at the ends of the tolerances"]
-        binding = [DECLARED[name].title for name in near.record["binding"] if name in DECLARED]
+        binding = [DECLARED[name].title for name in near.figures["binding"] if name in DECLARED]
         return failing + [title for title in binding if title not in failing][:_BINDING]
     if screened:
         counts = Counter(each.governing for each in screened if each.excess > 0.0)

@@ -15,11 +15,12 @@ from camwright.pipeline.case.cards.catalogue import better_roller, catalogue_of,
 from camwright.pipeline.case.cards.shaft_seats import Seat, seats
 from camwright.pipeline.checks.registry import DECLARED
 from camwright.pipeline.follower.spring import HelicalSpring
+from camwright.pipeline.records.design_document import ExchangeRecord, ExchangesRecord
+from camwright.pipeline.records.redesign_document import is_refused, is_whole
 from camwright.pipeline.studies.design.design_case import Machinery
 from camwright.pipeline.studies.design.machine_frame import MODULES, STEMS
 from camwright.pipeline.studies.design.synthesised_points import PointStudy, Solved
 from camwright.pipeline.studies.design.wound_springs import of_catalogue
-from camwright.pipeline.studies.redesign.point_store import Record
 
 _MOST = 24  # designs tried
 _TOGETHER = 2  # solved at once
@@ -77,11 +78,11 @@ class Exchanged:
             return f"{_MOST} exchanges of parts tried: a design of smaller parts may pass"
         return "no part can be exchanged for the next smaller of its catalogue"
 
-    def as_record(self) -> Record:
+    def as_record(self) -> ExchangesRecord:
         """Record for JSON."""
         return {
             "kept": [_words(each) for each in self.kept],
-            "failing": [_words(each) | {"why": why} for each, why in self.failing],
+            "failing": [{**_words(each), "why": why} for each, why in self.failing],
             "complete": self.complete,
             "claim": self.sentence,
         }
@@ -123,17 +124,17 @@ def exchanged(study: PointStudy, point: Solved, workers: Crew, progress: Progres
 
 def why_not(point: Solved) -> str:
     """Why a design does not pass, in words."""
-    if not point.has_cam:
-        return str(point.record["why"])
+    if is_refused(point.record):
+        return point.record["why"]
     if point.failing:
         return "; ".join(point.failing)
-    lacking = point.record.get("open", [])
+    lacking = point.record["open"] if is_whole(point.record) else []
     if lacking:
         return f"not known: {'; '.join(DECLARED[name].title for name in lacking)}"
     return "larger" if point.passes else "torque ripple"
 
 
-def _words(each: Smaller) -> Record:
+def _words(each: Smaller) -> ExchangeRecord:
     return {"part": each.part, "from": each.was, "to": each.becomes}
 
 

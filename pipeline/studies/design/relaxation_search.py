@@ -14,6 +14,7 @@ from camwright.geometry.arrays import FULL_TURN
 from camwright.pipeline.base import units
 from camwright.pipeline.base.progress import SILENT, Progress
 from camwright.pipeline.base.worker_processes import Crew
+from camwright.pipeline.records.design_document import DesignOptions, RelaxationRecord
 from camwright.pipeline.studies.design.candidate_search import Candidate, candidates
 from camwright.pipeline.studies.design.synthesised_points import (
     RESERVE,
@@ -22,8 +23,7 @@ from camwright.pipeline.studies.design.synthesised_points import (
     lack,
     passing_draft,
 )
-from camwright.pipeline.studies.design.torque_task import DesignOptions, DesignTask
-from camwright.pipeline.studies.redesign.point_store import Record
+from camwright.pipeline.studies.design.torque_task import DesignTask
 
 SPACE = "--space"
 WIDTH = 0.02  # greatest difference of the changes that pass and fail
@@ -186,7 +186,7 @@ def relaxations(
     workers: Crew,
     progress: Progress,
     room: float = inf,
-) -> list[Record]:
+) -> list[RelaxationRecord]:
     """Relaxations of one option each, with the command line of each; the smallest first.
 
     With each the command passes, and does not at `fails_at`, half of the change or more. With the
@@ -313,7 +313,7 @@ def _percent(share: float) -> str:
     return f"{100.0 * share:.3g}%"
 
 
-def _record(task: DesignTask, bracket: Bracket, out: Path) -> Record:
+def _record(task: DesignTask, bracket: Bracket, out: Path) -> RelaxationRecord:
     """Record of a relaxation."""
     lever, value = bracket.lever, bracket.lever.value(bracket.passing)
     options = lever.options(value)

@@ -6,17 +6,26 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from math import ceil, inf
 from pathlib import Path
-from typing import NamedTuple
+from typing import NamedTuple, TypedDict
 
+from camwright.geometry.errors import ResultError
 from camwright.pipeline.base.progress import Progress
+from camwright.pipeline.base.verdict import Verdict
 from camwright.pipeline.base.worker_processes import Crew
 from camwright.pipeline.checks.registry import DECLARED
+from camwright.pipeline.records.redesign_document import (
+    PointRecord,
+    RefusedPoint,
+    RoughRecord,
+    is_refused,
+    is_whole,
+)
 from camwright.pipeline.smoothing.constraints import check_of
 from camwright.pipeline.studies.design.candidate_search import FAR, OPTIMISTIC, Candidate
 from camwright.pipeline.studies.design.design_case import SYNTHESIS, Machinery, case_text
 from camwright.pipeline.studies.design.torque_task import DesignTask
 from camwright.pipeline.studies.redesign.pareto_front import front, thinned
-from camwright.pipeline.studies.redesign.point_store import PointTask, Record, solved
+from camwright.pipeline.studies.redesign.point_store import PointTask, solved
 
 _FRONT = 5  # of the front of the screening within the limits
 _NEAREST = 2  # of the front of those near to them
@@ -32,6 +41,27 @@ _SHORT = 1.05  # utilisation that a synthesis with corrections may cure
 _TOGETHER = 2  # drafts solved at once where the first that passes is enough
 _FREE_PRELOAD = (0.85, 1.1)  # of the preload of the screening: the spring has room for 1.05
 RESERVE = 0.01  # of the ripple allowed, for the corrections by finite elements
+
+
+class DraftLimit(TypedDict):
+    """The limit that a synthesis exceeds most."""
+
+    title: str
+    check: str
+    utilisation: float
+
+
+class DraftRecord(TypedDict):
+    """Record of a synthesis on few cam angles, by the keys of that of a preview."""
+
+    verdict: Verdict
+    ripple_left_Nm: float
+    shortfalls: list[DraftLimit]
+    binding: list[str]
+    preload_N: float
+    cam_radius_mm: float
+    prime_radius_mm: float
+    lift_max_mm: float
 
 
 @dataclass(frozen=True)
@@ -56,19 +86,24 @@ class PointStudy:
     def drafted(self, design: Machinery, smoothing: str) -> Solved:
         """A design with the record of its synthesis on few cam angles, cached or solved."""
         text = self.text(design, smoothing)
+        rough: RoughRecord | RefusedPoint
         rough = solved(PointTask(text, "", self.folder, self.version, "coarse"))
-        if "why" in rough:
+        if is_refused(rough):
             return Solved(design, rough, smoothing)
-        check = check_of(rough["limit"])
-        failing = {"title": DECLARED[check].title, "check": check,
-                   "utilisation": rough["utilisation"]} if check else None  # fmt: skip
-        record = {
+        failing: list[DraftLimit] = []
+        if check := check_of(rough["limit"]):
+            used = rough["utilisation"]
+            failing = [{"title": DECLARED[check].title, "check": check, "utilisation": used}]
+        record: DraftRecord = {
             "verdict": "fail" if failing else "pass",
             "ripple_left_Nm": rough["ripple"] * self.task.demand.ripple,
-            "shortfalls": [failing] if failing else [],
+            "shortfalls": failing,
             "binding": list(rough["binding"]),
             "preload_N": rough["preload"],
-        } | {f"{key}_mm": 1e3 * rough[key] for key in ("cam_radius", "prime_radius", "lift_max")}
+            "cam_radius_mm": 1e3 * rough["cam_radius"],
+            "prime_radius_mm": 1e3 * rough["prime_radius"],
+            "lift_max_mm": 1e3 * rough["lift_max"],
+        }
         return Solved(design, record, smoothing)
 
 
@@ -77,19 +112,47 @@ class Solved:
     """A design with the record of its preview or synthesis, and the lines of its smoothing."""
 
     design: Machinery
-    record: Record
+    record: PointRecord | DraftRecord | RefusedPoint
     smoothing: str = field(default=SYNTHESIS, repr=False)
 
     @property
     def has_cam(self) -> bool:
         """Whether there is a cam to judge."""
-        return "why" not in self.record
+        return not is_refused(self.record)
+
+    @property
+    def figures(self) -> PointRecord | DraftRecord:
+        """The record of a cam.
+
+        Raises
+        ------
+        ResultError
+            If there is none.
+        """
+        if is_refused(self.record):
+            raise ResultError(self.record["why"])
+        return self.record
+
+    @property
+    def whole(self) -> PointRecord:
+        """The record of a preview.
+
+        Raises
+        ------
+        ResultError
+            If there is no cam, or a draft alone.
+        """
+        if not is_whole(self.figures):
+            raise ResultError("a draft is not solved in full")
+        return self.figures
 
     @property
     def passes(self) -> bool:
         """Whether all limits are kept, the ripple with a reserve for the finite elements."""
         most = (1.0 - RESERVE) * self.design.task.ripple_allowed
-        return self.record.get("verdict") == "pass" and self.ripple <= most
+        if is_refused(self.record):
+            return False
+        return self.record["verdict"] == "pass" and self.ripple <= most
 
     def better_than(self, other: Solved) -> bool:
         """Whether it passes where the other does not, or leaves less ripple in the same size.
@@ -105,15 +168,18 @@ class Solved:
     @property
     def size(self) -> float:
         """From the far side of the cam to the top of the roller at maximum lift, m."""
+        record = self.figures
         lift, radius, prime = (
-            1e-3 * float(self.record[key])
-            for key in ("lift_max_mm", "cam_radius_mm", "prime_radius_mm")
-        )
+            1e-3 * length
+            for length in (
+                record["lift_max_mm"], record["cam_radius_mm"], record["prime_radius_mm"],
+            )
+        )  # fmt: skip
         return radius + prime + lift + self.design.frame.radius
 
     @property
     def ripple(self) -> float:
-        return float(self.record["ripple_left_Nm"])
+        return self.figures["ripple_left_Nm"]
 
     @property
     def use(self) -> float:
@@ -121,18 +187,21 @@ class Solved:
         if not self.has_cam:
             return inf
         ripple = self.ripple / ((1.0 - RESERVE) * self.design.task.ripple_allowed)
-        uses = [float(each["utilisation"] or 99.0) for each in self.record["shortfalls"]]
-        return max([ripple, *uses])
+        return max([ripple, *self._uses])
 
     @property
     def failing(self) -> list[str]:
         """Titles of the checks that fail."""
-        return [str(each["title"]) for each in self.record["shortfalls"]]
+        return [each["title"] for each in self.figures["shortfalls"]]
 
     @property
     def shortfall(self) -> float:
         """Sum of the utilisations of the checks that fail; 99 for an infinite one."""
-        return sum(float(each["utilisation"] or 99.0) for each in self.record["shortfalls"])
+        return sum(self._uses)
+
+    @property
+    def _uses(self) -> list[float]:
+        return [each["utilisation"] or 99.0 for each in self.figures["shortfalls"]]
 
 
 def promising(task: DesignTask, screened: Sequence[Candidate]) -> list[Candidate]:
@@ -187,7 +256,7 @@ def draft(study: PointStudy, candidate: Candidate) -> Solved:
     point = _free(study, candidate, 1.0)
     if study.task.space is not None or point.passes or not point.use <= _CURABLE:
         return point
-    if point.record["prime_radius_mm"] < _AT_MOST * 1e3 * point.design.prime_radius:
+    if point.figures["prime_radius_mm"] < _AT_MOST * 1e3 * point.design.prime_radius:
         return point
     larger = _free(study, candidate, _GROWN)
     return larger if larger.use < point.use else point
@@ -226,8 +295,8 @@ def settled(study: PointStudy, point: Solved) -> Solved:
 
     The cam radius of the synthesis is that of the room and of the counterweight.
     """
-    record, design = point.record, point.design
-    prime = 1e-4 * ceil(10.0 * float(record["prime_radius_mm"]) - 1e-3)
+    record, design = point.figures, point.design
+    prime = 1e-4 * ceil(10.0 * record["prime_radius_mm"] - 1e-3)
     if study.task.space is not None:
         prime = min(prime, design.prime_radius)
     spring = replace(design.spring, preload=float(f"{record['preload_N']:.3g}"))
@@ -236,7 +305,7 @@ def settled(study: PointStudy, point: Solved) -> Solved:
             design,
             prime_radius=prime,
             spring=spring,
-            cam_radius=1e-3 * float(record["cam_radius_mm"]),
+            cam_radius=1e-3 * record["cam_radius_mm"],
         )
     )
 

@@ -6,7 +6,7 @@ import shlex
 from dataclasses import dataclass
 from math import inf, isfinite
 from pathlib import Path
-from typing import TypedDict, cast
+from typing import cast
 
 import numpy as np
 
@@ -14,6 +14,7 @@ from camwright.geometry.arrays import FULL_TURN, Array, readonly
 from camwright.geometry.errors import InputError
 from camwright.pipeline.base import units
 from camwright.pipeline.base.source import Source
+from camwright.pipeline.records.design_document import DesignOptions, Number
 from camwright.pipeline.torque.angle_trace import guard_order
 from camwright.pipeline.torque.period import Period
 from camwright.pipeline.torque.tabled_torque import TabledTorqueFile, tabled_torque
@@ -26,24 +27,9 @@ _AMBIENT = "40 degC"
 _REMOVE = 0.5
 _WHOLE = 0.02  # of a turn: a span this near to whole turns is a cycle of them
 
-Number = str | float
 NAMES = ("speeds", "overspeed", "cycle", "ratio", "space", "life", "ambient", "remove")
 """Options that are assumed where they are not given."""
 _UNITS = {"cycle": "deg", "space": "mm", "life": "h", "ambient": "K"}
-
-
-class DesignOptions(TypedDict, total=False):
-    """Options of a design, numbers in SI or text with a unit."""
-
-    speed: Number
-    speeds: str | tuple[Number, Number]
-    overspeed: Number
-    cycle: Number
-    ratio: Number
-    space: Number
-    life: Number
-    ambient: Number
-    remove: Number
 
 
 @dataclass(frozen=True, eq=False)

@@ -27,8 +27,6 @@ from camwright.pipeline.torque.torque import Torque
 Answer = RoughRecord | PointRecord | ConflictPoint | RefusedPoint
 """Of the tiers coarse and rough, whole, conflict; the last where a case has no cam."""
 
-Record = dict[str, Any]
-
 SOLVED = "solved"
 
 
