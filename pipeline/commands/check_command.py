@@ -234,7 +234,7 @@ def schema(
         typer.Argument(
             metavar="NAME",
             help="run, trial, checks, check (of check --json), signoff, corners, crown, size, "
-            "redesign, design or study.",
+            "redesign, design, inspect or study.",
         ),
     ],
 ) -> int:

@@ -1,19 +1,20 @@
 """Forms of the JSON records: types of the code, and their schemas.
 
-| module              | responsibility                                             |
-| ------------------- | ---------------------------------------------------------- |
-| `forms`             | declaration of a form: bounds, conditions, meaning of keys |
-| `check_record`      | ``6_checks.json``                                          |
-| `run_summary`       | ``run.json``                                               |
-| `trial_contents`    | ``trial.json``                                             |
-| `corners_document`  | ``corners.json``                                           |
-| `signoff_record`    | ``signoff.json``                                           |
-| `check_document`    | output of ``check --json``                                 |
-| `crown_document`    | ``crown.json``, output of ``crown --json``                 |
-| `size_document`     | output of ``size --json``                                  |
-| `redesign_document` | ``redesign.json``, output of ``redesign --json``           |
-| `design_document`   | ``design.json``, output of ``design --json``               |
-| `study_document`    | ``study.json``                                             |
+| module                | responsibility                                             |
+| --------------------- | ---------------------------------------------------------- |
+| `forms`               | declaration of a form: bounds, conditions, meaning of keys |
+| `check_record`        | ``6_checks.json``                                          |
+| `run_summary`         | ``run.json``                                               |
+| `trial_contents`      | ``trial.json``                                             |
+| `corners_document`    | ``corners.json``                                           |
+| `signoff_record`      | ``signoff.json``                                           |
+| `check_document`      | output of ``check --json``                                 |
+| `crown_document`      | ``crown.json``, output of ``crown --json``                 |
+| `size_document`       | output of ``size --json``                                  |
+| `redesign_document`   | ``redesign.json``, output of ``redesign --json``           |
+| `design_document`     | ``design.json``, output of ``design --json``               |
+| `inspection_document` | ``inspection.json``, output of ``inspect --json``          |
+| `study_document`      | ``study.json``                                             |
 
 Imports `geometry` and `base`.
 """

@@ -12,6 +12,7 @@ from camwright.pipeline.records.corners_document import CornersDocument
 from camwright.pipeline.records.crown_document import CrownDocument
 from camwright.pipeline.records.design_document import DesignDocument
 from camwright.pipeline.records.forms import Schema
+from camwright.pipeline.records.inspection_document import InspectionDocument
 from camwright.pipeline.records.redesign_document import RedesignDocument
 from camwright.pipeline.records.run_summary import Summary
 from camwright.pipeline.records.signoff_record import SignoffRecord
@@ -30,6 +31,7 @@ NAMES = {
     "size": "output of camwright size --json",
     "redesign": "redesign.json, output of camwright redesign --json",
     "design": "design.json, output of camwright design --json",
+    "inspect": "inspection.json, output of camwright inspect --json",
     "study": "study.json",
 }
 """Names of the schemas and the documents that they describe."""
@@ -44,6 +46,7 @@ _FORMS: Mapping[str, Any] = {
     "size": SizeDocument,
     "redesign": RedesignDocument,
     "design": DesignDocument,
+    "inspect": InspectionDocument,
     "study": StudyDocument,
 }
 

@@ -15,19 +15,19 @@ from camwright.geometry.contour import Contour
 from camwright.geometry.errors import InputError
 from camwright.geometry.measured_contour import Inspection, inspected, real_contour, surface_of_lift
 from camwright.pipeline.base import units
-from camwright.pipeline.base.files import Json, json_text, write_atomic
+from camwright.pipeline.base.files import json_text, write_atomic
 from camwright.pipeline.base.progress import SILENT, Progress
 from camwright.pipeline.base.tables import CAM_ANGLE, Column, Table, read_table, table
 from camwright.pipeline.base.units import in_unit
+from camwright.pipeline.base.verdict import verdict
 from camwright.pipeline.case.case import Case
+from camwright.pipeline.records.inspection_document import CycleFigures, InspectionDocument
 from camwright.pipeline.results import check_records, run_reader
 from camwright.pipeline.results.run_records import cycle_columns
 from camwright.pipeline.results.trial import Trial
 from camwright.pipeline.solver import solve
 from camwright.pipeline.torque.angle_trace import read_trace
 from camwright.pipeline.torque.trace_file import trace_text
-
-Record = dict[str, Any]
 
 FOLDER = "inspection"
 _WAVES_LISTED = 12
@@ -111,7 +111,9 @@ def inspect_part(
     return RealPart(fit, real, replace(trial, why="measured contour"))
 
 
-def write_inspection(run: Path, part: RealPart, tolerance: float, folder: Path) -> Record:
+def write_inspection(
+    run: Path, part: RealPart, tolerance: float, folder: Path
+) -> InspectionDocument:
     """Write the files of an inspection into a folder: deviations, cycle, checks and record.
 
     Returns
@@ -129,7 +131,7 @@ def write_inspection(run: Path, part: RealPart, tolerance: float, folder: Path) 
     write_atomic(folder / "cycle.csv", table(cycle_columns(part.trial.cycles)).to_csv())
     records = [check.as_record() for check in part.trial.checks]
     write_atomic(folder / "checks.json", json_text(records) + "\n")
-    record: dict[str, Json] = {
+    record: InspectionDocument = {
         "phase_deg": in_unit(fit.phase, "deg"),
         "size_um": in_unit(fit.size, "um"),
         "deviation_min_um": in_unit(float(fit.deviation.min()), "um"),
@@ -141,7 +143,7 @@ def write_inspection(run: Path, part: RealPart, tolerance: float, folder: Path) 
         "waves_um": _waves(fit),
         "nominal": _figures_of(run_reader.read_run(run).final.cycle),
         "measured": _figures_of(read_table(folder / "cycle.csv")),
-        "verdict": part.trial.verdict,
+        "verdict": verdict(part.trial.checks),
         "verdict_line": check_records.verdict_line(run_reader.read_records(folder / "checks.json")),
         "scope": part.trial.case.scope.as_record(),
         "binding": list(part.trial.binding),
@@ -157,26 +159,27 @@ def _waves(fit: Inspection) -> dict[str, float]:
     return {str(k): sizes[k] for k in sorted(largest)}
 
 
-def _figures_of(cycle: Table) -> Mapping[str, float | None]:
-    """Extremes over all load cases of a cycle, by name with unit."""
-    measures: dict[str, tuple[str, Callable[[Array], float]]] = {
-        "normal_force_max_N": ("normal_force_N", np.max),
-        "normal_force_min_N": ("normal_force_N", np.min),
-        "p0_max_MPa": ("p0_fe_MPa", np.max),
-        "von_mises_max_MPa": ("von_mises_MPa", np.max),
-        "pressure_angle_max_deg": ("pressure_angle_deg", lambda v: np.abs(v).max()),
-    }
-    figures: dict[str, float | None] = {}
-    for name, (header, measure) in measures.items():
+def _figures_of(cycle: Table) -> CycleFigures:
+    """Extremes over all load cases of a cycle."""
+
+    def extreme(header: str, measure: Callable[[Array], float]) -> float | None:
         value = float(measure(np.asarray(cycle[header], dtype=float)))
-        figures[name] = value if math.isfinite(value) else None
+        return value if math.isfinite(value) else None
+
+    figures: CycleFigures = {
+        "normal_force_max_N": extreme("normal_force_N", np.max),
+        "normal_force_min_N": extreme("normal_force_N", np.min),
+        "p0_max_MPa": extreme("p0_fe_MPa", np.max),
+        "von_mises_max_MPa": extreme("von_mises_MPa", np.max),
+        "pressure_angle_max_deg": extreme("pressure_angle_deg", lambda v: np.abs(v).max()),
+    }
     if "torque_after_Nm" in cycle:  # standstill and over-speed have no engine torque
         design = cycle.of_load_case(cycle.load_cases[0]) if cycle.load_cases else cycle
         figures["torque_after_std_Nm"] = float(np.std(design["torque_after_Nm"]))
     return figures
 
 
-def lines(record: Record) -> list[str]:
+def lines(record: InspectionDocument) -> list[str]:
     """Lines of text of a record."""
     side = "within" if record["within_tolerance"] else "outside"
     text = [
@@ -186,7 +189,8 @@ def lines(record: Record) -> list[str]:
         f"{record['scatter_rms_um']:.2g} um rms",
         "waves per turn: " + ", ".join(f"{k}: {v:.2f} um" for k, v in record["waves_um"].items()),
     ]
-    for name, drawn in record["nominal"].items():
+    nominal: Mapping[str, Any] = record["nominal"]
+    for name, drawn in nominal.items():
         real = record["measured"].get(name)
         if drawn is not None and real is not None:
             text.append(f"{name}: {drawn:.5g} nominal, {real:.5g} measured")

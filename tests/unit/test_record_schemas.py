@@ -38,6 +38,7 @@ from camwright.pipeline.records.check_record import CheckRecord
 from camwright.pipeline.records.corners_document import CornersDocument
 from camwright.pipeline.records.crown_document import CrownDocument
 from camwright.pipeline.records.design_document import DesignDocument
+from camwright.pipeline.records.inspection_document import InspectionDocument
 from camwright.pipeline.records.redesign_document import RedesignDocument
 from camwright.pipeline.records.run_summary import Summary
 from camwright.pipeline.records.signoff_record import SignoffRecord
@@ -81,7 +82,7 @@ def test_schemas_are_of_the_draft_and_describe_every_property(name: str) -> None
         for key, value in each.get("properties", {}).items():
             assert len(value.get("description", "")) > 3, f"{path}: {key}"
             described += 1
-    assert described >= {"corners": 17, "study": 16}.get(name, 25)
+    assert described >= {"corners": 17, "inspect": 24, "study": 16}.get(name, 25)
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -349,6 +350,7 @@ FORMS = {
     "run": Summary, "trial": TrialContents, "check": CheckDocument, "signoff": SignoffRecord,
     "corners": CornersDocument, "crown": CrownDocument, "size": SizeDocument,
     "redesign": RedesignDocument, "design": DesignDocument, "study": StudyDocument,
+    "inspect": InspectionDocument,
 }  # fmt: skip
 
 

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from record_validation import schema_errors
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "unit"))
 import small_run
@@ -270,6 +271,7 @@ def test_command_judges_the_real_part(run, tmp_path: Path, capsys) -> None:
     arguments = ["inspect", str(folder), str(table), "--jobs", "1", "--tolerance", "20 um"]
     code = app(args=arguments, standalone_mode=False)
     record = json.loads((folder / FOLDER / "inspection.json").read_text(encoding="utf-8"))
+    assert schema_errors("inspect", record) == []
     assert code == EXIT_CODE[record["verdict"]]
     assert record["phase_deg"] == pytest.approx(3.0, rel=0.015)
     assert record["waves_um"]["12"] == pytest.approx(20.0, rel=1e-5)
