@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import shlex
 from collections.abc import Callable
 from dataclasses import replace
@@ -11,6 +12,7 @@ from typing import Any, NoReturn
 
 import numpy as np
 import pytest
+from record_validation import part_errors
 from torque_tables import MACHINES, write_table
 
 from camwright.geometry.errors import InputError, ResultError
@@ -271,6 +273,11 @@ def test_the_first_relaxation_is_the_smallest_of_all_options(
     study = PointStudy(task_in(tmp_path), tmp_path, "torque.csv", "")
     near = None if nearest is None else drafted(study.task, nearest)
     first, *others = relaxations(study, near, tmp_path / "c.toml", ALONE, SILENT)
+    for each in (first, *others):
+        written = json.loads(json.dumps(each))
+        assert part_errors("design", "RelaxationRecord", written) == []
+        del written["from"]
+        assert part_errors("design", "RelaxationRecord", written)
     sizes = {"--speed": np.log(300.0 / speed), "--life": np.log(2000.0 / life),
              "--remove": np.log(0.5 / remove)}  # fmt: skip
     least = min(sizes.values())
@@ -369,6 +376,7 @@ def test_parts_are_exchanged_until_none_passes(monkeypatch: pytest.MonkeyPatch) 
     assert result.point.size == 5
     assert [each.becomes for each in result.kept] == ["8", "7", "6", "5"]
     record = result.as_record()
+    assert part_errors("design", "ExchangesRecord", record) == []
     assert {each["part"]: each["why"] for each in record["failing"]} == {
         "roller": "Fatigue", "stem": "Fatigue",
     }  # fmt: skip
