@@ -156,12 +156,14 @@ def _synthesised(case: Case, torques: Mapping[str, Torque], progress: Progress) 
         drawn, gain = redrawn(case, design.variables), design.ripple_gain
         solved = _solved(drawn, design.lift(), None if design.ended else gain, torques, progress)
         tried.append((solved, design_record(design, each.problem)))
+        if not design.feasible and len(tried) == 1:
+            break
         settled = each.compare(solved).settled
         # After a search that its effort has ended, corrections do not settle.
         most = _ENDED_ROUNDS if design.ended else _ROUNDS
         if not design.feasible or each.number >= most or (settled and not each.rises):
             break
-    if settled or len(tried) == 1:
+    if len(tried) == 1 or settled:
         return _trial_of(*tried[-1], progress)
     ranking = [each for each in DECLARED.values() if each.must_have and depends_on_lift(each)]
     ranks = [rank(checks_of(each, ranking), solved_ripple(each.cycles)) for each, _ in tried]
