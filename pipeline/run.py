@@ -217,7 +217,7 @@ class CaseRun:
             write_workshop(folder.path / WORKSHOP, final.case, final.contour, note=watch.note)
 
     def certify(self) -> Trial:
-        """The final trial with its certificate; as it is, below CERTIFIED."""
+        """The final trial with its certificate; below CERTIFIED without one."""
         final = _made(self._final)
         if self.depth < Tier.CERTIFIED:
             return final

@@ -14,6 +14,8 @@ from types import MappingProxyType
 def texts_below(kind: type) -> Mapping[str, str]:
     """First paragraphs of the docstrings below the fields of a class and its bases, by field.
 
+    A `TypedDict` has no bases at run time: of its own keys.
+
     Raises
     ------
     OSError

@@ -39,7 +39,7 @@ def _any(_: object) -> bool:
 
 
 @dataclass(frozen=True)
-class Form(Generic[T]):
+class Format(Generic[T]):
     """Format of the files of a store.
 
     Parameters
@@ -47,7 +47,7 @@ class Form(Generic[T]):
     suffix : str        of the file names
     write : function    value -> bytes, the same for the same value
     read : function     path -> value; ResultError if the file is missing or damaged
-    as_read : function  value -> value as it is read back
+    as_read : function  value -> value that its file gives back
     """
 
     suffix: str
@@ -84,9 +84,9 @@ def _packed(arrays: Arrays) -> bytes:
     return npz_bytes(_in_order(arrays))
 
 
-JSON: Form[dict[str, Any]] = Form(".json", _json_bytes, _read_record)
-ARRAYS: Form[Arrays] = Form(".npz", _loose, read_npz, _laid_out)
-PACKED: Form[Arrays] = replace(ARRAYS, write=_packed)
+JSON: Format[dict[str, Any]] = Format(".json", _json_bytes, _read_record)
+ARRAYS: Format[Arrays] = Format(".npz", _loose, read_npz, _laid_out)
+PACKED: Format[Arrays] = replace(ARRAYS, write=_packed)
 """Arrays, compressed."""
 
 
@@ -97,20 +97,20 @@ class Store(Generic[T]):
     Parameters
     ----------
     folder : Path   created when it is needed; None: nothing is stored
-    form : Form     of the files
+    format : Format   of the files
     most : int      bytes of all entries, the least recently used being deleted; None: no limit
     must : bool     an entry is on the disk when it is stored, and one that cannot be written is an
                     error; else it may be missing or cut short after a loss of power
     """
 
     folder: Path | None
-    form: Form[T]
+    format: Format[T]
     most: int | None = None
     must: bool = True
 
     def path(self, key: str) -> Path | None:
         """File of an entry; None if nothing is stored."""
-        return None if self.folder is None else self.folder / f"{key}{self.form.suffix}"
+        return None if self.folder is None else self.folder / f"{key}{self.format.suffix}"
 
     def holds(self, key: str) -> bool:
         """Whether there is an entry, damaged or not."""
@@ -123,7 +123,7 @@ class Store(Generic[T]):
         if path is None:
             return None
         try:
-            value = self.form.read(path)
+            value = self.format.read(path)
         except ResultError:
             return None
         if not fits(value):
@@ -136,7 +136,7 @@ class Store(Generic[T]):
     def put(self, key: str, value: T) -> None:
         """Store a value in place of an earlier entry; see `put_written`."""
         if self.folder is not None:
-            self.put_written(key, self.form.write(value))
+            self.put_written(key, self.format.write(value))
 
     def put_written(self, key: str, content: bytes) -> None:
         """Store a value whose bytes another process has made.
@@ -175,7 +175,7 @@ class Store(Generic[T]):
         """
         value = self.get(key, fits)
         if value is None:
-            value = self.form.as_read(compute())
+            value = self.format.as_read(compute())
             self.put(key, value)
         return value
 

@@ -6,15 +6,13 @@ of its keys, the JSON Schema that `results.record_schemas` makes of it. Reading 
 
 from __future__ import annotations
 
-import ast
-import inspect
-import textwrap
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from itertools import pairwise
 from typing import Annotated, Any, Literal, TypeAlias, TypeVar, get_args
 
 from typing_extensions import get_original_bases
+
+from camwright.pipeline.base.field_texts import texts_below
 
 Schema: TypeAlias = dict[str, Any]
 Kind = TypeVar("Kind", bound=type)
@@ -100,7 +98,7 @@ def form(
         def complete(schema: Schema) -> None:
             bases: list[type] = [kind, *(each for each in _bases(kind) if each in _FORMS)]
             for each in bases:
-                for key, text in meanings(each).items():
+                for key, text in texts_below(each).items():
                     schema["properties"][key]["description"] = text
             named = [key for each in bases for key in _FORMS[each][0]]
             schema["required"] = [*schema.get("required", ()), *named]
@@ -119,16 +117,3 @@ def _bases(kind: type) -> list[type]:
     """Forms of which a form has the keys; at run time a `TypedDict` is a plain dictionary."""
     direct = [each for each in get_original_bases(kind) if isinstance(each, type)]
     return [base for each in direct if each in _FORMS for base in (each, *_bases(each))]
-
-
-def meanings(kind: type) -> dict[str, str]:
-    """Docstrings of the own keys of a form."""
-    (tree,) = ast.parse(textwrap.dedent(inspect.getsource(kind))).body
-    lines = tree.body if isinstance(tree, ast.ClassDef) else []
-    found = {}
-    for line, below in pairwise(lines):
-        if isinstance(line, ast.AnnAssign) and isinstance(below, ast.Expr):
-            key, text = line.target, below.value
-            if isinstance(key, ast.Name) and isinstance(text, ast.Constant):
-                found[key.id] = " ".join(str(text.value).split())
-    return found

@@ -217,7 +217,7 @@ class RedesignDocument(TypedDict):
     against: Against
     """Second objective beside the ripple."""
     given: PointRecord | RefusedPoint
-    """The case as it is."""
+    """The case before any change."""
     points: list[FrontPoint]
     """Points of the front by increasing size or mass."""
     refused: list[RefusedChoice]

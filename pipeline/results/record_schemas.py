@@ -1,4 +1,4 @@
-"""JSON Schemas, draft 2020-12, of the records: made of their forms when asked for."""
+"""JSON Schemas, draft 2020-12, of the records, generated from their forms on demand."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Rounds of synthesis and correction: what is solved of a design corrects the problem of the next.
+"""Rounds of synthesis and correction: the solved cam of one corrects the problem of the next.
 
 The optimiser is imported with this module.
 """

@@ -18,7 +18,7 @@ from hypothesis import strategies as st
 
 from camwright.geometry.errors import ResultError
 from camwright.pipeline.base import store
-from camwright.pipeline.base.store import ARRAYS, JSON, PACKED, Form, Store, key_of
+from camwright.pipeline.base.store import ARRAYS, JSON, PACKED, Format, Store, key_of
 
 FEW = settings(
     max_examples=60, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture]
@@ -104,18 +104,18 @@ def failing(call: str, code: int, after: int = 0) -> Iterator[None]:
 
 @FEW
 @given(values)
-def test_a_value_is_read_back_to_the_bit(given: tuple[Form[Any], Any]) -> None:
-    form, value = given
+def test_a_value_is_read_back_to_the_bit(given: tuple[Format[Any], Any]) -> None:
+    file_format, value = given
     with folder() as place:
-        of = Store(place, form)
+        of = Store(place, file_format)
         assert of.get(KEY) is None and not of.holds(KEY)
         first = of.kept(KEY, lambda: value)
         again = of.kept(KEY, lambda: pytest.fail("computed again"))
-        assert same(first, again) and same(of.get(KEY), form.as_read(value))
-        assert of.holds(KEY) and files(place) == [f"000007{form.suffix}"]
+        assert same(first, again) and same(of.get(KEY), file_format.as_read(value))
+        assert of.holds(KEY) and files(place) == [f"000007{file_format.suffix}"]
         whole = content(of)
         of.put(KEY, value)
-        assert content(of) == whole == form.write(again)
+        assert content(of) == whole == file_format.write(again)
         of.delete(KEY)
         of.delete(KEY)
         assert not of.holds(KEY) and files(place) == []
@@ -124,34 +124,34 @@ def test_a_value_is_read_back_to_the_bit(given: tuple[Form[Any], Any]) -> None:
 @FEW
 @given(values, st.data())
 def test_a_cut_entry_is_missing_and_written_again(
-    given: tuple[Form[Any], Any], data: st.DataObject
+    given: tuple[Format[Any], Any], data: st.DataObject
 ) -> None:
-    form, value = given
+    file_format, value = given
     with folder() as place:
-        of = Store(place, form)
+        of = Store(place, file_format)
         of.put(KEY, value)
-        path, whole = place / f"{KEY}{form.suffix}", content(of)
+        path, whole = place / f"{KEY}{file_format.suffix}", content(of)
         # the last character of a record is a line end
-        least = 2 if form is JSON else 1
+        least = 2 if file_format is JSON else 1
         path.write_bytes(whole[: data.draw(st.integers(0, len(whole) - least))])
         assert of.get(KEY) is None
-        assert same(of.kept(KEY, lambda: value), form.as_read(value))
+        assert same(of.kept(KEY, lambda: value), file_format.as_read(value))
         assert of.get(KEY) is not None and files(place) == [path.name]
 
 
 @FEW
 @given(st.sampled_from([ARRAYS, PACKED]), arrays, st.data())
 def test_an_altered_archive_is_never_another_value(
-    form: Form[Any], value: Any, data: st.DataObject
+    file_format: Format[Any], value: Any, data: st.DataObject
 ) -> None:
     with folder() as place:
-        of = Store(place, form)
+        of = Store(place, file_format)
         of.put(KEY, value)
         altered = bytearray(content(of))
         at = data.draw(st.integers(0, len(altered) - 1))
         altered[at] ^= data.draw(st.integers(1, 255))
         (place / f"{KEY}.npz").write_bytes(altered)
-        known, true = of.get(KEY), form.as_read(value)
+        known, true = of.get(KEY), file_format.as_read(value)
         # outside of what the check sums cover stand the names of the members
         assert known is None or all(
             any(same(each, other) for other in true.values()) for each in known.values()
@@ -166,11 +166,11 @@ def test_what_is_no_record_is_missing(tmp_path: Path, text: str) -> None:
 
 @FEW
 @given(values, st.booleans())
-def test_writers_of_one_entry_leave_a_whole_one(given: tuple[Form[Any], Any], must: bool) -> None:
+def test_writers_of_one_entry_leave_a_whole_one(given: tuple[Format[Any], Any], must: bool) -> None:
     """Another writer, and a reader, between what one writes aside and its move."""
-    form, value = given
+    file_format, value = given
     with folder() as place:
-        of = Store(place, form, must=must)
+        of = Store(place, file_format, must=must)
         move, seen = Path.replace, list[Any]()
 
         def moved(path: Path, target: Path) -> Path:
@@ -185,19 +185,19 @@ def test_writers_of_one_entry_leave_a_whole_one(given: tuple[Form[Any], Any], mu
             patch.setattr(Path, "replace", moved)
             of.put(KEY, value)
         assert seen[0] is None and seen[1] is not None and same(seen[1], of.get(KEY))
-        assert files(place) == [f"000007{form.suffix}"]
+        assert files(place) == [f"000007{file_format.suffix}"]
 
 
 @FEW
 @given(values, st.sampled_from(["tempfile.mkstemp", "os.fdopen", "Path.chmod", "Path.replace"]))
-def test_an_entry_that_cannot_be_written(given: tuple[Form[Any], Any], call: str) -> None:
+def test_an_entry_that_cannot_be_written(given: tuple[Format[Any], Any], call: str) -> None:
     """It is an error where it must be; an earlier one stays, and nothing is left aside."""
-    form, value = given
+    file_format, value = given
     reason = errno.EACCES if call in ("tempfile.mkstemp", "Path.chmod") else errno.ENOSPC
     with folder() as place:
-        may, must = Store(place, form, must=False), Store(place, form)
+        may, must = Store(place, file_format, must=False), Store(place, file_format)
         with failing(call, reason):
-            assert same(may.kept(KEY, lambda: value), form.as_read(value))
+            assert same(may.kept(KEY, lambda: value), file_format.as_read(value))
             with pytest.raises(ResultError, match=os.strerror(reason)):
                 must.kept(KEY, lambda: value)
         assert may.get(KEY) is None and files(place) == []
@@ -207,8 +207,8 @@ def test_an_entry_that_cannot_be_written(given: tuple[Form[Any], Any], call: str
             may.put(KEY, value)
             with pytest.raises(ResultError):
                 must.put(KEY, value)
-            assert same(must.kept(KEY, lambda: pytest.fail("computed")), form.as_read(value))
-        assert content(must) == whole and files(place) == [f"000007{form.suffix}"]
+            assert same(must.kept(KEY, lambda: pytest.fail("computed")), file_format.as_read(value))
+        assert content(must) == whole and files(place) == [f"000007{file_format.suffix}"]
 
 
 def test_an_entry_that_must_be_written_is_on_the_disk(tmp_path: Path) -> None:
@@ -253,18 +253,18 @@ def test_a_folder_that_is_a_file(tmp_path: Path) -> None:
 
 @FEW
 @given(values)
-def test_without_a_folder_nothing_is_stored(given: tuple[Form[Any], Any]) -> None:
-    form, value = given
-    of = Store(None, form)
+def test_without_a_folder_nothing_is_stored(given: tuple[Format[Any], Any]) -> None:
+    file_format, value = given
+    of = Store(None, file_format)
     of.put(KEY, value)
     of.delete(KEY)
     assert of.path(KEY) is None and not of.holds(KEY) and of.get(KEY) is None
-    assert same(of.kept(KEY, lambda: value), form.as_read(value))
+    assert same(of.kept(KEY, lambda: value), file_format.as_read(value))
 
 
-@pytest.mark.parametrize("form", [JSON, ARRAYS, PACKED])
-def test_a_store_is_handed_to_processes(form: Form[Any], tmp_path: Path) -> None:
-    of = Store(tmp_path, form, most=7, must=False)
+@pytest.mark.parametrize("file_format", [JSON, ARRAYS, PACKED])
+def test_a_store_is_handed_to_processes(file_format: Format[Any], tmp_path: Path) -> None:
+    of = Store(tmp_path, file_format, most=7, must=False)
     assert pickle.loads(pickle.dumps(of)) == of
 
 

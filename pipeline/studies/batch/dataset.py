@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from camwright.geometry.errors import ResultError
-from camwright.pipeline.base.store import Form
+from camwright.pipeline.base.store import Format
 from camwright.pipeline.base.tables import Column
 
 if TYPE_CHECKING:
@@ -268,7 +268,7 @@ def read_parquet(path: Path) -> pa.Table:
         raise ResultError(f"{path}: {' '.join(str(error).split())[:200]}") from None
 
 
-TABLE: Form[pa.Table] = Form(".parquet", parquet_bytes, read_parquet)
+TABLE: Format[pa.Table] = Format(".parquet", parquet_bytes, read_parquet)
 """Tables as the files of a store."""
 
 
