@@ -152,7 +152,7 @@ def recompute(
     Taken from the folder: the case; the lift, where a synthesis chose it; whether that synthesis
     converged; reason and number of the trial. A check may differ by its error bar, as
     computed again. No entry of the disk cache is read, and whatever versions the run states, every
-    file is compared.
+    file but the pages is compared: see `page_differences`.
 
     Parameters
     ----------
