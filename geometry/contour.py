@@ -293,6 +293,12 @@ class Contour(Displayed, ABC):
         dx, dy = self._ring_step
         return readonly([np.sum(x**2 * dy), -np.sum(y**2 * dx)]) / (2 * self.area())
 
+    def polar_moment(self) -> float:
+        """Polar second moment about the cam axis of the area within the contour, m^4."""
+        x, y = self._ring
+        dx, dy = self._ring_step
+        return float(0.25 * np.sum((x**2 + y**2) * (x * dy - y * dx)))
+
     def perimeter(self) -> float:
         """Length of the contour, m."""
         return float(np.sum(np.hypot(*self._ring_step)))

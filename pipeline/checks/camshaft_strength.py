@@ -9,6 +9,7 @@ from functools import cache
 import numpy as np
 
 from camwright.geometry.arrays import Array
+from camwright.geometry.contour import Contour
 from camwright.geometry.errors import InputError
 from camwright.geometry.extrema import first_greatest, first_least
 from camwright.pipeline.base import levers
@@ -62,8 +63,11 @@ from camwright.pipeline.cycle.solution import Solution
 from camwright.pipeline.follower.camshaft_loads import (
     Camshaft,
     CamshaftGear,
+    Impact,
+    Rotor,
     ShaftLoads,
     ShaftSection,
+    impact,
 )
 from camwright.pipeline.follower.roller_motion import rating_life, static_safety
 from camwright.pipeline.follower.shaft_strength import (
@@ -84,6 +88,10 @@ from camwright.pipeline.follower.shaft_strength import (
 )
 
 REVERSED = 0.7  # of the bending limit, for reversed torque
+_RIGID = 1e9  # N m/rad, of a shaft without diameter or material
+MESH_STIFFNESS = 20e9
+"""Of steel teeth over their width, N/m2: ISO 6336-1, mean value (recalled, verify)."""
+_STEEL = 206e9  # Pa, of the teeth of `MESH_STIFFNESS`
 RATED = 0.5  # of the dynamic rating: greatest load of the rating life, ISO 281
 BREAKS = "a broken or seized camshaft stops the engine"
 
@@ -681,6 +689,124 @@ gear_contact = check(
     pointwise=True,
     kept=Kept(group=TOOTH_TORQUE),
 )(tooth_torque)
+
+
+def _rotor(machine: Machine, contour: Contour) -> Rotor:
+    """Gear, cam and the shaft between both, rigid without diameter or material."""
+    shaft, cam = camshaft_of(machine), machine.cam
+    gear, card, twist = gear_of(shaft), shaft.material, _RIGID
+    if shaft.thinnest is not None and card is not None:
+        section = np.pi * shaft.thinnest**4 / 32.0
+        apart = abs(shaft.cam_position - shaft.gear_position)
+        twist = min(twist, card.E / (2.0 * (1.0 + card.nu)) * section / apart)
+    ring = contour.polar_moment() - 0.5 * np.pi * cam.bore_radius**4
+    return Rotor(
+        gear=gear.inertia(shaft.gear_radius),
+        cam=cam.material.density * cam.width * ring,
+        shaft=twist,
+        mesh=_mesh_stiffness(gear) * gear.width,
+        radius=shaft.gear_radius,
+    )
+
+
+def _hardest_impact(cycle: Cycle, rotor: Rotor, drag: float, backlash: float) -> Impact | None:
+    """Hardest impact of a turn; None where no reversal lets the teeth cross their backlash."""
+    if cycle.cam_speed <= 0.0:
+        return None
+    torque = cycle.loads.cam_torque + drag
+    found = [
+        impact(cycle.theta, torque, reversal, cycle.cam_speed, rotor, backlash)
+        for reversal in cycle.parts.reversals
+    ]
+    return max(filter(None, found), key=lambda each: each.force, default=None)
+
+
+def _mesh_stiffness(gear: CamshaftGear) -> float:
+    """Of the teeth over their width, N/m2: that of steel by the moduli of both wheels."""
+    mate = gear.pinion_material or gear.material
+    share = 2.0 * gear.material.E * mate.E / ((gear.material.E + mate.E) * _STEEL)
+    return MESH_STIFFNESS * share
+
+
+@check(
+    GEAR_BENDING_SAFETY,
+    id="gear_impact",
+    title="Tooth root stress of the impact in the backlash",
+    unit="MPa",
+    method="flight of cam and gear across the backlash after each reversal of the torque, then the"
+    " greatest force on elastic teeth and shaft: 20 N/mm/um of steel teeth, damped by 3 %",
+    lift_can_help=True,
+    part="gear",
+    formula="F/(b m pi y) <= 0.7 s_F / S; F: greatest force on the teeth, y = 0.154 - 0.912/z,"
+    " z: teeth of gear or pinion, whichever has less reserve, s_F: its bending limit, S:"
+    " limits.gear_bending_safety, 0.7: reversed torque. 0 where no reversal crosses"
+    " the backlash",
+    symbols={
+        "F": f"{STATED} [N]",
+        "z": STATED,
+        "s_F": f"{STATED} [MPa]",
+        "b": "camshaft.gear.width",
+        "m": "2 camshaft.gear_radius/camshaft.gear.teeth [mm]",
+        "S": f"limits.{GEAR_BENDING_SAFETY.id}",
+    },
+    reason="flanks that meet at every reversal break their teeth before the steady torque does",
+    values=(
+        *given.LOADS,
+        "camshaft.gear.backlash",
+        "camshaft.gear.*bending_limit",
+        "camshaft.gear.material.E",
+        "camshaft.drag",
+    ),
+    levers=(
+        levers.one("camshaft.gear.backlash", -1),
+        levers.one("camshaft.gear.width"),
+        *levers.GENTLER,
+    ),
+    page="Camshaft",
+)
+def gear_impact(solution: Solution) -> Demand:
+    """Root stress of the teeth that cross their backlash at a reversal of the torque."""
+    shaft = camshaft_of(solution.machine)
+    gear = gear_of(shaft)
+    safety = solution.machine.limits[GEAR_BENDING_SAFETY]
+    missing = lacking(gear.table, gear, "bending_limit", "pinion_bending_limit")
+    known = (gear.bending_limit or np.nan), (gear.pinion_bending_limit or np.nan)
+    limits = [REVERSED * each / safety for each in known]
+    module, teeth = 2.0 * shaft.gear_radius / gear.teeth, (gear.teeth, gear.pinion_teeth)
+    root = [float(tooth_root_stress(1.0, gear.width, module, each)) for each in teeth]
+    weaker = first_greatest([each / limit for each, limit in zip(root, limits, strict=True)])
+    backlash = gear.known_backlash(shaft.gear_radius)
+    rotor = _rotor(solution.machine, solution.contour)
+
+    @cache
+    def hardest(cycle: Cycle) -> Impact | None:
+        return _hardest_impact(cycle, rotor, shaft.drag, backlash)
+
+    def stress(cycle: Cycle) -> float:
+        met = hardest(cycle)
+        return 0.0 if met is None else root[weaker] * met.force
+
+    worst = worst_case(solution.cycles, stress, integral=False)
+    met = hardest(cycle_of(solution.cycles, worst))
+    card = gear.material if weaker == 0 else gear.pinion_material or gear.material
+    note = f"backlash {shown(backlash, 'mm')}"
+    if met is None:
+        note += " is not crossed"
+    else:
+        note += f": flanks meet at {shown(met.speed, 'm/s')}, {shown(met.theta, 'deg')}"
+    return Demand(
+        worst.value,
+        None if missing else limits[weaker],
+        worst,
+        missing,
+        note=note,
+        figures=(f"{card.name}: {gear.source}".rstrip(": "),),
+        stated={
+            "F": 0.0 if met is None else met.force,
+            "z": float(teeth[weaker]),
+            "s_F": known[weaker],
+        },
+    )
 
 
 def _loads(cycle: Cycle) -> ShaftLoads:

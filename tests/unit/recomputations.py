@@ -9,6 +9,7 @@ _CONTACT = "verification/test_contact_audit.py"
 _GUIDES = "verification/test_guides_audit.py"
 _HUB = "verification/test_hub_elements.py"
 _ROLLER = "verification/test_roller_audit.py"
+_IMPACT = "verification/test_gear_impact.py"
 _SHAFT = "verification/test_camshaft_audit.py"
 _SPRING = "verification/test_spring_audit.py"
 _SYNTHESIS = "unit/test_solution_verification.py"
@@ -155,6 +156,7 @@ _BY_TEST: dict[tuple[str, str], tuple[str, ...]] = {
         "shaft_bearing_static", "shaft_bearing_life",
     ),
     (_SHAFT, "test_tooth_root_by_the_tabulated_form_factor"): ("gear_bending", "pinion_bending"),
+    (_IMPACT, "test_gear_impact_of_a_made_turn"): ("gear_impact",),
     (_SHAFT, "test_tooth_flank_by_hertz_at_the_pitch_point"): ("gear_contact",),
     # solution
     (_NUMERICS, "test_the_distance_to_holds_is_that_of_the_nodes_that_are_held_or_supported"): (

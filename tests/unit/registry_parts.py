@@ -11,6 +11,7 @@ from trial_variants import (
     geared,
     reversing,
     stiffened,
+    struck,
     unknown,
     unknown_beside,
     with_bearing,
@@ -352,6 +353,19 @@ tried(
     lambda: with_loads(cam_torque=NAN),
     1e-6 * by_hand.TOOTH / (0.01 * 1e-3 * np.pi * (0.154 - 0.912 / 20)),
     "Lewis: F/(b m pi y), module 1 mm",
+)
+tried(
+    "gear_impact",
+    limited(
+        "gear_impact",
+        lambda p: struck(bending_limit=1.45 / 0.7 * p, pinion_bending_limit=1.45 / 0.7 * p),
+        struck,
+    ),
+    lambda: struck(bending_limit=None),
+    lambda: struck(np.nan),
+    1e-6 * by_hand.struck() / (0.01 * 1e-3 * np.pi * (0.154 - 0.912 / 20)),
+    "Lewis, of the energy of the flight and of the teeth",
+    struck,
 )
 tried(
     "gear_contact",

@@ -67,7 +67,7 @@ MUST_HAVE = {
     *("keyway_root", "fit_yield", "bore_pressure"),
     *("shaft_fatigue", "shaft_yield", "shaft_deflection", "shaft_slope"),
     *("shaft_bearing_static", "shaft_bearing_life", "gear_bending", "pinion_bending"),
-    *("gear_contact", "cam_unbalance"),
+    *("gear_contact", "gear_impact", "cam_unbalance"),
     # manufacture
     *("profile_waviness", "chord_error"),
     # verification

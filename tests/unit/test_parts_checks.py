@@ -479,7 +479,7 @@ source = "made up"
     assert set(checks) == {
         *("shaft_fatigue", "shaft_yield", "shaft_deflection", "shaft_slope"),
         *("shaft_bearing_static", "shaft_bearing_life"),
-        *("gear_bending", "pinion_bending", "gear_contact"),
+        *("gear_bending", "pinion_bending", "gear_contact", "gear_impact"),
     }
     # Neither strength nor a target life is stated.
     assert checks["shaft_fatigue"].status == "not_evaluated"

@@ -361,6 +361,16 @@ def reversing(count: int) -> Solution:
     return with_parts(reversals=(Reversal(1.0, 1.0),) * count)
 
 
+def struck(torque: Any = 4.0, **gear: Any) -> Solution:
+    """The teeth cross their backlash under a steady torque, N m, on a rigid shaft."""
+    cycle = cycle_with("loads", cam_torque=np.full(made.POSITIONS, torque))
+    plain = with_cycle(cycle_with("parts", cycle, reversals=(Reversal(1.0, 1.0),)))
+    shaft = plain.case.camshaft
+    gear_of = made.changed(shaft.gear, backlash=1e-4, **gear)
+    shaft = made.changed(shaft, gear=gear_of, diameter=None)
+    return made.changed_solution(plain, case=made.changed(plain.case, camshaft=shaft))
+
+
 def lossy() -> Solution:
     """A cam whose torque pays one part in ten million more than the guides' heat."""
     loads = made.cycle().loads

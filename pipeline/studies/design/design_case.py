@@ -303,6 +303,7 @@ contact_limit = "1500 MPa"
 pinion_bending_limit = "430 MPa"
 pinion_contact_limit = "1500 MPa"
 machine_shaft_diameter = "0 mm"      # assumed: the machine shaft ends at its pinion
+backlash = "0.03 mm"                # assumed: ground teeth of a fit for reversing torque
 source = {{ text = "ISO 6336-5, case-hardened steel, quality MQ", confirmed = false }}
 """
 
