@@ -606,7 +606,7 @@ bore_pressure = check(
     formula="n <= 0; n: sign changes of T + drag over the turn, greatest over the load cases",
     symbols={"n": "changes(cam_torque + camshaft.drag)"},
     reason="not a must-have: the torque of a balancing cam reverses by its purpose; the effects"
-    " decide: key_pressure, key_shear, cam_slip, gear_bending, pinion_bending",
+    " decide: gear_impact, key_pressure, key_shear, cam_slip, gear_bending, pinion_bending",
     values=given.LOADS,
     page="Torque",
 )
