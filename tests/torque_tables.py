@@ -1,4 +1,4 @@
-"""Torque tables of six machines that the search of a design was not tuned on, from a seed."""
+"""Torque tables of nine machines that the search of a design was not tuned on, from a seed."""
 
 from __future__ import annotations
 
@@ -101,6 +101,34 @@ def pump(crank: Crank, delivery: float, rows: int) -> Array:
     return -delivery * delivers * crank.area * crank.arm(angle)
 
 
+def twin(crank: Crank, compression: float, rise: float, rows: int) -> Array:
+    """Gas torque of two four-stroke cylinders that fire a turn apart, N m."""
+    one = four_stroke(crank, compression, rise, rows)
+    return one + np.roll(one, rows // 2)
+
+
+def loom(crank: Crank, blow: float, drive: float, rows: int) -> Array:
+    """Load torque of a sley by its inertia, of a beat-up over 25 deg at its front end, and rest.
+
+    blow: force of the beat-up over the greatest one of inertia; drive: steady torque of shedding,
+    let-off and take-up over the greatest one of inertia.
+    """
+    angle = _angle(360.0, rows)
+    step, arm = angle[1] - angle[0], crank.arm(angle)
+    inertia = (np.roll(arm, -1) - np.roll(arm, 1)) / (2.0 * step)
+    beat = 0.5 * (np.tanh((np.radians(25.0) - angle) / 0.04) + np.tanh(angle / 0.02))
+    sley = -inertia * arm
+    beaten = -blow * np.abs(inertia).max() * np.maximum(beat, 0.0) * arm
+    return sley + beaten - drive * np.abs(sley).max()
+
+
+def duplex(crank: Crank, delivery: float, rod_share: float, rows: int) -> Array:
+    """Load torque of a double-acting plunger pump; rod_share: of the area, on its way down, N m."""
+    angle = _angle(360.0, rows)
+    up = 0.5 - 0.5 * np.tanh(np.sin(angle) / np.sin(np.radians(6.0)))
+    return -delivery * (up - (1.0 - rod_share) * (1.0 - up)) * crank.area * crank.arm(angle)
+
+
 @dataclass(frozen=True)
 class Machine:
     """A machine with the options of its design; swing: its energy swing, J."""
@@ -131,6 +159,15 @@ MACHINES: dict[str, Machine] = {
     "pump": Machine("190 rpm", 9.5, 360.0, lambda s: pump(_scattered(28, 32, 90, s), 22e5, 180)),
     "two_stroke": Machine(
         "2200 rpm", 33.0, 360.0, lambda s: two_stroke(_scattered(48, 42, 80, s), 7.2, 2.1, 240)
+    ),
+    "twin": Machine(
+        "1800 rpm", 38.0, 720.0, lambda s: twin(_scattered(52, 48, 86, s), 9.2, 2.2, 360)
+    ),
+    "loom": Machine(
+        "160 rpm", 14.0, 360.0, lambda s: loom(_scattered(1, 90, 300, s), 0.8, 0.6, 240)
+    ),
+    "duplex": Machine(
+        "140 rpm", 12.0, 360.0, lambda s: duplex(_scattered(36, 40, 110, s), 18e5, 0.25, 180)
     ),
 }  # fmt: skip
 
