@@ -82,8 +82,8 @@ def _at_spacing(values: Array, stride: int) -> Jump:
     start = np.arange(0, count, stride)
     near = np.arange(1 - _BESIDE, _BESIDE + 1)
     window = values[(start[:, None] + stride * near) % count]
-    bend = np.diff(window[:, _BESIDE - 2 : _BESIDE + 1], 2)[:, 0] / step**2
-    span = float(np.ptp(bend))
+    acceleration = np.diff(window[:, _BESIDE - 2 : _BESIDE + 1], 2)[:, 0] / step**2
+    span = float(np.ptp(acceleration))
     window = window - window[:, _BESIDE - 1 : _BESIDE]
     jumps, kinks = _fits()
     with_jump, place = _residual(window, jumps.complement)

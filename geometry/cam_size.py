@@ -354,7 +354,7 @@ def _motion(jet: Jet, height: float, offset: float) -> RollerMotion:
     return RollerMotion(jet, height, offset, np.nan)
 
 
-def _height_of_curvature(slope: Array, bend: Array, offset: float, curvature: float) -> Array:
+def _height_of_curvature(slope: Array, lift_d2: Array, offset: float, curvature: float) -> Array:
     """Largest height d (...), m, >= 0, at which a pitch curve has a curvature, 1/m; 0: at none.
 
     Root of (a^2 + z^2)^3 = (z^2 - b z + c)^2 with lengths over the radius of curvature, by the
@@ -362,7 +362,7 @@ def _height_of_curvature(slope: Array, bend: Array, offset: float, curvature: fl
     """
     k = abs(curvature)
     a = ((slope - offset) * k) ** 2
-    b, c = bend * k, (slope - offset) * (2.0 * slope - offset) * k**2
+    b, c = lift_d2 * k, (slope - offset) * (2.0 * slope - offset) * k**2
     companion = np.zeros((*np.shape(slope), 6, 6))
     companion[..., range(1, 6), range(5)] = 1.0
     for power, coefficient in enumerate(

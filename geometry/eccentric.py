@@ -83,8 +83,8 @@ class Eccentric:
 
     def height_rate_slope(self, phi: ArrayLike) -> Array:
         """Second derivative of the height by phi, m/rad^2."""
-        angle, rate, bend = self.rod_angle(phi), self.rod_rate(phi), self.rod_rate_slope(phi)
-        turning = np.cos(angle) * rate**2 + np.sin(angle) * bend
+        angle, rate, rod_d2 = self.rod_angle(phi), self.rod_rate(phi), self.rod_rate_slope(phi)
+        turning = np.cos(angle) * rate**2 + np.sin(angle) * rod_d2
         return np.asarray(-self.rod * turning - self.crank * np.sin(phi))
 
     def lift(self, count: int = 720) -> Lift:

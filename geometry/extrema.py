@@ -176,10 +176,10 @@ def _vertex(values: Array, at: NDArray[np.intp]) -> tuple[Array, Array]:
         np.take_along_axis(values, (at + step)[..., None] % values.shape[-1], axis=-1)[..., 0]
         for step in (-2, -1, 0, 1, 2)
     )
-    bend = before - 2.0 * here + after
-    bent = bend < 0.0
-    rise = np.divide((after - before) ** 2, -8.0 * bend, out=np.zeros_like(bend), where=bent)
-    shift = np.divide(before - after, 2.0 * bend, out=np.zeros_like(bend), where=bent)
+    second = before - 2.0 * here + after
+    bent = second < 0.0
+    rise = np.divide((after - before) ** 2, -8.0 * second, out=np.zeros_like(second), where=bent)
+    shift = np.divide(before - after, 2.0 * second, out=np.zeros_like(second), where=bent)
     up, down = before - first, last - after
     turn = up - down
     place = np.divide(after - before - up - down, turn, out=np.zeros_like(turn), where=turn > 0.0)

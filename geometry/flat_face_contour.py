@@ -125,7 +125,7 @@ class FaceMotion:
     @cached_property
     def radius(self) -> Array:
         """Radius of curvature of the contour, r + s + s''."""
-        return self.height + self.jet.bend
+        return self.height + self.jet.lift_d2
 
     @property
     def size(self) -> Array:

@@ -122,9 +122,9 @@ def _knots(factor: Function, count: int) -> Array:
     values, bottoms = local_minima(factor, count)
     bottoms, values = bottoms[values < 0], values[values < 0]
     probe = 0.1 * step
-    bend = (factor(bottoms + probe) + factor(bottoms - probe) - 2 * values) / probe**2
+    second = (factor(bottoms + probe) + factor(bottoms - probe) - 2 * values) / probe**2
     with np.errstate(divide="ignore", invalid="ignore"):
-        cusp = np.sqrt(-2 * values / bend)
+        cusp = np.sqrt(-2 * values / second)
     # the equal angles resolve an undercut of many steps
     short = cusp < _LOOP_CHORDS / 4 * step
     window = _LOOP_REACH * cusp[short, None] * np.linspace(-1, 1, _LOOP_CHORDS)

@@ -54,7 +54,7 @@ class Jet(NamedTuple):
 
     lift: Array
     slope: Array
-    bend: Array
+    lift_d2: Array
     jerk: Array = _UNKNOWN
 
     def at(self, take: Callable[[Array], Array]) -> Jet:

@@ -84,8 +84,8 @@ class SliderCrank:
         """Second derivative of the travel, m/rad^2."""
         sin, cos, across, along = self._rod(theta)
         r = self.crank_radius
-        bend = ((r * cos) ** 2 - across * r * sin) / along + (across * r * cos) ** 2 / along**3
-        return np.asarray(r * cos + bend)
+        rod_part = ((r * cos) ** 2 - across * r * sin) / along + (across * r * cos) ** 2 / along**3
+        return np.asarray(r * cos + rod_part)
 
     def _rod(self, theta: ArrayLike) -> tuple[Array, ...]:
         """Sine and cosine of the crank angle, rod across and along the slider's line, m."""

@@ -68,12 +68,12 @@ class MonotoneCubic:
         k = np.clip(np.searchsorted(self.places, x, side="right") - 1, 0, self.places.size - 2)
         step, slope = np.diff(self.places)[k], self._slopes
         rise = np.diff(self.values)[k] / step
-        bend = (3.0 * rise - 2.0 * slope[k] - slope[k + 1]) / step
+        square = (3.0 * rise - 2.0 * slope[k] - slope[k + 1]) / step
         twist = (slope[k] + slope[k + 1] - 2.0 * rise) / step**2
         t = x - self.places[k]
         if derivative == 1:
-            return np.asarray(slope[k] + t * (2.0 * bend + 3.0 * t * twist))
-        return np.asarray(self.values[k] + t * (slope[k] + t * (bend + t * twist)))
+            return np.asarray(slope[k] + t * (2.0 * square + 3.0 * t * twist))
+        return np.asarray(self.values[k] + t * (slope[k] + t * (square + t * twist)))
 
 
 def _end_slope(step: Array, rise: Array) -> float:

@@ -152,7 +152,7 @@ class RollerMotion:
 
     @cached_property
     def _path(self) -> tuple[Array, Array]:
-        return speed_and_curvature(self.along, self.height, self.jet.slope, self.jet.bend)
+        return speed_and_curvature(self.along, self.height, self.jet.slope, self.jet.lift_d2)
 
     @property
     def path_speed(self) -> Array:
@@ -199,7 +199,7 @@ class RollerMotion:
         The contour is shorter than the pitch curve by the undercut factor, its curvature greater.
         """
         jet = self.jet
-        change = curvature_slope(self.along, self.height, jet.slope, jet.bend, jet.jerk)
+        change = curvature_slope(self.along, self.height, jet.slope, jet.lift_d2, jet.jerk)
         return change / ((1.0 - self.sharpness) ** 3 * self.path_speed)
 
     @property
@@ -237,32 +237,32 @@ def magnitude(values: Values) -> Values:
 
 
 def speed_and_curvature(
-    along: Values, across: Values, slope: Values, bend: Values
+    along: Values, across: Values, slope: Values, lift_d2: Values
 ) -> tuple[Values, Values]:
     """Path length per radian, m/rad, and curvature, 1/m, positive where convex.
 
     Parameters
     ----------
     along, across : array (...)   s' - e and d, m/rad and m
-    slope, bend : array (...)     s' and s'', m/rad^k
+    slope, lift_d2 : array (...)     s' and s'', m/rad^k
     """
     speed = np.sqrt(along**2 + across**2)
-    turning = along * (along + slope) - across * (bend - across)
+    turning = along * (along + slope) - across * (lift_d2 - across)
     return speed, turning / speed**3
 
 
 def curvature_slope(
-    along: Values, across: Values, slope: Values, bend: Values, jerk: Values
+    along: Values, across: Values, slope: Values, lift_d2: Values, jerk: Values
 ) -> Values:
     """Derivative of the path's curvature by the cam angle, 1/(m rad).
 
     Parameters
     ----------
     along, across : array (...)       s' - e and d, m/rad and m
-    slope, bend, jerk : array (...)   s', s'', s''', m/rad^k
+    slope, lift_d2, jerk : array (...)   s', s'', s''', m/rad^k
     """
     square = along**2 + across**2
-    turning = along * (along + slope) - across * (bend - across)
-    change = bend * (3.0 * along + slope) - slope * (bend - across) - across * (jerk - slope)
-    stretching = along * bend + across * slope
+    turning = along * (along + slope) - across * (lift_d2 - across)
+    change = lift_d2 * (3.0 * along + slope) - slope * (lift_d2 - across) - across * (jerk - slope)
+    stretching = along * lift_d2 + across * slope
     return (change - 3.0 * turning * stretching / square) / square**1.5

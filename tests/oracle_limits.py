@@ -53,7 +53,7 @@ def contact_force_margin(at):
 
 
 def contact_at_overspeed(at):
-    left = at.spring + at.mass * at.p.overspeed**2 * at.bend
+    left = at.spring + at.mass * at.p.overspeed**2 * at.lift_d2
     return 1 + at.p.contact_force_margin - left / at.least_spring
 
 
@@ -62,7 +62,7 @@ def jump(at):
 
 
 def jump_speed(at):
-    return -at.mass * at.p.jump_speed**2 * at.bend / at.spring
+    return -at.mass * at.p.jump_speed**2 * at.lift_d2 / at.spring
 
 
 def jam_index(at):

@@ -94,7 +94,7 @@ def _contact_kept(at):
 def traction_demand(at):
     """Moment J dn/dt + M_0 + mu_b N r_b of the roller over r, carried by mu N."""
     p, speed = at.p, at.scenario.cam_speed
-    stretching = (at.rho * at.slope + at.slope * at.bend) / at.stretch
+    stretching = (at.rho * at.slope + at.slope * at.lift_d2) / at.stretch
     inertia = p.drag_inertia * speed**2 * stretching / p.roller_radius
     dragging = p.drag_torque + p.drag_bearing_friction * p.drag_pin_radius * ca.fmax(at.normal, 0)
     moment = inertia + ca.if_else(speed > 0, dragging, 0)
@@ -111,7 +111,7 @@ def profile_waviness(at):
 def contact_over_speed(at):
     speed = ca.if_else(at.fix.swept_speed > 0, at.fix.swept_speed, at.p.overspeed)
     carried = at.mass - at.scenario.spring_mass
-    push = at.spring + at.fix.swept_surge + carried * speed**2 * at.bend
+    push = at.spring + at.fix.swept_surge + carried * speed**2 * at.lift_d2
     push += at.scenario.viscous_damping * speed * at.slope
     normal = push / at.share / at.cosine
     return _where(at.scenario.swept, 1 + at.p.contact_force_margin - normal / at.least_spring)
@@ -120,7 +120,7 @@ def contact_over_speed(at):
 def elastic_contact(at):
     speed = ca.if_else(at.fix.elastic_speed > 0, at.fix.elastic_speed, at.p.overspeed)
     carried = at.mass - at.scenario.spring_mass
-    left = at.spring + at.fix.elastic + carried * speed**2 * at.bend
+    left = at.spring + at.fix.elastic + carried * speed**2 * at.lift_d2
     return _where(at.scenario.swept, 1 + at.p.contact_force_margin - left / at.least_spring)
 
 

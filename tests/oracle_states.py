@@ -40,19 +40,19 @@ def shape_at(energy: ca.SX, free: ca.SX, p: SimpleNamespace) -> SimpleNamespace:
     f0, f1, f2, f3 = ca.substitute(by_energy, [level], [energy[0]])
     e1, e2, e3 = energy[1], energy[2], energy[3]
     lift, slope = f0, f1 * e1
-    bend = f2 * e1**2 + f1 * e2
+    lift_d2 = f2 * e1**2 + f1 * e2
     jerk = f3 * e1**3 + 3 * f2 * e1 * e2 + f1 * e3
     rho = prime + lift
     stretch = ca.sqrt(rho**2 + slope**2)
     a, b, c = ca.SX.sym("a"), ca.SX.sym("b"), ca.SX.sym("c")
     formula = (a**2 + 2 * b**2 - a * c) / (a**2 + b**2) ** 1.5
     change = [ca.gradient(formula, each) for each in (a, b, c)]
-    curvature, *parts = ca.substitute([formula, *change], [a, b, c], [rho, slope, bend])
-    bend_of_curvature = parts[0] * slope + parts[1] * bend + parts[2] * jerk
+    curvature, *parts = ca.substitute([formula, *change], [a, b, c], [rho, slope, lift_d2])
+    bend_of_curvature = parts[0] * slope + parts[1] * lift_d2 + parts[2] * jerk
     cosine = rho / stretch
     inward, across = rho - p.roller_radius * cosine, p.roller_radius * slope / stretch
     return SimpleNamespace(
-        p=p, lift=lift, slope=slope, bend=bend, jerk=jerk, rho=rho, stretch=stretch,
+        p=p, lift=lift, slope=slope, lift_d2=lift_d2, jerk=jerk, rho=rho, stretch=stretch,
         tangent=slope / rho, curvature=curvature, curvature_slope=bend_of_curvature,
         cosine=cosine, rate=rate, preload=preload, prime_radius=prime,
         sharpness=p.roller_radius * curvature, contour_radius=ca.sqrt(inward**2 + across**2),
@@ -79,7 +79,7 @@ def loads_at(
     at_a, at_b = (overhang + spacing) / spacing, overhang / spacing
     mass = scenario.mass * p.mass_factor
     spring = cam.preload * scenario.preload_factor + cam.rate * scenario.rate_factor * cam.lift
-    inertia = mass * scenario.cam_speed**2 * cam.bend
+    inertia = mass * scenario.cam_speed**2 * cam.lift_d2
     viscous = scenario.viscous_damping * scenario.cam_speed * cam.slope
     rubbing = p.friction_factor * (
         scenario.friction_a * at_a * fix.rubbing_a + scenario.friction_b * at_b * fix.rubbing_b

@@ -38,7 +38,7 @@ class Extreme(NamedTuple):
 
 NOWHERE = Extreme(np.nan)
 _LEAST = 5  # samples, for the bends on either side of a peak
-_KINK = 3.0  # bend at a kink over those two samples away; 1 on a parabola
+_KINK = 3.0  # second difference at a kink over those two samples away; 1 on a parabola
 _SAFETY = 1.25
 
 
@@ -243,9 +243,9 @@ def _sampling_error(values: Array, sign: float) -> float:
     # an infinite value, such as a ratio without load, has no peak beside it
     peaks = np.where(known, sign * values, 0.0)
     before, after = np.roll(peaks, 1), np.roll(peaks, -1)
-    bend = before - 2.0 * peaks + after
+    second = before - 2.0 * peaks + after
     vertex = np.divide(
-        (after - before) ** 2, -8.0 * bend, out=np.zeros_like(peaks), where=bend < 0.0
+        (after - before) ** 2, -8.0 * second, out=np.zeros_like(peaks), where=second < 0.0
     )
     above = _SAFETY * vertex
     for way in (1, -1):
@@ -253,8 +253,8 @@ def _sampling_error(values: Array, sign: float) -> float:
         drop = peaks - np.roll(peaks, -way)
         part = np.divide(fall - drop, rise + fall, out=np.ones_like(peaks), where=rise + fall > 0.0)
         line = np.maximum(rise, 0.0) * np.where(part < 0.0, 1.0, np.minimum(part, 1.0))
-        sharp = np.abs(bend) + np.abs(np.roll(bend, -way))
-        outer = np.abs(np.roll(bend, 2)) + np.abs(np.roll(bend, -2))
+        sharp = np.abs(second) + np.abs(np.roll(second, -way))
+        outer = np.abs(np.roll(second, 2)) + np.abs(np.roll(second, -2))
         above = np.where(sharp > _KINK * outer, np.maximum(above, line), above)
     beside = np.all([np.roll(known, shift) for shift in (-2, -1, 0, 1, 2)], axis=0)
     peaked = (peaks >= before) & (peaks >= after) & beside

@@ -113,7 +113,7 @@ def contact_force_margin(cam: LoadedCam) -> Array:
     symbols={
         "m": "follower.mass",
         "w": "cam.speed",
-        "s''": "lift_bend",
+        "s''": "lift_d2",
         "F_c": "closing_force",
     },
     reason="At 1 the inertia of the follower lifts it off the cam.",
@@ -266,7 +266,7 @@ def _at_no_load_case(demand: Demand, _: Solution) -> Demand:
     symbols={
         "i": "mechanism.gear_ratio",
         "m": "follower.mass",
-        "s''": "lift_bend",
+        "s''": "lift_d2",
         "F_c": "closing_force",
         "w": "cam.fastest mechanism.gear_ratio [rpm]",
     },
@@ -318,7 +318,7 @@ def _force_at(cam: LoadedCam, speed: Value) -> Array:
     symbols={
         "m": "follower.mass",
         "w": "limits.overspeed/mechanism.gear_ratio [rad/s]",
-        "s''": "lift_bend",
+        "s''": "lift_d2",
         "F_c": "closing_force",
         "F_0": "least_spring_force",
     },

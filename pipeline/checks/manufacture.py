@@ -171,9 +171,9 @@ def chord_error(solution: Solution) -> Demand:
     theta, contour = solution.case.workshop_order.theta, solution.contour
     points = contour.points(theta)
     step = np.hypot(*(np.roll(points, -1, axis=1) - points))
-    bend = np.abs(1.0 / contour.radius_of_curvature(theta))
-    bend = np.maximum(bend, np.roll(bend, -1))
-    sag = step**2 * bend / 8.0
+    curvature = np.abs(1.0 / contour.radius_of_curvature(theta))
+    curvature = np.maximum(curvature, np.roll(curvature, -1))
+    sag = step**2 * curvature / 8.0
     worst = first_greatest(sag)
     return Demand(
         float(sag[worst]),
@@ -181,7 +181,9 @@ def chord_error(solution: Solution) -> Demand:
         Extreme(float(sag[worst]), "", float(theta[worst])),
         lacking(solution.machine.cam.table, solution.machine.cam, "profile_tolerance"),
         note=f"{theta.size} points",
-        stated={"l": float(step[worst]), "rho": 1.0 / float(bend[worst])} if bend[worst] else {},
+        stated={"l": float(step[worst]), "rho": 1.0 / float(curvature[worst])}
+        if curvature[worst]
+        else {},
     )
 
 

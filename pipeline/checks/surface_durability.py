@@ -58,7 +58,7 @@ def _tangential(cam: LoadedCam) -> Array:
     path, jet, drag = roller_of(cam.motion), cam.jet, cam.drag
     if drag is None:
         return np.full(np.shape(cam.normal), np.nan)
-    rate = path_speed_slope(path.along, path.height, jet.slope, jet.bend, path.path_speed)
+    rate = path_speed_slope(path.along, path.height, jet.slope, jet.lift_d2, path.path_speed)
     acceleration, force = cam.speed**2 * rate / path.size, not_negative(cam.normal)
     bearing = drag.bearing_torque(force)
     return magnitude(rolling_demand(cam.rotor_inertia, bearing, cam.spin, acceleration, path.size))

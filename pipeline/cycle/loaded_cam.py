@@ -242,7 +242,7 @@ class LoadedCam:
 
     def inertia_at(self, speed: Value) -> Array:
         """Inertia force at a cam speed, rad/s, N."""
-        force: Array = self.numbers["follower.mass"] * speed**2 * self.jet.bend
+        force: Array = self.numbers["follower.mass"] * speed**2 * self.jet.lift_d2
         return force
 
     @cached_property

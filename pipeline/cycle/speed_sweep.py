@@ -403,8 +403,10 @@ def _sampling_error(values: Array, at: NDArray[np.intp]) -> Array:
     """Vertex of the parabola through three samples less the middle one (m,), magnitude."""
     row, count = np.arange(at.size), values.shape[1]
     before, here, after = (values[row, (at + step) % count] for step in (-1, 0, 1))
-    bend = before - 2.0 * here + after
-    return np.divide((after - before) ** 2, 8.0 * bend, out=np.zeros_like(bend), where=bend > 0.0)
+    second = before - 2.0 * here + after
+    return np.divide(
+        (after - before) ** 2, 8.0 * second, out=np.zeros_like(second), where=second > 0.0
+    )
 
 
 def _arrays(kind: type[SpeedSweep]) -> tuple[str, ...]:

@@ -163,9 +163,11 @@ def shaft_speed(crank_rpm: float) -> float:
     return float(np.pi * crank_rpm / 60.0)
 
 
-def follower_acceleration(slope: ArrayLike, bend: ArrayLike, speed: Array, turning: Array) -> Array:
+def follower_acceleration(
+    slope: ArrayLike, lift_d2: ArrayLike, speed: Array, turning: Array
+) -> Array:
     """Acceleration x'' omega^2 + x' epsilon of the follower, m/s^2 (eq. 15)."""
-    return np.asarray(np.asarray(bend) * speed**2 + np.asarray(slope) * turning)
+    return np.asarray(np.asarray(lift_d2) * speed**2 + np.asarray(slope) * turning)
 
 
 @dataclass(frozen=True)

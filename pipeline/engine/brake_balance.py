@@ -151,7 +151,7 @@ def brake_balance(
     def indicated(shift: float) -> float:
         return count * float(np.mean(pressure * engine.volume_rate(theta + shift)))
 
-    bend = engine.piston_area * engine.linkage.travel_acceleration(theta)
+    volume_rate_slope = engine.piston_area * engine.linkage.travel_acceleration(theta)
     shift = None
     if brake is not None:
         ends = [indicated(sign * SHIFT_MAX) - brake for sign in (-1.0, 1.0)]
@@ -163,7 +163,7 @@ def brake_balance(
     return BrakeBalance(
         trace.source,
         indicated(0.0),
-        count * float(np.mean(pressure * bend)),
+        count * float(np.mean(pressure * volume_rate_slope)),
         count * engine.displacement,
         brake,
         shift,

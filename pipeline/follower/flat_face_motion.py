@@ -50,8 +50,8 @@ def face_motion(path: FollowerPath, cam_speed: float, theta: ArrayLike) -> Slidi
     Dowson, Harrison and Taylor, Inst. Mech. Engrs C 255 (1986): cam and flat-faced follower.
     """
     angle, speed = finite("theta", theta), float(finite("cam_speed", cam_speed))
-    height, bend = path.height(angle), path.lift(angle, 2)
-    passing = np.abs(speed * (0.5 * height + bend))
+    height, lift_d2 = path.height(angle), path.lift(angle, 2)
+    passing = np.abs(speed * (0.5 * height + lift_d2))
     return SlidingFace(path.push_arm(angle), speed * height, passing)
 
 

@@ -342,9 +342,9 @@ def jump_speed(
     Norton, Cam Design and Manufacturing Handbook (2009), ch. 15: follower jump.
     """
     theta = finite("theta", theta)
-    lift, _, bend = pitch.lift.derivatives(theta, 2)
+    lift, _, lift_d2 = pitch.lift.derivatives(theta, 2)
     hold = system.spring.force(lift) + system.applied_force(theta)
-    throw = -system.mass * bend
+    throw = -system.mass * lift_d2
     square = np.divide(
         np.maximum(hold, 0.0), throw, out=np.full_like(throw, np.inf), where=throw > 0.0
     )
@@ -420,11 +420,11 @@ def follower_loads(
     cam (2024), eq. 40 for c3.
     """
     theta = finite("theta", theta)
-    lift, slope, bend = pitch.lift.derivatives(theta, 2)
+    lift, slope, lift_d2 = pitch.lift.derivatives(theta, 2)
     slope = np.where(np.abs(slope) > REST * pitch.lift.stroke, slope, 0.0)
     push, pressure_angle = Push.of(pitch, system, theta), pitch.pressure_angle(theta)
     rate, speed = finite("cam_acceleration", cam_acceleration), _forward(cam_speed, theta)
-    acceleration = bend * speed**2 + slope * rate
+    acceleration = lift_d2 * speed**2 + slope * rate
     spring_force, applied_force = system.spring_force(lift), system.applied_force(theta)
     inertia_force = system.mass * acceleration
     viscous_force = system.viscous_damping * slope * speed
@@ -482,13 +482,13 @@ def torque_on_cam(
     on the motion. As by `follower_loads`, without what does not change at the same cam angles.
     """
     still = follower_loads(pitch, system, 0.0, theta)
-    slope, bend = still.lift_slope, pitch.lift.derivatives(theta, 2)[2]
+    slope, lift_d2 = still.lift_slope, pitch.lift.derivatives(theta, 2)[2]
     closing = still.closing_force
     share = share_left(slope, still.jam_index)
     arm = slope + system.face_friction * pitch.height(theta)
 
     def torque(speed: Array, cam_acceleration: Array) -> Array:
-        inertia_force = system.mass * (bend * speed**2 + slope * cam_acceleration)
+        inertia_force = system.mass * (lift_d2 * speed**2 + slope * cam_acceleration)
         viscous_force = system.viscous_damping * slope * speed
         demand = closing + inertia_force + viscous_force
         return np.asarray(inertia_force * slope - np.maximum(demand, 0.0) / share * arm)

@@ -55,8 +55,8 @@ def pin_compliance(pin: Pin, width: float) -> float:
     span = pin.span
     if pin.overhung:
         return span**3 / (3.0 * bar.bending_stiffness) + span * bar.shear_flexibility
-    bend = (8.0 * span**3 - 4.0 * span * width**2 + width**3) / (384.0 * bar.bending_stiffness)
-    return bend + (0.25 * span - 0.125 * width) * bar.shear_flexibility
+    bending = (8.0 * span**3 - 4.0 * span * width**2 + width**3) / (384.0 * bar.bending_stiffness)
+    return bending + (0.25 * span - 0.125 * width) * bar.shear_flexibility
 
 
 def fork_compliance(fork: Fork, pin: Pin) -> float | None:
@@ -90,8 +90,8 @@ def shaft_compliance(shaft: Camshaft) -> float | None:
     spacing, first = shaft.bearing_spacing, shaft.cam_position
     second = spacing - first
     if first >= 0.0 and second >= 0.0:
-        bend = (first * second) ** 2 / (3.0 * bar.bending_stiffness * spacing)
-        return bend + first * second / spacing * bar.shear_flexibility
+        bending = (first * second) ** 2 / (3.0 * bar.bending_stiffness * spacing)
+        return bending + first * second / spacing * bar.shear_flexibility
     over = -min(first, second)
-    bend = over**2 * (spacing + over) / (3.0 * bar.bending_stiffness)
-    return bend + over * (1.0 + over / spacing) * bar.shear_flexibility
+    bending = over**2 * (spacing + over) / (3.0 * bar.bending_stiffness)
+    return bending + over * (1.0 + over / spacing) * bar.shear_flexibility

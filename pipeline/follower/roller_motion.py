@@ -87,10 +87,10 @@ def roller_motion(
         raise InputError("roller.radius", roller_radius, "> 0 m")
     theta = finite("theta", theta)
     speed = float(finite("cam_speed", cam_speed))
-    lift, slope, bend = pitch.lift.derivatives(theta, 2)
+    lift, slope, lift_d2 = pitch.lift.derivatives(theta, 2)
     stretch, curvature = pitch.speed_and_curvature(theta)
     along, across = slope - pitch.offset, pitch.height_base + lift
-    stretch_rate = path_speed_slope(along, across, slope, bend, stretch)
+    stretch_rate = path_speed_slope(along, across, slope, lift_d2, stretch)
     spin_per_turn = rolling_share(stretch, roller_radius)
     return RollingRoller(
         theta=theta,
@@ -103,10 +103,10 @@ def roller_motion(
 
 
 def path_speed_slope(
-    along: Values, across: Values, slope: Values, bend: Values, speed: Values
+    along: Values, across: Values, slope: Values, lift_d2: Values, speed: Values
 ) -> Values:
     """Derivative of |dP/dtheta|, m/rad2, of the roller centre: s' - e along, d + s across."""
-    return (along * bend + across * slope) / speed
+    return (along * lift_d2 + across * slope) / speed
 
 
 def wear(normal_force: Values, spin: Values, exponent: float = BALL_LIFE_EXPONENT) -> Values:

@@ -187,7 +187,7 @@ def fibre_stresses(
     cosine, sine, (x, y) = np.cos(angle), np.sin(angle), np.moveaxis(moment, 1, 0)
     on_shaft = np.stack([x * cosine + y * sine, y * cosine - x * sine], axis=1)
     fibre, modulus = uniform_turn(_FIBRES), sections.modulus
-    bend = np.stack([np.cos(fibre), np.sin(fibre)], axis=1) @ on_shaft / modulus[:, None, None]
+    bending = np.stack([np.cos(fibre), np.sin(fibre)], axis=1) @ on_shaft / modulus[:, None, None]
     shear = torque / (2.0 * modulus)[:, None]
 
     def equivalent(of_bending: Array, of_torsion: Array) -> Array:
@@ -195,7 +195,7 @@ def fibre_stresses(
         twist = (sections.notch_torsion * of_torsion)[:, None]
         return np.sqrt(pull**2 + 3.0 * twist**2)
 
-    high, low = bend.max(axis=2), bend.min(axis=2)
+    high, low = bending.max(axis=2), bending.min(axis=2)
     most, least = shear.max(axis=1), shear.min(axis=1)
     amplitude = equivalent(0.5 * (high - low), 0.5 * (most - least))
     mean = equivalent(0.5 * (high + low), 0.5 * (most + least))
@@ -231,9 +231,9 @@ def greatest_stress(moment: Array, torque: Array, sections: Sections) -> Array:
     Shigley's Mechanical Engineering Design, 10th ed., eq. 7-15, with the fatigue notch factors.
     """
     modulus = sections.modulus[:, None]
-    bend = sections.notch_bending[:, None] * np.hypot(moment[:, 0], moment[:, 1]) / modulus
+    bending = sections.notch_bending[:, None] * np.hypot(moment[:, 0], moment[:, 1]) / modulus
     shear = sections.notch_torsion[:, None] * torque / (2.0 * modulus)
-    return np.asarray(np.sqrt(bend**2 + 3.0 * shear**2))
+    return np.asarray(np.sqrt(bending**2 + 3.0 * shear**2))
 
 
 @dataclass(frozen=True, eq=False)

@@ -49,7 +49,7 @@ class Rise(NamedTuple):
     work: Array
     travel: Array
     slope: Array
-    bend: Array
+    travel_d2: Array
 
 
 class SpringShape(Protocol):
@@ -76,7 +76,7 @@ def rise(shape: SpringShape, lift: Array) -> Rise:
         law.work + (law.travel + 0.5 * law.slope * over) * over,
         law.travel + law.slope * over,
         law.slope,
-        np.where(beyond, 0.0 * law.bend, law.bend),
+        np.where(beyond, 0.0 * law.travel_d2, law.travel_d2),
     )
 
 
@@ -363,13 +363,13 @@ class TorsionSpring(Part):
         tangent = sine * self.arm / across
         # by the angle: dF = steep / across, and that of steep
         change = steep * tangent + force * across
-        bend = (change + 2.0 * steep * tangent) / across**3
+        travel_d2 = (change + 2.0 * steep * tangent) / across**3
         work = (self.moment + 0.5 * c * turned) * turned
         return Rise(
             (work - self.preload * lift) / self.rate,
             (force - self.preload) / self.rate,
             slope / self.rate,
-            bend / self.rate,
+            travel_d2 / self.rate,
         )
 
     def moment_at(self, force: ArrayLike, lift: ArrayLike) -> Array:

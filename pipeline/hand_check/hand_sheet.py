@@ -55,7 +55,7 @@ _Figure = Callable[[ContourCam], Value]
 FIGURES: Mapping[str, tuple[str, _Figure]] = {
     "lift": ("mm", lambda cam: cam.jet.lift),
     "lift_slope": ("mm/rad", lambda cam: cam.jet.slope),
-    "lift_bend": ("mm/rad^2", lambda cam: cam.jet.bend),
+    "lift_d2": ("mm/rad^2", lambda cam: cam.jet.lift_d2),
     "lift_highest": ("mm", lambda cam: cam.highest),
     "pitch_height": ("mm", lambda cam: cam.contour.require_roller().pitch.height_base),
     "pitch_curvature": ("1/mm", lambda cam: roller_of(cam.motion).path_curvature),
@@ -511,7 +511,7 @@ class _Evaluation:
 
 def _curvature_slope(path: RollerMotion) -> Value:
     jet = path.jet
-    return curvature_slope(path.along, path.height, jet.slope, jet.bend, jet.jerk)
+    return curvature_slope(path.along, path.height, jet.slope, jet.lift_d2, jet.jerk)
 
 
 def _quantity_of(key: str) -> In | Count | None:

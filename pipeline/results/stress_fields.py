@@ -175,8 +175,8 @@ def fallen_back(contour: Contour, theta: Array, along: Array) -> Array:
     try:
         return -contour.surface_offset(theta, -along.T).T
     except GeometryError:
-        bend = contour.curvature(theta) * along
-        return bend * along / (1 + np.sqrt(np.maximum(1 - bend**2, 0.0)))
+        inclination = contour.curvature(theta) * along
+        return inclination * along / (1 + np.sqrt(np.maximum(1 - inclination**2, 0.0)))
 
 
 def approach(cam: BodyField, follower: BodyField, normals: Array) -> Array:

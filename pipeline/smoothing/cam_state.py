@@ -53,12 +53,12 @@ def lift_jet(energy: tuple[Array, ...], variables: DesignVariables) -> Jet:
         return _shaped_jet(energy, variables, variables.shape)
     force = np.sqrt(variables.closing**2 + 2.0 * variables.rate * level)
     slope = first / force
-    bend = (second - variables.rate * slope**2) / force
+    lift_d2 = (second - variables.rate * slope**2) / force
     return Jet(
         lift=2.0 * level / (force + variables.closing),
         slope=slope,
-        bend=bend,
-        jerk=(third - 3.0 * variables.rate * slope * bend) / force,
+        lift_d2=lift_d2,
+        jerk=(third - 3.0 * variables.rate * slope * lift_d2) / force,
     )
 
 
@@ -68,11 +68,11 @@ def _shaped_jet(energy: tuple[Array, ...], variables: DesignVariables, shape: Sp
     lift = shaped_deflection(level, variables.rate, variables.closing, shape)
     law = rise(shape, lift)
     force = variables.closing + variables.rate * law.travel
-    rate, change = variables.rate * law.slope, variables.rate * law.bend
+    rate, change = variables.rate * law.slope, variables.rate * law.travel_d2
     slope = first / force
-    bend = (second - rate * slope**2) / force
-    jerk = (third - 3.0 * rate * slope * bend - change * slope**3) / force
-    return Jet(lift=lift, slope=slope, bend=bend, jerk=jerk)
+    lift_d2 = (second - rate * slope**2) / force
+    jerk = (third - 3.0 * rate * slope * lift_d2 - change * slope**3) / force
+    return Jet(lift=lift, slope=slope, lift_d2=lift_d2, jerk=jerk)
 
 
 def _numbers(variables: DesignVariables, ratings: Ratings) -> Numbers:
@@ -128,7 +128,7 @@ class ScenarioCam(LoadedCam):
         sharp, cell = super().direction, self.scenario.cell
         if not np.any(cell):
             return sharp
-        reach = 0.5 * cell * magnitude(self.jet.bend)
+        reach = 0.5 * cell * magnitude(self.jet.lift_d2)
         within = np.abs(np.real(self.slope)) < np.real(reach)
         return np.where(within, self.slope / np.where(within, reach, 1.0), sharp)
 
@@ -240,13 +240,13 @@ class Mean(NamedTuple):
         """Derivatives (r, m) of the utilisations by the means."""
         return self._slopes(self.means).T
 
-    def bend(self, weights: Array) -> Array:
+    def hessian(self, weights: Array) -> Array:
         """Second derivatives (m, m) of the utilisations by the means, weighted by (r,)."""
         means = self.means
         steps = np.diag(_SHARE * np.maximum(np.abs(means), np.finfo(float).tiny / _SHARE))
         up, down = (self._slopes(means + side * steps) @ weights for side in (1.0, -1.0))
-        bend = (up - down) / (2.0 * np.diag(steps)[:, None])
-        return np.asarray(0.5 * (bend + bend.T))
+        hessian = (up - down) / (2.0 * np.diag(steps)[:, None])
+        return np.asarray(0.5 * (hessian + hessian.T))
 
     def _slopes(self, means: Array) -> Array:
         """Derivatives (..., m, r) at means (..., m), by complex steps."""

@@ -27,7 +27,7 @@ _REFINEMENTS = 3
 ORDERS = 4  # E, E', E'', E'''
 _BESIDE = 1e-200  # J/rad, E' beside a reversal: its sign alone counts
 _REVERSAL_STEPS = 3
-_LEAST_BEND = 1e-3  # of the greatest E'': of a reversal that is followed
+_LEAST_CURVATURE = 1e-3  # of the greatest E'': of a reversal that is followed
 
 
 @lru_cache(maxsize=1)
@@ -149,7 +149,7 @@ def reversals(turn: Grid, coefficients: Array, lobes: int) -> Grid:
     ----------
     turn : Grid   equally spaced cam angles of the turn
     """
-    slope, bend = turn.energy(coefficients)[1:3]
+    slope, energy_d2 = turn.energy(coefficients)[1:3]
     k = np.flatnonzero((slope > 0.0) != (np.roll(slope, -1) > 0.0))
     step, count = FULL_TURN / turn.theta.size, coefficients.size
     after = slope[(k + 1) % slope.size]
@@ -161,7 +161,7 @@ def reversals(turn: Grid, coefficients: Array, lobes: int) -> Grid:
     entries, columns = _rows(theta, count, range(ORDERS + 1), lobes)
     local = coefficients[columns]
     orders = np.sum(entries * local, axis=2)
-    sharp = np.abs(orders[2]) > _LEAST_BEND * np.abs(bend).max(initial=0.0)
+    sharp = np.abs(orders[2]) > _LEAST_CURVATURE * np.abs(energy_d2).max(initial=0.0)
     theta, columns, entries, orders = (
         theta[sharp], columns[sharp], entries[:, sharp], orders[:, sharp],
     )  # fmt: skip
@@ -216,10 +216,10 @@ def lowest(coefficients: Array) -> float:
     values = basis_matrix(theta, coefficients.size) @ coefficients
     near = theta[(values <= np.roll(values, 1)) & (values <= np.roll(values, -1))]
     for _ in range(_REFINEMENTS):  # Newton on E' = 0
-        slope, bend = (
+        slope, energy_d2 = (
             basis_matrix(near, coefficients.size, order) @ coefficients for order in (1, 2)
         )
-        shift = np.divide(slope, bend, out=np.zeros_like(slope), where=bend > 0.0)
+        shift = np.divide(slope, energy_d2, out=np.zeros_like(slope), where=energy_d2 > 0.0)
         near = near - np.clip(shift, -theta[1], theta[1])
     between = basis_matrix(near, coefficients.size) @ coefficients
     return float(min(values.min(), between.min(initial=np.inf)))

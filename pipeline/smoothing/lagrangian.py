@@ -169,7 +169,7 @@ def _of_means(
             slopes = here.slopes_of(name, turn.scenarios)
             if slopes is None:
                 slopes = search.means_slopes(turn, state, summit, name)
-            total += slopes.T @ mean.bend(price) @ slopes
+            total += slopes.T @ mean.hessian(price) @ slopes
             weights[name] = (price @ mean.slopes / search.every.size)[:, None]
         second = second_derivatives(turn.function, turn.at, search.freed, weights)
         total += _assembled(search, state, summit, second, search.every)

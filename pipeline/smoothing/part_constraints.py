@@ -57,7 +57,7 @@ def _swept_force(at: ScenarioCam, limit: float) -> Array:
     fastest, fix, scenario = at.numbers["cam.fastest"], at.fix, at.scenario
     speed = np.where(fix.swept_speed > 0.0, fix.swept_speed, fastest)
     push = at.closing + fix.swept_surge
-    push = push + (at.numbers["follower.mass"] - scenario.spring_mass) * speed**2 * at.jet.bend
+    push = push + (at.numbers["follower.mass"] - scenario.spring_mass) * speed**2 * at.jet.lift_d2
     push = push + at.numbers["follower.viscous_damping"] * speed * at.jet.slope
     normal = push / at.share * at.motion.gain
     return where_applies(scenario.swept, 1.0 + limit - normal / at.least_spring)
@@ -67,7 +67,7 @@ def _elastic_contact(at: ScenarioCam, limit: float) -> Array:
     """As `_swept_force`, without friction, with the change by the elastic stem."""
     fastest, fix, scenario = at.numbers["cam.fastest"], at.fix, at.scenario
     speed = np.where(fix.elastic_speed > 0.0, fix.elastic_speed, fastest)
-    inertia = (at.numbers["follower.mass"] - scenario.spring_mass) * speed**2 * at.jet.bend
+    inertia = (at.numbers["follower.mass"] - scenario.spring_mass) * speed**2 * at.jet.lift_d2
     push = demands.force_left(at.closing + fix.elastic, inertia, at.least_spring)
     return where_applies(scenario.swept, 1.0 + limit - push)
 

@@ -127,9 +127,9 @@ class Search:
         self.scale = max(float(np.abs(self.exact).max()), 1e-9)
         exact = lift_jet(self.turn.energy(self.exact), problem.variables)
         # Scaled so that the second derivative of the exact energy has the norm 1.
-        bend = basis_matrix(theta, problem.coefficients, 2, problem.lobes) * self.scale
-        size = float(np.linalg.norm(bend @ self.exact)) / self.scale or 1.0
-        self.bend = np.asarray(np.linalg.qr(bend.toarray() / size, mode="r"))
+        curved = basis_matrix(theta, problem.coefficients, 2, problem.lobes) * self.scale
+        size = float(np.linalg.norm(curved @ self.exact)) / self.scale or 1.0
+        self.root_hessian = np.asarray(np.linalg.qr(curved.toarray() / size, mode="r"))
         self._jerk_scale = np.sqrt(problem.jerk_weight) / (float(np.linalg.norm(exact.jerk)) or 1.0)
 
     @property
@@ -184,8 +184,8 @@ class Search:
         )
         angle = self.turn.theta[k] + step * np.clip(shift, -1.0, 1.0)
         for _ in range(2):  # Newton on E' = 0
-            _, slope, bend, _ = self.problem.grid(angle).energy(coefficients)
-            newton = np.divide(slope, bend, out=np.zeros(k.size), where=bend < 0.0)
+            _, slope, energy_d2, _ = self.problem.grid(angle).energy(coefficients)
+            newton = np.divide(slope, energy_d2, out=np.zeros(k.size), where=energy_d2 < 0.0)
             angle = angle - np.clip(newton, -step, step)
         peaks = self.problem.grid(angle)
         order = np.argsort(-peaks.energy(coefficients)[0], kind="stable")

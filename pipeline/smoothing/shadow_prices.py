@@ -294,8 +294,8 @@ def _load_share(design: Design, problem: Problem, name: str) -> float:
     if not binds.any():
         return 1.0
     jet = lift_jet(problem.grid(theta[binds]).energy(design.coefficients), design.variables)
-    bend = unloaded(jet, design.variables, problem.ratings).motion.sharpness
-    return float(np.mean(np.asarray(use)[binds] - bend))
+    sharpness = unloaded(jet, design.variables, problem.ratings).motion.sharpness
+    return float(np.mean(np.asarray(use)[binds] - sharpness))
 
 
 def _sentence(known: Bound, price: float, of: str) -> str:

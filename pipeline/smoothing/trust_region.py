@@ -115,8 +115,8 @@ def descended(
             return Descent(state, None, None, step, np.inf, penalty, ended=True)
         model = search.model(state)
         if before is not None and priced is not None:
-            bend = lagrangian_curvature(search, state, model, before, priced)
-            model = model._replace(curvature=_convex(model.curvature + bend))
+            hessian = lagrangian_curvature(search, state, model, before, priced)
+            model = model._replace(curvature=_convex(model.curvature + hessian))
         proven, gain, tested, widest, refused = False, np.inf, False, trust, 0
         while True:
             program, there, model = _program(search, state, model, trust, penalty, ripple_weight)
@@ -211,13 +211,13 @@ def _nearer(
     """
     middle = search.state(*search.after(state, 0.5 * step))
     merits = [each.merit(penalty, ripple_weight) for each in (state, middle, there)]
-    slope, bend = (
+    slope, second = (
         4.0 * merits[1] - 3.0 * merits[0] - merits[2],
         merits[0] - 2.0 * merits[1] + merits[2],
     )
     tried = [there, middle]
-    if bend > 0.0 and 0.0 < (place := -0.25 * slope / bend) < 1.0:
-        tried.append(search.state(*search.after(state, place * step)))
+    if second > 0.0 and 0.0 < (share := -0.25 * slope / second) < 1.0:
+        tried.append(search.state(*search.after(state, share * step)))
     return min(tried, key=lambda each: each.merit(penalty, ripple_weight))
 
 
@@ -254,8 +254,8 @@ def _inside(search: Search, step: Array, trust: float) -> bool:
 
 def _size(search: Search, step: Array) -> float:
     """Least trust region that does not limit a step."""
-    bend = search.bend @ step[: len(search.bend)]
-    return max(float(np.abs(step).max()), float(np.linalg.norm(bend)))
+    curved = search.root_hessian @ step[: len(search.root_hessian)]
+    return max(float(np.abs(step).max()), float(np.linalg.norm(curved)))
 
 
 def _within(state: State) -> bool:
@@ -276,7 +276,7 @@ def _program(
     Rows that the state there violates more than those of the model are added to it.
     """
     # The box alone does not bound short waves, which a speed ripple does not contain.
-    reach, box = Reach(search.bend, trust), search.box(state, trust)
+    reach, box = Reach(search.root_hessian, trust), search.box(state, trust)
     for left in reversed(range(_ADDITIONS)):
         program = solved(
             model.norms, model.limits,

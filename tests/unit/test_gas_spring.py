@@ -106,7 +106,7 @@ def test_derivatives_of_the_rise_are_those_of_the_force():
     by_complex = rise(GAS, lift + 1j * step)
     assert np.imag(by_complex.work) / step == pytest.approx(law.travel, rel=1e-12)
     assert np.imag(by_complex.travel) / step == pytest.approx(law.slope, rel=1e-12)
-    assert np.imag(by_complex.slope) / step == pytest.approx(law.bend, rel=1e-12)
+    assert np.imag(by_complex.slope) / step == pytest.approx(law.travel_d2, rel=1e-12)
 
 
 def test_lift_stores_its_energy():
@@ -132,11 +132,12 @@ def test_jet_has_exact_derivatives():
     assert jet.slope[2] == pytest.approx(
         (8 * (jet.lift[3] - jet.lift[1]) - (jet.lift[4] - jet.lift[0])) / (12 * h), rel=1e-9
     )
-    assert jet.bend[2] == pytest.approx(
+    assert jet.lift_d2[2] == pytest.approx(
         (8 * (jet.slope[3] - jet.slope[1]) - (jet.slope[4] - jet.slope[0])) / (12 * h), rel=1e-9
     )
     assert jet.jerk[2] == pytest.approx(
-        (8 * (jet.bend[3] - jet.bend[1]) - (jet.bend[4] - jet.bend[0])) / (12 * h), rel=1e-9
+        (8 * (jet.lift_d2[3] - jet.lift_d2[1]) - (jet.lift_d2[4] - jet.lift_d2[0])) / (12 * h),
+        rel=1e-9,
     )
     by_complex = lift_jet((energy[0] + 1e-30j, *energy[1:]), variables)
     up, down = (lift_jet((energy[0] + side, *energy[1:]), variables) for side in (1e-4, -1e-4))

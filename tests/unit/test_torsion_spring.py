@@ -73,7 +73,7 @@ def test_derivatives_of_the_rise(angle):
     law, by_complex = rise(shape, lift), rise(shape, lift + 1j * step)
     assert np.imag(by_complex.work) / step == pytest.approx(law.travel, rel=1e-11)
     assert np.imag(by_complex.travel) / step == pytest.approx(law.slope, rel=1e-11)
-    assert np.imag(by_complex.slope) / step == pytest.approx(law.bend, rel=1e-11)
+    assert np.imag(by_complex.slope) / step == pytest.approx(law.travel_d2, rel=1e-11)
     assert law.slope[0] > 0.0
 
 

@@ -73,14 +73,16 @@ class _Image(NamedTuple):
 
     Parameters
     ----------
-    mean, bend : array (m, m)   of distant cells along the line: over the areas of both mean, 1/m,
-                                plus bend, 1/m3, times their second moments across; 0 of the near
+    mean : array (m, m)         of distant cells along the line, over the areas of both, 1/m; 0 of
+                                the near
+    across_d2 : array (m, m)    half the second derivative of mean across the line, 1/m3: factor of
+                                the second moments of the cells across
     first : int                 number of the first cell along the line that is near the end
     near : array (n, n, k, k)   influence of the n cells near it, m3
     """
 
     mean: Array
-    bend: Array
+    across_d2: Array
     first: int
     near: Array
 
@@ -88,7 +90,9 @@ class _Image(NamedTuple):
     def mirrored(self) -> _Image:
         """That of the other end of symmetric cells."""
         first = len(self.mean) - self.first - len(self.near)
-        return _Image(self.mean[::-1, ::-1], self.bend[::-1, ::-1], first, self.near[::-1, ::-1])
+        return _Image(
+            self.mean[::-1, ::-1], self.across_d2[::-1, ::-1], first, self.near[::-1, ::-1]
+        )
 
 
 def _add_free_ends(
@@ -99,7 +103,7 @@ def _add_free_ends(
     To displacements over pressures of pairs of cells (m, m, k, k), as those of `influence`.
     """
     m, k = cells.shape
-    place, mean, bend = cells.centres_along, np.zeros((m, m)), np.zeros((m, m))
+    place, mean, across_d2 = cells.centres_along, np.zeros((m, m)), np.zeros((m, m))
     for (length, poisson), soft in free.items():
         half, end = 0.5 * length, _image(cells, length, poisson)
         is_even = np.allclose(cells.y, -cells.y[::-1], rtol=0.0, atol=_SYMMETRIC * length)
@@ -107,13 +111,13 @@ def _add_free_ends(
         at = place / half
         smooth = (_SQUARES + _ODD * np.outer(at, at)) * np.add.outer(at**2, at**2) * (2.0 / half)
         mean += soft * (end.mean + other.mean + smooth)
-        bend += soft * (end.bend + other.bend)
+        across_d2 += soft * (end.across_d2 + other.across_d2)
         for each in (end, other):
             near = slice(each.first, each.first + len(each.near))
             pairs[near, near] += soft * each.near
     x_squares = 0.25 * (cells.x[1:] + cells.x[:-1]) ** 2 + np.diff(cells.x) ** 2 / 12.0
     along, across = (np.outer(size, size) for size in (np.diff(cells.y), np.diff(cells.x)))
-    by_length = np.stack([mean * along, bend * along])
+    by_length = np.stack([mean * along, across_d2 * along])
     by_width = np.stack([across, np.add.outer(x_squares, x_squares) * across])
     pairs += (by_length.reshape(2, -1).T @ by_width.reshape(2, -1)).reshape(m, m, k, k)
 
@@ -130,16 +134,16 @@ def _image(cells: PressureCells, shift: float, poisson: float) -> _Image:
     factor = mirror_factor(poisson, 4.0 * np.outer(apart, apart) / np.add.outer(apart, apart) ** 2)
     distance, y_squares = np.abs(np.add.outer(along, along) - shift), np.diff(cells.y) ** 2 / 12.0
     mean = 2.0 / distance + 2.0 * np.add.outer(y_squares, y_squares) / distance**3
-    bend = -1.0 / distance**3
+    across_d2 = -1.0 / distance**3
     beside = np.flatnonzero(apart < _FAR_IMAGE * cells.x[-1])
     if not beside.size:
         width = cells.x.size - 1
-        return _Image(mean * factor, bend * factor, 0, np.zeros((0, 0, width, width)))
+        return _Image(mean * factor, across_d2 * factor, 0, np.zeros((0, 0, width, width)))
     near = np.s_[beside[0] : beside[-1] + 1]
     block = PressureCells(cells.x, cells.y[beside[0] : beside[-1] + 2])
-    mean[near, near] = bend[near, near] = 0.0
+    mean[near, near] = across_d2[near, near] = 0.0
     values = influence(block, shift, mirrored=True) * factor[near, near, None, None]
-    return _Image(mean * factor, bend * factor, int(beside[0]), values)
+    return _Image(mean * factor, across_d2 * factor, int(beside[0]), values)
 
 
 def shared_compliance(cells: PressureCells, bodies: tuple[FiniteBody, FiniteBody]) -> Array:
@@ -234,10 +238,10 @@ def _double_integral(across: _Pairs, along: _Pairs) -> Array:
     size = np.maximum(across.squares[:, None], along.squares)
     i, j = np.nonzero(square > _FAR**2 * 12.0 * size)
     x_squares, y_squares, r2 = across.squares[i], along.squares[j], square[i, j]
-    bend = x_squares * (3.0 * across.centres[i] ** 2 - r2)
-    bend += y_squares * (3.0 * along.centres[j] ** 2 - r2)
+    spread = x_squares * (3.0 * across.centres[i] ** 2 - r2)
+    spread += y_squares * (3.0 * along.centres[j] ** 2 - r2)
     areas = across.areas[i] * along.areas[j]
-    values[i, j] = areas / np.sqrt(r2) * (1.0 + 0.5 * bend / r2**2)
+    values[i, j] = areas / np.sqrt(r2) * (1.0 + 0.5 * spread / r2**2)
     return values
 
 

@@ -153,12 +153,12 @@ def _index(targets: Mapping[str, Target]) -> PaperFigure:
 def _accelerations(cam: ValveCam, speed: float) -> tuple[Array, Array]:
     """Follower acceleration at constant and at uneven cam speed (COUNT + 1,), m/s^2."""
     phi = uniform_turn(COUNT)
-    slope, bend = cam.motion(phi, 1), cam.motion(phi, 2)
+    slope, lift_d2 = cam.motion(phi, 1), cam.motion(phi, 2)
     uneven = follower_acceleration(
-        slope, bend, cam.speed(phi, speed), cam.angular_acceleration(phi, speed)
+        slope, lift_d2, cam.speed(phi, speed), cam.angular_acceleration(phi, speed)
     )
     # 360 deg is the end of the dwell, not the beginning of the rise, where the law jumps
-    constant, real = (np.append(values, values[-1]) for values in (bend * speed**2, uneven))
+    constant, real = (np.append(values, values[-1]) for values in (lift_d2 * speed**2, uneven))
     return constant, real
 
 
@@ -231,8 +231,8 @@ def _elastic(cam: ValveCam, speed: float) -> tuple[Array, Array]:
         train.dynamic_lift(cam.motion(at), cam.motion(at, 1), rate)
         for at in (phi - step, phi, phi + step)
     )
-    slope, bend = (right - left) / (2.0 * step), (right - 2.0 * here + left) / step**2
-    value = follower_acceleration(slope, bend, rate, turning)
+    slope, lift_d2 = (right - left) / (2.0 * step), (right - 2.0 * here + left) / step**2
+    value = follower_acceleration(slope, lift_d2, rate, turning)
     corner = np.min(np.abs(phi - np.array([[0.0], [rise], [2.0 * rise]])), axis=0) < 1.5 * step
     return np.degrees(phi), np.where(corner, np.nan, value)
 

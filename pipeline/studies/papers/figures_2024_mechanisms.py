@@ -113,7 +113,7 @@ def _motion(rod: SliderCrankDrive, cams: Mapping[str, EccentricDrive]) -> PaperF
                 _over_turn(name, SPEED * spin, k) for k, (name, (spin, _)) in
                 enumerate(spins.items()))),
             PaperPanel(PHI, "ang. acceleration, rad/s²", tuple(
-                _over_turn(name, SPEED**2 * bend, k) for k, (name, (_, bend)) in
+                _over_turn(name, SPEED**2 * rate_slope, k) for k, (name, (_, rate_slope)) in
                 enumerate(spins.items()))),
         ),
     )  # fmt: skip

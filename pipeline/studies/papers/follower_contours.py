@@ -79,8 +79,8 @@ def follower_contours(
 
 def least_base_radius(lift: Lift, factor: float = UNDERCUT_FACTOR.default) -> float:
     """Least base radius of a flat face, m: (r + s + s'')/(r + s) >= factor at every angle."""
-    s, _, bend = lift.derivatives(uniform_turn(_FINE), 2)
-    return float(np.max(-bend / (1.0 - factor) - s))
+    s, _, lift_d2 = lift.derivatives(uniform_turn(_FINE), 2)
+    return float(np.max(-lift_d2 / (1.0 - factor) - s))
 
 
 def _cam(name: str, contour: Contour, system: FollowerSystem, cam_speed: float) -> FollowerContour:

@@ -196,8 +196,8 @@ class EccentricDrive:
         """Derivative of the rolling distance by the angle (in eq. 37), m/rad^2."""
         d, d1 = self.linkage.height(phi), self.linkage.height_rate(phi)
         side = d1 - self.linkage.offset
-        bend = self.linkage.height_rate_slope(phi)
-        return np.asarray((d * d1 + side * bend) / np.hypot(d, side))
+        rate_slope = self.linkage.height_rate_slope(phi)
+        return np.asarray((d * d1 + side * rate_slope) / np.hypot(d, side))
 
     def losses(self, speed: float, count: int = POSITIONS) -> Losses:
         """Viscous friction energy of a turn at constant speed (rad/s), without slip (eq. 40)."""

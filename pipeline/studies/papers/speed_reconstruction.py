@@ -90,10 +90,10 @@ def reconstruct() -> Reconstruction:
 def _step(unknowns: Array, multipliers: Array) -> tuple[Array, Array] | None:
     """Step to the optimum of the quadratic model, and multipliers; None without one."""
     level, slopes = _limits(unknowns), _slopes(_limits, unknowns)
-    bend = _slopes(lambda at: multipliers @ _slopes(_limits, at), unknowns)
-    smooth = np.zeros_like(bend)
+    hessian = _slopes(lambda at: multipliers @ _slopes(_limits, at), unknowns)
+    smooth = np.zeros_like(hessian)
     smooth[:-1, :-1] = _THIRD.T @ _THIRD
-    values, vectors = np.linalg.eigh(smooth - 0.5 * (bend + bend.T))
+    values, vectors = np.linalg.eigh(smooth - 0.5 * (hessian + hessian.T))
     program = Cones(unknowns.size)
     program.charge(smooth @ unknowns)
     program.charge_square((vectors * np.maximum(values, 1e-8)) @ vectors.T)
