@@ -23,7 +23,7 @@ FULL_TURN = 2.0 * np.pi
 
 
 def readonly(values: ArrayLike) -> Array:
-    """Read-only float copy of `values`; those of a read-only array that owns them are shared."""
+    """Read-only float array of `values`; one that is read-only and owns its memory is shared."""
     if (
         type(values) is np.ndarray
         and values.base is None
@@ -37,7 +37,7 @@ def readonly(values: ArrayLike) -> Array:
 
 
 def sealed(values: Sealed) -> Sealed:
-    """A new array made read-only in place: no copy, as nothing else refers to it."""
+    """Array made read-only in place, without a copy; the caller keeps no other reference to it."""
     values.setflags(write=False)
     return values
 
@@ -78,7 +78,7 @@ def uniform_turn(count: int) -> Array:
 
 
 def distinct(values: ArrayLike) -> Array:
-    """Distinct values, ascending; none is NaN.
+    """Distinct values in ascending order; the input holds no NaN.
 
     As `numpy.unique`, which imports the masked arrays for it, 20 ms.
     """
@@ -87,7 +87,7 @@ def distinct(values: ArrayLike) -> Array:
 
 
 def firsts(ordered: Array) -> NDArray[np.bool_]:
-    """Where each of ascending values (n,) differs from the one before; the first always."""
+    """Mask (n,) of ascending values: true at the first value of each run of equal ones."""
     first = np.ones(ordered.shape, dtype=bool)
     np.not_equal(ordered[1:], ordered[:-1], out=first[1:])
     return first
@@ -100,7 +100,7 @@ def median(values: Array) -> float:
 
 
 def rotation(angle: float) -> Array:
-    """Matrix (2, 2) that turns vectors counter-clockwise by `angle`, rad."""
+    """Rotation matrix (2, 2) of a counter-clockwise `angle`, rad."""
     cosine, sine = np.cos(angle), np.sin(angle)
     return np.array([[cosine, -sine], [sine, cosine]])
 
@@ -112,7 +112,7 @@ def freeze(instance: DataclassInstance, **arrays: ArrayLike) -> None:
 
 
 def alike(marks: ArrayLike) -> list[NDArray[np.intp]]:
-    """Numbers of the columns of bool (k, n) that are equal, one array a pattern, ascending."""
+    """Groups of equal columns of a boolean array (k, n): indices, one array per pattern."""
     packed = np.packbits(np.asarray(marks, dtype=bool), axis=0)
     if not packed.size:
         return [np.arange(packed.shape[1])] if packed.shape[1] else []

@@ -136,10 +136,10 @@ class RollerCam(ABC):
         )
 
     def best_offset(self, prime_radius: float, limits: PitchLimits) -> float:
-        """Offset (m) of the least pressure angle over its limit, of rise against return.
+        """Offset, m, at which rise and return use equal shares of their pressure-angle limits.
 
         Within the limits of the curvature, less a thousandth for a rounded offset; where no offset
-        keeps them that of the least curvature.
+        keeps them, the offset of the least curvature.
         """
         positive("cam.prime_radius", prime_radius, "m")
         most = _OFFSET_SHARE * prime_radius
@@ -166,7 +166,7 @@ class RollerCam(ABC):
         return _balanced(least_argument(within, -most, most), most)
 
     def smallest(self, limits: PitchLimits) -> RollerSize:
-        """Smallest prime radius of any offset, and that offset, m."""
+        """Smallest prime radius over all offsets, and the offset at which it is reached, m."""
         most = self.least_prime_radius(limits)
         by_angle = least_argument(lambda each: self._by_angle(limits, each), -most, most)
         offset = _balanced(by_angle, most)
@@ -248,12 +248,12 @@ class EccentricCam(RollerCam):
         return LiftParts((LiftPart(0.0, FULL_TURN, derivatives, _SAMPLES),))
 
     def least_prime_radius(self, limits: PitchLimits, offset: float = 0.0) -> float:
-        """Smallest prime radius, m, with an offset, m; the curvature is that of a circle."""
+        """Smallest prime radius at an offset, m; the pitch curve has the curvature of a circle."""
         by_angle = self._by_angle(limits, offset)
         return max(by_angle, limits.convex_radius - self.eccentricity)
 
     def smallest(self, limits: PitchLimits) -> RollerSize:
-        """Smallest prime radius of any offset, and that offset, m, in closed form."""
+        """Smallest prime radius over all offsets, and its offset, m, in closed form."""
         rise, back = np.sin(limits.rise), np.sin(limits.back)
         offset = float(self.eccentricity * (back - rise) / (back + rise))
         return RollerSize(self.least_prime_radius(limits, offset), offset)

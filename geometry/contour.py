@@ -1,4 +1,4 @@
-"""Contour of the cam: the surface under a follower, and that under a roller."""
+"""Contour of the cam: surface of any follower type, and the contour under a roller."""
 
 from __future__ import annotations
 
@@ -60,7 +60,7 @@ class Frame(NamedTuple):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Contour(Displayed, ABC):
-    """Cam surface: at every cam angle the point that touches the follower then.
+    """Cam surface by cam angle: at each angle the point that touches the follower.
 
     A kind of follower is a class of its own that defines the abstract members: the contact point
     with its derivatives, the undercut factor and the follower's own surface. Areas, extremes,
@@ -90,10 +90,10 @@ class Contour(Displayed, ABC):
 
     @abstractmethod
     def follower_gap(self, xi: Array) -> Array:
-        """Gap between the follower and its tangent at a distance `xi` (m) along it, m, >= 0."""
+        """Gap between follower and common tangent at distance `xi` (m) along it, m, >= 0."""
 
     def require_roller(self) -> RollerContour:
-        """This contour, where its follower is a roller.
+        """This contour as a `RollerContour`; refused for any other follower.
 
         Raises
         ------
@@ -163,7 +163,7 @@ class Contour(Displayed, ABC):
     @property
     @abstractmethod
     def fitting_tool(self) -> float:
-        """Radius of a round tool that reaches every point the follower does, m."""
+        """Greatest radius of a round tool that reaches every point the follower touches, m."""
 
     @abstractmethod
     def standing(self, polygon: ArrayLike, theta: ArrayLike) -> Array:

@@ -53,7 +53,7 @@ def keyway_corners(bore_radius: float, keyway: KeywayLike) -> Array:
 
 
 def radius_at(outline: Array, turn: float) -> float:
-    """Greatest distance from the origin at which a ray at `turn`, rad, meets a closed outline.
+    """Greatest distance from the origin at which a ray at angle `turn`, rad, meets an outline.
 
     Parameters
     ----------

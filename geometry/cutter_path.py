@@ -13,7 +13,7 @@ from camwright.geometry.interference import SecondContact, second_contact
 
 
 class CutterPath(NamedTuple):
-    """Cam angle (n,), rad; tool centre (2, n), m; radius of curvature of its path (n,), m."""
+    """Path of the tool centre: cam angle, rad; centre (2, n), m; radius of curvature, m."""
 
     theta: Array
     centre: Array

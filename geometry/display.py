@@ -19,7 +19,7 @@ _PANEL = (7.0, 2.4)  # inches
 
 
 class Displayed:
-    """A result that is displayed by its facts: in one line, and in a notebook as a table.
+    """Base of results that print as one line of facts, and as an HTML table in a notebook.
 
     A dataclass takes this display in place of the generated one with ``repr=False``.
     """
@@ -41,7 +41,7 @@ class Displayed:
 
 
 def in_brief(value: object) -> str:
-    """A value in few characters: an array by its shape, a collection by its length."""
+    """Short text of a value: the shape of an array, the length of a collection."""
     if value is None or isinstance(value, bool | int):
         return str(value)
     if isinstance(value, float):
@@ -56,7 +56,7 @@ def in_brief(value: object) -> str:
 
 
 def clipped(text: str, most: int) -> str:
-    """The text, its end left out where it is too long."""
+    """Text cut to a maximum length, with an ellipsis."""
     return text if len(text) <= most else f"{text[: most - 4]} ..."
 
 
@@ -70,7 +70,7 @@ def html_table(caption: str, header: Sequence[str], rows: Iterable[Sequence[str]
 
 
 def panels_of(count: int, size: tuple[float, float] = _PANEL) -> tuple[Axes, ...]:
-    """Axes of a new figure of pyplot, one below the other.
+    """Axes of a new pyplot figure with the panels stacked vertically.
 
     Parameters
     ----------

@@ -118,7 +118,7 @@ def lift_from_torque(
 def lift_of_spring(
     theta: ArrayLike, cam_torque: ArrayLike, deflection: Deflection, initial_energy: float = 0.0
 ) -> Lift:
-    """As `lift_from_torque`, of any spring.
+    """Lift whose energy in a spring of any characteristic balances the torque.
 
     Parameters
     ----------

@@ -73,7 +73,7 @@ class SeveralInputsError(InputError):
 
 
 def as_one(errors: tuple[InputError, ...]) -> InputError:
-    """The error itself where there is one, else all in one."""
+    """One exception for several input errors; a single one is returned unchanged."""
     return errors[0] if len(errors) == 1 else SeveralInputsError(errors)
 
 
@@ -99,4 +99,4 @@ class ResultError(CamError):
 
 
 class AlteredError(ResultError):
-    """Finished run that is not as its record says."""
+    """Finished run whose files differ from the hashes in its record."""

@@ -34,7 +34,7 @@ class Extremum(NamedTuple):
 
 
 def first_greatest(values: ArrayLike) -> int:
-    """Number of the greatest of values (n,), the first of those that are equal within `TIE`.
+    """Index of the greatest of values (n,); the first of those equal within `TIE`.
 
     Which of equal values is the greatest depends on the processor and its libraries. The first NaN,
     where there is one.
@@ -45,12 +45,12 @@ def first_greatest(values: ArrayLike) -> int:
 
 
 def first_least(values: ArrayLike) -> int:
-    """Number of the least of values (n,), the first of equal ones; see `first_greatest`."""
+    """Index of the least of values (n,); the first of equal ones, see `first_greatest`."""
     return first_greatest(-np.asarray(values, dtype=float))
 
 
 def first_greatest_of_rows(values: Array) -> NDArray[np.intp]:
-    """Numbers (m,) of the greatest value of each row (m, n); see `first_greatest`."""
+    """Indices (m,) of the greatest value of each row (m, n); see `first_greatest`."""
     top = values.max(axis=1, keepdims=True)
     size = np.maximum(top, -values.min(axis=1, keepdims=True))
     if np.isfinite(size).all():
@@ -61,7 +61,7 @@ def first_greatest_of_rows(values: Array) -> NDArray[np.intp]:
 
 
 def to_rank(value: float) -> float:
-    """Value by which to sort, to 9 digits and decimals: round-off does not order equal ones."""
+    """Sort key of a value, rounded to 9 digits and decimals: round-off orders no equal values."""
     return round(float(f"{value:.9g}"), 9)
 
 
@@ -110,7 +110,7 @@ def local_minima(function: Function, count: int, *, lowest: bool = False) -> tup
 
 
 def refined(function: Function, centre: Array, half: float, zooms: int) -> tuple[Array, Array]:
-    """Minima (m,) within `half` of their centres (m,), and their places, by 33 points a zoom.
+    """Minima (m,) and their arguments in brackets `centre` +- `half`, by nested grids of 33 points.
 
     Parameters
     ----------
@@ -197,7 +197,7 @@ def sampled_least(values: Array) -> Array:
 def least_argument(
     function: Callable[[float], float], low: float, high: float, sections: int = _SECTIONS
 ) -> float:
-    """Argument of the minimum of a function with no other one between two bounds.
+    """Argument of the minimum of a unimodal function between two bounds.
 
     By golden sections, which leave 0.618^sections of the range; the function may have a kink.
     """

@@ -100,7 +100,7 @@ class FacePath(FollowerPath):
 
 @dataclass(frozen=True, eq=False)
 class FaceMotion:
-    """Flat face on the unloaded cam at cam angles, its contact s' beside the cam axis.
+    """Kinematics of a flat face on the unloaded cam; the contact lies s' beside the cam axis.
 
     See `Motion`.
 
@@ -163,7 +163,7 @@ class FaceMotion:
 
     @property
     def gain(self) -> float:
-        """One: the face is square to the stem."""
+        """Normal over axial force: one, the face is square to the stem."""
         return 1.0
 
     @property
@@ -232,7 +232,7 @@ class FlatFaceContour(Contour):
         return 0.0
 
     def follower_gap(self, xi: Array) -> Array:
-        """Zero: the face is its own tangent."""
+        """Gap between the face and the common tangent: zero, the face is plane."""
         return np.zeros_like(xi)
 
     def points(self, theta: ArrayLike) -> Array:
@@ -302,7 +302,7 @@ class FlatFaceContour(Contour):
 
 
 def require_face_width(width: float, needed: float) -> None:
-    """Check that a face of `width` is wider than `needed`, the travel of the contact, m.
+    """Check that a face of `width` covers the travel of the contact, `needed`, m.
 
     Raises
     ------

@@ -18,7 +18,7 @@ from camwright.geometry.lift import Jet, Lift
 
 
 class Reaction(NamedTuple):
-    """Load of a guide over the axial force, (..., n).
+    """Reaction of a guide over the axial force on the stem, (..., n).
 
     whole: sum of the loads of point supports by the side force and by the couple, which the finite
     elements correct; slack: that sum less the load by both at once, None without a couple.
@@ -29,11 +29,11 @@ class Reaction(NamedTuple):
 
     @property
     def on_points(self) -> Array:
-        """Reaction of a point support."""
+        """Reaction of a point support over the axial force."""
         return self.whole if self.slack is None else self.whole - self.slack
 
     def corrected(self, fix: Array) -> Array:
-        """Load with a correction, >= 0; 1: that of a point support."""
+        """Reaction with a finite-element correction `fix`, >= 0; at 1 that of a point support."""
         if self.slack is None:
             return self.whole * fix
         load = self.whole * fix - self.slack
@@ -41,7 +41,7 @@ class Reaction(NamedTuple):
 
 
 class Motion(Protocol):
-    """Motion of a follower on the unloaded cam at cam angles.
+    """Kinematics and force ratios of a follower on the unloaded cam at given cam angles.
 
     Arrays (..., n), real or complex, m. Contour, checks, screening and synthesis evaluate them.
     """
@@ -52,7 +52,7 @@ class Motion(Protocol):
 
     @property
     def height(self) -> Array:
-        """Height of the reference point of the follower over the cam axis."""
+        """Height of the reference point of the follower over the cam axis, m."""
 
     @property
     def pressure_angle(self) -> Array:
@@ -64,7 +64,7 @@ class Motion(Protocol):
 
     @property
     def path_curvature(self) -> Array:
-        """Curvature of that path, 1/m, positive where convex."""
+        """Curvature of the path of the reference point, 1/m, positive where convex."""
 
     @property
     def sharpness(self) -> Array:
@@ -72,7 +72,7 @@ class Motion(Protocol):
 
     @property
     def size(self) -> Value:
-        """Relative radius of the contact over the undercut factor."""
+        """Relative radius of curvature of the contact over the undercut factor, m."""
 
     @property
     def gain(self) -> Value:
@@ -84,23 +84,23 @@ class Motion(Protocol):
 
     @property
     def arm(self) -> Array:
-        """Distance of the axial force from the stem axis."""
+        """Lever arm of the axial force about the stem axis, m."""
 
     @property
     def sliding(self) -> Value:
-        """Torque of the friction on the cam over the axial force."""
+        """Torque of the sliding friction on the cam over the axial force, m."""
 
     @property
     def rolling(self) -> Value:
-        """Turn of a roller over that of the cam."""
+        """Angular speed of the roller relative to the stem over cam speed."""
 
     @property
     def contact_point(self) -> tuple[Array, Array]:
-        """Place of the contact along the line of travel and across it, from the cam axis."""
+        """Contact point from the cam axis, along the line of travel and across it, m."""
 
     @property
     def contour_radius(self) -> Array:
-        """Distance of the contact from the cam axis."""
+        """Distance of the contact from the cam axis, m."""
 
     @property
     def contour_speed(self) -> Array:
@@ -108,7 +108,7 @@ class Motion(Protocol):
 
     @property
     def curvature_slope(self) -> Array:
-        """Change of the contour's curvature along it, 1/m^2."""
+        """Derivative of the contour's curvature by its arc length, 1/m^2."""
 
     def radius_at(self, lift: Value) -> Array:
         """Radius of the contour in a dwell at a lift."""

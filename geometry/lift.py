@@ -58,7 +58,7 @@ class Jet(NamedTuple):
     jerk: Array = _UNKNOWN
 
     def at(self, take: Callable[[Array], Array]) -> Jet:
-        """The jet at some of its angles."""
+        """Lift and derivatives at a selection of the angles."""
         return Jet(*(each if each is _UNKNOWN else take(each) for each in self))
 
 

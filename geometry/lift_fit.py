@@ -104,7 +104,7 @@ def _refuse_overshoot(angle: Array, value: Array, theta: Array, lift: Array) -> 
 def overshoot(
     theta: ArrayLike, values: ArrayLike, lift: Lift, *, level: bool = False
 ) -> tuple[float, float]:
-    """Greatest distance of a lift from the range of two neighbouring points, m, and its cam angle.
+    """Greatest excursion of a lift beyond its two neighbouring points, m, and its cam angle.
 
     Parameters
     ----------

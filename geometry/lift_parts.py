@@ -57,7 +57,7 @@ class LiftPart:
 
 @dataclass(frozen=True, eq=False)
 class LiftParts:
-    """Lift over one period in smooth parts, each with its own values at a joint.
+    """Lift over one period as smooth parts, each with its own one-sided values at a joint.
 
     Where s'' jumps, as between a harmonic rise and a dwell, both values count.
 

@@ -26,7 +26,7 @@ _SAMPLES = 1440
 
 @dataclass(frozen=True, eq=False)
 class Inspection:
-    """Measured contour fitted to the nominal one.
+    """Measured contour against the nominal one: phase, size, harmonics of the form deviation.
 
     phase : float                  rotation of the part against the drawing, rad
     size : float                   mean deviation, m, positive where the part is too large
@@ -55,7 +55,7 @@ class Inspection:
         )
 
     def form(self, theta: ArrayLike) -> Array:
-        """Deviation at any cam angle, rad, from its harmonics, m."""
+        """Form deviation from its harmonics at a cam angle, rad; m, outward positive."""
         waves = np.multiply.outer(np.asarray(theta, dtype=float), np.arange(len(self.cosine)))
         deviation: Array = np.cos(waves) @ self.cosine + np.sin(waves) @ self.sine
         return deviation
@@ -110,7 +110,7 @@ def inspected(contour: Contour, points: ArrayLike) -> Inspection:
 
 
 def surface_of_lift(contour: Contour, theta: ArrayLike, values: ArrayLike) -> Array:
-    """Surface points (2, n), m, of a part from its lift, measured by the follower of the drawing.
+    """Surface points (2, n), m, of a part whose lift was measured with the nominal follower.
 
     The contour of the fitted lift, and what the fit leaves of each value along the normal. The
     base circle, which a lift does not tell, is that of the drawing.

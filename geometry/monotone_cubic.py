@@ -14,7 +14,7 @@ from camwright.geometry.errors import InputError
 
 @dataclass(frozen=True, eq=False)
 class MonotoneCubic:
-    """Cubic (C1) through samples without extremes between them; its end pieces go on outside.
+    """Monotone cubic (C1) through samples; the end cubics extrapolate.
 
     Parameters
     ----------

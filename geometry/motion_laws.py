@@ -32,7 +32,7 @@ _SINE = 4.0 * np.pi**2 / (4.0 + np.pi)
 
 
 class Piece(Protocol):
-    """Value or derivative of a normalised lift at x (...)."""
+    """Normalised lift, or its derivative of an order, as a function of x in 0 to 1, (...)."""
 
     def __call__(self, x: Values, order: int, /) -> Values: ...
 

@@ -107,7 +107,7 @@ class PitchCurve(FollowerPath):
 
 @dataclass(frozen=True, eq=False)
 class RollerMotion:
-    """Roller on the unloaded cam at cam angles; see `Motion`.
+    """Kinematics and force ratios of a roller on the unloaded cam; see `Motion`.
 
     Parameters
     ----------
@@ -129,7 +129,7 @@ class RollerMotion:
 
     @cached_property
     def height(self) -> Array:
-        """Height of the roller centre; its velocity across the axis, m/rad, too."""
+        """Height of the roller centre, m; also its velocity across the follower axis, m/rad."""
         return self.base_height + self.jet.lift
 
     @cached_property
@@ -194,7 +194,7 @@ class RollerMotion:
 
     @property
     def curvature_slope(self) -> Array:
-        """Change of the contour's curvature along it, 1/m^2.
+        """Derivative of the contour's curvature by its arc length, 1/m^2.
 
         The contour is shorter than the pitch curve by the undercut factor, its curvature greater.
         """
@@ -227,19 +227,19 @@ class RollerMotion:
 
 
 def rolling_share(pitch_speed: Values, roller_radius: Value) -> Values:
-    """Spin of the roller relative to the follower over cam speed, of |dP/dtheta|, m/rad."""
+    """Angular speed of the roller relative to the stem over cam speed; path speed in m/rad."""
     return pitch_speed / roller_radius - 1.0
 
 
 def magnitude(values: Values) -> Values:
-    """Value times the sign of its real part: |x|, differentiable by a complex step."""
+    """Absolute value |x| that a complex step differentiates: x times the sign of its real part."""
     return values * np.sign(values.real) if np.iscomplexobj(values) else np.abs(values)
 
 
 def speed_and_curvature(
     along: Values, across: Values, slope: Values, lift_d2: Values
 ) -> tuple[Values, Values]:
-    """Path length per radian, m/rad, and curvature, 1/m, positive where convex.
+    """Speed of a path, m/rad, and its curvature, 1/m, positive where convex.
 
     Parameters
     ----------

@@ -190,7 +190,7 @@ def _zone(sizing: ElementSize, centre: float) -> Zone | None:
 def roller_mesh(
     radius: float, hub_radius: float, contact_angle: float, sizing: ElementSize
 ) -> BodyMesh:
-    """Mesh of a roller centred on the origin, refined at the rim point at `contact_angle`.
+    """Mesh of a roller disc centred on the origin, refined at the rim point at `contact_angle`.
 
     Parameters
     ----------
@@ -401,6 +401,6 @@ def cam_mesh(
 
 
 def facet_shapes(s: Array | float) -> Array:
-    """Quadratic shapes (3, ...) of start, end and mid-side node at s in 0 to 1 of a facet."""
+    """Quadratic shape functions (3, ...) of start, end and mid-side node at s in 0 to 1."""
     s = np.asarray(s)
     return np.array([(1.0 - s) * (1.0 - 2.0 * s), s * (2.0 * s - 1.0), 4.0 * s * (1.0 - s)])

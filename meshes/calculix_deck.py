@@ -33,7 +33,7 @@ class MeshedBody:
 
 @dataclass(frozen=True, eq=False)
 class DeckBody(MeshedBody):
-    """Body under nodal forces.
+    """Body of an input deck with nodal forces and fixed nodes.
 
     Parameters
     ----------
@@ -56,7 +56,7 @@ class DeckBody(MeshedBody):
 
 @dataclass(frozen=True, eq=False)
 class TouchingBody(MeshedBody):
-    """Body of a contact pair.
+    """Body of a contact pair in an input deck: mesh, material, contact surface.
 
     Parameters
     ----------
@@ -76,7 +76,7 @@ class TouchingBody(MeshedBody):
 
 @dataclass(frozen=True)
 class Pressing:
-    """How a follower is pressed onto a held cam.
+    """Boundary conditions and load that press a follower onto a cam held at its bore.
 
     Parameters
     ----------

@@ -22,7 +22,7 @@ _WALL_DECIMALS = 9  # of a wall, m: walls nearer to each other are equal
 
 
 class ContourLike(Protocol):
-    """Contour as the mesh needs it; see ``geometry.contour.Contour``."""
+    """Interface of a contour for the mesher; see ``geometry.contour.Contour``."""
 
     def points(self, theta: Array) -> Array: ...
     def normal(self, theta: Array) -> Array: ...
@@ -65,7 +65,7 @@ def trace(contour: ContourLike) -> SampledContour:
 
 
 def contour_piece(path: SampledContour, sizing: ElementSize) -> OutlinePiece:
-    """Contour by arc length, with equal facets about the contact.
+    """Outline piece of the contour by arc length, with equal facets about the contact.
 
     Raises
     ------
@@ -173,7 +173,7 @@ def _finer_at_fillets(size: SizeField, bore_radius: float, keyway: KeywayLike) -
 def least_wall(
     path: SampledContour, bore_radius: float, keyway: KeywayLike | None
 ) -> tuple[float, Array]:
-    """Minimum distance from bore and keyway to the contour, m, and the sample (2,), m, there.
+    """Minimum distance from bore and keyway to the contour, m, and its contour point (2,), m.
 
     Negative where the bore or the keyway crosses the contour.
     """
@@ -210,7 +210,7 @@ def _winds_around_origin(points: Array) -> bool:
 
 
 def hole_pieces(bore_radius: float, keyway: KeywayLike | None) -> list[OutlinePiece]:
-    """Bore with its keyway as a clockwise loop.
+    """Outline pieces of bore and keyway, a clockwise loop.
 
     Raises
     ------

@@ -53,7 +53,7 @@ _STATE_BYTES = 1024  # more than a `struct sigaction` of C, of which 152 bytes a
 
 @contextmanager
 def signals_kept() -> Iterator[None]:
-    """Keeps what each signal does in this process.
+    """Context manager that restores the signal handlers of this process after gmsh has started.
 
     gmsh on starting sets SIGTERM, SIGHUP, SIGPIPE and those of faults back to the default, by which
     the process would end without a word or clean-up. Python reads and sets its own handlers alone,
@@ -76,7 +76,7 @@ def signals_kept() -> Iterator[None]:
 
 @contextmanager
 def session() -> Iterator[ModuleType]:
-    """gmsh with an empty model of its own and the options above.
+    """Context manager: gmsh with an empty model and the options of this module.
 
     If gmsh is already initialized, its options and current model are restored afterwards;
     otherwise it is finalized.

@@ -119,7 +119,7 @@ def gate(
     scaled_jacobian_min: float = LEAST_SCALED_JACOBIAN,
     edges_min: float = 0.0,
 ) -> Quality:
-    """Quality figures that meet their limits.
+    """Mesh quality after comparison with its limits; refused below one.
 
     Raises
     ------

@@ -104,7 +104,7 @@ def _graded(at: Callable[[Array], Array], start: float, stop: float, size: SizeF
 
 
 def crossing(starts: Array, ends: Array) -> Array | None:
-    """Point (2,) near a crossing of two segments from `starts` to `ends`, each (2, n), or None.
+    """Point (2,) near a crossing of segments `starts` to `ends`, each (2, n); None without one.
 
     Segments that share an end do not cross.
     """
@@ -133,7 +133,7 @@ def _side(a: Array, b: Array, p: Array) -> Array:
 
 
 def line(name: str, start: Array, stop: Array, zone: Zone | None = None) -> OutlinePiece:
-    """Straight piece from `start` to `stop`, (2,), m."""
+    """Straight outline piece from `start` to `stop`, (2,), m."""
     length = float(np.hypot(*(stop - start)))
     along = (stop - start) / length
     return OutlinePiece(name, lambda s: start[:, None] + along[:, None] * s, length, zone)
@@ -147,7 +147,7 @@ def arc(
     centre: tuple[float, float] = (0.0, 0.0),
     zone: Zone | None = None,
 ) -> OutlinePiece:
-    """Circular piece of `radius` (m) between two angles, rad, clockwise if `stop` < `start`."""
+    """Circular outline piece between two angles, rad; clockwise if `stop` < `start`."""
     sense = 1.0 if stop > start else -1.0
 
     def at(s: Array) -> Array:

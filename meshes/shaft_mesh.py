@@ -19,7 +19,7 @@ _BESIDE_EDGE = 1.0 / 20.0  # element length at the edges of the keyway in the bo
 
 
 class CamOnShaft(NamedTuple):
-    """Meshes of cam and solid shaft; nodes (n,) of bore and of shaft that face one another."""
+    """Meshes of cam and solid shaft, with the facing nodes (n,) of bore and shaft."""
 
     cam: BodyMesh
     shaft: BodyMesh

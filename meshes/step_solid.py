@@ -34,20 +34,20 @@ _REMARKS = (
 
 
 class Side(Protocol):
-    """Side of an outline, with the material on its left: its curve and the wall above it, mm."""
+    """Side of the cam's outline with its wall in a STEP solid, mm; the material is on its left."""
 
     @property
     def name(self) -> str: ...
 
     @property
     def corners(self) -> Array:
-        """Ends (n, 2) of its edges: more than two where one edge would be too long."""
+        """End points (n, 2) of the edges of the side; a long side has several edges."""
 
     def curve(self, file: Entities, z: float) -> str:
-        """Reference of the curve of its edges at a height."""
+        """STEP reference of the side's curve at height `z`, mm."""
 
     def wall(self, file: Entities, width: float) -> tuple[str, bool]:
-        """Reference of the surface over the curve; whether its normal points out of the solid."""
+        """STEP reference of the wall surface, and whether its normal points out of the solid."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -43,17 +43,17 @@ class PartTitle:
 
 
 class Entities:
-    """Entities of the data section in their order; equal ones are written once."""
+    """Data section of a STEP file: entities in order, each written once."""
 
     def __init__(self) -> None:
         self._numbers: dict[str, str] = {}
 
     def add(self, kind: str, *values: object) -> str:
-        """Reference of an entity, such as ``#12``."""
+        """Add an entity; its reference, such as ``#12``."""
         return self.add_text(f"{kind}({','.join(str(value) for value in values)})")
 
     def add_text(self, text: str) -> str:
-        """Reference of an entity from its text."""
+        """Add an entity by its text; its reference."""
         return self._numbers.setdefault(text, f"#{len(self._numbers) + 1}")
 
     def point(self, at: Sequence[float] | Array) -> str:
@@ -76,14 +76,14 @@ class Entities:
 
 
 def real(value: float) -> str:
-    """A real of ISO 10303-21, which reads back bit for bit."""
+    """Text of a float as a real of ISO 10303-21, exact to the last bit."""
     mantissa, _, exponent = repr(float(value) + 0.0).partition("e")
     mantissa = mantissa if "." in mantissa else f"{mantissa}."
     return f"{mantissa}E{exponent}" if exponent else mantissa
 
 
 def quoted(text: str) -> str:
-    """A string of ISO 10303-21; letters beyond ASCII by their code points."""
+    """Text as a string of ISO 10303-21; letters beyond ASCII by their code points."""
     plain = text.replace("\\", "\\\\").replace("'", "''")
     if _PLAIN.fullmatch(plain):
         return f"'{plain}'"
@@ -92,7 +92,7 @@ def quoted(text: str) -> str:
 
 
 def listed(values: Iterable[object]) -> str:
-    """An aggregate."""
+    """Text of an aggregate of ISO 10303-21."""
     return f"({','.join(str(value) for value in values)})"
 
 
@@ -125,7 +125,7 @@ def step_text(title: PartTitle, remarks: Sequence[str], entities: Entities, soli
 
 
 def stamped(text: str, case: str, results: str) -> str:
-    """The text with the hashes of case and results in its header."""
+    """STEP text with the hashes of case and results in its header."""
     hashes = {"case": case, "results": results}
     head, end, data = text.partition("ENDSEC;")
     return _STAMP.sub(lambda match: f"'{match[1]} SHA-256 {hashes[match[1]]}'", head) + end + data
