@@ -1,4 +1,4 @@
-"""Columns by header for those who compute with them: data frame, figure, extremes."""
+"""Columns of a table as a data frame, as curves, and their extremes."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ Cells = NDArray[np.float64] | NDArray[np.str_]
 
 
 def data_frame(columns: Mapping[str, object]) -> pd.DataFrame:
-    """A data frame of pandas; ResultError where pandas is not installed."""
+    """Columns as a pandas data frame; ResultError where pandas is not installed."""
     require_extra("notebook", "a data frame")
     import pandas as pd
 

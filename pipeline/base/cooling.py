@@ -1,4 +1,4 @@
-"""Cooling of the mechanism: heat that its housing gives to the surroundings."""
+"""Heat balance of the housing: heat given to the surroundings, temperature rise."""
 
 from __future__ import annotations
 
@@ -50,10 +50,10 @@ class Cooling(Part):
         return self.ambient_temperature + (loss + self.heat) / self.carried(area)
 
     def carried(self, area: float) -> float:
-        """Heat that leaves per kelvin, W/K; area as of `temperature`."""
+        """Thermal conductance to the surroundings, W/K; area as of `temperature`."""
         return STILL_AIR * area if self.conductance is None else self.conductance
 
 
 def housing_area(diameter: float, height: float, width: float) -> float:
-    """Least area of a housing, m^2: that of the box around cam and follower."""
+    """Least outer area of a housing, m^2: that of the bounding box of cam and follower."""
     return 2.0 * (diameter * height + diameter * width + height * width)

@@ -1,4 +1,4 @@
-"""Disk cache of arrays that depend on their key alone, kept between runs.
+"""Disk cache of computed arrays, kept between runs by a hash of their inputs.
 
 The key is a hash of the inputs, of the versions of the libraries and of the source text of the
 modules that compute the arrays, so that a changed module makes a new entry.
@@ -24,7 +24,7 @@ Arrays: TypeAlias = store.Arrays
 
 
 def folder() -> Path | None:
-    """Folder of the entries; None without a home folder or with the cache switched off."""
+    """Folder of the cache; None without a home folder or with the cache switched off."""
     if os.environ.get(OFF):
         return None
     stated = os.environ.get(FOLDER)
@@ -41,13 +41,13 @@ def folder() -> Path | None:
 
 
 def switch_off() -> None:
-    """Neither read nor write entries any more, in this process and those it starts."""
+    """Switch the cache off in this process and those it starts."""
     os.environ[OFF] = "1"
 
 
 @contextmanager
 def left_out() -> Iterator[None]:
-    """Neither read nor write entries meanwhile, in this process and those it starts."""
+    """Context manager: cache switched off in this process and those it starts."""
     before = os.environ.get(OFF)
     switch_off()
     try:
@@ -60,14 +60,14 @@ def left_out() -> Iterator[None]:
 
 
 def cache() -> Store[Arrays]:
-    """Store of the arrays; one that cannot be written is no error."""
+    """Store of the cache; a folder that cannot be written is no error."""
     return Store(folder(), ARRAYS, most=LARGEST, must=False)
 
 
 def kept(
     kind: str, inputs: Hashable, compute: Callable[[], Arrays], modules: tuple[ModuleType, ...]
 ) -> Arrays:
-    """Arrays by name, from the cache or computed and written to it; see `store.key_of`.
+    """Arrays by name, read from the cache, or computed and written to it; see `store.key_of`.
 
     Parameters
     ----------
@@ -80,5 +80,5 @@ def kept(
 
 
 def holds(kind: str, inputs: Hashable, modules: tuple[ModuleType, ...]) -> bool:
-    """Whether there is an entry; see `kept`."""
+    """Whether the cache has an entry of a key; see `kept`."""
     return cache().holds(key_of(kind, inputs, modules))

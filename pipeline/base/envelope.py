@@ -1,4 +1,4 @@
-"""Envelope of the mechanism over the whole turn: the box that holds every part of it.
+"""Envelope of the mechanism: bounding box of all parts over a whole turn.
 
 Lengths in one unit. `across` the stem in the plane of the cam, `along` the stem, and `depth` along
 the camshaft, from the middle of the cam on its axis.
@@ -14,7 +14,7 @@ Ends = tuple[float, float]
 
 
 class Box(NamedTuple):
-    """Ends of a part, or of several, across and along the stem and along the camshaft."""
+    """Extent of parts across the stem, along the stem and along the camshaft, (low, high), m."""
 
     across: Ends
     along: Ends
@@ -28,13 +28,13 @@ class Box(NamedTuple):
 
 
 def around(boxes: Iterable[Box]) -> Box:
-    """Least box around several."""
+    """Bounding box of several boxes."""
     ends = [tuple(zip(*sides, strict=True)) for sides in zip(*boxes, strict=True)]
     return Box(*((min(lows), max(highs)) for lows, highs in ends))
 
 
 class Disc(NamedTuple):
-    """Part about the axis of the camshaft: place of its middle from that of the cam, width."""
+    """Part about the camshaft axis: axial distance of its middle from the cam's; width."""
 
     place: float
     width: float
@@ -42,7 +42,7 @@ class Disc(NamedTuple):
 
 
 class Sleeve(NamedTuple):
-    """Part about the stem: lower and upper end over the reference point at maximum lift."""
+    """Part about the stem: ends over the reference point at maximum lift, and diameter, m."""
 
     low: float
     high: float
@@ -51,7 +51,7 @@ class Sleeve(NamedTuple):
 
 @dataclass(frozen=True)
 class MechanismSizes:
-    """Parts of the mechanism, as far as a case describes them.
+    """Dimensions of the parts of the mechanism that a case states.
 
     Parameters
     ----------
@@ -77,7 +77,7 @@ class MechanismSizes:
 
     @property
     def parts(self) -> tuple[Box, ...]:
-        """Boxes of the parts over the turn; the follower from its lowest to its highest place."""
+        """Boxes of the parts over the turn, the follower from lowest to highest position."""
         highest = self.lowest + self.lift
         half, deep = self.follower
         about = (Disc(0.0, self.cam_width, 2.0 * self.cam_radius), *self.discs)
@@ -91,7 +91,7 @@ class MechanismSizes:
 
     @property
     def envelope(self) -> Box:
-        """Box that holds the mechanism over the whole turn."""
+        """Bounding box of the mechanism over the whole turn."""
         return around(self.parts)
 
     @staticmethod

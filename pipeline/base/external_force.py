@@ -1,4 +1,4 @@
-"""Force on the follower from outside, over the cam angle."""
+"""External force of the machine on the follower, over the cam angle."""
 
 from __future__ import annotations
 
@@ -47,11 +47,11 @@ class ExternalForce:
 
     @classmethod
     def constant(cls, force: float) -> ExternalForce:
-        """The same force, N, at every angle."""
+        """External force of a constant value, N."""
         return cls(np.zeros(1), np.array([force]))
 
     def plus(self, constant: float) -> ExternalForce:
-        """With a constant force, N, such as a weight."""
+        """Sum with a constant force, N, such as a weight."""
         return self if constant == 0.0 else ExternalForce(self.theta, self.force + constant)
 
     @property
@@ -61,7 +61,7 @@ class ExternalForce:
 
     @property
     def spacing(self) -> float:
-        """Least distance of its samples, rad."""
+        """Least step of its cam angles, rad."""
         return float(np.diff(self.theta, append=self.theta[0] + FULL_TURN).min())
 
     @property

@@ -1,4 +1,4 @@
-"""Libraries that are not installed with the package: its extras."""
+"""Optional dependencies of the package: its extras."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ EXTRAS = {"notebook": ("pandas",), "study": ("SALib", "dask", "distributed", "py
 
 
 def require_extra(extra: str, purpose: str) -> None:
-    """Refuse a purpose whose libraries are missing; none of them is imported.
+    """Refuse a purpose whose optional libraries are not installed; none is imported.
 
     Raises
     ------

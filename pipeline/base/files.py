@@ -1,4 +1,4 @@
-"""Files: read within limits, written whole or not at all, hashed."""
+"""File access: bounded reading, atomic writing, hashes."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ _LONG_KEY = re.compile(rf"(?<![\w-])(?:[\w-]++[ \t]*+\.[ \t]*+){{{_TABLES_DEEP +
 
 
 def inside(folder: Path, name: str, field: str) -> Path:
-    """Path of the file `name` under `folder`, symbolic links resolved.
+    """Path of the file `name`, refused outside `folder`; symbolic links resolved.
 
     Raises
     ------
@@ -73,7 +73,7 @@ def inside(folder: Path, name: str, field: str) -> Path:
 
 
 def unplain(folder: Path) -> list[tuple[str, str]]:
-    """What is neither file nor folder under a folder, by relative name: `a link`, `a named pipe`.
+    """Links, pipes, sockets and devices under a folder: their kind by relative name.
 
     Hidden parts included, by name; no link is followed and nothing is opened. A file with further
     names (hard links) is a plain file: what we write takes the place of a name and leaves the
@@ -116,12 +116,12 @@ def require_plain(folder: Path, refused: type[ResultError] = ResultError) -> Non
 
 
 def not_plain(kind: str) -> str:
-    """Reason for which an entry of `unplain` is refused."""
+    """Error message for an entry of `unplain`."""
     return f"is {kind}; only files and folders are read"
 
 
 def shown_name(name: str) -> str:
-    """Name of a file as it can be printed."""
+    """Name of a file in printable characters."""
     return name if name.isprintable() else ascii(name)
 
 
@@ -254,7 +254,7 @@ def _is_short(number: int) -> bool:
 
 
 def locked(path: Path, busy: str) -> IO[str] | None:
-    """Lock of a file for this process until it is closed, at the latest when the process ends.
+    """Exclusive lock of a file; released on closing or at the end of the process.
 
     None on Windows, which has no such lock. A link is not followed.
 
@@ -284,7 +284,7 @@ def locked(path: Path, busy: str) -> IO[str] | None:
 
 
 def write_atomic(path: Path, content: bytes | str, *, durable: bool = True) -> Path:
-    """Write a file whole or not at all; creates missing parent folders.
+    """Write a file in one step, whole or not at all; missing parent folders are created.
 
     durable: on the disk when this returns. A file that may be missing or cut short after a loss of
     power need not wait for it.
@@ -354,7 +354,7 @@ def read_json(path: Path) -> Any:
 
 
 def json_text(value: Json, indent: int | None = 2) -> str:
-    """JSON of a record, numpy numbers included; ResultError for NaN and infinity.
+    """JSON text of a record, numpy numbers included; ResultError for NaN and infinity.
 
     `indent` None: on one line, for long lists of numbers.
     """
@@ -374,7 +374,7 @@ def _plain(value: np.generic | np.ndarray | Mapping[str, Json]) -> Json:
 
 
 def each_key_once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
-    """Object of JSON by its pairs; ValueError if a key stands twice."""
+    """JSON object from its pairs; ValueError for a repeated key."""
     whole = dict(pairs)
     if len(whole) != len(pairs):
         raise ValueError("a key stands twice")
@@ -398,7 +398,7 @@ def _finite(digits: str) -> float:
 
 
 def npz_bytes(arrays: Mapping[str, ArrayLike], *, compressed: bool = True) -> bytes:
-    """Arrays by name as a numpy archive; the same bytes for the same numbers."""
+    """Numpy archive of arrays by name; equal arrays give equal bytes."""
     buffer = io.BytesIO()
     named = {name: np.asarray(values) for name, values in arrays.items()}
     (np.savez_compressed if compressed else np.savez)(buffer, allow_pickle=False, **named)
@@ -406,7 +406,7 @@ def npz_bytes(arrays: Mapping[str, ArrayLike], *, compressed: bool = True) -> by
 
 
 def read_npz(path: Path) -> dict[str, np.ndarray]:
-    """Arrays by name of a numpy archive, as `npz_bytes` writes it.
+    """Arrays by name of a numpy archive written by `npz_bytes`.
 
     No array is made larger than the file can hold: what a header claims is compared with the length
     of its member, and that with its packed length and the length of the file.
@@ -452,7 +452,7 @@ def _member(archive: zipfile.ZipFile, entry: zipfile.ZipInfo) -> np.ndarray:
 
 
 def files_in(folder: Path) -> Iterator[tuple[str, Path]]:
-    """Files under a folder by relative name, in order; those of a hidden part are left out."""
+    """Files under a folder by relative name, sorted, without hidden ones."""
     for file in sorted(folder.rglob("*")):
         parts = file.relative_to(folder).parts
         if file.is_file() and not any(part.startswith(".") for part in parts):
@@ -460,7 +460,7 @@ def files_in(folder: Path) -> Iterator[tuple[str, Path]]:
 
 
 def file_hashes(folder: Path, wanted: Callable[[str], bool]) -> dict[str, str]:
-    """SHA-256 of the files under a folder whose relative name is wanted, by that name."""
+    """SHA-256 by relative name of the chosen files under a folder."""
     return {name: sha256_of(file) for name, file in files_in(folder) if wanted(name)}
 
 

@@ -40,7 +40,7 @@ class Deviations(NamedTuple):
 
 @dataclass(frozen=True)
 class Size:
-    """A size, m, with its tolerance class and limit deviations; None: beyond the tables."""
+    """Nominal size, m, with tolerance class and limit deviations; None beyond the tables."""
 
     nominal: float
     fit: str = ""
@@ -63,7 +63,7 @@ class Size:
 
     @property
     def words(self) -> str:
-        """Such as ``17 H7 (+0.018/0)``."""
+        """Size with class and deviations, such as ``17 H7 (+0.018/0)``, mm."""
         return f"{self.number} ({'/'.join(self.bounds)})" if self.bounds else self.number
 
     def as_record(self) -> dict[str, Json]:
@@ -78,7 +78,7 @@ class Size:
 
 
 def size_of(record: Mapping[str, Any]) -> Size:
-    """Size of a record as `Size.as_record` writes it; KeyError or TypeError of any other."""
+    """Size from its record, see `Size.as_record`; KeyError or TypeError for another value."""
     lower, upper = record["lower_mm"], record["upper_mm"]
     known = None
     if lower is not None:

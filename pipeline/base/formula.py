@@ -1,4 +1,4 @@
-"""Formula texts of checks: read, evaluated on numbers, and written as text or in print.
+"""Formulas of checks as text: parsed, evaluated, and typeset.
 
 A text has the form ``demand <= limit; symbols with their meaning``. A space is a product; ``max``
 and ``min`` before an argument are those over the turn.
@@ -76,7 +76,7 @@ def _changes(values: Array) -> int:
 
 
 class Node(NamedTuple):
-    """Node of a formula: number, name, unary or binary sign, or function of its arguments."""
+    """Node of an expression tree: number, name, sign or function, with its arguments."""
 
     kind: str
     text: str
@@ -85,7 +85,7 @@ class Node(NamedTuple):
 
 
 class Statement(NamedTuple):
-    """Demand against limit as a formula text states them, and the symbols that it defines.
+    """Demand against limit as a formula text states them, with definitions of its symbols.
 
     Parameters
     ----------
@@ -101,7 +101,7 @@ class Statement(NamedTuple):
 
 
 def stated(text: str) -> Statement:
-    """Demand, limit and definitions of a formula text.
+    """Demand, limit and definitions read from a formula text.
 
     Raises
     ------
@@ -122,7 +122,7 @@ def stated(text: str) -> Statement:
 
 
 def parsed(text: str, known: Collection[str] = ()) -> Node:
-    """Tree of an expression; known: symbols that look like a function, such as ``R(T)``.
+    """Expression tree of a text; `known`: symbols with parentheses, such as ``R(T)``.
 
     Raises
     ------
@@ -133,7 +133,7 @@ def parsed(text: str, known: Collection[str] = ()) -> Node:
 
 
 def names(node: Node) -> Iterator[str]:
-    """Names of a tree, in their order, each once."""
+    """Names in an expression tree, in their order, each once."""
     yield from dict.fromkeys(_names(node))
 
 
@@ -145,7 +145,7 @@ def _names(node: Node) -> Iterator[str]:
 
 
 def value(node: Node, at_place: Resolver, over_turn: Resolver | None = None) -> Value:
-    """Value of a tree, SI.
+    """Value of an expression tree, SI.
 
     Parameters
     ----------
@@ -296,7 +296,7 @@ class _Reader:
 
 @dataclass(frozen=True)
 class Printed:
-    """A part of a formula in print: a letter with its subscript, a number, a sign, or a form.
+    """Typeset element of a formula: symbol with subscript, number, sign, or a nested form.
 
     form: name, number, sign, fraction, power, root, bars, group or call; parts: rows of them
     """
@@ -312,7 +312,7 @@ Text = TypeVar("Text", str, tuple[Printed, ...])
 
 @dataclass(frozen=True)
 class Style(Generic[Text]):
-    """How a formula is written: its parts, each by a function of those that it holds.
+    """Typesetting of a formula: one function for each kind of node.
 
     divides : bool   a fraction needs no parentheses about its parts
     """
@@ -330,7 +330,7 @@ class Style(Generic[Text]):
 
 
 def written(node: Node, style: Style[Text], known: Mapping[str, str] | None = None) -> Text:
-    """A tree in a style; known: text in place of a name, such as its value with unit."""
+    """Expression tree in a style; `known`: text in place of a name, such as its value with unit."""
 
     def of(each: Node, least: int) -> Text:
         """Text of a part that has to bind at least so strongly."""

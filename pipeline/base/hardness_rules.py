@@ -15,7 +15,7 @@ THROUGH_HARDENED_MAX = 390.0  # HV
 
 
 def endurance_by_hardness(card: Material) -> dict[str, float]:
-    """Endurance of the surface of a card, Pa, by each rule that holds for it."""
+    """Endurance pressure of a material card by each hardness rule that applies, Pa."""
     rules = {
         "Buckingham": None if card.surface_hardened else buckingham(card),
         "ISO 6336-5": gear_limit(card),

@@ -1,4 +1,4 @@
-"""Properties computed on first use and kept in a field, which other owners can take over."""
+"""Cached properties whose results a modified copy can take over."""
 
 from __future__ import annotations
 
@@ -7,11 +7,11 @@ from typing import Generic, Protocol, TypeVar, cast, overload
 
 
 class Keeping(Protocol):
-    """A frozen value with the field ``results``, which a copy of it has empty."""
+    """Frozen value with a field ``results`` of cached results; a copy starts with none."""
 
     @property
     def results(self) -> dict[str, object]:
-        """Results by name, of the properties that are `KeptResult`."""
+        """Cached results by name of the `KeptResult` properties."""
         ...
 
 
@@ -20,7 +20,7 @@ Result = TypeVar("Result")
 
 
 class KeptResult(Generic[Owner, Result]):
-    """A property computed on first use and kept in the `results` of its owner.
+    """Property computed on first use and cached in the `results` of its owner.
 
     `functools.cached_property` keeps its result out of reach: an owner that differs in what a
     result does not depend on takes it over by `results`.

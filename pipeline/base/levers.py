@@ -1,4 +1,4 @@
-"""Levers: numbers and parts of the case whose change can turn a check to pass.
+"""Levers of a check: numbers and parts of a case whose change can turn it to pass.
 
 A lever multiplies numbers by a factor or replaces a part by one of the catalogue. Its range is that
 of a change that leaves the design what it is.
@@ -16,7 +16,7 @@ FACTOR_MOST = 4.0
 
 @dataclass(frozen=True)
 class Scaled:
-    """Numbers of the case multiplied by a common factor.
+    """Lever: numbers of the case multiplied by a common factor.
 
     Parameters
     ----------
@@ -37,7 +37,7 @@ class Scaled:
 
 @dataclass(frozen=True)
 class Catalogued:
-    """A part replaced by one of the catalogue.
+    """Lever: a part exchanged for another one of the catalogue.
 
     Parameters
     ----------
@@ -55,14 +55,14 @@ class Catalogued:
 
 @dataclass(frozen=True)
 class Drilled:
-    """A counter-hole in a cam without one, with its default wall."""
+    """Lever: a counter-hole with its default wall, in a cam without one."""
 
     key: str = COUNTER_HOLE
 
 
 @dataclass(frozen=True)
 class Crowned:
-    """A crown of the follower whose drop relieves the ends; of a crowned one twice and half of it.
+    """Lever: a crown of the follower; an existing one is halved and doubled in drop.
 
     Parameters
     ----------
@@ -80,12 +80,12 @@ _COMPENSATION_MOST = 20.0  # one twentieth of the torque is next to no cam
 
 
 def one(key: str, direction: Literal[1, -1] = 1, most: float = FACTOR_MOST) -> Scaled:
-    """Lever of a single number."""
+    """Lever of one number of the case."""
     return Scaled((key,), direction, most)
 
 
 def smoothing(direction: Literal[1, -1]) -> tuple[Scaled, ...]:
-    """A wider smoother (1) or a narrower one (-1), by the key of its width."""
+    """Levers of a wider (1) or narrower (-1) smoother of the torque."""
     away: Literal[1, -1] = -1 if direction == 1 else 1
     return (
         Scaled(("smoothing.spacing",), direction, smoothers=("moving_average", "savitzky_golay")),
@@ -147,7 +147,7 @@ SEAT = one("cam.bore_radius", -1, 2.0)
 
 
 def guide(side: Side, rating: str) -> tuple[Lever, ...]:
-    """Levers of the load of guide A or B, first a bush by a rating."""
+    """Levers of a limit on guide A or B: a bush of a better `rating`, length, preload, lift."""
     bush, length = _of(side)
     return (Catalogued(bush, rating), length, OVERHANG, PRIME, *SPRING, *GENTLER)
 

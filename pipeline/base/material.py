@@ -52,7 +52,7 @@ class StrengthAt(Part):
 
 
 class Endurance(NamedTuple):
-    """Endurance of a surface: contact pressure, Pa, and its line over the load cycles.
+    """Endurance pressure of a surface, Pa, at its load cycles, and the S-N line beyond.
 
     slope and intercept: A and B of log10 K = (B - log10 n)/A, K in psi; None: not known.
     """

@@ -1,4 +1,4 @@
-"""Kinds of cams, followers, laws, springs and machines that are not done, stated once."""
+"""Cams, followers, laws, springs and machines that are not supported."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _AREAS: dict[str, Area] = {
 
 @dataclass(frozen=True)
 class MissingKind:
-    """A kind that is not done.
+    """Kind of part or machine that is not supported, with the nearest supported one.
 
     Parameters
     ----------
@@ -36,7 +36,7 @@ class MissingKind:
 
     @property
     def sentence(self) -> str:
-        """That it is not done, what comes nearest, and where all such kinds are listed."""
+        """Message: the kind is not supported, the nearest one, where all are listed."""
         nearest = f" (nearest: {self.instead})" if self.instead else ""
         return f"{self.name} is not done{nearest}; {LISTED}"
 
@@ -209,7 +209,7 @@ MISSING_KINDS = (
 
 
 def missing_kind(key: str, word: str) -> MissingKind | None:
-    """The kind that is not done which a case file names; None without one.
+    """Unsupported kind named by a key or word of a case file; None without one.
 
     Parameters
     ----------
@@ -222,7 +222,7 @@ def missing_kind(key: str, word: str) -> MissingKind | None:
 
 
 def missing_kinds(key: str, word: str) -> list[MissingKind]:
-    """As `missing_kind`: all kinds of the word, those of its longest part first."""
+    """Unsupported kinds named by a word, the longest match first; see `missing_kind`."""
     area = _AREAS.get(re.split(r"[.\[]", key)[0])
     own, word = not word, word or key.rpartition(".")[2]
     sought = f"_{re.sub(r'[^a-z0-9]+', '_', word.casefold()).strip('_')}_"

@@ -1,4 +1,4 @@
-"""Folder of the files of one command, without foreign files, written by one process at a time."""
+"""Output folder of one command: no foreign files, one writing process at a time."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ ASIDE = re.compile(r"\.[\w.-]+\.tmp")
 
 
 class OwnedFolder:
-    """A folder that holds nothing but the files of one command; a context manager.
+    """Context manager: locked folder that may hold the files of one command alone.
 
     Within the context the folder is there and locked for this process, and what a killed process
     left aside is deleted. After it the lock is gone, as is a folder made for it that is empty.
@@ -57,7 +57,7 @@ class OwnedFolder:
         self.release()
 
     def entries(self) -> list[str]:
-        """Names of what is ours at the top of the folder, in order; none of a missing folder.
+        """Names of the command's files at the top of the folder, sorted; none without a folder.
 
         Raises
         ------
@@ -81,12 +81,12 @@ class OwnedFolder:
         return own
 
     def stranger(self, name: str) -> ResultError:
-        """Refusal of a folder that holds a file that is not ours."""
+        """Error for a folder that holds a foreign file."""
         reason = f"holds {shown_name(name)}, which is not of a {self._what}"
         return ResultError(f"{self.path}: {reason}; choose another folder")
 
     def take(self) -> None:
-        """Lock the folder for this process, and delete what a killed process left aside.
+        """Lock the folder, and delete the temporary files of a killed process.
 
         Raises
         ------
@@ -113,7 +113,7 @@ class OwnedFolder:
             raise ResultError(f"{where}: {error.strerror or error}") from None
 
     def release(self) -> None:
-        """End the lock and delete its file, and the folders made for it that are empty."""
+        """Release the lock, and delete its file and the empty folders made for it."""
         if self._lock is not None:
             with suppress(OSError):
                 self._lock_file.unlink(missing_ok=True)

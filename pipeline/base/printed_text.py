@@ -1,4 +1,4 @@
-"""Text that a terminal prints as it stands: no control characters, no overrides of direction."""
+"""Text safe for a terminal: no control characters, no overrides of writing direction."""
 
 from __future__ import annotations
 
@@ -9,12 +9,12 @@ _JOINING = "\n\t\u200c\u200d\u200e\u200f"  # line ends, joiners, marks of direct
 
 
 def is_printed(character: str) -> bool:
-    """Whether a character is printable, a line end, or a joiner or mark that scripts need."""
+    """Whether a character is printable, a line end, or a joiner or mark of a script."""
     return character.isprintable() or character in _JOINING
 
 
 def with_escapes(text: str, escape: Callable[[str], str] = ascii) -> str:
-    r"""Text with its escape, such as ``\x1b``, in place of each character that is not printed.
+    r"""Text with unprintable characters replaced by escapes such as ``\x1b``.
 
     Control characters move the cursor, colour the text or retitle the window of a terminal;
     overrides of the direction make a text read as another; lone surrogates, of a file name that is

@@ -48,7 +48,7 @@ class Progress(Protocol):
 
 
 class Silent:
-    """No output."""
+    """Progress without output."""
 
     def stage(self, name: str) -> None: ...
 
@@ -61,7 +61,7 @@ SILENT = Silent()
 
 
 class Lines:
-    """A plain line for each stage and remark, for a file or pipe."""
+    """Progress as plain lines, one per stage and remark, for a file or pipe."""
 
     def __init__(self, say: Callable[[str], None]) -> None:
         self._say = say
@@ -99,7 +99,7 @@ class _Remaining(ProgressColumn):
 
 
 class Bars:
-    """A bar with percent and remaining time for each stage; a context manager."""
+    """Progress bars with percent and remaining time, one per stage; a context manager."""
 
     def __init__(self, console: Console) -> None:
         self._console = console

@@ -44,7 +44,7 @@ PURE = "a number without a unit"
 
 @dataclass(frozen=True)
 class In:
-    """Marks a float field: unit in a case file, and bounds in that unit; the value is in SI.
+    """Mark of a float field: unit and bounds in a case file; the field itself is in SI.
 
     Without a unit the field is a pure number.
     """
@@ -147,7 +147,7 @@ def _nullable(source: object, schema: CoreSchema) -> CoreSchema:
 
 @dataclass(frozen=True)
 class Ratio(In):
-    """As `In`: a pure number, which a case file may state by whole numbers, such as ``"3:2"``."""
+    """Mark of a pure number, which a case file may state as whole numbers, such as ``"3:2"``."""
 
     def _number(self, value: object) -> float:
         match = _RATIO.fullmatch(value) if isinstance(value, str) else None
@@ -169,7 +169,7 @@ def _bounds_in_si(quantity: In) -> tuple[float, float, float, float]:
 
 @dataclass(frozen=True)
 class Count:
-    """Marks an int field: a whole number within bounds."""
+    """Mark of an int field: a whole number within bounds."""
 
     at_least: int
     at_most: int
@@ -183,7 +183,7 @@ class Count:
         return _nullable(source, number)
 
     def read(self, value: object) -> int:
-        """A whole number of a case file; see `In.read`."""
+        """Whole number of a case file, checked against the bounds; see `In.read`."""
         if isinstance(value, bool) or not isinstance(value, int):
             raise InputError("", str(value), "a whole number")
         self.require("", value)
@@ -199,7 +199,7 @@ class Count:
 
 @dataclass(frozen=True)
 class Characters:
-    """Marks a str field: printable text, its number of characters within bounds.
+    """Mark of a str field: printable text, its number of characters within bounds.
 
     Line ends, and the joiners and direction marks that scripts and emoji need, are allowed;
     overrides of the direction, which make a text read as another, are refused.
@@ -240,12 +240,12 @@ def _is_printable(text: str) -> bool:
 
 @dataclass(frozen=True)
 class OneOf:
-    """Words that a field may hold."""
+    """Mark of a str field: the words that it may hold."""
 
     words: tuple[str, ...]
 
     def require(self, field: str, value: object) -> None:
-        """Refuse a value that is none of the words."""
+        """Refuse a value that is not among the words."""
         if value not in self.words:
             raise InputError(field, _text(value), " or ".join(f'"{word}"' for word in self.words))
 
@@ -265,7 +265,7 @@ class _Words:
 
 @dataclass(frozen=True)
 class Known(_Words):
-    """Marks a field: where its value comes from, and an example.
+    """Mark of a field: where its value is found, and an example.
 
     Parameters
     ----------
@@ -279,26 +279,26 @@ class Known(_Words):
 
 @dataclass(frozen=True)
 class Used(_Words):
-    """Marks a field that holds a table, by the stages of the calculation that use it."""
+    """Mark of a field that holds a table: the stages of the calculation that use it."""
 
     stages: str
 
 
 @dataclass(frozen=True)
 class Meaning(_Words):
-    """Marks fields of one type by their meaning; that of a single field stands below it."""
+    """Mark shared by fields of one type: their meaning; a single field states its own below it."""
 
     text: str
 
 
 def describes(mark: object) -> bool:
-    """Whether a mark describes a field and rules none of its values."""
+    """Whether a mark only describes a field, without a rule on its value."""
     return isinstance(mark, _Words)
 
 
 @dataclass(frozen=True)
 class Resolved:
-    """A key of a table that is no field: the reader replaces it by what it names."""
+    """Key of a table without a field, such as ``card``, replaced on reading by what it names."""
 
     accepted: str
     meaning: str
@@ -306,7 +306,7 @@ class Resolved:
 
 
 def card_of(meaning: str, file: str, example: str) -> Mapping[str, Resolved]:
-    """Key ``card`` of a table that a card of a file completes."""
+    """Key ``card`` of a table, the name of a card that completes it."""
     source = f"pipeline/case/cards/{file}, or cards.toml beside the case"
     return {"card": Resolved("name of a card", meaning, Known(source, example))}
 
@@ -334,15 +334,15 @@ class Part:
 
     @property
     def derived(self) -> tuple[str, ...]:
-        """Names of the fields that follow from others: a case leaves them out."""
+        """Names of fields derived from others, which a case leaves out."""
         return ()
 
     def with_derived(self) -> Self:
-        """The part with those fields as the others have them."""
+        """Copy with the derived fields computed."""
         return self
 
     def with_values(self, values: Mapping[str, float], table: str = "") -> Self:
-        """The part with those of some values, SI, by their keys in a case, that it has.
+        """Copy with new SI values by their case-file keys; keys of other parts are ignored.
 
         table: key of the part, where it is one of another; "": its own.
         """
@@ -358,7 +358,7 @@ class Part:
 
     @property
     def lacking(self) -> tuple[str, ...]:
-        """Names of the numbers and words without a value, unless `defaults` has their meaning."""
+        """Names of the fields without a value; `defaults` lists those whose default counts."""
         return tuple(
             name
             for name, rule in _rules_of(type(self)).items()
@@ -386,7 +386,7 @@ _HINTS: dict[type, Mapping[str, Any]] = {}  # evaluated once
 
 
 def hints_of(part: type[Part]) -> Mapping[str, Any]:
-    """Annotations of a part and its bases with their marks, by name."""
+    """Type annotations of a part and its bases by field name, marks included."""
     hints: dict[str, Any] = {}
     for kind in reversed(part.__mro__):
         if kind not in _HINTS:
@@ -426,7 +426,7 @@ def _rule_of(hint: object) -> _Rule | None:
 
 
 def marks_of(part: type[Part]) -> Mapping[str, In | Count]:
-    """Units and bounds of a part's number fields by name."""
+    """Unit and bounds of the number fields of a part by name."""
     return {
         name: rule.mark
         for name, rule in _rules_of(part).items()

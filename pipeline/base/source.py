@@ -1,4 +1,4 @@
-"""Source of a value: its text, and whether it confirms the value; its forms in a case file.
+"""Source of a value: text, whether it confirms the value, notation in a case file.
 
 A text is a source. ``{ text = "...", confirmed = false }`` says that the value is yet to be
 confirmed. Files of version 0.1 said so in words: a plain text with one of them is read as
@@ -24,7 +24,7 @@ _STATED = {"text", "confirmed"}
 
 @dataclass(frozen=True)
 class Source:
-    """Source of a value; false without a text, shown with a mark where it confirms nothing.
+    """Source of a value, false if empty; an unconfirmed one is printed with a mark.
 
     Parameters
     ----------
@@ -39,7 +39,7 @@ class Source:
         return bool(self.text.strip())
 
     def of(self, name: str) -> Source:
-        """The source with the name of what it states."""
+        """Source with the name of its value in front."""
         return replace(self, text=f"{name}: {self.text}")
 
     def __str__(self) -> str:
@@ -51,7 +51,7 @@ NO_SOURCE = Source("", confirmed=False)
 
 
 def source_in(entry: object) -> Source:
-    """The source that an entry of a table states; none if it is of no form of a source."""
+    """Source from an entry of a table; empty if the entry has another form."""
     if isinstance(entry, str):
         return Source(entry, confirmed=bool(entry.strip()) and not _of_0_1(entry))
     if not isinstance(entry, Mapping) or set(entry) != _STATED:
@@ -63,14 +63,14 @@ def source_in(entry: object) -> Source:
 
 
 def entry_of(source: Source) -> Any:
-    """A source as an entry of a table: its text, where `source_in` reads that as the source."""
+    """Table entry of a source: plain text where `source_in` reads it back, else text and mark."""
     if not _of_0_1(source.text) and source_in(source.text) == source:
         return source.text
     return {"text": source.text, "confirmed": source.confirmed}
 
 
 def reworded(entry: Any, words: Callable[[str], str]) -> Any:
-    """An entry with its text changed by a function; it keeps its form and its confirmation."""
+    """Entry with its text changed by a function; form and confirmation are kept."""
     source = source_in(entry)
     new = replace(source, text=words(source.text))
     plain = isinstance(entry, str) and source_in(new.text) == new
@@ -78,7 +78,7 @@ def reworded(entry: Any, words: Callable[[str], str]) -> Any:
 
 
 def written(source: Source) -> str:
-    """A source as the value of a key in the text of a case file."""
+    """Source as a value in the text of a case file."""
     entry = entry_of(source)
     lines = tomli_w.dumps(entry if isinstance(entry, dict) else {"text": entry}).splitlines()
     text = lines[0].removeprefix("text = ")
@@ -86,7 +86,7 @@ def written(source: Source) -> str:
 
 
 def old_words(tables: Mapping[str, Any]) -> tuple[str, ...]:
-    """A warning for each plain text that is read as unconfirmed for its words."""
+    """Warnings for plain texts that version 0.1 reads as unconfirmed by their words."""
     return tuple(
         f'source "{text}" is to be confirmed by its words, as in version 0.1; written as'
         " { text = ..., confirmed = false }, or with confirmed = true if it confirms the value"

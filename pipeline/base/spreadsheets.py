@@ -1,4 +1,4 @@
-"""CSV tables as spreadsheets for office programs of any language: rounded, ready to print."""
+"""Spreadsheets of CSV tables, rounded and ready to print, for office programs."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ _OPTIONS = {"in_memory": True, "strings_to_formulas": False, "strings_to_urls": 
 
 @dataclass(frozen=True)
 class Excerpt:
-    """Rows of a table on one page to print: every `step` deg of a column.
+    """Rows of a table for one printed page: every `step` deg of a column.
 
     beside : mapping   files in the folder of the table by the titles of their sheets, if they are
     """
@@ -42,7 +42,7 @@ class Excerpt:
 
 
 def spreadsheet(file: Path, excerpt: Excerpt | None = None) -> bytes:
-    """A CSV table as a spreadsheet; equal tables give equal bytes.
+    """Spreadsheet of a CSV table; equal tables give equal bytes.
 
     The header row stays on the screen and on each page. Numbers are rounded, an unknown one is an
     empty cell. An `excerpt` is the first sheet, and fits on one page, as do the tables beside it;
@@ -103,7 +103,7 @@ def _add_sheet(book: Workbook, name: str, whole: Table, rows: NDArray[np.intp], 
 
 
 def rounded(values: Array, decimals: int | None) -> Array:
-    """Values to a number of decimals, or None: to `DIGITS` digits; no negative zero."""
+    """Values rounded to decimals, or with None to `DIGITS` digits; no negative zero."""
     if decimals is not None:
         return np.asarray(np.round(values, decimals) + 0.0)
     size = np.abs(values)

@@ -1,4 +1,4 @@
-"""Places along the stem: guides, seats and coil spring; the place that a case leaves to the rule.
+"""Layout along the stem: guides, spring seats, coil spring; default place of the spring.
 
 Lengths in one unit, numbers or arrays (...). Heights are over the reference point of the follower,
 roller centre or face, at maximum lift; guide A lies below guide B. The spring reaches from a seat
@@ -23,7 +23,7 @@ Shear pi d t sigma/2 round the stem, by Tresca, against compression pi d^2/4 sig
 
 
 class SeatPlace(NamedTuple):
-    """Height of the face of the moving seat at maximum lift, and the least clearance.
+    """Position of the moving spring seat at maximum lift, m, and least clearance of the spring.
 
     gap (...): of seats and spring from guides, stem and follower; NaN: on a stem of unknown length.
     """
@@ -33,7 +33,7 @@ class SeatPlace(NamedTuple):
 
 
 def decided(most: Value, none: Value, limit: Value) -> Array:
-    """Gap that a size decides of which only bounds are known, (...); NaN: they do not decide it.
+    """Clearance where bounds of an unknown thickness decide it, (...); NaN where they do not.
 
     The gap at the greatest size is within the limit, and so at every one; or that at none is not.
     """
@@ -51,7 +51,7 @@ def _least(*gaps: Value) -> Array:
 
 @dataclass(frozen=True, eq=False)
 class StemLayout:
-    """Guides, stem and coil spring along the follower axis.
+    """Positions of guides, stem and coil spring along the follower axis, m.
 
     Parameters
     ----------
@@ -92,7 +92,7 @@ class StemLayout:
         return 0.5 * (self.spring_bore - self.stem_diameter)
 
     def seated(self, thickness: Value, clearance: Value, height: Value | None = None) -> SeatPlace:
-        """Place of the moving seat of a thickness, and the least clearance over the turn.
+        """Position of the moving seat of a given thickness, and least clearance over the turn.
 
         Where no height is stated the spring rests on guide B from below if it clears guide A and
         the stem by a clearance; else it stands above guide B, on the end of the stem.
@@ -135,9 +135,9 @@ class StemLayout:
     def known_gap(
         self, thickness: Value | None, clearance: Value, height: Value | None = None
     ) -> Array:
-        """Least clearance; of seats of unknown thickness where the widest, or none, decides it.
+        """Least clearance of the spring, m; for unknown seats by the thickest and the thinnest.
 
-        NaN: neither does, or the length of the stem is not known.
+        NaN: neither decides, or the length of the stem is not known.
         """
         if thickness is not None:
             return self.seated(thickness, clearance, height).gap

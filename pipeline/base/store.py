@@ -1,4 +1,4 @@
-"""Store of values by key, each in a file of its folder.
+"""Key-value store, each value in a file of its folder.
 
 An entry is written aside and moved. Writers of one entry write the same bytes, so they need no
 lock. A damaged entry counts as missing.
@@ -40,7 +40,7 @@ def _any(_: object) -> bool:
 
 @dataclass(frozen=True)
 class Format(Generic[T]):
-    """Format of the files of a store.
+    """File format of a store: suffix, writer, reader.
 
     Parameters
     ----------
@@ -92,7 +92,7 @@ PACKED: Format[Arrays] = replace(ARRAYS, write=_packed)
 
 @dataclass(frozen=True)
 class Store(Generic[T]):
-    """Values by key, each in the file ``KEY.suffix`` of a folder.
+    """Key-value store in a folder, each value in a file ``KEY.suffix``.
 
     Parameters
     ----------
@@ -113,12 +113,12 @@ class Store(Generic[T]):
         return None if self.folder is None else self.folder / f"{key}{self.format.suffix}"
 
     def holds(self, key: str) -> bool:
-        """Whether there is an entry, damaged or not."""
+        """Whether there is a file for a key, damaged or not."""
         path = self.path(key)
         return path is not None and path.is_file()
 
     def get(self, key: str, fits: Callable[[T], bool] = _any) -> T | None:
-        """Value of an entry; None if it is missing, damaged or does not fit."""
+        """Value of a key; None if it is missing, damaged or of another form."""
         path = self.path(key)
         if path is None:
             return None
@@ -160,7 +160,7 @@ class Store(Generic[T]):
                 _make_room(path, self.most)
 
     def delete(self, key: str) -> None:
-        """Delete an entry, if there is one."""
+        """Delete the value of a key, if any."""
         path = self.path(key)
         if path is not None and path.is_file():
             path.unlink(missing_ok=True)
@@ -181,7 +181,7 @@ class Store(Generic[T]):
 
 
 def key_of(kind: str, inputs: Hashable, modules: tuple[ModuleType, ...] = ()) -> str:
-    """Key of a value by its kind and the hash of all that decides it.
+    """Key of a value: its kind and the hash of all its inputs.
 
     Parameters
     ----------

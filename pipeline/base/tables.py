@@ -33,7 +33,7 @@ RANGE = ("column", "least", "greatest")
 
 @dataclass(frozen=True)
 class Column:
-    """A table column; it stands beside its values, in the code that computes them.
+    """Column of a table: quantity, unit and meaning.
 
     Parameters
     ----------
@@ -64,7 +64,7 @@ Values = Mapping[Column, Cells]
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Table(Displayed):
-    """Columns of one length by header, in the unit of the header.
+    """Columns of equal length by header, each in the unit of its header.
 
     numbers has those of numbers; rows_of is the load case of each row, None in a table of no load
     case.
@@ -79,7 +79,7 @@ class Table(Displayed):
 
     @property
     def columns(self) -> dict[str, Cells]:
-        """Read-only columns (n,) by header, that of the load cases first."""
+        """Read-only columns (n,) by header, the load case first."""
         owners = {} if self.rows_of is None else {LOAD_CASE.header: self.rows_of}
         return {**owners, **self.numbers}
 
@@ -104,7 +104,7 @@ class Table(Displayed):
         return header in self.columns
 
     def get(self, header: str) -> Array | None:
-        """A column of numbers that not every run has; None without it."""
+        """Optional column of numbers; None where the table lacks it."""
         return self.numbers.get(header)
 
     def __len__(self) -> int:
@@ -116,7 +116,7 @@ class Table(Displayed):
         return () if self.rows_of is None else tuple(dict.fromkeys(self.rows_of.tolist()))
 
     def of_load_case(self, name: str) -> Table:
-        """The rows of a load case; none where there is no such load case."""
+        """Rows of one load case; none if it is unknown."""
         owners = np.full(len(self), "") if self.rows_of is None else self.rows_of
         rows = owners == name
         columns = {header: readonly(values[rows]) for header, values in self.numbers.items()}
@@ -174,7 +174,7 @@ class Table(Displayed):
 
 
 class Tabled(Displayed, ABC):
-    """A result whose columns are those of its `table`; see `Table`."""
+    """Base of results with columns, those of their `table`; see `Table`."""
 
     @property
     @abstractmethod
@@ -201,7 +201,7 @@ class Tabled(Displayed, ABC):
 
 
 def table(values: Values) -> Table:
-    """A table from SI values, in the unit of each column.
+    """Table from SI values, converted to the unit of each column.
 
     Raises
     ------
@@ -228,7 +228,7 @@ def table(values: Values) -> Table:
 
 
 def read_table(path: Path) -> Table:
-    """A CSV table: numbers, an empty cell as NaN, and texts in the column ``load_case``.
+    """Table of a CSV file: numbers, NaN for an empty cell, texts in the column ``load_case``.
 
     Raises
     ------

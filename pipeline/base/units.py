@@ -189,7 +189,7 @@ def _from_si(number: Decimal, unit: str) -> Decimal:
 
 
 def same_dimension(unit: str, other: str) -> bool:
-    """Whether a value in `unit` can be read as one in `other`."""
+    """Whether two units measure the same quantity."""
     first, second = _from_table(unit), _from_table(other)
     if first is not None and second is not None:
         return first.powers == second.powers
@@ -233,7 +233,7 @@ def _number_and_unit(text: str) -> tuple[Decimal, str] | None:
 
 
 def parse(text: object, unit: str, field: str) -> float:
-    """The SI value of a unit string.
+    """SI value of a text with unit.
 
     Parameters
     ----------
@@ -278,12 +278,12 @@ def parse(text: object, unit: str, field: str) -> float:
 
 @lru_cache(maxsize=512)
 def factor(unit: str) -> float:
-    """SI value of one `unit`: ``factor("mm")`` is 0.001. Not for offset units such as degC."""
+    """SI value of one `unit`: ``factor("mm")`` is 0.001; not for offset units such as degC."""
     return float(_to_si(Decimal(1), unit, unit))
 
 
 def format(value: float, unit: str) -> str:  # noqa: A001 - reads as units.format
-    """The shortest unit string that `parse` turns back into exactly `value` (SI)."""
+    """Shortest text with unit that `parse` reads back as exactly `value` (SI)."""
     if not isfinite(value):
         raise InputError("value", value, "finite")
     exact = _from_si(Decimal(value), unit)
@@ -294,7 +294,7 @@ def format(value: float, unit: str) -> str:  # noqa: A001 - reads as units.forma
 
 
 def rounded(text: str, digits: int = 4) -> str:
-    """Text with its number rounded; as it stands where that has no more digits, or is none."""
+    """Text with its number rounded; unchanged where it has no more digits, or is no number."""
     match = _QUANTITY.fullmatch(text) if len(text) <= _LONGEST else None
     number = Decimal(match.group(1)) if match else Decimal("NaN")
     if (
@@ -338,7 +338,7 @@ _PURE = ("", "-", "degC", *COUNTS)  # a Celsius temperature is a number of degre
 
 
 def in_unit(value: float, unit: str) -> float:
-    """A value in SI in the unit of a record; also ``%``, ``-``, ``degC`` and counted things."""
+    """SI value converted to a unit of a record; also ``%``, ``-``, ``degC`` and counted things."""
     if unit in _PURE:
         return value
     if unit == "deg":
@@ -349,7 +349,7 @@ def in_unit(value: float, unit: str) -> float:
 
 
 def from_unit(value: float, unit: str) -> float:
-    """A value in the unit of a record in SI: the inverse of `in_unit`."""
+    """Value in a unit of a record converted to SI; the inverse of `in_unit`."""
     if unit in _PURE:
         return value
     if unit == "deg":
@@ -358,18 +358,18 @@ def from_unit(value: float, unit: str) -> float:
 
 
 def celsius(temperature: _Temperature) -> _Temperature:
-    """Celsius temperature (...), degC, of a temperature in K."""
+    """Temperature (...) in degC, from K."""
     return temperature - float(_ZERO_CELSIUS)
 
 
 def shown(value: float, unit: str, digits: int = 4) -> str:
-    """A value in SI as text in a unit, such as ``12.5 mm``."""
+    """SI value as text in a unit, such as ``12.5 mm``."""
     number = f"{in_unit(value, unit):.{digits}g}"
     return f"{number} {unit}" if unit not in ("", "-") else number
 
 
 def shown_up(value: float, unit: str, digits: int = 4) -> str:
-    """As `shown`, of a number at least as great as the value, > 0: for a bound that suffices."""
+    """SI value > 0 as text in a unit, rounded up: for a bound that suffices."""
     number = in_unit(value, unit)
     last = Decimal(1).scaleb(Decimal(number).adjusted() - digits + 1)
     rounded = Decimal(number).quantize(last, rounding=ROUND_CEILING)

@@ -1,4 +1,4 @@
-"""Groups of values of a case on which checks rest, besides their own limits.
+"""Groups of case keys on whose values checks rest, besides their limits.
 
 Dotted names in a case, with wildcards in the last word, a material by the part made of it. A length
 that the designer chooses is not listed: the drawing fixes it, not a source.
@@ -36,7 +36,7 @@ RATE = ("spring.design.shear_modulus",)
 
 
 def bodies(*keys: str) -> tuple[str, ...]:
-    """Keys of the materials of cam and follower."""
+    """Keys of a property in the materials of cam and follower."""
     return tuple(f"{body}.{key}" for body in _BODIES for key in keys)
 
 
@@ -52,11 +52,11 @@ LENGTH = (
 
 
 def of_guide(side: Literal["A", "B"], *keys: str) -> tuple[str, ...]:
-    """Keys of guide A or B."""
+    """Keys of properties of guide A or B."""
     return tuple(f"guides.{side.lower()}.{key}" for key in keys)
 
 
 def heat(side: Literal["A", "B"]) -> tuple[str, ...]:
-    """Keys of the temperature of guide A or B."""
+    """Keys that decide the temperature of guide A or B."""
     path = of_guide(side, "material.conductivity", "thermal_resistance", "housing_resistance")
     return (*path, "guides.ambient_temperature")

@@ -1,4 +1,4 @@
-"""What status, utilisation, verdict, screen, binding and governing mean, of checks and of records.
+"""Rules of judgement: status, utilisation, verdict, binding and governing checks.
 
 A solved check is exact; a record has 15 digits, and its reader allows for them, see `status`.
 """
@@ -35,7 +35,7 @@ ROUNDING = 1e-9
 
 
 class Judged(Protocol):
-    """Numbers by which a check is judged, in one unit: SI, or that of a record.
+    """Numbers by which a check is judged, all in one unit, SI or that of a record.
 
     None: missing; NaN: a demand that cannot be computed.
     """
@@ -50,7 +50,7 @@ class Judged(Protocol):
 
     @property
     def limit(self) -> float | None:
-        """Value that the demand must keep; an infinite one is missing."""
+        """Limit of the demand; an infinite one counts as missing."""
 
     @property
     def error_share(self) -> float | None:
@@ -62,15 +62,15 @@ class Judged(Protocol):
 
     @property
     def waived_up_to(self) -> float | None:
-        """Worst demand that a waiver accepts; None: not waived."""
+        """Worst demand accepted by a waiver; None: not waived."""
 
     @property
     def without(self) -> str:
-        """Load cases without loads: the demand is a bound, by which it can only fail; "": none."""
+        """Load cases without valid loads, where the demand is only a bound; "": none."""
 
 
 class Ranked(Protocol):
-    """A judged check among others."""
+    """Check with its status, utilisation and rank among others."""
 
     @property
     def id(self) -> str:
@@ -86,22 +86,22 @@ class Ranked(Protocol):
 
     @property
     def must_have(self) -> bool:
-        """Whether it decides the verdict."""
+        """Whether the check decides the verdict."""
 
     @property
     def evidence(self) -> bool:
-        """Whether it verifies solution or input, not the design."""
+        """Whether the check verifies solution or input rather than the design."""
 
     @property
     def judged_at(self) -> str:
-        """Depth that judges it, where the solution is less deep; "": judged."""
+        """Depth of solution that the check needs, if deeper than the present one; "": judged."""
 
 
 AnyRanked = TypeVar("AnyRanked", bound=Ranked)
 
 
 def worst(one: Judged) -> float | None:
-    """Worse of the demand and that at the governing tolerance corner; it is judged."""
+    """Judged demand: the worse of the nominal and the governing tolerance corner."""
     demand, corner = one.demand, one.corner_demand
     if demand is None or math.isnan(demand) or corner is None:
         return demand
@@ -111,12 +111,12 @@ def worst(one: Judged) -> float | None:
 
 
 def error_of_worst(one: Judged) -> float:
-    """Half of the error bar of the worst demand: the same share at a corner as at the nominal."""
+    """Half of the error bar of the judged demand; its share of the demand is that at nominal."""
     return abs(worst(one) or 0.0) * (one.error_share or 0.0)
 
 
 def is_bound(one: Judged) -> bool:
-    """Whether the demand is a bound within the limit, which says nothing; see `Judged.without`."""
+    """Whether the demand is a bound that keeps the limit and so proves nothing."""
     demand, limit = worst(one), one.limit
     if not one.without or demand is None or limit is None:
         return bool(one.without)
@@ -124,7 +124,7 @@ def is_bound(one: Judged) -> bool:
 
 
 def evaluated(one: Judged) -> bool:
-    """Whether demand and limit are known; NaN, an infinite limit and a bound are not."""
+    """Whether demand and limit are known: no NaN, no infinite limit, no inconclusive bound."""
     demand, limit = worst(one), one.limit
     if demand is None or math.isnan(demand) or limit is None or not math.isfinite(limit):
         return False
@@ -132,7 +132,7 @@ def evaluated(one: Judged) -> bool:
 
 
 def utilisation(one: Judged) -> float | None:
-    """Worst demand over limit, or limit over it for a least value; None if one is missing.
+    """Judged demand over limit, its inverse for a least value; None if one is missing.
 
     At <= 1 the demand is within its limit. Infinite for a demand <= 0 against a positive least
     value, and for a positive demand against a limit of zero.
@@ -141,12 +141,12 @@ def utilisation(one: Judged) -> float | None:
 
 
 def upper_utilisation(one: Judged) -> float | None:
-    """Utilisation at the end of the error bar towards the limit; None if one is missing."""
+    """Utilisation at the unfavourable end of the error bar; None if demand or limit is missing."""
     return _use_of(one, _upper(one)) if evaluated(one) else None
 
 
 def not_proven(one: Judged, *, digits: float = 0.0, rounding: float = ROUNDING) -> bool:
-    """Whether the limit lies within the error bar of a worst demand that is within it.
+    """Whether a demand within its limit has the limit inside its error bar.
 
     Parameters
     ----------
@@ -205,12 +205,12 @@ def _holds(one: Judged, demand: float, limit: float, digits: float = 0.0) -> boo
 
 
 def blocks(one: Ranked) -> bool:
-    """Whether the verdict is not PASS for it: a must-have check, neither passed nor waived."""
+    """Whether a check prevents PASS: a must-have check neither passed nor waived."""
     return one.must_have and one.status not in ("pass", "waived")
 
 
 def verdict(checks: Iterable[Ranked]) -> Verdict:
-    """Verdict of the must-have checks.
+    """Verdict of the must-have checks: ``pass``, ``fail`` or ``incomplete``.
 
     `fail` if one is beyond its limit or not proven, or without checks; else `incomplete` if one
     lacks data; else `pass`.
@@ -228,12 +228,12 @@ def screen(checks: Iterable[Ranked]) -> Screen:
 
 
 def within_depth(checks: Iterable[AnyRanked]) -> tuple[AnyRanked, ...]:
-    """The checks without those that a deeper solution judges."""
+    """Checks judged at the present depth of solution."""
     return tuple(each for each in checks if not each.judged_at)
 
 
 def in_order(checks: Iterable[AnyRanked]) -> tuple[AnyRanked, ...]:
-    """Not evaluated first, must-have checks before others, then by descending utilisation."""
+    """Checks sorted: not evaluated, then must-have, then by descending utilisation."""
     return tuple(sorted(checks, key=_place))
 
 
@@ -253,7 +253,7 @@ def binding(checks: Iterable[Ranked]) -> tuple[str, ...]:
 
 
 def governing(checks: Iterable[AnyRanked]) -> AnyRanked | None:
-    """Must-have check of the design of the greatest utilisation; None if none is evaluated.
+    """Must-have check of the design with the greatest utilisation; None if none is evaluated.
 
     Evidence, which no change of the design moves, and waived checks do not govern. Of equal ones
     the first by its id.
@@ -268,13 +268,13 @@ def governing(checks: Iterable[AnyRanked]) -> AnyRanked | None:
 
 
 def governing_id(checks: Iterable[Ranked]) -> str | None:
-    """Id of the check that `governing` gives."""
+    """Id of the governing check."""
     one = governing(checks)
     return None if one is None else one.id
 
 
 def failing(checks: Iterable[AnyRanked], fail_on: str) -> tuple[AnyRanked, ...]:
-    """Checks that count at a level of `FAIL_ON` and fail or lack data.
+    """Checks that fail or lack data, of those that count at a level of `FAIL_ON`.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Processes of this program: workers for independent tasks, and modules of the package.
+"""Worker processes for independent tasks; commands that run modules of the package.
 
 Each has one BLAS thread, and none imports from the working folder or from the folder of the user's
 script: a file there may be named as a library is.
@@ -56,7 +56,7 @@ copyreg.pickle(MappingProxyType, _pickled)  # read-only tables, such as those of
 
 
 def workers_for(jobs: int | None, tasks: int) -> int:
-    """Number of processes: `jobs`, by default one a processor up to 4; at most one a task."""
+    """Number of worker processes: `jobs`, or one per processor up to 4; at most one per task."""
     return max(1, min(jobs or min(os.cpu_count() or 1, _JOBS_MOST), tasks))
 
 
@@ -107,7 +107,7 @@ class _Context(SpawnContext):
 
 @contextmanager
 def pool(workers: int) -> Iterator[ProcessPoolExecutor]:
-    """A pool of spawned processes; an error cancels the tasks that have not started.
+    """Pool of spawned processes; an error cancels the waiting tasks.
 
     An interrupt, or the death of a process, ends them at once: of what they solve nothing is read
     any more.
@@ -166,10 +166,10 @@ def _stop_sending(workers_pool: ProcessPoolExecutor) -> None:
 
 
 class PendingCall(Protocol):
-    """A call whose result is read later."""
+    """Future of a call in a worker process."""
 
     def result(self) -> Any:
-        """The result; raises what the call raised."""
+        """Result of the call; its exception is raised here."""
         ...
 
 
@@ -187,7 +187,7 @@ class _Later:
 
 
 class Crew:
-    """Worker processes for the tasks of a run; see `crew`."""
+    """Pool of worker processes for the tasks of a run; see `crew`."""
 
     def __init__(self, workers: int, stack: ExitStack) -> None:
         self.workers = workers
@@ -195,13 +195,13 @@ class Crew:
         self._pool: ProcessPoolExecutor | None = None
 
     def prepare(self, module: str) -> None:
-        """Start the processes, which import a module while this one works; none with one."""
+        """Start the processes, which import a module meanwhile; nothing with a single process."""
         if self.workers > 1:
             for _ in range(self.workers):
                 self.submit(_imported, module)
 
     def submit(self, function: Callable[..., Any], *arguments: object) -> PendingCall:
-        """Call a function of the package in a worker, or later here with one process."""
+        """Call a function of the package in a worker; with one process, on reading the result."""
         if self.workers <= 1:
             return _Later(partial(function, *arguments))
         if self._pool is None:
@@ -224,7 +224,7 @@ def _imported(module: str) -> None:
 
 @contextmanager
 def crew(jobs: int | None) -> Iterator[Crew]:
-    """Processes that start with the first task and are shared by all that follow.
+    """Context manager: pool of worker processes, started with the first task.
 
     Parameters
     ----------
@@ -236,7 +236,7 @@ def crew(jobs: int | None) -> Iterator[Crew]:
 
 
 def as_worker(parent: int, collect_after: Sequence[int] = ()) -> None:
-    """Make this process a worker: it ignores the interrupt, and ends after its parent.
+    """Make this process a worker: it ignores interrupts, and ends with its parent.
 
     Parameters
     ----------
