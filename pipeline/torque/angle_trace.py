@@ -34,7 +34,7 @@ END_TOLERANCE = 0.25  # of the median spacing, between the last sample and the e
 
 @dataclass(frozen=True, eq=False)
 class Trace:
-    """Samples of one quantity over one period of the crank.
+    """Samples of one quantity over one period of the shaft angle.
 
     Parameters
     ----------
@@ -91,11 +91,11 @@ class Trace:
 
     @property
     def key(self) -> tuple[bytes, bytes, float]:
-        """All that decides the values between the samples, for the disk cache."""
+        """Inputs that determine the interpolated values, as a key of the disk cache."""
         return self.angle.tobytes(), self.values.tobytes(), self.period
 
     def kept_uniform(self, count: int) -> Array:
-        """As `uniform`, kept on disk: the import of the interpolant takes 0.2 s."""
+        """Uniform samples, see `uniform`, cached on disk: the interpolant's import takes 0.2 s."""
         inputs, modules = (*self.key, count), (sys.modules[__name__],)
         kept = disk_cache.kept("trace", inputs, lambda: {"values": self.uniform(count)}, modules)
         return kept["values"]
@@ -126,7 +126,7 @@ def read_trace(
     period: float = FOUR_STROKE.angle,
     part: Literal["crank", "cam"] = "crank",
 ) -> Trace:
-    """One quantity over one period of the crank or of the cam, from a CSV file.
+    """Trace of one quantity over one period of crank or cam, from a CSV file.
 
     The first line that is not a comment (`#`) names the columns and their units, in any usual
     form: `crank_angle_deg`, `crank angle [deg]`, `angle (rad)`, `torque_Nm`, `torque [kN m]`.
@@ -177,7 +177,7 @@ def one_period(
     period: float = FOUR_STROKE.angle,
     gap_max: float = GAP_MAX,
 ) -> Trace:
-    """Trace of one column; order and span of its angles are checked before.
+    """Trace of one column whose angles have been checked for order and span.
 
     Parameters
     ----------
@@ -201,7 +201,7 @@ def one_period(
 
 
 def without_end(angle: Array, values: Array, period: float) -> tuple[Array, Array]:
-    """Angles (n,) and values (n, ...) of one period; a row at its end joins the first."""
+    """Angles (n,) and values (n, ...) of one period; a repeated end row joins the first."""
     if period - (angle[-1] - angle[0]) > END_TOLERANCE * median(np.diff(angle)):
         return angle, values
     mean = 0.5 * (values[:1] + values[-1:])
@@ -216,7 +216,7 @@ def _seam(angle: Array, values: Array, period: float) -> float:
 
 
 def guard_order(name: str, lines: Sequence[int], angle: Array, header: str) -> None:
-    """Refuse too few rows, and angles (in the unit of the file) that do not increase."""
+    """Refuse too few rows, and angles that do not increase, in the unit of the file."""
     if angle.size < ROWS_MIN:
         raise InputError(name, f"{angle.size} rows", f"{ROWS_MIN} rows or more")
     steps = np.diff(angle)
@@ -231,7 +231,7 @@ def guard_order(name: str, lines: Sequence[int], angle: Array, header: str) -> N
 def guard_span(
     name: str, angle: Array, factor: float, period: float, gap_max: float = GAP_MAX
 ) -> None:
-    """Refuse a trace that is not one period long, with a hint if the unit seems wrong."""
+    """Refuse a trace that does not span one period; the message hints at a wrong unit."""
     spacing = median(np.diff(angle))
     span = float(angle[-1] - angle[0])
     excess = span - period

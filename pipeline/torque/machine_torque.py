@@ -1,4 +1,4 @@
-"""What the torque of every kind of machine has: marks of its cycle."""
+"""Interface of machine torques, and marks of the parts of their cycle."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ Role = Literal["drive", "load"]
 
 @dataclass(frozen=True, kw_only=True)
 class Mark(Part):
-    """Beginning and name of a part of the cycle."""
+    """Named part of the cycle, by the shaft angle at which it begins."""
 
     table: ClassVar[str] = "torque.marks"
 
@@ -27,7 +27,7 @@ class Mark(Part):
 
 @dataclass(frozen=True, kw_only=True)
 class MachineTorque(Part):
-    """Torque of a machine on its shaft, positive when it drives it; pictures show the marks."""
+    """Torque of a machine on its shaft, positive when it drives; with marks for figures."""
 
     table: ClassVar[str] = "torque"
 

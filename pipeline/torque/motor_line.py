@@ -34,7 +34,7 @@ class MotorPoint(Part):
 
 @dataclass(frozen=True)
 class MotorLine:
-    """Torque of a motor over its speed: straight between points, and beyond them.
+    """Torque of a motor over speed, linear between its points and beyond them.
 
     Two points are a linear line: rated speed and torque, no-load speed and none. A table of an
     induction motor may rise to its pull-out torque; it runs on the falling part.

@@ -1,4 +1,4 @@
-"""Period of a machine: the angle of its cycle, and how many cycles a cam turn holds."""
+"""Period of a machine: shaft angle of its cycle, and number of cycles in a cam turn."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _WHOLE = 1e-9  # of the number of cycles of a cam turn: a ratio and an angle wri
 
 @dataclass(frozen=True)
 class Period:
-    """Cycle of a machine and the drive of its cam; a cam turn holds a whole number of cycles.
+    """Cycle of a machine and ratio of its cam drive; a cam turn holds whole cycles.
 
     Parameters
     ----------
@@ -62,7 +62,7 @@ class Period:
         return self.ratio * FULL_TURN
 
     def on_cam(self, values: ArrayLike) -> Array:
-        """Values over a cam turn, from those over a cycle of the machine.
+        """Values over a cam turn from values over one machine cycle.
 
         Parameters
         ----------
@@ -77,7 +77,7 @@ class Period:
 
 
 def ratio_text(ratio: float) -> str:
-    """A ratio as a fraction of small whole numbers, such as ``3:2``, else as a number."""
+    """Ratio as a fraction of small whole numbers, such as ``3:2``, or as a decimal."""
     for below in range(1, 13):
         above = round(ratio * below)
         if above and abs(ratio * below - above) <= _WHOLE * above:

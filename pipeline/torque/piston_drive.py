@@ -1,4 +1,4 @@
-"""Crank drive of a piston: areas, torque of the pressures on both of its sides."""
+"""Crank drive of a piston: areas of both sides, torque of their pressures."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ CYLINDERS_MAX = 24
 
 @dataclass(frozen=True, kw_only=True)
 class PistonDrive(Part):
-    """Crank drive of one cylinder and the areas of its piston.
+    """Crank drive of one cylinder with the areas of both piston sides.
 
     At `phase` the crank lies along the cylinder, which without an offset is the dead centre. The
     offset is positive on the side to which the crank pin moves from there.
@@ -94,7 +94,7 @@ class PistonDrive(Part):
 
     @property
     def displacement(self) -> float:
-        """Volume swept by the sides that work, m3."""
+        """Swept volume of the working sides, m3."""
         area = 2.0 * self.head_area - self.rod_area if self.double_acting else self.head_area
         return area * self.linkage.stroke
 

@@ -26,7 +26,7 @@ _ROUND_OFF = 1e-9  # of a stroke
 
 @dataclass(frozen=True, kw_only=True)
 class Press(MachineTorque):
-    """Drive of a press and its force, constant over the last part of the stroke or from a file.
+    """Crank drive of a press with its force: constant near the end of the stroke, or a file.
 
     The force opposes the ram on its way down.
 
@@ -94,7 +94,7 @@ class Press(MachineTorque):
 
 @dataclass(frozen=True, eq=False)
 class PressTorque:
-    """Torque of a force over the ram's travel.
+    """Torque of a press force over the ram's travel.
 
     Parameters
     ----------
@@ -142,7 +142,7 @@ class PressTorque:
         return float(self._work_below(np.array([self.height[-1]]))[0])
 
     def torque(self, theta: ArrayLike) -> Array:
-        """Torque at equal shaft angles (n,), rad, of one cycle from 0, N m.
+        """Torque at n equal shaft angles of one cycle from 0, N m.
 
         The force's share is its mean over each step, work over angle: a force that starts at once
         leaves the work of the cycle exact. The weight of the ram drives on the way down.
@@ -174,7 +174,7 @@ class PressTorque:
 
 
 def press_torque(press: Press, path: str | Path | None = None) -> PressTorque:
-    """Torque of a press, its force from the file at `path` where it names one.
+    """Torque of a press; a force table is read from `path`.
 
     Raises
     ------

@@ -48,7 +48,7 @@ class PressureCylinder(PistonDrive):
 
 @dataclass(frozen=True, kw_only=True)
 class PressureTorqueFile(MachineTorque):
-    """Absolute pressures over one cycle from a file, and the cylinders that they act in.
+    """Case table: file of absolute pressures over one cycle, and the cylinders they act in.
 
     Equal cylinders share a column of angles from their outer dead centres.
 

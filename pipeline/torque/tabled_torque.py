@@ -31,7 +31,7 @@ table is then some ten times as near."""
 
 @dataclass(frozen=True, kw_only=True)
 class TabledTorqueFile(MachineTorque):
-    """Torque over one cycle from a file: a column of shaft angle, one of torque."""
+    """Case table: file with columns of shaft angle and torque over one cycle."""
 
     kind: Annotated[Literal["table"], Known("own choice")] = "table"
     """origin of the torque"""
@@ -89,7 +89,7 @@ class TabledTorque:
 
 
 def require_cycle(trace: Trace, unit: str) -> None:
-    """Refuse values that vary and do not close, or have too few rows for their harmonics.
+    """Refuse values that vary and do not close, or are too few for their harmonics.
 
     Parameters
     ----------
@@ -138,7 +138,7 @@ def _swing(trace: Trace, count: int) -> Array:
 
 
 def tabled_torque(source: TabledTorqueFile, path: str | Path) -> TabledTorque:
-    """Torque of a table from its file.
+    """Torque of a table, read from its file.
 
     Raises
     ------

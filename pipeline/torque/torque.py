@@ -1,4 +1,4 @@
-"""Torque of a machine on its shaft as a sum of components, over a cycle or over a cam turn."""
+"""Torque of a machine on its shaft, a sum of components over a cycle or cam turn."""
 
 from __future__ import annotations
 
@@ -77,9 +77,9 @@ class Torque(Displayed):
 
     @property
     def throughput(self) -> float:
-        """Mean torque of the components that drive the shaft, or of those that load it, N m.
+        """Mean torque of the driving or of the loading components, the greater one, N m.
 
-        The greater of both; times the speed it is the mean power of the machine.
+        Times the speed it is the mean power of the machine.
         """
         means = np.array([part.mean() for part in self.components.values()])
         return float(max(means[means > 0.0].sum(), -means[means < 0.0].sum()))
@@ -98,15 +98,13 @@ class Torque(Displayed):
         return float(np.ptp(self.total))
 
     def without_mean(self) -> Torque:
-        """The torque with a steady load, component `load`, that brings its mean to zero."""
+        """Torque with a constant component `load` that brings its mean to zero."""
         load = np.full_like(self.theta, -self.mean)
         known = self.components.get("load", np.zeros_like(load))
         return replace(self, components={**self.components, "load": known + load})
 
     def resampled(self, n: int) -> Torque:
-        """The torque at `n` angles: some of its own, or by a periodic cubic spline through each
-        component.
-        """
+        """Torque at `n` angles: a subset of its samples, or periodic cubic splines through them."""
         if n == self.theta.size:
             return self
         step, rest = divmod(self.theta.size, n)
@@ -128,7 +126,7 @@ class Torque(Displayed):
 
 
 def over_cam_turn(torque: Torque, period: Period) -> Torque:
-    """Torque over a cam turn, at equal cam angles, from that over a cycle of the machine.
+    """Torque at equal cam angles of a cam turn, from that over a machine cycle.
 
     Every module that draws, solves or smooths a cam takes the torque from here.
 
@@ -156,7 +154,7 @@ def over_cam_turn(torque: Torque, period: Period) -> Torque:
 
 
 def together(one: Torque, other: Torque) -> Torque:
-    """Torque of two machines on one shaft, over the longer of their cycles.
+    """Torque of two machines on one shaft, over the longer cycle.
 
     Raises
     ------
@@ -180,7 +178,7 @@ def together(one: Torque, other: Torque) -> Torque:
 
 
 def uniform_cycle(count: int, span: float = FOUR_STROKE.angle) -> Array:
-    """`count` equally spaced shaft angles over a span (rad) from 0, its end excluded, rad."""
+    """`count` equal shaft angles from 0 over a span (rad), its end excluded."""
     return np.arange(float(count)) * (span / count)
 
 
@@ -195,7 +193,7 @@ def all_cylinders(
     offsets: tuple[float, ...],
     span: float = FOUR_STROKE.angle,
 ) -> dict[str, Array]:
-    """Torques (n,) of one cylinder over its cycle, summed over cylinders that lag by offsets."""
+    """Torque (n,) of all cylinders from that of one, shifted by their phase offsets."""
     if offsets == (0.0,):
         return dict(parts)
     shifted = [theta - offset for offset in offsets]

@@ -1,4 +1,4 @@
-"""Text of a trace file: lines, units in the header, cells as numbers."""
+"""Parsing of trace files: rows, units in the header, cells as numbers."""
 
 from __future__ import annotations
 
@@ -106,7 +106,7 @@ _UNIT_SPELLING = str.maketrans(dict.fromkeys(" ·⋅*.-^_⁻−", "") | {"¹": "
 
 @dataclass(frozen=True)
 class TraceText:
-    """Text of a trace file: header cells, and rows with their line numbers.
+    """Cells of a trace file: header, and rows with their line numbers.
 
     Parameters
     ----------
@@ -126,7 +126,7 @@ class TraceText:
         return [number for number, _ in self.rows]
 
     def cells(self, column: int) -> list[str]:
-        """Texts of a column; "" in rows that are too short."""
+        """Texts of a column; "" where a row is too short."""
         rows = (_stripped(line, self.delimiter) for _, line in self.rows)
         return [row[column] if column < len(row) else "" for row in rows]
 
@@ -164,7 +164,7 @@ class TraceText:
 def trace_text(
     path: Path, example: str, *, headed: bool = True, one_column: bool = False
 ) -> TraceText:
-    """Text of a trace file.
+    """Header and rows of a trace file.
 
     The units may stand in a second line of the header, and the header in a comment above the rows.
 
@@ -323,7 +323,7 @@ def unit_factor(header: str, units: Mapping[str, float]) -> float | None:
 
 
 def has_unit(header: str) -> bool:
-    """Whether a header is a name and a unit of any quantity; `n` is a name."""
+    """Whether a header is a name with a unit; a single letter such as `n` is a name."""
     known = ANGLE_UNITS, *QUANTITY_UNITS.values()
     name = re.search(r"[\s_/:\[({]", header)
     return name is not None and any(unit_factor(header, units) is not None for units in known)
@@ -336,14 +336,14 @@ def columns_of(header: Sequence[str], quantity: str, column: str = "") -> dict[i
 
 
 def named_columns(header: Sequence[str], column: str, among: Iterable[int]) -> list[int]:
-    """Those of some columns whose header is `column`, a unit in brackets apart, else begins so."""
+    """Columns whose header equals `column` but for its unit, else begins with it."""
     wanted, places = column.lower(), list(among)
     exact = [at for at in places if wanted in {(name := header[at].lower()), without_unit(name)}]
     return exact or [at for at in places if header[at].lower().startswith(wanted)]
 
 
 def numbered_columns(field: str, column: str, count: int) -> list[int]:
-    """Columns of a file without a header by their numbers from 1, `2` or `2 to 9`, from 0.
+    """Zero-based columns of a file without a header, by numbers such as `2` or `2 to 9`.
 
     Without any all but the first.
 
@@ -371,14 +371,14 @@ def _numbers_of(field: str, count: int) -> str:
 
 
 def is_series(labels: Iterable[str]) -> bool:
-    """Whether headers are alike but for numbers in them."""
+    """Whether headers differ by numbers alone."""
     return len({re.sub(r"\d+", "", label) for label in labels}) < 2
 
 
 def require_alike(
     name: str, labels: Sequence[str], values: Array, limit: float, *, headed: bool = True
 ) -> None:
-    """Refuse columns of one quantity that are no runs of it, where none is named.
+    """Refuse several columns of one quantity that are no repeated runs, where none is named.
 
     Parameters
     ----------
@@ -407,12 +407,12 @@ def require_alike(
 
 
 def without_unit(header: str) -> str:
-    """A header without a unit in brackets at its end."""
+    """Header without its bracketed unit."""
     return re.sub(r"\s*[\[({][^\[({]*[\])}]\s*$", "", header)
 
 
 def has_angle(header: Sequence[str]) -> bool:
-    """Whether a column has a unit of angle."""
+    """Whether a column has an angular unit."""
     return bool(_with_unit(header, ANGLE_UNITS))
 
 
@@ -425,7 +425,7 @@ def _with_unit(header: Sequence[str], units: Mapping[str, float]) -> dict[int, f
 def angle_column(
     name: str, header: Sequence[str], part: Literal["crank", "cam"] = "crank"
 ) -> tuple[int, float]:
-    """Column of the angle of a part, and its factor to rad; of the cam none of the crank."""
+    """Column of the angle of crank or cam, and its factor to rad."""
     factors = _with_unit(header, ANGLE_UNITS)
     columns = list(factors)
     if len(columns) > 1 or part == "cam":
@@ -442,7 +442,7 @@ def angle_column(
 def value_column(
     name: str, header: Sequence[str], quantity: str, column: str | None
 ) -> tuple[int, float]:
-    """Column of a quantity and its factor to SI."""
+    """Column of a quantity, and its factor to SI."""
     factors = _with_unit(header, QUANTITY_UNITS[quantity])
     columns = list(factors)
     if column is not None:

@@ -1,4 +1,4 @@
-"""Compressor and piston pump: cylinders with automatic valves."""
+"""Compressor and piston pump with automatic valves: pressures and torque."""
 
 from __future__ import annotations
 
