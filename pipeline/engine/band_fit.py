@@ -1,4 +1,4 @@
-"""Band-limited series over a cycle by least squares, and the noise that it passes."""
+"""Band-limited least-squares fit of a series over a cycle, and its noise."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ SHARE_MAX = 0.95
 
 
 def fitted(matrix: Array, weights: Array, noise: Array, unit: float) -> tuple[Array, SlopeNoise]:
-    """Linear maps from the observations: to the filtered series, and of their noise to its slope.
+    """Linear maps of the fit: observations to the filtered series, and their noise to its slope.
 
     Parameters
     ----------
@@ -42,7 +42,7 @@ def fitted(matrix: Array, weights: Array, noise: Array, unit: float) -> tuple[Ar
 
 
 def remaining_band(matrix: Array, weights: Array, late: Array, errors: PitchErrors) -> Array:
-    """Half-width (720,) of the 95 % band about the slope domega/dtheta that pitch errors leave.
+    """Half-width (720,) of the 95 % band about domega/dtheta from remaining pitch errors.
 
     It comes beside that of the noise: the covariance of both, which stems from the same record, is
     in it.
@@ -95,7 +95,7 @@ def _residual(matrix: Array) -> Array:
 
 
 def shared_edges(start: Array, end: Array) -> Array:
-    """Map (n, n) from the lateness of each edge to the durations of the intervals of a cycle.
+    """Matrix (n, n) from the lateness of each edge to the durations of the intervals.
 
     Each edge begins one interval and ends another of its kind; edge k begins interval k.
     """
@@ -104,7 +104,7 @@ def shared_edges(start: Array, end: Array) -> Array:
 
 
 def points(angle: Array, last: int, derivative: bool = False) -> Array:
-    """Constant, cosines and sines of harmonics 1 to `last`, or their slopes, (n, 2 last + 1)."""
+    """Values or slopes of a Fourier basis, constant to harmonic `last`, (n, 2 last + 1)."""
     order = np.arange(1, last + 1) * (2.0 * pi / CYCLE_ANGLE)
     phase = np.outer(angle, order)
     if derivative:
@@ -113,7 +113,7 @@ def points(angle: Array, last: int, derivative: bool = False) -> Array:
 
 
 def integrals(start: Array, end: Array, last: int) -> Array:
-    """Integrals of constant, cosines and sines from `start` to `end`, (n, 2 last + 1)."""
+    """Integrals of a Fourier basis from `start` to `end`, (n, 2 last + 1)."""
     order = np.arange(1, last + 1) * (2.0 * pi / CYCLE_ANGLE)
     from_, to = np.outer(start, order), np.outer(end, order)
     cosines, sines = (np.sin(to) - np.sin(from_)) / order, (np.cos(from_) - np.cos(to)) / order

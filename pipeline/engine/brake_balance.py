@@ -23,7 +23,7 @@ SHIFT_MAX = radians(10.0)
 
 @dataclass(frozen=True)
 class BrakeBalance:
-    """Indicated torque of a pressure trace, what alters it, and the brake torque beside it.
+    """Indicated torque of a pressure trace with its sensitivities, beside the brake torque.
 
     Parameters
     ----------
@@ -52,7 +52,7 @@ class BrakeBalance:
         return None if self.brake is None else self._pressure(self.indicated - self.brake)
 
     def guarded(self, field: str = "engine.brake_torque") -> BrakeBalance:
-        """The balance, refused where the brake torque exceeds the indicated one.
+        """The balance; refused where the brake torque exceeds the indicated torque.
 
         Raises
         ------
@@ -69,7 +69,7 @@ class BrakeBalance:
         raise InputError(field, f"{self.brake:.4g} N m", limit)
 
     def words(self) -> str:
-        """Indicated torque, its sensitivity to the dead centre, and the friction, as a line."""
+        """Line of text: indicated torque, its sensitivity to the dead centre, friction."""
         parts = [
             f"indicated torque of {self.source}: {self.indicated:.4g} N m, {self._sensitivity}"
         ]
@@ -84,7 +84,7 @@ class BrakeBalance:
         return "; ".join(parts)
 
     def as_record(self) -> IndicatedTorque:
-        """Plain values; without those that are not measured."""
+        """JSON record of the measured values."""
         record: IndicatedTorque = {
             "indicated_torque_Nm": self.indicated,
             "indicated_torque_per_deg_Nm": self.slope * radians(1.0),

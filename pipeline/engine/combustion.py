@@ -10,7 +10,7 @@ from camwright.pipeline.engine.cylinder import CYCLE_ANGLE, CylinderEngine
 
 
 def wiebe(progress: ArrayLike, a: float, m: float) -> Array:
-    """Burnt fraction at a progress of the burn (0 at its start, 1 at its end), any shape.
+    """Wiebe function: burnt fraction at a progress of the burn, 0 at start to 1 at end, (...).
 
     The exponential leaves exp(-a) unburnt at the end (0.7 % for a = 5); it is scaled to reach 1,
     so that the heat released is the share `combustion_efficiency` of that of the fuel.
@@ -39,7 +39,7 @@ def _since_start(engine: CylinderEngine, theta: ArrayLike) -> Array:
 
 
 def burnt_fraction(engine: CylinderEngine, theta: ArrayLike) -> Array:
-    """Fraction of the fuel burnt at crank angles (rad, any shape), 0 before the spark.
+    """Burnt fuel fraction at crank angles (rad, ...), 0 before the spark.
 
     With compression ignition the share `premixed_share` burns in a first, short burn.
     """

@@ -1,4 +1,4 @@
-"""Crank speed over a cycle from the torques on the crank, by work and kinetic energy."""
+"""Crank speed over a cycle from torques and inertia, by work and kinetic energy."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ MechanismTorque = Callable[[Array, Array], Array]
 
 
 class StallError(CamError):
-    """Crank whose torque swings more energy than turns in it; crank angle of the stall, rad."""
+    """Crank whose torque swings more energy than its rotation holds; angle of the stall, rad."""
 
     def __init__(self, words: str, crank_angle: float) -> None:
         super().__init__(words)
@@ -82,7 +82,7 @@ class Crankshaft(Part):
 
     @property
     def load(self) -> Load | MotorLine:
-        """What balances the torque: a load that follows the speed, or a motor on its line."""
+        """Load on the crank: a torque by a power law of the speed, or a motor on its line."""
         return MotorLine(self.motor_line) if self.motor_line else Load(self.load_exponent)
 
 
@@ -116,7 +116,7 @@ class Inertia:
 
     @classmethod
     def constant_only(cls, value: float, count: int = 720) -> Inertia:
-        """An inertia that is the same at every one of `count` angles."""
+        """Inertia that is constant over `count` angles."""
         return cls(value, np.zeros(count))
 
     @property
@@ -128,7 +128,7 @@ class Inertia:
         return float(self.total.mean())
 
     def plus(self, constant: float, varying: ArrayLike = 0.0) -> Inertia:
-        """The inertia with that of further parts added, kg m2."""
+        """Inertia with that of further parts added, kg m2."""
         return Inertia(self.constant + constant, self.varying + np.asarray(varying, dtype=float))
 
 
@@ -150,7 +150,7 @@ class Load:
 
 @dataclass(frozen=True, eq=False)
 class CrankMotion:
-    """Periodic motion of the crank.
+    """Periodic motion of the crank: speed, energy, torques over the cycle.
 
     Parameters
     ----------
@@ -185,7 +185,7 @@ class CrankMotion:
 
 @dataclass(frozen=True)
 class SpeedStatistics:
-    """Ripple of a crank speed at equal crank angles; rad/s, angles in rad."""
+    """Ripple of a crank speed at equal crank angles: mean, extremes, deviation, rad/s."""
 
     mean: float  # over the time of the cycle: what a tachometer shows
     std: float  # over the crank angle, about the mean over the angle
@@ -225,7 +225,7 @@ def crank_motion(
     mechanism: MechanismTorque | None = None,
     span: float = CYCLE_ANGLE,
 ) -> CrankMotion:
-    r"""The periodic solution of J omega domega/dtheta + omega^2 J'/2 = T_engine + T_mech - T_load.
+    r"""Periodic solution of J omega domega/dtheta + omega^2 J'/2 = T_engine + T_mech - T_load.
 
     In the form of work and kinetic energy, d(J omega^2 / 2)/dtheta = T, the speed at each angle
     follows from the integral of the torques, and the cycle closes when their mean is zero, which
@@ -302,7 +302,7 @@ def crank_motion(
 def equivalent_inertia(
     engine_torque: ArrayLike, mean_speed: float, speed_std: float, span: float = CYCLE_ANGLE
 ) -> float:
-    """Constant inertia at which a torque alone causes a speed ripple, kg m2.
+    """Constant inertia at which the engine torque alone causes a given speed ripple, kg m2.
 
     Parameters
     ----------
@@ -334,7 +334,7 @@ def equivalent_inertia(
 
 
 def energy_swing(torque: ArrayLike, span: float = CYCLE_ANGLE) -> Array:
-    """Integral of a torque about its mean over the shaft angle, J, of zero mean.
+    """Kinetic energy over the shaft angle, J, of zero mean: integral of the torque about its mean.
 
     Parameters
     ----------
@@ -346,7 +346,7 @@ def energy_swing(torque: ArrayLike, span: float = CYCLE_ANGLE) -> Array:
 
 
 def torque_of_motion(speed: ArrayLike, inertia: float) -> Array:
-    """J omega domega/dtheta of a speed at equal crank angles over the cycle, N m."""
+    """Accelerating torque J omega domega/dtheta of a speed at equal crank angles, N m."""
     energy = 0.5 * positive("speed", speed, "rad/s") ** 2
     return readonly(inertia * _derivative(energy, CYCLE_ANGLE))
 

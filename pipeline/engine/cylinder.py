@@ -42,7 +42,7 @@ FrictionPressure = Annotated[float, In("kPa", at_least=0, at_most=1e4)]
 
 @dataclass(frozen=True, kw_only=True)
 class LiftPoint(Part):
-    """One row of the lift table of a valve: an angle and the lift there."""
+    """Row of a valve lift table: crank angle and lift."""
 
     table: ClassVar[str] = "lift_point"
 
@@ -54,14 +54,14 @@ class LiftPoint(Part):
 
 @dataclass(frozen=True, kw_only=True)
 class ExhaustLiftPoint(LiftPoint):
-    """One row of the lift table of an exhaust valve."""
+    """Row of an exhaust valve's lift table."""
 
     angle: Annotated[Angle, Known("measured", "500 deg")]
 
 
 @dataclass(frozen=True, kw_only=True)
 class RunningGear(Part):
-    """Crank, connecting rods and pistons of equal cylinders, and their firing order.
+    """Crank, connecting rods and pistons of equal cylinders, with their firing order.
 
     The pin offset is positive on the side to which the crank pin moves from angle 0.
 
@@ -107,7 +107,7 @@ class RunningGear(Part):
         return self.piston_mass + (1.0 - self.rod_big_end_share) * self.rod_mass
 
     def inertia_torque(self, theta: ArrayLike, crank_speed: float) -> Array:
-        """Torque of one reciprocating mass on the crank at constant speed, exact, N m."""
+        """Exact torque on the crank of one reciprocating mass at constant speed, N m."""
         acceleration = crank_speed**2 * self.linkage.travel_acceleration(theta)
         force = -self.reciprocating_mass * acceleration
         return np.asarray(force * self.linkage.travel_rate(theta))

@@ -1,4 +1,4 @@
-"""Engine torque over one cycle, modelled or measured, as the sum of its components."""
+"""Engine torque over one cycle, modelled or measured, as a sum of components."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ class TorqueTable(Part):
 
 
 def torque_from_cycle(cycle: CylinderCycle) -> Torque:
-    """Torque of an engine whose cylinders all have the same cycle, at their firing offsets."""
+    """Engine torque from the cycle of one cylinder, common to all, at their firing offsets."""
     parts = {
         "gas": cycle.gas_torque,
         "inertia": cycle.inertia_torque,
@@ -61,7 +61,7 @@ def torque_from_cylinder(engine: CylinderEngine, crank_speed: float) -> Torque:
 
 
 def torque_from_csv(path: str | Path, column: str | None = None) -> Torque:
-    """Torque measured over one cycle, on whole crank degrees, its one component `measured`.
+    """Measured torque over one cycle at whole crank degrees; its one component is `measured`.
 
     Raises
     ------

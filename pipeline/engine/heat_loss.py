@@ -20,7 +20,7 @@ MOTORED_EXPONENT = 1.32  # of the polytropic compression Woschni compares with
 
 @dataclass(frozen=True)
 class Charge:
-    """State of the gas at intake valve close: Pa, K, m3."""
+    """State of the gas at intake valve closing: pressure Pa, temperature K, volume m3."""
 
     pressure: float
     temperature: float
@@ -37,7 +37,7 @@ def wall_area(engine: CylinderEngine, theta: ArrayLike) -> Array:
 def film_coefficient(
     engine: CylinderEngine, crank_speed: float, theta: Array, volume: Array, charge: Charge
 ) -> FilmCoefficient:
-    """Film coefficient at the nodes of a cycle, as a function of node, pressure and temperature.
+    """Film coefficient as a function of node of the cycle, pressure and temperature, W/(m2 K).
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Working cycle of one cylinder: state of the gas, torques, balance of energy and mass."""
+"""Working cycle of one cylinder: gas state, torques, energy and mass balance."""
 
 from __future__ import annotations
 
@@ -95,7 +95,7 @@ class CylinderCycle:
 
     @property
     def friction_torque(self) -> Array:
-        """Constant torque of friction, N m: of the friction pressure, or what closes the balance.
+        """Constant friction torque, N m: from the friction pressure, or closing the balance.
 
         Raises
         ------

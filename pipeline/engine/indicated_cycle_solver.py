@@ -1,4 +1,4 @@
-"""Single-zone working cycle of one cylinder, integrated until it is periodic."""
+"""Single-zone working cycle of one cylinder, integrated to periodicity."""
 
 from __future__ import annotations
 
@@ -245,7 +245,7 @@ def _exchange(content: _Content, port: _Port, intake: float, exhaust: float, gas
 
 
 def fuel_mass(engine: CylinderEngine, fresh: float) -> float:
-    """Fuel (kg) burnt with a fresh charge (kg): drawn in with it, or injected into it.
+    """Fuel mass (kg) per fresh charge (kg), drawn in with it or injected into it.
 
     The injected mass, a few per cent, is not added to the gas.
     """

@@ -1,4 +1,4 @@
-"""What an engine bench would record of a modelled engine, as text of trace files."""
+"""Trace files as a test bench would record them, from a modelled engine."""
 
 from __future__ import annotations
 
@@ -18,19 +18,19 @@ TOOTH_WIDTH = 0.18  # of the pitch, standard deviation of the bell of flux over 
 
 
 def torque_text(torque: Torque) -> str:
-    """Crank angle and torque over a cycle, as text of `read_trace`; `torque` on whole degrees."""
+    """Trace file of torque over the crank angle of a cycle, for `read_trace`."""
     degrees = np.arange(0.0, 720.0, ANGLE_STEP)
     return _text("crank_angle_deg,torque_Nm", "%d,%.3f", degrees, torque.total[::ANGLE_STEP])
 
 
 def pressure_text(cycle: CylinderCycle) -> str:
-    """Crank angle and absolute cylinder pressure over a cycle, as text of `pressure_from_csv`."""
+    """Trace file of cylinder pressure over the crank angle of a cycle, for `pressure_from_csv`."""
     degrees = np.arange(0.0, 720.0, ANGLE_STEP)
     return _text("crank_angle_deg,pressure_Pa", "%d,%.0f", degrees, cycle.pressure[::ANGLE_STEP])
 
 
 def tooth_times_text(speed: Array, wheel: TriggerWheel) -> str:
-    """Times of the edges of a cycle, rising and falling in turn, as text of `speed_from_csv`.
+    """Trace file of rising and falling edge times of a cycle, for `speed_from_csv`.
 
     Parameters
     ----------
@@ -45,8 +45,7 @@ def tooth_times_text(speed: Array, wheel: TriggerWheel) -> str:
 
 
 def voltage_text(speed: Array, wheel: TriggerWheel) -> str:
-    """Times and voltages of a variable-reluctance pick-up over a cycle, as text of
-    `speed_from_voltage`.
+    """Trace file of a variable-reluctance pick-up's voltage over a cycle, for `speed_from_voltage`.
 
     Parameters
     ----------
@@ -65,7 +64,7 @@ def pickup_voltage(
     sample: float = SAMPLE,
     pitch_errors: Array | None = None,
 ) -> tuple[Array, Array]:
-    """Times, s, from 0, and voltages, V, of a variable-reluctance pick-up over a periodic cycle.
+    """Times, s, and voltages, V, of a variable-reluctance pick-up over a periodic cycle.
 
     The flux rises by a bell over each tooth, and the voltage is its rate: it falls through zero
     in the middle of a tooth, in proportion to the speed.
@@ -98,7 +97,7 @@ def pickup_voltage(
 
 
 def passing_times(speed: Array, angle: Array) -> Array:
-    """Times, s, at which the crank passes angles, rad of any turn; 0 at angle 0.
+    """Times, s, at which the crank passes given angles, rad; 0 at angle 0.
 
     Parameters
     ----------

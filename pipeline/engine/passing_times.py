@@ -1,4 +1,4 @@
-"""Passing times of the edges of a trigger wheel, as means over cycles of nearly one speed."""
+"""Passing times of trigger-wheel edges, averaged over cycles of nearly one speed."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _NOISE_MIN = 1e-8  # rad, of a record without noise
 
 @dataclass(frozen=True, eq=False)
 class Passage:
-    """Passing times of the edges of a cycle, the mean of several cycles at nearly one speed.
+    """Edge times over one cycle, averaged over several cycles at nearly one speed.
 
     Parameters
     ----------
@@ -46,7 +46,7 @@ class Passage:
 
 @dataclass(frozen=True, eq=False)
 class Passages:
-    """Passages of a record.
+    """Mean edge times of a record by speed, with noise and half orders.
 
     Parameters
     ----------
@@ -75,7 +75,7 @@ def passages_of(
     harmonics: int,
     like: Array | None = None,
 ) -> Passages:
-    """Mean passing times of a record, cycles of nearly one speed together.
+    """Mean edge times of a record, averaged over cycles of nearly one speed.
 
     A wheel on the crank does not distinguish the two turns of a cycle: each run begins in the turn
     in which its half orders are most like those of the first run, or of another record.

@@ -1,4 +1,4 @@
-"""Edges of a trigger wheel in the voltage of a variable-reluctance pick-up."""
+"""Trigger-wheel edges from the voltage of a variable-reluctance pick-up."""
 
 from __future__ import annotations
 
@@ -76,7 +76,7 @@ class VoltageTable(WheelTable):
     """share of the amplitude at which the voltage is switched"""
 
     def wheel_shown(self, field: str, shown: ToothPattern) -> TriggerWheel:
-        """The wheel as stated, completed by what the signal shows.
+        """Trigger wheel as stated, completed by what the signal shows.
 
         Raises
         ------
@@ -120,7 +120,7 @@ class Crossings:
 
     @property
     def mirrored(self) -> bool:
-        """Whether the rising crossings, not the falling ones, are the middles of the teeth.
+        """Whether tooth middles are at the rising crossings: a pick-up of reversed polarity.
 
         Those divide the gaps of the wheel in two. Without a gap, or a crossing in it, the steep
         ones are the teeth; of vertical ones those with less jitter.
@@ -138,7 +138,7 @@ class Crossings:
 
 @dataclass(frozen=True, eq=False)
 class Swing:
-    """A voltage about the middle between its rails, without offset and drift.
+    """Voltage about the middle between its rails, offset and drift removed.
 
     Parameters
     ----------
@@ -159,7 +159,7 @@ class Swing:
         freeze(self, time=self.time, value=self.value)
 
     def crossings(self, threshold: float, speed: Array | float = 1.0) -> Crossings:
-        """Crossings of the middle, each by a straight line through the samples of its flank.
+        """Zero crossings, interpolated linearly on the samples of each flank.
 
         A crossing counts if the voltage exceeds the threshold before and after it, on opposite
         sides. The voltage is proportional to the speed. So is the height of the level above the
@@ -185,7 +185,7 @@ class Swing:
         return Crossings(times, rising, slopes)
 
     def upright(self, threshold: float) -> Swing:
-        """The voltage with the leads exchanged, if it rises where it should fall."""
+        """The voltage with its polarity corrected."""
         crossings = self.crossings(threshold)
         if crossings.times.size < CROSSINGS_MIN or not crossings.mirrored:
             return self
@@ -193,7 +193,7 @@ class Swing:
 
 
 def swing_of(field: str, time: ArrayLike, voltage: ArrayLike) -> Swing:
-    """A voltage about the middle between its rails.
+    """Voltage about the middle between its rails, offset and drift removed.
 
     The middle is that between robust quantiles, over blocks of the record, so that neither a
     clipped, squared or rectified wave nor a drift displaces it.
@@ -310,7 +310,7 @@ def _lines(
 
 
 def jitter(times: Array) -> float:
-    """Standard deviation of single edges of one kind, s, by their third differences.
+    """Standard deviation of single edge times of one kind, s, by their third differences.
 
     Where the intervals differ, such as at a gap, none is taken; infinite without any.
     """
@@ -320,7 +320,7 @@ def jitter(times: Array) -> float:
 
 
 def crossings_of(field: str, swing: Swing, threshold: float) -> Crossings:
-    """Crossings of an upright voltage; the falling ones are at the middles of the teeth.
+    """Crossings of a voltage of correct polarity; the falling ones are at tooth middles.
 
     Raises
     ------
@@ -369,7 +369,7 @@ class PickupRun:
 def passage(
     field: str, crossings: Crossings, base: float, wheel: TriggerWheel, extra: int
 ) -> PickupRun:
-    """Edges that passed a pick-up, both kinds, with the places of their teeth.
+    """Rising and falling edges of one run, with the tooth positions.
 
     The falling crossings, which are steep, are counted. Rising ones in the gap of the wheel are
     left out, and all of them where they jitter more.
@@ -452,7 +452,7 @@ def _signals(path: str | Path, column: str) -> tuple[str, Array, dict[str, Array
 def edges_of_signals(
     source: str, time: ArrayLike, signals: Mapping[str, Array], table: VoltageTable
 ) -> tuple[EdgeRecord, Recording]:
-    """Edges in voltages, and what they show of the record.
+    """Edges in the voltages of a record, and what they show of the wheel.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Pitch errors of a trigger wheel from its passing times at several speeds.
+"""Pitch errors of a trigger wheel, estimated from edge times at several speeds.
 
 The place of an edge and the torque on the crank both move the time at which the edge passes. In
 share of the speed, the part of a torque falls with the square of the speed; that of a pitch error
@@ -35,7 +35,7 @@ _ENERGY_MIN = 0.05  # least kinetic energy of an iterate, of that at mean speed
 
 @dataclass(frozen=True, eq=False)
 class PitchErrors:
-    """Pitch errors: angles by which the edges of a wheel pass later than equal pitches say.
+    """Pitch errors: angle by which each edge passes later than at equal pitches, rad.
 
     Parameters
     ----------
@@ -77,11 +77,11 @@ class PitchErrors:
 
     @classmethod
     def unknown(cls, edges: int, tolerance: float) -> PitchErrors:
-        """Those of a wheel of which only the tolerance (rad) of its edges is known."""
+        """Unknown pitch errors of a wheel with a tolerance (rad) of its edges alone."""
         return cls(np.zeros(edges), tolerance**2 * np.eye(edges), tolerance)
 
     def corrected(self, wheel: TriggerWheel) -> TriggerWheel:
-        """The wheel with its edges at their most probable places."""
+        """Wheel with its edges at their most probable angles."""
         return wheel.displaced(self.errors)
 
     @property
@@ -102,7 +102,7 @@ def pitch_errors(
     tolerance: float,
     harmonics: int,
 ) -> PitchErrors:
-    r"""Most probable pitch errors, given passing times of one torque at several speeds.
+    r"""Most probable pitch errors from edge times of one torque at several speeds.
 
     An edge at nominal angle theta_j with pitch error e_j passes at
 

@@ -1,4 +1,4 @@
-"""Measured cylinder pressure: cycles and their scatter, pegging, dead centre, torque."""
+"""Measured cylinder pressure: cycle statistics, pegging, dead centre, torque."""
 
 from __future__ import annotations
 
@@ -78,7 +78,7 @@ class _PressureFile(Part):
 
 @dataclass(frozen=True, kw_only=True)
 class PressureTable(CrankDrive, _PressureFile):
-    """Cylinder pressure against crank angle from a file, and the crank drive it acts on.
+    """Case table: file of cylinder pressure over crank angle, and the crank drive.
 
     The file has one column a cycle, or cycles one below the other; both units together mean that it
     has no header. Without an intake pressure the pressure is absolute. Friction closes the torque
@@ -190,7 +190,7 @@ class PressureTrace:
         )
 
     def turned(self, offset: float) -> PressureTrace:
-        """The trace with its angles shifted by `offset` (rad)."""
+        """Trace shifted by a crank angle `offset` (rad)."""
         if offset == 0.0:
             return self
         order = np.arange(self.cycles.shape[1] // 2 + 1) * (2.0 * pi / CYCLE_ANGLE)
@@ -199,7 +199,7 @@ class PressureTrace:
         return replace(self, cycles=turned, offset=self.offset + offset)
 
     def guarded(self) -> PressureTrace:
-        """The trace, refused if it is implausible as a cylinder pressure.
+        """The trace; refused if implausible as a cylinder pressure.
 
         Raises
         ------
@@ -223,7 +223,7 @@ class PressureTrace:
         return self
 
     def scale(self, engine: CrankDrive, intake_pressure: float) -> float:
-        """Pressure rise in compression over that of a polytropic from intake pressure (Pa)."""
+        """Compression pressure rise over that of a polytropic from intake pressure (Pa)."""
         low, high = COMPRESSION_WINDOW
         ends = np.interp([low, high], self.theta, self.mean)
         volumes = engine.volume(np.array([pi, low, high]))
@@ -262,7 +262,7 @@ def _unit_hint(peak: float) -> str:
 
 @dataclass(frozen=True, eq=False)
 class CycleStatistics:
-    """Statistics of the cycles; arrays (m,), a value per cycle."""
+    """Statistics over m cycles: net IMEP, peak pressure and its angle, (m,) each."""
 
     imep: Array  # Pa, net, all four strokes
     peak: Array  # Pa
@@ -300,7 +300,7 @@ def cycle_statistics(trace: PressureTrace, engine: CrankDrive) -> CycleStatistic
 def dead_centre_offset(
     motored: PressureTrace, method: DeadCentre, loss_angle: float = LOSS_ANGLE
 ) -> float:
-    """Shift (rad) that brings the dead centre of a motored trace to 360 deg.
+    """Crank angle (rad) that shifts the dead centre of a motored trace to 360 deg.
 
     By `symmetry`, the dead centre is the axis about which both flanks within 60 deg agree best;
     heat transfer and leakage advance it by some tenths of a degree. By `loss_angle`, it is the
@@ -355,7 +355,7 @@ def pressure_from_csv(
     firing_angle: float = 2.0 * pi,
     gap_max: float = GAP_MAX,
 ) -> PressureTrace:
-    """Cylinder pressure against crank angle: a column per cycle, or cycles one below the other.
+    """Pressure trace from a file with a column per cycle, or with the cycles in sequence.
 
     Angles continue from cycle to cycle, or start again with each.
 
@@ -462,7 +462,7 @@ def _unwrapped(angle: Array) -> Array:
 def torque_from_pressure(
     trace: PressureTrace, engine: PressureTable, crank_speed: float, brake: float = 0.0
 ) -> Torque:
-    """Torque of an engine whose cylinders all have the mean of the measured cycles.
+    """Engine torque from the mean of the measured cycles, common to all cylinders.
 
     Components are the gas, the inertia of the reciprocating masses at constant speed, and
     friction: of the friction pressure, or what closes the balance with the brake torque (N m).

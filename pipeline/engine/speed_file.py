@@ -1,4 +1,4 @@
-"""Crank speed from a file: its table of a case, times of edges, speeds per tooth."""
+"""Crank speed from a file: case tables, edge times, speeds per tooth."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ TEETH = 36  # where neither case nor signal states another number
 
 @dataclass(frozen=True, kw_only=True)
 class WheelTable(Part):
-    """A measurement at a trigger wheel from a file: the wheel and the filter of the speed.
+    """Case table of a measurement at a trigger wheel: file, wheel, filter of the speed.
 
     Raises
     ------
@@ -140,7 +140,7 @@ class WheelTable(Part):
 
 @dataclass(frozen=True, kw_only=True)
 class SpeedTable(WheelTable):
-    """Crank speed from a file: tooth times, or speed per tooth against crank angle."""
+    """Case table: file of tooth times, or of speed per tooth over crank angle."""
 
     kind: Literal["speed"] = "speed"
     teeth: Teeth = TEETH
@@ -164,7 +164,7 @@ class SpeedTable(WheelTable):
 def edges_from_csv(
     path: str | Path, wheel: TriggerWheel, both_edges: bool = True, column: str = ""
 ) -> EdgeRecord:
-    """Edges from a CSV file: a column of their times for each run, or levels over time.
+    """Edge times from a file: a column for each run, or a logic level over time.
 
     Columns of levels, 0 and 1, are those named `column`, else ``PriLevel``, the primary trigger in
     the composite log of an engine control, else the only one. Of a wheel with several gaps the
@@ -264,7 +264,7 @@ def speed_from_csv(
     averaged_over: float = 0.0,
     calibrator: Calibrator | None = None,
 ) -> SpeedTrace:
-    """Crank speed from a CSV file: tooth times, or speed per tooth against crank angle.
+    """Crank speed from a file of tooth times, or of speed per tooth over crank angle.
 
     A file with a column of crank angle has speeds, a column per run; any other has edges; see
     `edges_from_csv`. Without a gap the cycle begins with the record; the turn with the
@@ -310,7 +310,7 @@ def speed_of_record(
     calibrator: Calibrator | None,
     read: Callable[[Path], EdgeRecord],
 ) -> SpeedTrace:
-    """Speed from the edges of a record, with the expansion in the second turn of each cycle.
+    """Crank speed from edge times, with the expansion in the second turn of each cycle.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Measured crank speed, and the torque that follows from it."""
+"""Band-limited crank speed from measured edge times, and its torque."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ Harmonics = Annotated[int, Count(1, SAMPLES // 4)]
 
 @dataclass(frozen=True)
 class Filter(Part):
-    """Harmonics of the cycle kept of a speed, with a cosine edge from 1 - taper to 1 + taper.
+    """Low-pass filter over harmonics of the cycle, cosine edge from 1 - taper to 1 + taper.
 
     Parameters
     ----------
@@ -67,7 +67,7 @@ class Filter(Part):
 
     @property
     def last(self) -> int:
-        """The highest harmonic that is not zero."""
+        """Highest harmonic of non-zero gain."""
         return int(np.floor(self.harmonics * (1.0 + self.taper) + 1e-9))
 
     @property
@@ -80,13 +80,13 @@ class Filter(Part):
         return np.asarray(0.5 * (1.0 - np.sin(0.5 * pi * edge)))
 
     def bandwidth(self, mean_speed: float) -> float:
-        """Frequency (Hz) at which the filter lets one half pass, at a crank speed (rad/s)."""
+        """Cut-off frequency (Hz) of half gain, at a crank speed (rad/s)."""
         return self.harmonics * mean_speed / CYCLE_ANGLE
 
 
 @dataclass(frozen=True, eq=False)
 class SpeedTrace:
-    """Band-limited crank speed over a cycle, of several cycles or runs.
+    """Band-limited crank speed over the cycle, of one or more cycles or runs.
 
     Parameters
     ----------
@@ -160,7 +160,7 @@ class SpeedTrace:
         return self.noise_amplification(inertia) * self.noise / float(np.sqrt(self.count))
 
     def error_bar(self, inertia: float) -> Array:
-        """Half-width (n,) of the band that holds the torque at all angles at once, N m, 95 %.
+        """Half-width (n,) of the simultaneous 95 % band of the torque over all angles, N m.
 
         It adds what the filter cuts off to the root of the squares of noise and scatter of the
         cycles within the bandwidth and of the pitch errors of the wheel; the inertia (kg m2) is
@@ -172,7 +172,7 @@ class SpeedTrace:
         return np.asarray(random + self.cut_off(inertia))
 
     def cut_off(self, inertia: float) -> float:
-        """Greatest torque of the harmonics that the filter lets not pass, estimated, N m."""
+        """Estimated greatest torque of the harmonics above the filter, N m."""
         floor = self.noise_floor(inertia)
         return cut_off(self.speeds, self.filter.weights, inertia, floor)
 
@@ -192,7 +192,7 @@ class SpeedTrace:
         return float(unlike.var()) / whole if whole > 0.0 else 0.0
 
     def torque(self, inertia: float) -> Torque:
-        """J omega domega/dtheta of the mean speed, its one component `measured`.
+        """Torque J omega domega/dtheta of the mean speed; its one component is `measured`.
 
         That is the torque of gas, friction and load about its mean, with the inertia torque of the
         reciprocating masses.
@@ -207,7 +207,7 @@ class SpeedTrace:
         return Torque(self.theta, parts, error_bar=self.error_bar(inertia))
 
     def with_firing(self) -> SpeedTrace:
-        """The trace with the expansion of each cycle in its second crank turn.
+        """Trace with the expansion of each cycle in its second crank turn.
 
         A trigger wheel on the crank does not distinguish the two turns of a cycle: the one in which
         the speed rises more after its middle has the expansion. All cycles are first brought to
@@ -235,7 +235,7 @@ def speed_from_edges(
     band: Filter,
     errors: PitchErrors | None = None,
 ) -> SpeedTrace:
-    """Speed from the times of edges.
+    """Band-limited crank speed from edge times.
 
     The slowness 1/omega is a band-limited series over the cycle whose integral from edge to edge
     of one kind is the time between them, by least squares. Neither the width of a tooth nor the
@@ -284,7 +284,7 @@ def speed_from_teeth(
     width: float = 0.0,
     tolerance: float = 0.0,
 ) -> SpeedTrace:
-    """Speed from its values at crank angles.
+    """Band-limited crank speed from values at crank angles.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Pattern of a trigger wheel in the times of its teeth: missing teeth, an additional tooth."""
+"""Tooth pattern of a trigger wheel in its edge times: missing and additional teeth."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ PAUSE = 30.0  # interval over the usual one: the crank stood still between two r
 
 @dataclass(frozen=True)
 class ToothPattern:
-    """Teeth of a wheel as they pass.
+    """Sequence of tooth intervals of a wheel in passing order.
 
     Parameters
     ----------
@@ -37,7 +37,7 @@ class ToothPattern:
 
     @property
     def words(self) -> str:
-        """Such as 60-2, 36-2-2-2 or 4+1; n of an unknown number."""
+        """Usual notation, such as 60-2, 36-2-2-2 or 4+1; n for an unknown number."""
         mark = f"-{self.missing_teeth}" * max(len(self.rows), 1) if self.missing_teeth else ""
         mark += f"+{self.extra_teeth}" if self.extra_teeth else ""
         return f"{self.teeth or 'n'}{mark or ' teeth without a mark'}"
@@ -45,7 +45,7 @@ class ToothPattern:
 
 @dataclass(frozen=True)
 class Recording:
-    """What the record of a trigger wheel shows of itself.
+    """Properties of a trigger wheel that its record shows.
 
     Parameters
     ----------
@@ -60,7 +60,7 @@ class Recording:
 
 
 def tooth_pattern(times: Array) -> ToothPattern:
-    """Pattern that recurs most in the times (s) of edges of one kind."""
+    """Most frequent tooth pattern in the times (s) of edges of one kind."""
     intervals = np.diff(times)
     extra = extra_teeth(times)
     share = intervals / local_median(intervals)
@@ -120,7 +120,7 @@ def _usual(between: NDArray[np.intp]) -> int | None:
 
 
 def middles_by_gaps(one: Array, other: Array) -> int:
-    """Which of two kinds of crossings are the middles of teeth: 1, 2, or 0 where gaps do not show.
+    """Kind of crossing at the tooth middles, 1 or 2; 0 where gaps do not show it.
 
     A gap of the wheel is one long interval between middles of teeth. The crossing of the other kind
     in its middle makes two of it.
@@ -145,13 +145,13 @@ def middles_by_gaps(one: Array, other: Array) -> int:
 
 
 def regular(intervals: Array) -> NDArray[np.bool_]:
-    """Whether each interval (n,) is a single pitch."""
+    """Mask (n,) of intervals of a single pitch."""
     share = intervals / local_median(intervals)
     return np.asarray((share > EVEN[0]) & (share < EVEN[1]))
 
 
 def extra_teeth(times: Array) -> NDArray[np.intp]:
-    """Indices of teeth that stand between two others at the usual distance."""
+    """Indices of additional teeth between two at the usual distance."""
     intervals = np.diff(times)
     share = intervals / local_median(intervals)
     short, both = share < EVEN[0], share[:-1] + share[1:]
@@ -160,7 +160,7 @@ def extra_teeth(times: Array) -> NDArray[np.intp]:
 
 
 def runs_of(times: Array) -> list[slice[int, int, None]]:
-    """Parts of a record between pauses of the crank."""
+    """Runs of a record, separated by pauses of the crank."""
     intervals = np.diff(times)
     ends = np.flatnonzero(intervals > PAUSE * np.median(intervals)) + 1
     bounds = [0, *(int(end) for end in ends), times.size]

@@ -1,4 +1,4 @@
-"""Consistency of torque, speed, inertia and work of one engine."""
+"""Consistency of torque, speed, inertia and work in the inputs of one engine."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ FLAG_ABOVE = 0.10
 
 @dataclass(frozen=True)
 class Implied:
-    """A quantity as stated and as the other inputs imply it.
+    """Stated quantity beside the value implied by other inputs.
 
     Parameters
     ----------
@@ -65,7 +65,7 @@ class Implied:
 def implied_inertia(
     torque: ArrayLike, mean_speed: float, speed_std: float, span: float = CYCLE_ANGLE
 ) -> float:
-    """Inertia implied by a torque and the ripple of the speed that it causes, kg m2.
+    """Inertia implied by a torque and its measured speed ripple, kg m2.
 
     J = std(integral of T - mean T) / (mean omega std omega), from J omega domega = T dtheta in
     the limit of a small ripple.
@@ -90,7 +90,7 @@ def inertia_finding(
     speed_std: float,
     span: float = CYCLE_ANGLE,
 ) -> Implied:
-    """Stated inertia against that implied by torque and measured speed ripple."""
+    """Stated inertia against the value implied by torque and measured speed ripple."""
     return Implied(
         "inertia",
         "inertia at the crank",
@@ -102,7 +102,7 @@ def inertia_finding(
 
 
 def ratio_finding(crank_torque: ArrayLike, cam_torque: ArrayLike, gear_ratio: float) -> Implied:
-    """Cam torque over the crank torque that it balances, against the gear ratio.
+    """Gear ratio against the ratio of cam torque to balanced crank torque.
 
     The cam speed is the crank speed over the gear ratio: for equal power at every angle the cam
     torque must be the crank torque times the ratio.
@@ -130,7 +130,7 @@ def energy_finding(
     title: str = "energy stored per cycle",
     span: float = CYCLE_ANGLE,
 ) -> Implied:
-    """Energy stored by a spring against the energy swing of the torque to balance, J."""
+    """Spring energy over the lift against the energy swing of the balanced torque, J."""
     swing = float(np.ptp(energy_swing(crank_torque, span)))
     return Implied(
         "energy", title, swing, stored, "J",
@@ -139,7 +139,7 @@ def energy_finding(
 
 
 def work_finding(friction_loss: float, crank_work: float) -> Implied:
-    """Work of the shaft on the mechanism per cycle against the friction loss of its guides, J."""
+    """Work of the shaft on the mechanism per cycle against the friction loss of the guides, J."""
     return Implied(
         "work",
         "work of the mechanism per cycle",

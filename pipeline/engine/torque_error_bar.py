@@ -1,4 +1,4 @@
-"""Error bar of a torque that is the slope of a measured speed: noise of the record to torque."""
+"""Error bar of a torque derived from a measured speed: record noise to torque noise."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ CONFIDENCE = 0.95
 
 @dataclass(frozen=True, eq=False)
 class SlopeNoise:
-    """How the noise of single observations passes to the slope domega/dtheta of one cycle.
+    """Propagation of observation noise to the slope domega/dtheta of one cycle.
 
     Parameters
     ----------
@@ -40,7 +40,7 @@ class SlopeNoise:
 
     @classmethod
     def of(cls, slope: Array, freedom: float) -> SlopeNoise:
-        """That of a linear map (n, observations) whose observations have independent noise."""
+        """Propagation by a linear map (n, observations) of independent noise."""
         gain = np.sqrt((slope**2).sum(axis=1))
         unit = slope / gain[:, None]
         steps = np.diff(unit, axis=0, append=unit[:1])
@@ -55,11 +55,11 @@ class SlopeNoise:
 
     @property
     def band(self) -> Array:
-        """Half-width (n,) of the band that holds the true slope if the noise is known to be 1."""
+        """Half-width (n,) of the simultaneous band of the slope for a known unit noise."""
         return np.asarray(self._factor(np.inf) * self.gain)
 
     def half_width(self, slopes: Array, noise: float) -> Array:
-        """Half-width (n,) of the band about the mean slope that holds the true one, rad/s per rad.
+        """Half-width (n,) of the simultaneous band about the mean slope, rad/s per rad.
 
         The scatter of several cycles, else the noise of the one cycle about its fit, shows the
         standard error; it follows the gain over the cycle.
@@ -91,7 +91,7 @@ class SlopeNoise:
 
 
 def cut_off(speeds: Array, weights: Array, inertia: float, noise_floor: float) -> float:
-    """Greatest torque that the filter of a speed cuts off, estimated, N m.
+    """Estimated greatest torque above the filter of a speed, N m.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""A trigger wheel on the crank: which edge passed when, and where the edges really are."""
+"""Trigger wheel on the crank: numbering of its edges, and their true angles."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ ToothShare = Annotated[float, In(above=0, below=1)]
 
 @dataclass(frozen=True, eq=False)
 class TriggerWheel(Part):
-    """A wheel with `teeth` equal pitches whose last `missing_teeth` teeth are left out.
+    """Wheel with `teeth` equal pitches, of which the last `missing_teeth` teeth are missing.
 
     One with several gaps of so many teeth has `rows` of teeth between them.
 
@@ -76,7 +76,7 @@ class TriggerWheel(Part):
 
     @property
     def present(self) -> int:
-        """Teeth that are not left out."""
+        """Number of teeth that exist."""
         return sum(self.rows) if self.rows else self.teeth - self.missing_teeth
 
     @property
@@ -93,7 +93,7 @@ class TriggerWheel(Part):
         return np.cumsum(self.steps) - self.steps
 
     def number(self, place: Array) -> NDArray[np.intp]:
-        """Number of the tooth at a place counted from the reference, or of the last one before."""
+        """Number of the tooth at a position from the reference, or of the last one before it."""
         return np.searchsorted(self.places, np.mod(place, self.teeth), side="right") - 1
 
     @property
@@ -136,12 +136,12 @@ class Edges:
         freeze(self, times=self.times, places=self.places)
 
     def numbers(self, wheel: TriggerWheel) -> NDArray[np.intp]:
-        """Numbers (n,) of the edges on the wheel: rising ones first, then falling ones."""
+        """Numbers (n,) of the edges on the wheel, rising ones first, then falling ones."""
         return wheel.number(self.places) + (wheel.present if self.falling else 0)
 
 
 def counted(field: str, times: ArrayLike, wheel: TriggerWheel, both: bool) -> tuple[Edges, ...]:
-    """Edges of a run with the places of their teeth.
+    """Edges of a run assigned to tooth positions.
 
     Parameters
     ----------
@@ -183,7 +183,7 @@ def _guard_kinds(field: str, times: Array, gaps: NDArray[np.bool_]) -> None:
 
 
 def tooth_places(field: str, times: Array, wheel: TriggerWheel) -> Array:
-    """Places (n,) of the teeth whose edges of one kind have `times` (s).
+    """Tooth positions (n,) of edges of one kind by their `times` (s), gaps counted.
 
     The first edge is that of the tooth with which the speed changes least from interval to
     interval, so that a gap may pass at another speed than its neighbours.
@@ -280,7 +280,7 @@ def _refuse(field: str, times: Array, wheel: TriggerWheel) -> NoReturn:
 
 
 def local_median(intervals: Array) -> Array:
-    """Median (n,) of `NEIGHBOURS` intervals around each one or, near an end, next to it, s."""
+    """Running median (n,) of `NEIGHBOURS` intervals, shifted inward near the ends, s."""
     if intervals.size <= NEIGHBOURS:
         return np.full(intervals.size, float(np.median(intervals)))
     medians = np.median(np.lib.stride_tricks.sliding_window_view(intervals, NEIGHBOURS), axis=1)

@@ -34,7 +34,7 @@ class Valve:
     table: tuple[LiftPoint, ...] = ()
 
     def lift(self, theta: ArrayLike, derivative: int = 0) -> Array:
-        """Lift (m), or its derivative by the crank angle (m/rad), at crank angles, any shape."""
+        """Valve lift (m), or its derivative (m/rad), at crank angles (...)."""
         past = np.mod(np.asarray(theta, dtype=float) - self.opens, CYCLE_ANGLE)
         duration = self.closes - self.opens
         is_open = past < duration
@@ -50,13 +50,14 @@ class Valve:
         return np.where(is_open, pi * self.lift_max / duration * np.sin(phase), 0.0)
 
     def flow_area(self, theta: ArrayLike) -> Array:
-        """Curtain area, at most that of the port, times the discharge coefficient, m2."""
+        """Effective flow area, m2: curtain, at most port area, times discharge coefficient."""
         curtain = pi * self.diameter * self.lift(theta)
         port = 0.25 * pi * (0.85 * self.diameter) ** 2
         return np.asarray(self.discharge_coefficient * np.minimum(curtain, port))
 
 
 def intake_valve(engine: CylinderEngine) -> Valve:
+    """Intake valve of a cylinder model."""
     return Valve(
         *engine.intake_window,
         engine.valve_lift,
@@ -67,6 +68,7 @@ def intake_valve(engine: CylinderEngine) -> Valve:
 
 
 def exhaust_valve(engine: CylinderEngine) -> Valve:
+    """Exhaust valve of a cylinder model."""
     return Valve(
         *engine.exhaust_window,
         engine.valve_lift,
@@ -83,7 +85,7 @@ def nozzle_flow(
     gas_constant: float,
     gamma: float,
 ) -> float:
-    """Mass flow per area, isentropic to the throat, choked or not, kg/(s m2).
+    """Isentropic nozzle mass flow per area, choked or not, kg/(s m2).
 
     Parameters
     ----------
@@ -107,7 +109,7 @@ def nozzle_flow(
 
 
 def tappet_force(engine: CylinderEngine, valve: Valve, theta: ArrayLike) -> Array:
-    """Force of the rocker on the cam of an open valve, else zero, N."""
+    """Force of the rocker on the cam while the valve is open, else zero, N."""
     lift = valve.lift(theta)
     spring = engine.valve_spring_rate * lift + engine.valve_spring_preload
     return np.where(lift > 0.0, engine.rocker_ratio * spring, 0.0)

@@ -1,4 +1,4 @@
-"""Calibration of a trigger wheel: its pitch errors from a second record, or its tolerance."""
+"""Calibration of a trigger wheel: pitch errors from a second record, or a tolerance."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ PitchTolerance = Annotated[float, In("deg", at_least=0, at_most=2)]
 
 @dataclass(frozen=True, kw_only=True)
 class WheelReference(Part):
-    """A second record at the same trigger wheel, for its pitch errors, in the form of the first.
+    """Case table of a second record at the same trigger wheel, for its pitch errors.
 
     In a run-down the gas torque is the same in every cycle. Without gas torque the wheel is driven,
     as by a motor or with the spark plug removed.
@@ -53,7 +53,7 @@ class WheelReference(Part):
 
 
 class EdgeRecord(NamedTuple):
-    """Edges of the runs of a record, as of `counted`, and the wheel they passed on."""
+    """Edges of the runs of a record with their wheel; see `counted`."""
 
     source: str
     runs: Sequence[Sequence[Edges]]
@@ -62,7 +62,7 @@ class EdgeRecord(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Calibration:
-    """What is known of the pitch errors of a trigger wheel.
+    """Calibrated pitch errors of a trigger wheel, with kind and speed range of the reference.
 
     Parameters
     ----------
@@ -83,7 +83,7 @@ class Calibration:
 
 @dataclass(frozen=True)
 class Calibrator:
-    """Estimates the pitch errors of a wheel from a second record.
+    """Estimator of a wheel's pitch errors from a second record.
 
     Two speeds, or the falling speed of a run-down, separate pitch errors from torque only if the
     inertia of crankshaft and running gear is known and the gas torque is the same at all speeds.

@@ -12,7 +12,7 @@ Number = TypeVar("Number", float, Array)
 
 @dataclass(frozen=True)
 class Gas:
-    """An ideal gas with c_v / R = a + b T: energy and temperature convert in closed form.
+    """Ideal gas with c_v / R = a + b T, whose energy inverts in closed form.
 
     By default a is that of a rigid diatomic gas (5/2), b that of its vibration: gamma is 1.37 at
     300 K and 1.25 at 2200 K, within 1.5 % of published fits for fuel, air and burnt gas in
@@ -33,12 +33,12 @@ class Gas:
         return 1.0 + 1.0 / (self.heat_capacity + self.heat_capacity_rise * temperature)
 
     def energy(self, temperature: Number) -> Number:
-        """Specific internal energy above that at 0 K, J/kg."""
+        """Specific internal energy from 0 K, J/kg."""
         slope = 0.5 * self.heat_capacity_rise * temperature
         return self.constant * temperature * (self.heat_capacity + slope)
 
     def enthalpy(self, temperature: Number) -> Number:
-        """Specific enthalpy above that at 0 K, J/kg."""
+        """Specific enthalpy from 0 K, J/kg."""
         return self.energy(temperature) + self.constant * temperature
 
     def temperature(self, energy: Number) -> Number:
