@@ -1,4 +1,4 @@
-"""Axial shape of a body in contact as a case states it: its ends and its crown."""
+"""Axial shape of a body in contact: its ends and its crown, as a case states them."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ class BodyEnd(Part):
 
 
 def flat_width(width: float, end: BodyEnd | None) -> float:
-    """Width of a body without its ends, m; of the whole width where they are not stated."""
+    """Width of a body without its chamfers or roundings, m; the full width if none are stated."""
     return width - 2.0 * (0.0 if end is None else end.size)
 
 

@@ -1,4 +1,4 @@
-"""Correction of the half-plane field for the boundary and the supports of a real body.
+"""Compliance of a real body beyond the half-plane: correction for its boundary and supports.
 
 The field of a loaded body is that of the half-plane under the same pressure plus a correction,
 which cancels the tractions of the half-plane on the free boundary and its displacements at held
@@ -48,7 +48,7 @@ RECIPE = (sys.modules[__name__], elastic_body, sparse_factor, halfplane)
 
 @dataclass(frozen=True, eq=False)
 class CorrectionField:
-    """Correction field of a body per unit line load, at `count` contact points.
+    """Surface slope and curvature of a real body beyond the half-plane, per unit line load.
 
     along (count,) stress along the surface, Pa per N/m, the only component on a free surface;
     bend (count,) second derivative of the outward displacement along the surface, 1/m per N/m;
@@ -65,7 +65,7 @@ class CorrectionField:
 
 @dataclass(frozen=True, eq=False)
 class LoadedBody:
-    """A body, the free surface with the contact, and its other free boundaries."""
+    """Elastic body with the free surface in contact and its other free boundaries."""
 
     body: ElasticBody
     surface: str
@@ -194,7 +194,7 @@ class LoadedBody:
 
     @cached_property
     def condensed_nodes(self) -> NDArray[np.int64]:
-        """Nodes with loads of the correction, and those of the elements at holes and supports."""
+        """Nodes loaded by the correction, and those of elements at holes and supports."""
         mesh = self.body.mesh
         at = np.zeros(mesh.points.shape[1], dtype=bool)
         at[self.body.held_nodes] = True
@@ -214,7 +214,7 @@ class LoadedBody:
         return self.body.modulus / (1 - self.body.poisson**2)
 
     def correction_displacement(self, contacts: Array, normals: Array) -> Array:
-        """Displacement (2, nodes, count) of the correction in the whole body, m per N/m."""
+        """Displacement (2, nodes, count) by the correction in the whole body, m per N/m."""
         return self.body.displacement(*self._cancelling_loads(contacts, normals))
 
     def superposed(
@@ -246,7 +246,7 @@ class LoadedBody:
         )
 
     def correction_of(self, displaced: Array, contacts: Array, normals: Array) -> CorrectionField:
-        """Correction at contacts (2, count) from its `correction_fields` there, m per N/m."""
+        """Correction at contacts (2, count) from their `correction_fields`, m per N/m."""
         at_surface = displaced[:, self.condensed_nodes]
         return self._as_correction(*self._at_contacts(at_surface, contacts, normals))
 
@@ -347,7 +347,7 @@ def hertz_stress(points: Array, contacts: Array, normals: Array, half_width: Arr
 
 
 def from_contact_axes(stress: Array, normals: Array) -> Array:
-    """Stress xx, yy, xy (3, m, k) of stress along the surface, into the depth and shear.
+    """Stress xx, yy, xy (3, m, k) from components along the surface, into the depth and shear.
 
     stress (3, m, k); outward normals (2, k) or (2, 1).
     """

@@ -29,7 +29,7 @@ _SHARP = np.deg2rad(45.0)
 
 @dataclass(frozen=True, eq=False)
 class BoreStress:
-    """Maximum von Mises stress (n,), Pa, on bore and keyway, and its place.
+    """Maximum von Mises stress (n,), Pa, on bore and keyway, and its location.
 
     x, y (n,) m in the cam frame; at_edge (n,) 1 where the place is an edge of the keyway, in the
     bore or at its floor, else 0; away_from_edges (n,) Pa, the maximum elsewhere; excluded m, the
@@ -56,7 +56,7 @@ def bore_stress(
     *,
     excluded: float | None = None,
 ) -> BoreStress:
-    """Stress of bore and keyway under contacts at points (2, n), m, with outward normals (2, n).
+    """Stress of bore and keyway under contacts at points (2, n), m, outward normals (2, n).
 
     line_load (n,) N/m acts as a line force: the bore lies many half-widths below the contact. The
     radius excluded at the keyway edges, m, is by default 1.5 elements.

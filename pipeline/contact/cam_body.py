@@ -1,4 +1,4 @@
-"""The cam disc: base shape, bore, keyway, key and material."""
+"""Cam disc: base shape, bore, keyway, key and material."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Certificate: cam and follower by finite elements at one cam angle, on three or two meshes."""
+"""Certificate: both bodies by finite elements at one cam angle, on two or three meshes."""
 
 from __future__ import annotations
 
@@ -72,7 +72,7 @@ def contact_meshes(
 def solve_pair(
     pair: ContactPair, theta: float, normal_force: float, edges: float = EDGES[1]
 ) -> SolvedPair:
-    """Cam and follower by finite elements at a cam angle theta (rad) under a normal force (N).
+    """Contact of cam and follower by finite elements at a cam angle (rad) and normal force (N).
 
     Raises
     ------
@@ -101,7 +101,7 @@ def solve_pair(
 
 @dataclass(frozen=True)
 class MeshFigures:
-    """Contact of both bodies on one mesh.
+    """Pressure, half-width and stresses of the contact on one mesh.
 
     edges per half-width; degrees of freedom; p0, tau_max, von_mises Pa; half_width m; residuals,
     relative.
@@ -118,7 +118,7 @@ class MeshFigures:
 
 
 def mesh_figures(pair: ContactPair, theta: float, normal_force: float, edges: float) -> MeshFigures:
-    """Contact at a cam angle theta (rad) under a normal force (N) on one mesh.
+    """Pressure, half-width and stresses at a cam angle (rad) and normal force (N), on one mesh.
 
     Raises
     ------
@@ -137,7 +137,7 @@ def certificate_point(
     meshes: Sequence[MeshFigures],
     worst: Sequence[CertificatePoint] = (),
 ) -> CertificatePoint:
-    """Certificate at position `index` of a history, at the cam angle theta (rad).
+    """Certificate of position `index` of a history, at cam angle theta (rad).
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Contact over the turn in closed form, by Hertz."""
+"""Hertz contact over the cam turn in closed form."""
 
 from __future__ import annotations
 

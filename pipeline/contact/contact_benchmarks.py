@@ -1,4 +1,4 @@
-"""Benchmarks: two contacts with known solution, solved by the code and libraries of the run.
+"""Benchmarks: two contacts with known solutions, solved by the code of the run.
 
 Cached on disk by the versions of the libraries and the source of the modules.
 """
@@ -41,7 +41,7 @@ _RECIPE = (
 
 
 def benchmarks(roller_radius: float) -> dict[str, float]:
-    """Relative differences from the known solutions.
+    """Relative deviations of the benchmark contacts from their known solutions.
 
     Parameters
     ----------

@@ -113,14 +113,14 @@ class ContactHistory(Displayed):
 
     @property
     def p0_difference(self) -> Array:
-        """p0 by finite elements over p0 by Hertz, less one; zero without load."""
+        """Relative difference of p0, finite elements to Hertz; zero without load."""
         idle = self.p0_hertz == 0
         return np.where(idle, 0.0, self.p0 / np.where(idle, 1.0, self.p0_hertz) - 1)
 
 
 @dataclass(frozen=True, repr=False)
 class CertificatePoint(Displayed):
-    """Both bodies by finite elements at one cam angle, and the values of the cycle.
+    """Certified contact of both bodies at one cam angle, with the values of the cycle.
 
     On three meshes; or on the two coarser ones by the orders observed at the cam angles
     `order_from` (rad). theta rad; convergence of p0 (Pa), half_width (m), tau_max and von_mises
@@ -146,7 +146,7 @@ class CertificatePoint(Displayed):
 
     @property
     def figures(self) -> Mapping[ContactFigure, tuple[Convergence, float]]:
-        """Each certified quantity by its name: convergence over the meshes, value of the cycle."""
+        """Certified quantities by name: convergence over the meshes, value of the cycle."""
         return {
             "p0": (self.p0, self.p0_cycle),
             "half_width": (self.half_width, self.half_width_cycle),
@@ -156,7 +156,7 @@ class CertificatePoint(Displayed):
 
     @property
     def spread(self) -> float:
-        """Largest relative difference of cycle and certificate in any figure; NaN if one is."""
+        """Largest relative difference of cycle and certificate over all figures; NaN if one is."""
         return self.difference(self.spread_of)
 
     @property
@@ -166,13 +166,13 @@ class CertificatePoint(Displayed):
         return names[first_greatest([self.difference(name) for name in names])]
 
     def difference(self, name: ContactFigure) -> float:
-        """Relative difference of cycle and certificate in one figure."""
+        """Relative difference of cycle and certificate for one figure."""
         one, value = self.figures[name]
         return abs(value / one.extrapolated - 1)
 
     @property
     def gci(self) -> float:
-        """Largest grid convergence index of the figures, relative; NaN if one is."""
+        """Largest grid convergence index over all figures, relative; NaN if one is."""
         return self.figures[self.gci_of][0].gci
 
     @property

@@ -20,7 +20,7 @@ from camwright.pipeline.contact.follower_body import FollowerBody
 
 @dataclass(frozen=True, eq=False)
 class ContactPair:
-    """Cam and follower: contour, width of the line contact (m), bore radius (m), materials."""
+    """Cam and follower in line contact: contour, contact width, bore radius (m), materials."""
 
     contour: Contour
     width: float
@@ -65,5 +65,5 @@ class ContactPair:
 def elastic_body(
     mesh: BodyMesh, material: Elastic, held: str, springs: Springs | None = None
 ) -> ElasticBody:
-    """Elastic body on a mesh; supported by springs alone where `held` is empty."""
+    """Elastic body on a mesh, held on boundaries; on springs alone where `held` is empty."""
     return ElasticBody(mesh, material.modulus, material.poisson, held or {}, springs)

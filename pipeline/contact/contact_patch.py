@@ -63,7 +63,7 @@ RECIPE = (
 
 @dataclass(frozen=True, eq=False)
 class ContactPatch:
-    """Half-plane under unit linear pressures by finite elements, for one Poisson ratio.
+    """Finite-element half-plane under unit linear pressures, for one Poisson ratio.
 
     Lengths over half-width, stresses over pressure, displacements over pressure times half-width
     over plane-strain modulus E / (1 - nu^2): knots (n + 2,), compliance (n, n) weighted
@@ -88,7 +88,7 @@ class ContactPatch:
 
     @cached_property
     def body_stress(self) -> Array:
-        """Stress (3, m, 4) at the points of what a real body adds to the half-plane.
+        """Unit stress fields (3, m, 4) at the patch points by which a real body differs.
 
         Unit stress along the surface, along the surface and into the depth per half-width of
         depth, and `hertz.curved_surface_stress`.
@@ -109,7 +109,7 @@ class ContactPatch:
 def contact_patch(
     poisson: float, elements_per_half_width: int = ELEMENTS_PER_HALF_WIDTH
 ) -> ContactPatch:
-    """Template of a Poisson ratio, see `ContactPatch`; cached on disk."""
+    """`ContactPatch` of a Poisson ratio, cached on disk."""
     arrays = disk_cache.kept(
         "patch",
         (float(poisson), int(elements_per_half_width)),
@@ -124,7 +124,7 @@ def contact_patch(
 def patch_body(
     poisson: float, elements_per_half_width: int
 ) -> tuple[ElasticBody, ContactFrame, PressureShapes]:
-    """Half-disc of a template, its contact frame and pressure shapes.
+    """Half-disc mesh of a contact patch with its contact frame and pressure shapes.
 
     The last one is kept, as both templates of a Poisson ratio share its factors.
     """
@@ -144,7 +144,7 @@ def patch_body(
 
 @lru_cache(maxsize=1)
 def stress_near(body: ElasticBody) -> StressRecovery:
-    """Stress of a half-disc within `STRESS_REACH`."""
+    """Stress recovery on the elements of a half-disc within `STRESS_REACH`."""
     return StressRecovery(body, elements_near(body, np.zeros(2), STRESS_REACH))
 
 
@@ -199,7 +199,7 @@ def _far_displacement(points: Array, shapes: PressureShapes, poisson: float) -> 
 
 @dataclass(frozen=True, eq=False)
 class PatchContacts:
-    """Contact at `count` positions, over the Hertz p0 and half-width of each position.
+    """Contact at `count` positions, over Hertz p0 and half-width of each position.
 
     pressure (count, n) at the knots, elliptic at the edges where the contact is one ellipse; p0,
     half_width, centre (count,) of the fitted ellipse; residuals (count,) of `pressure`.
@@ -216,7 +216,7 @@ class PatchContacts:
 def solve_patches(
     patches: tuple[ContactPatch, ContactPatch], shares: tuple[float, float], gap: ArrayLike
 ) -> PatchContacts:
-    """Contact of two patches at many positions at once.
+    """Contact of two patches at many positions, solved together.
 
     Parameters
     ----------

@@ -13,12 +13,12 @@ the oil or are splashed: ISO/TS 6336-20, recalled: verify."""
 
 
 def bulk_rise(flash: Array | None) -> float:
-    """Rise of the bodies over the oil, K, from flash temperatures (n,) of a turn; 0 of None."""
+    """Bulk temperature rise over the oil, K, from flash temperatures (n,) of a turn; 0 for None."""
     return 0.0 if flash is None else BULK_SHARE * float(flash.mean())
 
 
 def effusivity(conductivity: float, density: float, specific_heat: float) -> float:
-    """Root of conductivity times density times specific heat, W s^0.5/(m^2 K)."""
+    """Thermal effusivity sqrt(k rho c), W s^0.5/(m^2 K)."""
     return float(np.sqrt(conductivity * density * specific_heat))
 
 
@@ -28,7 +28,7 @@ def flash_temperature(
     effusivities: tuple[float, float],
     half_width: ArrayLike,
 ) -> Array:
-    """Rise (...) of the greatest temperature in a fast band contact, K; 0 without heat.
+    """Maximum flash temperature rise (...) of a fast band contact, K; 0 without heat.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Body of the follower in contact with the cam: roller or block of a flat face."""
+"""Body of the follower in the contact: roller, or block of a flat face."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _EDGES_ALONG_FACE = 60
 
 
 class FollowerBody(Protocol):
-    """Second body of the contact.
+    """Interface of the follower's body: mesh, contact surface, supports.
 
     `name` names the body in files, `part` what bends under the contact; `surface` is the boundary
     of its mesh in contact with the cam, `held` the held one, `free` are the unloaded ones. Where
@@ -58,13 +58,13 @@ class FollowerBody(Protocol):
         ...
 
     def springs(self, mesh: BodyMesh, contour: Contour | None, theta: float) -> Springs | None:
-        """Spring supports on its mesh at a cam angle; contour None: in the frame of the body."""
+        """Spring supports on its mesh at a cam angle; in the body's frame for contour None."""
         ...
 
 
 @dataclass(frozen=True)
 class RollerBody:
-    """A roller held at its hub; radii in m."""
+    """Roller held at its hub; radii in m."""
 
     radius: float
     hub_radius: float
@@ -95,12 +95,12 @@ class RollerBody:
         return mesh.transformed(0.0, contact + self.radius * normal)
 
     def springs(self, mesh: BodyMesh, contour: Contour | None, theta: float) -> None:
-        """None: it is held at the hub."""
+        """None: the hub is held."""
 
 
 @dataclass(frozen=True)
 class FaceBody:
-    """The block of a flat face, centred on the stem and held at the stem on its back.
+    """Block of a flat face, centred on the stem, its back held over the stem's cross-section.
 
     The frame has its origin in the middle of the face, y towards the cam and x along the face.
     width along the face in the plane of motion, thickness along the stem, m.
@@ -142,4 +142,4 @@ class FaceBody:
         return mesh.transformed(theta + 0.5 * np.pi, middle)
 
     def springs(self, mesh: BodyMesh, contour: Contour | None, theta: float) -> None:
-        """None: it is held at the stem."""
+        """None: the back is held."""

@@ -1,4 +1,4 @@
-"""Contact of two linear elastic bodies by finite elements.
+"""Frictionless contact of two elastic bodies by finite elements.
 
 Quadratic elements; continuous piecewise-linear pressure on the facets of one surface; integrals
 split at the knots and facets of both; the gap of the exact contours; bodies condensed to the
@@ -65,7 +65,7 @@ _OVERLAP = 1e-3
 
 @dataclass(frozen=True, eq=False)
 class ContactSide:
-    """One body with the name of its contact surface."""
+    """Body of a contact with the name of its contact surface."""
 
     body: ElasticBody
     surface: str

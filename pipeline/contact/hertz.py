@@ -103,12 +103,12 @@ def line_contact(
 
 
 def peak_pressure_square(line_load: Values, curvature: Values | float, modulus: Value) -> Values:
-    """p0^2 (...), Pa^2, at the curvature 1/R = 1/R1 + 1/R2, 1/m."""
+    """Square p0^2 (...), Pa^2, of the Hertz pressure at the curvature 1/R = 1/R1 + 1/R2, 1/m."""
     return line_load * curvature * (modulus / np.pi)
 
 
 def half_width_square(line_load: Values, radius: Values | float, modulus: Value) -> Values:
-    """a^2 (...), m^2, at the relative radius R, m."""
+    """Square a^2 (...), m^2, of the Hertz half-width at the relative radius R, m."""
     return line_load * radius * (4.0 / (np.pi * modulus))
 
 
@@ -234,7 +234,7 @@ def curved_surface_stress(x: ArrayLike, depth: ArrayLike) -> Array:
 
 @lru_cache(maxsize=32)
 def shear_any_plane_peak(poisson: float) -> float:
-    """Maximum shear on any plane under a frictionless contact over p0, on the axis."""
+    """Maximum shear on any plane on the axis of a frictionless contact, over p0."""
     depth = np.linspace(0.0, 2.0, 2001)
     return float(shear_any_plane(subsurface_stress(0.0, depth), poisson).max())
 

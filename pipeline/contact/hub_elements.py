@@ -1,4 +1,4 @@
-"""Cam on its shaft by plane finite elements: pressure of the fit, stress at the keyway's root.
+"""Cam on its shaft by plane finite elements: fit pressure, stress at the keyway root.
 
 Plane stress: the flanks of the cam are free. The cam is a ring of its contour with bore, keyway and
 fillets; the shaft is a solid disc, stiffer than with its own keyway. Bore and shaft touch without
@@ -51,7 +51,7 @@ _ROOT = 1.6  # root radii from a corner of the floor up to which the boundary co
 
 
 class Slot(NamedTuple):
-    """Keyway of the mesh: width and depth beyond the bore, m; angle, rad; fillet, m."""
+    """Keyway in the mesh: width, depth beyond the bore, fillet, m; angle, rad."""
 
     width: float
     depth: float
@@ -60,7 +60,7 @@ class Slot(NamedTuple):
 
 
 class RotatingBody(NamedTuple):
-    """Elastic constants and density, kg/m3."""
+    """Elastic constants and density, kg/m3, of a rotating body."""
 
     elastic: Elastic
     density: float
@@ -68,7 +68,7 @@ class RotatingBody(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class SeatedCam:
-    """A cam on its shaft.
+    """Cam pressed on its shaft: meshes, materials, keyway, interference.
 
     Parameters
     ----------
@@ -90,7 +90,7 @@ class SeatedCam:
 
     @cached_property
     def units(self) -> HubUnits:
-        """Unit solutions; kept on disk."""
+        """Solutions under unit loads, cached on disk."""
         theta = uniform_turn(_SAMPLES)
         outline = np.ascontiguousarray(self.contour.points(theta), dtype="<f8")
         inputs = (
@@ -108,13 +108,13 @@ class SeatedCam:
 
 
 def plane_stress(elastic: Elastic) -> Elastic:
-    """Constants with which plane strain has the in-plane stiffness of plane stress."""
+    """Equivalent elastic constants by which plane strain has the stiffness of plane stress."""
     e, nu = elastic.modulus, elastic.poisson
     return Elastic(e * (1.0 + 2.0 * nu) / (1.0 + nu) ** 2, nu / (1.0 + nu))
 
 
 class HubLoads(NamedTuple):
-    """Loads of a seated cam over n cam angles, per width of the cam.
+    """Loads on a seated cam at n cam angles, per unit width.
 
     theta (n,) rad; force (n,) of the contact, N/m; couple (n,) of the key on the cam, N, positive
     counter-clockwise; speed of the cam, rad/s; interference: of the radii at rest, m, negative for
@@ -129,7 +129,7 @@ class HubLoads(NamedTuple):
 
 
 class HubState(NamedTuple):
-    """Stress (n, m), Pa, along the boundary at the places of the root; pressure (n, k), Pa.
+    """Stress (n, m), Pa, along the boundary at the keyway root; seat pressure (n, k), Pa.
 
     opened (n,): whether a part of the seat has lost its contact.
     """
@@ -140,7 +140,7 @@ class HubState(NamedTuple):
 
 
 class HubUnits:
-    """Unit solutions of a cam on its shaft.
+    """Solutions of a cam on its shaft under unit loads.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Oil film thickness between follower and cam; share of the load on asperities."""
+"""Elastohydrodynamic film between follower and cam; load share of the asperities."""
 
 from __future__ import annotations
 
@@ -86,7 +86,7 @@ class Lubricant(Part):
     source: TableSource = NO_SOURCE
 
     def warmer(self, rise: float) -> Lubricant:
-        """The oil warmer by a rise, K; unchanged where its temperature is not stated.
+        """Oil warmer by a rise, K; unchanged where its temperature is not stated.
 
         References
         ----------
@@ -105,7 +105,7 @@ class Lubricant(Part):
 
 @dataclass(frozen=True, eq=False)
 class LineFilm:
-    """Dimensionless groups of a lubricated line contact, arrays (...).
+    """Dimensionless groups of an elastohydrodynamic line contact, arrays (...).
 
     load W = P'/(E' R), speed U = eta u/(E' R), material G = alpha E', with E' = 2 E*, relative
     radius R (m) and entrainment speed u, the mean surface speed through the contact.
@@ -150,7 +150,7 @@ class LineFilm:
 
 
 def entrainment_speed(rolling_speed: ArrayLike, slip: ArrayLike = 0.0) -> Array:
-    """Mean surface speed (...) through the contact, m/s; the roller surface is slower by `slip`."""
+    """Entrainment speed (...), m/s: mean of both surface speeds, the roller slower by `slip`."""
     return np.abs(np.asarray(rolling_speed, dtype=float) - np.asarray(slip, dtype=float) / 2)
 
 
@@ -174,7 +174,7 @@ them: regimes I and III of AGMA 925-A03, recalled: verify."""
 
 
 def scuffing_limit(ratio: Array, boundary: float, carrying: float) -> Array:
-    """Temperature (...) of a sliding contact at which it scuffs, by film over roughness (...).
+    """Scuffing temperature (...) of a sliding contact by its film thickness ratio (...).
 
     Parameters
     ----------
@@ -186,7 +186,7 @@ def scuffing_limit(ratio: Array, boundary: float, carrying: float) -> Array:
 
 
 def lambda_ratio(thickness: ArrayLike, roughness_1: float, roughness_2: float) -> Array:
-    """Film thickness ratio (...), film over combined rms roughness; > 3 full film, < 1 boundary.
+    """Film thickness ratio (...): film over combined rms roughness; > 3 full film, < 1 boundary.
 
     Raises
     ------
@@ -221,7 +221,7 @@ class MixedFilm:
 def mixed_film(
     film: LineFilm, roughness: float, hardness: float, modulus: float
 ) -> tuple[MixedFilm, str]:
-    """Film of rough surfaces by a regression with unverified source.
+    """Film and asperity load of rough surfaces, by a regression of unverified source.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Conforming contact of a pin in a hole with clearance, by Persson and by complementarity.
+"""Conforming contact of a pin in a hole, by Persson's solution and by complementarity.
 
 Positions are angles phi from the line of action; loads are per length, N/m; `clearance` is radial,
 hole less pin. Under a frictionless pressure p(phi) the gap is
@@ -44,7 +44,7 @@ RECIPE = (sys.modules[__name__], active_set, radial_compliance)
 
 @dataclass(frozen=True, eq=False)
 class Conforming:
-    """Pressure (knots,), Pa, at `angle` (knots,), rad, on one side of the line of action.
+    """Contact of a pin in a hole: pressure (knots,), Pa, over the angle, rad, of one side.
 
     `contact_angle`: half the angle in contact, rad; `peak_pressure` Pa; `approach` m; relative
     residuals of equilibrium and complementarity, see `active_set`.
@@ -63,7 +63,7 @@ class Conforming:
 
 
 def persson_clearance(contact_angle: ArrayLike) -> Array:
-    """E' dR / Q (...) at half contact angles, rad, of equal materials; < 0 for a press fit.
+    """Persson's load parameter E' dR / Q (...) at half contact angles, rad; < 0 for a press fit.
 
     E' is E in plane stress and E/(1 - nu^2) in plane strain.
 
@@ -86,7 +86,7 @@ def persson_clearance(contact_angle: ArrayLike) -> Array:
 
 
 def persson_pressure(contact_angle: ArrayLike, angle: ArrayLike = 0.0) -> Array:
-    """p R / Q (...) at angles from the line of action, rad; 0 outside the contact."""
+    """Persson's pressure p R / Q (...) at angles from the line of action, rad; 0 beyond."""
     b = np.tan(np.asarray(contact_angle, dtype=float) / 2.0)
     y = np.tan(np.asarray(angle, dtype=float) / 2.0)
     S, s = np.sqrt(1.0 + b**2), np.sqrt(np.maximum(b**2 - y**2, 0.0))
@@ -95,7 +95,7 @@ def persson_pressure(contact_angle: ArrayLike, angle: ArrayLike = 0.0) -> Array:
 
 
 def persson_contact_angle(clearance_number: float) -> float:
-    """Half contact angle, rad, at E' dR / Q >= 0.
+    """Persson's half contact angle, rad, at a load parameter E' dR / Q >= 0.
 
     Raises
     ------
@@ -117,7 +117,7 @@ def persson_contact_angle(clearance_number: float) -> float:
 def pin_in_hole(
     load: float, radius: float, clearance: float, pin: SolidBar, bush: Bush, knots: int = KNOTS
 ) -> Conforming:
-    """Pressure between pin and hole by complementarity at angular knots.
+    """Pressure between pin and hole at angular knots, by complementarity.
 
     Parameters
     ----------
@@ -172,7 +172,7 @@ def pin_in_hole(
 
 
 def hat_coefficients(window: float, knots: int, count: int) -> Array:
-    """Integrals (knots, count) of hat functions on [0, window] times cos(n phi), n < count.
+    """Cosine coefficients (knots, count) of hat functions on [0, window], order n < count.
 
     Knots at equal steps from 0; the first is half a hat function, as the pressure is even; the last
     knot carries no pressure.
@@ -268,7 +268,7 @@ def _solved_table(pin: SolidBar, bush: Bush) -> dict[str, Array]:
 def peak_pressure(
     load: ArrayLike, radius: float, clearance: float, pin: SolidBar, bush: Bush
 ) -> tuple[Array, Array]:
-    """Peak pressure and half contact angle of many loads, from a table of solutions.
+    """Peak pressure and half contact angle under many loads, interpolated in a table.
 
     Half contact angles below two degrees are those of two cylinders of nearly equal radius.
 

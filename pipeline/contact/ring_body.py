@@ -1,4 +1,4 @@
-"""Outer ring of a bearing in contact with the cam: annulus on balls.
+"""Outer ring of a roller bearing in contact with the cam: annulus supported by balls.
 
 The ring bends over lengths of its thickness, ten times the contact: it enters the contact as any
 body, by its correction of the half-plane field, in plane strain.
@@ -36,7 +36,7 @@ RECIPE = (
 
 @dataclass(frozen=True)
 class BallRing:
-    """An outer ring and its loaded balls, at angles from the contact.
+    """Outer ring and its loaded balls, at angles from the contact.
 
     Parameters
     ----------
@@ -100,7 +100,7 @@ class RingBody:
         return self._annulus.mesh_at(contour, theta, sizing)
 
     def springs(self, mesh: BodyMesh, contour: Contour | None, theta: float) -> Springs:
-        """Balls as springs on its mesh at a cam angle; contour None: in the frame of the ring."""
+        """Balls as springs on the mesh at a cam angle; in the ring's frame for contour None."""
         if contour is None:
             return ball_springs(mesh, np.zeros(2), 0.5 * np.pi, self.ring, self.width)
         normal = contour.normal(theta)
@@ -111,7 +111,7 @@ class RingBody:
 
 @lru_cache(maxsize=32)
 def unit_bend(body: RingBody) -> float:
-    """Change of the outer curvature of the ring at its contact per line load, 1/m per N/m.
+    """Change of the ring's outer curvature at the contact per line load, 1/m per N/m.
 
     Positive where the ring flattens; by the mesh of the cycle. Cached on disk.
     """
@@ -132,7 +132,7 @@ def _bend(body: RingBody) -> Array:
 def ball_springs(
     mesh: BodyMesh, centre: Array, facing: float, ring: BallRing, width: float
 ) -> Springs:
-    """Balls as springs on the mean inner displacement of the ring over their footprints.
+    """Balls as springs on the mean inner displacement over their footprints.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Stress history of the material below the contour under the rolling load of one turn.
+"""Subsurface stress history along the contour under the contacts of one turn.
 
 A material point has one load pass per turn. The half-width is a thousandth of the contour, so
 that load and curvature are constant during a pass: steady rolling, solved once for all depths in
@@ -59,7 +59,7 @@ class FatigueLimits:
 
 @dataclass(frozen=True, eq=False)
 class RollingPass:
-    """One pass of steady rolling, arrays (k,) over the depths; stresses over peak pressure.
+    """Stress maxima of one pass of steady rolling, (k,) over the depths, over peak pressure.
 
     depth in half-widths; von_mises and tau_max, maxima of the pass; shear_range of the shear along
     the surface; shear_amplitude, radius of the smallest sphere around the path of the deviator in
@@ -113,7 +113,7 @@ def _shear_pulled(unit: RollingPass, weight: float) -> Array:
 
 @lru_cache(maxsize=8)
 def rolling_pass(poisson: float, friction: float = 0.0) -> RollingPass:
-    """Pass of a Hertz pressure with a traction of `friction` times pressure; cached on disk.
+    """Pass of a Hertz pressure with traction `friction` times pressure; cached on disk.
 
     References
     ----------
@@ -156,7 +156,7 @@ def _pass(poisson: float, friction: float) -> dict[str, Array]:
 
 
 def smallest_sphere(path: Array) -> tuple[Array, Array]:
-    """Centre (3, k) and radius (k,) of the smallest sphere around k paths (3, k, q).
+    """Centre (3, k) and radius (k,) of the smallest enclosing sphere of k paths (3, k, q).
 
     Steps of decreasing length towards the farthest point; after n steps the radius is within 1/n of
     the minimum (Badoiu and Clarkson 2003).
@@ -201,7 +201,7 @@ class Envelope:
         return cls(nan[0], nan[0], nan, nan, nan, nan, nan, nan)
 
     def worst(self, name: str) -> tuple[float, float, float]:
-        """Maximum of a map, Pa, and its place: theta rad, depth m."""
+        """Maximum of a map, Pa, and its location: theta, rad, and depth, m."""
         values = getattr(self, name)
         station, level = np.unravel_index(first_greatest(values.ravel()), values.shape)
         return (
@@ -223,7 +223,7 @@ def swept(
     body_stress: ArrayLike | None = None,
     governing: bool = False,
 ) -> Envelope:
-    """Maximum stresses below the contour over one turn.
+    """Envelope of the subsurface stresses along the contour over one turn.
 
     Parameters
     ----------
@@ -270,11 +270,11 @@ def swept(
 
 
 def governing_stations(p0: Array, half_width: Array) -> NDArray[np.intp]:
-    """Stations of which none other has both no less pressure and no less half-width.
+    """Non-dominated stations in pressure and half-width; all where a value is unknown.
 
     Without stress of the body every stress of a station grows with its pressure, and lies the
     deeper the wider the contact: the greatest stresses over the turn, and those over a strength
-    that does not rise with depth, are at one of these. All stations where a value is unknown.
+    that does not rise with depth, are at one of these.
 
     Parameters
     ----------
@@ -330,7 +330,7 @@ def _greatest_root(form: Array, p0: Array, field: Array, along: Array) -> Array:
 
 
 def greatest_line(height: Array, slope: Array, at: Array) -> Array:
-    """Greatest value (n, k) of k sets of lines, height + slope times `at`, at places (n,).
+    """Upper envelope (n, k) of k sets of lines, height + slope x, at abscissae x (n,).
 
     Walks along the upper envelope of each set, which is convex: at each corner to the line that
     is the first to cross, until no line of any set crosses before the last place.

@@ -1,4 +1,4 @@
-"""Fit of the cam on its shaft: interference in operation, pressure, slip torque, hoop stress.
+"""Shrink fit of the cam on its shaft: operating interference, pressure, slip torque, hoop stress.
 
 The one pressure of the fit: slip of the seat, bore, wall and keyway root take it from here.
 """
@@ -64,7 +64,7 @@ class SeatFit(Part):
 
     @property
     def heated(self) -> bool:
-        """Whether a temperature in operation is not that of the drawing."""
+        """Whether an operating temperature differs from that of the drawing."""
         return (self.cam_temperature, self.shaft_temperature) != (ROOM, ROOM)
 
     def growth(self, radius: Value, cam: Material, shaft: Material) -> Value:
@@ -82,7 +82,7 @@ class SeatFit(Part):
 
 
 class FittedRing(NamedTuple):
-    """A ring on a solid shaft: radius of the seat and outer radius, m; materials."""
+    """Ring on a solid shaft: seat and outer radius, m, and materials."""
 
     radius: Value
     outer: Value
@@ -134,7 +134,7 @@ class FittedRing(NamedTuple):
 
 
 def slip_torque(pressure: Value, radius: Value, width: Value, friction: float) -> Value:
-    """Torque at which a seat under a pressure, Pa, slips, N m.
+    """Slip torque of a seat under a pressure (Pa), N m.
 
     References
     ----------

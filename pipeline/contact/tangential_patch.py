@@ -28,7 +28,7 @@ _PEAK_REACH = 0.25
 
 @dataclass(frozen=True, eq=False)
 class TangentialPatch:
-    """Half-plane under unit linear tractions along +x by finite elements, for one Poisson ratio.
+    """Finite-element half-plane under unit linear tractions along +x, for one Poisson ratio.
 
     points (2, m) along the surface and depth, in half-widths; stress (3, m, n) over the traction;
     points and knots are those of `ContactPatch`.
@@ -49,7 +49,7 @@ class TangentialPatch:
 
 @lru_cache(maxsize=8)
 def tangential_patch(poisson: float, elements_per_half_width: int = 16) -> TangentialPatch:
-    """Template of a Poisson ratio; cached on disk."""
+    """`TangentialPatch` of a Poisson ratio, cached on disk."""
     arrays = disk_cache.kept(
         "traction",
         (float(poisson), int(elements_per_half_width)),

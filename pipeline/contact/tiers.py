@@ -1,4 +1,4 @@
-"""Tiers of a solution, by cost."""
+"""Depth of a solution: screening, preview, cycle or certified."""
 
 from __future__ import annotations
 

@@ -39,7 +39,7 @@ def stick_half_width(ratio: ArrayLike) -> Array:
 
 
 def rolling_traction(x: ArrayLike, ratio: float) -> Array:
-    """Traction (...) of steady rolling; the stick zone starts at the leading edge x = -1.
+    """Carter's traction (...) of steady rolling; the stick zone starts at the leading edge x = -1.
 
     References
     ----------
@@ -55,7 +55,7 @@ def rolling_traction(x: ArrayLike, ratio: float) -> Array:
 
 
 def rolling_increase(poisson: float, friction: float, ratio: Array) -> tuple[Array, Array]:
-    """Increase of maximum in-plane shear and von Mises stress by the traction of Carter.
+    """Increase of maximum in-plane shear and von Mises stress by Carter's traction.
 
     Parameters
     ----------
@@ -135,13 +135,13 @@ def creepage(
 
 
 def ring_inertia(radius: Value, hub_radius: float, width: Value, density: float) -> Value:
-    """Moment of inertia of a solid ring about its axis, kg m2: upper bound of an outer ring."""
+    """Moment of inertia of a solid ring about its axis, kg m2: upper bound for a bearing ring."""
     return 0.5 * np.pi * density * width * (radius**4 - hub_radius**4)
 
 
 @dataclass(frozen=True)
 class Drag:
-    """Inertia and drag of a roller, and its friction on the cam.
+    """Inertia and bearing drag of a roller, and its friction coefficient on the cam.
 
     inertia kg m2; torque N m, load-free drag of bearing and seals; bearing_friction times normal
     force times pin_radius (m), load-dependent drag; friction of roller on cam, > 0.

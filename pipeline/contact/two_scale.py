@@ -1,4 +1,4 @@
-"""Two-scale contact over the turn: finite-element patch with corrections of the real bodies."""
+"""Two-scale contact over the turn: finite-element patch with compliance of the real bodies."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ class CycleBodies:
 
 
 def loaded_cam(pair: ContactPair, refinement: float = 1.0) -> LoadedBody:
-    """Cam on a coarse mesh, of element sizes divided by a refinement, everywhere."""
+    """Cam on a coarse mesh, its element sizes divided by a refinement."""
     outline = float(pair.contour.perimeter())
     depth = 0.0 if pair.keyway is None else pair.keyway.depth
     least = pair.contour.radius_min()
@@ -76,7 +76,7 @@ def loaded_cam(pair: ContactPair, refinement: float = 1.0) -> LoadedBody:
 def two_scale_history(
     pair: ContactPair, bodies: CycleBodies, theta: Array, normal_force: Array
 ) -> ContactHistory:
-    """Contact at cam angles theta (n,) rad under normal forces (n,) N.
+    """Two-scale contact at cam angles (n,) rad under normal forces (n,) N.
 
     Pressure and stress from the finite-element patch with the gap of the exact contour; stress and
     bending of the real bodies from their correction fields. Where the half-width exceeds a tenth of

@@ -29,7 +29,7 @@ _COMPLEMENTARITY = 1e-9
 
 @dataclass(frozen=True, eq=False)
 class Complementarity:
-    """Solution of `count` contact problems.
+    """Solution of `count` contact problems: pressures, approach, residuals.
 
     pressure (count, n) Pa, gap (count, n) weighted, approach (count,), tilt (count,), zero
     without a prescribed moment; equilibrium (count,) |m.p - F| / F, of a moment |l.p - M| over
@@ -59,7 +59,7 @@ def solve(
     levers: ArrayLike | None = None,
     moment: ArrayLike = 0.0,
 ) -> Complementarity:
-    """Contact pressures under prescribed forces and moments, by primal-dual active sets.
+    """Contact pressures under prescribed forces and moments, by a primal-dual active set method.
 
     Parameters
     ----------

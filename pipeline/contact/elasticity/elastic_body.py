@@ -1,4 +1,4 @@
-"""Elastic body in plane strain: stiffness assembled and factorised once for many loads."""
+"""Elastic body in plane strain: stiffness matrix, assembled and factorised once for many loads."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def lame_parameters(modulus: float, poisson: float) -> tuple[float, float]:
 
 @dataclass(frozen=True)
 class Elastic:
-    """Young's modulus (Pa) and Poisson ratio."""
+    """Elastic constants: Young's modulus (Pa), Poisson ratio."""
 
     modulus: float
     poisson: float
@@ -184,7 +184,7 @@ class ElasticBody:
         return solution[self.dofs]
 
     def condensed(self, nodes: ArrayLike) -> CondensedBody:
-        """The body condensed to some of its nodes."""
+        """Static condensation of the body to some of its nodes."""
         return CondensedBody(self, nodes)
 
     def surface_forces(self, displacement: Array, boundary: str) -> Array:
@@ -206,7 +206,7 @@ class ElasticBody:
 
 
 class CondensedBody:
-    """A body condensed to a few nodes, where its loads act and its displacements are evaluated.
+    """Body condensed to the few nodes that are loaded or evaluated.
 
     Parameters
     ----------
@@ -266,7 +266,7 @@ class CondensedBody:
 
 
 def elements_near(body: ElasticBody, point: ArrayLike, reach: float) -> NDArray[np.int64]:
-    """Numbers of the elements with a corner within `reach` (m) of a point (2,), m."""
+    """Indices of the elements with a corner within `reach` (m) of a point (2,), m."""
     corners = body.mesh.points[:, body.mesh.triangles[:3]]
     distance = np.hypot(*(corners - np.reshape(point, (2, 1, 1))))
     return np.flatnonzero((distance < reach).any(axis=0))

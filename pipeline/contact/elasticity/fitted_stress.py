@@ -1,4 +1,4 @@
-"""Stress about a place in an elastic body, fitted to the displacements of the nodes around it.
+"""Stress near a point of an elastic body, by Kolosov potentials fitted to nodal displacements.
 
 The displacements of quadratic elements are more accurate than the stresses of each element. They
 are fitted by polynomials that meet equilibrium and compatibility of plane strain without body
@@ -33,7 +33,7 @@ _UPDATES = 4  # of the middle of the fit
 
 @dataclass(frozen=True, eq=False)
 class FittedStress:
-    """Complex potentials about a place.
+    """Complex (Kolosov) potentials about a point, with stress and displacement.
 
     place (2,) m; reach, radius of the nodes of the fit, m; phi, psi (7,) coefficients of the powers
     of distance over reach, Pa.
@@ -56,7 +56,7 @@ class FittedStress:
 def fitted_stress(
     points: Array, displacement: Array, elastic: tuple[float, float], place: Array, reach: float
 ) -> FittedStress | None:
-    """Stress about a place; None where too few nodes are within reach.
+    """Potentials fitted about a point; None with too few nodes within reach.
 
     Parameters
     ----------
@@ -97,7 +97,7 @@ def greatest_fitted(
     measure: Callable[[Array], Array],
     start: Array,
 ) -> tuple[float, Array] | None:
-    """Maximum of a measure of the stress and its place (2,), m, near a start (2,), m.
+    """Maximum of a stress measure, and its point (2,), m, near a start (2,), m.
 
     The fit is repeated about its maximum; None where that leaves the nodes of the fit.
 

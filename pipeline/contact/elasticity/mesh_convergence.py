@@ -97,7 +97,7 @@ def converged(values: Sequence[float], ratio: float) -> Convergence:
 def converged_on_two(
     values: Sequence[float], ratio: float, observed: Sequence[Convergence]
 ) -> Convergence:
-    """Richardson extrapolation of two values by the order observed on three meshes elsewhere.
+    """Richardson extrapolation of two values with the order observed on three meshes elsewhere.
 
     The order is the least observed one, within its bounds; without one at every place the finer
     value is not extrapolated, and its bar is that of the least bound. The safety factor is 3; the

@@ -1,4 +1,4 @@
-"""Shear and von Mises stress of plane strain; maxima of fields at scattered points."""
+"""Stress measures of plane strain: shear, von Mises; maxima of fields at scattered points."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def von_mises(stress: ArrayLike, poisson: float) -> Array:
 
 
 def all_measures(stress: ArrayLike, poisson: float) -> tuple[Array, Array, Array]:
-    """In-plane shear, shear on any plane and von Mises stress (...) of one stress (3, ...)."""
+    """In-plane shear, shear on any plane and von Mises stress (...) of a stress (3, ...)."""
     middle, radius = _circle(stress)
     return (
         radius,
@@ -87,7 +87,7 @@ class PeakFinder:
     def where_likely(
         self, values_at: Callable[[Index], tuple[Array, ...]]
     ) -> tuple[tuple[Array, Array], ...]:
-        """As `__call__` of several fields, evaluated where their maxima may lie alone.
+        """Maxima of several fields, evaluated only near their likely places; see `__call__`.
 
         First on a twentieth of the points, then about the largest of those values.
 

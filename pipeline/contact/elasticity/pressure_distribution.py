@@ -139,7 +139,7 @@ class EllipticShapes:
 
 @dataclass(frozen=True, eq=False)
 class Ellipses:
-    """Peak pressure (Pa), centre (m) and half-width (m) of ellipses, arrays (count,)."""
+    """Elliptic pressures: peak (Pa), centre (m) and half-width (m), arrays (count,)."""
 
     p0: Array
     centre: Array
@@ -150,7 +150,7 @@ class Ellipses:
 
 
 def fitted_ellipses(shapes: PressureShapes | EllipticShapes, pressure: Array) -> Ellipses:
-    """Peak, centre and half-width of contact pressures (count, n).
+    """Peak, centre and half-width of ellipses fitted to contact pressures (count, n).
 
     The fitted ellipse has the second moment of the pressure, which sets the half-width, and its
     weighted mean over the middle half, which sets the peak. Integrals of a Galerkin pressure

@@ -12,7 +12,7 @@ from camwright.geometry.errors import InputError
 
 @dataclass(frozen=True)
 class SolidBar:
-    """A solid round bar with its resultant on the axis: Young's modulus, Pa, Poisson ratio."""
+    """Solid round bar loaded on its axis: Young's modulus, Pa, Poisson ratio."""
 
     modulus: float
     poisson: float
@@ -28,7 +28,7 @@ class SolidBar:
 
 @dataclass(frozen=True)
 class Bush(SolidBar):
-    """A hole, or a bush bonded into a rigid housing with a `wall` over its radius.
+    """Hole in a body, or bush of a `wall` over its radius, bonded into a rigid housing.
 
     wall None: the hole in an infinite body.
     """
@@ -49,7 +49,7 @@ def _elastic(field: str, modulus: float, poisson: float) -> None:
 
 
 def pin_compliance(count: int, pin: SolidBar) -> Array:
-    """Inward radial displacement over pressure, both per unit cos(n phi), radius 1; (count,), 1/Pa.
+    """Inward radial displacement of a pin of radius 1 per pressure cos(n phi), (count,), 1/Pa.
 
     The first harmonic is 0: its radial displacement is a rigid translation.
 
@@ -64,7 +64,7 @@ def pin_compliance(count: int, pin: SolidBar) -> Array:
 
 
 def bush_compliance(count: int, bush: Bush) -> Array:
-    """Outward radial displacement of the hole over pressure, as in `pin_compliance`."""
+    """Outward radial displacement of a hole of radius 1 per pressure cos(n phi), (count,), 1/Pa."""
     shear, kappa = _constants(bush)
     n = np.arange(2.0, count)
     if bush.wall is None:

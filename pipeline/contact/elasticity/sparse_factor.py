@@ -1,4 +1,4 @@
-"""Factorisation of sparse symmetric positive definite matrices.
+"""Cholesky factorisation of sparse symmetric positive definite matrices.
 
 By CHOLMOD (package cvxopt) or Pardiso (pypardiso) where installed, else by SuperLU (SciPy);
 ``CAMWRIGHT_SOLVER=scipy`` selects SuperLU. Solutions agree to round-off.
@@ -26,7 +26,7 @@ _AT_ONCE = 4  # right-hand sides of SuperLU that stay in the cache of the proces
 
 
 def back_end() -> str:
-    """Library of the factorisation: ``cholmod``, ``pardiso`` or ``scipy``."""
+    """Name of the factorisation library: ``cholmod``, ``pardiso`` or ``scipy``."""
     if os.environ.get("CAMWRIGHT_SOLVER") != "scipy":
         for name, module in (("cholmod", "cvxopt.cholmod"), ("pardiso", "pypardiso")):
             with suppress(ImportError):
@@ -36,7 +36,7 @@ def back_end() -> str:
 
 
 def factorised(matrix: scipy.sparse.sparray) -> Callable[[Array], Array]:
-    """Solver of a sparse symmetric positive definite matrix for right-hand sides (n, k)."""
+    """Solver of a factorised matrix for right-hand sides (n, k)."""
     chosen = back_end()
     if chosen == "cholmod":
         return _by_cholmod(scipy.sparse.csc_array(matrix))
@@ -102,7 +102,7 @@ def _by_pardiso(matrix: scipy.sparse.sparray) -> Callable[[Array], Array]:
 
 
 class Condensed:
-    """A matrix condensed to some of its unknowns, the only ones with loads.
+    """Schur complement of a matrix on its loaded unknowns.
 
     The chosen unknowns are eliminated last: the last rows of the triangular factors are the
     factors of the condensed matrix, and each solution costs dense algebra of k unknowns.

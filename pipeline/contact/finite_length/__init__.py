@@ -1,4 +1,4 @@
-"""Contact of two bodies of finite length: ends, crown, tilt.
+"""Line contact of finite length: ends, crown, tilt.
 
 In the order of the calculation:
 

@@ -1,4 +1,4 @@
-"""Axial shape of two bodies of finite length: ends, crown, distance along the contact line.
+"""Axial profile of two bodies of finite length: ends, crown, drop along the contact line.
 
 y is the axial coordinate from the middle of both bodies.
 """
@@ -33,7 +33,7 @@ _ISO_SHORT, _ISO_LONG, _ISO_LENGTH = 0.00035, 0.0005, 2.5
 
 @dataclass(frozen=True)
 class FiniteBody:
-    """Material, length (m; infinite: no ends), ends; depth (m) below which the body is held."""
+    """Body of finite length: material, length (m; infinite: no ends), ends, depth (m)."""
 
     material: Elastic
     length: float
@@ -54,7 +54,7 @@ class FiniteBody:
 
 
 class Crown(Protocol):
-    """Drop of the surface towards its ends."""
+    """Interface of a crown: drop of the surface towards its ends."""
 
     def __hash__(self) -> int: ...
 
@@ -65,7 +65,7 @@ class Crown(Protocol):
 
 @dataclass(frozen=True)
 class Straight:
-    """No crown."""
+    """Crown of zero drop."""
 
     def drop(self, y: Array) -> Array:
         """Zero drop (...)."""
@@ -74,7 +74,7 @@ class Straight:
 
 @dataclass(frozen=True)
 class CircularCrown:
-    """Arc of a radius, m."""
+    """Crown of a constant radius along the axis, m."""
 
     radius: float
 
@@ -97,7 +97,7 @@ class CircularCrown:
 
 @dataclass(frozen=True)
 class LogarithmicCrown:
-    """Drop scale ln(1/(1 - share t^2)), t = (2|y| - straight)/(length - straight) >= 0.
+    """Crown with drop scale ln(1/(1 - share t^2)), t = (2|y| - straight)/(length - straight).
 
     scale, length and straight part in m; a share of 1 drops without bound at the end.
     """
@@ -127,7 +127,7 @@ class LogarithmicCrown:
 
 @dataclass(frozen=True, eq=False)
 class TabulatedCrown:
-    """Drop at axial coordinates, both (k,), m, ascending, linear between them.
+    """Crown by a table: drop at ascending axial coordinates, both (k,), m, linear between.
 
     A table that begins at y = 0 holds for both sides.
     """
@@ -187,7 +187,7 @@ class TabulatedCrown:
 
 
 def lundberg(line_load: float, length: float, modulus: float) -> LogarithmicCrown:
-    """Crown of uniform pressure of a line load (N/m) over a length (m); E* Pa.
+    """Lundberg's crown: uniform pressure at a line load (N/m) over a length (m); E* in Pa.
 
     References
     ----------
@@ -210,7 +210,7 @@ def johns_gohar(
 
 
 def iso16281(diameter: float, length: float) -> LogarithmicCrown:
-    """Crown of a roller of a diameter and an effective length, m.
+    """Crown of ISO 16281 for a roller of a diameter and an effective length, m.
 
     References
     ----------
@@ -224,7 +224,7 @@ def iso16281(diameter: float, length: float) -> LogarithmicCrown:
 
 @dataclass(frozen=True)
 class CrownPlace:
-    """Cylinders that a crown of a case refers to.
+    """Contact for which a crown of a case is laid out: length, curvature, E*, roller diameter.
 
     length: of the contact, m; curvature: at which its half-width counts, 1/m; modulus: E*, Pa;
     diameter: of the roller, m, None without one.
@@ -241,7 +241,7 @@ BodyCrown = CircularCrown | LogarithmicCrown | TabulatedCrown
 
 
 def crown_of(shape: AxialCrown, place: CrownPlace, drops: TabulatedCrown | None) -> BodyCrown:
-    """Crown that a case states; `drops` is that of its table.
+    """Crown as a case states it; `drops`: the one of its table.
 
     Raises
     ------
@@ -269,7 +269,7 @@ def crown_of(shape: AxialCrown, place: CrownPlace, drops: TabulatedCrown | None)
 
 @dataclass(frozen=True)
 class SummedCrown:
-    """Crowns of two bodies, each with the place of its middle, m, from that of the contact.
+    """Sum of the crowns of two bodies, each shifted by its middle from that of the contact, m.
 
     Crowns beside the middle count on both sides by their drop on one, -1 or 1, less the slope in
     the middle, to which the bodies align.
@@ -294,7 +294,7 @@ class SummedCrown:
 
 @dataclass(frozen=True, eq=False)
 class FinitePair:
-    """Two bodies of finite length, their curvature 1/R1 + 1/R2 (1/m) and the crown of the gap."""
+    """Two bodies of finite length with curvature 1/R1 + 1/R2 (1/m) and crown of the gap."""
 
     bodies: tuple[FiniteBody, FiniteBody]
     curvature: float
@@ -316,7 +316,7 @@ class FinitePair:
 
     @property
     def has_singular_end(self) -> bool:
-        """Whether a corner ends the contact, so that the pressure there depends on the mesh."""
+        """Whether a sharp corner ends the contact: its pressure then depends on the mesh."""
         return not any(
             body.end.kind == "radius" and body.flat_length == self.contact_length
             for body in self.bodies

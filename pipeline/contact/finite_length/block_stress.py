@@ -1,4 +1,4 @@
-"""Displacement and stress of a block at the corners of its elements, under known pressures."""
+"""Displacement and stress of an elastic block under known contact pressures, at element corners."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _SHEARS = ((0, 1), (1, 2), (0, 2))  # XY, YZ, XZ
 
 @dataclass(frozen=True, eq=False)
 class BlockField:
-    """Fields of the half x >= 0 of a block: z from its top, into it.
+    """Displacement and stress of the half x >= 0 of a block; z from its top into the depth.
 
     points (n, 3), m; cells (m, 8) of points, in the order of VTK; displacement (n, 3), m; stress
     (n, 6), Pa, XX, YY, ZZ, XY, YZ, XZ, of the elements at a corner their mean; pressure (m,), Pa,
@@ -49,7 +49,7 @@ class BlockField:
 
 
 def block_field(body: FiniteBody, contact: LengthContact) -> BlockField:
-    """Fields of a body under the pressure of the first contact, its base held."""
+    """Fields of a block, its base held, under the pressure of the first contact."""
     grid, material = block_grid(contact.cells, body), body.material
     pressure = contact.pressure[0]
     middle = len(pressure) // 2

@@ -1,4 +1,4 @@
-"""Compliance of pressure cells on an elastic block by finite elements.
+"""Compliance of an elastic block to contact pressure cells, by quadratic bricks.
 
 Hexahedra of 20 nodes on a tensor grid, the base held, constant pressure on the cells of the top.
 A quarter is modelled: loads are symmetric in x, and in y symmetric or antisymmetric. The nodes are
@@ -30,7 +30,7 @@ _ORDER = 5
 
 @dataclass(frozen=True, eq=False)
 class BrickGrid:
-    """Edges of the elements of a quarter block, m: x, y from its middle, z from the top, from 0.
+    """Element edges of a quarter block, m: x, y from its middle, z from the top.
 
     The pressure cells are the first `cells` = (across, along) elements of the top.
     """
@@ -51,14 +51,14 @@ class BrickGrid:
 
     @property
     def unknowns(self) -> int:
-        """Unknowns of the quarter without its supports."""
+        """Number of unknowns of the quarter, supports excluded."""
         section, count = _Section(self), self.y.size
         return 3 * (section.planar * count + section.between * (count - 1))
 
 
 @dataclass(frozen=True, eq=False)
 class QuarterCompliance:
-    """Displacement integrated over each cell per pressure on each and on its images, (n, n), m3.
+    """Cell displacements, integrated, per pressure on each cell and its images, (n, n), m3.
 
     Times Young's modulus; of pressures symmetric and antisymmetric in y. Cells run in x first.
     """
@@ -84,7 +84,7 @@ class QuarterCompliance:
 
 
 def condensed(grid: BrickGrid, poisson: float, *, free_ends: bool = True) -> QuarterCompliance:
-    """Compliance of the pressure cells of a block.
+    """Compliance matrix of the pressure cells of a block.
 
     Parameters
     ----------
@@ -400,7 +400,7 @@ def _reference() -> _Reference:
 
 
 def shape_slopes(points: Array) -> tuple[Index, Array]:
-    """Places (20, 3) of the nodes of an element in half edges, slopes of their shape functions.
+    """Node positions (20, 3) of a brick in half edges, and slopes of its shape functions.
 
     Slopes (n, 3, 20) along the axes of the unit cube at points (n, 3) of it.
     """

@@ -1,4 +1,4 @@
-"""Cells of a crowned contact on the part of the line that touches, by a strip foundation.
+"""Extent of a crowned contact along its line by a strip foundation, and cells on it.
 
 Light loads touch a short part of a crowned line, and a moment shifts it. The estimate places the
 cells on which half-spaces are solved; it enters no result.
@@ -38,7 +38,7 @@ _END_ZONE = 0.05
 
 
 class ContactSpan(NamedTuple):
-    """Ends of the contact along the line, m; its greatest line load over the mean of the line."""
+    """Ends of the contact along the line, m; greatest over mean line load."""
 
     start: float
     end: float
@@ -46,7 +46,7 @@ class ContactSpan(NamedTuple):
 
 
 def contact_cells(pair: FinitePair, force: float, moment: float, sizes: CellSizes) -> PressureCells:
-    """Cells of a contact under a force, N, and a moment, N m, where the bodies may touch.
+    """Pressure cells on the part of the line in contact under a force, N, and a moment, N m.
 
     The number of cells along the line does not depend on the load; their edges follow the contact.
     """
@@ -82,7 +82,7 @@ def _mapped(edges: Array, low: float, high: float, zone: float) -> Array:
 
 
 def contact_span(pair: FinitePair, force: float, moment: float) -> ContactSpan:
-    """Extent of a contact under a force, N, and a moment about y = 0, N m.
+    """Extent of the contact under a force, N, and a moment about y = 0, N m.
 
     The foundation has the stiffness of a line contact as long as the strips that touch.
 

@@ -1,4 +1,4 @@
-"""Axial pressure of one pair of bodies by half-spaces, interpolated in a table kept on disk.
+"""Axial pressure factors of a pair of bodies by half-spaces, interpolated in a cached table.
 
 The pressure over the peak pressure of plane strain depends on the half-width and on the moment over
 force and length; with a crown or a rounded end on the line load, too. The centre line is tabulated,
@@ -82,7 +82,7 @@ _SAME_CELLS, _OWN_CELLS = _Ladder(9, 1, 9), _Ladder(5, 1, 3, 5, 8, 12)
 
 @dataclass(frozen=True, eq=False)
 class FactorTable:
-    """Factors of a pair of bodies over half-width, moment and, where it matters, line load.
+    """Axial pressure factors of a pair over half-width, moment and, for a crown, line load.
 
     mean_length (m) of the means at the ends; the curvature of the pair is not used.
     """
@@ -149,7 +149,7 @@ class FactorTable:
         return interpolated[:, :ends], np.maximum(interpolated[:, ends:], 0.0)
 
     def of_one(self, curvature: float, force: float) -> tuple[Array, Array]:
-        """As `axial_pressure` of one contact without a moment; solved where it has 16 nodes."""
+        """Axial pressure of one contact without a moment; solved directly where it has 16 nodes."""
         if not self._depends_on_load:
             return self.axial_pressure(curvature, force)
         pair = replace(self.pair, curvature=curvature)
@@ -158,7 +158,7 @@ class FactorTable:
         return edges, line / p0
 
     def edges_of_line(self, curvature: float, force: float) -> Array:
-        """Edges (m + 1,), m, of cells along the whole line at a curvature, 1/m, and force, N."""
+        """Cell edges (m + 1,), m, along the whole line at a curvature, 1/m, and force, N."""
         half_width, _ = self._hertz(np.array([curvature]), np.array([force]))
         pair = replace(self.pair, curvature=curvature)
         return pressure_cells.edges_along(pair, float(half_width[0]), cycle_sizes(pair))
@@ -390,7 +390,7 @@ class _Node:
 
 
 def factor_table(pair: FinitePair, mean_length: float) -> FactorTable:
-    """Table of a pair of bodies; nodes come from the disk cache, or are computed where needed.
+    """Table of a pair of bodies; nodes come from the disk cache or are computed on demand.
 
     Parameters
     ----------
@@ -404,7 +404,7 @@ def factor_table(pair: FinitePair, mean_length: float) -> FactorTable:
 
 
 def fill_together(tables: Sequence[FactorTable]) -> None:
-    """Let tables of pairs that differ in lengths alone compute a node one after the other.
+    """Let tables of pairs that differ only in length share the computation of a node.
 
     Their cells are the same there: so is what does not depend on the lengths, see `half_space`.
     """

@@ -35,7 +35,7 @@ _TINY = np.finfo(float).tiny  # of a logarithm whose factor is zero
 
 
 def mirror_factor(poisson: float, likeness: ArrayLike = 1.0) -> Array:
-    """Factor (...) of the mirrored pressure at a free end.
+    """Factor (...) on the mirrored pressure at a free end.
 
     Parameters
     ----------
@@ -51,7 +51,7 @@ def mirror_factor(poisson: float, likeness: ArrayLike = 1.0) -> Array:
 
 
 def half_space_compliance(cells: PressureCells, bodies: tuple[FiniteBody, FiniteBody]) -> Array:
-    """Displacement integrated over each cell per pressure on each, of both bodies (n, n), m3/Pa.
+    """Cell displacements of both bodies, integrated, per pressure on each cell (n, n), m3/Pa.
 
     Symmetric; of the half x > 0 under pressures symmetric about x = 0.
     """
@@ -147,7 +147,7 @@ def _image(cells: PressureCells, shift: float, poisson: float) -> _Image:
 
 
 def shared_compliance(cells: PressureCells, bodies: tuple[FiniteBody, FiniteBody]) -> Array:
-    """As `half_space_compliance`, computed once for the last few cells and bodies."""
+    """As `half_space_compliance`, cached for the last few cells and bodies."""
     return _of_edges(cells.x.tobytes(), cells.y.tobytes(), bodies)
 
 
@@ -164,7 +164,7 @@ def _between_cells(x: bytes, y: bytes) -> Array:
 
 
 def influence(cells: PressureCells, shift: float, *, mirrored: bool) -> Array:
-    """Integral of 1/r over each cell and each loaded cell, m3.
+    """Influence matrix: integral of 1/r over each cell and each loaded cell, m3.
 
     (m, m, k, k): displaced and loaded cell along the line, displaced and loaded cell across. The
     loads of x < 0 are included.

@@ -1,4 +1,4 @@
-"""Axial pressure by finite elements at chosen angles of a cycle, beside the half-spaces."""
+"""Axial pressure by finite elements at chosen angles of a cycle, to certify the half-spaces."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ _WINDOWS = (SIZES.window, 5.0, 10.0)
 
 @dataclass(frozen=True, eq=False)
 class LengthLoad:
-    """Contact of bodies with ends at one cam angle, rad: force, N; moment, N m, about the middle.
+    """Contact of finite length at one cam angle, rad: force, N; moment about the middle, N m.
 
     The curvature of the pair is that at the angle. factor, centre: signed pressure and pressure in
     the middle by the half-spaces of the cycle, over plane strain.
@@ -50,7 +50,7 @@ class LengthLoad:
 
 @dataclass(frozen=True, eq=False)
 class LengthPoint:
-    """One contact by both tiers."""
+    """Contact at one cam angle by half-spaces and by finite elements."""
 
     load: LengthLoad
     half_space: TierResult
@@ -64,18 +64,18 @@ class LengthPoint:
 
     @property
     def ratio(self) -> float:
-        """Signed pressure of the finite elements over that of the half-spaces of the cycle."""
+        """Stated pressure, finite elements over the half-spaces of the cycle."""
         return self.finite_elements.signed.values[-1] / self.load.factor
 
     @property
     def centre_ratio(self) -> float:
-        """The same of the pressure in the middle."""
+        """Pressure in the middle, finite elements over the half-spaces of the cycle."""
         return float(self.finite_elements.factors.centre[0]) / self.load.centre
 
 
 @dataclass(frozen=True)
 class EndCorrection:
-    """Finite elements over the half-spaces of the cycle, and relative error bars by refinement.
+    """Ratio of finite elements to the half-spaces of the cycle, with relative error bars.
 
     Greatest ratios and bars of the certified angles: of the signed pressure, of the middle.
     """
@@ -88,7 +88,7 @@ class EndCorrection:
 
 @dataclass(frozen=True, eq=False)
 class LengthCertificate:
-    """Points by both tiers, the first the most critical; cells per half-width.
+    """Points by half-spaces and finite elements, the most critical first; cells per half-width.
 
     refused: why finite elements cannot solve the contact, without points then.
     """
@@ -122,7 +122,7 @@ class _Mesh:
 
 @dataclass(frozen=True, eq=False)
 class BegunEnds:
-    """Certificate whose blocks are being condensed; see `begun_ends`.
+    """Certificate whose blocks are being condensed in worker processes; see `begun_ends`.
 
     fresh: number of blocks that are not in the disk cache.
     """
@@ -179,7 +179,7 @@ def begun_ends(
     elements: float = SIZES.per_half_width,
     workers: Crew = ALONE,
 ) -> BegunEnds:
-    """Certificate of contacts, its blocks handed to worker processes.
+    """Certificate of contacts with its blocks submitted to worker processes.
 
     Bodies are condensed once for all loads of about one half-width.
 

@@ -15,12 +15,12 @@ from camwright.pipeline.contact.finite_length.pressure_cells import PressureCell
 
 
 class WideContactError(ContactError):
-    """The contact reaches the last cells across it."""
+    """Contact that reaches the last cells across it."""
 
 
 @dataclass(frozen=True, eq=False)
 class LengthContact:
-    """Contact of `count` problems: pressure (count, m, k), Pa, on the cells; approach (count,), m.
+    """Contact of `count` problems: pressure (count, m, k), Pa, on cells; approach (count,), m.
 
     tilt (count,), rad, closes the gap at y > 0; force (count,), N, and moment (count,), N m, of the
     pressures about the middle; equilibrium and complementarity (count,), relative residuals.
@@ -42,7 +42,7 @@ class LengthContact:
 
     @property
     def centre_line(self) -> Array:
-        """Pressure (count, m), Pa, at x = 0: the parabola of the two cells beside it."""
+        """Pressure (count, m), Pa, at x = 0, by a parabola through the two cells beside it."""
         first, second = self.pressure[:, :, 0], self.pressure[:, :, 1]
         return np.where(second > 0, (7.0 * first - second) / 6.0, first)
 
@@ -73,7 +73,7 @@ class LengthContact:
 
 
 def at_middle(edges: Array, line: Array) -> Array:
-    """Pressures (count,) at y = 0, interpolated between the middles of cells.
+    """Pressures (count,) at y = 0, interpolated between cell middles.
 
     edges (count, m + 1), m; line (count, m).
     """
@@ -85,7 +85,7 @@ def at_middle(edges: Array, line: Array) -> Array:
 
 
 def means_at_ends(edges: Array, line: Array, length: float) -> tuple[Array, Array]:
-    """Mean pressures (count, 2), Pa, over the last `length`, m, of contact, and its length, m.
+    """Mean pressures (count, 2), Pa, over the last `length`, m, of each end; contact length, m.
 
     At small and large y, of pressures (count, m) on cells of edges (count, m + 1), m, from the last
     cell in contact; of the whole contact where that is shorter.
@@ -110,7 +110,7 @@ def means_at_ends(edges: Array, line: Array, length: float) -> tuple[Array, Arra
 
 
 class SignedPressure(NamedTuple):
-    """Signed pressure (count,), whether it is the mean at a corner, pressure in the middle."""
+    """Pressure stated in a sign-off (count,), whether a corner mean; pressure in the middle."""
 
     value: Array
     at_corner: NDArray[np.bool_]
@@ -120,7 +120,7 @@ class SignedPressure(NamedTuple):
 def signed_pressure(
     edges: Array, line: Array, flat: float, length: float, *, has_corner: bool
 ) -> SignedPressure:
-    """Signed pressure of lines (count, m) on cells of edges (count, m + 1), m.
+    """Pressure that a sign-off states (count,): greatest on the line, or a mean at a sharp corner.
 
     Where the greatest pressure is at a corner, the mean at the ends or, if greater, the greatest
     pressure between them; else the greatest one.
@@ -145,7 +145,7 @@ def signed_pressure(
 
 
 def rebinned(edges: Array, line: Array, common: Array) -> Array:
-    """Mean pressures (count, k) on the cells of common edges (k + 1,), m; their force remains.
+    """Mean pressures (count, k) on the cells of common edges (k + 1,), m; the force is conserved.
 
     edges (count, m + 1), m; line (count, m).
     """
@@ -164,7 +164,7 @@ def solve(
     moment: ArrayLike | None = None,
     guess: ArrayLike | None = None,
 ) -> LengthContact:
-    """Pressures of contacts that differ in gap, force, and tilt or moment.
+    """Contact pressures of problems that differ in gap, force, and tilt or moment.
 
     Parameters
     ----------

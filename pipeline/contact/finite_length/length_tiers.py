@@ -1,4 +1,4 @@
-"""Axial pressure of two bodies of finite length over plane strain, by two tiers with error bars.
+"""Axial pressure of two bodies over plane strain by half-spaces and by finite elements.
 
 `half_space`: half-spaces with mirrored ends, for every angle of a cycle. `finite_elements`: blocks
 of the length and depth of the bodies, their bases held; their compliance depends neither on
@@ -76,7 +76,7 @@ _CROWNED_LARGEST, _CROWNED_SHARE = 2e-4, 1.0 / 18.0
 
 @dataclass(frozen=True, eq=False)
 class AxialFactors:
-    """Pressures of `count` contacts over the peak pressure of plane strain at the mean line load.
+    """Pressures of `count` contacts over the plane-strain peak pressure at the mean line load.
 
     centre (count,); greatest (count,) of the centre line; end_means (count, 2) over the last
     `mean_length` (m) of contact at y < 0 and y > 0.
@@ -107,7 +107,7 @@ class AxialFactors:
 
 @dataclass(frozen=True, eq=False)
 class TierResult:
-    """One contact at one tier: on the cells of both tiers; finest factors, their convergence.
+    """Contact by one tier: pressures, factors on the finest cells, mesh convergence.
 
     signed: pressure that is signed, over that of plane strain; at_corner: whether that is a mean.
     coarser: the contact on the next coarser of three meshes.
@@ -147,13 +147,13 @@ def cycle_sizes(pair: FinitePair) -> CellSizes:
 
 
 def on_ladder(length: float) -> float:
-    """Length, m, rounded up to the ladder of half-widths and depths."""
+    """Length, m, rounded up to a step of the geometric ladder of half-widths and depths."""
     step = np.ceil(np.log(length / _LADDER_START) / np.log(_LADDER) - 1e-9)
     return float(_LADDER_START * _LADDER**step)
 
 
 def plane_strain(pair: FinitePair, force: float) -> tuple[float, float]:
-    """Half-width, m, and peak pressure, Pa, at the mean line load of a force, N."""
+    """Plane-strain half-width, m, and peak pressure, Pa, at the mean line load of a force, N."""
     half_width, p0 = hertz.line_contact(
         force / pair.contact_length, 1.0 / pair.curvature, pair.contact_modulus
     )
@@ -171,7 +171,7 @@ def both_tiers(
     mesh_half_width: float | None = None,
     condensed: Condensed | None = None,
 ) -> tuple[TierResult, TierResult]:
-    """One contact by half-spaces and by finite elements.
+    """Contact of one pair by half-spaces and by finite elements.
 
     Parameters
     ----------
@@ -301,13 +301,13 @@ def _converged(values: Array, halves: Array | None) -> Convergence:
 
 
 def with_depths_on_ladder(pair: FinitePair) -> FinitePair:
-    """The pair with the depths of its blocks rounded up to the ladder."""
+    """Pair with the depths of its blocks rounded up to the ladder."""
     first, second = (replace(body, depth=on_ladder(body.depth)) for body in pair.bodies)
     return replace(pair, bodies=(first, second))
 
 
 def meshes_of(pair: FinitePair, half_width: float, sizes: CellSizes) -> list[PressureCells]:
-    """Cells of both tiers, coarse to fine; finite elements have all but the last."""
+    """Cells of both tiers, coarse to fine; finite elements use all but the finest."""
     return [pressure_cells(pair, on_ladder(half_width), sizes.coarser(each)) for each in _MESHES]
 
 
@@ -319,7 +319,7 @@ def half_space_factors(
     *,
     mean_length: float = MEAN_LENGTH,
 ) -> AxialFactors:
-    """Factors of many contacts of the same bodies by half-spaces, at every angle of a cycle.
+    """Axial factors by half-spaces of many contacts of the same bodies, as over a cycle.
 
     Parameters
     ----------
@@ -372,7 +372,7 @@ def block_compliance(
     bodies: tuple[FiniteBody, FiniteBody],
     condensed: Condensed | None = None,
 ) -> tuple[Array, int]:
-    """Compliance (n, n), m3/Pa, of the cells on both blocks, and their unknowns.
+    """Compliance (n, n), m3/Pa, of the cells on both blocks; number of unknowns.
 
     condensed : callable   compliance of a block; default: `condensed_block`
     """
@@ -387,7 +387,7 @@ def block_compliance(
 
 
 def block_grid(cells: PressureCells, body: FiniteBody) -> BrickGrid:
-    """Elements of a quarter of a block.
+    """Element grid of a quarter of a block.
 
     Its half-width is its depth, or twice the half-width of the cells where that is larger.
 
@@ -415,13 +415,13 @@ def block_grid(cells: PressureCells, body: FiniteBody) -> BrickGrid:
 
 
 def condensed_block(grid: BrickGrid, poisson: float) -> QuarterCompliance:
-    """Compliance of a block from memory, from the disk cache, or computed."""
+    """Compliance of a block, from memory, from the disk cache, or computed."""
     axes = grid.x.tobytes(), grid.y.tobytes(), grid.z.tobytes()
     return condensed_block_of(*axes, grid.cells, poisson)
 
 
 def is_kept(grid: BrickGrid, poisson: float) -> bool:
-    """Whether the compliance of a block is in the disk cache."""
+    """Whether the disk cache holds the compliance of a block."""
     return disk_cache.holds(_KEPT_AS, _inputs(grid, poisson), _MODULES)
 
 
@@ -429,6 +429,7 @@ def is_kept(grid: BrickGrid, poisson: float) -> bool:
 def condensed_block_of(
     x: bytes, y: bytes, z: bytes, cells: tuple[int, int], poisson: float
 ) -> QuarterCompliance:
+    """Compliance of a block by the bytes of its grid, which are hashable; see `condensed_block`."""
     grid = BrickGrid(np.frombuffer(x), np.frombuffer(y), np.frombuffer(z), cells)
 
     def compute() -> dict[str, Array]:

@@ -1,4 +1,4 @@
-"""Rectangular cells of constant contact pressure: uniform across the contact, finer at its ends.
+"""Rectangular cells of constant contact pressure: uniform across, graded along the contact.
 
 The pressure is symmetric about x = 0, so that the cells of x > 0 are enough.
 """
@@ -25,7 +25,7 @@ _PER_PEAK, _RESOLVED, _REACH, _NARROWEST = 0.5, 3.0, 7.0, 2e-3
 
 @dataclass(frozen=True)
 class CellSizes:
-    """Cells per half-width; size at the ends, m, of `uniform` cells, and growth from there.
+    """Grading of cells: number per half-width, size at the ends, growth, greatest size, m.
 
     The largest size is that in m or, if larger, the share of the length of contact. The cells reach
     `window` half-widths across: at a chamfer the contact is twice as wide as in the middle.
@@ -47,7 +47,7 @@ class CellSizes:
             raise InputError("growth", self.growth, ">= 1")
 
     def coarser(self, ratio: float) -> CellSizes:
-        """The same grading with cells larger by a ratio."""
+        """The grading with cells larger by a ratio."""
         return replace(
             self,
             per_half_width=self.per_half_width / ratio,
@@ -60,7 +60,7 @@ class CellSizes:
 
 @dataclass(frozen=True, eq=False)
 class PressureCells:
-    """Edges of the cells, m: x (k + 1,) from 0, y (m + 1,) ascending and symmetric about 0.
+    """Cell edges, m: x (k + 1,) from 0, y (m + 1,) ascending, symmetric about 0.
 
     Values of cells are (..., m k), the x running faster.
     """
@@ -102,7 +102,7 @@ class PressureCells:
 
 
 def pressure_cells(pair: FinitePair, half_width: float, sizes: CellSizes) -> PressureCells:
-    """Cells of a contact of a half-width, m, by Hertz.
+    """Cells of a contact of a Hertz half-width, m.
 
     Beyond the flat they cover a rounded end as far as it may touch, and no chamfer.
     """
@@ -140,7 +140,7 @@ def edges_along(pair: FinitePair, half_width: float, sizes: CellSizes) -> Array:
 
 
 def rounded_peak(radius: float, half_width: float, curvature: float) -> float:
-    """Width, m, of the pressure peak at a rounded end of a radius, m; half-width m, curvature 1/m.
+    """Width, m, of the pressure peak at a rounded end; radius, half-width m, curvature 1/m.
 
     Over it the drop of the arc is the difference of the indentation of a half-space under the sharp
     end of a line contact, which grows with the root of the distance.
@@ -191,7 +191,7 @@ def _steps(length: float, first: float, count: int, largest: float) -> Array:
 
 
 def graded(length: float, first: float, growth: float, largest: float) -> Array:
-    """Edges (k,) from 0 to `length`, their distances growing from `first` to `largest` at most."""
+    """Edges (k,) from 0 to `length`, steps growing geometrically from `first` to `largest`."""
     if first >= length:
         return np.array([0.0, length])
     step, ends = first, [0.0, first]

@@ -1,4 +1,4 @@
-"""Stress below a contact of finite length, from its pressures on a half-space.
+"""Stress below a contact of finite length, by its pressures on a half-space.
 
 Every cell is a rectangular patch of constant pressure. The half-space has no end: below the end of
 contact its stress holds for a body that reaches beyond it.
@@ -22,7 +22,7 @@ _ON_EDGE = 1e-9
 
 @dataclass(frozen=True)
 class StressPeak:
-    """Greatest von Mises and shear stress below a place on the centre line, Pa, and depths, m."""
+    """Greatest von Mises and shear stress below a point of the centre line, Pa; depths, m."""
 
     von_mises: float
     von_mises_depth: float
@@ -32,7 +32,7 @@ class StressPeak:
 
 @dataclass(frozen=True)
 class SubsurfaceStress:
-    """Peaks below the middle and below the last stretch of contact at y < 0 and y > 0.
+    """Stress peaks below the middle of the contact and below both of its ends.
 
     At a corner, where the stress near the surface grows with the mesh as the pressure does, of the
     mean over the stretch; else of the greatest stress below it.
@@ -51,7 +51,7 @@ def subsurface_stress(
     *,
     has_corner: bool,
 ) -> SubsurfaceStress:
-    """Peaks of the first contact.
+    """Stress peaks below the middle and the ends of the first contact.
 
     Parameters
     ----------
