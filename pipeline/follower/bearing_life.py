@@ -1,4 +1,4 @@
-"""Life of a roller bearing: lubrication, contamination, reliability, grease."""
+"""Rating life of a roller bearing: lubrication, contamination, reliability, grease."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ _SLIM = 35.0 / 108.0  # power of the roller diameter: 29/27 - 3/4
 
 
 def rating_bound(outer_diameter: Value, width: Value) -> Value:
-    """Dynamic rating C that no rolling bearing of a size exceeds (...), N; lengths in m.
+    """Upper bound of the dynamic rating C of any bearing of a size (...), N; lengths in m.
 
     b_m f_c L^(7/9) Z^(3/4) D_w^(29/27) of a full complement of Z = pi (D - D_w)/D_w rollers as long
     as the bearing, of the diameter D_w with the greatest rating, times 1.5; ball bearings, with
@@ -58,7 +58,7 @@ def rating_bound(outer_diameter: Value, width: Value) -> Value:
 
 
 def static_rating_bound(outer_diameter: Value, width: Value) -> Value:
-    """Static rating C0 that no rolling bearing of a size exceeds (...), N; lengths in m.
+    """Upper bound of the static rating C0 of any bearing of a size (...), N; lengths in m.
 
     44 (1 - D_w/D_pw) Z L D_w < 44 pi D L of a full complement of rollers, times 1.5.
 
@@ -75,7 +75,7 @@ _FAST = 1000.0  # rpm, from which the second line of the rated viscosity holds
 
 
 def viscosity_line(speed: float) -> tuple[float, float]:
-    """Factor and power of the speed in `rated_viscosity` at a speed, rpm."""
+    """Factor and exponent of the speed in `rated_viscosity`, at a speed in rpm."""
     return _VISCOSITY_LINES[speed >= _FAST]
 
 
@@ -93,7 +93,7 @@ def rated_viscosity(speed: Values, pitch_diameter: float) -> Values:
 
 
 def contamination_factor(cleanliness: Cleanliness, pitch_diameter: float) -> float:
-    """Contamination factor e_C of a class of cleanliness; pitch diameter of the balls in m."""
+    """Contamination factor e_C of a cleanliness class; pitch diameter of the balls in m."""
     small, large = CONTAMINATION[cleanliness]
     return large if pitch_diameter >= _LARGE else small
 
@@ -147,7 +147,7 @@ def life_modification(viscosity_ratio: Values, cleanliness_ratio: Values) -> Val
 def life_used(
     force: Values, dynamic_rating: Value, cleanliness_load: Value, viscosity_ratio: Values
 ) -> Values:
-    """(P/C)^3/a_ISO (...): share of a million revolutions used per revolution, times 1e6.
+    """(P/C)^3/a_ISO (...): fraction of life per million revolutions.
 
     Parameters
     ----------
@@ -163,7 +163,7 @@ def life_used(
 def grease_life(
     speed: Array, outer_diameter: Value, load_share: Array, temperature: float
 ) -> Array:
-    """Estimated mean life (...) of the grease in a sealed ball bearing whose outer ring turns, s.
+    """Estimated mean life (...) of grease in a sealed ball bearing with rotating outer ring, s.
 
     NaN outside the range of the estimate: n D above 500 000 mm/min, P above 0.2 C, above 120 degC.
     Below 125 000 mm/min, 0.05 C and 50 degC it is constant. The speed factor has the outer diameter
@@ -211,7 +211,7 @@ def grease_load_share(
     *,
     unbounded: bool = False,
 ) -> Values:
-    """Greatest P/C (...) at which the grease lasts, up to the range of the estimate.
+    """Greatest P/C (...) at which the grease reaches a life, within the range of the estimate.
 
     NaN where no load reaches the life, or speed and temperature are outside the range; see
     `grease_life`.
@@ -231,7 +231,7 @@ def grease_load_share(
 
 
 def grease_load_factor(load_share: Array, allowed_share: Array, duty: Array) -> Array:
-    """Factor (...) on the dynamic rating at which the grease lasts with the load cases of a duty.
+    """Factor (...) on the dynamic rating at which the grease lasts under a duty.
 
     The root f of sum q_i t/L_i = 1 with t/L_i = 10^(2.50 (max(P_i/(C f), 0.05) - x_i)); zero
     without load, and where the life is not reached without load.

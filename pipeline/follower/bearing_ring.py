@@ -1,4 +1,4 @@
-"""Outer ring of a bearing that rolls on the cam on its balls."""
+"""Outer ring of a ball bearing that rolls on the cam, bending on its balls."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from camwright.geometry.errors import InputError
 
 @dataclass(frozen=True)
 class Ring:
-    """A thin ring of rectangular section on equal balls.
+    """Thin ring of rectangular section on equal balls.
 
     Parameters
     ----------
@@ -61,7 +61,7 @@ class Ring:
 
 @dataclass(frozen=True, eq=False)
 class RingBending:
-    """Bending of a ring per newton of contact force, at ball positions `phase` (n,), rad, from it.
+    """Bending of a ring per newton of contact force, over ball positions `phase` (n,), rad.
 
     `ball_load` (n, balls) over contact force, >= 0, first ball at the phase, the others in order;
     `moment_max`, `moment_min` (n,) in the ring, m, positive with tension at the inner radius;
@@ -95,14 +95,14 @@ class RingBending:
         return 0.5 * float(self.stress_max.max() + self.stress_min.min())
 
     def carrying(self, position: int) -> tuple[float, ...]:
-        """Angles of the loaded balls from the contact force, rad, at one of the ball positions."""
+        """Angles of the loaded balls from the contact force, rad, at one ball position."""
         loads = self.ball_load[position]
         angles = self.phase[position] + FULL_TURN * np.arange(loads.size) / loads.size
         return tuple(float(angle) for angle in angles[loads > 0.0])
 
 
 def goodman(amplitude: Array, mean: Array, tensile_strength: float) -> Array:
-    """Equivalent fully reversed amplitude, Pa; infinite where the mean exceeds the strength.
+    """Goodman's equivalent fully reversed amplitude, Pa; infinite where the mean exceeds R_m.
 
     A compressive mean stress counts as zero; NaN where an input is.
 
@@ -117,7 +117,7 @@ def goodman(amplitude: Array, mean: Array, tensile_strength: float) -> Array:
 
 
 def ball_stiffness(force: float, diameter: float, modulus: float, poisson: float) -> float:
-    """Secant stiffness of a ball between two raceways under a force, N/m; an estimate.
+    """Estimated secant stiffness of a ball between its raceways under a force, N/m.
 
     Each contact as ball on flat, d = (9 F^2/(16 E*^2 R))^(1/3), times a factor 1.3 for the
     osculation of the grooves (recalled, verify); the bending of the ring is insensitive to it.

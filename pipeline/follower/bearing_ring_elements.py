@@ -1,4 +1,4 @@
-"""Outer ring of a bearing on its balls by plane finite elements.
+"""Outer ring of a ball bearing on its balls, by plane finite elements.
 
 The balls are unilateral springs without clearance, the contact force acts at one section: the
 solution is proportional to the force.
@@ -30,7 +30,7 @@ _SIMPSON = np.array([1.0, 4.0, 2.0, 4.0, 1.0]) / 12.0  # weights of the mean ove
 
 
 class RingElements:
-    """Ring of quadratic quadrilaterals in plane stress with sections at equal angles.
+    """Mesh of a ring: quadratic quadrilaterals in plane stress, sections at equal angles.
 
     Displacements of a section are means over its thickness, and forces act on the section
     likewise: local indentation is part of `ball_stiffness`.
@@ -113,7 +113,7 @@ def _rows(dofs: NDArray[np.intp], values: Array, size: int) -> scipy.sparse.csr_
 
 @lru_cache(maxsize=16)
 def ring_bending(ring: Ring, phases: int = 5, poisson: float = 0.3) -> RingBending:
-    """Ring under a unit contact force at ball positions from below it to midway between balls.
+    """Bending of a ring under unit contact force, from over a ball to midway between two.
 
     Cached on disk.
 

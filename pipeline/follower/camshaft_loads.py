@@ -1,4 +1,4 @@
-"""Loads of key, gear and camshaft bearings; unbalance of the cam and its counter-hole."""
+"""Loads of key, gear and camshaft bearings; unbalance of the cam, counter-hole."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ from camwright.pipeline.contact.cam_body import KeyFlanks
 
 
 class KeyStress(NamedTuple):
-    """Pressure of the key on hub and shaft, and its shear stress, Pa, signed like the torque."""
+    """Key pressure on hub and shaft, and key shear stress, Pa, signed like the torque."""
 
     hub: Array
     shaft: Array
@@ -70,14 +70,14 @@ def key_stress(torque: ArrayLike, shaft_diameter: float, flanks: KeyFlanks) -> K
 
 
 class Reversal(NamedTuple):
-    """A change of sign of the torque: cam angle, rad, and slope, N m/rad, there."""
+    """Sign change of the torque: cam angle, rad, and slope, N m/rad."""
 
     theta: float
     slope: float
 
 
 def torque_reversals(theta: Array, torque: ArrayLike, drag: float = 0.0) -> tuple[Reversal, ...]:
-    """Reversals of the torque through gear and key over a turn.
+    """Sign changes of the torque through gear and key over a turn.
 
     At each reversal teeth and key cross their backlash; the impact increases with the slope of
     the torque.
@@ -376,7 +376,7 @@ class Counterweight(Part):
             raise InputError(field, shown(self.angle, "deg"), "left out with residual")
 
     def set_against(self, made: Unbalance) -> tuple[float, float]:
-        """Its unbalance, kg m, and direction in the cam frame, rad, beside a cam as manufactured.
+        """Unbalance, kg m, and direction in the cam frame, rad, against a manufactured cam.
 
         A residual has no known direction: it is taken on the side of the counterweight.
         """
@@ -384,7 +384,7 @@ class Counterweight(Part):
         return float(product), float(angle)
 
     def against(self, product: Value, angle: Value) -> tuple[Value, Value]:
-        """As `set_against`, of cams (...) of an unbalance, kg m, and its direction, rad."""
+        """As `set_against`, for cams (...) by unbalance, kg m, and direction, rad."""
         if self.unbalance is not None and self.angle is not None:
             return self.unbalance, self.angle
         return product + (self.residual or 0.0), angle + pi
@@ -459,14 +459,14 @@ class Camshaft(Part):
 
     @property
     def widest(self) -> float | None:
-        """Greatest diameter of shaft and sections, m; None without that of the shaft."""
+        """Greatest diameter of shaft and sections, m; None without the shaft's diameter."""
         if self.diameter is None:
             return None
         return max([self.diameter, *(each.diameter for each in self.sections)])
 
     @property
     def thinnest(self) -> float | None:
-        """Least diameter of shaft and sections, m; None without that of the shaft."""
+        """Least diameter of shaft and sections, m; None without the shaft's diameter."""
         if self.diameter is None:
             return None
         return min([self.diameter, *(each.diameter for each in self.sections)])
@@ -538,7 +538,7 @@ def shaft_loads(
 
 
 def gear_force(torque: Array, shaft: Camshaft) -> Array:
-    """Force of the teeth on the gear (2, ...), N, at cam torques (...), N m, drag added.
+    """Tooth force on the gear (2, ...), N, at cam torques (...), N m, with drag added.
 
     The tangential force supplies the torque; the radial force separates the gears.
     """
@@ -578,7 +578,7 @@ class Unbalance:
 
 
 def rotating_force(product: Value, direction: Value, cam_speed: Value, theta: Array) -> Array:
-    """Centrifugal force of an unbalance on the shaft (2, ..., n), N, in the frame of `ShaftLoads`.
+    """Centrifugal force of an unbalance (2, ..., n), N, in the frame of `ShaftLoads`.
 
     It points along the follower at the cam angle of the centre of mass and rotates with the
     cam.
@@ -637,7 +637,7 @@ class KeywayCut(NamedTuple):
 
 
 def keyway_cut(bore: Value, width: float, depth: float) -> KeywayCut:
-    """What a keyway takes from a cam of a bore radius (...), m; width and depth, m."""
+    """Area and first moment removed by a keyway beyond a bore radius (...), m."""
     half, floor = 0.5 * width, bore + depth
     chord = np.sqrt(bore**2 - half**2)
     under_arc = half * chord + bore**2 * np.arcsin(half / bore)
@@ -660,7 +660,7 @@ def counter_hole(
     wall: float,
     keyway_depth: float = 0.0,
 ) -> CounterHole:
-    """Smallest hole that removes the unbalance, as far out as the wall to the contour permits.
+    """Smallest balancing hole, as far out as the wall to the contour permits.
 
     Parameters
     ----------
@@ -707,7 +707,7 @@ def greatest_hole(
     wall: float,
     keyway_depth: float = 0.0,
 ) -> CounterHole:
-    """Hole that removes most of an unbalance where none removes all.
+    """Hole that removes the most unbalance where none balances fully.
 
     Parameters
     ----------

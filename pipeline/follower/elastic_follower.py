@@ -1,4 +1,4 @@
-"""Follower with elastic stem: periodic response, and cam speed of the loss of contact.
+"""Follower on an elastic stem: periodic response, cam speed at loss of contact.
 
 The cam displaces the foot by s; the mass m with displacement x rests on the stem, spring K and
 damper c, under the follower spring k with preload P and a load F_e of weight and machine:
@@ -88,7 +88,7 @@ class Response:
 
 
 def quasi_static(lift: ArrayLike, follower: ElasticFollower, theta: ArrayLike = 0.0) -> Array:
-    """Displacement without inertia and damping, (K s - P - F_e)/(K + k), m.
+    """Quasi-static displacement of the mass, (K s - P - F_e)/(K + k), m.
 
     Parameters
     ----------
@@ -184,7 +184,7 @@ def collocation_response(lift: Array, cam_speed: Array, follower: ElasticFollowe
 
 
 def periodic_response(lift: Array, cam_speed: Array, follower: ElasticFollower) -> Response:
-    """Periodic response at speeds (n,), rad/s; by harmonic balance where they are equal."""
+    """Periodic response at speeds (n,), rad/s; by harmonic balance at constant speed."""
     speed = finite("cam_speed", cam_speed)
     if is_steady(speed):
         return harmonic_response(lift, float(speed[0]), follower)

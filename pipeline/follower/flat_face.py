@@ -1,4 +1,4 @@
-"""Flat-faced follower: geometry, contact body, sliding on the cam."""
+"""Flat-faced follower: dimensions, contact body, sliding on the cam."""
 
 from __future__ import annotations
 

@@ -17,7 +17,7 @@ MEAN_SHARE = pi / 4.0  # mean over peak pressure of Hertz
 
 @dataclass(frozen=True, eq=False)
 class SlidingFace:
-    """Contact place (n,) m and surface speeds (n,) m/s under a face.
+    """Contact position (n,), m, and surface speeds (n,), m/s, under a face.
 
     place: of the contact from the stem axis; sliding: speed of the cam surface along the face;
     entrainment: mean surface speed through the contact, which moves along the face at w s''.
@@ -32,7 +32,7 @@ class SlidingFace:
 
 
 def face_motion(path: FollowerPath, cam_speed: float, theta: ArrayLike) -> SlidingFace:
-    """Sliding speed w (r + s) and entrainment speed w |(r + s)/2 + s''| of a face.
+    """Contact position and surface speeds of a face: sliding w (r + s), entrainment.
 
     Parameters
     ----------

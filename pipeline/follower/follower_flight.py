@@ -25,7 +25,7 @@ LONGEST = 100.0
 
 
 class Flight(NamedTuple):
-    """A flight: cam angles of jump and landing, rad, may exceed a turn.
+    """Flight of the follower: cam angles of take-off and landing, rad, may exceed a turn.
 
     `height`: maximum gap between foot and cam, m; `landing_speed`: closing speed of the gap, m/s,
     >= 0. A follower that has not landed after `LONGEST` turns has an infinite angle of landing, and
@@ -44,7 +44,7 @@ class Flight(NamedTuple):
 
     @property
     def turns_later(self) -> int:
-        """Number of cam turns between the turn of the jump and that of the landing."""
+        """Number of cam turns from take-off to landing."""
         return int(self.landing // FULL_TURN - self.jump // FULL_TURN)
 
 
@@ -84,7 +84,7 @@ def bounce(
     start: tuple[float, float] | None = None,
     first: float = 0.0,
 ) -> Bounce:
-    """Motion of the follower over the cam angle with loss of contact.
+    """Time integration of the follower over the cam angle with loss of contact.
 
     Phases in contact and in flight are integrated to a tolerance of 1e-11. A phase ends where the
     contact force, or the gap between cam and the foot on its relaxed stem, decreases to zero; a

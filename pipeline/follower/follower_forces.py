@@ -23,7 +23,7 @@ JAM_FLOOR = 0.01  # lower bound of 1 - jam index in the forces
 
 @dataclass(frozen=True, eq=False)
 class Rubbing:
-    """Rubbing load of guides A and B over axial force and side-load factor, at cam angles; (n,).
+    """Friction-relevant load of each guide over axial force and side-load factor, (n,).
 
     The rubbing load is the sum of the normal forces on both sides of a bore; friction is mu times
     the rubbing load.
@@ -37,14 +37,14 @@ class Rubbing:
         freeze(self, theta=self.theta, a=self.a, b=self.b)
 
     def at(self, theta: Array) -> tuple[Array, Array]:
-        """Values at other cam angles by linear interpolation."""
+        """Loads interpolated linearly at other cam angles."""
         a, b = (np.interp(theta, self.theta, share, period=FULL_TURN) for share in (self.a, self.b))
         return np.asarray(a), np.asarray(b)
 
 
 @dataclass(frozen=True, eq=False)
 class Push:
-    """Load of the cam on the stem per unit of axial force; arrays (n,).
+    """Load of the cam on the stem per unit axial force: side force and lever arm, (n,).
 
     side : side force, signed like the pressure angle
     arm : distance of the axial force from the stem axis, m; its couple is opposite to `side`
@@ -57,7 +57,7 @@ class Push:
 
     @classmethod
     def of(cls, pitch: FollowerPath, system: FollowerSystem, theta: Array) -> Push:
-        """Through the roller centre, or on a face beside the axis with its friction."""
+        """Load through the roller centre, or of a face beside the stem axis with its friction."""
         side = np.tan(pitch.pressure_angle(theta)) + system.face_friction
         return cls(side, pitch.push_arm(theta), system.guide_spacing)
 
@@ -82,7 +82,7 @@ class Push:
 
 
 class LoadEnds(NamedTuple):
-    """End of the loads of many followers (...): whether, index of the angle, whether by leaving."""
+    """End of the valid loads of many followers (...): whether, index, whether by take-off."""
 
     lost: NDArray[np.bool_]
     first: NDArray[np.intp]
@@ -91,7 +91,7 @@ class LoadEnds(NamedTuple):
 
 @dataclass(frozen=True)
 class FollowerSystem:
-    """Spring, mass and guide friction of a follower.
+    """Spring, moving mass and guide friction of a follower.
 
     Parameters
     ----------
@@ -227,7 +227,7 @@ class Loads(Displayed):
 
     @property
     def required_force(self) -> Array:
-        """Axial force without guide friction, N; negative: that of a cam that could pull.
+        """Axial force without guide friction, N; negative where the cam would have to pull.
 
         The preload less its minimum is the preload at which the follower stays on the cam.
         """
@@ -250,7 +250,7 @@ class Loads(Displayed):
 
     @property
     def ends(self) -> LoadEnds:
-        """Where the follower leaves the cam or locks, so that the loads end being those of the cam.
+        """First angles at which followers leave the cam or lock; the loads end there.
 
         The angle is the first one of the turn at which one of both begins: the loads of a turn
         before it are those after it in the next one.
@@ -259,7 +259,7 @@ class Loads(Displayed):
 
     @property
     def end(self) -> tuple[float, str] | None:
-        """Cam angle, rad, at which the loads of one follower end, and why; None: nowhere.
+        """Cam angle, rad, where the loads of a single follower end, and why; None: nowhere.
 
         Where it leaves the cam, the zero of the line through the forces before and after.
         """
@@ -281,7 +281,7 @@ class Loads(Displayed):
 
     @property
     def applied_work(self) -> float:
-        """Work of the cam against weight and external force over one turn, J.
+        """Work of the cam against weight and external force over a turn, J.
 
         That of the weight and of a constant force is zero.
         """
@@ -295,7 +295,7 @@ class Loads(Displayed):
 
 
 def ends_of(separated: NDArray[np.bool_], jammed: NDArray[np.bool_]) -> LoadEnds:
-    """End of the loads from where a follower has no contact or jams (..., n); see `Loads.ends`."""
+    """End of the loads at the first loss of contact or jamming (..., n); see `Loads.ends`."""
     lost = separated | jammed
     first = np.argmax(lost & ~np.roll(lost, 1, axis=-1), axis=-1)
     leaves = np.take_along_axis(separated, first[..., None], axis=-1)[..., 0]
@@ -355,13 +355,13 @@ def jump_speed(
 
 
 def share_left(lift_slope: Array, jam_index: Array) -> Array:
-    """Axial force without friction over axial force, >= `JAM_FLOOR`; above 1 on the return."""
+    """Axial force without over with guide friction, >= `JAM_FLOOR`; above 1 on the return."""
     share = 1.0 - np.sign(lift_slope) * jam_index
     return np.where(share < JAM_FLOOR, JAM_FLOOR, share)  # NaN stays
 
 
 def levers(overhang: Values, guide_spacing: float | Array) -> tuple[Values, Values]:
-    """|A|/F_t = (a+b)/b and |B|/F_t = a/b (...) of a stem on two point supports.
+    """Lever ratios |A|/F_t = (a+b)/b and |B|/F_t = a/b (...) of a stem on point supports.
 
     References
     ----------

@@ -1,4 +1,4 @@
-"""Protocol of the kinds of follower: roller and flat face."""
+"""Protocol of follower types: roller and flat face."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from camwright.pipeline.follower.stem_beam import Stem
 
 @dataclass(frozen=True, eq=False)
 class SurfaceMotion:
-    """Motion of the surfaces through the contact, arrays (n,), SI.
+    """Surface speeds through the contact, arrays (n,), SI.
 
     entrainment: speed, m/s; traction_share: traction over friction times normal force, None without
     a friction coefficient; traction_demand: traction of rolling without slip over normal force, NaN
@@ -39,7 +39,7 @@ class SurfaceMotion:
 
 
 class MovingParts(NamedTuple):
-    """Parts that move below the stem.
+    """Masses and lengths of the moving parts below the stem.
 
     masses: by name, kg, None: not known; inset: length of the stem that they replace, m; missing:
     keys that the case lacks for the mass of a part of the scope.
@@ -51,14 +51,14 @@ class MovingParts(NamedTuple):
 
 
 class ElasticParts(NamedTuple):
-    """Compliances of the parts below the stem by name, m/N, None: not known; held: its end, m."""
+    """Compliances of the parts below the stem by name, m/N; None: not known."""
 
     compliances: Mapping[str, float | None]
     held: float
 
 
 class FollowerKind(Protocol):
-    """Part of the follower in contact with the cam.
+    """Interface of the part that touches the cam: roller or flat face.
 
     `word`: its name in files and texts; `table`: in the case file; `width_key`: key of its width
     along the line of contact; `line_width`: maximum width of the line contact, m; `friction`:
@@ -115,7 +115,7 @@ class FollowerKind(Protocol):
 
     @property
     def extent(self) -> float:
-        """Extent from its reference point towards guide A, m."""
+        """Extent of the part from its reference point towards guide A, m."""
         ...
 
     @property
@@ -134,15 +134,15 @@ class FollowerKind(Protocol):
         ...
 
     def ring(self, width: float, preload: float) -> RingOnBalls | None:
-        """Outer ring on balls; None without one. Arguments: see `body`."""
+        """Outer ring on balls; None for other parts. Arguments: see `body`."""
         ...
 
     def elastic(self, width: float, preload: float) -> ElasticParts:
-        """Compliances of its parts. Arguments: see `body`."""
+        """Compliances of the part. Arguments: see `body`."""
         ...
 
     def turns(self, path: Array | float) -> float:
-        """Mean turns per cam turn, by the path of its reference point per cam angle, m/rad."""
+        """Mean turns of the part per cam turn, from its path speed per cam angle, m/rad."""
         ...
 
     def rolling(self, contour: Contour, theta: Array, speed: float) -> RollingRoller | None:

@@ -1,4 +1,4 @@
-"""Stiffness of the train from cam to follower mass: compliances of its members in series."""
+"""Stiffness from cam to follower mass: compliances of the members in series."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from camwright.pipeline.follower.stem_beam import Stem
 
 
 def in_series(compliances: Iterable[float]) -> float:
-    """Stiffness of members in series, N/m, of their compliances, m/N.
+    """Stiffness, N/m, of compliances, m/N, in series.
 
     Raises
     ------
@@ -42,7 +42,7 @@ def bearing_compliance(solved: RingOnBalls, ring: OuterRing, load: float) -> flo
 
 
 def pin_compliance(pin: Pin, width: float) -> float:
-    """Deflection of the pin at the middle of the bearing per newton, m/N, with shear.
+    """Bending and shear compliance of the pin at the middle of the bearing, m/N.
 
     Straddled: simply supported under a load uniform over the bearing width (m). Overhung: clamped,
     load at the middle of the bearing.
@@ -60,7 +60,7 @@ def pin_compliance(pin: Pin, width: float) -> float:
 
 
 def fork_compliance(fork: Fork, pin: Pin) -> float | None:
-    """Shortening of the cheeks per newton, m/N; None without their height or length."""
+    """Axial compliance of the fork's cheeks, m/N; None without height or length."""
     height, length = fork.cheek_height, fork.cheek_length
     if height is None or length is None:
         return None
@@ -68,13 +68,13 @@ def fork_compliance(fork: Fork, pin: Pin) -> float | None:
 
 
 def stem_compliance_along(stem: Stem, length: float) -> float:
-    """Shortening of the stem over a length (m) per newton, m/N."""
+    """Axial compliance of the stem over a length (m), m/N."""
     area = 0.25 * np.pi * (stem.diameter**2 - stem.bore**2)
     return float(length / (stem.elastic_modulus * area))
 
 
 def shaft_compliance(shaft: Camshaft) -> float | None:
-    """Deflection of the camshaft at the cam per newton there, m/N, with shear.
+    """Bending and shear compliance of the camshaft at the cam, m/N.
 
     A plain bar on two hinged bearings, the cam between or beyond them; None without diameter or
     material.

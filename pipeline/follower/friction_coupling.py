@@ -1,4 +1,4 @@
-"""Coupling of contact force and friction in guides of finite length."""
+"""Coupled contact force and guide friction for guides of finite length."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ FixedPointMap = Callable[[Array, NDArray[np.intp]], Array]
 
 
 class MovingFollower(NamedTuple):
-    """A follower and its motion over cam angles (n,), rad, at a cam speed, rad/s.
+    """Follower with its motion over cam angles (n,), rad, at a cam speed, rad/s.
 
     The system is without its `rubbing`.
     """
@@ -56,7 +56,7 @@ class MovingFollower(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Guided:
-    """Loads in equilibrium with the guide reactions, at the same positions.
+    """Follower loads in equilibrium with the guide reactions, at equal positions.
 
     residual (n,): of the axial equilibrium over the axial force; rounds: number of solutions of the
     guides.
@@ -80,7 +80,7 @@ def guided_loads(
     theta: ArrayLike,
     knots: int = KNOTS,
 ) -> Guided:
-    r"""Forces on a follower in guides with length and clearance, with implicit friction.
+    r"""Forces on a follower in guides of finite length and clearance, with implicit friction.
 
     Side force F_a tan(alpha) and couple of an axial force beside the stem axis load the edges of
     the guides, with friction mu_A R_A + mu_B R_B, where R is the rubbing load of `guide_reactions`.
@@ -122,7 +122,7 @@ def guided_loads(
 def guided_strokes(
     strokes: Sequence[MovingFollower], stem: Stem, guides: GuidePair, knots: int = KNOTS
 ) -> tuple[Guided, ...]:
-    """As `guided_loads` of each stroke in the same guides, all positions solved at once."""
+    """As `guided_loads` for several motions in the same guides, all positions solved together."""
     points = [
         follower_loads(s.pitch, replace(s.system, rubbing=None), s.cam_speed, s.theta)
         for s in strokes
@@ -193,7 +193,7 @@ def _joined(ways: Sequence[Push]) -> Push:
 
 
 def balanced(mapping: FixedPointMap, low: Array, high: Array, start: Array) -> tuple[Array, int]:
-    """Fixed points x = f(x) of continuous functions, each within a bracket.
+    """Fixed points x = f(x) of continuous functions, each in a bracket.
 
     With f(low) >= low and f(high) <= high: secant steps within the bracket. Where a step does not
     halve the residual, bisection, once a value with f(x) < x bounds the bracket from above; until

@@ -1,4 +1,4 @@
-"""Beam in bores with unilateral contact: equilibrium at every position by an active set."""
+"""Beam in bores with clearance: unilateral contact at every position by an active set."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ _TOUCH = 1e-9  # initial indentation of a rigid beam over the clearance
 
 
 class BoundKnots(NamedTuple):
-    """Linear equations of the beam with some knots bound to the bore.
+    """Linear equations of the beam with a set of knots in contact with the bore.
 
     The unknowns are the bore forces at the knots and the change of the end motion, rows and columns
     scaled by bore compliance and beam length, for accuracy with stiff bores, stiff beams and short
@@ -47,7 +47,7 @@ class BoundKnots(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class BearingLine:
-    """A beam in bores with clearance, at knots; arrays (knots,), SI.
+    """Beam in bores with clearance, discretised at knots; arrays (knots,), SI.
 
     Parameters
     ----------
@@ -100,7 +100,7 @@ class BearingLine:
         return np.asarray(miss.max(axis=0))
 
     def terms(self, push: Array, rigid: Array) -> Array:
-        """Maximum sum of magnitudes (n,), m, of the terms of a deflection: its round-off scale."""
+        """Greatest sum (n,), m, of magnitudes of the terms of a deflection: scale of round-off."""
         terms = np.abs(self.compliance) @ np.abs(push)
         terms += self.rigid_modes @ np.abs(rigid)
         return np.asarray(terms.max(axis=0))
@@ -128,7 +128,7 @@ class BearingLine:
         return np.asarray(miss <= allowed)
 
     def sides(self, push: Array, rigid: Array) -> NDArray[np.int8]:
-        """Side of the bore that each knot (k, n) is in contact with: -1, 1, or 0 for none."""
+        """Contact side of each knot (k, n): -1, 1, or 0 for none."""
         deflection = self.deflection(push, rigid)
         side = np.where(self.play[:, None] > 0.0, np.sign(deflection), 1.0)
         return np.asarray(side * (np.abs(deflection) >= self.play[:, None]), dtype=np.int8)
@@ -164,11 +164,11 @@ class BearingLine:
 
     @cached_property
     def slack(self) -> float:
-        """Greatest deflection, m, of the rigid beam in contact with two edges; 0: tight in one."""
+        """Greatest deflection, m, of the rigid beam on two edges; 0 if a bore has no clearance."""
         return float(np.abs(self.rigid_modes[self.edges] @ self.slack_corners).max())
 
     def enlargement(self, load: Array) -> Array:
-        """Factor (n,) that scales a load up to an indentation above round-off of the slack.
+        """Load factor (n,) at which the indentation exceeds the round-off of the slack.
 
         A beam without slack, tight in one guide, moves in proportion to a small load: none is
         scaled.
@@ -178,7 +178,7 @@ class BearingLine:
         return np.asarray(np.divide(least, size, out=np.ones_like(size), where=small))
 
     def edge_contact(self, load: Array) -> Array:
-        """End motions (2, n) of a rigid beam that loads (2, n) hold against two edges."""
+        """End motions (2, n) of a rigid beam pressed by loads (2, n) against two edges."""
         corners = self.slack_corners
         return np.asarray(corners[:, np.argmax(corners.T @ load, axis=0)])
 
@@ -201,7 +201,7 @@ class BearingLine:
 def settle(
     line: BearingLine, force: Array, moment: Array, start: tuple[Array, Array] | None = None
 ) -> tuple[Array, Array]:
-    """Bore forces in equilibrium with a force and a moment on the end of the beam.
+    """Bore forces in equilibrium with force and moment at the end of the beam.
 
     The energy of beam and bores is convex and piecewise quadratic in the bore forces p and the end
     motion r:  p G p/2 + sum K depth^2/2 - load r. Each step solves the linear problem of the knots

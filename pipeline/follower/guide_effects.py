@@ -1,4 +1,4 @@
-"""Effects of guide length and clearance on reactions and contact force."""
+"""Effect of guide length and clearance on reactions and contact force."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from camwright.pipeline.follower.stem_beam import Stem
 
 @dataclass(frozen=True, eq=False)
 class Share:
-    """A quantity on point supports, its change by guide length and its change by clearance.
+    """Quantity on point supports, with its changes by guide length and by clearance.
 
     Their sum is the quantity with length and clearance; arrays (n,).
     """
@@ -42,7 +42,7 @@ class Share:
 
 @dataclass(frozen=True, eq=False)
 class GuideShares:
-    """Shares of the reaction of guide A (N) and of the contact force (N).
+    """Effects on the reaction of guide A (N) and on the contact force (N).
 
     Length and clearance change the reaction of guide B by the same amount: the difference of both
     reactions is the side force.
@@ -88,7 +88,7 @@ def guide_shares(
     loads: Loads,
     reactions: GuideReactions,
 ) -> GuideShares:
-    """Shares of guide length and clearance in the loads of a turn.
+    """Effects of guide length and clearance on the loads of a turn.
 
     Without clearance the reactions are proportional to the load: one solution gives the rubbing
     load per axial force, and with it the contact force.

@@ -1,4 +1,4 @@
-"""Guide friction within its bounds: contact force, jam index, heat, temperature, growth."""
+"""Guide friction at its bounds: contact force, jam index, heat, temperature, expansion."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ NYLON_PV = {
 def friction_limits(
     friction: ArrayLike, low: ArrayLike | None, high: ArrayLike | None, tolerance: Value
 ) -> tuple[Array, Array]:
-    """Minimum and maximum coefficient of a guide, or of many (...).
+    """Minimum and maximum friction coefficient of a guide, or of many (...).
 
     Parameters
     ----------
@@ -80,7 +80,7 @@ class FrictionRange:
         )
 
     def factors(self, side: int) -> tuple[float, float]:
-        """Minimum and maximum coefficient of a guide (0: A, 1: B) over the nominal one."""
+        """Minimum and maximum over nominal coefficient of guide 0 (A) or 1 (B)."""
         nominal = self.nominal[side] or 1.0
         return self.least[side] / nominal, self.greatest[side] / nominal
 
@@ -97,7 +97,7 @@ class FrictionRange:
 
 @dataclass(frozen=True, eq=False)
 class FrictionBounds:
-    """Loads at minimum, nominal and maximum friction of both guides."""
+    """Follower loads at minimum, nominal and maximum friction of both guides."""
 
     least: Loads
     nominal: Loads
@@ -127,7 +127,7 @@ class FrictionBounds:
 def friction_bounds(
     solved: Callable[[FollowerSystem], Loads], system: FollowerSystem, friction: FrictionRange
 ) -> FrictionBounds:
-    """Loads at minimum, nominal and maximum friction of guides A and B.
+    """Follower loads at minimum, nominal and maximum friction of guides A and B.
 
     Parameters
     ----------
@@ -141,7 +141,7 @@ def friction_bounds(
 
 
 def friction_power(friction_force: ArrayLike, velocity: ArrayLike) -> Array:
-    """Friction power (n,) of a guide, W, of a friction force, N, >= 0, at a velocity, m/s; (n,).
+    """Friction power (n,) of a guide, W, by friction force, N, >= 0, and velocity, m/s, (n,).
 
     Raises
     ------
@@ -155,7 +155,7 @@ def friction_power(friction_force: ArrayLike, velocity: ArrayLike) -> Array:
 
 
 def bush_temperature(power: Value, resistance: float | None, ambient: Value | None) -> Value:
-    """Steady temperature of a bush, K, by its mean friction power, W.
+    """Steady bush temperature, K, by mean friction power, W.
 
     resistance: thermal, from rubbing surface to ambient, K/W; NaN where that or the ambient
     temperature, K, is not known.
@@ -181,7 +181,7 @@ def thermal_resistance(guide: Guide) -> float | None:
 
 
 def bush_resistance(bore: float, wall: float, length: float, conductivity: float) -> float:
-    """Thermal resistance of the wall of a bush, ln(1 + 2 t/D)/(2 pi lambda l), K/W.
+    """Thermal resistance of a bush wall, ln(1 + 2 t/D)/(2 pi lambda l), K/W.
 
     Raises
     ------
@@ -200,7 +200,7 @@ def bush_resistance(bore: float, wall: float, length: float, conductivity: float
 
 
 def bore_closure(wall_share: float, poisson_ratio: float) -> tuple[float, float]:
-    """Closure of a bore over bore and free strain: axially free, and axially held.
+    """Closure of a bore over bore and free strain: axially free, and axially restrained.
 
     The bush expands by an isotropic free strain in a rigid housing: no radial displacement at its
     outer radius, no radial stress at the bore. Axially free is plane stress, held is plane strain.

@@ -1,4 +1,4 @@
-"""Reactions of two guides of finite length on the bending stem of a follower."""
+"""Reactions of two guides of finite length on the bending stem."""
 
 from __future__ import annotations
 
@@ -208,7 +208,7 @@ class GuidePair(Part):
 
     @property
     def tilt_max(self) -> float:
-        """Greatest tilt of the stem in its clearances, rad."""
+        """Greatest tilt of the stem within its clearances, rad."""
         return float(self.tilt_at(self.spacing))
 
     def tilt_at(self, spacing: Value) -> Value:
@@ -220,7 +220,7 @@ class GuidePair(Part):
         return 0.5 * (self.a.clearance + self.b.clearance) / (spacing + self._half_lengths)
 
     def tilt_compliance(self, stem: Stem, overhang: Value, spacing: Value) -> Value:
-        """Slope of the end of the stem under a moment there (...), rad/(N m), at most as great.
+        """Upper bound of the stem end's slope per moment there (...), rad/(N m).
 
         As a bar on the outer ends of both guides, between which it tilts.
 
@@ -248,7 +248,7 @@ class GuidePair(Part):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class GuideReactions(Displayed):
-    """Reactions and pressures of the guides at each position; arrays (n,) unless stated, SI.
+    """Reactions and pressures of both guides at each position; arrays (n,), SI.
 
     Guide A acts against the side force F_t and guide B with it; both reactions are signed like
     A = F_t (a+b)/b, B = F_t a/b of point supports, `statics_*`. `moment_*`: couples of the guides
@@ -306,7 +306,7 @@ class GuideReactions(Displayed):
 
     @cached_property
     def bearing_load_a(self) -> Array:
-        """Push on one side of guide A over the loaded share of its length, (n,), N.
+        """Load on the loaded side of guide A over the loaded share of its length, (n,), N.
 
         Of the side with the greater quotient; the reaction where one side is loaded over the whole
         length.
@@ -315,11 +315,11 @@ class GuideReactions(Displayed):
 
     @cached_property
     def bearing_load_b(self) -> Array:
-        """Push on one side of guide B over the loaded share of its length, (n,), N."""
+        """Load on the loaded side of guide B over the loaded share of its length, (n,), N."""
         return np.asarray(np.ptp(self.knots_b) * mean_line_load(self.line_pressure_b, self.knots_b))
 
     def loaded_side(self, guide: int, position: int) -> tuple[float, float]:
-        """Push on the side of a guide (0: A, 1: B) with the greater mean line load, N, its length.
+        """Load, N, and loaded length of the side of a guide (0: A, 1: B) with more line load.
 
         At the number of a position; the loaded length, m, is that of `mean_line_load`.
         """
@@ -341,7 +341,7 @@ class GuideReactions(Displayed):
 
 
 def mean_line_load(line_load: ArrayLike, knots: ArrayLike) -> Array:
-    """Greater of the mean line loads on the two sides of a bore, over the loaded length, N/m.
+    """Greater mean line load of both sides of a bore, over the loaded length, N/m.
 
     The push on a side is the integral of its line load. The loaded length ends where the line
     load, extrapolated from the last two loaded knots, falls to zero, at most at the next knot.
@@ -404,7 +404,7 @@ def _beyond(load: Array, gaps: Array, weights: Array) -> Array:
 def bush_foundation_modulus(
     bore: float, wall: float, elastic_modulus: float, poisson_ratio: float
 ) -> float:
-    """Force per length and deflection of a bush in a rigid housing, N/m2.
+    """Foundation modulus of a bush in a rigid housing: force per length and deflection, N/m2.
 
     The wall is a thin bonded layer: a radial approach d cos(phi) gives the pressure
     E_c d cos(phi)/t with E_c = E (1-nu)/((1+nu)(1-2nu)). Its resultant over the loaded half of the
@@ -473,7 +473,7 @@ def guide_reactions(
     knots: int = KNOTS,
     start: tuple[Array, Array] | None = None,
 ) -> GuideReactions:
-    """Reactions, pressures and slopes of the guides on the elastic stem at every position.
+    """Reactions, pressures and slopes of the guides on the elastic stem at each position.
 
     The guides are fixed and the stem slides: the stem between the outer edge of A and the far edge
     of B is one beam for all positions; the overhang transfers force and moment to the edge of A and
@@ -558,7 +558,7 @@ def guide_reactions(
 
 
 def require_fit(stem: Stem, guides: GuidePair, overhang: Array, knots: int) -> None:
-    """Check that the stem fits its guides at overhangs (n,), m.
+    """Check that the stem fits in its guides at overhangs (n,), m.
 
     Raises
     ------
@@ -584,7 +584,7 @@ def require_fit(stem: Stem, guides: GuidePair, overhang: Array, knots: int) -> N
 
 @lru_cache(maxsize=8)
 def bearing_line(stem: Stem, guides: GuidePair, knots: int) -> tuple[BearingLine, Array, float]:
-    """Beam and foundation from the edge of A; slopes under unit forces, rad/N; half length of A."""
+    """Beam and foundation from the edge of guide A; slopes per force, rad/N; half its length."""
     unit, weight = lobatto(knots)
     half_a, half_b = 0.5 * guides.a.length, 0.5 * guides.b.length
     positions = np.r_[half_a * (1.0 + unit), half_a + guides.spacing + half_b * unit]
@@ -602,7 +602,7 @@ def bearing_line(stem: Stem, guides: GuidePair, knots: int) -> tuple[BearingLine
 
 @cache
 def lobatto(count: int) -> tuple[Array, Array]:
-    """Knots and weights (count,) of Gauss-Lobatto quadrature on [-1, 1].
+    """Nodes and weights (count,) of Gauss-Lobatto quadrature on [-1, 1].
 
     References
     ----------

@@ -34,7 +34,7 @@ _SPACING_STEP = 0.03  # of the logarithm of the spacing
 
 
 class GuideLoads(NamedTuple):
-    """Loads of guides A and B, N, or over a unit of them, arrays (...).
+    """Loads of guides A and B, N, or per unit load, arrays (...).
 
     rubbing: sum of the pushes on both sides; bearing: see `GuideReactions`; net: the magnitude of
     the reaction.
@@ -49,13 +49,13 @@ class GuideLoads(NamedTuple):
 
 
 class Place(NamedTuple):
-    """Nodes about overhang and spacing of each position, and their weights; (2 or 4, ...)."""
+    """Interpolation nodes in overhang and spacing with weights, (2 or 4, ...)."""
 
     rows: NDArray[np.intp]
     weights: Array
 
     def of(self, positions: NDArray[np.intp]) -> Place:
-        """Those of some positions of the flattened arrays."""
+        """Nodes and weights of some positions of the flattened arrays."""
         corners = self.rows.shape[0]
         rows, weights = self.rows.reshape(corners, -1), self.weights.reshape(corners, -1)
         return Place(rows[:, positions], weights[:, positions])
@@ -71,7 +71,7 @@ def _between_forces(load: Array) -> tuple[NDArray[np.intp], Array]:
 
 @dataclass(frozen=True, eq=False)
 class GuideTable(ABC):
-    """Tables of a stem in guides, rows added where a place or a spacing needs them.
+    """Interpolation tables of guide loads of a stem, rows computed on demand.
 
     The values depend on the stem and the guides alone, not on the places looked up before.
     """
@@ -162,7 +162,7 @@ class GuideTable(ABC):
 
 
 class OverhangTable(GuideTable):
-    """Over side force and overhang; units: the reactions of point supports."""
+    """Guide loads over side force and overhang, in units of point-support reactions."""
 
     def _node(self, along: int, guides: GuidePair) -> GuideLoads:
         # The roller does not enter guide A: positions just outside take the node at its mouth.
@@ -173,7 +173,7 @@ class OverhangTable(GuideTable):
 
 
 class MomentTable(GuideTable):
-    """Over size and direction of side force and moment over spacing; unit: the size."""
+    """Guide loads over size and direction of side force and moment over spacing."""
 
     def _node(self, along: int, guides: GuidePair) -> GuideLoads:
         angle = along * _DIRECTION_STEP
@@ -207,7 +207,7 @@ def _table(kind: type[GuideTable], stem: Stem, guides: GuidePair) -> GuideTable:
 
 @dataclass(frozen=True, eq=False)
 class SupportOfMany:
-    """Guides under the push of many cams; arrays (...).
+    """Guide loads under many cams; arrays (...).
 
     load: that of the table over the axial force; factor: side-load factor; shares: units of the
     loads of guides A and B over axial force and side-load factor; on_points: rubbing loads of point
@@ -223,7 +223,7 @@ class SupportOfMany:
 
     @classmethod
     def of(cls, stem: Stem, guides: GuidePair, push: Push, overhang: Array) -> SupportOfMany:
-        """Of a stem in guides, the spacing of which is that of the push.
+        """Guide loads of a stem whose guides have the spacing of the push.
 
         Parameters
         ----------

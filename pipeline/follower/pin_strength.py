@@ -1,4 +1,4 @@
-"""Roller pin: bending, shear, pressure in its seats."""
+"""Roller pin: bending and shear stress, pressure in its seats."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from camwright.geometry.errors import InputError
 def pin_bending_stress(
     force: float, diameter: float, width: float, span: float, overhung: bool = False
 ) -> float:
-    """Maximum bending stress of the roller pin, Pa, under a load uniform over the bearing width.
+    """Maximum bending stress of the roller pin, Pa, the load uniform over the bearing width.
 
     Parameters
     ----------
@@ -53,7 +53,7 @@ def pin_shear_stress(force: float, diameter: float, overhung: bool = False) -> f
 def cheek_pressure(
     force: float, diameter: float, cheek_width: float, span: float, overhung: bool = False
 ) -> float:
-    """Maximum pressure of the pin on the projected area of a cheek of its fork, Pa.
+    """Maximum projected-area pressure of the pin in a cheek of its fork, Pa.
 
     Straddled: half of the force in each cheek, uniform. Overhung: force and moment in one cheek,
     F (6 l + 4 t)/(d t^2), linear along the seat.

@@ -1,4 +1,4 @@
-"""Outer ring of a bearing as roller: bending on its balls, contact body."""
+"""Outer ring of a bearing as roller: bending on its balls, body in contact."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _SAME_RADIUS = 1e-6
 
 @dataclass(frozen=True)
 class RingOnBalls:
-    """Outer ring on its balls: bending per newton, contact body over and between balls."""
+    """Outer ring on its balls: bending per newton, contact bodies over and between balls."""
 
     ring: Ring
     bending: RingBending
@@ -31,7 +31,7 @@ class RingOnBalls:
     between_balls: RingBody
 
     def midway(self, line_load: Array, relative_radius: Array) -> Array:
-        """Relative change (n,) of p0 from a contact over a ball to one between two balls.
+        """Relative change (n,) of p0 between contact over a ball and midway between two.
 
         p0 is proportional to the root of the relative curvature, which the bending of the ring
         reduces; the bending of the cam is of second order and neglected.
@@ -51,7 +51,7 @@ class RingOnBalls:
 
 
 def solid_reason(radius: float, bearing: Bearing) -> str:
-    """Reason for the model of a solid roller of a radius (m); "" for a ring on its balls."""
+    """Why a solid roller of a radius (m) is modelled; "" for a ring on its balls."""
     ring = bearing.ring
     if ring is None:
         return "ring and balls of the bearing are not specified"
@@ -64,7 +64,7 @@ def solid_reason(radius: float, bearing: Bearing) -> str:
 def ring_on_balls(
     ring: OuterRing, steel: Elastic, radius: float, roller_width: float, width: float, load: float
 ) -> RingOnBalls:
-    """Outer ring under a line contact.
+    """Outer ring on its balls under a line contact.
 
     Balls have their secant stiffness at the load: four times the load increases it by a factor 1.6
     and changes p0 over a ball by at most 0.4 %.

@@ -1,4 +1,4 @@
-"""Roller follower: geometry, contact body, rolling on the cam."""
+"""Roller follower: dimensions, contact body, rolling on the cam."""
 
 from __future__ import annotations
 
@@ -108,12 +108,12 @@ class Roller(Part):
 
     @property
     def extent(self) -> float:
-        """Extent from its centre towards guide A, with its fork, m."""
+        """Extent of roller and fork from the roller centre towards guide A, m."""
         return max(self.radius, self.moving.inset)
 
     @property
     def held_depth(self) -> float:
-        """Thickness of the outer ring on its balls, or of the roller solid on its hub, m."""
+        """Depth of the contact body, m: thickness of an outer ring, or down to a solid hub."""
         ring = self.bearing.ring
         if ring is not None and not self.solid_reason:
             return ring.thickness
@@ -121,12 +121,12 @@ class Roller(Part):
 
     @property
     def body_depth(self) -> float:
-        """As `held_depth`, m."""
+        """Depth of the contact body, m."""
         return self.held_depth
 
     @property
     def solid_reason(self) -> str:
-        """Reason for the model of a solid roller on its hub; "" for a ring on its balls."""
+        """Why the roller is modelled as solid on its hub; "" for a ring on its balls."""
         return solid_reason(self.radius, self.bearing)
 
     @property
@@ -147,7 +147,7 @@ class Roller(Part):
 
     @property
     def drawn_mass(self) -> float:
-        """Mass with its bearing, kg: of the case, else of the solid ring about the pin."""
+        """Mass of roller and bearing, kg: stated, else of a solid ring about the pin."""
         if self.mass is not None:
             return self.mass
         inside = self.hub_radius if self.pin is None else 0.5 * self.pin.diameter
@@ -223,7 +223,7 @@ class Roller(Part):
         return roller_motion(contour.require_roller().pitch, self.radius, speed, theta)
 
     def body(self, width: float, stem: Stem, preload: float) -> FollowerBody:  # noqa: ARG002
-        """Roller on its hub, or outer ring of the bearing on balls; see `FollowerKind`."""
+        """Contact body: roller held at its hub, or outer ring on balls; see `FollowerKind`."""
         ring = self.ring(width, preload)
         if ring is not None:
             return ring.body
@@ -249,7 +249,7 @@ class Roller(Part):
 
     @property
     def drag(self) -> Drag:
-        """Inertia and drag of the roller; without a friction coefficient it does not slip."""
+        """Inertia and bearing drag of the roller; no slip without a friction coefficient."""
         return Drag(
             inertia=self.rotor_inertia,
             friction=_NO_SLIP if self.friction is None else self.friction,

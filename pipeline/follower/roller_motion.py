@@ -1,4 +1,4 @@
-"""Motion of the roller, traction demand, rating life of its bearing."""
+"""Motion of the roller, its traction demand, rating life of its bearing."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ RATED_REVOLUTIONS = 1e6  # of the dynamic rating, ISO 281
 
 @dataclass(frozen=True, eq=False)
 class RollingRoller:
-    """Motion of a roller without slip; arrays (n,), SI.
+    """Spin and surface speed of a roller without slip; arrays (n,), SI.
 
     `spin` and `spin_acceleration`: of the outer ring relative to the follower, rad/s and rad/s2;
     `pitch_speed`: of the roller centre along the pitch curve, m/s; `rolling_speed`: of both
@@ -41,7 +41,7 @@ class RollingRoller:
 
 @dataclass(frozen=True, eq=False)
 class RatingLife:
-    """Basic rating life (...): P_m, N; L10 in revolutions of the bearing and in seconds."""
+    """Basic rating life (...): P_m, N; L10 in revolutions and in seconds."""
 
     mean_load: Array
     revolutions: Array
@@ -105,19 +105,19 @@ def roller_motion(
 def path_speed_slope(
     along: Values, across: Values, slope: Values, lift_d2: Values, speed: Values
 ) -> Values:
-    """Derivative of |dP/dtheta|, m/rad2, of the roller centre: s' - e along, d + s across."""
+    """Derivative of |dP/dtheta|, m/rad2; along: s' - e, across: d + s, m."""
     return (along * lift_d2 + across * slope) / speed
 
 
 def wear(normal_force: Values, spin: Values, exponent: float = BALL_LIFE_EXPONENT) -> Values:
-    """N^p |n|, proportional to fatigue damage per time; ISO 281:2007, 6.2."""
+    """N^p |n|, proportional to fatigue damage per time (ISO 281:2007, 6.2)."""
     return normal_force**exponent * magnitude(spin)
 
 
 def equivalent_load(
     normal_force: ArrayLike, spin: ArrayLike, exponent: float = BALL_LIFE_EXPONENT
 ) -> Array:
-    """Constant loads of equal rating life P_m (...), N, over positions equally spaced in time.
+    """Equivalent constant load P_m (...), N, of positions equally spaced in time.
 
     P_m = (sum N^p |n| / sum |n|)^(1/p).
 
@@ -154,7 +154,7 @@ def rating_life(
     dynamic_rating: ArrayLike,
     exponent: float = BALL_LIFE_EXPONENT,
 ) -> RatingLife:
-    """Rating life L10 of the bearing under the load of the cycle.
+    """L10 rating life of the bearing under the load of the cycle.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Parts of a roller: bearing, outer ring of the bearing, pin, fork."""
+"""Parts of a roller: bearing, its outer ring, pin, fork."""
 
 from __future__ import annotations
 
@@ -178,7 +178,7 @@ class Pin(Part):
 
     @property
     def overhung(self) -> bool:
-        """Whether it is held at one end."""
+        """Whether the pin is held at one end."""
         return self.mounting == "overhung"
 
     def mass(self, cheek_width: float) -> float:

@@ -1,4 +1,4 @@
-"""Sections of the camshaft: moments, fatigue, yield, deflection; keyway root and gear teeth."""
+"""Strength of the camshaft: moments, fatigue, yield, deflection; keyway root, gear teeth."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ _FINISH: Mapping[Surface, tuple[float, float]] = {
 
 @dataclass(frozen=True, eq=False)
 class Sections:
-    """Notched sections of the shaft, arrays (k,).
+    """Notched sections of the shaft: positions, diameters and notch factors, arrays (k,).
 
     place: m from the first bearing; diameter, m; notch_bending, notch_torsion: fatigue notch
     factors.
@@ -63,7 +63,7 @@ class Sections:
 def judged_sections(
     shaft: Camshaft, diameter: float, cam_reach: float, gear_reach: float
 ) -> tuple[ShaftSection, ...]:
-    """Sections of the shaft: at cam, gear, bearings, counterweight, and those that the case adds.
+    """Judged shaft sections: cam, gear, bearings, counterweight, and those of the case.
 
     The bending moment is linear between forces, so its maximum lies at one of them. The seats of
     cam and gear are taken at their middle and, since their force is spread, at both ends.
@@ -102,7 +102,7 @@ def judged_sections(
 
 
 def bending_moment(loads: ShaftLoads, shaft: Camshaft, place: ArrayLike) -> Array:
-    """Bending moment (..., 2, n), N m, at places (...), m from the first bearing.
+    """Bending moment (..., 2, n), N m, at positions (...), m from the first bearing.
 
     By force component.
     """
@@ -119,7 +119,7 @@ def bending_moment(loads: ShaftLoads, shaft: Camshaft, place: ArrayLike) -> Arra
 
 
 def torque_at(torque: Array, shaft: Camshaft, place: ArrayLike) -> Array:
-    """Torque (..., n), N m, at places (...): cam torque and drag between gear and cam, 0 beyond."""
+    """Torque (..., n), N m, at positions (...): cam torque and drag from gear to cam, else 0."""
     low, high = sorted((shaft.cam_position, shaft.gear_position))
     at = np.asarray(place, dtype=float)[..., None]
     within = (low - _SAME_PLACE <= at) & (at <= high + _SAME_PLACE)
@@ -127,7 +127,7 @@ def torque_at(torque: Array, shaft: Camshaft, place: ArrayLike) -> Array:
 
 
 def surface_factor(surface: Surface, tensile: float) -> float:
-    """k_a = a R_m^b, at most 1, of a surface finish; R_m, Pa.
+    """Marin's surface factor k_a = a R_m^b, at most 1; R_m in Pa.
 
     References
     ----------
@@ -138,7 +138,7 @@ def surface_factor(surface: Surface, tensile: float) -> float:
 
 
 def size_factor(diameter: float) -> float:
-    """k_b of a rotating round section, at most 1, against a specimen of 7.62 mm; diameter, m.
+    """Marin's size factor k_b of a rotating round section against 7.62 mm; diameter in m.
 
     References
     ----------
@@ -149,7 +149,7 @@ def size_factor(diameter: float) -> float:
 
 
 def reliability_factor(reliability: float) -> float:
-    """k_e = 1 - 0.08 z of a reliability: 0.814 at 99 %.
+    """Reliability factor k_e = 1 - 0.08 z: 0.814 at 99 %.
 
     References
     ----------
@@ -161,7 +161,7 @@ def reliability_factor(reliability: float) -> float:
 def fibre_stresses(
     theta: ArrayLike, moment: Array, torque: Array, sections: Sections
 ) -> tuple[Array, Array]:
-    """Von Mises amplitude and mean (k, m), Pa, of the fibres of a rotating shaft over a turn.
+    """Von Mises amplitude and mean (k, m), Pa, of fibres of a rotating shaft over a turn.
 
     Loads are in the engine frame, fibres rotate with the shaft.
 
@@ -224,7 +224,7 @@ def fatigue_safety(amplitude: Array, mean: Array, endurance: Array, tensile: flo
 
 
 def greatest_stress(moment: Array, torque: Array, sections: Sections) -> Array:
-    """Von Mises stress (k, n) at the notches under bending (k, 2, n) and torsion (k, n), N m; Pa.
+    """Von Mises stress (k, n), Pa, at the notches by bending (k, 2, n) and torsion (k, n), N m.
 
     References
     ----------
@@ -248,7 +248,7 @@ class ShaftBending:
 def shaft_bending(
     loads: ShaftLoads, shaft: Camshaft, diameter: float, elastic_modulus: float
 ) -> ShaftBending:
-    """Deflection and slopes of a shaft of one diameter on two rigid bearings, without shear.
+    """Deflection and bearing slopes of a uniform shaft on two rigid bearings, without shear.
 
     Parameters
     ----------
@@ -278,7 +278,7 @@ def shaft_bending(
 
 
 class CamSlope(NamedTuple):
-    """Slope of the shaft at the middle of the cam per force at cam, gear, counterweight, rad/N.
+    """Slope of the shaft at the cam per force at cam, gear and counterweight, rad/N.
 
     couple: per moment at the cam, rad/(N m), > 0.
     """
@@ -296,7 +296,7 @@ class CamSlope(NamedTuple):
 
 @lru_cache(maxsize=32)
 def cam_slope(shaft: Camshaft, diameter: float, elastic_modulus: float) -> CamSlope:
-    """Slope at the cam, between the bearings or overhung; shaft as of `shaft_bending`.
+    """Slope at the cam per force, cam between the bearings or overhung; see `shaft_bending`.
 
     References
     ----------
@@ -328,7 +328,7 @@ def cam_slope(shaft: Camshaft, diameter: float, elastic_modulus: float) -> CamSl
 
 
 def slope_of(shaft: Camshaft | None) -> CamSlope | None:
-    """Slope at the cam of a shaft of its least diameter.
+    """Slope at the cam per force of a shaft at its least diameter.
 
     None without a shaft, or where the case does not state its diameter or material.
     """
@@ -338,7 +338,7 @@ def slope_of(shaft: Camshaft | None) -> CamSlope | None:
 
 
 def in_the_normal(slope: Array, pressure_angle: Array) -> Array:
-    """Part (...) of a slope of the shaft (2, ...), rad, in the plane of the contact normal."""
+    """Component (...) of a shaft slope (2, ...), rad, in the plane of the contact normal."""
     return np.asarray(slope[0] * np.cos(pressure_angle) + slope[1] * np.sin(pressure_angle))
 
 
@@ -354,7 +354,7 @@ def keyway_root_stress(
     keyway_depth: float,
     root_radius: float,
 ) -> Array:
-    """Greatest principal stress (...) at the root of a keyway in the hub, Pa, at most.
+    """Upper bound (...) of the greatest principal stress at a hub's keyway root, Pa.
 
     Both parts scale with (t2/r)^0.4555, as the stress of a sharp right-angled corner does. Their
     factors are the greatest of plane-strain elements of rings with a keyway of DIN 6885-1, bores of
@@ -383,7 +383,7 @@ def keyway_root_stress(
 
 
 def tooth_root_stress(force: ArrayLike, width: float, module: float, teeth: int) -> Array:
-    """Root bending stress (...) of a spur tooth, 20 deg full depth, Pa: F/(b m pi y).
+    """Lewis root bending stress (...) of a 20 deg full-depth spur tooth, Pa: F/(b m pi y).
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Helical compression spring: force, stress, fatigue, solid length, buckling, surge, limits."""
+"""Helical compression spring: force, stress, fatigue, solid length, buckling, surge."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ Treatment = Literal["plain", "peened"]
 
 
 class WoundWire(Generic[Number]):
-    """Formulas of a helical spring; its values are numbers, or arrays (m,) of many designs.
+    """Formulas of a helical spring, for numbers or arrays (m,) of designs.
 
     See `HelicalSpring` for the values.
     """
@@ -265,13 +265,13 @@ class WoundWire(Generic[Number]):
 
     @property
     def known_modulus(self) -> Number:
-        """Elastic modulus as stated, else that of an isotropic wire, Pa."""
+        """Young's modulus as stated, else from the shear modulus of an isotropic wire, Pa."""
         isotropic: Number = ISOTROPIC * self.shear_modulus
         return isotropic if self.elastic_modulus is None else self.elastic_modulus
 
     @property
     def buckling_deflection(self) -> Number:
-        """Deflection at which the spring buckles, m; infinite if it is stable at any.
+        """Deflection at which the spring buckles, m; infinite if it is always stable.
 
         s_K = L0 / (2 (1 - G/E)) (1 - sqrt(1 - (1 - G/E)/(0.5 + G/E) (pi D/(nu L0))^2)).
 
@@ -323,7 +323,7 @@ class WoundWire(Generic[Number]):
 
 
 class SpringWork(NamedTuple, Generic[Number]):
-    """Spring at work: preload, the least force, and greatest force, N; travel, m; rate, N/m."""
+    """Operating range of a spring: preload, force at maximum lift, N; travel, m; rate, N/m."""
 
     preload: Number
     greatest: Number
@@ -332,20 +332,20 @@ class SpringWork(NamedTuple, Generic[Number]):
 
 
 class OfWork(Protocol):
-    """A figure of a wound spring at work."""
+    """Function of a wound spring and its operating range."""
 
     def __call__(self, wire: WoundWire[Number], work: SpringWork[Number], /) -> Value: ...
 
 
 class OfWire(Protocol):
-    """A figure of a wound spring."""
+    """Function of a wound spring."""
 
     def __call__(self, wire: WoundWire[Number], /) -> Value: ...
 
 
 @dataclass(frozen=True)
 class WireLimit:
-    """A limit of a wound spring at work: of its checks, of a catalogue and of a design alike.
+    """Limit of a wound spring in operation, shared by checks, catalogue and design.
 
     Parameters
     ----------
@@ -564,11 +564,11 @@ class Spring(Part):
 
     @property
     def derived(self) -> tuple[str, ...]:
-        """Fields that follow from others, which a case leaves out."""
+        """Fields derived from others, which a case omits."""
         return () if self.shape is None else ("rate", "preload")
 
     def with_derived(self) -> Spring:
-        """The spring with rate and preload of its gas or torsion spring."""
+        """Spring with rate and preload of its gas or torsion spring."""
         shape = self.gas or self.torsion
         return self if shape is None else replace(self, rate=shape.rate, preload=shape.preload)
 
@@ -583,21 +583,21 @@ class Spring(Part):
         return np.asarray(self.rate * rise(self.shape, lift).slope)
 
     def energy(self, lift: float) -> float:
-        """Energy at a lift, m, beyond that at zero lift, J."""
+        """Energy stored from zero lift to a lift, m, J."""
         return float(spring_energy(self.preload, self.rate, np.asarray(lift), self.shape))
 
 
 def spring_force(
     preload: float | Array, rate: float | Array, lift: Array, shape: SpringShape | None = None
 ) -> Array:
-    """Force P + k s (...) at a lift (...), m, in N; of a shape P + k rho(s)."""
+    """Spring force P + k s (...), N, at a lift (...), m; for a shape P + k rho(s)."""
     return np.asarray(preload + rate * (lift if shape is None else rise(shape, lift).travel))
 
 
 def spring_energy(
     preload: float, rate: float, lift: ArrayLike, shape: SpringShape | None = None
 ) -> Array:
-    """Energy P s + k s^2 / 2 (...) at a lift (...), m, in J; of a shape P s + k R(s)."""
+    """Spring energy P s + k s^2 / 2 (...), J, at a lift (...), m; for a shape P s + k R(s)."""
     at = np.asarray(lift, dtype=float)
     if shape is None:
         return np.asarray(preload * at + 0.5 * rate * at**2)
@@ -607,14 +607,14 @@ def spring_energy(
 def stored_lift(
     energy: ArrayLike, rate: ArrayLike, preload: ArrayLike, shape: SpringShape | None = None
 ) -> Array:
-    """Lift (...), m, at which a spring stores an energy beyond that at zero lift, J, >= 0."""
+    """Lift (...), m, at which the spring has stored an energy above zero lift, J, >= 0."""
     if shape is None:
         return spring_deflection(energy, rate, preload)
     return shaped_deflection(energy, rate, preload, shape)
 
 
 def surge_harmonics(lift_values: Array, ratio: float, share: float = 0.01) -> tuple[int, float]:
-    """Highest significant harmonic of the lift acceleration, and its margin against surge.
+    """Highest significant harmonic of the lift acceleration, and its margin to surge.
 
     Parameters
     ----------
@@ -636,19 +636,19 @@ def surge_harmonics(lift_values: Array, ratio: float, share: float = 0.01) -> tu
 
 
 def natural_frequency(rate: Number, active_mass: Number) -> Number:
-    """First natural frequency between fixed ends, sqrt(k/m)/2, Hz."""
+    """First natural frequency of a spring between fixed ends, sqrt(k/m)/2, Hz."""
     frequency: Number = 0.5 * np.sqrt(rate / active_mass)
     return frequency
 
 
 def greatest_active_mass(rate: float, frequency: float) -> float:
-    """Mass of the active coils, kg, at a rate, N/m, and a natural frequency, Hz."""
+    """Mass of the active coils, kg, by rate, N/m, and natural frequency, Hz."""
     return rate / (2.0 * frequency) ** 2
 
 
 @dataclass(frozen=True, eq=False)
 class DynamicStiffness:
-    """Force per displacement of the moving end, less the rate, at moving and fixed end, N/m.
+    """Dynamic stiffness of the coils less the rate, at moving and at fixed end, N/m.
 
     phase (...): phi of the waves along the coils; 0 at rest.
     """
@@ -721,7 +721,7 @@ def dynamic_stiffness(
 def surge_force(
     lift_values: Array, cam_speed: float, rate: float, frequency: float, damping: float
 ) -> Array:
-    """Dynamic force of the surge at the moving end of the spring, (n,), N.
+    """Dynamic force of surge at the moving end of the spring, (n,), N.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Springs whose force is not linear in the lift: gas and torsion; the lift from their energy.
+"""Springs with nonlinear force, gas and torsion; lift from stored energy.
 
 The force over the lift is F(s) = P + k rho(s), with the preload P, the rate k at zero lift and a
 rise rho that is s near zero: rate and preload mean the same as those of a coil spring, and so do
@@ -44,7 +44,7 @@ _CLOSE = 1e-13  # of a lift, and a hundredth of it of the reach: beyond round-of
 
 
 class Rise(NamedTuple):
-    """R, m2; rho, m; rho'; rho'', 1/m, each (...)."""
+    """Rise rho of a spring's force over the rate: integral R, m2; rho, m; rho'; rho'', 1/m."""
 
     work: Array
     travel: Array
@@ -53,7 +53,7 @@ class Rise(NamedTuple):
 
 
 class SpringShape(Protocol):
-    """Rise of the force of a spring over the lift."""
+    """Interface of a nonlinear spring: rise of its force over the lift."""
 
     @property
     def reach(self) -> float:
@@ -66,7 +66,7 @@ class SpringShape(Protocol):
 
 
 def rise(shape: SpringShape, lift: Array) -> Rise:
-    """Rise at a lift (...), m; along the tangent below zero and beyond the reach."""
+    """Rise of the force at a lift (...), m; linear below zero and beyond the reach."""
     real = np.real(lift)
     beyond = (real > shape.reach) | (real < 0.0)
     end = np.where(real < 0.0, 0.0, shape.reach)
@@ -83,7 +83,7 @@ def rise(shape: SpringShape, lift: Array) -> Rise:
 def shaped_deflection(
     energy: ArrayLike, rate: ArrayLike, preload: ArrayLike, shape: SpringShape
 ) -> Array:
-    """Lift (...), m, at which a spring stores an energy beyond that at zero lift, J.
+    """Lift (...), m, at which a nonlinear spring has stored an energy above zero lift, J.
 
     Newton's method within a bracket on P s + k R(s) = E, which increases with s; one more step in
     complex numbers has the exact derivative.
@@ -125,7 +125,7 @@ def shaped_deflection(
 
 
 class Limited(NamedTuple):
-    """State of a spring at a lift (...), that its maker limits: SI."""
+    """State of a spring at a lift (...) under its maker's limits, SI."""
 
     pressure: Array
     temperature: Array
@@ -348,7 +348,7 @@ class TorsionSpring(Part):
         return float(self.arm * (_STEEPEST - np.sin(self.arm_angle)))
 
     def angle(self, lift: Array) -> Array:
-        """Angle (...) that the arm has turned from zero lift, rad."""
+        """Rotation (...) of the arm from zero lift, rad."""
         turned: Array = np.arcsin(np.sin(self.arm_angle) + lift / self.arm) - self.arm_angle
         return turned
 

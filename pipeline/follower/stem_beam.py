@@ -13,7 +13,7 @@ from camwright.geometry.errors import InputError
 
 @dataclass(frozen=True)
 class Stem:
-    """Round bar in the guides.
+    """Round stem of the follower.
 
     Parameters
     ----------
@@ -93,7 +93,7 @@ def end_flexibility(length: ArrayLike, stem: Stem) -> Array:
 
 
 def stem_compliance(nodes: Array, stem: Stem) -> tuple[Array, Array]:
-    """Deflection and slope at each node under a unit force at each node, clamped at the first node.
+    """Compliance matrices: deflection and slope at each node per node force; first node clamped.
 
     The elements form a chain clamped at one end: each element bends under the loads beyond it, and
     the part beyond follows its end as a rigid body. Exact to round-off, where a factorisation would
