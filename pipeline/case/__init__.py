@@ -1,4 +1,4 @@
-"""Case: sections of a case file, their consistency, torque, lift and machine of a case.
+"""Case: sections of a case file, their consistency, and its torque, lift and machine.
 
 In the order of the calculation:
 

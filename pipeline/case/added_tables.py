@@ -1,4 +1,4 @@
-"""Tables `[[added]]` that complete a case, and their text for keys that it lacks.
+"""Tables `[[added]]` that complete a case; example text for missing keys.
 
 TOML forbids to open a table twice: lines below a second ``[guides.a]`` cannot be read. What stands
 below ``[added.guides.a]`` is added to the table of that name, wherever in the file it stands.
@@ -45,7 +45,7 @@ _OPTIONAL = (
 
 
 def with_added(case: Tables) -> Tables:
-    """Tables of a case file with its tables ``[[added]]`` in their places.
+    """Tables of a case file with the ``[[added]]`` ones merged in.
 
     Raises
     ------
@@ -77,7 +77,7 @@ def _add(table: Tables, more: Tables, path: str) -> None:
 def added_text(
     needed: Iterable[str], optional: Iterable[str], materials: Mapping[str, Material]
 ) -> str:
-    """Tables ``[[added]]`` with an example for each missing key, as TOML.
+    """TOML of tables ``[[added]]`` with an example for each missing key.
 
     Parameters
     ----------
@@ -146,7 +146,7 @@ def _place(path: str, rows: Sequence[tuple[str, Key]]) -> int:
 
 
 def line_of(key: Key) -> str:
-    """A key with its example as a line of TOML."""
+    """Line of TOML: a key with its example."""
     return _line(key.name, key.example)
 
 
@@ -182,7 +182,7 @@ Rows = dict[str, Key]
 
 
 def with_examples(error: MissingKeysError, tables: Tables, folder: Path | None) -> MissingKeysError:
-    """The refusal of a case with all the required keys that it lacks, and an example of each.
+    """Refusal of a case that lists all missing required keys, with an example of each.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""`Case`: a design and its load cases as a case file has them, every default resolved, in SI."""
+"""`Case`: a case file read and resolved, every default included, in SI."""
 
 from __future__ import annotations
 
@@ -175,7 +175,7 @@ class Case(Displayed, Section):
         return repr(self)
 
     def to_pandas(self) -> pd.DataFrame:
-        """A row per key of the resolved case, with its value as in `to_toml`.
+        """Data frame of the resolved case: a row per key, values as in `to_toml`.
 
         Raises
         ------
@@ -226,12 +226,12 @@ class Case(Displayed, Section):
 
     @property
     def included(self) -> Mapping[str, bytes]:
-        """Bytes of each included file, by its name in a run folder."""
+        """Contents of the included files, by their names in a run folder."""
         return self._included
 
     @property
     def written(self) -> Written:
-        """The case as its file states it, for messages."""
+        """Tables of the case file as written, for messages."""
         return self._written
 
     @property
@@ -240,7 +240,7 @@ class Case(Displayed, Section):
         return hash_inputs(self.to_toml(), self._included)
 
     def with_positions(self, positions: int) -> Case:
-        """The same case at another number of positions per cam turn."""
+        """Case with another number of positions per cam turn."""
         values = self.solver.model_dump() | {"positions": positions}
         try:
             solver = Solver.model_validate(values)
@@ -261,7 +261,7 @@ class Case(Displayed, Section):
 
     @property
     def roller(self) -> Roller:
-        """The roller of a case whose follower has one.
+        """Roller of the follower; refused for a flat face.
 
         Raises
         ------
@@ -297,18 +297,18 @@ class Case(Displayed, Section):
 
     @property
     def balances(self) -> bool:
-        """Whether the cam balances a torque; otherwise the case has its lift."""
+        """Whether the lift follows from a torque to balance; else the case states the lift."""
         return self.lift is None
 
     @property
     def spring_mass(self) -> float:
-        """Share of the spring's mass in that of the follower, kg; 0 without a spring design."""
+        """Part of the spring's mass that moves with the follower, kg; 0 without a spring design."""
         design = self.spring.design
         return 0.0 if design is None else self.follower.spring_share * design.mass
 
     @property
     def facing(self) -> FollowerKind:
-        """The part of the follower that touches the cam."""
+        """Roller or flat face that touches the cam."""
         return self.roller if self.follower.face is None else self.follower.face
 
     def contour(self, lift: Lift) -> Contour:
@@ -322,12 +322,12 @@ class Case(Displayed, Section):
 
     @property
     def contact_radius(self) -> float:
-        """Radius of the roller, m; under a flat face that of the base circle."""
+        """Roller radius, m; under a flat face the base radius."""
         return self.facing.contact_radius or self.base_circle
 
     @property
     def largest_tool(self) -> float | None:
-        """Tool radius for concave flanks, m: that of the limits, else of the workshop."""
+        """Tool radius for concave flanks, m: from the limits, else from the workshop."""
         limit = self.limits[TOOL_RADIUS]
         return self.workshop.tool_radius if limit is None else limit
 
@@ -352,7 +352,7 @@ def _keyed(key: str, value: object) -> Iterator[tuple[str, object]]:
 
 
 def includes(case: Case) -> Iterator[tuple[str, str]]:
-    """Dotted field and file name of every file that a case includes."""
+    """Key and file name of every included file."""
     yield from engine_files(case.engine)
     yield from torque_files(case.torque)
     if isinstance(case.lift, LiftTable):
@@ -368,5 +368,5 @@ def includes(case: Case) -> Iterator[tuple[str, str]]:
 
 
 def kept_as(name: str) -> str:
-    """Path of the copy of an included file in a run folder."""
+    """Path in a run folder of the copy of an included file."""
     return f"{INPUTS}/{Path(name).name}"

@@ -1,4 +1,4 @@
-"""Reading of a case file: TOML, cards, included files; the first error in one line."""
+"""Reading of a case file: TOML, cards, included files; errors as one line each."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ _REFUSED = Material(E=1.0, nu=0.0, yield_strength=1.0, density=1.0, source=NO_SO
 
 
 def read_case(path: str | Path) -> Case:
-    """Read and check a case file.
+    """Case read from a file and checked.
 
     Raises
     ------
@@ -48,7 +48,7 @@ def read_case(path: str | Path) -> Case:
 
 
 def case_bytes(path: str | Path) -> bytes:
-    """Contents of a case file.
+    """Contents of a case file, bounded in size.
 
     Raises
     ------
@@ -59,12 +59,12 @@ def case_bytes(path: str | Path) -> bytes:
 
 
 def parse_case(content: str | bytes, folder: Path | None = None) -> Case:
-    """A case from its text; included files are read from `folder`."""
+    """Case from its text; included files are read from `folder`."""
     return completed(case_of(tables_in(content), folder), folder)
 
 
 def tables_in(content: str | bytes) -> Tables:
-    """Tables of the text of a case, of this version."""
+    """Tables of a case text, checked for the schema version."""
     data: Tables = parse_toml(content, "case")
     version = data.get("schema_version")
     if version is not None and version != SCHEMA_VERSION:
@@ -75,7 +75,7 @@ def tables_in(content: str | bytes) -> Tables:
 
 
 def completed(case: Case, folder: Path | None) -> Case:
-    """A case with the files that it includes, read from `folder`.
+    """Case with its included files read from `folder`.
 
     A face too narrow and a file without an external force are refused.
     """
@@ -89,7 +89,7 @@ def completed(case: Case, folder: Path | None) -> Case:
 
 
 def case_of(data: Tables, folder: Path | None = None) -> Case:
-    """A case from its tables and the cards of `folder`; included files are not read."""
+    """Case from its tables and the cards of `folder`; included files are not read."""
     tables = resolved(data, folder)
     try:
         return validated(tables)
@@ -98,14 +98,14 @@ def case_of(data: Tables, folder: Path | None = None) -> Case:
 
 
 def resolved(data: Tables, folder: Path | None = None) -> Tables:
-    """Tables of a case with those added, stand-ins of parts out of scope and keys of its cards."""
+    """Tables of a case with added tables, cards, and stand-ins for parts out of scope."""
     tables = with_stand_ins(with_every_name(with_new_keys(with_added(data))))
     fill_cards(tables, folder)
     return tables
 
 
 def validated(tables: Tables) -> Case:
-    """A case from its resolved tables; included files are not read."""
+    """Case from resolved tables; included files are not read."""
     try:
         case = Case.model_validate(tables, context={"materials": _cards(tables.get("materials"))})
     except ValidationError as error:
@@ -116,7 +116,7 @@ def validated(tables: Tables) -> Case:
 
 
 def with_values(case: Case, values: Mapping[str, TomlValue]) -> Case:
-    """The case with other values, read and checked as a case file.
+    """Case with other values, read and checked as a case file.
 
     Parameters
     ----------
@@ -138,7 +138,7 @@ def with_values(case: Case, values: Mapping[str, TomlValue]) -> Case:
 
 
 def enter(tables: Tables, key: str, value: TomlValue) -> None:
-    """Enter a value at a dotted key of the tables of a case."""
+    """Enter a value into the tables of a case at a dotted key."""
     *path, last = steps_of(key)
     table: Any = tables
     for step in path:

@@ -1,4 +1,4 @@
-"""Values of a case by dotted key: their unit, the value and its text; the case with other numbers.
+"""Values of a case by dotted key: unit, value, text; case with other numbers.
 
 A key is that of the case file: ``spring.rate``, ``roller.bearing.C``, ``load_case[0].speed``.
 """
@@ -30,7 +30,7 @@ Node = TypeVar("Node", Section, Part)
 
 @lru_cache(maxsize=4096)
 def steps_of(key: str) -> tuple[str | int, ...]:
-    """Names and numbers of a key: ``load_case[0].speed`` is load_case, 0, speed.
+    """Steps of a dotted key: ``load_case[0].speed`` is load_case, 0, speed.
 
     Raises
     ------
@@ -48,7 +48,7 @@ def steps_of(key: str) -> tuple[str | int, ...]:
 
 @lru_cache(maxsize=4096)
 def quantity_of(key: str) -> In | Count | None:
-    """Unit and bounds of the number at a key; None: the value is no number.
+    """Unit and bounds of the number at a key; None for other values.
 
     Raises
     ------
@@ -90,7 +90,7 @@ def _beside(name: str, table: str, known: Sequence[str]) -> str:
 
 
 def value_of(case: Case, key: str) -> Any:
-    """Value at a key, SI; None where the case leaves it out."""
+    """Value at a key, SI; None where the case omits it."""
     node: Any = case
     for step in steps_of(key):
         if node is None:
@@ -105,7 +105,7 @@ def value_of(case: Case, key: str) -> Any:
 
 
 def text_of(case: Case, key: str, digits: int = 4) -> str:
-    """Value at a key as the case file states it, rounded to `digits`; "missing" without one.
+    """Value at a key as in the case file, rounded to `digits`; "missing" without one.
 
     A default, and a number that has replaced that of the file, are shown in the unit of the key.
     """
@@ -122,7 +122,7 @@ def text_of(case: Case, key: str, digits: int = 4) -> str:
 
 @contextmanager
 def refused_as_written(case: Case) -> Iterator[None]:
-    """Within it a refusal of the value at a key states the value as the case file does.
+    """Context manager: refusals of a value at a key quote it as the case file writes it.
 
     A number other than that of the case is stated in the unit of the key.
     """
@@ -157,7 +157,7 @@ def _attributes(kind: type[Section]) -> Mapping[str, str]:
 
 
 def replaced(case: Case, values: Mapping[str, float]) -> Case:
-    """The case with other numbers, SI, of the bounds of their fields alone.
+    """Case with other numbers, SI, checked against the bounds of their fields alone.
 
     Faster than `with_values`; the sections are not compared with one another.
 
@@ -215,7 +215,7 @@ _LEFT_OUT = ("elastic_modulus", "relaxation")
 
 @dataclass(frozen=True, eq=False)
 class WoundSprings(WoundWire[Number]):
-    """Springs of many designs, or of the numbers of a case."""
+    """Wound springs of many designs, or of one case, as arrays."""
 
     wire_diameter: Number
     mean_diameter: Number
@@ -233,7 +233,7 @@ class WoundSprings(WoundWire[Number]):
 
 
 def wound_spring(case: Case, at: Callable[[str], Value | None]) -> WoundSprings[Value] | None:
-    """Springs of designs; None where the case has no spring design.
+    """Wound springs of designs; None where the case has no spring design.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Consistency of the sections of a case with one another."""
+"""Consistency rules between the sections of a case."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ At = Callable[[str], Any]
 
 
 class Rule(NamedTuple):
-    """A relation that the numbers of a case keep, for one case or many designs at once.
+    """Inequality between numbers of a case, for one case or arrays of designs.
 
     key : str           that is refused
     breaks : callable   whether the relation is broken, bool or array (m,); NaN breaks none
@@ -75,7 +75,7 @@ def check_sections(case: Case) -> None:
 
 
 def check_numbers(case: Case) -> None:
-    """As `check_sections`, but for the names of the values with a source or a confirmation.
+    """As `check_sections`, without the check that sources name existing values.
 
     A relation of a number that an earlier one refuses, or names, is not tried: it may be right.
     """
@@ -106,7 +106,7 @@ def _values(case: Case) -> At:
 
 
 def rules(case: Case) -> Iterator[Rule]:
-    """Relations of the numbers of a case, in the order of their refusals.
+    """Inequalities between the numbers of a case, in the order of their refusals.
 
     They depend on its structure alone: those of many designs are those of the case that they share.
 
@@ -285,7 +285,7 @@ def _no_tighter() -> Iterator[Rule]:
 
 
 def tightened_tolerances(case: Case) -> dict[str, tuple[str, str]]:
-    """Tolerances tighter than their default, by dotted name: value and bound of the default."""
+    """Tolerances below their default by dotted name: value and default bound."""
     at = _values(case)
     return {
         rule.key: (text_of(case, rule.key), rule.limit.format(_bound_text(rule, at, 4)))

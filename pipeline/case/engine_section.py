@@ -1,4 +1,4 @@
-"""The engine of a case file: a cylinder model, or what was measured on the engine."""
+"""Engine section of a case file: cylinder model or measurement."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ KINDS = ("cylinder", "table", "pressure", "speed", "voltage")
 
 
 def engine_files(engine: Engine | None) -> Iterator[tuple[str, str]]:
-    """Dotted field and name of every file that an engine includes."""
+    """Key and file name of every file that an engine includes."""
     if engine is None or isinstance(engine, CylinderEngine):
         return
     yield "engine.file", engine.file

@@ -1,4 +1,4 @@
-"""Errors of a case file, each in one line, its value as written: field, value, limit."""
+"""Error messages of a case file, one line each: field, value as written, limit."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ _WORDS = {
 
 @dataclass(frozen=True)
 class Written:
-    """Tables of a case file with the texts of their values, those of its cards included.
+    """Tables of a case file with the source text of their values, cards included.
 
     All are equal: two cases are, whose files state the same values in other words.
     """
@@ -53,7 +53,7 @@ class Written:
     tables: Tables = field(default_factory=dict, compare=False)
 
     def value(self, steps: Iterable[str | int]) -> TomlValue | None:
-        """Value at the steps of a dotted key; None where the file leaves it out."""
+        """Value at a dotted key; None where the file omits it."""
         node: Any = self.tables
         for step in steps:
             try:
@@ -64,14 +64,14 @@ class Written:
 
 
 def as_written(value: object, digits: int = 4) -> str:
-    """Value of a case file in a message: as it stands, its number rounded to `digits`."""
+    """Value of a case file for a message, unchanged but its number rounded to `digits`."""
     if isinstance(value, bool):
         return str(value).lower()
     return rounded(repr(value) if isinstance(value, float) else str(value), digits)
 
 
 class MissingKeysError(InputError):
-    """Required keys that a file leaves out.
+    """Case file without some required keys.
 
     Parameters
     ----------
@@ -94,7 +94,7 @@ class MissingKeysError(InputError):
 
 
 def grouped(texts: Mapping[str, str]) -> str:
-    """Texts of dotted keys in one line, each table once: ``[cam] width, end; [roller] radius``.
+    """Dotted keys in one line, grouped by table: ``[cam] width, end; [roller] radius``.
 
     Parameters
     ----------
@@ -108,7 +108,7 @@ def grouped(texts: Mapping[str, str]) -> str:
 
 
 def refusal_of(error: ValidationError, section: str = "") -> InputError:
-    """All errors of a section, one each key; the keys that are missing are one.
+    """Exception with all errors of a section, one for each key; missing keys count as one.
 
     An unknown key comes before a missing one, often its misspelling.
     """

@@ -1,4 +1,4 @@
-"""External force on the follower of a case, and its constant part with the weight."""
+"""External force on the follower, and its mean with the weight."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from camwright.pipeline.torque.tabled_torque import require_cycle
 
 
 def external_force(case: Case) -> ExternalForce:
-    """Force of the machine on the follower over the cam angle.
+    """External force of the machine on the follower over the cam angle.
 
     Raises
     ------
@@ -38,7 +38,7 @@ def dead_load(case: Case) -> float:
 
 
 def closing_preload(case: Case) -> float:
-    """Force towards the cam at zero lift and rest, N: preload, weight and mean external force.
+    """Closing force at zero lift and standstill, N: preload, weight and mean external force.
 
     Raises
     ------
@@ -51,7 +51,7 @@ def closing_preload(case: Case) -> float:
 
 
 def require_closing(key: str, preload: float, dead: float) -> None:
-    """Refuse a preload that weight and mean external force, N, cancel."""
+    """Refuse a preload that weight and mean external force cancel."""
     if not preload + dead > 0.0:
         limit = f"> {shown(-dead, 'N')}, as weight and external force pull the follower off"
         raise InputError(key, shown(preload, "N"), limit)

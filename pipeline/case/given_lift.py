@@ -1,4 +1,4 @@
-"""Lift of a case without engine: from a table, segments, points or an eccentric circle."""
+"""Lift stated in a case: table, segments, points or eccentric circle."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ from camwright.pipeline.torque.angle_trace import read_trace
 
 
 class LiftSource(Protocol):
-    """The sections of a case that determine its stated lift."""
+    """Sections of a case that determine its stated lift."""
 
     @property
     def lift(self) -> GivenLift | None: ...
@@ -47,13 +47,13 @@ class LiftSource(Protocol):
 
 
 def eccentric_of(case: LiftSource, section: LiftEccentric) -> Eccentric:
-    """Eccentric disc of a case, its minimum pitch radius the prime radius."""
+    """Eccentric disc of a case; its minimum pitch radius is the prime radius."""
     rod = case.cam.prime_radius + section.eccentricity
     return Eccentric(section.eccentricity, rod, case.cam.offset)
 
 
 def given_lift(case: LiftSource) -> Lift:
-    """Lift of a case without engine.
+    """Lift of a case that states it.
 
     Raises
     ------
@@ -79,7 +79,7 @@ def given_lift(case: LiftSource) -> Lift:
 
 
 def lift_origin(case: LiftSource) -> str:
-    """Origin of the lift in one line, with the residual of a fitted table."""
+    """Origin of the lift in words, with the residual of a fitted table."""
     section, fit = case.lift, _fitted(case)
     if fit is not None:
         stated = isinstance(section, LiftTable) and section.noise is not None
@@ -105,7 +105,7 @@ def lift_origin(case: LiftSource) -> str:
 
 
 def table_overshoot(case: LiftSource) -> tuple[float, float] | None:
-    """Share of the stroke by which the curve through a lift table overshoots, and its cam angle.
+    """Overshoot of the curve through a lift table, over the stroke, and its cam angle.
 
     None for another lift, or one fitted to its table.
     """

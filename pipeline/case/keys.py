@@ -1,4 +1,4 @@
-"""Registry of the keys of a case: unit, range, default, meaning and example of each field."""
+"""Registry of case-file keys: unit, range, default, meaning and example."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ Words = TypeVar("Words", Known, Meaning, Used)
 
 @dataclass(frozen=True)
 class Key:
-    """A key of the case file, or one of its tables.
+    """Key of the case file, a value or a table.
 
     Parameters
     ----------
@@ -66,22 +66,22 @@ class Key:
 
     @property
     def table(self) -> str:
-        """Path of its table; "": the top of the file."""
+        """Path of the table that holds the key; "": top of the file."""
         return self.path.rpartition(".")[0]
 
     @property
     def needed(self) -> bool:
-        """Whether its table is not complete without it."""
+        """Whether its table is incomplete without it."""
         return self.default in ("", REQUIRED) and self.name != "source"
 
     @property
     def is_field(self) -> bool:
-        """Whether a case has it as a field; else the reader replaces it by what it names."""
+        """Whether the case has it as a field; else the reader replaces it, as ``card``."""
         return self.field not in self.section.resolved
 
     @cached_property
     def mark(self) -> In | Count | None:
-        """Unit and bounds of its number; None: it holds none."""
+        """Unit and bounds of its number; None for other values."""
         return number_in(self._info) if self.is_field and not self.is_table else None
 
     @cached_property
@@ -93,14 +93,14 @@ class Key:
 
     @cached_property
     def default(self) -> str:
-        """Value or meaning of its absence; "required", or "": a datum that is missing."""
+        """Default, or the meaning of its absence; "required", or "" for missing data."""
         if self.is_table:
             return ""
         return of_field(self.section, self.field) if self.is_field else "none"
 
     @cached_property
     def meaning(self) -> str:
-        """What it states, in the terms of the field: the docstring below its field.
+        """Meaning in the terms of the field: the docstring below the field.
 
         Raises
         ------
@@ -117,12 +117,12 @@ class Key:
 
     @property
     def source(self) -> str:
-        """Where such a value comes from; "" of a table that is not stated as a value."""
+        """Where such a value is found; "" for a table not stated as a value."""
         return self._known.source
 
     @property
     def example(self) -> TomlValue:
-        """Value as a case file has it: that beside its field, else the default; of a table {}."""
+        """Example as in a case file, else the default; {} for a table."""
         return self._example if self.instead is None else self.instead
 
     @cached_property
@@ -135,7 +135,7 @@ class Key:
 
     @cached_property
     def used(self) -> str:
-        """Stages that use its table."""
+        """Stages of the calculation that use its table."""
         if self.is_table:
             return self._stated(Used).stages
         return registry()[self.table][0].used if self.table else "all stages"
@@ -174,19 +174,19 @@ def _as_toml(example: TomlValue | tuple[TomlValue, ...]) -> TomlValue:
 
 @cache
 def case_keys() -> tuple[Key, ...]:
-    """Every key of a case file in the order of its tables, each table before its keys."""
+    """All keys of a case file, each table before its keys."""
     return tuple(key for table in case_tables() for key in _keys_of(table))
 
 
 @cache
 def case_tables() -> tuple[TableKeys, ...]:
-    """Every table of a case file in its order, the top of the file first."""
+    """All tables of a case file in order, the top of the file first."""
     return tuple(sections(Case))
 
 
 @cache
 def registry() -> Mapping[str, tuple[Key, ...]]:
-    """Keys of a case file by path, one for each kind of its table that has it."""
+    """Keys of a case file by path, one for each variant of their table."""
     by_path: dict[str, tuple[Key, ...]] = {}
     for key in case_keys():
         by_path[key.path] = (*by_path.get(key.path, ()), key)
@@ -194,7 +194,7 @@ def registry() -> Mapping[str, tuple[Key, ...]]:
 
 
 def keys_at(path: str) -> tuple[Key, ...]:
-    """Keys at a dotted path of a case, one for each kind of its table that has it; () if none.
+    """Keys at a dotted path, one for each variant of their table; () if none.
 
     Parameters
     ----------
@@ -208,7 +208,7 @@ def keys_at(path: str) -> tuple[Key, ...]:
 
 
 def names_in(table: str) -> tuple[str, ...]:
-    """Names of the fields of a table by its path, tables within it included; () if it is none."""
+    """Names of the fields of the table at a path, nested tables included; () without one."""
     names = (
         field.alias or name
         for each in case_tables()
@@ -219,13 +219,13 @@ def names_in(table: str) -> tuple[str, ...]:
 
 
 def keys_in(table: str) -> tuple[Key, ...]:
-    """Keys of a table by its path, each once, tables within it left out."""
+    """Keys of the table at a path, each once, without nested tables."""
     within = {key.path: key for key in case_keys() if key.table == table and not key.is_table}
     return tuple(within.values())
 
 
 class TableKeys(NamedTuple):
-    """A table of a file by its dotted path: its header and section, and the field that holds it."""
+    """Table of a file: header, section class, and field that holds it."""
 
     path: str
     header: str
@@ -246,7 +246,7 @@ def _keys_of(table: TableKeys) -> Iterator[Key]:
 
 
 def sections(section: type[Section]) -> Iterator[TableKeys]:
-    """A section and those within it, by their headers in its file."""
+    """Section and its nested sections, by their headers in the file."""
     yield TableKeys("", "top of the file", section, section, "")
     yield from _within(section, "")
 
@@ -267,7 +267,7 @@ def _within(section: type[Section], path: str) -> Iterator[TableKeys]:
 
 
 def nested(field: FieldInfo) -> Iterator[tuple[str, type[Section]]]:
-    """Sections that a field holds: as a table, as rows, or by names; none of a value."""
+    """Sections in a field: a table, rows of tables, or tables by name; none for a value."""
     yield from _nested(field.annotation, "table")
 
 
@@ -291,7 +291,7 @@ def _nested(hint: object, kind: str) -> Iterator[tuple[str, type[Section]]]:
 
 
 def accepted(field: FieldInfo) -> str:
-    """What a key may hold: unit and bounds, words, or kind of value."""
+    """Values that a key accepts: unit and bounds, words, or type."""
     mark = number_in(field)
     if isinstance(mark, In):
         return mark.limit.replace("finite ", "any, ").replace(" and ", ", ")
@@ -334,12 +334,12 @@ def _leaves(hint: object) -> Iterator[object]:
 
 
 def of_field(section: type[Section], name: str) -> str:
-    """Default of a field, or the meaning of its absence; "": a datum that is missing."""
+    """Default of a field, or the meaning of its absence; "" for missing data."""
     return default(section.model_fields[name]) or section.defaults.get(name, "")
 
 
 def default(field: FieldInfo) -> str:
-    """Default of a field with its unit; "" where it has none."""
+    """Default of a field with its unit; "" without one."""
     if field.is_required():
         return REQUIRED
     value = field.default
@@ -377,5 +377,5 @@ def _unit_of(field: FieldInfo) -> str | None:
 
 
 def written(value: float, unit: str) -> TomlValue:
-    """A value, SI, as a case file has it: text with the unit, or a number without."""
+    """SI value as in a case file: text with unit, or plain number."""
     return shown(value, unit, DIGITS) if unit else float(f"{value:.{DIGITS}g}")

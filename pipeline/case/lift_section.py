@@ -1,4 +1,4 @@
-"""The lift of a case file: a table, motion laws by segments, points, or an eccentric circle."""
+"""Lift section of a case file: table, segments of motion laws, points, or eccentric circle."""
 
 from __future__ import annotations
 
@@ -124,7 +124,7 @@ LIFT_KINDS = ("table", "segments", "points", "eccentric")
 
 
 def motion_of(section: LiftSegments) -> SegmentMotion:
-    """Motion of the segments of a case.
+    """Motion by the segments of a case.
 
     Raises
     ------

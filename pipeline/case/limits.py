@@ -1,4 +1,4 @@
-"""The table of limits: one row for each value that a case may set in ``[limits]``.
+"""Table of limits: one row for each value of ``[limits]``.
 
 The table is used by the schema of the case file, the checks, the constrained synthesis with its
 shadow prices and conflicts, and the documentation. The demand of a limit is bound to it in
@@ -37,7 +37,7 @@ _ROUND_OFF = 1e-9  # of units
 
 @dataclass(frozen=True)
 class Limit:
-    """A limit with a default.
+    """Row of the table of limits: a limit with a default.
 
     Parameters
     ----------
@@ -63,7 +63,7 @@ class Limit:
 
 @dataclass(frozen=True)
 class OpenLimit:
-    """A limit without a default: None unless the case sets it. Fields as of `Limit`.
+    """Row of the table of limits without a default: None unless the case sets it.
 
     found : str          where its value is found
     example : str or float   a value, as in a case file
@@ -81,7 +81,7 @@ class OpenLimit:
 
     @property
     def default(self) -> None:
-        """None: nothing is required unless the case sets it."""
+        """None: no requirement unless the case sets one."""
         return None
 
 
@@ -89,7 +89,7 @@ AnyLimit = Limit | OpenLimit
 
 
 def utilisation_slope(limit: AnyLimit, value: float) -> float:
-    """Fall of the utilisation for one more unit of a limit's value, where it is reached.
+    """Decrease of the utilisation per unit of the limit's value, at the limit.
 
     Negative if a greater value reduces the margin.
     """
@@ -598,7 +598,7 @@ LIMITS: Mapping[str, AnyLimit] = MappingProxyType(
 
 
 def is_weaker(limit: AnyLimit, value: float | None) -> bool:
-    """Whether a value, SI, is weaker than the default of its row; of a safety, below 1, too.
+    """Whether a value, SI, is weaker than the default of its row, or a safety below 1.
 
     A requirement of the case has no default to be weaker than.
     """
@@ -634,7 +634,7 @@ class LimitValues(Section):
         return value
 
     def source(self, limit: AnyLimit) -> Source:
-        """Source of a value: that of the case, else of the default."""
+        """Source of a value: from the case, else of the default."""
         return self.sources.get(limit.id) or limit.source
 
     @field_validator("sources")

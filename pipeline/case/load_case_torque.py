@@ -1,4 +1,4 @@
-"""Engine torque of a load case, from the engine model or a measurement."""
+"""Engine torque of a load case, modelled or measured."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ CRANKING = SPEED_RANGE[0]
 
 
 class TorqueSource(Protocol):
-    """The sections of a case that determine its torque."""
+    """Sections of a case that determine its torque."""
 
     @property
     def engine(self) -> Engine | None: ...
@@ -88,7 +88,7 @@ class TorqueSource(Protocol):
 
 
 def engine_torques(case: TorqueSource) -> dict[str, Torque]:
-    """Torque of each load case by name; empty for a case that starts at the lift.
+    """Torque of each load case by name; empty where the case states the lift.
 
     A load case at speed 0 has a torque only from a file, or of a cylinder model cranked unfired.
     """
@@ -102,7 +102,7 @@ def engine_torques(case: TorqueSource) -> dict[str, Torque]:
 
 
 def engine_torque(case: TorqueSource, state: LoadCase) -> Torque:
-    """Torque of engine and machine in one load case, over a cam turn.
+    """Torque of engine and machine in a load case, over a cam turn.
 
     Raises
     ------
@@ -113,7 +113,7 @@ def engine_torque(case: TorqueSource, state: LoadCase) -> Torque:
 
 
 def torque_key(case: TorqueSource, load_case: str) -> str:
-    """Key of the case that has the torque of a load case, by its name."""
+    """Case key that supplies the torque of a load case, by its name."""
     number = [state.name for state in case.load_cases].index(load_case)
     if case.load_cases[number].torque is not None:
         return f"load_case[{number}].torque"
@@ -122,7 +122,7 @@ def torque_key(case: TorqueSource, load_case: str) -> str:
 
 
 def require_ripple(case: TorqueSource, torques: Mapping[str, Torque]) -> None:
-    """Refuse a torque that is constant but for round-off, where its ripple is to be least.
+    """Refuse a torque that is constant to round-off, where its ripple is to be minimised.
 
     Parameters
     ----------
@@ -194,7 +194,7 @@ def _cylinder_torque(engine: CylinderEngine, speed: float) -> Torque:
 
 
 def has_torque(case: TorqueSource, state: LoadCase) -> bool:
-    """Whether a load case has an engine torque: not at rest, unless it is cranked."""
+    """Whether a load case has an engine torque: running, or cranked."""
     cranked = isinstance(case.engine, CylinderEngine) and not state.fired
     return state.speed > 0 or state.torque is not None or cranked
 
@@ -211,7 +211,7 @@ def _loaded(engine: CylinderEngine, state: LoadCase) -> CylinderEngine:
 
 
 def pressure(case: TorqueSource, engine: PressureTable) -> tuple[BrakeBalance, PressureTrace]:
-    """Measured cycles of a case at their dead centre, pegged and checked, with their balance.
+    """Measured cylinder pressure of a case, pegged and checked, with its brake balance.
 
     A brake power is that at the speed of the first load case.
 
@@ -312,8 +312,7 @@ def measurement_record(case: TorqueSource) -> Measurement | None:
 
 
 def measurement_words(case: TorqueSource) -> Iterator[str]:
-    """Lines on the indicated torque of a measured pressure, on wheel and cycle of a measured speed;
-    none for another engine."""
+    """Lines of text on a measurement: indicated torque, trigger wheel, working cycle."""
     engine = case.engine
     if isinstance(engine, PressureTable):
         yield pressure(case, engine)[0].words()

@@ -1,4 +1,4 @@
-"""`Machine`: the parts of a case in one load case, in SI."""
+"""`Machine`: parts and loads of a case in one load case, in SI."""
 
 from __future__ import annotations
 
@@ -77,7 +77,7 @@ CREEP = 1e-3
 
 @dataclass(frozen=True)
 class Corner:
-    """Tolerance corner: factors on the nominal values; phase, rad of crank; profile, m."""
+    """Tolerance corner: factors on nominal values; phase, rad of crank; profile error, m."""
 
     name: str
     friction_a: float = 1.0
@@ -92,7 +92,7 @@ class Corner:
 
 @dataclass(frozen=True, repr=False)
 class Machine(Displayed):
-    """The machine in one load case.
+    """Parts, loads and limits of one load case, SI.
 
     Parameters
     ----------
@@ -171,7 +171,7 @@ class Machine(Displayed):
 
     @property
     def roller(self) -> Roller:
-        """The follower of checks that need a roller.
+        """Roller of the follower; refused for a flat face.
 
         Raises
         ------
@@ -184,7 +184,7 @@ class Machine(Displayed):
 
     @property
     def face(self) -> FlatFace:
-        """The follower of checks that need a flat face.
+        """Flat face of the follower; refused for a roller.
 
         Raises
         ------
@@ -246,7 +246,7 @@ class Machine(Displayed):
 
     @property
     def finite_pairs(self) -> tuple[FinitePair, ...]:
-        """Contact of cam and follower with their ends: one, or one for each end at an axial offset.
+        """Contacts of finite length: one, or one for each end at an axial offset.
 
         Empty where the case lacks an end. The curvature is that of the base circle.
 
@@ -283,7 +283,7 @@ class Machine(Displayed):
 
     @property
     def crowns(self) -> dict[str, BodyCrown]:
-        """Crown of each body that has one by its word, about its own middle.
+        """Crowns of both bodies by name, each about its own middle.
 
         Raises
         ------
@@ -332,7 +332,7 @@ class Machine(Displayed):
 
     @property
     def compliances(self) -> dict[str, float]:
-        """Compliance of each member described between cam and follower mass by its name, m/N.
+        """Compliances by name of the described members from cam to follower mass, m/N.
 
         The stem counts to its far guide; the line contact and the cam are taken as rigid.
         """
@@ -347,7 +347,7 @@ class Machine(Displayed):
 
     @property
     def axial_stiffness(self) -> float:
-        """Stiffness from cam to follower mass, N/m: of the case, else its members in series."""
+        """Stiffness from cam to follower mass, N/m: stated, else members in series."""
         return in_series(self.compliances.values()) if self.stiffness is None else self.stiffness
 
     @property
@@ -374,11 +374,11 @@ class Machine(Displayed):
 
     @property
     def mass_without_spring(self) -> float:
-        """Mass of the follower without its share of the spring, kg."""
+        """Mass of the follower without the spring's part, kg."""
         return self.mass - self.spring_mass
 
     def at_corner(self, corner: Corner) -> Machine:
-        """The machine at a tolerance corner; the contour is not part of it."""
+        """Machine at a tolerance corner; the contour is not part of it."""
         spring, shaft = self.spring, self.crankshaft
         rate = spring.rate * corner.rate
         # A profile deviation outwards compresses the spring by as much.
@@ -393,7 +393,7 @@ class Machine(Displayed):
 
 
 def machines(case: Case, torques: Mapping[str, Torque] = NO_TORQUES) -> tuple[Machine, ...]:
-    """The machine in every load case that is judged, the design load case first.
+    """Machines of all judged load cases, the design load case first.
 
     Parameters
     ----------
@@ -403,7 +403,7 @@ def machines(case: Case, torques: Mapping[str, Torque] = NO_TORQUES) -> tuple[Ma
 
 
 def judged_load_cases(case: Case) -> tuple[LoadCase, ...]:
-    """Load cases of the case, then standstill and over-speed where the case has neither.
+    """Load cases of the case, completed by standstill and over-speed.
 
     Lowest and highest running speed are those of the case. Standstill and over-speed are judged
     at every preload, without an engine torque; over-speed only where the case limits the speed.
@@ -427,7 +427,7 @@ def judged_load_cases(case: Case) -> tuple[LoadCase, ...]:
 
 
 def machine(case: Case, state: LoadCase, torque: Torque | None = None) -> Machine:
-    """The machine of a case in one of its load cases."""
+    """Machine of a case in one load case."""
     follower, guides, spring = case.follower, case.guides, case.spring
     card = follower.stem_material
     length = np.inf if follower.stem_length is None else follower.stem_length

@@ -1,4 +1,4 @@
-"""Sections of a case file without a part of their own: follower, valve train."""
+"""Follower and valve-train sections of a case file."""
 
 from __future__ import annotations
 

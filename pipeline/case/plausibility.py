@@ -1,4 +1,4 @@
-"""Plausibility: values of a case beyond their usual ranges, which stand in `usual_ranges.toml`.
+"""Plausibility of case values against the usual ranges of `usual_ranges.toml`.
 
 Such a value is allowed; it is stated with the consistency of the inputs, and that of a single
 key is to be confirmed.
@@ -36,7 +36,7 @@ PLAUSIBILITY = "plausibility"
 
 @dataclass(frozen=True)
 class Usual:
-    """Usual range of a quantity, low to high in `unit`, its source, and keys of such values."""
+    """Usual range of a quantity in `unit`, with source and the keys it applies to."""
 
     unit: str
     low: float
@@ -45,7 +45,7 @@ class Usual:
     keys: Sequence[str] = ()
 
     def finding(self, title: str, value: float, text: str) -> Implied | None:
-        """Finding on a value (SI) with its text; None within the range and 10 % beyond."""
+        """Finding on a value (SI) more than 10 % outside the range; None otherwise."""
         stated = in_unit(value, self.unit)
         nearest = min(max(stated, self.low), self.high)
         unit = f" {self.unit}".replace(" -", "")
@@ -55,7 +55,7 @@ class Usual:
 
 
 def implausible(case: Case, torques: Mapping[str, Torque]) -> tuple[Implied, ...]:
-    """Values of a case beyond their usual ranges, one finding each.
+    """Findings on the values of a case outside their usual ranges.
 
     Besides the values of single keys: the peak-to-peak torque, the speed at which a motor carries
     it, and the spring against the energy swing of the torque of the design load case.
@@ -78,7 +78,7 @@ def implausible(case: Case, torques: Mapping[str, Torque]) -> tuple[Implied, ...
 
 
 def beyond_ranges(case: Case) -> tuple[Implied, ...]:
-    """Values of single keys beyond their usual ranges: as such, by hardness, by balance grade.
+    """Findings on single keys: absolute range, by hardness, by balance grade.
 
     They are to be confirmed, whatever their source.
     """
@@ -317,7 +317,7 @@ def _range(row: Mapping[str, Any]) -> Usual:
 
 
 def usual_sources() -> Iterator[tuple[str, Source]]:
-    """Name and source of each usual range, by its first key or its own name."""
+    """Sources of the usual ranges by first key or name."""
     for row in _ranges():
         yield f"usual_ranges.{row.keys[0]}", row.source
     for name, row in _table().items():

@@ -1,4 +1,4 @@
-"""Keys of a case file that changed to the field's standard terms: old names are read as new."""
+"""Renamed keys of case files: old names are read as new ones."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ from camwright.pipeline.case.toml_text import Tables, TomlValue
 
 @cache
 def renamed_names() -> Mapping[str, Mapping[str, TomlValue]]:
-    """Old names by kind (``case``, ``values``, ``columns``, ...), each with its new name."""
+    """New names by old name, by kind (``case``, ``values``, ``columns``, ...)."""
     text = files(__package__).joinpath("renamed.toml").read_text(encoding="utf-8")
     return tomllib.loads(text)
 
 
 def with_new_keys(tables: Tables) -> Tables:
-    """A copy of the tables of a case file under today's names.
+    """Copy of the tables of a case file with old names replaced.
 
     Raises
     ------
@@ -49,7 +49,7 @@ def with_new_keys(tables: Tables) -> Tables:
 
 
 def with_new_wire_keys(wire: TomlValue, field: str) -> Tables:
-    """The table of a spring wire under today's names; `field` names it in messages.
+    """Table of a spring wire with old names replaced; `field` names it in messages.
 
     Raises
     ------

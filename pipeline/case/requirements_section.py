@@ -1,4 +1,4 @@
-"""Requirements on a design: smoothing, tolerances, load cases, waivers, confirmations; solver."""
+"""Requirements of a case: smoothing, tolerances, load cases, waivers, confirmations; solver."""
 
 from __future__ import annotations
 
@@ -171,7 +171,7 @@ class Smoothing(Section):
 
     @property
     def of_spring(self) -> set[str]:
-        """Free variables that change the spring."""
+        """Free variables of the spring."""
         return {"spring_rate", "preload"} & {*self.free}
 
     @model_validator(mode="after")

@@ -1,4 +1,4 @@
-"""Scope of the sign-off: parts of the machine that it does not cover."""
+"""Scope of the sign-off: parts of the machine that it excludes."""
 
 from __future__ import annotations
 
@@ -92,7 +92,7 @@ class Scope(Section):
 
     @property
     def statement(self) -> str:
-        """The parts left out and the reason on one line; "" without any."""
+        """Excluded parts with the reason, in one line; "" without any."""
         parts = ", ".join(words for part, words in SCOPE_WORDS.items() if not self.covers(part))
         reason = " ".join(self.reason.split())
         return f"Not covered by this sign-off: {parts}: {reason}" if parts else ""
@@ -110,7 +110,7 @@ class Scope(Section):
         return part not in self.not_covered
 
     def leaves_out(self, key: str) -> bool:
-        """Whether a key belongs to what the sign-off does not cover: it need not be stated."""
+        """Whether a key belongs to an excluded part and need not be stated."""
         return any(
             fnmatchcase(key, pattern) or fnmatchcase(key, f"{pattern}.*")
             for part in self.not_covered
@@ -140,7 +140,7 @@ _HALF = 0.5  # radius of a bore and of a hub over that of the body around it
 
 
 def with_every_name(tables: Tables) -> Tables:
-    """Tables of a case with the names for `EVERY` in the scope."""
+    """Tables of a case with `EVERY` in the scope expanded to names."""
     scope = tables.get("scope")
     if not isinstance(scope, dict) or scope.get("not_covered") not in (EVERY, [EVERY]):
         return tables
@@ -149,7 +149,7 @@ def with_every_name(tables: Tables) -> Tables:
 
 
 def with_stand_ins(tables: Tables) -> Tables:
-    """Tables of a case with stand-ins for required values of what it leaves out.
+    """Tables of a case with stand-ins for the required values of excluded parts.
 
     - guides: without friction and clearance, of the bore of the stem: four diameters apart, one
       diameter long, at most twice the overhang
@@ -251,7 +251,7 @@ def _fastest(load_cases: TomlValue | None) -> str:
 
 
 def is_stand_in(tables: Tables, key: str) -> bool:
-    """Whether a key stands in a guide that `with_stand_ins` has put there."""
+    """Whether a value of a guide is a stand-in of `with_stand_ins`."""
     first, _, rest = key.partition(".")
     guides = tables.get(first) if first == "guides" else None
     side = guides.get(rest.partition(".")[0]) if isinstance(guides, dict) else None

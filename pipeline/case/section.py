@@ -1,4 +1,4 @@
-"""Base of the sections of a case file; names, materials and parts as their fields."""
+"""Base class of case-file sections; fields for names, materials and parts."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ PartType = TypeVar("PartType", bound=Part)
 
 
 def refusal(limit: str, **context: str) -> PydanticCustomError:
-    """A validation error that states the limit."""
+    """Validation error that states the limit."""
     return PydanticCustomError("limit", "must be {limit}", {"limit": limit, **context})
 
 
@@ -70,7 +70,7 @@ Text = Annotated[str, Characters(0, 10_000)]
 
 @dataclass(frozen=True)
 class FromText:
-    """Marks a `Source` that is written as a text, or as a table of text and confirmation."""
+    """Mark of a `Source` field, written as text or as a table of text and confirmation."""
 
     def __get_pydantic_core_schema__(
         self, source: type[Source], handler: GetCoreSchemaHandler
@@ -92,7 +92,7 @@ SourceOfTable = Annotated[TableSource, FromText()]
 
 
 class Section(BaseModel):
-    """Base of all sections: frozen, unknown keys refused.
+    """Base class of sections: frozen, unknown keys refused.
 
     `defaults` has, in words, what a field without a value means, `resolved` the keys that the
     reader replaces by what they name.
@@ -149,7 +149,7 @@ _TOLD = 6
 
 
 def suggestion(word: str, known: Iterable[str]) -> str:
-    """The closest known word, else all of them or the first of many, for a message."""
+    """Closest known word for a message, else a list of the known ones."""
     words = list(known)
     if close := difflib.get_close_matches(word, words, n=1):
         return f"; did you mean {close[0]}?"
@@ -159,7 +159,7 @@ def suggestion(word: str, known: Iterable[str]) -> str:
 
 @dataclass(frozen=True)
 class FromTable:
-    """Marks a field whose table is read as a `Part`, by the units and bounds of its fields."""
+    """Mark of a field whose table is read as a `Part`, with its units and bounds."""
 
     def __get_pydantic_core_schema__(
         self, source: type[Part], handler: GetCoreSchemaHandler
@@ -179,7 +179,7 @@ Table = Annotated[PartType, FromTable()]
 
 
 def part_of(part: type[PartType], section: Section) -> PartType:
-    """The part that its section describes.
+    """Part class that a section describes.
 
     Raises
     ------
@@ -199,7 +199,7 @@ _PARTS: dict[type[Section], type[Part]] = {}
 
 
 def section_of(part: type[Part]) -> type[Section]:
-    """Section of a case file that describes a part, with the fields of the part in their order."""
+    """Section class of a part, with its fields in order."""
     if part not in _SECTIONS:
         made = _section_made_of(part)
         _SECTIONS[part], _PARTS[made] = made, part
@@ -207,7 +207,7 @@ def section_of(part: type[Part]) -> type[Section]:
 
 
 def written_as(section: type[Section]) -> type[Section | Part]:
-    """The class with the fields of a section in its source: its part, else itself."""
+    """Class whose source has the fields of a section: its part class, else itself."""
     return _PARTS.get(section, section)
 
 
@@ -237,14 +237,14 @@ def _marks(hint: object) -> Iterator[object]:
 
 
 def words_at(section: type[Section], name: str) -> Iterator[object]:
-    """Marks of a field, and those that describe it: a section made of a part goes without."""
+    """Marks of a field, describing ones included, which a section of a part lacks."""
     if section in _PARTS:
         return _marks(hints_of(_PARTS[section])[name])
     return _marks_in(section.model_fields[name])
 
 
 def number_in(field: FieldInfo) -> In | Count | None:
-    """Unit and bounds of the number, or of each number, in a field; None: it holds none."""
+    """Unit and bounds of the number or numbers in a field; None for other fields."""
     return next((mark for mark in _marks_in(field) if isinstance(mark, (In, Count))), None)
 
 
@@ -272,7 +272,7 @@ def _in_section(hint: Any) -> Any:
 
 @dataclass(frozen=True)
 class MaterialName:
-    """Marks a field of a `Material` that is written as its name in the case."""
+    """Mark of a `Material` field, written in the case as a name."""
 
     def __get_pydantic_core_schema__(
         self, source: type[Material], handler: GetCoreSchemaHandler
@@ -289,5 +289,5 @@ class MaterialName:
 
 
 def named(cards: dict[str, Material]) -> dict[str, Material]:
-    """Materials with the names of their tables."""
+    """Materials with their table names entered."""
     return {name: replace(card, name=name) for name, card in cards.items()}

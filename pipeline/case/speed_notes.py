@@ -1,4 +1,4 @@
-"""What a measured crank speed shows of its trigger wheel and of its working cycle."""
+"""Notes on a measured crank speed: trigger wheel and working cycle."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ _ASSUMED = {
 
 
 def calibration_record(calibration: Calibration | None) -> WheelErrors:
-    """Pitch errors of the wheel in ``run.json``."""
+    """Pitch errors of the trigger wheel, for ``run.json``."""
     if calibration is None:
         return {}
     errors = calibration.errors
@@ -49,7 +49,7 @@ def calibration_record(calibration: Calibration | None) -> WheelErrors:
 def speed_notes(
     trace: SpeedTrace, inertia: float, running_gear: RunningGear | None = None
 ) -> tuple[str, ...]:
-    """Lines on pitch errors and half orders; what calls for action begins with ``warning:``.
+    """Lines on pitch errors and half orders; those that need action begin with ``warning:``.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""First case of each kind, written by `camwright init`: complete, commented, within its limits.
+"""First case of each kind, complete and commented, as written by `camwright init`.
 
 The kinds differ at the source alone: a cylinder model, a measurement on the engine of that model,
 the torque of another machine, or a lift. The mechanism is the same.
@@ -36,7 +36,7 @@ KINDS: tuple[Kind, ...] = get_args(Kind)
 
 
 class FirstCase(NamedTuple):
-    """Text of a case file, and name and text of the data file that it reads; "" without one."""
+    """Text of a case file, with name and text of its data file; "" without one."""
 
     text: str
     data_name: str
@@ -44,7 +44,7 @@ class FirstCase(NamedTuple):
 
 
 def first_case(name: str, kind: str = "cylinder") -> FirstCase:
-    """The first case of a kind.
+    """First case of a kind.
 
     Raises
     ------

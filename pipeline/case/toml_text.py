@@ -1,4 +1,4 @@
-"""A case as TOML text: values with their units, every default included."""
+"""TOML text of a case: values with units, every default included."""
 
 from __future__ import annotations
 
@@ -31,12 +31,12 @@ _FILE_KEYS = ("file", "torque", "motored_file", "external_force_file")
 
 
 def to_toml(case: Section, renamed: Mapping[str, str]) -> str:
-    """TOML text of a case; `renamed` gives included files the names they are kept under."""
+    """TOML text of a case; `renamed` maps included files to their names in a folder."""
     return _HEADING + tomli_w.dumps(tables_of(case, renamed))
 
 
 def tables_of(model: Section | Part, renamed: Mapping[str, str] | None = None) -> Tables:
-    """A section or part as the tables of a case file; absent fields are left out."""
+    """Tables of a section or part as in a case file; absent fields are omitted."""
     section = section_of(type(model)) if isinstance(model, Part) else type(model)
     tables: Tables = {}
     left_out = model.derived if isinstance(model, Part) else ()
@@ -53,7 +53,7 @@ def tables_of(model: Section | Part, renamed: Mapping[str, str] | None = None) -
 
 
 def table_in(tables: Tables, name: str) -> Tables:
-    """A table within tables.
+    """Nested table, created if absent.
 
     Raises
     ------

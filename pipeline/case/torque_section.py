@@ -1,4 +1,4 @@
-"""The machine of a case file by its torque: a table, harmonics, or a compressor, pump or press."""
+"""Torque section of a case file: table, harmonics, pressures, compressor, pump or press."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ TORQUE_KINDS = ("table", "harmonics", "pressure", "compressor", "pump", "press")
 
 
 def torque_files(torque: ShaftTorque | None) -> Iterator[tuple[str, str]]:
-    """Dotted field and name of every file that a torque includes."""
+    """Key and file name of every file that a torque includes."""
     if isinstance(torque, (TabledTorqueFile, PressureTorqueFile)):
         yield "torque.file", torque.file
     if isinstance(torque, Press) and torque.file is not None:

@@ -1,4 +1,4 @@
-"""Source of each value of a case, and the values that their source does not confirm.
+"""Sources of the values of a case, and its values to be confirmed.
 
 A value has the dotted name of its key, such as ``materials.s355.yield_strength``. Its source is the
 entry of ``[sources]`` under that name, else that of its limit, else the ``source`` of its table.
@@ -34,7 +34,7 @@ _NO_VALUES = (
 
 
 def values_in(entry: TomlValue, name: str = "") -> Iterator[str]:
-    """Dotted names of the values of a case, or of one of its tables of that name."""
+    """Dotted names of the values of a case, or of one of its tables."""
     if isinstance(entry, dict):
         for key, inner in entry.items():
             if key not in (_WORDS if name else _NO_VALUES):
@@ -44,7 +44,7 @@ def values_in(entry: TomlValue, name: str = "") -> Iterator[str]:
 
 
 def values_at(tables: Tables, path: str) -> tuple[str, ...]:
-    """Values of a case at a path; a material is followed by its name.
+    """Dotted names of the values at a path; those of a material follow its name.
 
     Parameters
     ----------
@@ -72,7 +72,7 @@ def values_at(tables: Tables, path: str) -> tuple[str, ...]:
 
 
 def source_of(tables: Tables, value: str) -> Source:
-    """Source of a value by its dotted name; none if none is stated."""
+    """Source of a value by dotted name; empty if none is stated."""
     *parents, key = value.split(".")
     table: TomlValue = tables
     for part in parents:
@@ -103,7 +103,7 @@ def require_known(tables: Tables, field: str, value: str) -> None:
 
 
 def put_sources(case: Tables, field: str, table: TomlValue, entries: Tables) -> None:
-    """Add the sources of the numbers of a table, unless the case states them itself."""
+    """Add the sources of a table's numbers where the case states none."""
     stated, numbers = case.setdefault("sources", {}), set(values_in(table, field))
     if isinstance(stated, dict):
         for key, entry in entries.items():
@@ -112,7 +112,7 @@ def put_sources(case: Tables, field: str, table: TomlValue, entries: Tables) -> 
 
 
 def forget_sources(tables: Tables, part: str) -> None:
-    """Remove sources and confirmations of a value, or of the values of a part, that is replaced."""
+    """Remove sources and confirmations of replaced values."""
 
     def kept(value: TomlValue) -> bool:
         return not f"{value}.".startswith(f"{part}.")

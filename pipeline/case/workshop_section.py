@@ -1,4 +1,4 @@
-"""Sections of the workshop files and of the title block of drawing and sign-off sheet."""
+"""Case sections of the workshop files, and of the title block of drawings."""
 
 from __future__ import annotations
 
@@ -69,7 +69,7 @@ class Document(Section):
 
 @dataclass(frozen=True)
 class WorkshopOrder:
-    """Step of the tables, rad; tool radius, tolerance band of the form, error of the arcs, m.
+    """Workshop tables: angle step, rad; tool radius, form tolerance, error of the arcs, m.
 
     Without a tool radius that of the roller, or of the base circle, is used: such a tool fits
     wherever the follower does.

@@ -27,7 +27,7 @@ _OF_THE_RING = {
 
 @dataclass(frozen=True, kw_only=True)
 class BearingCard(Part):
-    """A ball bearing with its maker's ratings.
+    """Ball bearing of a catalogue: dimensions and ratings of its maker.
 
     radial_limit and static_radial_limit are the load limits of the outer ring without a housing;
     fatigue_load_limit is P_u.
@@ -76,7 +76,7 @@ class BearingCard(Part):
 
     @property
     def bearing(self) -> Bearing:
-        """The bearing as part of a roller, with its outer ring if the card describes it."""
+        """Bearing of a roller, with its outer ring if the card describes it."""
         ring = None
         if self.balls is not None and self.pitch_diameter and self.ring_thickness:
             ring = OuterRing(
@@ -103,6 +103,6 @@ class BearingCard(Part):
 
 
 def bearing_keys(words: Mapping[str, Source]) -> dict[str, Source]:
-    """Sources by the keys of a card, by those of ``roller.bearing``."""
+    """Sources by card key, renamed to the keys of ``roller.bearing``."""
     of_ring = {f"ring.{_OF_THE_RING[key]}": words[key] for key in words if key in _OF_THE_RING}
     return dict(words) | of_ring

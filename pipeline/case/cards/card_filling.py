@@ -40,7 +40,7 @@ Cards = Mapping[str, Mapping[str, Tables]]
 
 
 def fill_cards(case: Tables, folder: Path | None) -> None:
-    """Complete the tables of a case from the cards and the spring catalogue that it names.
+    """Tables of a case completed from the cards and the spring catalogue it names.
 
     Parameters
     ----------
@@ -101,7 +101,7 @@ def _fill_places(case: Tables, folder: Path | None) -> None:
 
 
 def known_cards(folder: Path | None) -> Cards:
-    """Shipped cards by kind and name; those of the user in `folder` take precedence."""
+    """Cards by kind and name, the shipped ones overridden by the user's in `folder`."""
     cards = {kind: dict(cards) for kind, cards in _shipped().items()}
     path = None if folder is None else folder / USER_FILE
     if path is None or not path.is_file():
@@ -115,7 +115,7 @@ def known_cards(folder: Path | None) -> Cards:
 
 
 def viscosity(at_40: float, at_100: float, temperature: float) -> float:
-    """Kinematic viscosity (mm2/s) of an oil at a temperature (K), from those at 40 and 100 degC.
+    """Kinematic viscosity (mm2/s) of an oil at a temperature (K), by its values at 40 and 100 degC.
 
     References
     ----------
@@ -127,7 +127,7 @@ def viscosity(at_40: float, at_100: float, temperature: float) -> float:
 
 
 def thinning(at_40: float, at_100: float) -> float:
-    """Slope of Walther's equation of an oil, from its kinematic viscosities (mm2/s)."""
+    """Slope m of Walther's equation from kinematic viscosities (mm2/s) at 40 and 100 degC."""
     low, high = (math.log10(math.log10(v + 0.7)) for v in (at_40, at_100))
     return (low - high) / math.log10(373.15 / 313.15)
 
@@ -270,7 +270,7 @@ def _wire(card: Tables, table: Tables, name: str, field: str) -> Tables:
 
 
 def wire_values(card: Tables) -> Tables:
-    """A wire's card without the diameters and the temperature for which its values hold."""
+    """Values of a wire card, without the diameters and temperature they hold for."""
     return {key: value for key, value in card.items() if key not in _RANGE}
 
 

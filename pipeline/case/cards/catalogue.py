@@ -1,4 +1,4 @@
-"""Catalogue of a redesign: rollers, springs and bushes, shipped or of the user."""
+"""Catalogue of rollers, springs and bushes: shipped cards and those of the user."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ Candidate = TypeVar("Candidate")
 
 @dataclass(frozen=True)
 class CatalogueBush:
-    """A bush by its card: friction and its upper bound, limits of pressure, Pa, and PV, Pa m/s."""
+    """Bush of a catalogue: friction and its upper bound, limits of pressure, Pa, and PV, Pa m/s."""
 
     name: str
     friction: float
@@ -37,7 +37,7 @@ class CatalogueBush:
 
 @dataclass(frozen=True)
 class Catalogue:
-    """Parts by the names of their cards, in the order of their files; the user's go first."""
+    """Parts by card name in the order of their files, the user's first."""
 
     rollers: Mapping[str, BearingCard]
     springs: Mapping[str, HelicalSpring]
@@ -45,7 +45,7 @@ class Catalogue:
 
 
 def catalogue_of(folder: Path | None) -> Catalogue:
-    """Catalogue of the shipped parts and those of the user, ``cards.toml`` and ``springs.toml``.
+    """Catalogue of the shipped parts and of ``cards.toml`` and ``springs.toml`` in a folder.
 
     Parameters
     ----------
@@ -95,7 +95,7 @@ def _bush(name: str, entry: Tables) -> CatalogueBush:
 def undominated(
     parts: Mapping[str, Candidate], better: Callable[[Candidate, Candidate], bool]
 ) -> dict[str, Candidate]:
-    """Parts that no other part dominates; the first of equal ones.
+    """Non-dominated parts; the first of equal ones.
 
     Parameters
     ----------
@@ -111,7 +111,7 @@ def undominated(
 
 
 def better_roller(one: BearingCard, other: BearingCard) -> bool:
-    """Whether a bearing of the same size has no lower rating or load limit."""
+    """Whether a bearing of equal size dominates another in ratings and load limits."""
     same = (one.outer_diameter, one.width) == (other.outer_diameter, other.width)
     limits = ("radial_limit", "static_radial_limit", "fatigue_load_limit")
     ring = all((getattr(one, name) or 0.0) >= (getattr(other, name) or 0.0) for name in limits)
@@ -120,7 +120,7 @@ def better_roller(one: BearingCard, other: BearingCard) -> bool:
 
 
 def better_bush(one: CatalogueBush, other: CatalogueBush) -> bool:
-    """Whether a bush has no higher friction and no lower limit."""
+    """Whether a bush dominates another in friction and limits."""
     low_friction = one.friction <= other.friction and one.friction_max <= other.friction_max
     return low_friction and one.pressure >= other.pressure and one.pv >= other.pv
 
@@ -128,7 +128,7 @@ def better_bush(one: CatalogueBush, other: CatalogueBush) -> bool:
 def better_spring(
     one: tuple[HelicalSpring, float], other: tuple[HelicalSpring, float], *, by_mass: bool
 ) -> bool:
-    """Whether a spring of the same rate has no less travel and, `by_mass`, no more mass.
+    """Whether a spring of equal rate dominates another in travel and, `by_mass`, in mass.
 
     Each spring comes with its travel, m.
     """
@@ -138,7 +138,7 @@ def better_spring(
 
 
 def nearest_spring(springs: Sequence[HelicalSpring], rate: float) -> HelicalSpring:
-    """The lightest spring of a rate (N/m), or that of the nearest rate."""
+    """Lightest spring of a rate (N/m), or else the spring of the nearest rate."""
     alike = [spring for spring in springs if abs(spring.rate / rate - 1.0) <= SAME_RATE]
     if alike:
         return min(alike, key=lambda spring: spring.mass)

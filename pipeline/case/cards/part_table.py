@@ -1,4 +1,4 @@
-"""A part read from a table of a card or catalogue."""
+"""Reading of a part from a table of a card or catalogue."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from camwright.pipeline.case.toml_text import TomlValue
 
 
 def read_part(part: type[PartType], table: TomlValue, field: str) -> PartType:
-    """Part described by a table.
+    """Part read from a table, with units and bounds checked.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Provenance of the numbers of a card: source, place in it, condition, read or recalled.
+"""Provenance of card values: source, place in it, condition, read or recalled.
 
 A card states it in its table ``provenance``, one entry for each number or, by wildcards, for
 several; the first entry that fits holds. An entry has the id of a title in ``sources.toml``, the
@@ -31,7 +31,7 @@ _WORDS = ("source", "name", "condition")
 
 
 class Provenance(Section):
-    """Where a number comes from; source: id of a title, or the title itself."""
+    """Origin of a card value: id or title of the source, place, condition."""
 
     source: Text
     at: Text = ""
@@ -49,12 +49,12 @@ class Provenance(Section):
 
 @cache
 def titles() -> Mapping[str, str]:
-    """Titles and editions of the sources by their ids."""
+    """Titles and editions of the sources by id."""
     return {name: str(title) for name, title in read_toml(_TITLES, _TITLES.name, _BYTES).items()}
 
 
 def numbers_of(card: Tables) -> Iterator[str]:
-    """Keys of a card that hold a number, with or without a unit, or a list of such."""
+    """Keys of a card whose values are numbers, with or without unit, or lists of them."""
     for key, value in card.items():
         plain = isinstance(value, (int, float, list)) and not isinstance(value, bool)
         if plain or (key not in _WORDS and isinstance(value, str) and _NUMBER.match(value)):
@@ -62,7 +62,7 @@ def numbers_of(card: Tables) -> Iterator[str]:
 
 
 def provenance_of(card: Tables, key: str, field: str) -> Provenance | None:
-    """Provenance of a number of a card; None if the card states none at all.
+    """Provenance of a card value; None if the card states no provenance.
 
     Parameters
     ----------
@@ -86,13 +86,13 @@ def provenance_of(card: Tables, key: str, field: str) -> Provenance | None:
 
 
 def source_in_card(card: Tables, key: str, field: str) -> Source:
-    """Source of a number of a card: its provenance, else the source of the card."""
+    """Source of a card value: its provenance, else the source of the whole card."""
     known = provenance_of(card, key, field)
     return source_in(card.get("source", "")) if known is None else known.stated
 
 
 def without_provenance(card: Tables) -> Tables:
-    """The card as the table of its part."""
+    """Card without provenance, as the table of its part."""
     return {key: value for key, value in card.items() if key != PROVENANCE}
 
 

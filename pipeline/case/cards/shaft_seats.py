@@ -1,4 +1,4 @@
-"""Seats of a camshaft: bore and keyway of the cam, ball bearing of the same bore."""
+"""Seats of a camshaft: cam bore and keyway, with the ball bearing of the same bore."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _BYTES_MAX = 64 * 1024
 
 @dataclass(frozen=True, kw_only=True)
 class Seat(Part):
-    """Bore of a cam with its keyway, and the ball bearing of the same bore with its width."""
+    """Cam bore with keyway, and the ball bearing of the same bore with its width."""
 
     table: ClassVar[str] = "seat"
 
@@ -32,7 +32,7 @@ class Seat(Part):
 
 
 def seats() -> tuple[Seat, ...]:
-    """Seats of the shipped cards, by increasing bore."""
+    """Shipped seats by increasing bore."""
     table: Tables = read_toml(_FILE, _FILE.name, _BYTES_MAX)
     rows = table["seat"]
     listed = rows if isinstance(rows, list) else []

@@ -1,4 +1,4 @@
-"""Catalogue of springs in TOML, the demand on a spring, and the lightest that meets it."""
+"""Catalogue of springs in TOML, and the lightest spring that meets a demand."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ _BYTES = 256 * 1024
 
 
 class SpringRoom(NamedTuple):
-    """Room that a search keeps within the limits of a wound spring, whose surge it does not solve.
+    """Margins to the limits of a wound spring in a search that does not solve its surge.
 
     Parameters
     ----------
@@ -67,7 +67,7 @@ NO_ROOM = SpringRoom()
 
 @dataclass(frozen=True)
 class SpringDemand(Generic[Number]):
-    """Demand on springs: one, or many designs at once.
+    """Demand on springs: forces, travel and limits, of one design or many at once.
 
     Parameters
     ----------
@@ -97,13 +97,13 @@ class SpringDemand(Generic[Number]):
     room: SpringRoom = NO_ROOM
 
     def work(self, wire: WoundWire[Number]) -> SpringWork[Number]:
-        """Work of the hardest spring in tolerance, with the room for its surge."""
+        """Forces and travel of the hardest spring in tolerance, with the margin for surge."""
         room = self.room
         rest = wire.at_work(self.preload, self.travel, self.preload_spread, self.rate_spread)
         return rest._replace(greatest=room.greatest * rest.greatest)
 
     def kept(self, wire: WoundWire[Number]) -> Mapping[str, NDArray[np.bool_]]:
-        """Whether springs (...) keep each limit, by the words of a spring that does not.
+        """Whether springs (...) keep each limit, by the words of a refused spring.
 
         Relaxation is judged where the wire states it.
         """
@@ -166,7 +166,7 @@ def wire_sources() -> Iterator[tuple[str, Source]]:
 
 
 def sources_in(path: Path, name: str) -> tuple[TomlValue, Tables]:
-    """Source of the wire of a spring of a catalogue, and those of the numbers, as entries.
+    """Sources of a catalogue spring's wire and of its numbers, as table entries.
 
     The numbers of its wire have those of their provenance.
     """
@@ -190,7 +190,7 @@ def sources_in(path: Path, name: str) -> tuple[TomlValue, Tables]:
 def lightest(
     catalogue: tuple[HelicalSpring, ...], demand: SpringDemand[float]
 ) -> tuple[HelicalSpring | None, dict[str, tuple[str, ...]]]:
-    """The lightest spring that meets the demand, or None, and the reasons of those that do not."""
+    """Lightest spring that meets the demand, or None; reasons of the refused springs."""
     reasons = {spring.name: demand.shortfalls(spring) for spring in catalogue}
     fit = [spring for spring in catalogue if not reasons[spring.name]]
     best = min(fit, key=lambda spring: spring.mass, default=None)

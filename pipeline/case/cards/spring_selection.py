@@ -1,4 +1,4 @@
-"""``spring.catalogue = "FILE"``: the lightest spring of a catalogue for a case.
+"""Selection of a catalogue spring for a case by ``spring.catalogue = "FILE"``.
 
 The resolved case states the dimensions of the selected spring instead of the catalogue. Rate and
 preload of a spring that is not linear follow from its table.
@@ -31,7 +31,7 @@ _NEAREST = 3
 
 
 def put_spring(case: Tables, folder: Path | None) -> None:
-    """Replace ``spring.catalogue`` of a case by ``[spring.design]`` of the selected spring.
+    """Replace ``spring.catalogue`` by the ``[spring.design]`` of the selected spring.
 
     The spring must meet the rate, the preloads of all load cases, ``spring.travel_max`` and the
     limits of fatigue and solid clearance, also at the upper bounds of its tolerances.
@@ -73,7 +73,7 @@ def put_spring(case: Tables, folder: Path | None) -> None:
 
 
 def put_force(case: Tables) -> None:
-    """Put rate and preload of a spring that is not linear into its table, changed in place.
+    """Enter rate and preload of a gas or torsion spring into its table, in place.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""A case with other parts: roller, spring and bushes of a catalogue, with dependent values."""
+"""Exchange of roller, spring and bushes in a case, with all dependent values."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ _FORK = 2e-3  # m between roller and fork if the case has no pin
 
 @dataclass(frozen=True)
 class Choice:
-    """Parts by name, and the limit of the cam radius, m; None: that of the case."""
+    """Parts by card name, and limit of the cam radius, m; None: the limit of the case."""
 
     roller: str
     spring: str
@@ -45,7 +45,7 @@ class Choice:
 
 
 def travel_of(spring: HelicalSpring, case: Case) -> float:
-    """Maximum lift (m) at which a spring meets its limits in a case; 0 if it meets them at none.
+    """Maximum lift (m) within the limits of a spring in a case; 0 if there is none.
 
     All limits of `SpringDemand` without surge, as in the checks: at the upper bounds of rate and
     preload.
@@ -82,7 +82,7 @@ def least_prime_radius(case: Case, roller_radius: float) -> float:
 
 
 def variant(case: Case, parts: Catalogue, choice: Choice, folder: Path | None) -> Case:
-    """The case with the parts of a choice and all values that depend on them.
+    """Case with the parts of a choice and all dependent values.
 
     The roller sets its radius, width, bore and ratings, and with them the cam width, the pin, the
     overhang and the mass of the follower; the spring sets rate, travel and mass; the bush friction
@@ -115,7 +115,7 @@ def variant(case: Case, parts: Catalogue, choice: Choice, folder: Path | None) -
 
 
 def with_roller(case: Case, name: str, card: BearingCard, folder: Path | None) -> Case:
-    """The case with another roller and the same base circle.
+    """Case with another roller on the same base circle.
 
     Raises
     ------
@@ -133,7 +133,7 @@ def with_roller(case: Case, name: str, card: BearingCard, folder: Path | None) -
 
 
 def with_bush(case: Case, side: Literal["a", "b"], name: str, folder: Path | None) -> Case:
-    """The case with another bush in one guide, of the same size.
+    """Case with another bush of the same size in one guide.
 
     Raises
     ------
@@ -146,7 +146,7 @@ def with_bush(case: Case, side: Literal["a", "b"], name: str, folder: Path | Non
 
 
 def with_cam_material(case: Case, name: str, folder: Path | None) -> Case:
-    """The case with the cam of the material of a card.
+    """Case with the cam of another material card.
 
     Raises
     ------
